@@ -1,0 +1,22 @@
+//! The machines a text runs on: register files (scalar, `pulp`, `wide`, blocks of registers) and the tape.
+
+mod block;
+mod pulp;
+mod registers;
+mod scalar;
+pub mod tape;
+mod wide;
+
+pub use block::Block;
+pub use pulp::{Pulp, PulpElement};
+pub(crate) use registers::Strip;
+pub use registers::{IndexLanes, Registers};
+pub use scalar::Scalar;
+pub use tape::{Listing, Tape};
+pub use wide::{Wide, WideElement};
+
+/// A precision that every register file has lanes for.
+pub trait Precision: PulpElement + WideElement {}
+
+impl Precision for f64 {}
+impl Precision for f32 {}

@@ -1,0 +1,269 @@
+//! Registers of the processor at hand, chosen at run time: AVX-512, AVX2, NEON, or scalar, by the crate `pulp`.
+
+use super::registers::Registers;
+use crate::isa::{Element, Predicate, Vector};
+use pulp::Simd;
+use std::marker::PhantomData;
+use std::ops::{Add, Div, Mul, Sub};
+
+/// A precision that `pulp` has registers for. Its operations are named per type, hence this table.
+pub trait PulpElement: Element {
+    /// A register of `S`.
+    type Register<S: Simd>: Copy;
+    /// A register of truth values of `S`.
+    type Truth<S: Simd>: Copy;
+    #[doc(hidden)]
+    fn splat<S: Simd>(simd: S, value: Self) -> Self::Register<S>;
+    #[doc(hidden)]
+    fn add<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
+    #[doc(hidden)]
+    fn sub<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
+    #[doc(hidden)]
+    fn mul<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
+    #[doc(hidden)]
+    fn div<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
+    #[doc(hidden)]
+    fn min<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
+    #[doc(hidden)]
+    fn max<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
+    #[doc(hidden)]
+    fn sqrt<S: Simd>(simd: S, a: Self::Register<S>) -> Self::Register<S>;
+    #[doc(hidden)]
+    fn abs<S: Simd>(simd: S, a: Self::Register<S>) -> Self::Register<S>;
+    #[doc(hidden)]
+    fn truncate<S: Simd>(simd: S, a: Self::Register<S>) -> Self::Register<S>;
+    #[doc(hidden)]
+    fn less_than<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Truth<S>;
+    #[doc(hidden)]
+    fn less_equal<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Truth<S>;
+    #[doc(hidden)]
+    fn equal<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Truth<S>;
+    #[doc(hidden)]
+    fn select<S: Simd>(
+        simd: S,
+        truth: Self::Truth<S>,
+        holds: Self::Register<S>,
+        fails: Self::Register<S>,
+    ) -> Self::Register<S>;
+    #[doc(hidden)]
+    fn and<S: Simd>(simd: S, a: Self::Truth<S>, b: Self::Truth<S>) -> Self::Truth<S>;
+    #[doc(hidden)]
+    fn not<S: Simd>(simd: S, a: Self::Truth<S>) -> Self::Truth<S>;
+    #[doc(hidden)]
+    fn none<S: Simd>(simd: S, a: Self::Truth<S>) -> bool;
+}
+
+macro_rules! pulp_element {
+    ($ty:ident, $register:ident, $truth:ident, $lanes:ident,
+     $splat:ident $add:ident $sub:ident $mul:ident $div:ident $min:ident $max:ident $sqrt:ident $abs:ident
+     $less_than:ident $less_equal:ident $equal:ident $select:ident $and:ident $not:ident $first_true:ident) => {
+        impl PulpElement for $ty {
+            type Register<S: Simd> = S::$register;
+            type Truth<S: Simd> = S::$truth;
+            #[inline(always)]
+            fn splat<S: Simd>(simd: S, value: Self) -> S::$register {
+                simd.$splat(value)
+            }
+            #[inline(always)]
+            fn add<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$register {
+                simd.$add(a, b)
+            }
+            #[inline(always)]
+            fn sub<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$register {
+                simd.$sub(a, b)
+            }
+            #[inline(always)]
+            fn mul<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$register {
+                simd.$mul(a, b)
+            }
+            #[inline(always)]
+            fn div<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$register {
+                simd.$div(a, b)
+            }
+            #[inline(always)]
+            fn min<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$register {
+                // Only x86's instruction is the machine's "a < b ? a : b" to the bit.
+                if cfg!(target_arch = "x86_64") && !S::IS_SCALAR {
+                    simd.$min(a, b)
+                } else {
+                    simd.$select(simd.$less_than(a, b), a, b)
+                }
+            }
+            #[inline(always)]
+            fn max<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$register {
+                if cfg!(target_arch = "x86_64") && !S::IS_SCALAR {
+                    simd.$max(a, b)
+                } else {
+                    simd.$select(simd.$less_than(b, a), a, b)
+                }
+            }
+            #[inline(always)]
+            fn sqrt<S: Simd>(simd: S, a: S::$register) -> S::$register {
+                simd.$sqrt(a)
+            }
+            #[inline(always)]
+            fn abs<S: Simd>(simd: S, a: S::$register) -> S::$register {
+                simd.$abs(a)
+            }
+            #[inline(always)]
+            fn truncate<S: Simd>(_: S, mut a: S::$register) -> S::$register {
+                // pulp has no rounding; the compiler vectorises this loop inside the dispatched function.
+                for lane in pulp::bytemuck::cast_slice_mut::<S::$register, $ty>(std::slice::from_mut(&mut a))
+                {
+                    *lane = lane.trunc();
+                }
+                a
+            }
+            #[inline(always)]
+            fn less_than<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$truth {
+                simd.$less_than(a, b)
+            }
+            #[inline(always)]
+            fn less_equal<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$truth {
+                simd.$less_equal(a, b)
+            }
+            #[inline(always)]
+            fn equal<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$truth {
+                simd.$equal(a, b)
+            }
+            #[inline(always)]
+            fn select<S: Simd>(
+                simd: S,
+                truth: S::$truth,
+                holds: S::$register,
+                fails: S::$register,
+            ) -> S::$register {
+                simd.$select(truth, holds, fails)
+            }
+            #[inline(always)]
+            fn and<S: Simd>(simd: S, a: S::$truth, b: S::$truth) -> S::$truth {
+                simd.$and(a, b)
+            }
+            #[inline(always)]
+            fn not<S: Simd>(simd: S, a: S::$truth) -> S::$truth {
+                simd.$not(a)
+            }
+            #[inline(always)]
+            fn none<S: Simd>(simd: S, a: S::$truth) -> bool {
+                simd.$first_true(a) == S::$lanes
+            }
+        }
+    };
+}
+
+pulp_element!(
+    f64, f64s, m64s, F64_LANES, splat_f64s add_f64s sub_f64s mul_f64s div_f64s min_f64s max_f64s sqrt_f64s abs_f64s
+    less_than_f64s less_than_or_equal_f64s equal_f64s select_f64s and_m64s not_m64s first_true_m64s
+);
+pulp_element!(
+    f32, f32s, m32s, F32_LANES, splat_f32s add_f32s sub_f32s mul_f32s div_f32s min_f32s max_f32s sqrt_f32s abs_f32s
+    less_than_f32s less_than_or_equal_f32s equal_f32s select_f32s and_m32s not_m32s first_true_m32s
+);
+
+/// Registers of the instruction set `S` with lanes of `T`.
+#[derive(Clone, Copy)]
+pub struct Pulp<S, T> {
+    simd: S,
+    lane: PhantomData<T>,
+}
+
+impl<S: Simd, T: PulpElement> Pulp<S, T> {
+    /// The registers that `simd` proves to exist.
+    #[inline(always)]
+    pub fn new(simd: S) -> Self {
+        Pulp { simd, lane: PhantomData }
+    }
+}
+
+/// One register.
+#[derive(Clone, Copy)]
+pub struct Register<S: Simd, T: PulpElement>(S, T::Register<S>);
+
+/// One register of truth values.
+#[derive(Clone, Copy)]
+pub struct Truth<S: Simd, T: PulpElement>(S, T::Truth<S>);
+
+macro_rules! operator {
+    ($trait:ident, $method:ident) => {
+        impl<S: Simd, T: PulpElement> $trait for Register<S, T> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Register(self.0, <T as PulpElement>::$method(self.0, self.1, other.1))
+            }
+        }
+    };
+}
+operator!(Add, add);
+operator!(Sub, sub);
+operator!(Mul, mul);
+operator!(Div, div);
+
+impl<S: Simd, T: PulpElement> Predicate for Truth<S, T> {
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        Truth(self.0, <T as PulpElement>::and(self.0, self.1, other.1))
+    }
+    #[inline(always)]
+    fn not(self) -> Self {
+        Truth(self.0, <T as PulpElement>::not(self.0, self.1))
+    }
+}
+
+macro_rules! forward {
+    (unary $($method:ident),*) => {$(
+        #[inline(always)]
+        fn $method(self) -> Self {
+            Register(self.0, <T as PulpElement>::$method(self.0, self.1))
+        }
+    )*};
+    (binary $($method:ident),*) => {$(
+        #[inline(always)]
+        fn $method(self, other: Self) -> Self {
+            Register(self.0, <T as PulpElement>::$method(self.0, self.1, other.1))
+        }
+    )*};
+    (comparison $($method:ident),*) => {$(
+        #[inline(always)]
+        fn $method(self, other: Self) -> Truth<S, T> {
+            Truth(self.0, <T as PulpElement>::$method(self.0, self.1, other.1))
+        }
+    )*};
+}
+
+impl<S: Simd, T: PulpElement> Vector for Register<S, T> {
+    type Predicate = Truth<S, T>;
+    forward!(unary sqrt, abs, truncate);
+    forward!(binary min, max);
+    forward!(comparison less_than, less_equal, equal);
+    #[inline(always)]
+    fn select(predicate: Truth<S, T>, holds: Self, fails: Self) -> Self {
+        Register(holds.0, <T as PulpElement>::select(holds.0, predicate.1, holds.1, fails.1))
+    }
+}
+
+impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
+    type Lane = T;
+    type V = Register<S, T>;
+    type Index = [u32; 16];
+    const LANES: usize = size_of::<T::Register<S>>() / T::BYTES;
+
+    #[inline(always)]
+    fn splat(self, value: T) -> Self::V {
+        Register(self.simd, T::splat(self.simd, value))
+    }
+    #[inline(always)]
+    unsafe fn load(self, from: *const T) -> Self::V {
+        // SAFETY: the caller promises LANES elements; a register is plain data of that size.
+        Register(self.simd, unsafe { from.cast::<T::Register<S>>().read_unaligned() })
+    }
+    #[inline(always)]
+    unsafe fn store(self, to: *mut T, value: Self::V) {
+        // SAFETY: the caller promises LANES writable elements; a register is plain data of that size.
+        unsafe { to.cast::<T::Register<S>>().write_unaligned(value.1) };
+    }
+    #[inline(always)]
+    fn none(self, predicate: Truth<S, T>) -> bool {
+        T::none(self.simd, predicate.1)
+    }
+}

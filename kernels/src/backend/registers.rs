@@ -1,0 +1,268 @@
+//! The machine made of registers: one body of every instruction over any register file.
+
+use crate::isa::{Counter, Element, Machine, Memory, Slot, Storage, Vector, same};
+use std::mem::MaybeUninit;
+
+/// The most lanes any register file has: bounds the buffers of lane-by-lane instructions.
+pub const MAX_LANES: usize = 256;
+
+/// The entries of an index vector, one a lane.
+pub trait IndexLanes: Copy {
+    /// All entries none.
+    fn none() -> Self;
+    /// The entry of `lane`.
+    fn lane(&self, lane: usize) -> u32;
+    /// Sets the entry of `lane`.
+    fn set_lane(&mut self, lane: usize, number: u32);
+}
+
+impl<const N: usize> IndexLanes for [u32; N] {
+    #[inline(always)]
+    fn none() -> Self {
+        [0; N]
+    }
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> u32 {
+        self[lane]
+    }
+    #[inline(always)]
+    fn set_lane(&mut self, lane: usize, number: u32) {
+        self[lane] = number;
+    }
+}
+
+/// A register file: how vectors of one width come from memory and go back.
+pub trait Registers: Copy {
+    /// The number a lane holds.
+    type Lane: Element;
+    /// A register, or a fixed number of them.
+    type V: Vector;
+    /// An index vector as wide as `V`.
+    type Index: IndexLanes;
+    /// Lanes of `V`, at most [`MAX_LANES`].
+    const LANES: usize;
+
+    /// The same number in every lane.
+    fn splat(self, value: Self::Lane) -> Self::V;
+    /// Loads `LANES` consecutive numbers.
+    ///
+    /// # Safety
+    /// They exist.
+    unsafe fn load(self, from: *const Self::Lane) -> Self::V;
+    /// Stores `LANES` consecutive numbers.
+    ///
+    /// # Safety
+    /// They exist and may be written.
+    unsafe fn store(self, to: *mut Self::Lane, value: Self::V);
+    /// Whether no lane holds.
+    fn none(self, predicate: <Self::V as Vector>::Predicate) -> bool;
+}
+
+/// A strip of `R::LANES` elements of a memory, from element `base` on.
+///
+/// The memory was admitted for the text's footprint over every strip that is run, which makes the raw loads sound.
+#[derive(Clone, Copy)]
+pub(crate) struct Strip<'m, R> {
+    registers: R,
+    memory: &'m Memory<'m>,
+    base: usize,
+}
+
+/// Lanes spilled to memory, for instructions that no portable SIMD offers.
+struct Spill<T>(MaybeUninit<[T; MAX_LANES]>);
+
+impl<T: Copy> Spill<T> {
+    #[inline(always)]
+    fn new() -> Self {
+        Spill(MaybeUninit::uninit())
+    }
+    #[inline(always)]
+    fn start(&mut self) -> *mut T {
+        self.0.as_mut_ptr().cast()
+    }
+}
+
+impl<'m, R: Registers> Strip<'m, R> {
+    #[inline(always)]
+    pub(crate) fn new(registers: R, memory: &'m Memory<'m>, base: usize) -> Self {
+        const { assert!(R::LANES <= MAX_LANES) }
+        Strip { registers, memory, base }
+    }
+
+    /// Builds a vector lane by lane.
+    #[inline(always)]
+    fn assemble(self, mut number: impl FnMut(usize) -> R::Lane) -> R::V {
+        let mut spill = Spill::<R::Lane>::new();
+        for lane in 0..R::LANES {
+            // SAFETY: LANES <= MAX_LANES elements of the spill are written.
+            unsafe { spill.start().add(lane).write(number(lane)) };
+        }
+        // SAFETY: those LANES elements were just written.
+        unsafe { self.registers.load(spill.start()) }
+    }
+
+    /// Takes a vector apart, lane by lane.
+    #[inline(always)]
+    fn disperse(self, value: R::V, mut take: impl FnMut(usize, R::Lane)) {
+        let mut spill = Spill::new();
+        // SAFETY: the spill has room for MAX_LANES >= LANES elements, all of them written by the store.
+        unsafe { self.registers.store(spill.start(), value) };
+        for lane in 0..R::LANES {
+            // SAFETY: written above.
+            take(lane, unsafe { spill.start().add(lane).read() });
+        }
+    }
+
+    #[inline(always)]
+    fn place<T: Storage>(self, slot: Slot<T>, shift: isize) -> *mut T {
+        // SAFETY: the memory was admitted for the footprint, so base + shift and the lanes behind it exist.
+        unsafe { self.memory.column(slot).at(self.base as isize + shift) }
+    }
+}
+
+impl<R: Registers> Machine for Strip<'_, R> {
+    type Lane = R::Lane;
+    type V = R::V;
+    type P = <R::V as Vector>::Predicate;
+    type I = R::Index;
+
+    #[inline(always)]
+    fn uniform(self, value: f64) -> R::V {
+        self.registers.splat(R::Lane::from_f64(value))
+    }
+
+    #[inline(always)]
+    fn load<T: Element>(self, slot: Slot<T>) -> R::V {
+        self.load_shifted(slot, 0)
+    }
+
+    #[inline(always)]
+    fn load_shifted<T: Element>(self, slot: Slot<T>, shift: isize) -> R::V {
+        let from = self.place(slot, shift);
+        if same::<T, R::Lane>() {
+            // SAFETY: T is Lane; LANES elements exist (footprint).
+            unsafe { self.registers.load(from.cast()) }
+        } else {
+            // SAFETY: LANES elements exist (footprint).
+            self.assemble(|lane| R::Lane::from_f64(unsafe { *from.add(lane) }.to_f64()))
+        }
+    }
+
+    #[inline(always)]
+    fn store<T: Element>(self, slot: Slot<T>, value: R::V) {
+        self.store_shifted(slot, 0, value);
+    }
+
+    #[inline(always)]
+    fn store_shifted<T: Element>(self, slot: Slot<T>, shift: isize, value: R::V) {
+        let to = self.place(slot, shift);
+        if same::<T, R::Lane>() {
+            // SAFETY: T is Lane; LANES elements exist and are writable (footprint).
+            unsafe { self.registers.store(to.cast(), value) };
+        } else {
+            // SAFETY: LANES elements exist and are writable (footprint).
+            self.disperse(value, |lane, number| unsafe { *to.add(lane) = T::from_f64(number.to_f64()) });
+        }
+    }
+
+    #[inline(always)]
+    fn numbers(self) -> R::V {
+        self.assemble(|lane| R::Lane::from_f64((self.base + lane + 1) as f64))
+    }
+
+    #[inline(always)]
+    fn to_index(self, numbers: R::V) -> R::Index {
+        let mut index = R::Index::none();
+        // A cast saturates: negative numbers and NaN become 0, none.
+        self.disperse(numbers, |lane, number| index.set_lane(lane, number.to_f64() as u32));
+        index
+    }
+
+    #[inline(always)]
+    fn from_index(self, index: R::Index) -> R::V {
+        self.assemble(|lane| R::Lane::from_f64(index.lane(lane).into()))
+    }
+
+    #[inline(always)]
+    fn load_index(self, slot: Slot<u32>) -> R::Index {
+        let from = self.place(slot, 0);
+        let mut index = R::Index::none();
+        for lane in 0..R::LANES {
+            // SAFETY: LANES elements exist (footprint).
+            index.set_lane(lane, unsafe { *from.add(lane) });
+        }
+        index
+    }
+
+    #[inline(always)]
+    fn store_index(self, slot: Slot<u32>, value: R::Index) {
+        let to = self.place(slot, 0);
+        for lane in 0..R::LANES {
+            // SAFETY: LANES elements exist and are writable (footprint).
+            unsafe { *to.add(lane) = value.lane(lane) };
+        }
+    }
+
+    #[inline(always)]
+    fn gather<T: Element>(self, slot: Slot<T>, index: R::Index, elsewhere: R::V) -> R::V {
+        let column = self.memory.column(slot);
+        let mut spill = Spill::new();
+        // SAFETY: the spill has room for MAX_LANES >= LANES elements.
+        unsafe { self.registers.store(spill.start(), elsewhere) };
+        if column.len() == 0 {
+            return elsewhere;
+        }
+        for lane in 0..R::LANES {
+            let number = index.lane(lane);
+            // Entry 1 is read for "none" and thrown away: a branch here would be mispredicted at every other cell.
+            let element = column.read(number.saturating_sub(1) as usize);
+            // SAFETY: written by the store above.
+            let to = unsafe { &mut *spill.start().add(lane) };
+            *to = if number == 0 { *to } else { R::Lane::from_f64(element.to_f64()) };
+        }
+        // SAFETY: all LANES elements were written.
+        unsafe { self.registers.load(spill.start()) }
+    }
+
+    #[inline(always)]
+    fn gather_index(self, slot: Slot<u32>, index: R::Index) -> R::Index {
+        let column = self.memory.column(slot);
+        let mut gathered = R::Index::none();
+        for lane in 0..R::LANES {
+            let number = index.lane(lane);
+            if number != 0 {
+                gathered.set_lane(lane, column.read(number as usize - 1));
+            }
+        }
+        gathered
+    }
+
+    #[inline(always)]
+    fn scatter_index(self, slot: Slot<u32>, index: R::Index, value: R::Index) {
+        let column = self.memory.column(slot);
+        for lane in 0..R::LANES {
+            let number = index.lane(lane);
+            if number != 0 {
+                column.write(number as usize - 1, value.lane(lane));
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn count(self, counter: Counter, predicate: Self::P) {
+        let zero = self.uniform(0.0);
+        let mut holding = 0;
+        self.disperse(R::V::select(predicate, self.uniform(1.0), zero), |_, number| {
+            holding += u64::from(number.to_f64() != 0.0);
+        });
+        self.memory.count(counter, holding);
+    }
+
+    #[inline(always)]
+    fn none(self, predicate: Self::P) -> bool {
+        self.registers.none(predicate)
+    }
+
+    #[inline(always)]
+    fn section(self, _: &'static str) {}
+}

@@ -1,0 +1,35 @@
+//! The scalar oracle: plain numbers, one lane, no SIMD. Every other backend must give its bits.
+
+use super::registers::Registers;
+use crate::isa::Element;
+use std::marker::PhantomData;
+
+/// Registers of one lane.
+#[derive(Clone, Copy, Default)]
+pub struct Scalar<T>(PhantomData<T>);
+
+impl<T: Element> Registers for Scalar<T> {
+    type Lane = T;
+    type V = T;
+    type Index = [u32; 1];
+    const LANES: usize = 1;
+
+    #[inline(always)]
+    fn splat(self, value: T) -> T {
+        value
+    }
+    #[inline(always)]
+    unsafe fn load(self, from: *const T) -> T {
+        // SAFETY: the caller's promise.
+        unsafe { *from }
+    }
+    #[inline(always)]
+    unsafe fn store(self, to: *mut T, value: T) {
+        // SAFETY: the caller's promise.
+        unsafe { *to = value }
+    }
+    #[inline(always)]
+    fn none(self, predicate: bool) -> bool {
+        !predicate
+    }
+}

@@ -1,0 +1,69 @@
+//! A program as an assembly listing.
+
+use super::Tape;
+use super::instruction::{Action, Operand, Reference, RegisterName};
+use crate::isa::Element;
+use std::fmt;
+
+/// Prints a tape, one vector instruction a line.
+pub struct Listing<'t, L>(pub(super) &'t Tape<L>);
+
+impl fmt::Display for RegisterName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.file.letter(), self.number)
+    }
+}
+
+impl<L: Element> fmt::Display for Operand<L> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Operand::Register(name) => name.fmt(f),
+            Operand::Uniform(value) => write!(f, "#{}", value.to_f64()),
+        }
+    }
+}
+
+impl fmt::Display for Reference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.shift {
+            0 => write!(f, "[{}]", self.array.label()),
+            shift => write!(f, "[{}{shift:+}]", self.array.label()),
+        }
+    }
+}
+
+impl<L: Element> fmt::Display for Listing<'_, L> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut section = usize::MAX;
+        for (number, instruction) in self.0.instructions.iter().enumerate() {
+            if instruction.section != section {
+                section = instruction.section;
+                writeln!(f, "; {}", self.0.sections[section])?;
+            }
+            write!(f, "{:>5}  {:<8}", number + 1, instruction.op.mnemonic())?;
+            if let Some(to) = instruction.to {
+                write!(f, "{to}")?;
+                if !matches!(instruction.action, Action::Numbers) {
+                    write!(f, ", ")?;
+                }
+            }
+            match &instruction.action {
+                Action::Unary(a) | Action::ToIndex(a) => write!(f, "{a}")?,
+                Action::Binary(a, b) | Action::Compare(a, b) => write!(f, "{a}, {b}")?,
+                Action::Logic(a, Some(b)) => write!(f, "{a}, {b}")?,
+                Action::Logic(a, None) | Action::FromIndex(a) => write!(f, "{a}")?,
+                Action::Select(predicate, a, b) => write!(f, "{predicate}, {a}, {b}")?,
+                Action::Count(predicate, counter) => write!(f, "C{counter}, {predicate}")?,
+                Action::Numbers => {}
+                Action::Load(from) | Action::LoadIndex(from) => write!(f, "{from}")?,
+                Action::Store(to, value) => write!(f, "{to}, {value}")?,
+                Action::StoreIndex(to, value) => write!(f, "{to}, {value}")?,
+                Action::Gather(from, index, elsewhere) => write!(f, "{from}({index}), {elsewhere}")?,
+                Action::GatherIndex(from, index) => write!(f, "{from}({index})")?,
+                Action::ScatterIndex(to, index, value) => write!(f, "{to}({index}), {value}")?,
+            }
+            writeln!(f)?;
+        }
+        Ok(())
+    }
+}

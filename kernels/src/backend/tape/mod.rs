@@ -1,0 +1,72 @@
+//! The tape: a text recorded as vector instructions. It is counted, listed, and executed the CRAY's way.
+
+mod allocation;
+mod instruction;
+mod interpreter;
+mod listing;
+mod recorder;
+
+pub use instruction::{Action, File, Instruction, Operand, Reference, RegisterName};
+pub use listing::Listing;
+
+use crate::isa::{Element, Footprint, Op, OpCounts, Text};
+use allocation::FileSizes;
+use recorder::{Recorder, Recording};
+
+/// A recorded program: straight-line vector instructions with registers.
+#[derive(Clone, Debug)]
+pub struct Tape<L> {
+    instructions: Vec<Instruction<L>>,
+    sections: Vec<&'static str>,
+    sizes: FileSizes,
+}
+
+impl<L: Element> Tape<L> {
+    /// Records `text` by running it once on a machine that computes nothing.
+    pub fn record<T: Text<Lane = L>>(text: &T) -> Self {
+        let recorder = Recorder::new();
+        text.body(Recording(&recorder));
+        let mut instructions = recorder.instructions.into_inner();
+        let sizes = allocation::allocate(&mut instructions);
+        Tape { instructions, sections: recorder.sections.into_inner(), sizes }
+    }
+
+    /// The instructions, in order.
+    pub fn instructions(&self) -> &[Instruction<L>] {
+        &self.instructions
+    }
+
+    /// Registers of a file that the program needs at once.
+    pub fn registers(&self, file: File) -> usize {
+        self.sizes[file as usize]
+    }
+
+    /// What is executed, section by section, in the order of the text.
+    pub fn tally(&self) -> Vec<(&'static str, OpCounts)> {
+        let mut tally: Vec<_> = self.sections.iter().map(|&name| (name, OpCounts::default())).collect();
+        for instruction in &self.instructions {
+            instruction.operations().for_each(|op| tally[instruction.section].1.record(op));
+        }
+        tally.retain(|(_, counts)| counts.total() > 0);
+        tally
+    }
+
+    /// Which arrays the program touches, and how far from the own place.
+    pub fn footprint(&self) -> Footprint {
+        let mut footprint = Footprint::default();
+        for instruction in &self.instructions {
+            if let Some(reference) = instruction.reference() {
+                let strided = !matches!(instruction.op, Op::Gather | Op::Scatter);
+                let writes = matches!(instruction.op, Op::Store | Op::StoreShifted | Op::Scatter);
+                let shift = strided.then_some(reference.shift);
+                footprint.record(reference.array, reference.element, shift, writes);
+            }
+        }
+        footprint
+    }
+
+    /// The program as an assembly listing.
+    pub fn listing(&self) -> Listing<'_, L> {
+        Listing(self)
+    }
+}

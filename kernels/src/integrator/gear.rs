@@ -1,0 +1,184 @@
+//! Gear's predictor–corrector for second-order equations. BP93 appendix A; Allen & Tildesley, appendix E.
+//!
+//! The state is a row of scaled derivatives q_k = (dt^k/k!) d^k r/dt^k for each degree of freedom: x, y and, with
+//! rotation, the angle.
+
+use crate::isa::{Array, Element, Machine, Slot, Text};
+use std::marker::PhantomData;
+
+/// The arrays of the scaled derivatives, a row for each degree of freedom.
+pub const STATE: [[Array; 6]; 3] = [
+    [Array::X0, Array::X1, Array::X2, Array::X3, Array::X4, Array::X5],
+    [Array::Y0, Array::Y1, Array::Y2, Array::Y3, Array::Y4, Array::Y5],
+    [Array::Phi0, Array::Phi1, Array::Phi2, Array::Phi3, Array::Phi4, Array::Phi5],
+];
+
+const VELOCITY: [Array; 3] = [Array::DiscVx, Array::DiscVy, Array::DiscOmega];
+const FORCE: [Array; 3] = [Array::Fx, Array::Fy, Array::Torque];
+
+/// What the accelerations depend on, which decides the first coefficient.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Acceleration {
+    /// Positions only.
+    OfPositions,
+    /// Positions and velocities.
+    OfVelocities,
+}
+
+/// The corrector's coefficients c_0 … c_(values−1) for 4, 5 or 6 values (orders 3, 4, 5).
+///
+/// # Panics
+/// If `values` is none of these.
+pub const fn coefficients(values: usize, acceleration: Acceleration) -> [f64; 6] {
+    let of_velocities = matches!(acceleration, Acceleration::OfVelocities);
+    match values {
+        4 => [1.0 / 6.0, 5.0 / 6.0, 1.0, 1.0 / 3.0, 0.0, 0.0],
+        5 => [
+            if of_velocities { 19.0 / 90.0 } else { 19.0 / 120.0 },
+            3.0 / 4.0,
+            1.0,
+            1.0 / 2.0,
+            1.0 / 12.0,
+            0.0,
+        ],
+        6 => {
+            let c0 = if of_velocities { 3.0 / 16.0 } else { 3.0 / 20.0 };
+            [c0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0]
+        }
+        _ => panic!("Gear schemes have 4, 5 or 6 values"),
+    }
+}
+
+/// Taylor expansion of one row over a step: Pascal's triangle, by sums alone.
+#[inline(always)]
+fn advance<V: crate::isa::Vector, const VALUES: usize>(q: &mut [V; VALUES]) {
+    for lowest in 0..VALUES - 1 {
+        for k in (lowest..VALUES - 1).rev() {
+            q[k] = q[k] + q[k + 1];
+        }
+    }
+}
+
+/// The row of `VALUES` scaled derivatives of one degree of freedom.
+#[inline(always)]
+fn row<S: Element, M: Machine, const VALUES: usize>(m: M, freedom: usize) -> [M::V; VALUES] {
+    let mut q = [m.uniform(0.0); VALUES];
+    for k in 0..VALUES {
+        q[k] = m.load(Slot::<S>::new(STATE[freedom][k]));
+    }
+    q
+}
+
+/// Predicts the state one step ahead and hands the velocities to the lattice. Vector length: the discs.
+///
+/// `S` is the state's precision, `P` the forces'; `FREEDOMS` is 2, or 3 with rotation.
+#[derive(Clone, Copy, Debug)]
+pub struct Predictor<S, P, const VALUES: usize, const FREEDOMS: usize> {
+    inverse_dt: f64,
+    precisions: PhantomData<(S, P)>,
+}
+
+impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Predictor<S, P, VALUES, FREEDOMS> {
+    /// For steps of `dt` (time).
+    pub fn new(dt: f64) -> Self {
+        Predictor { inverse_dt: 1.0 / dt, precisions: PhantomData }
+    }
+}
+
+// SAFETY: the slots depend on the const parameters only.
+unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Text
+    for Predictor<S, P, VALUES, FREEDOMS>
+{
+    type Lane = S;
+
+    #[inline(always)]
+    fn body<M: Machine<Lane = S>>(&self, m: M) {
+        for freedom in 0..FREEDOMS {
+            m.section("expansion");
+            let mut q = row::<S, M, VALUES>(m, freedom);
+            advance(&mut q);
+            for k in 0..VALUES - 1 {
+                m.store(Slot::<S>::new(STATE[freedom][k]), q[k]);
+            }
+            m.section("velocities");
+            m.store(Slot::<P>::new(VELOCITY[freedom]), q[1] * m.uniform(self.inverse_dt));
+        }
+    }
+}
+
+/// What the forces are divided by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Inertia {
+    /// All discs alike: inverse mass and inverse moment of inertia.
+    Equal {
+        /// Inverse mass.
+        inverse_mass: f64,
+        /// Inverse moment of inertia.
+        inverse_inertia: f64,
+    },
+    /// Each disc its own, from arrays.
+    Varying,
+}
+
+/// Gathers the forces from the lattice and corrects the predicted state. Vector length: the discs.
+///
+/// # As printed
+/// Appendix A multiplies the coefficients by the new acceleration; it must be its difference from the predicted one:
+/// Δ = (dt²/2)(a − a_predicted), q_k += c_k Δ.
+#[derive(Clone, Copy, Debug)]
+pub struct Corrector<S, P, const VALUES: usize, const FREEDOMS: usize> {
+    half_dt_squared: f64,
+    coefficients: [f64; 6],
+    inertia: Inertia,
+    gravity: [f64; 2],
+    precisions: PhantomData<(S, P)>,
+}
+
+impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Corrector<S, P, VALUES, FREEDOMS> {
+    /// For steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
+    pub fn new(dt: f64, acceleration: Acceleration, inertia: Inertia, gravity: [f64; 2]) -> Self {
+        Corrector {
+            half_dt_squared: 0.5 * dt * dt,
+            coefficients: coefficients(VALUES, acceleration),
+            inertia,
+            gravity,
+            precisions: PhantomData,
+        }
+    }
+}
+
+// SAFETY: the slots depend on the const parameters, the inertia and which components gravity has.
+unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Text
+    for Corrector<S, P, VALUES, FREEDOMS>
+{
+    type Lane = S;
+
+    #[inline(always)]
+    fn body<M: Machine<Lane = S>>(&self, m: M) {
+        m.section("gather");
+        let cell = m.load_index(Slot::new(Array::DiscCell));
+        for freedom in 0..FREEDOMS {
+            m.section("gather");
+            let force = m.gather(Slot::<P>::new(FORCE[freedom]), cell, m.uniform(0.0));
+            m.section("acceleration");
+            let inverse = match (self.inertia, freedom) {
+                (Inertia::Equal { inverse_mass, .. }, 0 | 1) => m.uniform(inverse_mass),
+                (Inertia::Equal { inverse_inertia, .. }, _) => m.uniform(inverse_inertia),
+                (Inertia::Varying, 0 | 1) => m.load(Slot::<S>::new(Array::DiscInverseMass)),
+                (Inertia::Varying, _) => m.load(Slot::<S>::new(Array::DiscInverseInertia)),
+            };
+            let mut acceleration = force * inverse;
+            if freedom < 2 && self.gravity[freedom] != 0.0 {
+                acceleration = acceleration + m.uniform(self.gravity[freedom]);
+            }
+            m.section("correction");
+            let mut q = row::<S, M, VALUES>(m, freedom);
+            let difference = acceleration * m.uniform(self.half_dt_squared) - q[2];
+            for k in 0..VALUES {
+                let c = self.coefficients[k];
+                q[k] = q[k] + if c == 1.0 { difference } else { m.uniform(c) * difference };
+                m.store(Slot::<S>::new(STATE[freedom][k]), q[k]);
+            }
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! Integrators of the equations of motion, one small file each.
+
+pub mod gear;

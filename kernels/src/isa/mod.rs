@@ -1,0 +1,18 @@
+//! The instruction set: what a kernel text may ask of the machine, and the one list of operations.
+
+mod element;
+mod footprint;
+mod machine;
+mod memory;
+pub mod op;
+mod slot;
+mod vector;
+
+pub use element::{Element, Storage};
+pub use footprint::{Access, Footprint};
+pub(crate) use machine::same;
+pub use machine::{Machine, Text};
+pub use memory::{COUNTERS, Column, Columns, Counter, Memory, ProgramError};
+pub use op::{Op, OpClass, OpCounts};
+pub use slot::{Array, Slot};
+pub use vector::{Predicate, Vector};

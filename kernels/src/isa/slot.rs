@@ -1,0 +1,105 @@
+//! Names of the arrays a program works on.
+
+use super::element::Storage;
+use std::marker::PhantomData;
+
+/// The name of an array of `T` in a program's memory.
+///
+/// A slot is a number and a label; which slice stands behind it is said when a program runs.
+pub struct Slot<T> {
+    array: Array,
+    element: PhantomData<fn() -> T>,
+}
+
+impl<T> Clone for Slot<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T> Copy for Slot<T> {}
+
+impl<T: Storage> Slot<T> {
+    /// The slot of `array` with elements of type `T`.
+    #[inline(always)]
+    pub const fn new(array: Array) -> Self {
+        Slot { array, element: PhantomData }
+    }
+
+    /// Which array the slot names.
+    #[inline(always)]
+    pub const fn array(self) -> Array {
+        self.array
+    }
+}
+
+macro_rules! define_arrays {
+    ($(($variant:ident, $label:literal, $doc:literal)),* $(,)?) => {
+        /// Every array a program of the machine may name.
+        ///
+        /// Lengths: *discs* (NP) or *cells* (the swept lattice with its halo before and behind).
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Array {
+            $(#[doc = $doc] $variant,)*
+        }
+
+        impl Array {
+            /// Every array, in the order of the list.
+            pub const ALL: &'static [Array] = &[$(Array::$variant),*];
+
+            /// The label in listings and errors.
+            pub const fn label(self) -> &'static str {
+                match self { $(Array::$variant => $label),* }
+            }
+        }
+    };
+}
+
+define_arrays! {
+    (X0, "x0", "discs: position along x"),
+    (X1, "x1", "discs: first scaled derivative of x, dt v"),
+    (X2, "x2", "discs: second scaled derivative of x, dt²/2 a"),
+    (X3, "x3", "discs: third scaled derivative of x"),
+    (X4, "x4", "discs: fourth scaled derivative of x"),
+    (X5, "x5", "discs: fifth scaled derivative of x"),
+    (Y0, "y0", "discs: position along y"),
+    (Y1, "y1", "discs: first scaled derivative of y"),
+    (Y2, "y2", "discs: second scaled derivative of y"),
+    (Y3, "y3", "discs: third scaled derivative of y"),
+    (Y4, "y4", "discs: fourth scaled derivative of y"),
+    (Y5, "y5", "discs: fifth scaled derivative of y"),
+    (Phi0, "phi0", "discs: angle"),
+    (Phi1, "phi1", "discs: first scaled derivative of the angle, dt Omega"),
+    (Phi2, "phi2", "discs: second scaled derivative of the angle"),
+    (Phi3, "phi3", "discs: third scaled derivative of the angle"),
+    (Phi4, "phi4", "discs: fourth scaled derivative of the angle"),
+    (Phi5, "phi5", "discs: fifth scaled derivative of the angle"),
+    (DiscX, "disc.x", "discs: x as the lattice wants it, absolute or relative to the cell"),
+    (DiscY, "disc.y", "discs: y as the lattice wants it, absolute or relative to the cell"),
+    (DiscVx, "disc.vx", "discs: velocity along x"),
+    (DiscVy, "disc.vy", "discs: velocity along y"),
+    (DiscOmega, "disc.omega", "discs: angular velocity"),
+    (DiscRadius, "disc.radius", "discs: radius"),
+    (DiscInverseMass, "disc.1/m", "discs: inverse mass, 0 for a fixed disc"),
+    (DiscInverseInertia, "disc.1/I", "discs: inverse moment of inertia, 0 for a fixed disc"),
+    (DiscCell, "disc.cell", "discs: number of the cell, from 1; 0 is none"),
+    (Index, "Index", "cells: number of the disc, from 1; 0 is none (BP93 (2))"),
+    (HaloCell, "halo.cell", "halo: number of a halo cell"),
+    (HaloSource, "halo.source", "halo: number of the cell whose image it is"),
+    (FarX, "far.x", "cells: the x of an empty cell, far from everything"),
+    (ImageX, "image.x", "cells: how far an image lies to the right"),
+    (ImageY, "image.y", "cells: how far an image lies up"),
+    (Interior, "interior", "cells: 1 where discs live, 0 in the halo"),
+    (X, "x", "cells: position along x"),
+    (Y, "y", "cells: position along y"),
+    (Vx, "vx", "cells: velocity along x"),
+    (Vy, "vy", "cells: velocity along y"),
+    (Omega, "omega", "cells: angular velocity"),
+    (Radius, "radius", "cells: radius"),
+    (InverseMass, "1/m", "cells: inverse mass"),
+    (Fx, "Fx", "cells: force along x"),
+    (Fy, "Fy", "cells: force along y"),
+    (Torque, "torque", "cells: torque"),
+    (PartnerFx, "partner.Fx", "cells: force along x from pairs met as the partner"),
+    (PartnerFy, "partner.Fy", "cells: force along y from pairs met as the partner"),
+    (PartnerTorque, "partner.torque", "cells: torque from pairs met as the partner"),
+}

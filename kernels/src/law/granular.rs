@@ -1,0 +1,177 @@
+//! Granular discs: Hertz contacts with viscous damping, Coulomb friction and rotation.
+
+use super::{Env, Field, Law, Sum};
+use crate::isa::Vector;
+
+/// Where the tangential force acts, as seen from a centre.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum ContactArm {
+    /// At the undeformed radius R, as the source has it.
+    #[default]
+    Radius,
+    /// At R − ξ/2, in the middle of the overlap.
+    Overlap,
+}
+
+/// The parameters of the contact law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// Hertz stiffness k_N (force/length^1.5).
+    pub stiffness: f64,
+    /// Normal damping γ_N (1/time); multiplied by the effective mass.
+    pub normal_damping: f64,
+    /// Tangential damping γ_S (1/time); multiplied by the effective mass.
+    pub shear_damping: f64,
+    /// Coulomb friction coefficient μ.
+    pub friction: f64,
+    /// Whether the normal force is clamped at zero, so that separating discs never pull.
+    pub cohesionless: bool,
+    /// Where the tangential force acts.
+    pub arm: ContactArm,
+}
+
+/// Discs that are all alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    /// Radius.
+    pub radius: f64,
+    /// Inverse mass.
+    pub inverse_mass: f64,
+}
+
+/// The law. Compiled four times a precision: with and without `FRICTION` (and with it rotation), for `EQUAL` and for
+/// varying discs; every other choice is a number or a branch that is the same for all pairs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Granular<const FRICTION: bool, const EQUAL: bool> {
+    /// The parameters.
+    pub contact: Contact,
+    /// The discs, where all are alike; not read otherwise.
+    pub disc: Disc,
+}
+
+/// A disc as the law sees it.
+#[derive(Clone, Copy)]
+pub struct Own<V> {
+    position: [V; 2],
+    velocity: [V; 2],
+    omega: V,
+    radius: V,
+    inverse_mass: V,
+}
+
+impl<const FRICTION: bool, const EQUAL: bool> Granular<FRICTION, EQUAL> {
+    #[inline(always)]
+    fn radius<V>(&self, uniform: impl Fn(f64) -> V, varying: impl Fn(Field) -> V) -> V {
+        if EQUAL { uniform(self.disc.radius) } else { varying(Field::Radius) }
+    }
+
+    #[inline(always)]
+    fn inverse_mass<V>(&self, uniform: impl Fn(f64) -> V, varying: impl Fn(Field) -> V) -> V {
+        if EQUAL { uniform(self.disc.inverse_mass) } else { varying(Field::InverseMass) }
+    }
+}
+
+impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUAL> {
+    type Own<V: Copy> = Own<V>;
+
+    fn sums(&self) -> &'static [Sum] {
+        if FRICTION { &Sum::ALL } else { &[Sum::Fx, Sum::Fy] }
+    }
+
+    fn fields(&self) -> &'static [Field] {
+        match (FRICTION, EQUAL) {
+            (true, true) => &[Field::Vx, Field::Vy, Field::Omega],
+            (true, false) => &[Field::Vx, Field::Vy, Field::Omega, Field::Radius, Field::InverseMass],
+            (false, true) => &[Field::Vx, Field::Vy],
+            (false, false) => &[Field::Vx, Field::Vy, Field::Radius, Field::InverseMass],
+        }
+    }
+
+    #[inline(always)]
+    fn own<E: Env<2>>(&self, env: E) -> Own<E::V> {
+        Own {
+            position: env.own_position(),
+            velocity: [env.own(Field::Vx), env.own(Field::Vy)],
+            omega: if FRICTION { env.own(Field::Omega) } else { env.uniform(0.0) },
+            radius: self.radius(|r| env.uniform(r), |field| env.own(field)),
+            inverse_mass: self.inverse_mass(|w| env.uniform(w), |field| env.own(field)),
+        }
+    }
+
+    /// BP93 (4)–(17).
+    ///
+    /// # As printed
+    /// (14) adds `γ_N M_eff (v_i − v_j)`, a vector, with a sign that feeds energy in: here the normal component is
+    /// subtracted. (15) takes the smaller of a signed number and μ|F_N|: here the magnitude is bounded and the sign
+    /// kept. (16) gives the spins opposite signs: here both surfaces count, `R_i Ω_i + R_j Ω_j`. (10)–(12) use the
+    /// other tangent than (13): here (13) throughout.
+    #[inline(always)]
+    fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &Own<E::V>) {
+        let Contact { stiffness, normal_damping, shear_damping, friction, cohesionless, arm } = self.contact;
+        let uniform = |value: f64| env.uniform(value);
+        let zero = uniform(0.0);
+
+        env.section("distance"); // (4)-(6)
+        let [dx, dy] = env.displacement(own.position, place);
+        let distance = (dx * dx + dy * dy).sqrt();
+
+        env.section("contact"); // (7)
+        let radius = self.radius(uniform, |field| env.partner(field, place));
+        let penetration = (own.radius + radius) - distance;
+        let contact = zero.less_than(penetration);
+        if env.none(contact) {
+            return;
+        }
+
+        env.section("normal force"); // (14), (17)
+        let inverse_distance = uniform(1.0) / distance;
+        let [nx, ny] = [dx * inverse_distance, dy * inverse_distance];
+        let vx = own.velocity[0] - env.partner(Field::Vx, place);
+        let vy = own.velocity[1] - env.partner(Field::Vy, place);
+        let inverse_mass = self.inverse_mass(uniform, |field| env.partner(field, place));
+        let effective_mass = uniform(1.0) / (own.inverse_mass + inverse_mass);
+        let overlap = penetration.max(zero);
+        let elastic = uniform(stiffness) * (overlap * overlap.sqrt());
+        let damping = (uniform(normal_damping) * effective_mass) * (vx * nx + vy * ny);
+        let floor = uniform(if cohesionless { 0.0 } else { f64::NEG_INFINITY });
+        let normal = (elastic - damping).max(floor);
+        let fn_ = E::V::select(contact, normal, zero); // (8)
+
+        if !FRICTION {
+            env.section("sums"); // (10), (11)
+            share(env, place, Sum::Fx, fn_ * nx);
+            share(env, place, Sum::Fy, fn_ * ny);
+            return;
+        }
+
+        env.section("shear force"); // (15), (16), with the tangent s = (−ny, nx) of (13)
+        let mut arms = [own.radius, radius];
+        if arm == ContactArm::Overlap {
+            let half = uniform(0.5) * overlap;
+            arms = [own.radius - half, radius - half];
+        }
+        let spin = arms[0] * own.omega + arms[1] * env.partner(Field::Omega, place);
+        let slip = (vy * nx - vx * ny) - spin;
+        let drag = (uniform(shear_damping) * effective_mass) * slip;
+        let limit = uniform(friction) * normal.abs();
+        let shear = (zero - drag).min(limit).max(zero - limit);
+        let fs = E::V::select(contact, shear, zero); // (9)
+
+        env.section("sums"); // (10)-(12)
+        share(env, place, Sum::Fx, fn_ * nx - fs * ny);
+        share(env, place, Sum::Fy, fn_ * ny + fs * nx);
+        env.own_add(Sum::Torque, zero - arms[0] * fs);
+        if E::BOTH_PARTNERS {
+            env.partner_sub(Sum::Torque, place, arms[1] * fs);
+        }
+    }
+}
+
+/// Action and reaction.
+#[inline(always)]
+fn share<E: Env<2>>(env: E, place: E::Place, sum: Sum, force: E::V) {
+    env.own_add(sum, force);
+    if E::BOTH_PARTNERS {
+        env.partner_sub(sum, place, force);
+    }
+}

@@ -1,0 +1,83 @@
+//! Pair laws: what two particles do to each other, written once for every machine and every way of meeting.
+
+pub mod granular;
+
+use crate::isa::Vector;
+
+/// A quantity of a particle that a law may ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Field {
+    /// Velocity along x.
+    Vx,
+    /// Velocity along y.
+    Vy,
+    /// Angular velocity, counter-clockwise.
+    Omega,
+    /// Radius.
+    Radius,
+    /// Inverse mass; 0 for a fixed particle.
+    InverseMass,
+}
+
+/// A sum over partners that a law contributes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sum {
+    /// Force along x.
+    Fx,
+    /// Force along y.
+    Fy,
+    /// Torque, counter-clockwise.
+    Torque,
+}
+
+impl Sum {
+    /// Every sum, in the order of the list.
+    pub const ALL: [Sum; 3] = [Sum::Fx, Sum::Fy, Sum::Torque];
+}
+
+/// What a law may ask of the way particles meet.
+///
+/// *Own* is the particle the law is evaluated for, *partner* the one that stands at a place. A law never subtracts
+/// positions itself: images and cell-relative coordinates are the sweep's business.
+pub trait Env<const DIM: usize>: Copy {
+    /// A vector of numbers.
+    type V: Vector;
+    /// Where a partner stands: a lattice offset, a gather index, a cyclic shift.
+    type Place: Copy;
+    /// Whether a pair is met once, so that the partner's share must be given with [`Env::partner_sub`].
+    const BOTH_PARTNERS: bool;
+
+    /// The own position, to be handed to [`Env::displacement`].
+    fn own_position(self) -> [Self::V; DIM];
+    /// A quantity of the own particle.
+    fn own(self, field: Field) -> Self::V;
+    /// `r_own − r_partner`.
+    fn displacement(self, own: [Self::V; DIM], place: Self::Place) -> [Self::V; DIM];
+    /// A quantity of the partner.
+    fn partner(self, field: Field, place: Self::Place) -> Self::V;
+    /// The same number for every pair.
+    fn uniform(self, value: f64) -> Self::V;
+    /// Whether no pair holds, where this execution takes early ways out.
+    fn none(self, predicate: <Self::V as Vector>::Predicate) -> bool;
+    /// Adds to a sum of the own particle.
+    fn own_add(self, sum: Sum, value: Self::V);
+    /// Subtracts from a sum of the partner. Called only where [`Env::BOTH_PARTNERS`].
+    fn partner_sub(self, sum: Sum, place: Self::Place, value: Self::V);
+    /// Names what follows, for the ledger and the listing.
+    fn section(self, name: &'static str);
+}
+
+/// A pair law in `DIM` dimensions.
+pub trait Law<const DIM: usize>: Clone {
+    /// The own particle's quantities, loaded once for all its partners.
+    type Own<V: Copy>: Copy;
+
+    /// The sums the law contributes to.
+    fn sums(&self) -> &'static [Sum];
+    /// The quantities, besides positions, that the law asks for.
+    fn fields(&self) -> &'static [Field];
+    /// Loads the own particle.
+    fn own<E: Env<DIM>>(&self, env: E) -> Self::Own<E::V>;
+    /// What the own particle and its partner at `place` do to each other.
+    fn pair<E: Env<DIM>>(&self, env: E, place: E::Place, own: &Self::Own<E::V>);
+}

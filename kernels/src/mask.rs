@@ -1,0 +1,148 @@
+//! Neighbourhoods: the cells around a cell in which partners are looked for.
+
+/// A cell seen from the own cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Offset {
+    /// Columns to the right.
+    pub columns: i32,
+    /// Rows up.
+    pub rows: i32,
+}
+
+impl Offset {
+    /// The same way back.
+    pub const fn reversed(self) -> Offset {
+        Offset { columns: -self.columns, rows: -self.rows }
+    }
+
+    /// Square of the smallest distance between points of the own cell and of this one, in cells².
+    pub const fn clearance_squared(self) -> u32 {
+        let columns = self.columns.unsigned_abs().saturating_sub(1);
+        let rows = self.rows.unsigned_abs().saturating_sub(1);
+        columns * columns + rows * rows
+    }
+}
+
+/// A mask: the neighbourhood of a cell, without the cell itself, in a fixed order of visit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mask {
+    offsets: Vec<Offset>,
+    half_width: u32,
+    covers_both_ways: bool,
+}
+
+impl Mask {
+    /// The square mask of `(2h + 1)² − 1` cells, numbered outwards ring by ring, each ring from the right-hand cell
+    /// against the clock. BP93 fig. 2 for `h = 2`.
+    pub fn square(half_width: u32) -> Mask {
+        let mut offsets = Vec::new();
+        for ring in 1..=half_width as i32 {
+            // The ring's sides, each from its first cell on: right side up, top left, left side down, bottom right.
+            let up = (0..=ring).map(|rows| (ring, rows));
+            let left = (-ring..ring).rev().map(|columns| (columns, ring));
+            let down = (-ring..ring).rev().map(|rows| (-ring, rows));
+            let right = (-ring + 1..=ring).map(|columns| (columns, -ring));
+            let rest = (-ring + 1..0).map(|rows| (ring, rows));
+            let ring = up.chain(left).chain(down).chain(right).chain(rest);
+            offsets.extend(ring.map(|(columns, rows)| Offset { columns, rows }));
+        }
+        Mask { offsets, half_width, covers_both_ways: true }
+    }
+
+    /// The round mask of ISO99: the offsets with `i² + j² ≤ R² + R`, ring by ring as [`Mask::square`].
+    pub fn round(radius: u32) -> Mask {
+        let bound = (radius * radius + radius) as i32;
+        let mut mask = Mask::square(radius);
+        mask.offsets.retain(|o| o.columns * o.columns + o.rows * o.rows <= bound);
+        mask
+    }
+
+    /// One of every two opposite places, in the same order: each pair of cells is met once.
+    #[must_use]
+    pub fn half(&self) -> Mask {
+        let forward = |o: &Offset| o.rows > 0 || (o.rows == 0 && o.columns > 0);
+        let offsets = self.offsets.iter().copied().filter(forward).collect();
+        Mask { offsets, covers_both_ways: false, ..*self }
+    }
+
+    /// The places in their order of visit; the source numbers them from 1.
+    pub fn offsets(&self) -> &[Offset] {
+        &self.offsets
+    }
+
+    /// The farthest column or row.
+    pub fn half_width(&self) -> u32 {
+        self.half_width
+    }
+
+    /// Whether every pair is met from both sides (a full mask) or once (a half).
+    pub fn covers_both_ways(&self) -> bool {
+        self.covers_both_ways
+    }
+
+    /// Square of the reach, in cells²: the smallest distance from a point of the own cell to a point outside the mask.
+    /// Everything closer is seen. ISO99 table 1.
+    pub fn reach_squared(&self) -> u32 {
+        let beyond = self.half_width as i32 + 1;
+        let inside = |o: &Offset| self.offsets.contains(o) || self.offsets.contains(&o.reversed());
+        let own = Offset { columns: 0, rows: 0 };
+        (-beyond..=beyond)
+            .flat_map(|columns| (-beyond..=beyond).map(move |rows| Offset { columns, rows }))
+            .filter(|o| *o != own && !inside(o))
+            .map(Offset::clearance_squared)
+            .min()
+            .unwrap_or(0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// BP93 fig. 2 as printed, top row first.
+    #[test]
+    fn five_by_five_is_numbered_as_figure_2() {
+        let figure = [
+            [15, 14, 13, 12, 11],
+            [16, 4, 3, 2, 10],
+            [17, 5, 0, 1, 9],
+            [18, 6, 7, 8, 24],
+            [19, 20, 21, 22, 23],
+        ];
+        let mask = Mask::square(2);
+        assert_eq!(mask.offsets().len(), 24);
+        for (i, offset) in mask.offsets().iter().enumerate() {
+            assert_eq!(figure[(2 - offset.rows) as usize][(offset.columns + 2) as usize], i + 1);
+        }
+    }
+
+    /// ISO99 table 1: numbers of cells and reach.
+    #[test]
+    fn round_masks_have_the_printed_sizes_and_reach() {
+        let cells = [36, 68, 96, 136, 176, 224, 292, 348];
+        let reach_squared = [5, 13, 18, 29, 40, 52, 72, 85];
+        for (i, radius) in (3..=10).enumerate() {
+            let mask = Mask::round(radius);
+            assert_eq!(mask.offsets().len(), cells[i], "R = {radius}");
+            assert_eq!(mask.reach_squared(), reach_squared[i], "R = {radius}");
+        }
+        assert_eq!(Mask::square(2).reach_squared(), 4, "MIN");
+        assert_eq!(Mask::square(3).reach_squared(), 9);
+        assert_eq!(Mask::square(3).offsets().len(), 48);
+    }
+
+    #[test]
+    fn a_half_holds_one_of_every_two_opposite_places() {
+        for mask in [Mask::square(2), Mask::square(3), Mask::round(4), Mask::round(10)] {
+            let half = mask.half();
+            assert_eq!(2 * half.offsets().len(), mask.offsets().len());
+            assert!(half.offsets().iter().all(|o| !half.offsets().contains(&o.reversed())));
+            assert!(
+                mask.offsets()
+                    .iter()
+                    .all(|o| half.offsets().contains(o) != half.offsets().contains(&o.reversed()))
+            );
+            assert_eq!(half.reach_squared(), mask.reach_squared());
+        }
+    }
+}

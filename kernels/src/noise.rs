@@ -1,0 +1,166 @@
+//! Random numbers that are a function of where they are used: counter-based, so that they depend on no order of
+//! computation, no thread and no vector width.
+
+use std::convert::Infallible;
+
+/// What a random number is for; equal counters of different purposes are unrelated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Purpose {
+    /// Where and how fast particles start.
+    Placement = 1,
+    /// The noise of a thermostat.
+    Thermostat = 2,
+    /// Random cases of tests.
+    Test = 3,
+}
+
+/// Philox 4x32 with ten rounds (Salmon et al., SC11): four random words from a counter of four and a key of two.
+pub fn philox4x32(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
+    for _ in 0..10 {
+        let product = |multiplier: u64, word: u32| multiplier * u64::from(word);
+        let (even, odd) = (product(0xD251_1F53, counter[0]), product(0xCD9E_8D57, counter[2]));
+        counter = [
+            (odd >> 32) as u32 ^ counter[1] ^ key[0],
+            odd as u32,
+            (even >> 32) as u32 ^ counter[3] ^ key[1],
+            even as u32,
+        ];
+        key = [key[0].wrapping_add(0x9E37_79B9), key[1].wrapping_add(0xBB67_AE85)];
+    }
+    counter
+}
+
+/// The random words of (seed, purpose, id, step) and of the `block`-th four of them.
+fn words(seed: u64, purpose: Purpose, id: u32, step: u64, block: u16) -> [u32; 4] {
+    // The top byte of the fourth word keeps purposes apart, the two below it blocks; 40 bits count steps.
+    debug_assert!(step < 1 << 40, "a run of 2^40 steps is out of reach");
+    let top = (purpose as u32) << 24 | u32::from(block) << 8 | (step >> 32) as u32 & 0xFF;
+    philox4x32([id, step as u32, 0, top], [seed as u32, (seed >> 32) as u32])
+}
+
+/// A uniform number in (0, 1), of 53 random bits; never 0, so that its logarithm exists.
+fn uniform(high: u32, low: u32) -> f64 {
+    let bits = (u64::from(high) << 32 | u64::from(low)) >> 11;
+    (bits as f64 + 0.5) * (1.0 / (1u64 << 53) as f64)
+}
+
+/// Two independent standard normal numbers of (seed, purpose, id, step) (Box and Muller).
+///
+/// Logarithm, cosine and sine come from the portable `libm`, so that the bits are the same on every platform.
+pub fn normals(seed: u64, purpose: Purpose, id: u32, step: u64) -> [f64; 2] {
+    let word = words(seed, purpose, id, step, 0);
+    let radius = (-2.0 * libm::log(uniform(word[0], word[1]))).sqrt();
+    let angle = std::f64::consts::TAU * uniform(word[2], word[3]);
+    [radius * libm::cos(angle), radius * libm::sin(angle)]
+}
+
+/// A stream of random words for one (seed, purpose, id), with the traits of the crate `rand`.
+#[derive(Clone, Debug)]
+pub struct Stream {
+    seed: u64,
+    purpose: Purpose,
+    id: u32,
+    drawn: u64,
+}
+
+impl Stream {
+    /// The stream from its beginning.
+    pub fn new(seed: u64, purpose: Purpose, id: u32) -> Self {
+        Stream { seed, purpose, id, drawn: 0 }
+    }
+
+    /// A uniform number in (0, 1).
+    pub fn uniform(&mut self) -> f64 {
+        let (high, low) = (self.word(), self.word());
+        uniform(high, low)
+    }
+
+    fn word(&mut self) -> u32 {
+        let (step, word) = (self.drawn / 4, (self.drawn % 4) as usize);
+        self.drawn += 1;
+        words(self.seed, self.purpose, self.id, step, u16::MAX)[word]
+    }
+}
+
+impl rand_core::TryRng for Stream {
+    type Error = Infallible;
+    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
+        Ok(self.word())
+    }
+    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
+        Ok(u64::from(self.word()) | u64::from(self.word()) << 32)
+    }
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
+        for chunk in bytes.chunks_mut(4) {
+            chunk.copy_from_slice(&self.word().to_le_bytes()[..chunk.len()]);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_core::Rng;
+
+    /// The known answers that the authors of Random123 publish for philox4x32-10.
+    #[test]
+    fn philox_gives_the_published_answers() {
+        assert_eq!(philox4x32([0; 4], [0; 2]), [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8]);
+        assert_eq!(philox4x32([!0; 4], [!0; 2]), [0x408f_276d, 0x41c8_3b0e, 0xa20b_c7c6, 0x6d54_51fd]);
+        assert_eq!(
+            philox4x32([0x243f_6a88, 0x85a3_08d3, 0x1319_8a2e, 0x0370_7344], [0xa409_3822, 0x299f_31d0]),
+            [0xd16c_fe09, 0x94fd_cceb, 0x5001_e420, 0x2412_6ea1]
+        );
+    }
+
+    /// Moments of 10⁵ pairs within five standard errors, and no correlation between the two of a pair.
+    #[test]
+    fn normals_are_normal() {
+        let n = 100_000u32;
+        let (mut mean, mut square, mut fourth, mut cross) = (0.0, 0.0, 0.0, 0.0);
+        for id in 0..n {
+            let [a, b] = normals(7, Purpose::Test, id, u64::from(id % 17));
+            mean += a + b;
+            square += a * a + b * b;
+            fourth += a.powi(4) + b.powi(4);
+            cross += a * b;
+        }
+        let m = 2.0 * f64::from(n);
+        assert!((mean / m).abs() < 5.0 / m.sqrt());
+        assert!((square / m - 1.0).abs() < 5.0 * (2.0 / m).sqrt());
+        assert!((fourth / m - 3.0).abs() < 5.0 * (96.0 / m).sqrt());
+        assert!((cross / f64::from(n)).abs() < 5.0 / f64::from(n).sqrt());
+    }
+
+    #[test]
+    fn seed_purpose_id_and_step_all_matter() {
+        let base = normals(1, Purpose::Test, 2, 3);
+        assert_eq!(base.map(f64::to_bits), normals(1, Purpose::Test, 2, 3).map(f64::to_bits));
+        for other in [
+            normals(2, Purpose::Test, 2, 3),
+            normals(1, Purpose::Thermostat, 2, 3),
+            normals(1, Purpose::Test, 3, 3),
+            normals(1, Purpose::Test, 2, 4),
+            normals(1, Purpose::Test, 2, 3 + (1 << 32)),
+        ] {
+            assert_ne!(base, other);
+        }
+    }
+
+    #[test]
+    fn a_stream_serves_the_traits_of_rand_and_repeats() {
+        let mut a = Stream::new(5, Purpose::Test, 0);
+        let mut b = a.clone();
+        let first: Vec<u64> = (0..9).map(|_| a.next_u64()).collect();
+        assert!(first.iter().all(|&word| word == b.next_u64()));
+        let mut distinct = first.clone();
+        distinct.sort_unstable();
+        distinct.dedup();
+        assert_eq!(distinct.len(), first.len());
+        let mut bytes = [0; 7];
+        Stream::new(5, Purpose::Test, 0).fill_bytes(&mut bytes);
+        assert_eq!(bytes[..4], (first[0] as u32).to_le_bytes());
+    }
+}

@@ -1,0 +1,267 @@
+//! A text made ready to run: recorded once, checked before every run, executed in one of several ways.
+
+use crate::backend::{Block, Precision, Pulp, Registers, Scalar, Strip, Tape, Wide};
+use crate::isa::{Footprint, Memory, ProgramError, Text};
+use pulp::{Simd, WithSimd};
+use std::marker::PhantomData;
+
+/// Logical lanes that belong together wherever a sum depends on its order: the same for every backend and precision.
+pub const GROUP: usize = 16;
+
+/// How a program's instructions meet the elements of its arrays. All ways give the same bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Execution {
+    /// Every instruction is a pass over all elements: the unchained CRAY.
+    Eager,
+    /// The program runs instruction by instruction on strips of this many elements.
+    Strip(usize),
+    /// The program is compiled for strips of this many registers, one of [`Execution::BLOCKS`].
+    Block(usize),
+    /// The program is compiled for one register at a time: every result feeds the next instruction directly.
+    Chained,
+}
+
+impl Execution {
+    /// The strip lengths, in registers, that programs are compiled for.
+    pub const BLOCKS: [usize; 2] = [4, 16];
+}
+
+macro_rules! define_instruction_sets {
+    ($(($variant:ident, $name:literal, $doc:literal)),* $(,)?) => {
+        /// The instructions a program is compiled to.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        pub enum InstructionSet {
+            $(#[doc = $doc] $variant,)*
+        }
+
+        impl InstructionSet {
+            /// Every set, in the order of the list.
+            pub const ALL: &'static [InstructionSet] = &[$(InstructionSet::$variant),*];
+
+            /// The name on the command line.
+            pub const fn name(self) -> &'static str {
+                match self { $(InstructionSet::$variant => $name),* }
+            }
+        }
+    };
+}
+
+define_instruction_sets! {
+    (Scalar, "scalar", "One lane, no SIMD: the oracle."),
+    (Wide, "wide", "256 bits, whatever the build's target offers."),
+    (Neon, "neon", "128 bits, 64-bit ARM."),
+    (Avx2, "avx2", "256 bits, x86-64-v3."),
+    (Avx512, "avx512", "512 bits, x86-64-v4."),
+}
+
+impl InstructionSet {
+    /// Whether this processor has it.
+    pub fn is_available(self) -> bool {
+        match self {
+            InstructionSet::Scalar | InstructionSet::Wide => true,
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 => pulp::x86::V3::is_available(),
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => pulp::x86::V4::is_available(),
+            #[cfg(target_arch = "aarch64")]
+            InstructionSet::Neon => pulp::aarch64::Neon::is_available(),
+            _ => false,
+        }
+    }
+
+    /// The sets this processor has, in the order of the list.
+    pub fn available() -> impl Iterator<Item = InstructionSet> {
+        Self::ALL.iter().copied().filter(|set| set.is_available())
+    }
+
+    /// The widest set this processor has.
+    pub fn best() -> InstructionSet {
+        Self::available().last().unwrap_or(InstructionSet::Scalar)
+    }
+}
+
+/// A text with its tape: what is counted, listed and executed is one and the same.
+#[derive(Clone, Debug)]
+pub struct Program<T: Text> {
+    text: T,
+    tape: Tape<T::Lane>,
+    footprint: Footprint,
+}
+
+impl<T: Text> Program<T> {
+    /// Records the text.
+    ///
+    /// # Panics
+    /// If the text writes an array that it also meets at a shift, and sums in no fixed groups: its result would
+    /// depend on the strip length.
+    pub fn new(text: T) -> Self {
+        let tape = Tape::record(&text);
+        let footprint = tape.footprint();
+        let hazard = footprint.accesses().iter().find(|a| a.writes && (a.lowest, a.highest) != (0, 0));
+        assert!(
+            T::GROUP.is_some() || hazard.is_none(),
+            "{} is written and met at a shift: strips would see each other's results",
+            hazard.map_or("", |access| access.array.label()),
+        );
+        Program { text, tape, footprint }
+    }
+
+    /// The recorded instructions.
+    pub fn tape(&self) -> &Tape<T::Lane> {
+        &self.tape
+    }
+
+    /// The text.
+    pub fn text(&self) -> &T {
+        &self.text
+    }
+}
+
+impl<T: Text> Program<T>
+where
+    T::Lane: Precision,
+{
+    /// Runs the program for elements `0 .. n` of the memory's arrays.
+    ///
+    /// # Errors
+    /// [`ProgramError`] names the array that is missing, too short or read-only, a strip length that cannot be, or an
+    /// instruction set that the processor lacks. Nothing was executed then.
+    pub fn run(
+        &self,
+        memory: &Memory<'_>,
+        n: usize,
+        execution: Execution,
+        set: InstructionSet,
+    ) -> Result<(), ProgramError> {
+        memory.admit(&self.footprint, n)?;
+        if let Some(group) = T::GROUP {
+            debug_assert_eq!(group, GROUP, "texts sum in groups of GROUP");
+            match execution {
+                Execution::Strip(asked) if asked != group => {
+                    return Err(ProgramError::FixedGroup { group, asked });
+                }
+                Execution::Eager | Execution::Block(_) => {
+                    return Err(ProgramError::FixedGroup { group, asked: n });
+                }
+                _ if !n.is_multiple_of(group) => {
+                    return Err(ProgramError::PartialGroup { group, length: n });
+                }
+                _ => {}
+            }
+        }
+        match execution {
+            Execution::Strip(0) => return Err(ProgramError::EmptyStrip),
+            Execution::Block(asked) if !Execution::BLOCKS.contains(&asked) => {
+                return Err(ProgramError::NoSuchBlock { asked, compiled: &Execution::BLOCKS });
+            }
+            _ => {}
+        }
+        match execution {
+            Execution::Eager => self.tape.interpret(memory, n, n, set),
+            Execution::Strip(length) => self.tape.interpret(memory, n, length, set),
+            Execution::Block(_) | Execution::Chained => {
+                dispatch(set, Compiled { text: &self.text, memory, n, execution })
+            }
+        }
+    }
+}
+
+/// A task compiled once for each register file.
+pub(crate) trait Task<L: Precision> {
+    /// The task on one register file.
+    fn on<R: Registers<Lane = L>>(self, registers: R);
+}
+
+/// Carries a task into the function compiled for the instruction set.
+pub(crate) fn dispatch<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -> Result<(), ProgramError> {
+    let absent = ProgramError::NoSuchInstructionSet(set.name());
+    match set {
+        InstructionSet::Scalar => task.on(Scalar::default()),
+        InstructionSet::Wide => task.on(Wide::default()),
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Avx2 => {
+            Simd::vectorize(pulp::x86::V3::try_new().ok_or(absent)?, OnSimd(task, PhantomData))
+        }
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Avx512 => {
+            Simd::vectorize(pulp::x86::V4::try_new().ok_or(absent)?, OnSimd(task, PhantomData))
+        }
+        #[cfg(target_arch = "aarch64")]
+        InstructionSet::Neon => {
+            Simd::vectorize(pulp::aarch64::Neon::try_new().ok_or(absent)?, OnSimd(task, PhantomData));
+        }
+        #[allow(unreachable_patterns, reason = "which sets are left depends on the target")]
+        _ => return Err(absent),
+    }
+    Ok(())
+}
+
+/// A task as `pulp` wants it.
+struct OnSimd<T, L>(T, PhantomData<L>);
+
+impl<L: Precision, T: Task<L>> WithSimd for OnSimd<T, L> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.0.on(Pulp::<S, L>::new(simd));
+    }
+}
+
+/// An admitted run of a text compiled for registers.
+struct Compiled<'r, T> {
+    text: &'r T,
+    memory: &'r Memory<'r>,
+    n: usize,
+    execution: Execution,
+}
+
+impl<T: Text> Task<T::Lane> for Compiled<'_, T>
+where
+    T::Lane: Precision,
+{
+    #[inline(always)]
+    fn on<R: Registers<Lane = T::Lane>>(self, registers: R) {
+        // Inline constants, so that strips a text has no use for are not even compiled.
+        if const { T::GROUP.is_some() } {
+            match const { GROUP / R::LANES } {
+                16 => self.strips(Block::<R, 16>(registers)),
+                8 => self.strips(Block::<R, 8>(registers)),
+                4 => self.strips(Block::<R, 4>(registers)),
+                2 => self.strips(Block::<R, 2>(registers)),
+                _ => self.strips(registers),
+            }
+        } else {
+            match self.execution {
+                Execution::Block(4) => self.strips(Block::<R, 4>(registers)),
+                Execution::Block(_) => self.strips(Block::<R, 16>(registers)),
+                _ => self.strips(registers),
+            }
+        }
+    }
+}
+
+impl<T: Text> Compiled<'_, T>
+where
+    T::Lane: Precision,
+{
+    /// The text on full strips of registers, and what is left over element by element.
+    #[inline(always)]
+    fn strips<R: Registers<Lane = T::Lane>>(self, registers: R) {
+        let whole = self.n - self.n % R::LANES;
+        let mut base = 0;
+        while base < whole {
+            self.text.body(Strip::new(registers, self.memory, base));
+            base += R::LANES;
+        }
+        self.elements(whole);
+    }
+
+    /// The text element by element from `base` on: the same bits, so not worth a copy for every register file.
+    #[inline(never)]
+    fn elements(&self, mut base: usize) {
+        while base < self.n {
+            self.text.body(Strip::new(Scalar::default(), self.memory, base));
+            base += 1;
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! How a law meets its pairs.
+
+pub mod lattice;

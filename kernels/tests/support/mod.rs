@@ -1,0 +1,307 @@
+//! A small granular lattice, stepped by the machine's programs: what the tests compare between executions.
+#![allow(dead_code, reason = "each test file uses its part")]
+
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Inertia, Predictor, STATE};
+use stripmine_kernels::isa::{Array, Memory, ProgramError, Slot};
+use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
+use stripmine_kernels::law::{Law, Sum};
+use stripmine_kernels::mask::Mask;
+use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::sweep::lattice::cells::{CONFLICTS, Check, Clear, Enter, Images, STRAYS};
+use stripmine_kernels::sweep::lattice::forces::{Forces, Join};
+use stripmine_kernels::sweep::lattice::vectors::Spread;
+use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
+use stripmine_kernels::{Execution, InstructionSet, Program};
+
+pub const CONTACT: Contact = Contact {
+    stiffness: 100.0,
+    normal_damping: 3.0,
+    shear_damping: 2.0,
+    friction: 0.5,
+    cohesionless: true,
+    arm: ContactArm::Radius,
+};
+
+/// What kind of lattice to try.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    pub columns: usize,
+    pub rows: usize,
+    pub half_width: u32,
+    pub periodic: [bool; 2],
+    pub coordinates: Coordinates,
+    pub contact: Contact,
+    /// Probability that a cell holds a disc.
+    pub fill: f64,
+    pub seed: u64,
+}
+
+impl Case {
+    pub fn new(columns: usize, rows: usize) -> Case {
+        Case {
+            columns,
+            rows,
+            half_width: 2,
+            periodic: [true, true],
+            coordinates: Coordinates::CellRelative,
+            contact: CONTACT,
+            fill: 0.4,
+            seed: 1,
+        }
+    }
+}
+
+/// Discs and lattice, in state precision `S` and force precision `P`.
+#[derive(Clone, Debug)]
+pub struct System<S, P> {
+    pub shape: LatticeShape,
+    pub frame: Frame,
+    pub discs: usize,
+    pub state: [[Vec<S>; 6]; 3],
+    pub inverse_mass: Vec<S>,
+    pub inverse_inertia: Vec<S>,
+    pub on_lattice: [Vec<P>; 2],
+    pub velocity: [Vec<P>; 3],
+    pub radius: Vec<P>,
+    pub lattice_inverse_mass: Vec<P>,
+    pub cell: Vec<u32>,
+    pub index: Vec<u32>,
+    pub lattice: [Vec<P>; 7],
+    pub sums: [Vec<P>; 3],
+    pub partners: [Vec<P>; 3],
+    pub strays: u64,
+    pub conflicts: u64,
+}
+
+pub const DT: f64 = 1e-3;
+
+impl<S: Precision, P: Precision> System<S, P> {
+    /// Discs of mean radius 1 at random places, with random velocities and spins.
+    pub fn random(case: &Case) -> Self {
+        let mask = Mask::square(case.half_width);
+        let shape = LatticeShape::new(case.columns, case.rows, &mask, case.periodic).unwrap();
+        // Cells as wide as the largest radius for 5×5; smaller for wider masks.
+        let edge = 1.1 * 2.0 / f64::from(case.half_width);
+        let frame = Frame { origin: [-3.0, 2.0], edge: [edge, edge * 1.01] };
+        let mut random = Stream::new(case.seed, Purpose::Test, 0);
+        let mut rows: [[Vec<S>; 6]; 3] = Default::default();
+        let mut radius = vec![];
+        for row in 0..case.rows {
+            for column in 0..case.columns {
+                if random.uniform() >= case.fill {
+                    continue;
+                }
+                let mut place = |k: usize, axis: usize| {
+                    let inside = 0.02 + 0.96 * random.uniform();
+                    frame.origin[axis] + (k as f64 + inside) * frame.edge[axis]
+                };
+                rows[0][0].push(S::from_f64(place(column, 0)));
+                rows[1][0].push(S::from_f64(place(row, 1)));
+                rows[2][0].push(S::from_f64(0.0));
+                for (freedom, derivatives) in rows.iter_mut().enumerate() {
+                    for (k, q) in derivatives.iter_mut().enumerate().skip(1) {
+                        let scale = if freedom == 2 { 2.0 } else { 1.0 } * 4f64.powi(1 - k as i32);
+                        q.push(S::from_f64(DT.powi(k as i32) * scale * (random.uniform() - 0.5)));
+                    }
+                }
+                radius.push(0.9 + 0.2 * random.uniform());
+            }
+        }
+        let discs = radius.len();
+        let mass = |r: &f64| r * r;
+        let padded = vec![P::from_f64(0.0); shape.padded()];
+        let zeros = vec![P::from_f64(0.0); discs];
+        System {
+            shape,
+            frame,
+            discs,
+            state: rows,
+            inverse_mass: radius.iter().map(|r| S::from_f64(1.0 / mass(r))).collect(),
+            inverse_inertia: radius.iter().map(|r| S::from_f64(2.0 / (mass(r) * r * r))).collect(),
+            on_lattice: [zeros.clone(), zeros.clone()],
+            velocity: [zeros.clone(), zeros.clone(), zeros],
+            radius: radius.iter().map(|&r| P::from_f64(r)).collect(),
+            lattice_inverse_mass: radius.iter().map(|r| P::from_f64(1.0 / mass(r))).collect(),
+            cell: vec![0; discs],
+            index: vec![0; shape.padded()],
+            lattice: std::array::from_fn(|_| padded.clone()),
+            sums: std::array::from_fn(|_| padded.clone()),
+            partners: std::array::from_fn(|_| padded.clone()),
+            strays: 0,
+            conflicts: 0,
+        }
+    }
+
+    fn memory<R>(
+        &mut self,
+        halo: &[Vec<u32>; 2],
+        constant: &[Vec<P>; 4],
+        lead: usize,
+        run: impl FnOnce(&Memory<'_>) -> R,
+    ) -> R {
+        let mut memory = Memory::new();
+        for (arrays, rows) in STATE.into_iter().zip(&mut self.state) {
+            for (array, q) in arrays.into_iter().zip(rows) {
+                memory = memory.write(Slot::<S>::new(array), q, 0);
+            }
+        }
+        memory = memory.read(Slot::<S>::new(Array::DiscInverseMass), &self.inverse_mass, 0);
+        memory = memory.read(Slot::<S>::new(Array::DiscInverseInertia), &self.inverse_inertia, 0);
+        let discs = [Array::DiscX, Array::DiscY].into_iter().zip(&mut self.on_lattice);
+        let velocities = [Array::DiscVx, Array::DiscVy, Array::DiscOmega].into_iter().zip(&mut self.velocity);
+        for (array, column) in discs.chain(velocities) {
+            memory = memory.write(Slot::<P>::new(array), column, 0);
+        }
+        memory = memory.read(Slot::<P>::new(Array::DiscRadius), &self.radius, 0);
+        memory = memory.read(Slot::<P>::new(Array::DiscInverseMass), &self.lattice_inverse_mass, 0);
+        memory = memory.write(Slot::new(Array::DiscCell), &mut self.cell, 0);
+        memory = memory.write(Slot::new(Array::Index), &mut self.index, 0);
+        memory = memory.read(Slot::new(Array::HaloCell), &halo[0], 0);
+        memory = memory.read(Slot::new(Array::HaloSource), &halo[1], 0);
+        for (array, column) in
+            [Array::FarX, Array::Interior, Array::ImageX, Array::ImageY].into_iter().zip(constant)
+        {
+            memory = memory.read(Slot::<P>::new(array), column, lead);
+        }
+        let lattice =
+            [Array::X, Array::Y, Array::Vx, Array::Vy, Array::Omega, Array::Radius, Array::InverseMass];
+        for (array, column) in lattice.into_iter().zip(&mut self.lattice) {
+            memory = memory.write(Slot::<P>::new(array), column, lead);
+        }
+        for (array, column) in [Array::Fx, Array::Fy, Array::Torque].into_iter().zip(&mut self.sums) {
+            memory = memory.write(Slot::<P>::new(array), column, lead);
+        }
+        let partners = [Array::PartnerFx, Array::PartnerFy, Array::PartnerTorque];
+        for (array, column) in partners.into_iter().zip(&mut self.partners) {
+            memory = memory.write(Slot::<P>::new(array), column, lead);
+        }
+        let result = run(&memory);
+        let counted = [memory.counted(STRAYS), memory.counted(CONFLICTS)];
+        self.strays += counted[0];
+        self.conflicts += counted[1];
+        result
+    }
+
+    /// Index and lattice vectors of the positions as they stand.
+    pub fn index<L: Law<2>>(&mut self, case: &Case, law: &L, how: (Execution, InstructionSet)) {
+        let shape = self.shape;
+        let images = shape.images();
+        let halo = [
+            images.iter().map(|image| image.cell as u32 + 1).collect(),
+            images.iter().map(|image| image.source as u32 + 1).collect(),
+        ];
+        let mut shift = [vec![P::from_f64(0.0); shape.padded()], vec![P::from_f64(0.0); shape.padded()]];
+        for image in &images {
+            for axis in 0..2 {
+                let period = [shape.columns(), shape.rows()][axis] as f64 * self.frame.edge[axis];
+                shift[axis][image.cell] = P::from_f64(f64::from(image.periods[axis]) * period);
+            }
+        }
+        let [x, y] = shift;
+        let constant = [shape.far(self.frame), shape.interior(), x, y];
+        let (frame, discs) = (self.frame, self.discs);
+        self.memory(&halo, &constant, 0, |memory| {
+            let (execution, set) = how;
+            Program::new(Clear).run(memory, shape.padded(), execution, set).unwrap();
+            let enter = Enter::<S, P>::new(shape, frame, case.coordinates);
+            Program::new(enter).run(memory, discs, execution, set).unwrap();
+            Program::new(Check).run(memory, discs, execution, set).unwrap();
+            Program::new(Images).run(memory, images.len(), execution, set).unwrap();
+            let spread = Spread::<P>::new(shape, case.coordinates, law.fields());
+            Program::new(spread).run(memory, shape.padded(), execution, set).unwrap();
+        });
+    }
+
+    /// Forces of the lattice vectors as they stand.
+    pub fn forces<L: Law<2>, const HALF: bool>(
+        &mut self,
+        case: &Case,
+        law: &L,
+        (execution, set): (Execution, InstructionSet),
+    ) -> Result<(), ProgramError> {
+        let full = Mask::square(case.half_width);
+        let mask = if HALF { full.half() } else { full };
+        let (shape, lead) = (self.shape, self.shape.lead());
+        self.partners.iter_mut().for_each(|partner| partner.fill(P::from_f64(0.0)));
+        let program =
+            Program::new(Forces::<P, L, HALF>::new(law.clone(), &mask, shape, self.frame, case.coordinates));
+        let constant = [shape.far(self.frame), shape.interior(), vec![], vec![]];
+        let constant = constant
+            .map(|column: Vec<P>| if column.is_empty() { vec![P::from_f64(0.0); lead] } else { column });
+        self.memory(&Default::default(), &constant, lead, |memory| {
+            program.run(memory, shape.swept(), execution, set)
+        })?;
+        if HALF {
+            for partner in &mut self.partners {
+                Join::fold(&shape, partner);
+            }
+            self.memory(&Default::default(), &constant, lead, |memory| {
+                Program::new(Join::<P>::new(law.sums())).run(memory, shape.swept(), execution, set)
+            })?;
+        }
+        Ok(())
+    }
+
+    /// One whole step of the faithful method.
+    pub fn step<L: Law<2>, const VALUES: usize, const FREEDOMS: usize>(
+        &mut self,
+        case: &Case,
+        law: &L,
+        inertia: Inertia,
+        how: (Execution, InstructionSet),
+    ) {
+        let none = [vec![], vec![], vec![], vec![]];
+        let discs = self.discs;
+        self.memory(&Default::default(), &none, 0, |memory| {
+            let predictor = Predictor::<S, P, VALUES, FREEDOMS>::new(DT);
+            Program::new(predictor).run(memory, discs, how.0, how.1).unwrap();
+        });
+        self.index(case, law, how);
+        self.forces::<L, false>(case, law, how).unwrap();
+        self.memory(&Default::default(), &none, 0, |memory| {
+            let corrector = Corrector::<S, P, VALUES, FREEDOMS>::new(
+                DT,
+                Acceleration::OfVelocities,
+                inertia,
+                [0.0, -9.81],
+            );
+            Program::new(corrector).run(memory, discs, how.0, how.1).unwrap();
+        });
+    }
+
+    /// The bits of everything a step leaves behind.
+    pub fn bits(&self) -> Vec<u64> {
+        let state = self.state.iter().flatten().flatten().map(|x| x.bits());
+        let disc = self.on_lattice.iter().chain(&self.velocity).flatten().map(|x| x.bits());
+        let lattice = self.lattice.iter().chain(&self.sums).flatten().map(|x| x.bits());
+        let index = self.cell.iter().chain(&self.index).map(|&number| u64::from(number));
+        state.chain(disc).chain(lattice).chain(index).chain([self.strays, self.conflicts]).collect()
+    }
+
+    /// Force or torque on each disc, gathered from the lattice.
+    pub fn on_discs(&self, sum: Sum) -> Vec<f64> {
+        self.cell
+            .iter()
+            .map(|&cell| if cell == 0 { 0.0 } else { self.sums[sum as usize][cell as usize - 1].to_f64() })
+            .collect()
+    }
+}
+
+pub fn varying<const FRICTION: bool>(contact: Contact) -> Granular<FRICTION, false> {
+    Granular { contact, disc: Disc { radius: f64::NAN, inverse_mass: f64::NAN } }
+}
+
+pub fn equal<const FRICTION: bool>(contact: Contact) -> Granular<FRICTION, true> {
+    Granular { contact, disc: Disc { radius: 1.0, inverse_mass: 1.0 } }
+}
+
+/// Every execution of programs without groups, on every instruction set of this processor.
+pub fn all_ways() -> Vec<(Execution, InstructionSet)> {
+    let executions = [Execution::Chained, Execution::Eager]
+        .into_iter()
+        .chain([1, 7, 16, 64, 1000].map(Execution::Strip))
+        .chain(Execution::BLOCKS.map(Execution::Block));
+    let sets: Vec<_> = InstructionSet::available().collect();
+    executions.flat_map(|execution| sets.iter().map(move |&set| (execution, set))).collect()
+}
