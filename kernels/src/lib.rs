@@ -10,9 +10,10 @@ pub mod backend;
 pub mod integrator;
 pub mod isa;
 pub mod law;
+pub mod ledger;
 pub mod mask;
 pub mod noise;
 mod program;
 pub mod sweep;
 
-pub use program::{Execution, GROUP, InstructionSet, Program};
+pub use program::{Execution, GROUP, InstructionSet, Program, Runnable};

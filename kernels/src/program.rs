@@ -1,9 +1,10 @@
 //! A text made ready to run: recorded once, checked before every run, executed in one of several ways.
 
 use crate::backend::{Block, Precision, Pulp, Registers, Scalar, Strip, Tape, Wide};
-use crate::isa::{Footprint, Memory, ProgramError, Text};
+use crate::isa::{Footprint, Memory, OpCounts, ProgramError, Text};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
+use std::ops::Range;
 
 /// Logical lanes that belong together wherever a sum depends on its order: the same for every backend and precision.
 pub const GROUP: usize = 16;
@@ -23,7 +24,7 @@ pub enum Execution {
 
 impl Execution {
     /// The strip lengths, in registers, that programs are compiled for.
-    pub const BLOCKS: [usize; 2] = [4, 16];
+    pub const BLOCKS: [usize; 2] = [2, 8];
 }
 
 macro_rules! define_instruction_sets {
@@ -121,7 +122,7 @@ impl<T: Text> Program<T>
 where
     T::Lane: Precision,
 {
-    /// Runs the program for elements `0 .. n` of the memory's arrays.
+    /// Runs the program for the elements of `range` of the memory's arrays.
     ///
     /// # Errors
     /// [`ProgramError`] names the array that is missing, too short or read-only, a strip length that cannot be, or an
@@ -129,11 +130,11 @@ where
     pub fn run(
         &self,
         memory: &Memory<'_>,
-        n: usize,
+        range: Range<usize>,
         execution: Execution,
         set: InstructionSet,
     ) -> Result<(), ProgramError> {
-        memory.admit(&self.footprint, n)?;
+        memory.admit(&self.footprint, &range)?;
         if let Some(group) = T::GROUP {
             debug_assert_eq!(group, GROUP, "texts sum in groups of GROUP");
             match execution {
@@ -141,10 +142,10 @@ where
                     return Err(ProgramError::FixedGroup { group, asked });
                 }
                 Execution::Eager | Execution::Block(_) => {
-                    return Err(ProgramError::FixedGroup { group, asked: n });
+                    return Err(ProgramError::FixedGroup { group, asked: range.len() });
                 }
-                _ if !n.is_multiple_of(group) => {
-                    return Err(ProgramError::PartialGroup { group, length: n });
+                _ if !(range.start.is_multiple_of(group) && range.end.is_multiple_of(group)) => {
+                    return Err(ProgramError::PartialGroup { group, start: range.start, end: range.end });
                 }
                 _ => {}
             }
@@ -157,12 +158,56 @@ where
             _ => {}
         }
         match execution {
-            Execution::Eager => self.tape.interpret(memory, n, n, set),
-            Execution::Strip(length) => self.tape.interpret(memory, n, length, set),
+            Execution::Eager => self.tape.interpret(memory, range.clone(), range.len(), set),
+            Execution::Strip(length) => self.tape.interpret(memory, range, length, set),
             Execution::Block(_) | Execution::Chained => {
-                dispatch(set, Compiled { text: &self.text, memory, n, execution })
+                dispatch(set, Compiled { text: &self.text, memory, range, execution })
             }
         }
+    }
+}
+
+/// A program whatever its text: what a method keeps a list of.
+pub trait Runnable: Send + Sync {
+    /// [`Program::run`].
+    ///
+    /// # Errors
+    /// As there.
+    fn run(
+        &self,
+        memory: &Memory<'_>,
+        range: Range<usize>,
+        execution: Execution,
+        set: InstructionSet,
+    ) -> Result<(), ProgramError>;
+
+    /// What is executed, section by section.
+    fn tally(&self) -> Vec<(&'static str, OpCounts)>;
+
+    /// The vector instructions, as an assembly listing.
+    fn listing(&self) -> String;
+}
+
+impl<T: Text + Send + Sync> Runnable for Program<T>
+where
+    T::Lane: Precision,
+{
+    fn run(
+        &self,
+        memory: &Memory<'_>,
+        range: Range<usize>,
+        execution: Execution,
+        set: InstructionSet,
+    ) -> Result<(), ProgramError> {
+        Program::run(self, memory, range, execution, set)
+    }
+
+    fn tally(&self) -> Vec<(&'static str, OpCounts)> {
+        self.tape.tally()
+    }
+
+    fn listing(&self) -> String {
+        self.tape.listing().to_string()
     }
 }
 
@@ -211,7 +256,7 @@ impl<L: Precision, T: Task<L>> WithSimd for OnSimd<T, L> {
 struct Compiled<'r, T> {
     text: &'r T,
     memory: &'r Memory<'r>,
-    n: usize,
+    range: Range<usize>,
     execution: Execution,
 }
 
@@ -232,8 +277,8 @@ where
             }
         } else {
             match self.execution {
-                Execution::Block(4) => self.strips(Block::<R, 4>(registers)),
-                Execution::Block(_) => self.strips(Block::<R, 16>(registers)),
+                Execution::Block(2) => self.strips(Block::<R, 2>(registers)),
+                Execution::Block(_) => self.strips(Block::<R, 8>(registers)),
                 _ => self.strips(registers),
             }
         }
@@ -247,19 +292,18 @@ where
     /// The text on full strips of registers, and what is left over element by element.
     #[inline(always)]
     fn strips<R: Registers<Lane = T::Lane>>(self, registers: R) {
-        let whole = self.n - self.n % R::LANES;
-        let mut base = 0;
-        while base < whole {
+        let Range { start: mut base, end } = self.range;
+        while base + R::LANES <= end {
             self.text.body(Strip::new(registers, self.memory, base));
             base += R::LANES;
         }
-        self.elements(whole);
+        self.elements(base);
     }
 
     /// The text element by element from `base` on: the same bits, so not worth a copy for every register file.
     #[inline(never)]
     fn elements(&self, mut base: usize) {
-        while base < self.n {
+        while base < self.range.end {
             self.text.body(Strip::new(Scalar::default(), self.memory, base));
             base += 1;
         }

@@ -149,7 +149,7 @@ fn executions_that_would_change_the_order_of_summation_are_refused() {
     let law = varying::<true>(case.contact);
     let mut system = System::<f64, f64>::random(&case);
     system.index(&case, &law, ORACLE);
-    for (execution, asked) in [(Execution::Eager, system.shape.swept()), (Execution::Strip(8), 8)] {
+    for (execution, asked) in [(Execution::Eager, system.shape.swept().len()), (Execution::Strip(8), 8)] {
         let refused = system.forces::<_, true>(&case, &law, (execution, InstructionSet::Scalar));
         assert_eq!(refused, Err(ProgramError::FixedGroup { group: GROUP, asked }));
     }

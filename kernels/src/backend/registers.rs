@@ -116,7 +116,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     #[inline(always)]
     fn place<T: Storage>(self, slot: Slot<T>, shift: isize) -> *mut T {
         // SAFETY: the memory was admitted for the footprint, so base + shift and the lanes behind it exist.
-        unsafe { self.memory.column(slot).at(self.base as isize + shift) }
+        unsafe { self.memory.column(slot).at(self.base.wrapping_add_signed(shift)) }
     }
 }
 

@@ -5,6 +5,7 @@ use super::footprint::Footprint;
 use super::slot::{Array, Slot};
 use std::cell::Cell;
 use std::marker::PhantomData;
+use std::ops::Range;
 
 /// How many counters a memory has.
 pub const COUNTERS: usize = 4;
@@ -32,21 +33,16 @@ pub enum ProgramError {
         array: &'static str,
     },
     /// A slice does not cover what the program touches.
-    #[error(
-        "{array} must hold {before} elements before and {after} from its first element on, \
-         but has {have_before} and {have_after}"
-    )]
+    #[error("the program touches elements {first} to {last} of {array}, which has {length}")]
     TooShort {
         /// Label of the array.
         array: &'static str,
-        /// Elements needed before the first.
-        before: usize,
-        /// Elements needed from the first on.
-        after: usize,
-        /// Elements there before the first.
-        have_before: usize,
-        /// Elements there from the first on.
-        have_after: usize,
+        /// First element touched.
+        first: isize,
+        /// Last element touched.
+        last: isize,
+        /// Elements there are.
+        length: usize,
     },
     /// A vector length of zero was asked for.
     #[error("a strip must hold at least one element; 0 was asked for")]
@@ -59,13 +55,15 @@ pub enum ProgramError {
         /// The strip length asked for.
         asked: usize,
     },
-    /// The vector length is not a multiple of the program's group.
-    #[error("this program sums in groups of {group}, of which the vector length {length} is no multiple")]
+    /// The elements to run over do not begin and end with a group.
+    #[error("this program sums in groups of {group}; elements {start} to {end} cut one in two")]
     PartialGroup {
         /// The group length the program is defined for.
         group: usize,
-        /// The vector length asked for.
-        length: usize,
+        /// The first element asked for.
+        start: usize,
+        /// The element behind the last.
+        end: usize,
     },
     /// No strip of that many registers is compiled.
     #[error("strips of {asked} registers are not compiled; these are: {compiled:?}")]
@@ -80,53 +78,52 @@ pub enum ProgramError {
     NoSuchInstructionSet(&'static str),
 }
 
-/// One slice as the machine sees it: a pointer to the element that strip position 0 meets.
+/// One slice as the machine sees it.
 #[derive(Clone, Copy)]
 pub struct Column<T> {
     origin: *mut T,
-    before: usize,
-    after: usize,
+    length: usize,
     writable: bool,
 }
 
 impl<T: Storage> Column<T> {
-    const UNBOUND: Column<T> = Column { origin: std::ptr::null_mut(), before: 0, after: 0, writable: false };
+    const UNBOUND: Column<T> = Column { origin: std::ptr::null_mut(), length: 0, writable: false };
 
-    /// Elements from the first on.
+    /// Elements of the slice.
     #[inline(always)]
     pub(crate) fn len(&self) -> usize {
-        self.after
+        self.length
     }
 
-    /// Pointer to the element `position` places from the first.
+    /// Pointer to an element.
     ///
     /// # Safety
-    /// `position` lies in `-before ..= after`.
+    /// The slice has it, or ends before it.
     #[inline(always)]
-    pub(crate) unsafe fn at(&self, position: isize) -> *mut T {
-        debug_assert!(position >= -(self.before as isize) && position <= self.after as isize);
+    pub(crate) unsafe fn at(&self, position: usize) -> *mut T {
+        debug_assert!(position <= self.length, "element {position} of {}", self.length);
         // SAFETY: the caller keeps the position within the slice the column was made from.
-        unsafe { self.origin.offset(position) }
+        unsafe { self.origin.add(position) }
     }
 
-    /// The element at `position` from the first.
+    /// The element at `position`.
     ///
     /// # Panics
     /// If there is none; an index vector with a wrong entry must not become a wrong number.
     #[inline(always)]
     pub(crate) fn read(&self, position: usize) -> T {
-        assert!(position < self.after, "gather from element {position} of {}", self.after);
+        assert!(position < self.length, "gather from element {position} of {}", self.length);
         // SAFETY: just checked; bound columns point to live slices.
         unsafe { *self.origin.add(position) }
     }
 
-    /// Writes the element at `position` from the first.
+    /// Writes the element at `position`.
     ///
     /// # Panics
     /// If there is none, or the column is read-only.
     #[inline(always)]
     pub(crate) fn write(&self, position: usize, value: T) {
-        assert!(self.writable && position < self.after, "scatter to element {position} of {}", self.after);
+        assert!(self.writable && position < self.length, "scatter to element {position} of {}", self.length);
         // SAFETY: just checked; writable columns come from exclusive borrows.
         unsafe { *self.origin.add(position) = value }
     }
@@ -159,39 +156,25 @@ impl<'a> Memory<'a> {
         Memory::default()
     }
 
-    /// Binds a slice for reading; strip position 0 meets `slice[lead]`.
-    ///
-    /// # Panics
-    /// If `lead` lies beyond the slice.
+    /// Binds a slice for reading.
     #[must_use]
-    pub fn read<T: Storage>(mut self, slot: Slot<T>, slice: &'a [T], lead: usize) -> Self {
-        assert!(lead <= slice.len(), "{}: lead {lead} of {}", slot.array().label(), slice.len());
-        T::columns_mut(&mut self).0[slot.array() as usize] = Column {
-            // SAFETY: `lead` lies within the slice; the column is never written through.
-            origin: unsafe { slice.as_ptr().add(lead) }.cast_mut(),
-            before: lead,
-            after: slice.len() - lead,
-            writable: false,
-        };
+    pub fn read<T: Storage>(mut self, slot: Slot<T>, slice: &'a [T]) -> Self {
+        // The pointer is never written through: the column is not writable.
+        let origin = slice.as_ptr().cast_mut();
+        self.bind(slot, Column { origin, length: slice.len(), writable: false });
         self
     }
 
-    /// Binds a slice for reading and writing; strip position 0 meets `slice[lead]`.
-    ///
-    /// # Panics
-    /// If `lead` lies beyond the slice.
+    /// Binds a slice for reading and writing.
     #[must_use]
-    pub fn write<T: Storage>(mut self, slot: Slot<T>, slice: &'a mut [T], lead: usize) -> Self {
-        assert!(lead <= slice.len(), "{}: lead {lead} of {}", slot.array().label(), slice.len());
-        let after = slice.len() - lead;
-        T::columns_mut(&mut self).0[slot.array() as usize] = Column {
-            // SAFETY: `lead` lies within the slice.
-            origin: unsafe { slice.as_mut_ptr().add(lead) },
-            before: lead,
-            after,
-            writable: true,
-        };
+    pub fn write<T: Storage>(mut self, slot: Slot<T>, slice: &'a mut [T]) -> Self {
+        let length = slice.len();
+        self.bind(slot, Column { origin: slice.as_mut_ptr(), length, writable: true });
         self
+    }
+
+    fn bind<T: Storage>(&mut self, slot: Slot<T>, column: Column<T>) {
+        T::columns_mut(self).0[slot.array() as usize] = column;
     }
 
     #[inline(always)]
@@ -210,38 +193,33 @@ impl<'a> Memory<'a> {
         cell.set(cell.get() + more);
     }
 
-    /// Whether every element that a program of `footprint` touches over `n` strip positions exists.
+    /// Whether every element that a program of `footprint` touches over the elements of `range` exists.
     ///
     /// # Errors
     /// Names the first array that is unbound, too short, or not writable though written.
-    pub fn admit(&self, footprint: &Footprint, n: usize) -> Result<(), ProgramError> {
+    pub fn admit(&self, footprint: &Footprint, range: &Range<usize>) -> Result<(), ProgramError> {
         for access in footprint.accesses() {
-            let (before, after, writable) = match access.element {
+            let array = access.array.label();
+            let (length, writable) = match access.element {
                 f64::NAME => self.extent::<f64>(access.array),
                 f32::NAME => self.extent::<f32>(access.array),
                 _ => self.extent::<u32>(access.array),
             }
-            .ok_or(ProgramError::Unbound { array: access.array.label(), element: access.element })?;
+            .ok_or(ProgramError::Unbound { array, element: access.element })?;
             if access.writes && !writable {
-                return Err(ProgramError::ReadOnly { array: access.array.label() });
+                return Err(ProgramError::ReadOnly { array });
             }
-            let need_before = access.lowest.min(0).unsigned_abs();
-            let need_after = if access.strided { n + access.highest.max(0) as usize } else { 0 };
-            if need_before > before || need_after > after {
-                return Err(ProgramError::TooShort {
-                    array: access.array.label(),
-                    before: need_before,
-                    after: need_after,
-                    have_before: before,
-                    have_after: after,
-                });
+            let first = range.start as isize + access.lowest;
+            let last = range.end as isize - 1 + access.highest;
+            if access.strided && !range.is_empty() && (first < 0 || last >= length as isize) {
+                return Err(ProgramError::TooShort { array, first, last, length });
             }
         }
         Ok(())
     }
 
-    fn extent<T: Storage>(&self, array: Array) -> Option<(usize, usize, bool)> {
+    fn extent<T: Storage>(&self, array: Array) -> Option<(usize, bool)> {
         let column = &T::columns(self).0[array as usize];
-        (!column.origin.is_null()).then_some((column.before, column.after, column.writable))
+        (!column.origin.is_null()).then_some((column.length, column.writable))
     }
 }

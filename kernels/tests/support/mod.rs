@@ -112,15 +112,18 @@ impl<S: Precision, P: Precision> System<S, P> {
         let mass = |r: &f64| r * r;
         let padded = vec![P::from_f64(0.0); shape.padded()];
         let zeros = vec![P::from_f64(0.0); discs];
+        let velocity = |freedom: &[Vec<S>; 6]| {
+            freedom[1].iter().map(|q| P::from_f64(q.to_f64() / DT)).collect::<Vec<P>>()
+        };
         System {
+            velocity: [velocity(&rows[0]), velocity(&rows[1]), velocity(&rows[2])],
             shape,
             frame,
             discs,
             state: rows,
             inverse_mass: radius.iter().map(|r| S::from_f64(1.0 / mass(r))).collect(),
             inverse_inertia: radius.iter().map(|r| S::from_f64(2.0 / (mass(r) * r * r))).collect(),
-            on_lattice: [zeros.clone(), zeros.clone()],
-            velocity: [zeros.clone(), zeros.clone(), zeros],
+            on_lattice: [zeros.clone(), zeros],
             radius: radius.iter().map(|&r| P::from_f64(r)).collect(),
             lattice_inverse_mass: radius.iter().map(|r| P::from_f64(1.0 / mass(r))).collect(),
             cell: vec![0; discs],
@@ -137,44 +140,43 @@ impl<S: Precision, P: Precision> System<S, P> {
         &mut self,
         halo: &[Vec<u32>; 2],
         constant: &[Vec<P>; 4],
-        lead: usize,
         run: impl FnOnce(&Memory<'_>) -> R,
     ) -> R {
         let mut memory = Memory::new();
         for (arrays, rows) in STATE.into_iter().zip(&mut self.state) {
             for (array, q) in arrays.into_iter().zip(rows) {
-                memory = memory.write(Slot::<S>::new(array), q, 0);
+                memory = memory.write(Slot::<S>::new(array), q);
             }
         }
-        memory = memory.read(Slot::<S>::new(Array::DiscInverseMass), &self.inverse_mass, 0);
-        memory = memory.read(Slot::<S>::new(Array::DiscInverseInertia), &self.inverse_inertia, 0);
+        memory = memory.read(Slot::<S>::new(Array::DiscInverseMass), &self.inverse_mass);
+        memory = memory.read(Slot::<S>::new(Array::DiscInverseInertia), &self.inverse_inertia);
         let discs = [Array::DiscX, Array::DiscY].into_iter().zip(&mut self.on_lattice);
         let velocities = [Array::DiscVx, Array::DiscVy, Array::DiscOmega].into_iter().zip(&mut self.velocity);
         for (array, column) in discs.chain(velocities) {
-            memory = memory.write(Slot::<P>::new(array), column, 0);
+            memory = memory.write(Slot::<P>::new(array), column);
         }
-        memory = memory.read(Slot::<P>::new(Array::DiscRadius), &self.radius, 0);
-        memory = memory.read(Slot::<P>::new(Array::DiscInverseMass), &self.lattice_inverse_mass, 0);
-        memory = memory.write(Slot::new(Array::DiscCell), &mut self.cell, 0);
-        memory = memory.write(Slot::new(Array::Index), &mut self.index, 0);
-        memory = memory.read(Slot::new(Array::HaloCell), &halo[0], 0);
-        memory = memory.read(Slot::new(Array::HaloSource), &halo[1], 0);
+        memory = memory.read(Slot::<P>::new(Array::DiscRadius), &self.radius);
+        memory = memory.read(Slot::<P>::new(Array::DiscInverseMass), &self.lattice_inverse_mass);
+        memory = memory.write(Slot::new(Array::DiscCell), &mut self.cell);
+        memory = memory.write(Slot::new(Array::Index), &mut self.index);
+        memory = memory.read(Slot::new(Array::HaloCell), &halo[0]);
+        memory = memory.read(Slot::new(Array::HaloSource), &halo[1]);
         for (array, column) in
             [Array::FarX, Array::Interior, Array::ImageX, Array::ImageY].into_iter().zip(constant)
         {
-            memory = memory.read(Slot::<P>::new(array), column, lead);
+            memory = memory.read(Slot::<P>::new(array), column);
         }
         let lattice =
             [Array::X, Array::Y, Array::Vx, Array::Vy, Array::Omega, Array::Radius, Array::InverseMass];
         for (array, column) in lattice.into_iter().zip(&mut self.lattice) {
-            memory = memory.write(Slot::<P>::new(array), column, lead);
+            memory = memory.write(Slot::<P>::new(array), column);
         }
         for (array, column) in [Array::Fx, Array::Fy, Array::Torque].into_iter().zip(&mut self.sums) {
-            memory = memory.write(Slot::<P>::new(array), column, lead);
+            memory = memory.write(Slot::<P>::new(array), column);
         }
         let partners = [Array::PartnerFx, Array::PartnerFy, Array::PartnerTorque];
         for (array, column) in partners.into_iter().zip(&mut self.partners) {
-            memory = memory.write(Slot::<P>::new(array), column, lead);
+            memory = memory.write(Slot::<P>::new(array), column);
         }
         let result = run(&memory);
         let counted = [memory.counted(STRAYS), memory.counted(CONFLICTS)];
@@ -201,15 +203,15 @@ impl<S: Precision, P: Precision> System<S, P> {
         let [x, y] = shift;
         let constant = [shape.far(self.frame), shape.interior(), x, y];
         let (frame, discs) = (self.frame, self.discs);
-        self.memory(&halo, &constant, 0, |memory| {
+        self.memory(&halo, &constant, |memory| {
             let (execution, set) = how;
-            Program::new(Clear).run(memory, shape.padded(), execution, set).unwrap();
+            Program::new(Clear).run(memory, 0..shape.padded(), execution, set).unwrap();
             let enter = Enter::<S, P>::new(shape, frame, case.coordinates);
-            Program::new(enter).run(memory, discs, execution, set).unwrap();
-            Program::new(Check).run(memory, discs, execution, set).unwrap();
-            Program::new(Images).run(memory, images.len(), execution, set).unwrap();
+            Program::new(enter).run(memory, 0..discs, execution, set).unwrap();
+            Program::new(Check).run(memory, 0..discs, execution, set).unwrap();
+            Program::new(Images).run(memory, 0..images.len(), execution, set).unwrap();
             let spread = Spread::<P>::new(shape, case.coordinates, law.fields());
-            Program::new(spread).run(memory, shape.padded(), execution, set).unwrap();
+            Program::new(spread).run(memory, 0..shape.padded(), execution, set).unwrap();
         });
     }
 
@@ -222,21 +224,20 @@ impl<S: Precision, P: Precision> System<S, P> {
     ) -> Result<(), ProgramError> {
         let full = Mask::square(case.half_width);
         let mask = if HALF { full.half() } else { full };
-        let (shape, lead) = (self.shape, self.shape.lead());
+        let shape = self.shape;
         self.partners.iter_mut().for_each(|partner| partner.fill(P::from_f64(0.0)));
         let program =
             Program::new(Forces::<P, L, HALF>::new(law.clone(), &mask, shape, self.frame, case.coordinates));
         let constant = [shape.far(self.frame), shape.interior(), vec![], vec![]];
-        let constant = constant
-            .map(|column: Vec<P>| if column.is_empty() { vec![P::from_f64(0.0); lead] } else { column });
-        self.memory(&Default::default(), &constant, lead, |memory| {
+        let constant = constant.map(|column: Vec<P>| if column.is_empty() { vec![] } else { column });
+        self.memory(&Default::default(), &constant, |memory| {
             program.run(memory, shape.swept(), execution, set)
         })?;
         if HALF {
             for partner in &mut self.partners {
                 Join::fold(&shape, partner);
             }
-            self.memory(&Default::default(), &constant, lead, |memory| {
+            self.memory(&Default::default(), &constant, |memory| {
                 Program::new(Join::<P>::new(law.sums())).run(memory, shape.swept(), execution, set)
             })?;
         }
@@ -253,20 +254,20 @@ impl<S: Precision, P: Precision> System<S, P> {
     ) {
         let none = [vec![], vec![], vec![], vec![]];
         let discs = self.discs;
-        self.memory(&Default::default(), &none, 0, |memory| {
+        self.memory(&Default::default(), &none, |memory| {
             let predictor = Predictor::<S, P, VALUES, FREEDOMS>::new(DT);
-            Program::new(predictor).run(memory, discs, how.0, how.1).unwrap();
+            Program::new(predictor).run(memory, 0..discs, how.0, how.1).unwrap();
         });
         self.index(case, law, how);
         self.forces::<L, false>(case, law, how).unwrap();
-        self.memory(&Default::default(), &none, 0, |memory| {
+        self.memory(&Default::default(), &none, |memory| {
             let corrector = Corrector::<S, P, VALUES, FREEDOMS>::new(
                 DT,
                 Acceleration::OfVelocities,
                 inertia,
                 [0.0, -9.81],
             );
-            Program::new(corrector).run(memory, discs, how.0, how.1).unwrap();
+            Program::new(corrector).run(memory, 0..discs, how.0, how.1).unwrap();
         });
     }
 

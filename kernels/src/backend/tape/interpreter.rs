@@ -7,6 +7,7 @@ use crate::backend::{Precision, Registers};
 use crate::isa::{Element, Memory, Op, ProgramError, Slot, Storage};
 use crate::program::{InstructionSet, Task, dispatch};
 use std::mem::take;
+use std::ops::Range;
 
 /// The register files, each register as long as a strip.
 struct RegisterFiles<L> {
@@ -34,11 +35,11 @@ impl<L: Precision> Tape<L> {
     pub(crate) fn interpret(
         &self,
         memory: &Memory<'_>,
-        n: usize,
+        range: Range<usize>,
         strip: usize,
         set: InstructionSet,
     ) -> Result<(), ProgramError> {
-        dispatch(set, Passes { tape: self, memory, n, strip })
+        dispatch(set, Passes { tape: self, memory, range, strip })
     }
 }
 
@@ -46,7 +47,7 @@ impl<L: Precision> Tape<L> {
 struct Passes<'r, L> {
     tape: &'r Tape<L>,
     memory: &'r Memory<'r>,
-    n: usize,
+    range: Range<usize>,
     strip: usize,
 }
 
@@ -54,25 +55,25 @@ impl<L: Precision> Task<L> for Passes<'_, L> {
     #[inline(always)]
     fn on<R: Registers<Lane = L>>(self, _: R) {
         // The passes are plain loops: the instruction set they are inlined into is what vectorises them.
-        self.tape.execute(self.memory, self.n, self.strip);
+        self.tape.execute(self.memory, self.range, self.strip);
     }
 }
 
 impl<L: Element> Tape<L> {
-    /// Executes the program for elements `0 .. n`, in strips of at most `strip`.
+    /// Executes the program for the elements of `range`, in strips of at most `strip`.
     ///
     /// Inlined into a function of the processor's instruction set, where the compiler vectorises the passes.
     #[inline(always)]
-    fn execute(&self, memory: &Memory<'_>, n: usize, strip: usize) {
-        let strip = strip.min(n);
+    fn execute(&self, memory: &Memory<'_>, range: Range<usize>, strip: usize) {
+        let strip = strip.min(range.len());
         let mut files = RegisterFiles {
             numbers: vec![vec![L::default(); strip]; self.registers(File::Number)],
             predicates: vec![vec![0; strip]; self.registers(File::Predicate)],
             indices: vec![vec![0; strip]; self.registers(File::Index)],
         };
-        let mut base = 0;
-        while base < n {
-            let span = Span { base, length: strip.min(n - base) };
+        let mut base = range.start;
+        while base < range.end {
+            let span = Span { base, length: strip.min(range.end - base) };
             for instruction in &self.instructions {
                 files.step(instruction, memory, span);
             }
@@ -121,7 +122,9 @@ unsafe fn strip_of<'m, T: Storage>(
     span: Span,
 ) -> &'m [T] {
     // SAFETY: the footprint covers base + shift and `length` elements from there on.
-    unsafe { std::slice::from_raw_parts(memory.column(slot).at(span.base as isize + shift), span.length) }
+    unsafe {
+        std::slice::from_raw_parts(memory.column(slot).at(span.base.wrapping_add_signed(shift)), span.length)
+    }
 }
 
 /// The strip of an array in memory, to be written.
@@ -137,7 +140,12 @@ unsafe fn strip_of_mut<'m, T: Storage>(
     span: Span,
 ) -> &'m mut [T] {
     // SAFETY: the footprint covers base + shift and `length` elements from there on.
-    unsafe { std::slice::from_raw_parts_mut(memory.column(slot).at(span.base as isize + shift), span.length) }
+    unsafe {
+        std::slice::from_raw_parts_mut(
+            memory.column(slot).at(span.base.wrapping_add_signed(shift)),
+            span.length,
+        )
+    }
 }
 
 impl<L: Element> RegisterFiles<L> {

@@ -2,6 +2,7 @@
 
 use crate::GROUP;
 use crate::mask::{Mask, Offset};
+use std::ops::Range;
 
 /// Why a lattice cannot be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -135,14 +136,15 @@ impl LatticeShape {
         (self.half_width * (self.stride() + 1)).next_multiple_of(GROUP)
     }
 
-    /// Elements that a sweep runs over: the vector length of the forces.
-    pub fn swept(&self) -> usize {
-        (self.rows * self.stride()).next_multiple_of(GROUP)
+    /// The elements that a sweep runs over; their number is the vector length of the forces.
+    pub fn swept(&self) -> Range<usize> {
+        let lead = self.lead();
+        lead..lead + (self.rows * self.stride()).next_multiple_of(GROUP)
     }
 
     /// Elements of a lattice vector.
     pub fn padded(&self) -> usize {
-        self.lead() + self.swept() + self.lead()
+        self.swept().end + self.lead()
     }
 
     /// Position of a cell in a padded lattice vector; halo cells have negative columns and rows or ones too large.
@@ -264,7 +266,7 @@ mod tests {
             for &offset in mask.offsets() {
                 let shift = shape.shift(offset);
                 assert!(shape.lead() as isize + shift >= 0);
-                assert!((shape.lead() + shape.swept()) as isize + shift <= shape.padded() as isize);
+                assert!(shape.swept().end as isize + shift <= shape.padded() as isize);
             }
         }
     }
