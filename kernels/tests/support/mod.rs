@@ -74,6 +74,23 @@ pub struct System<S, P> {
     pub conflicts: u64,
 }
 
+/// A disc put on the lattice by hand.
+#[derive(Clone, Copy, Debug)]
+pub struct Placed {
+    pub position: [f64; 2],
+    pub velocity: [f64; 2],
+    pub omega: f64,
+    pub radius: f64,
+    pub inverse_mass: f64,
+}
+
+impl Placed {
+    /// A disc of radius and mass 1 at rest.
+    pub fn at(x: f64, y: f64) -> Placed {
+        Placed { position: [x, y], velocity: [0.0; 2], omega: 0.0, radius: 1.0, inverse_mass: 1.0 }
+    }
+}
+
 pub const DT: f64 = 1e-3;
 
 impl<S: Precision, P: Precision> System<S, P> {
@@ -134,6 +151,31 @@ impl<S: Precision, P: Precision> System<S, P> {
             strays: 0,
             conflicts: 0,
         }
+    }
+
+    /// Discs as said, on a lattice at `frame`; derivatives beyond the velocity are zero.
+    pub fn placed(case: &Case, frame: Frame, discs: &[Placed]) -> Self {
+        let mut system = Self::random(&Case { fill: 0.0, ..*case });
+        let column = |of: &dyn Fn(&Placed) -> f64| discs.iter().map(|disc| P::from_f64(of(disc))).collect();
+        let state = |of: &dyn Fn(&Placed) -> f64| discs.iter().map(|disc| S::from_f64(of(disc))).collect();
+        for (axis, row) in system.state.iter_mut().enumerate() {
+            for q in row.iter_mut() {
+                *q = vec![S::from_f64(0.0); discs.len()];
+            }
+            let rate = |disc: &Placed| [disc.velocity[0], disc.velocity[1], disc.omega][axis];
+            row[0] = state(&|disc| [disc.position[0], disc.position[1], 0.0][axis]);
+            row[1] = state(&|disc| rate(disc) * DT);
+            system.velocity[axis] = column(&rate);
+        }
+        system.frame = frame;
+        system.discs = discs.len();
+        system.inverse_mass = state(&|disc| disc.inverse_mass);
+        system.inverse_inertia = state(&|disc| 2.0 * disc.inverse_mass / (disc.radius * disc.radius));
+        system.on_lattice = [column(&|_| 0.0), column(&|_| 0.0)];
+        system.radius = column(&|disc| disc.radius);
+        system.lattice_inverse_mass = column(&|disc| disc.inverse_mass);
+        system.cell = vec![0; discs.len()];
+        system
     }
 
     fn memory<R>(

@@ -1,0 +1,109 @@
+//! The command line: one file per verb; composes, decides nothing.
+
+mod listing;
+mod reproduce;
+mod scene_choice;
+mod table;
+
+use clap::{Args, Parser, Subcommand};
+use std::ffi::OsString;
+use std::io::{ErrorKind, Write};
+use std::process::ExitCode;
+
+/// A SIMD vector machine for 2D particle dynamics.
+#[derive(Parser)]
+#[command(name = "stripmine", version, arg_required_else_help = true)]
+struct CommandLine {
+    #[command(subcommand)]
+    verb: Verb,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// What every verb takes.
+#[derive(Args, Clone, Debug)]
+struct Common {
+    /// One JSON document on standard output
+    #[arg(long, global = true)]
+    json: bool,
+    /// Nothing on standard error but errors
+    #[arg(long, global = true)]
+    quiet: bool,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    Reproduce(reproduce::Reproduce),
+    Table(table::TableVerb),
+    Listing(listing::ListingVerb),
+}
+
+/// Why a verb did not come to its end; each kind has its exit code.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Failure {
+    /// A question that has no answer: exit code 2.
+    #[error(transparent)]
+    Usage(#[from] crate::study::efficiency_table::QuestionError),
+    /// A machine that there is not: exit code 2.
+    #[error(transparent)]
+    Machine(#[from] crate::model::machine::UnknownMachine),
+    /// Reading or writing: exit code 5.
+    #[error("{what}: {cause}")]
+    InputOutput {
+        /// What was being done.
+        what: String,
+        /// What the system said.
+        cause: std::io::Error,
+    },
+}
+
+impl Failure {
+    fn writing(what: impl Into<String>) -> impl FnOnce(std::io::Error) -> Failure {
+        let what = what.into();
+        move |cause| Failure::InputOutput { what, cause }
+    }
+
+    fn exit_code(&self) -> u8 {
+        match self {
+            // A reader that closes the pipe has seen enough.
+            Failure::InputOutput { cause, .. } if cause.kind() == ErrorKind::BrokenPipe => 0,
+            Failure::Usage(_) | Failure::Machine(_) => 2,
+            Failure::InputOutput { .. } => 5,
+        }
+    }
+}
+
+/// Runs the command with its arguments, the first of which is its name.
+pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
+    let CommandLine { verb, common } = CommandLine::parse_from(arguments);
+    let outcome = match verb {
+        Verb::Reproduce(verb) => verb.run(&common),
+        Verb::Table(verb) => verb.run(&common),
+        Verb::Listing(verb) => verb.run(&common),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            if failure.exit_code() != 0 {
+                eprintln!("error: {failure}");
+            }
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+/// Writes data to standard output.
+fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(Failure::writing("standard output"))
+}
+
+/// Writes data to standard output as one JSON document.
+fn print_json(data: &impl serde::Serialize) -> Result<(), Failure> {
+    print(&(to_json(data)? + "\n"))
+}
+
+/// Data as JSON, floats in shortest round-trip form.
+fn to_json(data: &impl serde::Serialize) -> Result<String, Failure> {
+    serde_json::to_string_pretty(data).map_err(|cause| Failure::writing("JSON")(cause.into()))
+}

@@ -1,0 +1,168 @@
+//! The arrays a step works on.
+
+use super::{Discs, Model};
+use crate::particles::Particles;
+use std::ops::Range;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::integrator::gear::STATE;
+use stripmine_kernels::isa::{Array, Memory, Slot};
+use stripmine_kernels::ledger::Length;
+use stripmine_kernels::sweep::lattice::Coordinates;
+
+/// How long the vectors of a step are for a scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lengths {
+    /// NP.
+    pub discs: usize,
+    /// LMAX: cells that discs may live in.
+    pub cells: usize,
+    swept: Range<usize>,
+    padded: usize,
+    halo: usize,
+}
+
+impl Lengths {
+    /// For `discs` discs on a model's lattice.
+    pub fn new(model: &Model, discs: usize) -> Self {
+        let shape = &model.shape;
+        Lengths {
+            discs,
+            cells: shape.cells(),
+            swept: shape.swept(),
+            padded: shape.padded(),
+            halo: shape.images().len(),
+        }
+    }
+
+    /// The elements that a program of this length runs over.
+    pub fn range(&self, length: Length) -> Range<usize> {
+        match length {
+            Length::Discs => 0..self.discs,
+            Length::SweptCells => self.swept.clone(),
+            Length::PaddedCells => 0..self.padded,
+            Length::HaloCells => 0..self.halo,
+        }
+    }
+}
+
+/// Discs and lattice vectors of a model, state in precision `S`, lattice in precision `P`. What the model leaves out
+/// has no array.
+#[derive(Clone, Debug)]
+pub struct Arrays<S, P> {
+    lengths: Lengths,
+    /// Columns in state precision, each for one array of the machine.
+    state: Vec<(Array, Vec<S>)>,
+    /// Columns in force precision that programs write.
+    lattice: Vec<(Array, Vec<P>)>,
+    /// Columns in force precision that stay as they are.
+    constant: Vec<(Array, Vec<P>)>,
+    cell: Vec<u32>,
+    index: Vec<u32>,
+    halo_cell: Vec<u32>,
+    halo_source: Vec<u32>,
+}
+
+impl<S: Precision, P: Precision> Arrays<S, P> {
+    /// Lays out `particles`; derivatives above the velocity start at zero.
+    pub fn new(model: &Model, particles: &Particles) -> Self {
+        let lengths = Lengths::new(model, particles.len());
+        let (discs, padded) = (lengths.discs, lengths.padded);
+        let convert = |values: Vec<f64>| -> Vec<S> { values.into_iter().map(S::from_f64).collect() };
+        let on_lattice = |values: Vec<f64>| -> Vec<P> { values.into_iter().map(P::from_f64).collect() };
+
+        let mut state = Vec::new();
+        for (freedom, row) in STATE.iter().enumerate().take(model.freedoms()) {
+            for (k, &array) in row.iter().enumerate().take(model.values.count()) {
+                let column = (0..discs).map(|i| match (k, freedom) {
+                    (0, 0 | 1) => particles.position[i][freedom],
+                    (1, 0 | 1) => particles.velocity[i][freedom] * model.dt,
+                    (1, _) => particles.omega[i] * model.dt,
+                    _ => 0.0,
+                });
+                state.push((array, convert(column.collect())));
+            }
+        }
+
+        let mut constant = vec![(Array::FarX, model.shape.far(model.frame))];
+        if model.discs == Discs::Varying {
+            let inverse_mass: Vec<f64> = particles.mass.iter().map(|m| 1.0 / m).collect();
+            let inertia = particles.mass.iter().zip(&particles.radius).map(|(m, r)| 2.0 / (m * r * r));
+            state.push((Array::DiscInverseMass, convert(inverse_mass.clone())));
+            state.push((Array::DiscInverseInertia, convert(inertia.collect())));
+            constant.push((Array::DiscInverseMass, on_lattice(inverse_mass)));
+            constant.push((Array::DiscRadius, on_lattice(particles.radius.clone())));
+        }
+        let images = model.shape.images();
+        if model.coordinates == Coordinates::Absolute {
+            for (axis, array) in [Array::ImageX, Array::ImageY].into_iter().enumerate() {
+                let cells = [model.shape.columns(), model.shape.rows()][axis];
+                let period = cells as f64 * model.frame.edge[axis];
+                let mut shift = vec![P::from_f64(0.0); padded];
+                for image in &images {
+                    shift[image.cell] = P::from_f64(f64::from(image.periods[axis]) * period);
+                }
+                constant.push((array, shift));
+            }
+        }
+
+        let mut lattice: Vec<(Array, Vec<P>)> = Vec::new();
+        let mut columns = |arrays: &[Array], length| {
+            lattice.extend(arrays.iter().map(|&array| (array, vec![P::from_f64(0.0); length])));
+        };
+        columns(&[Array::DiscX, Array::DiscY, Array::DiscVx, Array::DiscVy], discs);
+        columns(&[Array::X, Array::Y, Array::Vx, Array::Vy, Array::Fx, Array::Fy], padded);
+        if model.friction {
+            columns(&[Array::DiscOmega], discs);
+            columns(&[Array::Omega, Array::Torque], padded);
+        }
+        if model.discs == Discs::Varying {
+            columns(&[Array::Radius, Array::InverseMass], padded);
+        }
+
+        Arrays {
+            state,
+            lattice,
+            constant,
+            cell: vec![0; discs],
+            index: vec![0; padded],
+            halo_cell: images.iter().map(|image| image.cell as u32 + 1).collect(),
+            halo_source: images.iter().map(|image| image.source as u32 + 1).collect(),
+            lengths,
+        }
+    }
+
+    /// How long the vectors are.
+    pub fn lengths(&self) -> &Lengths {
+        &self.lengths
+    }
+
+    /// All arrays, bound to their slots, with the lengths of the vectors.
+    pub fn memory(&mut self) -> (Memory<'_>, &Lengths) {
+        let mut memory = Memory::new()
+            .write(Slot::new(Array::DiscCell), &mut self.cell)
+            .write(Slot::new(Array::Index), &mut self.index)
+            .read(Slot::new(Array::HaloCell), &self.halo_cell)
+            .read(Slot::new(Array::HaloSource), &self.halo_source);
+        // Constants first: where state and lattice have one precision, the state's copy of a quantity takes its place.
+        for (array, column) in &self.constant {
+            memory = memory.read(Slot::new(*array), column);
+        }
+        for (array, column) in &mut self.lattice {
+            memory = memory.write(Slot::new(*array), column);
+        }
+        for (array, column) in &mut self.state {
+            memory = memory.write(Slot::new(*array), column);
+        }
+        (memory, &self.lengths)
+    }
+
+    /// A column in state precision.
+    pub fn state(&self, array: Array) -> Option<&[S]> {
+        self.state.iter().find(|(name, _)| *name == array).map(|(_, column)| column.as_slice())
+    }
+
+    /// A column in force precision.
+    pub fn lattice(&self, array: Array) -> Option<&[P]> {
+        self.lattice.iter().find(|(name, _)| *name == array).map(|(_, column)| column.as_slice())
+    }
+}

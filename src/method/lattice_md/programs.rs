@@ -1,0 +1,148 @@
+//! The programs of a step, compiled for what a model needs.
+
+use super::{Discs, GearValues, Model};
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::integrator::gear::{Corrector, Predictor};
+use stripmine_kernels::law::granular::{Disc, Granular};
+use stripmine_kernels::law::{Field, Law};
+use stripmine_kernels::ledger::{Ledger, Length};
+use stripmine_kernels::sweep::lattice::cells::{Check, Clear, Enter, Images};
+use stripmine_kernels::sweep::lattice::forces::Forces;
+use stripmine_kernels::sweep::lattice::vectors::Spread;
+use stripmine_kernels::{Program, Runnable};
+
+macro_rules! define_parts {
+    ($(($variant:ident, $name:literal, $doc:literal)),* $(,)?) => {
+        /// A part of the step, as the source divides it (section 3); [`Part::Lattice`] is one the source does not
+        /// count.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Part {
+            $(#[doc = $doc] $variant,)*
+        }
+
+        impl Part {
+            /// Every part, in the order of the step.
+            pub const ALL: &'static [Part] = &[$(Part::$variant),*];
+
+            /// The name in tables and on the command line.
+            pub const fn name(self) -> &'static str {
+                match self { $(Part::$variant => $name),* }
+            }
+
+            /// What the part does.
+            pub const fn meaning(self) -> &'static str {
+                match self { $(Part::$variant => $doc),* }
+            }
+        }
+    };
+}
+
+define_parts! {
+    (Predictor, "predictor", "Gear's prediction of all derivatives"),
+    (Index, "index", "the cell of every disc, the scatter into the Index, the check that no disc was lost"),
+    (Lattice, "lattice", "the discs' quantities as lattice vectors"),
+    (Forces, "forces", "the contact law at every place of the mask"),
+    (Corrector, "corrector", "forces gathered back, and Gear's correction of all derivatives"),
+}
+
+/// One program of the step.
+pub struct StepProgram {
+    /// The part it belongs to.
+    pub part: Part,
+    /// What its vectors are as long as.
+    pub length: Length,
+    /// The program.
+    pub program: Box<dyn Runnable>,
+}
+
+/// The programs of a step of `model`, with state of precision `S` and forces of precision `P`, in their order.
+pub fn programs<S: Precision, P: Precision>(model: &Model) -> Vec<StepProgram> {
+    let step = |part, length, program| StepProgram { part, length, program };
+    let (forces, fields) = forces::<P>(model);
+    let mut programs = vec![
+        step(Part::Predictor, Length::Discs, predictor::<S, P>(model)),
+        step(Part::Index, Length::PaddedCells, Box::new(Program::new(Clear))),
+        step(
+            Part::Index,
+            Length::Discs,
+            Box::new(Program::new(Enter::<S, P>::new(model.shape, model.frame, model.coordinates))),
+        ),
+        step(Part::Index, Length::Discs, Box::new(Program::new(Check))),
+    ];
+    if model.shape.periodic().contains(&true) {
+        programs.push(step(Part::Index, Length::HaloCells, Box::new(Program::new(Images))));
+    }
+    let spread = Spread::<P>::new(model.shape, model.coordinates, fields);
+    programs.extend([
+        step(Part::Lattice, Length::PaddedCells, Box::new(Program::new(spread))),
+        step(Part::Forces, Length::SweptCells, forces),
+        step(Part::Corrector, Length::Discs, corrector::<S, P>(model)),
+    ]);
+    programs
+}
+
+/// What a step of the programs executes.
+pub fn ledger(programs: &[StepProgram]) -> Ledger {
+    let mut ledger = Ledger::default();
+    for step in programs {
+        ledger.enter(step.part.name(), step.length, step.program.as_ref());
+    }
+    ledger
+}
+
+/// The law's program: the list of its compiled variants.
+fn forces<P: Precision>(model: &Model) -> (Box<dyn Runnable>, &'static [Field]) {
+    fn sweep<P: Precision, L: Law<2> + Send + Sync + 'static>(
+        law: L,
+        model: &Model,
+    ) -> (Box<dyn Runnable>, &'static [Field]) {
+        let fields = law.fields();
+        let Model { mask, shape, frame, coordinates, .. } = model;
+        let forces = Forces::<P, L, false>::new(law, mask, *shape, *frame, *coordinates);
+        (Box::new(Program::new(forces)), fields)
+    }
+    let contact = model.contact;
+    // Not read where discs vary.
+    let any = Disc { radius: f64::NAN, inverse_mass: f64::NAN };
+    match (model.friction, model.discs) {
+        (true, Discs::Varying) => sweep::<P, _>(Granular::<true, false> { contact, disc: any }, model),
+        (true, Discs::Equal { disc, .. }) => sweep::<P, _>(Granular::<true, true> { contact, disc }, model),
+        (false, Discs::Varying) => sweep::<P, _>(Granular::<false, false> { contact, disc: any }, model),
+        (false, Discs::Equal { disc, .. }) => sweep::<P, _>(Granular::<false, true> { contact, disc }, model),
+    }
+}
+
+/// Calls the generic `$function::<S, P, VALUES, FREEDOMS>` that a model needs.
+macro_rules! for_scheme {
+    ($model:expr, $function:ident) => {
+        match ($model.values, $model.friction) {
+            (GearValues::Four, true) => $function::<S, P, 4, 3>($model),
+            (GearValues::Four, false) => $function::<S, P, 4, 2>($model),
+            (GearValues::Five, true) => $function::<S, P, 5, 3>($model),
+            (GearValues::Five, false) => $function::<S, P, 5, 2>($model),
+            (GearValues::Six, true) => $function::<S, P, 6, 3>($model),
+            (GearValues::Six, false) => $function::<S, P, 6, 2>($model),
+        }
+    };
+}
+
+fn predictor<S: Precision, P: Precision>(model: &Model) -> Box<dyn Runnable> {
+    fn scheme<S: Precision, P: Precision, const VALUES: usize, const FREEDOMS: usize>(
+        model: &Model,
+    ) -> Box<dyn Runnable> {
+        Box::new(Program::new(Predictor::<S, P, VALUES, FREEDOMS>::new(model.dt)))
+    }
+    for_scheme!(model, scheme)
+}
+
+fn corrector<S: Precision, P: Precision>(model: &Model) -> Box<dyn Runnable> {
+    fn scheme<S: Precision, P: Precision, const VALUES: usize, const FREEDOMS: usize>(
+        model: &Model,
+    ) -> Box<dyn Runnable> {
+        let Model { dt, gravity, .. } = *model;
+        let corrector =
+            Corrector::<S, P, VALUES, FREEDOMS>::new(dt, model.acceleration(), model.inertia(), gravity);
+        Box::new(Program::new(corrector))
+    }
+    for_scheme!(model, scheme)
+}

@@ -1,0 +1,3 @@
+//! The methods: one folder or file a source.
+
+pub mod lattice_md;

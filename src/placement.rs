@@ -1,0 +1,89 @@
+//! Initial states.
+
+use crate::particles::Particles;
+use stripmine_kernels::noise::{Purpose, Stream, normals};
+
+/// A periodic box filled with equal discs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Packing {
+    /// The discs.
+    pub particles: Particles,
+    /// Sides of the box (length).
+    pub sides: [f64; 2],
+}
+
+/// `least` or a few more discs of diameter 1 and mass 1 on a hexagonal lattice of the given packing fraction, in a box
+/// as square as whole rows allow; each shifted at random by at most 0.45 of the gap, with Maxwell velocities of
+/// temperature `kt` (mass · length²/time²) and no net momentum, without spin.
+pub fn hexagonal(least: usize, packing_fraction: f64, kt: f64, seed: u64) -> Packing {
+    // A disc's share of the plane is spacing² √3/2.
+    let spacing = (std::f64::consts::PI / (2.0 * 3f64.sqrt() * packing_fraction)).sqrt();
+    let row_height = spacing * 3f64.sqrt() / 2.0;
+    // Rows come in pairs, so that the pattern closes across the periodic side.
+    let pairs = ((least as f64 * spacing / row_height).sqrt() / 2.0).round().max(1.0) as usize;
+    let rows = 2 * pairs;
+    let columns = least.div_ceil(rows);
+    let mut random = Stream::new(seed, Purpose::Placement, 0);
+    let mut particles = Particles::default();
+    for row in 0..rows {
+        for column in 0..columns {
+            let id = particles.len() as u32;
+            let offset = 0.25 + 0.5 * (row % 2) as f64;
+            let reach = 0.45 * (spacing - 1.0).max(0.0);
+            let (length, angle) = (reach * random.uniform(), std::f64::consts::TAU * random.uniform());
+            particles.position.push([
+                (column as f64 + offset) * spacing + length * libm::cos(angle),
+                (row as f64 + 0.5) * row_height + length * libm::sin(angle),
+            ]);
+            particles.velocity.push(normals(seed, Purpose::Placement, id, 1).map(|v| v * kt.sqrt()));
+        }
+    }
+    let n = particles.len();
+    for axis in 0..2 {
+        let mean = particles.velocity.iter().map(|v| v[axis]).sum::<f64>() / n as f64;
+        particles.velocity.iter_mut().for_each(|v| v[axis] -= mean);
+    }
+    particles.omega = vec![0.0; n];
+    particles.radius = vec![0.5; n];
+    particles.mass = vec![1.0; n];
+    Packing { particles, sides: [columns as f64 * spacing, rows as f64 * row_height] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_packing_has_its_fraction_and_no_overlaps_across_its_sides() {
+        for fraction in [0.84, 0.3] {
+            let packing = hexagonal(300, fraction, 0.01, 3);
+            let n = packing.particles.len();
+            let area = n as f64 * std::f64::consts::PI / 4.0;
+            assert!((area / (packing.sides[0] * packing.sides[1]) - fraction).abs() < 1e-12);
+            let position = &packing.particles.position;
+            for i in 0..n {
+                for j in 0..i {
+                    let square: f64 = (0..2)
+                        .map(|axis| {
+                            let apart = position[i][axis] - position[j][axis];
+                            let side = packing.sides[axis];
+                            (apart - (apart / side).round() * side).powi(2)
+                        })
+                        .sum();
+                    assert!(square > 1.0, "discs {i} and {j} overlap at fraction {fraction}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn velocities_are_thermal_and_carry_no_momentum() {
+        let packing = hexagonal(20_000, 0.5, 0.01, 1);
+        let n = packing.particles.len() as f64;
+        let momentum: f64 = packing.particles.velocity.iter().map(|v| v[0] + v[1]).sum();
+        let kt: f64 =
+            packing.particles.velocity.iter().map(|v| (v[0] * v[0] + v[1] * v[1]) / 2.0).sum::<f64>() / n;
+        assert!(momentum.abs() < 1e-9);
+        assert!((kt / 0.01 - 1.0).abs() < 5.0 / n.sqrt());
+    }
+}

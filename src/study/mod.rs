@@ -1,0 +1,3 @@
+//! Studies: one file per question a user asks, each a function from parameters to a dataset.
+
+pub mod efficiency_table;
