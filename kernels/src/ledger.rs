@@ -22,7 +22,7 @@ impl Length {
     pub const fn symbol(self) -> &'static str {
         match self {
             Length::Discs => "NP",
-            Length::SweptCells => "LMAX",
+            Length::SweptCells => "LMAX + row ends",
             Length::PaddedCells => "LMAX + halo",
             Length::HaloCells => "halo",
         }

@@ -2,12 +2,11 @@
 
 use super::scene_choice::SceneChoice;
 use super::{Common, Failure, print, print_json};
-use crate::model::machine::{self, MachineModel};
+use crate::model::machine;
 use crate::report;
 use crate::study::efficiency_table::efficiency_table;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use clap::builder::TypedValueParser;
 
 /// BP93's efficiency table: NOP as printed and as counted, vector lengths, clock periods
 #[derive(Args)]
@@ -15,18 +14,13 @@ pub(super) struct TableVerb {
     #[command(flatten)]
     scene: SceneChoice,
     /// Machine whose clock is asked
-    #[arg(long, default_value = "paper", value_parser = machine_parser())]
-    machine: MachineModel,
-}
-
-/// Accepts the machines there are; clap lists them where another is asked for.
-fn machine_parser() -> impl TypedValueParser<Value = MachineModel> {
-    PossibleValuesParser::new(machine::names()).try_map(|name| machine::preset(&name))
+    #[arg(long, default_value = "paper", value_parser = PossibleValuesParser::new(machine::names()))]
+    machine: String,
 }
 
 impl TableVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
-        let data = efficiency_table(&self.scene.question(), &self.machine)?;
+        let data = efficiency_table(&self.scene.question(), &machine::preset(&self.machine)?)?;
         if common.json {
             return print_json(&data);
         }

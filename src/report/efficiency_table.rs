@@ -84,6 +84,12 @@ fn parts(data: &EfficiencyTable) -> Table {
          over LMAX cells, ours also over the halo at the ends of each row."
             .to_owned(),
     ];
+    notes.push(format!(
+        "At {} ns a clock period such a step takes {:.4} s by the printed count, {:.4} s by ours.",
+        data.clock_period_ns,
+        data.printed_clocks * data.clock_period_ns * 1e-9,
+        data.counted_clocks * data.clock_period_ns * 1e-9
+    ));
     if !data.assumed.is_empty() {
         notes.push(format!("Assumed numbers of this machine: {}.", data.assumed.join(", ")));
     }

@@ -108,6 +108,8 @@ pub struct EfficiencyTable {
     pub choice: Choice,
     /// The machine whose clock is asked.
     pub machine: String,
+    /// Its clock period (ns).
+    pub clock_period_ns: f64,
     /// Numbers of the machine that are assumed.
     pub assumed: Vec<String>,
     /// A row for each part and vector length.
@@ -295,6 +297,7 @@ pub fn efficiency_table(
             .to_vec(),
         choice: question.choice,
         machine: machine.title().to_owned(),
+        clock_period_ns: machine.clock_period_ns().value,
         assumed: machine.assumed(),
         printed_clocks: parts.iter().filter_map(|row| row.printed_clocks).sum(),
         counted_clocks: parts.iter().map(|row| row.counted_clocks).sum(),

@@ -39,7 +39,7 @@ pub trait Registers: Copy {
     type V: Vector;
     /// An index vector as wide as `V`.
     type Index: IndexLanes;
-    /// Lanes of `V`, at most [`MAX_LANES`].
+    /// Lanes of `V`, at most 256.
     const LANES: usize;
 
     /// The same number in every lane.
@@ -179,7 +179,7 @@ impl<R: Registers> Machine for Strip<'_, R> {
     }
 
     #[inline(always)]
-    fn from_index(self, index: R::Index) -> R::V {
+    fn index_numbers(self, index: R::Index) -> R::V {
         self.assemble(|lane| R::Lane::from_f64(index.lane(lane).into()))
     }
 

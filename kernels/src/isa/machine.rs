@@ -36,7 +36,7 @@ pub trait Machine: Copy {
     /// Numbers to an index vector; what is no element number (negative, not a number) becomes 0, none.
     fn to_index(self, numbers: Self::V) -> Self::I;
     /// An index vector to numbers.
-    fn from_index(self, index: Self::I) -> Self::V;
+    fn index_numbers(self, index: Self::I) -> Self::V;
     /// Loads an index vector at the own place.
     fn load_index(self, slot: Slot<u32>) -> Self::I;
     /// Stores an index vector at the own place.

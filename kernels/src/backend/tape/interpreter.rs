@@ -243,8 +243,8 @@ impl<L: Element> RegisterFiles<L> {
                 }
             }
             Action::Load(from) => match from.element {
-                // SAFETY: admitted; nothing writes the array while this strip is copied.
                 f64::NAME => {
+                    // SAFETY: admitted; nothing writes the array while this strip is copied.
                     let from = unsafe { strip_of(memory, Slot::<f64>::new(from.array), from.shift, span) };
                     unary(to, Source::Lanes(from), L::from_f64);
                 }

@@ -177,7 +177,7 @@ impl<'t, L: Element> Machine for Recording<'t, L> {
     fn to_index(self, numbers: Value<'t, L>) -> RegisterName {
         self.0.emit(Op::ToIndex, File::Index, Action::ToIndex(numbers.operand))
     }
-    fn from_index(self, index: RegisterName) -> Value<'t, L> {
+    fn index_numbers(self, index: RegisterName) -> Value<'t, L> {
         self.number(Op::FromIndex, Action::FromIndex(index))
     }
     fn load_index(self, slot: Slot<u32>) -> RegisterName {

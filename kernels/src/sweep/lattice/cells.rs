@@ -116,7 +116,7 @@ unsafe impl Text for Check {
     #[inline(always)]
     fn body<M: Machine<Lane = f64>>(&self, m: M) {
         m.section("check");
-        let there = m.from_index(m.gather_index(INDEX, m.load_index(DISC_CELL)));
+        let there = m.index_numbers(m.gather_index(INDEX, m.load_index(DISC_CELL)));
         m.count(CONFLICTS, there.equal(m.numbers()).not());
     }
 }

@@ -1,0 +1,203 @@
+//! What does the force sweep over 24 places cost, cell by cell, in every execution, against a loop written by hand?
+//!
+//! The sweep is branch-free: its cost does not depend on where the discs stand, so a frozen dense configuration will do.
+//! Throughput is in cells; `cargo bench --bench forces`.
+
+mod intrinsics;
+
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
+use intrinsics::{Numbers, Place, Vectors};
+use std::hint::black_box;
+use std::time::Duration;
+use stripmine::method::lattice_md::{Arrays, Discs, GearValues, Model, Part, execute, programs};
+use stripmine::placement::hexagonal;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::isa::Array;
+use stripmine_kernels::law::granular::{Contact, ContactArm};
+use stripmine_kernels::mask::Mask;
+use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
+use stripmine_kernels::{Execution, InstructionSet};
+
+const CONTACT: Contact = Contact {
+    stiffness: 187.0,
+    normal_damping: 1e-6,
+    shear_damping: 3e-7,
+    friction: 0.5,
+    cohesionless: true,
+    arm: ContactArm::Radius,
+};
+
+/// A dense packing (0.84) on a lattice of about `cells` cells of the radius's width.
+fn dense<P: Precision>(cells: usize, friction: bool) -> (Model, Arrays<f64, P>) {
+    let packing = hexagonal((cells as f64 * 0.84 / std::f64::consts::PI) as usize, 0.84, 0.01, 1);
+    let radius = 0.5;
+    let counts = packing.sides.map(|side| (side / radius) as usize);
+    let edge = [packing.sides[0] / counts[0] as f64, packing.sides[1] / counts[1] as f64];
+    let mask = Mask::square(2);
+    let model = Model {
+        shape: LatticeShape::new(counts[0], counts[1], &mask, [true; 2]).expect("large enough"),
+        frame: Frame { origin: [0.0; 2], edge },
+        mask,
+        coordinates: Coordinates::CellRelative,
+        contact: CONTACT,
+        friction,
+        discs: Discs::Varying,
+        values: GearValues::Four,
+        dt: 0.005,
+        gravity: [0.0; 2],
+    };
+    let mut arrays = Arrays::new(&model, &packing.particles);
+    let programs = programs::<f64, P>(&model);
+    let before = [Part::Predictor, Part::Index, Part::Lattice];
+    {
+        let (memory, lengths) = arrays.memory();
+        let set = InstructionSet::best();
+        execute(&programs, &before, &memory, lengths, Execution::Chained, set).expect("bound");
+    }
+    (model, arrays)
+}
+
+fn places<T: Precision>(model: &Model) -> Vec<Place<T>> {
+    let place = |offset: &stripmine_kernels::mask::Offset| {
+        let way =
+            [f64::from(offset.columns) * model.frame.edge[0], f64::from(offset.rows) * model.frame.edge[1]];
+        (model.shape.shift(*offset), way.map(T::from_f64))
+    };
+    model.mask.offsets().iter().map(place).collect()
+}
+
+/// The hand-written loop on the widest instruction set that both it and this processor have.
+trait ByHand: Precision {
+    fn sweep<const FRICTION: bool>(
+        from: &Vectors<'_, Self>,
+        to: [&mut [Self]; 3],
+        range: std::ops::Range<usize>,
+        places: &[Place<Self>],
+        numbers: Numbers<Self>,
+    ) -> bool;
+}
+
+macro_rules! by_hand {
+    ($ty:ident, $avx2:ident, $avx512:ident) => {
+        impl ByHand for $ty {
+            #[allow(unused_variables, reason = "other processors have no loop by hand")]
+            fn sweep<const FRICTION: bool>(
+                from: &Vectors<'_, Self>,
+                to: [&mut [Self]; 3],
+                range: std::ops::Range<usize>,
+                places: &[Place<Self>],
+                numbers: Numbers<Self>,
+            ) -> bool {
+                match InstructionSet::best() {
+                    // SAFETY: the processor has the set; the lattice is padded for every shift of its mask.
+                    #[cfg(target_arch = "x86_64")]
+                    InstructionSet::Avx512 => unsafe {
+                        intrinsics::$avx512::<FRICTION>(from, to, range, places, numbers);
+                    },
+                    // SAFETY: as above.
+                    #[cfg(target_arch = "x86_64")]
+                    InstructionSet::Avx2 => unsafe {
+                        intrinsics::$avx2::<FRICTION>(from, to, range, places, numbers);
+                    },
+                    _ => return false,
+                }
+                true
+            }
+        }
+    };
+}
+by_hand!(f64, avx2_f64, avx512_f64);
+by_hand!(f32, avx2_f32, avx512_f32);
+
+fn hand_written<P: ByHand, const FRICTION: bool>(
+    group: &mut BenchmarkGroup<'_, WallTime>,
+    name: &str,
+    model: &Model,
+    arrays: &mut Arrays<f64, P>,
+) {
+    let programs = programs::<f64, P>(model);
+    {
+        let (memory, lengths) = arrays.memory();
+        let set = InstructionSet::best();
+        execute(&programs, &[Part::Forces], &memory, lengths, Execution::Chained, set).expect("bound");
+    }
+    let column = |array| arrays.lattice(array).map_or(&[][..], |column| column);
+    let from = Vectors {
+        x: column(Array::X),
+        y: column(Array::Y),
+        vx: column(Array::Vx),
+        vy: column(Array::Vy),
+        omega: column(Array::Omega),
+        radius: column(Array::Radius),
+        inverse_mass: column(Array::InverseMass),
+    };
+    let numbers = Numbers {
+        stiffness: P::from_f64(CONTACT.stiffness),
+        normal_damping: P::from_f64(CONTACT.normal_damping),
+        shear_damping: P::from_f64(CONTACT.shear_damping),
+        friction: P::from_f64(CONTACT.friction),
+    };
+    let places = places::<P>(model);
+    let mut to = [(); 3].map(|()| vec![P::from_f64(0.0); model.shape.padded()]);
+    let range = model.shape.swept();
+    let mut sweep = || {
+        let [fx, fy, torque] = &mut to;
+        P::sweep::<FRICTION>(&from, [fx, fy, torque], range.clone(), &places, numbers)
+    };
+    if !sweep() {
+        return;
+    }
+    group.bench_function(name, |bencher| bencher.iter(|| black_box(sweep())));
+    for (ours, by_hand) in [Array::Fx, Array::Fy].into_iter().zip(&to) {
+        let ours = &column(ours)[range.clone()];
+        let differing =
+            ours.iter().zip(&by_hand[range.clone()]).filter(|(a, b)| a.bits() != b.bits()).count();
+        assert_eq!(differing, 0, "the loop by hand computes something else");
+    }
+}
+
+fn executions<P: ByHand>(criterion: &mut Criterion, precision: &str) {
+    for (cells, friction) in [(10_000, false), (10_000, true), (100_000, false), (100_000, true)] {
+        let (model, mut arrays) = dense::<P>(cells, friction);
+        let law = if friction { "friction" } else { "normal" };
+        let mut group = criterion.benchmark_group(format!("forces/{precision}/{law}/{cells}"));
+        group.throughput(Throughput::Elements(model.shape.cells() as u64));
+        group
+            .sample_size(20)
+            .measurement_time(Duration::from_secs(2))
+            .warm_up_time(Duration::from_millis(500));
+        if friction {
+            hand_written::<P, true>(&mut group, "by hand", &model, &mut arrays);
+        } else {
+            hand_written::<P, false>(&mut group, "by hand", &model, &mut arrays);
+        }
+        let programs = programs::<f64, P>(&model);
+        let best = InstructionSet::best();
+        let mut ways: Vec<(String, Execution, InstructionSet)> = Vec::new();
+        ways.extend(
+            InstructionSet::available()
+                .map(|set| (format!("chained {}", set.name()), Execution::Chained, set)),
+        );
+        ways.extend(
+            Execution::BLOCKS.map(|k| (format!("strips of {k} registers"), Execution::Block(k), best)),
+        );
+        ways.extend([64, 256, 1024].map(|n| (format!("tape, strips of {n}"), Execution::Strip(n), best)));
+        ways.push(("tape, eager".to_owned(), Execution::Eager, best));
+        for (name, execution, set) in ways {
+            let (memory, lengths) = arrays.memory();
+            group.bench_function(name, |bencher| {
+                bencher.iter(|| execute(&programs, &[Part::Forces], &memory, lengths, execution, set));
+            });
+        }
+        group.finish();
+    }
+}
+
+fn forces(criterion: &mut Criterion) {
+    executions::<f64>(criterion, "f64");
+    executions::<f32>(criterion, "f32");
+}
+
+criterion_group!(benches, forces);
+criterion_main!(benches);

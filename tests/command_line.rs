@@ -1,0 +1,114 @@
+//! The command as a user meets it: data on standard output, everything else on standard error, exit codes.
+
+use assert_cmd::Command;
+use serde_json::Value;
+
+fn stripmine(arguments: &[&str]) -> std::process::Output {
+    Command::cargo_bin("stripmine").unwrap().args(arguments).output().unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = stripmine(arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The printed column is the source's, the counted one the program's, and both clocks are NOP·(n + D).
+#[test]
+fn the_table_holds_the_printed_counts_and_the_paper_clock() {
+    let table = json(&["table", "--particles", "2000", "--occupancy", "0.25", "--json"]);
+    let printed: Vec<u64> =
+        table["parts"].as_array().unwrap().iter().filter_map(|row| row["printed"].as_u64()).collect();
+    assert_eq!(printed, [59, 12, 1656, 54]);
+    let (np, lmax) = (table["particles"].as_f64().unwrap(), table["cells"].as_f64().unwrap());
+    assert_eq!(table["printed_clocks"].as_f64().unwrap(), 125.0 * (np + 20.0) + 1656.0 * (lmax + 20.0));
+    let mut counted = 0.0;
+    for row in table["parts"].as_array().unwrap() {
+        let clocks = row["counted"].as_f64().unwrap() * (row["n"].as_f64().unwrap() + 20.0);
+        assert_eq!(row["counted_clocks"].as_f64().unwrap(), clocks);
+        counted += clocks;
+    }
+    assert_eq!(table["counted_clocks"].as_f64().unwrap(), counted);
+}
+
+/// A listing has as many instructions as the table counts.
+#[test]
+fn listings_and_table_count_the_same() {
+    let table = json(&["table", "--json"]);
+    for (i, part) in ["predictor", "index", "lattice", "forces", "corrector"].into_iter().enumerate() {
+        let listing = String::from_utf8(stripmine(&["listing", part]).stdout).unwrap();
+        let instructions = listing.lines().filter(|line| !line.starts_with(';')).count() as u64;
+        let rows = table["classes"].as_array().unwrap();
+        let counted: u64 = rows.iter().map(|row| row["parts"][i].as_u64().unwrap()).sum();
+        assert_eq!(instructions, counted, "{part}");
+    }
+}
+
+/// What a scene does not need is not executed.
+#[test]
+fn simpler_scenes_cost_less() {
+    let table = json(&["table", "--json"]);
+    let savings = table["savings"].as_array().unwrap();
+    let relative =
+        |name: &str| savings.iter().find(|row| row["variant"] == name).unwrap()["relative"].as_f64().unwrap();
+    assert_eq!(relative("as asked"), 1.0);
+    assert!(relative("without friction") < 0.7);
+    assert!(relative("with equal discs") < 0.95);
+    assert!(relative("without friction, with equal discs") < relative("without friction"));
+    let listing = String::from_utf8(stripmine(&["listing", "forces", "--frictionless"]).stdout).unwrap();
+    assert!(!listing.contains("omega") && !listing.contains("torque"));
+}
+
+/// Unknown names exit with 2 and say which there are; impossible questions say what is wrong with them.
+#[test]
+fn bad_usage_exits_with_2_and_helps() {
+    for (arguments, words) in [
+        (&["table", "--machine", "cray-9"][..], &["cray-9", "paper", "cray-y-mp-el"][..]),
+        (&["listing", "foces"], &["foces", "predictor", "forces", "corrector"]),
+        (&["table", "--occupancy", "1.5"], &["occupancy", "1.5"]),
+        (&["table", "--occupancy", "NaN"], &["occupancy", "NaN"]),
+        (&["table", "--particles", "0"], &["at least one"]),
+        (&["table", "--particles", "3"], &["at least 5 cells"]),
+        (&["table", "--particles", "18446744073709551615"], &["number"]),
+        (&["reproduce", "--only", "figure-9"], &["table", "listing"]),
+        (&["nonsense"], &["nonsense"]),
+    ] {
+        let output = stripmine(arguments);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(output.stdout.is_empty());
+        assert!(words.iter().all(|word| said.contains(word)), "{arguments:?}: {said}");
+        assert!(!said.contains("panicked"));
+    }
+}
+
+/// Results go where they were asked for, and two runs write the same bytes.
+#[test]
+fn reproduce_writes_the_same_twice() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str| {
+        let out = folder.path().join(name);
+        json(&["reproduce", "--only", "table", "--out", out.to_str().unwrap(), "--json"])
+    };
+    let (first, second) = (write("a"), write("b"));
+    let files = |outcome: &Value| -> Vec<String> {
+        outcome["files"].as_array().unwrap().iter().map(|file| file.as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(files(&first).len(), files(&second).len());
+    for (a, b) in files(&first).iter().zip(files(&second)) {
+        assert_eq!(std::fs::read(a).unwrap(), std::fs::read(b).unwrap(), "{a}");
+    }
+    let page = std::fs::read_to_string(folder.path().join("a/README.md")).unwrap();
+    assert!(page.contains("1 656") || page.contains("1\u{202f}656"));
+}
+
+/// A folder that cannot be written is an input/output failure with its name.
+#[test]
+fn an_unwritable_folder_exits_with_5() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    std::fs::write(&file, "").unwrap();
+    let output = stripmine(&["reproduce", "--out", file.join("below").to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(5));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("below"));
+}
