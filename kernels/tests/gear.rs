@@ -78,8 +78,8 @@ impl Discs {
     }
 }
 
-/// The damped oscillator r'' = −ω² r − 2βr' from r = 1, r' = −β: r = e^(−βt) cos(νt), ν² = ω² − β², one for each disc
-/// and direction.
+/// The damped oscillator r'' = −ω² r − 2βr' from r = 1, r' = −β: r = e^(−βt) cos(νt), ν² = ω² − β², one for
+/// each disc and direction.
 #[derive(Clone, Copy)]
 struct Oscillator {
     nu: f64,
@@ -140,7 +140,7 @@ fn slopes<const VALUES: usize>(acceleration: Acceleration, damped: bool, exact_s
     let errors = [160, 320, 640].map(|steps| error::<VALUES>(steps, acceleration, damped, exact_start));
     let slopes = [0, 1].map(|i| (errors[i] / errors[i + 1]).log2());
     println!(
-        "{VALUES} values, {acceleration:?}, damped {damped}, exact start {exact_start}: {errors:?}, {slopes:.2?}"
+        "{VALUES} values, {acceleration:?}, damped {damped}, exact {exact_start}: {errors:?}, {slopes:.2?}"
     );
     slopes
 }
@@ -169,7 +169,8 @@ fn coefficients_are_those_of_the_table() {
     }
 }
 
-/// On harmonic oscillators with exact starting derivatives the schemes of 4, 5, 6 values are of order 3, 4, 5.
+/// On harmonic oscillators with exact starting derivatives the schemes of 4, 5, 6 values are of order 3, 4,
+/// 5.
 #[test]
 fn four_five_and_six_values_are_of_order_three_four_and_five() {
     of_order(3.0, slopes::<4>(Acceleration::OfPositions, false, true));
@@ -177,7 +178,8 @@ fn four_five_and_six_values_are_of_order_three_four_and_five() {
     of_order(5.0, slopes::<6>(Acceleration::OfPositions, false, true));
 }
 
-/// The first coefficient for velocity-dependent forces has the same orders, on damped oscillators; so has the other.
+/// The first coefficient for velocity-dependent forces has the same orders, on damped oscillators; so has the
+/// other.
 #[test]
 fn either_first_coefficient_has_the_same_order_with_damping() {
     for acceleration in [Acceleration::OfVelocities, Acceleration::OfPositions] {
@@ -202,7 +204,8 @@ fn speed<const VALUES: usize>(drag: f64, acceleration: Acceleration) -> f64 {
     discs.state[0][1][0].abs()
 }
 
-/// Stable at 0.9 of the limit, blown up at 1.15 of it, and the limit itself to 0.01, with either first coefficient.
+/// Stable at 0.9 of the limit, blown up at 1.15 of it, and the limit itself to 0.01, with either first
+/// coefficient.
 fn stable_below<const VALUES: usize>(limit: f64) {
     for acceleration in [Acceleration::OfVelocities, Acceleration::OfPositions] {
         assert!(speed::<VALUES>(0.9 * limit, acceleration) < 1e-9);
@@ -248,7 +251,8 @@ fn rotation_changes_no_bit_of_x_and_y() {
     assert_eq!(bits(&without, 2), bits(&before, 2));
 }
 
-/// Under gravity alone the path is the parabola: to the bit where all numbers have few bits, else to rounding.
+/// Under gravity alone the path is the parabola: to the bit where all numbers have few bits, else to
+/// rounding.
 fn parabola<const VALUES: usize>() {
     let velocity = [0.75, 3.5];
     let path = |gravity: [f64; 2], dt: f64| {

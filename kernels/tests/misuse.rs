@@ -1,4 +1,5 @@
-//! What cannot run is refused before anything is written, and says why; and what a tape promises about its instructions.
+//! What cannot run is refused before anything is written, and says why; and what a tape promises about its
+//! instructions.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use stripmine_kernels::backend::tape::{Action, File, Operand, RegisterName};
@@ -32,7 +33,8 @@ fn ways() -> impl Iterator<Item = (Execution, InstructionSet)> {
         .flat_map(|execution| [InstructionSet::Scalar, BEST()].map(|set| (execution, set)))
 }
 
-/// Fx = x three elements back + x two ahead, Fy = 1, and a count: touches memory in every way that is checked.
+/// Fx = x three elements back + x two ahead, Fy = 1, and a count: touches memory in every way that is
+/// checked.
 #[derive(Clone, Copy)]
 struct Touch<const GROUPED: bool>;
 
@@ -99,7 +101,8 @@ fn a_program_with_nothing_wrong_runs() {
     }
 }
 
-/// An array bound to no slice is named with the element type asked for; another type's slice does not stand in.
+/// An array bound to no slice is named with the element type asked for; another type's slice does not stand
+/// in.
 #[test]
 fn an_unbound_array_is_named() {
     for (execution, set) in ways() {
@@ -135,7 +138,8 @@ fn writing_an_array_bound_for_reading_is_refused() {
     }
 }
 
-/// Shifts that reach before the first or behind the last element are refused, to the element, with the numbers.
+/// Shifts that reach before the first or behind the last element are refused, to the element, with the
+/// numbers.
 #[test]
 fn too_short_an_array_is_refused_to_the_element() {
     let range = |start: usize, end: usize, arrays: [usize; 3], way| {
@@ -298,7 +302,8 @@ unsafe impl Text for Through {
     }
 }
 
-/// What running `text` over all of `cell` leaves in Fx and Index, both of `length` elements, or the panic's message.
+/// What running `text` over all of `cell` leaves in Fx and Index, both of `length` elements, or the panic's
+/// message.
 fn through(
     text: Through,
     cell: &[u32],
@@ -336,7 +341,8 @@ fn an_index_vector_numbers_elements_from_one() {
     }
 }
 
-/// A wrong entry anywhere panics, naming the element (from 0) and how many there are; it never reads or writes beyond.
+/// A wrong entry anywhere panics, naming the element (from 0) and how many there are; it never reads or
+/// writes beyond.
 #[test]
 fn a_wrong_index_vector_panics_with_element_and_length() {
     for way in ways() {
@@ -359,7 +365,7 @@ fn a_wrong_index_vector_panics_with_element_and_length() {
 
 /// An array without elements has none to gather: an entry that numbers one panics, whatever the execution.
 #[test]
-#[ignore = "bug: backend/registers.rs: a gather from an empty array takes every entry for none; the tape panics"]
+#[ignore = "bug: backend/registers.rs: a gather from an empty array gives `elsewhere`; the tape panics"]
 fn gathering_from_an_empty_array_panics_in_every_execution() {
     for way in ways() {
         assert_eq!(through(Through::Gather, &[0, 0, 0], 0, way).unwrap().0, [-1.0; 3]);
@@ -368,7 +374,7 @@ fn gathering_from_an_empty_array_panics_in_every_execution() {
     }
 }
 
-// ---- tapes -------------------------------------------------------------------------------------------------------
+// ---- tapes ----------------------------------------------------------------------------------------------
 
 fn law<const FRICTION: bool, const EQUAL: bool>() -> Granular<FRICTION, EQUAL> {
     let contact = Contact {
@@ -424,8 +430,8 @@ fn result_file<L>(action: &Action<L>) -> Option<File> {
     }
 }
 
-/// Follows the registers through a tape: read only what was written, results apart from operands and read before they
-/// are overwritten, as many registers as the tape says.
+/// Follows the registers through a tape: read only what was written, results apart from operands and read
+/// before they are overwritten, as many registers as the tape says.
 fn registers_are_sound<L: Element>(name: &str, tape: &Tape<L>) {
     use std::collections::HashMap;
     let mut held: HashMap<RegisterName, bool> = HashMap::new();
@@ -453,7 +459,8 @@ fn registers_are_sound<L: Element>(name: &str, tape: &Tape<L>) {
     }
 }
 
-/// Sums the instructions' operations by section and compares with the tally; conversions are found independently.
+/// Sums the instructions' operations by section and compares with the tally; conversions are found
+/// independently.
 fn tally_is_the_sum_over_instructions<L: Element>(name: &str, tape: &Tape<L>) {
     let mut sections: Vec<(usize, OpCounts)> = vec![];
     for instruction in tape.instructions() {
@@ -484,7 +491,8 @@ fn tally_is_the_sum_over_instructions<L: Element>(name: &str, tape: &Tape<L>) {
     assert_eq!(total, executed as u64, "{name}");
 }
 
-/// One line an instruction, numbered, with its mnemonic and registers, and a comment where the section changes.
+/// One line an instruction, numbered, with its mnemonic and registers, and a comment where the section
+/// changes.
 fn listing_has_a_line_for_each_instruction<L: Element>(name: &str, tape: &Tape<L>) {
     let listing = tape.listing().to_string();
     let mut lines = listing.lines();
@@ -610,8 +618,8 @@ unsafe impl<L: Element> Text for Folded<L> {
     }
 }
 
-/// Arithmetic between scalar operands costs no instruction, is done in the lanes' precision, and gives what executing
-/// it gives.
+/// Arithmetic between scalar operands costs no instruction, is done in the lanes' precision, and gives what
+/// executing it gives.
 fn folding_costs_nothing<L: Precision>(expected: L) {
     let program = Program::new(Folded::<L>::default());
     let instructions = program.tape().instructions();

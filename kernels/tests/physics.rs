@@ -1,4 +1,5 @@
-//! What the contact law conserves, bounds and mirrors; and each of the source's four misprints failing a test of its own.
+//! What the contact law conserves, bounds and mirrors; and each of the source's four misprints failing a test
+//! of its own.
 
 mod support;
 
@@ -16,7 +17,7 @@ fn ways() -> [(Execution, InstructionSet); 2] {
     [InstructionSet::Scalar, InstructionSet::best()].map(|set| (Execution::Chained, set))
 }
 
-// ---- two discs and a law, without any lattice --------------------------------------------------------------------
+// ---- two discs and a law, without any lattice -----------------------------------------------------------
 
 /// Two discs that meet once, as plain numbers.
 struct Meeting {
@@ -151,9 +152,10 @@ fn contacts() -> impl Iterator<Item = Contact> {
     })
 }
 
-// ---- on the lattice ----------------------------------------------------------------------------------------------
+// ---- on the lattice -------------------------------------------------------------------------------------
 
-/// A pair on an 8×8 lattice, periodic both ways, somewhere within the side lengths; and whether a seam is between them.
+/// A pair on an 8×8 lattice, periodic both ways, somewhere within the side lengths; and whether a seam is
+/// between them.
 fn pair_on_the_lattice(
     contact: Contact,
     discs: [Placed; 2],
@@ -175,7 +177,8 @@ fn pair_on_the_lattice(
     ([on(0), on(1)], wrapped(0) || wrapped(1))
 }
 
-/// In cell-relative coordinates the two forces of a pair are each other's negatives to the bit, also across a seam.
+/// In cell-relative coordinates the two forces of a pair are each other's negatives to the bit, also across a
+/// seam.
 #[test]
 fn action_is_reaction_to_the_bit() {
     let (mut seams, mut inside, mut random) = (0, 0, Stream::new(1, Purpose::Test, 1));
@@ -232,7 +235,7 @@ fn the_total_force_of_a_system_is_zero() {
     }
 }
 
-// ---- the law -----------------------------------------------------------------------------------------------------
+// ---- the law --------------------------------------------------------------------------------------------
 
 /// d(L_orbital + L_spin)/dt = −ξ F_S with arms R, and 0 with arms R − ξ/2.
 #[test]
@@ -337,7 +340,8 @@ fn a_gear_pair_does_not_rub_and_equal_spins_do() {
     }
 }
 
-/// Discs that separate fast: clamped, the normal force is zero; unclamped, it pulls. Slow ones repel either way.
+/// Discs that separate fast: clamped, the normal force is zero; unclamped, it pulls. Slow ones repel either
+/// way.
 #[test]
 fn only_the_unclamped_law_pulls() {
     let mut pulled = 0;
@@ -380,7 +384,8 @@ fn a_fixed_disc_gives_the_effective_mass_of_the_other() {
     }
 }
 
-/// Two fixed discs in contact, as in a wall: what they do to each other moves nothing, so it must be a number.
+/// Two fixed discs in contact, as in a wall: what they do to each other moves nothing, so it must be a
+/// number.
 fn fixed_pair(cohesionless: bool) -> [[f64; 3]; 2] {
     let discs = touching().map(|disc| Placed { inverse_mass: 0.0, ..disc });
     meet(&varying::<true>(Contact { cohesionless, ..CONTACT }), discs)
@@ -394,14 +399,15 @@ fn two_fixed_discs_in_contact_feel_numbers() {
 
 /// Without the clamp too; an infinite force times the inverse mass 0 would make a wall's position no number.
 #[test]
-#[ignore = "bug: law/granular.rs: 1/(0 + 0) is infinite, and without the clamp so is the force between fixed discs"]
+#[ignore = "bug: law/granular.rs: 1/(0 + 0) is infinite, and unclamped so is the force between fixed discs"]
 fn two_fixed_discs_in_contact_feel_numbers_without_the_clamp() {
     assert!(fixed_pair(false).as_flattened().iter().all(|f| f.is_finite()), "{:?}", fixed_pair(false));
 }
 
-// ---- the law as printed ------------------------------------------------------------------------------------------
+// ---- the law as printed ---------------------------------------------------------------------------------
 
-/// The contact law with one of the source's equations as printed: 14, 15, 16 or 10 (for (10)–(11)); 0 is none.
+/// The contact law with one of the source's equations as printed: 14, 15, 16 or 10 (for (10)–(11)); 0 is
+/// none.
 #[derive(Clone)]
 struct Printed<const EQUATION: u32>(Contact);
 
@@ -560,8 +566,8 @@ fn energies<L: Law<2>>(law: &L, offset: f64, stiffness: Option<f64>) -> (f64, f6
     (before, kinetic(&after))
 }
 
-/// (14) as printed feeds energy in: a frictionless head-on collision ends faster than it began. Ours ends slower, and
-/// without damping as fast.
+/// (14) as printed feeds energy in: a frictionless head-on collision ends faster than it began. Ours ends
+/// slower, and without damping as fast.
 #[test]
 fn printed_14_makes_kinetic_energy_grow_in_a_head_on_collision() {
     let contact =
@@ -582,8 +588,8 @@ impl<const EQUATION: u32> From<Contact> for Printed<EQUATION> {
     }
 }
 
-/// (15) as printed bounds a force that is positive and lets a negative one grow: a sliding contact breaks the Coulomb
-/// bound for v_t > 0, keeps it for v_t < 0, and is not its own mirror image.
+/// (15) as printed bounds a force that is positive and lets a negative one grow: a sliding contact breaks the
+/// Coulomb bound for v_t > 0, keeps it for v_t < 0, and is not its own mirror image.
 #[test]
 fn printed_15_bounds_one_side_only() {
     let contact = Contact { shear_damping: 1000.0, cohesionless: false, ..CONTACT };
@@ -638,8 +644,8 @@ fn printed_16_makes_energy_grow_in_an_oblique_collision() {
     assert!(ours < 0.99 * before, "{ours}");
 }
 
-/// (10)–(11) as printed, with the tangent (n_y, −n_x), give the pair −(2(R_i + R_j) − ξ) F_S of angular momentum where
-/// the rule is −ξ F_S; a collision ends with another angular momentum than it began with.
+/// (10)–(11) as printed, with the tangent (n_y, −n_x), give the pair −(2(R_i + R_j) − ξ) F_S of angular
+/// momentum where the rule is −ξ F_S; a collision ends with another angular momentum than it began with.
 #[test]
 fn printed_10_and_11_break_the_rule_of_angular_momentum() {
     let contact = Contact { cohesionless: false, ..CONTACT };
