@@ -1,28 +1,80 @@
 //! Particles as a scene knows them, before a method lays them out for itself.
 
-/// Discs in the plane. All columns have one entry a disc.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Particles {
-    /// Centres (length).
-    pub position: Vec<[f64; 2]>,
-    /// Velocities (length/time).
-    pub velocity: Vec<[f64; 2]>,
-    /// Angular velocities, counter-clockwise (1/time).
-    pub omega: Vec<f64>,
-    /// Radii (length).
-    pub radius: Vec<f64>,
-    /// Masses (mass); infinite for a fixed disc.
-    pub mass: Vec<f64>,
+/// What moves a particle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Kind {
+    /// Forces and gravity.
+    #[default]
+    Grain,
+    /// Nothing, or the motion that the scene prescribes for its walls; of infinite mass in every contact.
+    Wall,
 }
 
+/// One disc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Particle {
+    /// A number of its own, which stays with it.
+    pub id: u32,
+    /// What moves it.
+    pub kind: Kind,
+    /// Centre (length).
+    pub position: [f64; 2],
+    /// Velocity (length/time).
+    pub velocity: [f64; 2],
+    /// Angle, counter-clockwise (radian).
+    pub angle: f64,
+    /// Angular velocity, counter-clockwise (1/time).
+    pub omega: f64,
+    /// Radius (length).
+    pub radius: f64,
+    /// Mass (mass); finite also for a wall disc, where it only describes the material.
+    pub mass: f64,
+}
+
+/// Discs in the plane: all grains first, then all wall discs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Particles(Vec<Particle>);
+
 impl Particles {
+    /// Puts grains before wall discs, otherwise in the order given.
+    pub fn new(mut discs: Vec<Particle>) -> Self {
+        discs.sort_by_key(|disc| disc.kind == Kind::Wall);
+        Particles(discs)
+    }
+
+    /// All discs.
+    pub fn all(&self) -> &[Particle] {
+        &self.0
+    }
+
+    /// All discs, to be changed in all but their kind.
+    pub fn all_mut(&mut self) -> &mut [Particle] {
+        &mut self.0
+    }
+
+    /// The discs that forces move.
+    pub fn grains(&self) -> &[Particle] {
+        &self.0[..self.grain_count()]
+    }
+
+    /// How many discs forces move.
+    pub fn grain_count(&self) -> usize {
+        self.0.partition_point(|disc| disc.kind == Kind::Grain)
+    }
+
     /// How many there are.
     pub fn len(&self) -> usize {
-        self.position.len()
+        self.0.len()
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.position.is_empty()
+        self.0.is_empty()
+    }
+
+    /// The smallest and the largest radius, wall discs included; none without discs.
+    pub fn radii(&self) -> Option<[f64; 2]> {
+        let radii = || self.0.iter().map(|disc| disc.radius);
+        Some([radii().reduce(f64::min)?, radii().reduce(f64::max)?])
     }
 }

@@ -1,6 +1,6 @@
 //! Initial states.
 
-use crate::particles::Particles;
+use crate::particles::{Kind, Particle, Particles};
 use stripmine_kernels::noise::{Purpose, Stream, normals};
 
 /// A periodic box filled with equal discs.
@@ -24,29 +24,33 @@ pub fn hexagonal(least: usize, packing_fraction: f64, kt: f64, seed: u64) -> Pac
     let rows = 2 * pairs;
     let columns = least.div_ceil(rows);
     let mut random = Stream::new(seed, Purpose::Placement, 0);
-    let mut particles = Particles::default();
+    let mut discs = Vec::new();
     for row in 0..rows {
         for column in 0..columns {
-            let id = particles.len() as u32;
+            let id = discs.len() as u32 + 1;
             let offset = 0.25 + 0.5 * (row % 2) as f64;
             let reach = 0.45 * (spacing - 1.0).max(0.0);
             let (length, angle) = (reach * random.uniform(), std::f64::consts::TAU * random.uniform());
-            particles.position.push([
-                (column as f64 + offset) * spacing + length * libm::cos(angle),
-                (row as f64 + 0.5) * row_height + length * libm::sin(angle),
-            ]);
-            particles.velocity.push(normals(seed, Purpose::Placement, id, 1).map(|v| v * kt.sqrt()));
+            discs.push(Particle {
+                id,
+                kind: Kind::Grain,
+                position: [
+                    (column as f64 + offset) * spacing + length * libm::cos(angle),
+                    (row as f64 + 0.5) * row_height + length * libm::sin(angle),
+                ],
+                velocity: normals(seed, Purpose::Placement, id, 1).map(|v| v * kt.sqrt()),
+                angle: 0.0,
+                omega: 0.0,
+                radius: 0.5,
+                mass: 1.0,
+            });
         }
     }
-    let n = particles.len();
     for axis in 0..2 {
-        let mean = particles.velocity.iter().map(|v| v[axis]).sum::<f64>() / n as f64;
-        particles.velocity.iter_mut().for_each(|v| v[axis] -= mean);
+        let mean = discs.iter().map(|disc| disc.velocity[axis]).sum::<f64>() / discs.len() as f64;
+        discs.iter_mut().for_each(|disc| disc.velocity[axis] -= mean);
     }
-    particles.omega = vec![0.0; n];
-    particles.radius = vec![0.5; n];
-    particles.mass = vec![1.0; n];
-    Packing { particles, sides: [columns as f64 * spacing, rows as f64 * row_height] }
+    Packing { particles: Particles::new(discs), sides: [columns as f64 * spacing, rows as f64 * row_height] }
 }
 
 #[cfg(test)]
@@ -60,7 +64,7 @@ mod tests {
             let n = packing.particles.len();
             let area = n as f64 * std::f64::consts::PI / 4.0;
             assert!((area / (packing.sides[0] * packing.sides[1]) - fraction).abs() < 1e-12);
-            let position = &packing.particles.position;
+            let position: Vec<_> = packing.particles.all().iter().map(|disc| disc.position).collect();
             for i in 0..n {
                 for j in 0..i {
                     let square: f64 = (0..2)
@@ -80,9 +84,9 @@ mod tests {
     fn velocities_are_thermal_and_carry_no_momentum() {
         let packing = hexagonal(20_000, 0.5, 0.01, 1);
         let n = packing.particles.len() as f64;
-        let momentum: f64 = packing.particles.velocity.iter().map(|v| v[0] + v[1]).sum();
-        let kt: f64 =
-            packing.particles.velocity.iter().map(|v| (v[0] * v[0] + v[1] * v[1]) / 2.0).sum::<f64>() / n;
+        let velocities = || packing.particles.all().iter().map(|disc| disc.velocity);
+        let momentum: f64 = velocities().map(|v| v[0] + v[1]).sum();
+        let kt = velocities().map(|v| (v[0] * v[0] + v[1] * v[1]) / 2.0).sum::<f64>() / n;
         assert!(momentum.abs() < 1e-9);
         assert!((kt / 0.01 - 1.0).abs() < 5.0 / n.sqrt());
     }

@@ -73,10 +73,11 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
         let mut state = Vec::new();
         for (freedom, row) in STATE.iter().enumerate().take(model.freedoms()) {
             for (k, &array) in row.iter().enumerate().take(model.values.count()) {
-                let column = (0..discs).map(|i| match (k, freedom) {
-                    (0, 0 | 1) => particles.position[i][freedom],
-                    (1, 0 | 1) => particles.velocity[i][freedom] * model.dt,
-                    (1, _) => particles.omega[i] * model.dt,
+                let column = particles.all().iter().map(|disc| match (k, freedom) {
+                    (0, 0 | 1) => disc.position[freedom],
+                    (1, 0 | 1) => disc.velocity[freedom] * model.dt,
+                    (0, _) => disc.angle,
+                    (1, _) => disc.omega * model.dt,
                     _ => 0.0,
                 });
                 state.push((array, convert(column.collect())));
@@ -85,12 +86,15 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
 
         let mut constant = vec![(Array::FarX, model.shape.far(model.frame))];
         if model.discs == Discs::Varying {
-            let inverse_mass: Vec<f64> = particles.mass.iter().map(|m| 1.0 / m).collect();
-            let inertia = particles.mass.iter().zip(&particles.radius).map(|(m, r)| 2.0 / (m * r * r));
+            let inverse_mass: Vec<f64> = particles.all().iter().map(|disc| 1.0 / disc.mass).collect();
+            let inertia = particles.all().iter().map(|disc| 2.0 / (disc.mass * disc.radius * disc.radius));
             state.push((Array::DiscInverseMass, convert(inverse_mass.clone())));
             state.push((Array::DiscInverseInertia, convert(inertia.collect())));
             constant.push((Array::DiscInverseMass, on_lattice(inverse_mass)));
-            constant.push((Array::DiscRadius, on_lattice(particles.radius.clone())));
+            constant.push((
+                Array::DiscRadius,
+                on_lattice(particles.all().iter().map(|disc| disc.radius).collect()),
+            ));
         }
         let images = model.shape.images();
         if model.coordinates == Coordinates::Absolute {
