@@ -44,6 +44,8 @@ fn dense<P: Precision>(cells: usize, friction: bool) -> (Model, Arrays<f64, P>) 
         friction,
         discs: Discs::Varying,
         values: GearValues::Four,
+        inertia_factor: 0.5,
+        watch: None,
         dt: 0.005,
         gravity: [0.0; 2],
     };

@@ -7,7 +7,9 @@ use crate::isa::{OpClass, OpCounts};
 /// The length of the vectors a program runs over, before a scene says how much that is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Length {
-    /// The discs: the source's NP.
+    /// The discs that move: the source's NP.
+    Grains,
+    /// The discs with those of the walls.
     Discs,
     /// The cells with the halo at the ends of each row: the source's LMAX and a little.
     SweptCells,
@@ -21,7 +23,8 @@ impl Length {
     /// The symbol in tables.
     pub const fn symbol(self) -> &'static str {
         match self {
-            Length::Discs => "NP",
+            Length::Grains => "NP",
+            Length::Discs => "NP + walls",
             Length::SweptCells => "LMAX + row ends",
             Length::PaddedCells => "LMAX + halo",
             Length::HaloCells => "halo",

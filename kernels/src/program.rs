@@ -3,6 +3,7 @@
 use crate::backend::{Block, Precision, Pulp, Registers, Scalar, Strip, Tape, Wide};
 use crate::isa::{Footprint, Memory, OpCounts, ProgramError, Text};
 use pulp::{Simd, WithSimd};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::marker::PhantomData;
 use std::ops::Range;
 
@@ -167,9 +168,65 @@ where
     }
 }
 
+impl<T: Text + Sync> Program<T>
+where
+    T::Lane: Precision,
+{
+    /// As [`Program::run`], on the threads of the current `rayon` pool: elements are cut into bands, which depend on
+    /// `range` alone. A program whose elements depend on each other (a scatter, a sum in groups) runs on one thread.
+    ///
+    /// # Errors
+    /// As [`Program::run`].
+    pub fn run_on_threads(
+        &self,
+        memory: &Memory<'_>,
+        range: Range<usize>,
+        execution: Execution,
+        set: InstructionSet,
+    ) -> Result<(), ProgramError> {
+        let alone = rayon::current_num_threads() == 1 || range.len() <= BAND;
+        if alone || execution == Execution::Eager || !self.footprint.is_elementwise() {
+            return self.run(memory, range, execution, set);
+        }
+        memory.admit(&self.footprint, &range)?;
+        let bands: Vec<Range<usize>> =
+            range.clone().step_by(BAND).map(|start| start..(start + BAND).min(range.end)).collect();
+        let shared = Shared(memory);
+        let counters = bands.into_par_iter().map(|band| {
+            // SAFETY: bands do not overlap, and the program writes only at the own place and reads at others only what
+            // it does not write.
+            let part = unsafe { shared.part() };
+            self.run(&part, band, execution, set).map(|()| part.counters())
+        });
+        let counters: Result<Vec<_>, _> = counters.collect();
+        counters?.into_iter().for_each(|more| memory.join(more));
+        Ok(())
+    }
+}
+
+/// Elements of a band: enough to be worth a thread's while.
+const BAND: usize = 256 * GROUP;
+
+/// A memory that several threads take their parts of.
+struct Shared<'r, 'a>(&'r Memory<'a>);
+
+// SAFETY: `part` copies the columns and touches no counter; what threads then do with them is the caller's promise.
+unsafe impl Sync for Shared<'_, '_> {}
+
+impl Shared<'_, '_> {
+    /// As [`Memory::part`].
+    ///
+    /// # Safety
+    /// As there.
+    unsafe fn part(&self) -> Memory<'_> {
+        // SAFETY: the caller's promise.
+        unsafe { self.0.part() }
+    }
+}
+
 /// A program whatever its text: what a method keeps a list of.
 pub trait Runnable: Send + Sync {
-    /// [`Program::run`].
+    /// [`Program::run_on_threads`].
     ///
     /// # Errors
     /// As there.
@@ -199,7 +256,7 @@ where
         execution: Execution,
         set: InstructionSet,
     ) -> Result<(), ProgramError> {
-        Program::run(self, memory, range, execution, set)
+        self.run_on_threads(memory, range, execution, set)
     }
 
     fn tally(&self) -> Vec<(&'static str, OpCounts)> {

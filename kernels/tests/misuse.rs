@@ -365,7 +365,6 @@ fn a_wrong_index_vector_panics_with_element_and_length() {
 
 /// An array without elements has none to gather: an entry that numbers one panics, whatever the execution.
 #[test]
-#[ignore = "bug: backend/registers.rs: a gather from an empty array gives `elsewhere`; the tape panics"]
 fn gathering_from_an_empty_array_panics_in_every_execution() {
     for way in ways() {
         assert_eq!(through(Through::Gather, &[0, 0, 0], 0, way).unwrap().0, [-1.0; 3]);

@@ -584,7 +584,6 @@ fn strays_at_periodic_sides(origin: impl Fn(&mut Stream) -> f64) -> Vec<String> 
 /// A disc within a rounding error of a periodic side belongs to the first or the last column, whatever the
 /// origin.
 #[test]
-#[ignore = "bug: sweep/lattice/cells.rs counts discs within a rounding error of a periodic side as strays"]
 fn no_disc_next_to_a_periodic_side_is_a_stray() {
     let found = strays_at_periodic_sides(|random| 20.0 * random.uniform() - 10.0);
     assert!(found.is_empty(), "{} strays of 1800, the first: {}", found.len(), found[0]);
@@ -599,7 +598,6 @@ fn no_disc_next_to_a_periodic_side_of_a_lattice_at_the_origin_is_a_stray() {
 
 /// A disc inside a closed lattice, however near its far side, is no stray.
 #[test]
-#[ignore = "bug: sweep/lattice/cells.rs: times the rounded 1/edge may be more than the number of cells"]
 fn no_disc_inside_a_closed_side_is_a_stray() {
     let case = Case { periodic: [false, false], ..Case::new(17, 6) };
     let frame = Frame { origin: [-3.0, 2.0], edge: [1.1, 1.25] };

@@ -1,3 +1,78 @@
 //! The methods: one folder or file a source.
 
+pub mod failure;
 pub mod lattice_md;
+pub mod timings;
+
+pub use failure::{Culprit, Failure};
+pub use timings::{Phase, Timings};
+
+use crate::particles::Particles;
+use stripmine_kernels::ledger::Ledger;
+
+/// One named column of a method's state, for a checkpoint.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StateColumn {
+    /// Double precision.
+    F64(Vec<f64>),
+    /// Single precision.
+    F32(Vec<f32>),
+}
+
+/// Contacts deeper than a scene calls reasonable, counted since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DeepContacts {
+    /// Discs in such a contact, summed over the steps.
+    pub disc_steps: u64,
+    /// The deepest penetration (a fraction of the sum of the radii).
+    pub deepest: f64,
+    /// The step of the deepest.
+    pub step: u64,
+}
+
+/// A method that steps particles. It never prints and never writes a file.
+pub trait Method {
+    /// Advances by one time step.
+    ///
+    /// # Errors
+    /// [`Failure`] says what broke, which particles, where, and what to do; the state is that of the failing step.
+    fn step(&mut self) -> Result<(), Failure>;
+
+    /// Steps done since the start of the scene.
+    fn steps(&self) -> u64;
+
+    /// Time since the start of the scene.
+    fn time(&self) -> f64;
+
+    /// The particles as they stand, positions inside the box.
+    fn particles(&self) -> Particles;
+
+    /// Force along x and y and torque on every particle, as of the last step.
+    fn forces(&self) -> Vec<[f64; 3]>;
+
+    /// Contacts beyond the scene's `max_penetration`.
+    fn deep_contacts(&self) -> DeepContacts;
+
+    /// Everything that the next step depends on, by name.
+    fn state(&self) -> Vec<(String, StateColumn)>;
+
+    /// Takes a state up again.
+    ///
+    /// # Errors
+    /// A sentence, if the columns are not those of this method and scene.
+    fn restore(
+        &mut self,
+        steps: u64,
+        deep: DeepContacts,
+        columns: Vec<(String, StateColumn)>,
+    ) -> Result<(), String>;
+
+    /// What a step executes.
+    fn ledger(&self) -> Ledger;
+
+    /// Seconds spent in each phase.
+    fn timings(&self) -> &Timings;
+
+    /// Forgets the seconds spent so far.
+    fn reset_timings(&mut self);
+}

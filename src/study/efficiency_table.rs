@@ -228,6 +228,8 @@ pub fn counting_model(cells: usize, choice: Choice) -> Result<Model, ShapeError>
             5 => GearValues::Five,
             _ => GearValues::Six,
         },
+        inertia_factor: 0.5,
+        watch: None,
         dt: 1e-4,
         gravity: [9.81, 0.0],
     })
@@ -251,7 +253,7 @@ pub fn step(question: &Question) -> Result<(Vec<StepProgram>, Lengths), Question
         occupancy,
         cause,
     })?;
-    let lengths = Lengths::new(&model, particles);
+    let lengths = Lengths::new(&model, particles, particles);
     Ok((programs::<f64, f64>(&model), lengths))
 }
 
@@ -292,7 +294,7 @@ pub fn efficiency_table(
         particles: lengths.discs,
         cells: lengths.cells,
         occupancy: lengths.discs as f64 / lengths.cells as f64,
-        lengths: [Length::Discs, Length::SweptCells, Length::PaddedCells, Length::HaloCells]
+        lengths: [Length::Grains, Length::Discs, Length::SweptCells, Length::PaddedCells, Length::HaloCells]
             .map(|length| (length.symbol(), n(length)))
             .to_vec(),
         choice: question.choice,

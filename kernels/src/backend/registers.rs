@@ -210,6 +210,8 @@ impl<R: Registers> Machine for Strip<'_, R> {
         // SAFETY: the spill has room for MAX_LANES >= LANES elements.
         unsafe { self.registers.store(spill.start(), elsewhere) };
         if column.len() == 0 {
+            // Nothing to read for "none" below; any other number is as wrong here as there.
+            (0..R::LANES).filter(|&lane| index.lane(lane) != 0).for_each(|_| _ = column.read(0));
             return elsewhere;
         }
         for lane in 0..R::LANES {
@@ -250,6 +252,9 @@ impl<R: Registers> Machine for Strip<'_, R> {
 
     #[inline(always)]
     fn count(self, counter: Counter, predicate: Self::P) {
+        if self.none(predicate) {
+            return; // What is counted is rare.
+        }
         let zero = self.uniform(0.0);
         let mut holding = 0;
         self.disperse(R::V::select(predicate, self.uniform(1.0), zero), |_, number| {

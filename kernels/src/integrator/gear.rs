@@ -3,7 +3,7 @@
 //! The state is a row of scaled derivatives q_k = (dt^k/k!) d^k r/dt^k for each degree of freedom: x, y and, with
 //! rotation, the angle.
 
-use crate::isa::{Array, Element, Machine, Slot, Text};
+use crate::isa::{Array, Counter, Element, Machine, Predicate, Slot, Text, Vector};
 use std::marker::PhantomData;
 
 /// The arrays of the scaled derivatives, a row for each degree of freedom.
@@ -51,7 +51,7 @@ pub const fn coefficients(values: usize, acceleration: Acceleration) -> [f64; 6]
 
 /// Taylor expansion of one row over a step: Pascal's triangle, by sums alone.
 #[inline(always)]
-fn advance<V: crate::isa::Vector, const VALUES: usize>(q: &mut [V; VALUES]) {
+fn advance<V: Vector, const VALUES: usize>(q: &mut [V; VALUES]) {
     for lowest in 0..VALUES - 1 {
         for k in (lowest..VALUES - 1).rev() {
             q[k] = q[k] + q[k + 1];
@@ -131,8 +131,12 @@ pub struct Corrector<S, P, const VALUES: usize, const FREEDOMS: usize> {
     coefficients: [f64; 6],
     inertia: Inertia,
     gravity: [f64; 2],
+    checked: bool,
     precisions: PhantomData<(S, P)>,
 }
+
+/// Counts discs whose correction is no finite number. Written by a [`Corrector`] that is [`checked`](Corrector::checked).
+pub const NOT_FINITE: Counter = Counter(3);
 
 impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Corrector<S, P, VALUES, FREEDOMS> {
     /// For steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
@@ -142,8 +146,15 @@ impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Correct
             coefficients: coefficients(VALUES, acceleration),
             inertia,
             gravity,
+            checked: false,
             precisions: PhantomData,
         }
+    }
+
+    /// The same program, which also counts the discs whose correction is no finite number in [`NOT_FINITE`].
+    #[must_use]
+    pub fn checked(self) -> Self {
+        Corrector { checked: true, ..self }
     }
 }
 
@@ -157,6 +168,7 @@ unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> 
     fn body<M: Machine<Lane = S>>(&self, m: M) {
         m.section("gather");
         let cell = m.load_index(Slot::new(Array::DiscCell));
+        let mut magnitude = m.uniform(0.0);
         for freedom in 0..FREEDOMS {
             m.section("gather");
             let force = m.gather(Slot::<P>::new(FORCE[freedom]), cell, m.uniform(0.0));
@@ -174,11 +186,18 @@ unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> 
             m.section("correction");
             let mut q = row::<S, M, VALUES>(m, freedom);
             let difference = acceleration * m.uniform(self.half_dt_squared) - q[2];
+            if self.checked {
+                magnitude = magnitude + difference.abs();
+            }
             for k in 0..VALUES {
                 let c = self.coefficients[k];
                 q[k] = q[k] + if c == 1.0 { difference } else { m.uniform(c) * difference };
                 m.store(Slot::<S>::new(STATE[freedom][k]), q[k]);
             }
+        }
+        if self.checked {
+            m.section("check");
+            m.count(NOT_FINITE, magnitude.less_than(m.uniform(f64::INFINITY)).not());
         }
     }
 }

@@ -13,8 +13,10 @@ pub struct Access {
     pub lowest: isize,
     /// Highest shift at which a strided access meets it.
     pub highest: isize,
-    /// Whether it is met at unit stride (an access through an index vector is checked element by element).
+    /// Whether it is met at unit stride.
     pub strided: bool,
+    /// Whether it is met through an index vector, which is checked element by element.
+    pub indexed: bool,
     /// Whether it is written.
     pub writes: bool,
 }
@@ -29,16 +31,34 @@ impl Footprint {
         &self.0
     }
 
+    /// Whether elements are independent: what is written is met only at the own place, so that parts of the elements may
+    /// run at once.
+    pub fn is_elementwise(&self) -> bool {
+        self.0
+            .iter()
+            .filter(|access| access.writes)
+            .all(|access| access.strided && !access.indexed && (access.lowest, access.highest) == (0, 0))
+    }
+
     pub(crate) fn record(&mut self, array: Array, element: &'static str, shift: Option<isize>, writes: bool) {
         let found = self.0.iter_mut().find(|access| access.array == array && access.element == element);
         let access = match found {
             Some(access) => access,
             None => {
-                self.0.push(Access { array, element, lowest: 0, highest: 0, strided: false, writes: false });
+                self.0.push(Access {
+                    array,
+                    element,
+                    lowest: 0,
+                    highest: 0,
+                    strided: false,
+                    indexed: false,
+                    writes: false,
+                });
                 self.0.last_mut().expect("just pushed")
             }
         };
         access.writes |= writes;
+        access.indexed |= shift.is_none();
         if let Some(shift) = shift {
             access.strided = true;
             access.lowest = access.lowest.min(shift);

@@ -187,6 +187,29 @@ impl<'a> Memory<'a> {
         self.counters[counter.0 as usize].get()
     }
 
+    /// The same arrays with counters of their own, for a part of the elements.
+    ///
+    /// # Safety
+    /// While both are used, no element is written through one and touched through the other.
+    pub(crate) unsafe fn part(&self) -> Memory<'_> {
+        Memory {
+            f64s: Columns(self.f64s.0),
+            f32s: Columns(self.f32s.0),
+            u32s: Columns(self.u32s.0),
+            counters: Default::default(),
+            borrow: PhantomData,
+        }
+    }
+
+    /// Adds the counters of a part.
+    pub(crate) fn join(&self, counters: [u64; COUNTERS]) {
+        self.counters.iter().zip(counters).for_each(|(cell, more)| cell.set(cell.get() + more));
+    }
+
+    pub(crate) fn counters(&self) -> [u64; COUNTERS] {
+        std::array::from_fn(|i| self.counters[i].get())
+    }
+
     #[inline(always)]
     pub(crate) fn count(&self, counter: Counter, more: u64) {
         let cell = &self.counters[counter.0 as usize];

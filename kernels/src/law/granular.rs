@@ -41,6 +41,9 @@ pub struct Disc {
 
 /// The law. Compiled four times a precision: with and without `FRICTION` (and with it rotation), for `EQUAL` and for
 /// varying discs; every other choice is a number or a branch that is the same for all pairs.
+///
+/// Two fixed discs (inverse mass 0) that touch have no effective mass: their own sums may be no numbers, and mean
+/// nothing anyway. No other disc's sums are touched by that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Granular<const FRICTION: bool, const EQUAL: bool> {
     /// The parameters.
@@ -117,7 +120,11 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
 
         env.section("contact"); // (7)
         let radius = self.radius(uniform, |field| env.partner(field, place));
-        let penetration = (own.radius + radius) - distance;
+        let reach = own.radius + radius;
+        let penetration = reach - distance;
+        if let Some(limit) = env.watched_penetration() {
+            env.watch(penetration - uniform(limit) * reach);
+        }
         let contact = zero.less_than(penetration);
         if env.none(contact) {
             return;

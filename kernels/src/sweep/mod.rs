@@ -1,3 +1,4 @@
 //! How a law meets its pairs.
 
 pub mod lattice;
+pub mod neighbor_list;

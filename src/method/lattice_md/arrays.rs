@@ -1,7 +1,7 @@
 //! The arrays a step works on.
 
 use super::{Discs, Model};
-use crate::particles::Particles;
+use crate::particles::{Kind, Particle, Particles};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::STATE;
@@ -12,7 +12,9 @@ use stripmine_kernels::sweep::lattice::Coordinates;
 /// How long the vectors of a step are for a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lengths {
-    /// NP.
+    /// NP: discs that move.
+    pub grains: usize,
+    /// Discs with those of the walls.
     pub discs: usize,
     /// LMAX: cells that discs may live in.
     pub cells: usize,
@@ -22,10 +24,11 @@ pub struct Lengths {
 }
 
 impl Lengths {
-    /// For `discs` discs on a model's lattice.
-    pub fn new(model: &Model, discs: usize) -> Self {
+    /// For `grains` and wall discs, `discs` together, on a model's lattice.
+    pub fn new(model: &Model, grains: usize, discs: usize) -> Self {
         let shape = &model.shape;
         Lengths {
+            grains,
             discs,
             cells: shape.cells(),
             swept: shape.swept(),
@@ -37,6 +40,7 @@ impl Lengths {
     /// The elements that a program of this length runs over.
     pub fn range(&self, length: Length) -> Range<usize> {
         match length {
+            Length::Grains => 0..self.grains,
             Length::Discs => 0..self.discs,
             Length::SweptCells => self.swept.clone(),
             Length::PaddedCells => 0..self.padded,
@@ -65,7 +69,7 @@ pub struct Arrays<S, P> {
 impl<S: Precision, P: Precision> Arrays<S, P> {
     /// Lays out `particles`; derivatives above the velocity start at zero.
     pub fn new(model: &Model, particles: &Particles) -> Self {
-        let lengths = Lengths::new(model, particles.len());
+        let lengths = Lengths::new(model, particles.grain_count(), particles.len());
         let (discs, padded) = (lengths.discs, lengths.padded);
         let convert = |values: Vec<f64>| -> Vec<S> { values.into_iter().map(S::from_f64).collect() };
         let on_lattice = |values: Vec<f64>| -> Vec<P> { values.into_iter().map(P::from_f64).collect() };
@@ -86,10 +90,20 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
 
         let mut constant = vec![(Array::FarX, model.shape.far(model.frame))];
         if model.discs == Discs::Varying {
-            let inverse_mass: Vec<f64> = particles.all().iter().map(|disc| 1.0 / disc.mass).collect();
-            let inertia = particles.all().iter().map(|disc| 2.0 / (disc.mass * disc.radius * disc.radius));
+            let of_grains = |inverse: fn(&Particle, f64) -> f64| -> Vec<f64> {
+                let value = |disc: &Particle| match disc.kind {
+                    Kind::Grain => inverse(disc, model.inertia_factor),
+                    Kind::Wall => 0.0,
+                };
+                particles.all().iter().map(value).collect()
+            };
+            let inverse_mass = of_grains(|disc, _| 1.0 / disc.mass);
             state.push((Array::DiscInverseMass, convert(inverse_mass.clone())));
-            state.push((Array::DiscInverseInertia, convert(inertia.collect())));
+            if model.friction {
+                let inertia =
+                    of_grains(|disc, factor| 1.0 / (factor * disc.mass * disc.radius * disc.radius));
+                state.push((Array::DiscInverseInertia, convert(inertia)));
+            }
             constant.push((Array::DiscInverseMass, on_lattice(inverse_mass)));
             constant.push((
                 Array::DiscRadius,
@@ -121,6 +135,21 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
         }
         if model.discs == Discs::Varying {
             columns(&[Array::Radius, Array::InverseMass], padded);
+        }
+        if model.watch.is_some() {
+            columns(&[Array::Excess], padded);
+            constant.push((Array::Interior, model.shape.interior()));
+        }
+        // The predictor hands on the grains' velocities; a wall's stay until the wall is moved.
+        let velocities: [(Array, fn(&Particle) -> f64); 3] = [
+            (Array::DiscVx, |disc| disc.velocity[0]),
+            (Array::DiscVy, |disc| disc.velocity[1]),
+            (Array::DiscOmega, |disc| disc.omega),
+        ];
+        for (array, velocity) in velocities {
+            if let Some((_, column)) = lattice.iter_mut().find(|(name, _)| *name == array) {
+                *column = particles.all().iter().map(|disc| P::from_f64(velocity(disc))).collect();
+            }
         }
 
         Arrays {
@@ -163,6 +192,36 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
     /// A column in state precision.
     pub fn state(&self, array: Array) -> Option<&[S]> {
         self.state.iter().find(|(name, _)| *name == array).map(|(_, column)| column.as_slice())
+    }
+
+    /// A column in state precision, to be changed.
+    pub fn state_mut(&mut self, array: Array) -> Option<&mut [S]> {
+        self.state.iter_mut().find(|(name, _)| *name == array).map(|(_, column)| column.as_mut_slice())
+    }
+
+    /// All columns in state precision.
+    pub fn states(&self) -> impl Iterator<Item = (Array, &[S])> {
+        self.state.iter().map(|(array, column)| (*array, column.as_slice()))
+    }
+
+    /// A column in force precision, to be changed.
+    pub fn lattice_mut(&mut self, array: Array) -> Option<&mut [P]> {
+        self.lattice.iter_mut().find(|(name, _)| *name == array).map(|(_, column)| column.as_mut_slice())
+    }
+
+    /// A column in force precision that stays as it is.
+    pub fn constant(&self, array: Array) -> Option<&[P]> {
+        self.constant.iter().find(|(name, _)| *name == array).map(|(_, column)| column.as_slice())
+    }
+
+    /// The cell of every disc, numbered from 1; 0 is none.
+    pub fn cell(&self) -> &[u32] {
+        &self.cell
+    }
+
+    /// The disc in every cell, numbered from 1; 0 is none.
+    pub fn index(&self) -> &[u32] {
+        &self.index
     }
 
     /// A column in force precision.

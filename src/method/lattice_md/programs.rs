@@ -1,15 +1,17 @@
 //! The programs of a step, compiled for what a model needs.
 
-use super::{Discs, GearValues, Model};
+use super::{Discs, GearValues, Lengths, Model};
+use std::marker::PhantomData;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::{Corrector, Predictor};
+use stripmine_kernels::isa::{Memory, ProgramError};
 use stripmine_kernels::law::granular::{Disc, Granular};
 use stripmine_kernels::law::{Field, Law};
 use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_kernels::sweep::lattice::cells::{Check, Clear, Enter, Images};
 use stripmine_kernels::sweep::lattice::forces::Forces;
 use stripmine_kernels::sweep::lattice::vectors::Spread;
-use stripmine_kernels::{Program, Runnable};
+use stripmine_kernels::{Execution, InstructionSet, Program, Runnable};
 
 macro_rules! define_parts {
     ($(($variant:ident, $name:literal, $doc:literal)),* $(,)?) => {
@@ -58,9 +60,9 @@ pub struct StepProgram {
 /// The programs of a step of `model`, with state of precision `S` and forces of precision `P`, in their order.
 pub fn programs<S: Precision, P: Precision>(model: &Model) -> Vec<StepProgram> {
     let step = |part, length, program| StepProgram { part, length, program };
-    let (forces, fields) = forces::<P>(model);
+    let (forces, fields) = with_law(model, LatticeSweep::<P>(model, PhantomData));
     let mut programs = vec![
-        step(Part::Predictor, Length::Discs, predictor::<S, P>(model)),
+        step(Part::Predictor, Length::Grains, predictor::<S, P>(model)),
         step(Part::Index, Length::PaddedCells, Box::new(Program::new(Clear))),
         step(
             Part::Index,
@@ -76,7 +78,7 @@ pub fn programs<S: Precision, P: Precision>(model: &Model) -> Vec<StepProgram> {
     programs.extend([
         step(Part::Lattice, Length::PaddedCells, Box::new(Program::new(spread))),
         step(Part::Forces, Length::SweptCells, forces),
-        step(Part::Corrector, Length::Discs, corrector::<S, P>(model)),
+        step(Part::Corrector, Length::Grains, corrector::<S, P>(model)),
     ]);
     programs
 }
@@ -90,25 +92,41 @@ pub fn ledger(programs: &[StepProgram]) -> Ledger {
     ledger
 }
 
-/// The law's program: the list of its compiled variants.
-fn forces<P: Precision>(model: &Model) -> (Box<dyn Runnable>, &'static [Field]) {
-    fn sweep<P: Precision, L: Law<2> + Send + Sync + 'static>(
-        law: L,
-        model: &Model,
-    ) -> (Box<dyn Runnable>, &'static [Field]) {
-        let fields = law.fields();
-        let Model { mask, shape, frame, coordinates, .. } = model;
-        let forces = Forces::<P, L, false>::new(law, mask, *shape, *frame, *coordinates);
-        (Box::new(Program::new(forces)), fields)
-    }
+/// What is done with the law that a model needs, whichever of its compiled variants that is.
+pub(super) trait WithLaw {
+    /// What comes of it.
+    type Output;
+    /// Does it.
+    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output;
+}
+
+/// The list of the law's compiled variants.
+pub(super) fn with_law<W: WithLaw>(model: &Model, task: W) -> W::Output {
     let contact = model.contact;
     // Not read where discs vary.
     let any = Disc { radius: f64::NAN, inverse_mass: f64::NAN };
     match (model.friction, model.discs) {
-        (true, Discs::Varying) => sweep::<P, _>(Granular::<true, false> { contact, disc: any }, model),
-        (true, Discs::Equal { disc, .. }) => sweep::<P, _>(Granular::<true, true> { contact, disc }, model),
-        (false, Discs::Varying) => sweep::<P, _>(Granular::<false, false> { contact, disc: any }, model),
-        (false, Discs::Equal { disc, .. }) => sweep::<P, _>(Granular::<false, true> { contact, disc }, model),
+        (true, Discs::Varying) => task.with(Granular::<true, false> { contact, disc: any }),
+        (true, Discs::Equal { disc, .. }) => task.with(Granular::<true, true> { contact, disc }),
+        (false, Discs::Varying) => task.with(Granular::<false, false> { contact, disc: any }),
+        (false, Discs::Equal { disc, .. }) => task.with(Granular::<false, true> { contact, disc }),
+    }
+}
+
+/// The lattice sweep of a law, and the quantities it asks for.
+struct LatticeSweep<'m, P>(&'m Model, PhantomData<P>);
+
+impl<P: Precision> WithLaw for LatticeSweep<'_, P> {
+    type Output = (Box<dyn Runnable>, &'static [Field]);
+
+    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
+        let Model { mask, shape, frame, coordinates, watch, .. } = self.0;
+        let fields = law.fields();
+        let mut forces = Forces::<P, L, false>::new(law, mask, *shape, *frame, *coordinates);
+        if let Some(watch) = watch {
+            forces = forces.watching(watch.max_penetration);
+        }
+        (Box::new(Program::new(forces)), fields)
     }
 }
 
@@ -142,7 +160,25 @@ fn corrector<S: Precision, P: Precision>(model: &Model) -> Box<dyn Runnable> {
         let Model { dt, gravity, .. } = *model;
         let corrector =
             Corrector::<S, P, VALUES, FREEDOMS>::new(dt, model.acceleration(), model.inertia(), gravity);
-        Box::new(Program::new(corrector))
+        Box::new(Program::new(if model.watch.is_some() { corrector.checked() } else { corrector }))
     }
     for_scheme!(model, scheme)
+}
+
+/// Runs the programs of some parts, in their order, on bound arrays.
+///
+/// # Errors
+/// [`ProgramError`] if the memory does not suit a program; nothing of that program was executed.
+pub fn execute(
+    programs: &[StepProgram],
+    parts: &[Part],
+    memory: &Memory<'_>,
+    lengths: &Lengths,
+    execution: Execution,
+    set: InstructionSet,
+) -> Result<(), ProgramError> {
+    for step in programs.iter().filter(|step| parts.contains(&step.part)) {
+        step.program.run(memory, lengths.range(step.length), execution, set)?;
+    }
+    Ok(())
 }

@@ -56,23 +56,24 @@ impl<S: Element, P: Element> Enter<S, P> {
         let on_lattice = Slot::<P>::new([Array::DiscX, Array::DiscY][axis]);
         let cells = [self.shape.columns(), self.shape.rows()][axis] as f64;
         let (origin, edge) = (self.frame.origin[axis], self.frame.edge[axis]);
-        let [low, zero] = [origin, 0.0].map(|value| m.uniform(value));
+        let low = m.uniform(origin);
+        let high = m.uniform(origin + cells * edge);
 
         let mut r = m.load(position);
         if self.shape.periodic()[axis] {
             m.section("wrap");
-            let [high, period] = [origin + cells * edge, cells * edge].map(|value| m.uniform(value));
+            let period = m.uniform(cells * edge);
             r = M::V::select(r.less_than(low), r + period, r);
-            r = M::V::select(high.less_equal(r), r - period, r);
+            // Rounded, a period below the far side may lie below the near one.
+            r = M::V::select(high.less_equal(r), (r - period).max(low), r);
             m.store(position, r);
         }
 
         m.section("cell");
+        let inside = low.less_equal(r).and(r.less_equal(high));
         let from_low = r - low;
-        let scaled = from_low * m.uniform(1.0 / edge);
-        // A position a rounding error below the far side, or wrapped onto it, belongs to the last cell.
-        let inside = zero.less_equal(scaled).and(scaled.less_equal(m.uniform(cells)));
-        let cell = scaled.truncate().min(m.uniform(cells - 1.0));
+        // A position on the far side, or a rounding error below it, belongs to the last cell.
+        let cell = (from_low * m.uniform(1.0 / edge)).truncate().min(m.uniform(cells - 1.0));
 
         if self.coordinates == Coordinates::CellRelative {
             m.section("coordinates");

@@ -3,7 +3,7 @@
 use super::shape::{Coordinates, Frame, LatticeShape};
 use super::vectors::arrays;
 use crate::GROUP;
-use crate::isa::{Array, Element, Machine, Slot, Text, Vector};
+use crate::isa::{Array, Counter, Element, Machine, Slot, Text, Vector};
 use crate::law::{Env, Field, Law, Sum};
 use crate::mask::Mask;
 use std::cell::Cell;
@@ -29,8 +29,12 @@ pub struct Forces<P, L, const HALF: bool> {
     law: L,
     places: Vec<Neighbour>,
     relative: bool,
+    watched: Option<f64>,
     precision: PhantomData<P>,
 }
+
+/// Counts cells with a contact deeper than watched. Written by [`Forces`] that [`watch`](Forces::watching).
+pub const DEEP: Counter = Counter(2);
 
 impl<P: Element, L: Law<2>, const HALF: bool> Forces<P, L, HALF> {
     /// The program for a law, a mask and a lattice.
@@ -48,7 +52,14 @@ impl<P: Element, L: Law<2>, const HALF: bool> Forces<P, L, HALF> {
             shift: shape.shift(offset),
             way: [f64::from(offset.columns) * frame.edge[0], f64::from(offset.rows) * frame.edge[1]],
         });
-        Forces { law, places: places.collect(), relative, precision: PhantomData }
+        Forces { law, places: places.collect(), relative, watched: None, precision: PhantomData }
+    }
+
+    /// The same program, which also counts the cells with a contact deeper than `penetration` (a fraction of the sum of
+    /// the radii) in [`DEEP`] and writes by how much to the array `excess`.
+    #[must_use]
+    pub fn watching(self, penetration: f64) -> Self {
+        Forces { watched: Some(penetration), ..self }
     }
 }
 
@@ -65,6 +76,8 @@ const fn sum_arrays(sum: Sum) -> (Array, Array) {
 struct Around<M: Machine, const HALF: bool> {
     machine: M,
     relative: bool,
+    watched: Option<f64>,
+    excess: Cell<M::V>,
     sums: [Cell<M::V>; Sum::ALL.len()],
 }
 
@@ -133,6 +146,16 @@ impl<M: Machine, const HALF: bool> Env<2> for &Around<M, HALF> {
     }
 
     #[inline(always)]
+    fn watched_penetration(self) -> Option<f64> {
+        self.watched
+    }
+
+    #[inline(always)]
+    fn watch(self, excess: M::V) {
+        self.excess.set(self.excess.get().max(excess));
+    }
+
+    #[inline(always)]
     fn section(self, name: &'static str) {
         self.machine.section(name);
     }
@@ -151,6 +174,8 @@ unsafe impl<P: Element, L: Law<2>, const HALF: bool> Text for Forces<P, L, HALF>
         let around = Around::<M, HALF> {
             machine: m,
             relative: self.relative,
+            watched: self.watched,
+            excess: Cell::new(zero),
             sums: [Cell::new(zero), Cell::new(zero), Cell::new(zero)],
         };
         let own = self.law.own(&around);
@@ -160,6 +185,14 @@ unsafe impl<P: Element, L: Law<2>, const HALF: bool> Text for Forces<P, L, HALF>
         m.section("sums");
         for &sum in self.law.sums() {
             m.store(Slot::<P>::new(sum_arrays(sum).0), around.sums[sum as usize].get());
+        }
+        if self.watched.is_some() {
+            m.section("watch");
+            // A halo cell has false neighbours across the ends of the rows.
+            let interior = zero.less_than(m.load(Slot::<P>::new(Array::Interior)));
+            let excess = M::V::select(interior, around.excess.get(), zero);
+            m.store(Slot::<P>::new(Array::Excess), excess);
+            m.count(DEEP, zero.less_than(excess));
         }
     }
 }

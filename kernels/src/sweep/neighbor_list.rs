@@ -1,0 +1,263 @@
+//! The scalar rival of the lattice: lists of near partners, walked one by one.
+//!
+//! Places are cells of the same lattice, so that a pair has the same image and the same displacement to the bit; and
+//! contacts are summed in the mask's order, so that the sums are those of the full lattice sweep.
+
+use crate::backend::Precision;
+use crate::law::{Env, Field, Law, Sum};
+use crate::mask::Mask;
+use crate::sweep::lattice::{Frame, LatticeShape};
+use std::cell::Cell;
+
+/// For each disc the discs near it, each pair in both lists.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Lists {
+    first: Vec<u32>,
+    partners: Vec<u32>,
+}
+
+impl Lists {
+    /// Lists of all pairs for which `near` holds, by trying every pair: O(N²), as in BP93.
+    pub fn by_all_pairs(discs: usize, near: impl Fn(usize, usize) -> bool) -> Lists {
+        Lists::collect(discs, |i, list| {
+            list.extend((0..discs).filter(|&j| j != i && near(i, j)).map(|j| j as u32))
+        })
+    }
+
+    /// Lists of the pairs for which `near` holds among the candidates of each disc.
+    pub fn by_candidates(
+        discs: usize,
+        candidates: impl Fn(usize, &mut dyn FnMut(u32)),
+        near: impl Fn(usize, usize) -> bool,
+    ) -> Lists {
+        Lists::collect(discs, |i, list| {
+            candidates(i, &mut |j| {
+                if j as usize != i && near(i, j as usize) {
+                    list.push(j);
+                }
+            });
+        })
+    }
+
+    fn collect(discs: usize, mut fill: impl FnMut(usize, &mut Vec<u32>)) -> Lists {
+        let mut lists = Lists { first: vec![0], partners: Vec::new() };
+        for i in 0..discs {
+            fill(i, &mut lists.partners);
+            lists.first.push(lists.partners.len() as u32);
+        }
+        lists
+    }
+
+    /// The discs near disc `i`.
+    pub fn of(&self, i: usize) -> &[u32] {
+        &self.partners[self.first[i] as usize..self.first[i + 1] as usize]
+    }
+
+    /// Entries of all lists: the candidates a step looks at.
+    pub fn entries(&self) -> usize {
+        self.partners.len()
+    }
+}
+
+/// The discs' quantities as the law wants them, one entry a disc; what a law does not ask for may be empty.
+#[derive(Clone, Copy)]
+pub struct Discs<'a, P> {
+    /// Positions, absolute or relative to the cell.
+    pub position: [&'a [P]; 2],
+    /// Velocities.
+    pub velocity: [&'a [P]; 2],
+    /// Angular velocities.
+    pub omega: &'a [P],
+    /// Radii.
+    pub radius: &'a [P],
+    /// Inverse masses.
+    pub inverse_mass: &'a [P],
+    /// Cells, numbered from 1 in the padded lattice.
+    pub cell: &'a [u32],
+}
+
+/// What a walk through the lists met.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Met {
+    /// Pairs the law was asked about, each from both sides.
+    pub pairs: u64,
+    /// The largest excess over the watched penetration (length), and where: disc and partner.
+    pub deepest: Option<(f64, usize, usize)>,
+}
+
+/// How cells of the lattice are seen from each other.
+#[derive(Clone, Debug)]
+pub struct Ways {
+    shape: LatticeShape,
+    half_width: isize,
+    /// Number of a place of the mask, by row and column from the lower left corner; none for the own cell.
+    place: Vec<Option<u16>>,
+    edge: [f64; 2],
+    relative: bool,
+}
+
+impl Ways {
+    /// For a full mask on a lattice, with positions relative to the cell or not.
+    pub fn new(shape: LatticeShape, frame: Frame, mask: &Mask, relative: bool) -> Ways {
+        let half_width = mask.half_width() as isize;
+        let side = 2 * half_width + 1;
+        let mut place = vec![None; (side * side) as usize];
+        for (number, offset) in mask.offsets().iter().enumerate() {
+            let at = (offset.rows as isize + half_width) * side + offset.columns as isize + half_width;
+            place[at as usize] = Some(number as u16);
+        }
+        Ways { shape, half_width, place, edge: frame.edge, relative }
+    }
+
+    /// Column and row of a cell numbered from 1 in the padded lattice.
+    fn column_and_row(&self, cell: u32) -> [isize; 2] {
+        let from_first = cell as isize - 1 - self.shape.position(0, 0) as isize;
+        let stride = self.shape.stride() as isize;
+        [from_first.rem_euclid(stride), from_first.div_euclid(stride)]
+    }
+
+    /// The place at which `there` is seen from `own`, with the way between their centres and the periods crossed.
+    fn place(&self, own: [isize; 2], there: [isize; 2]) -> Option<(u16, [f64; 2], [f64; 2])> {
+        let mut offset = [0; 2];
+        let mut periods = [0.0; 2];
+        for axis in 0..2 {
+            let cells = [self.shape.columns(), self.shape.rows()][axis] as isize;
+            offset[axis] = there[axis] - own[axis];
+            if self.shape.periodic()[axis] && offset[axis].abs() > self.half_width {
+                let crossed = if offset[axis] > 0 { -1 } else { 1 };
+                offset[axis] += crossed * cells;
+                periods[axis] = crossed as f64 * (cells as f64 * self.edge[axis]);
+            }
+            if offset[axis].abs() > self.half_width {
+                return None;
+            }
+        }
+        let side = 2 * self.half_width + 1;
+        let at = (offset[1] + self.half_width) * side + offset[0] + self.half_width;
+        let number = self.place[at as usize]?;
+        Some((number, [offset[0] as f64 * self.edge[0], offset[1] as f64 * self.edge[1]], periods))
+    }
+}
+
+/// A partner at its place.
+#[derive(Clone, Copy)]
+struct Partner<P> {
+    disc: usize,
+    place: u16,
+    displacement: [P; 2],
+}
+
+/// What the law sees: one disc and one partner at a time.
+struct OneByOne<'a, P> {
+    discs: Discs<'a, P>,
+    own: usize,
+    watched: Option<f64>,
+    excess: Cell<P>,
+    sums: [Cell<P>; Sum::ALL.len()],
+}
+
+impl<'a, P: Precision> OneByOne<'a, P> {
+    fn field(&self, field: Field, disc: usize) -> P {
+        let Discs { velocity, omega, radius, inverse_mass, .. } = self.discs;
+        match field {
+            Field::Vx => velocity[0][disc],
+            Field::Vy => velocity[1][disc],
+            Field::Omega => omega[disc],
+            Field::Radius => radius[disc],
+            Field::InverseMass => inverse_mass[disc],
+        }
+    }
+}
+
+impl<P: Precision> Env<2> for &OneByOne<'_, P> {
+    type V = P;
+    type Place = Partner<P>;
+    const BOTH_PARTNERS: bool = false;
+
+    fn own_position(self) -> [P; 2] {
+        self.discs.position.map(|axis| axis[self.own])
+    }
+    fn own(self, field: Field) -> P {
+        self.field(field, self.own)
+    }
+    fn displacement(self, _: [P; 2], place: Partner<P>) -> [P; 2] {
+        place.displacement
+    }
+    fn partner(self, field: Field, place: Partner<P>) -> P {
+        self.field(field, place.disc)
+    }
+    fn uniform(self, value: f64) -> P {
+        P::from_f64(value)
+    }
+    fn none(self, predicate: bool) -> bool {
+        !predicate
+    }
+    fn own_add(self, sum: Sum, value: P) {
+        let cell = &self.sums[sum as usize];
+        cell.set(cell.get() + value);
+    }
+    fn partner_sub(self, _: Sum, _: Partner<P>, _: P) {
+        unreachable!("every pair is met from both sides")
+    }
+    fn watched_penetration(self) -> Option<f64> {
+        self.watched
+    }
+    fn watch(self, excess: P) {
+        self.excess.set(self.excess.get().max(excess));
+    }
+    fn section(self, _: &'static str) {}
+}
+
+/// Walks the lists with a law; `write(disc, sums)` takes the sums (force along x, y, torque) of each of the first
+/// `grains` discs. Pairs farther apart than `reach` (length) are passed over without asking the law.
+pub fn walk<P: Precision, L: Law<2>>(
+    law: &L,
+    lists: &Lists,
+    ways: &Ways,
+    discs: Discs<'_, P>,
+    grains: usize,
+    reach: f64,
+    watched: Option<f64>,
+    mut write: impl FnMut(usize, [P; 3]),
+) -> Met {
+    let zero = P::from_f64(0.0);
+    let square = P::from_f64(reach * reach);
+    let places: Vec<[isize; 2]> = discs.cell.iter().map(|&cell| ways.column_and_row(cell)).collect();
+    let mut met = Met::default();
+    let mut contacts: Vec<Partner<P>> = Vec::new();
+    let mut env = OneByOne { discs, own: 0, watched, excess: Cell::new(zero), sums: Default::default() };
+    for i in 0..grains {
+        env.own = i;
+        env.sums = [Cell::new(zero), Cell::new(zero), Cell::new(zero)];
+        contacts.clear();
+        for &j in lists.of(i) {
+            let j = j as usize;
+            let Some((place, way, periods)) = ways.place(places[i], places[j]) else { continue };
+            let displacement = [0, 1].map(|axis| {
+                let (own, there) = (discs.position[axis][i], discs.position[axis][j]);
+                if ways.relative {
+                    (own - there) - P::from_f64(way[axis])
+                } else {
+                    // The lattice shifts the image, then subtracts.
+                    own - (there + P::from_f64(periods[axis]))
+                }
+            });
+            if displacement[0] * displacement[0] + displacement[1] * displacement[1] < square {
+                contacts.push(Partner { disc: j, place, displacement });
+            }
+        }
+        contacts.sort_unstable_by_key(|partner| partner.place);
+        let own = law.own(&env);
+        for partner in &contacts {
+            env.excess.set(zero);
+            law.pair(&env, *partner, &own);
+            let excess = env.excess.get();
+            if excess > zero && met.deepest.is_none_or(|(deepest, ..)| excess.to_f64() > deepest) {
+                met.deepest = Some((excess.to_f64(), i, partner.disc));
+            }
+        }
+        met.pairs += contacts.len() as u64;
+        write(i, [0, 1, 2].map(|sum| env.sums[sum].get()));
+    }
+    met
+}

@@ -1,0 +1,209 @@
+//! The rival: scalar neighbour lists on the lattice method's state.
+
+use super::programs::{WithLaw, with_law};
+use super::{Arrays, Discs, Model};
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::isa::Array;
+use stripmine_kernels::law::Law;
+use stripmine_kernels::sweep::lattice::Coordinates;
+use stripmine_kernels::sweep::neighbor_list::{self, Lists, Met, Ways, walk};
+
+/// How lists are made anew.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rebuild {
+    /// By trying every pair: O(N²), as in the source.
+    AllPairs,
+    /// By looking into the cells around each disc: O(N).
+    Cells,
+}
+
+/// The choices of the rival.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ListOptions {
+    /// How lists are made anew.
+    pub rebuild: Rebuild,
+    /// How much farther than contact a listed pair may be (length).
+    pub skin: f64,
+}
+
+/// The lists, and when they were made.
+#[derive(Clone, Debug)]
+pub(super) struct Rival<P> {
+    options: ListOptions,
+    ways: Ways,
+    lists: Lists,
+    /// Positions when the lists were made.
+    made_at: [Vec<f64>; 2],
+    /// Largest sum of radii.
+    reach: f64,
+    radius: Vec<P>,
+    pub(super) rebuilds: u64,
+    pub(super) met: Met,
+}
+
+impl<P: Precision> Rival<P> {
+    pub(super) fn new(model: &Model, options: ListOptions, largest_radius: f64) -> Self {
+        let relative = model.coordinates == Coordinates::CellRelative;
+        Rival {
+            options,
+            ways: Ways::new(model.shape, model.frame, &model.mask, relative),
+            lists: Lists::default(),
+            made_at: [vec![], vec![]],
+            reach: 2.0 * largest_radius,
+            radius: vec![],
+            rebuilds: 0,
+            met: Met::default(),
+        }
+    }
+
+    /// Candidates that a step looks at.
+    pub(super) fn candidates(&self) -> usize {
+        self.lists.entries()
+    }
+
+    /// Makes the lists anew if a pair that is not listed could have come into contact.
+    pub(super) fn keep<S: Precision>(&mut self, model: &Model, arrays: &Arrays<S, P>) {
+        let (Some(x), Some(y)) = (arrays.state(Array::X0), arrays.state(Array::Y0)) else { return };
+        let sides = [model.shape.columns(), model.shape.rows()];
+        let periods = [0, 1].map(|axis| match model.shape.periodic()[axis] {
+            true => sides[axis] as f64 * model.frame.edge[axis],
+            false => f64::INFINITY,
+        });
+        let nearest = |way: f64, period: f64| if way.abs() > 0.5 * period { way.abs() - period } else { way };
+        let square = |ax: f64, ay: f64, bx: f64, by: f64| {
+            let (dx, dy) = (nearest(ax - bx, periods[0]), nearest(ay - by, periods[1]));
+            dx * dx + dy * dy
+        };
+        let moved_too_far = 0.25 * self.options.skin * self.options.skin;
+        let fresh = self.made_at[0].len() == x.len()
+            && (0..x.len()).all(|i| {
+                square(x[i].to_f64(), y[i].to_f64(), self.made_at[0][i], self.made_at[1][i]) < moved_too_far
+            });
+        if fresh {
+            return;
+        }
+        self.rebuilds += 1;
+        self.made_at = [x, y].map(|axis| axis.iter().map(|r| r.to_f64()).collect());
+        let [x, y] = &self.made_at;
+        let limit = (self.reach + self.options.skin) * (self.reach + self.options.skin);
+        let near = |i: usize, j: usize| square(x[i], y[i], x[j], y[j]) < limit;
+        self.lists = match self.options.rebuild {
+            Rebuild::AllPairs => Lists::by_all_pairs(x.len(), near),
+            Rebuild::Cells => {
+                let bins = Bins::new(model, &self.made_at, limit.sqrt());
+                Lists::by_candidates(x.len(), |i, take| bins.around(x[i], y[i], take), near)
+            }
+        };
+    }
+
+    /// Forces of all grains, written where the corrector looks for them.
+    pub(super) fn forces<S: Precision>(&mut self, model: &Model, arrays: &mut Arrays<S, P>) {
+        if self.radius.is_empty()
+            && let Some(radius) = arrays.constant(Array::DiscRadius)
+        {
+            self.radius = radius.to_vec();
+        }
+        let mut sums = [vec![], vec![], vec![]];
+        for sum in &mut sums {
+            sum.resize(arrays.lengths().grains, P::from_f64(0.0));
+        }
+        self.met = with_law(model, Walk { rival: self, model, arrays, sums: &mut sums });
+        let cells: Vec<usize> =
+            arrays.cell()[..arrays.lengths().grains].iter().map(|&c| c as usize - 1).collect();
+        for (array, sum) in [Array::Fx, Array::Fy, Array::Torque].into_iter().zip(sums) {
+            if let Some(column) = arrays.lattice_mut(array) {
+                cells.iter().zip(sum).for_each(|(&cell, value)| column[cell] = value);
+            }
+        }
+    }
+}
+
+/// A walk through the lists with the law of the model.
+struct Walk<'a, S, P> {
+    rival: &'a Rival<P>,
+    model: &'a Model,
+    arrays: &'a Arrays<S, P>,
+    sums: &'a mut [Vec<P>; 3],
+}
+
+impl<S: Precision, P: Precision> WithLaw for Walk<'_, S, P> {
+    type Output = Met;
+
+    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Met {
+        let column = |array| self.arrays.lattice(array).unwrap_or(&[]);
+        let constant = |array| self.arrays.constant(array).unwrap_or(&[]);
+        let discs = neighbor_list::Discs {
+            position: [column(Array::DiscX), column(Array::DiscY)],
+            velocity: [column(Array::DiscVx), column(Array::DiscVy)],
+            omega: column(Array::DiscOmega),
+            radius: constant(Array::DiscRadius),
+            inverse_mass: constant(Array::DiscInverseMass),
+            cell: self.arrays.cell(),
+        };
+        debug_assert!(self.model.discs != Discs::Varying || discs.radius.len() == discs.cell.len());
+        let watched = self.model.watch.map(|watch| watch.max_penetration);
+        // A rounding error more than contact, so that the law decides on every contact.
+        let reach = self.rival.reach * (1.0 + 1e-6);
+        let grains = self.arrays.lengths().grains;
+        let Rival { lists, ways, .. } = self.rival;
+        walk(&law, lists, ways, discs, grains, reach, watched, |disc, sums| {
+            self.sums.iter_mut().zip(sums).for_each(|(column, sum)| column[disc] = sum);
+        })
+    }
+}
+
+/// Square bins at least as wide as the longest listed distance.
+struct Bins {
+    counts: [usize; 2],
+    origin: [f64; 2],
+    widths: [f64; 2],
+    periodic: [bool; 2],
+    discs: Vec<Vec<u32>>,
+}
+
+impl Bins {
+    fn new(model: &Model, positions: &[Vec<f64>; 2], reach: f64) -> Bins {
+        let cells = [model.shape.columns(), model.shape.rows()];
+        let sides = [0, 1].map(|axis| cells[axis] as f64 * model.frame.edge[axis]);
+        let counts = sides.map(|side| ((side / reach) as usize).max(1));
+        let widths = [sides[0] / counts[0] as f64, sides[1] / counts[1] as f64];
+        let discs = vec![Vec::new(); counts[0] * counts[1]];
+        let mut bins =
+            Bins { counts, origin: model.frame.origin, widths, periodic: model.shape.periodic(), discs };
+        for i in 0..positions[0].len() {
+            let [column, row] = bins.bin(positions[0][i], positions[1][i]);
+            bins.discs[row * counts[0] + column].push(i as u32);
+        }
+        bins
+    }
+
+    fn bin(&self, x: f64, y: f64) -> [usize; 2] {
+        // A cast saturates, so that a disc at a rim is in the bin at the rim.
+        let along = |r: f64, axis: usize| {
+            (((r - self.origin[axis]) / self.widths[axis]) as usize).min(self.counts[axis] - 1)
+        };
+        [along(x, 0), along(y, 1)]
+    }
+
+    /// The bins next to one along an axis, each once.
+    fn beside(&self, bin: usize, axis: usize) -> Vec<usize> {
+        let count = self.counts[axis] as isize;
+        let mut beside: Vec<usize> = (-1..=1)
+            .map(|step| bin as isize + step)
+            .filter(|next| self.periodic[axis] || (0..count).contains(next))
+            .map(|next| next.rem_euclid(count) as usize)
+            .collect();
+        beside.sort_unstable();
+        beside.dedup();
+        beside
+    }
+
+    fn around(&self, x: f64, y: f64, take: &mut dyn FnMut(u32)) {
+        let [column, row] = self.bin(x, y);
+        for row in self.beside(row, 1) {
+            for column in self.beside(column, 0) {
+                self.discs[row * self.counts[0] + column].iter().for_each(|&disc| take(disc));
+            }
+        }
+    }
+}

@@ -1,0 +1,320 @@
+//! A running simulation: one step after the other, every broken precondition found in its step.
+
+use super::neighbor_list::Rival;
+use super::watch::Names;
+use super::{Arrays, ListOptions, Model, Part, StepProgram, WallMotion, execute, ledger, programs};
+use crate::method::{DeepContacts, Failure, Method, Phase, StateColumn, Timings};
+use crate::particles::Particles;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::integrator::gear::{NOT_FINITE, STATE};
+use stripmine_kernels::isa::{Array, COUNTERS, Counter, ProgramError, Storage};
+use stripmine_kernels::ledger::Ledger;
+use stripmine_kernels::sweep::lattice::cells::{CONFLICTS, STRAYS};
+use stripmine_kernels::sweep::lattice::forces::DEEP;
+use stripmine_kernels::{Execution, InstructionSet};
+
+/// How contacts are found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Contacts {
+    /// On the lattice: the method of the source.
+    Lattice,
+    /// By neighbour lists: its rival.
+    Lists(ListOptions),
+}
+
+/// How the programs are run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Machine {
+    /// How instructions meet elements.
+    pub execution: Execution,
+    /// The instructions.
+    pub set: InstructionSet,
+}
+
+/// A simulation with state of precision `S` and forces of precision `P`.
+pub struct LatticeMd<S, P> {
+    model: Model,
+    machine: Machine,
+    programs: Vec<StepProgram>,
+    arrays: Arrays<S, P>,
+    start: Particles,
+    ids: Vec<u32>,
+    walls: WallMotion,
+    rival: Option<Rival<P>>,
+    steps: u64,
+    deep: DeepContacts,
+    timings: Timings,
+}
+
+impl<S: Precision, P: Precision> LatticeMd<S, P> {
+    /// Lays out `particles` and finds their first accelerations.
+    ///
+    /// # Errors
+    /// [`Failure`] if the start breaks a precondition already.
+    pub fn new(
+        model: Model,
+        contacts: Contacts,
+        machine: Machine,
+        walls: WallMotion,
+        particles: Particles,
+    ) -> Result<Self, Failure> {
+        let rival = match contacts {
+            Contacts::Lattice => None,
+            Contacts::Lists(options) => {
+                let largest = particles.radii().map_or(1.0, |[_, largest]| largest);
+                Some(Rival::new(&model, options, largest))
+            }
+        };
+        let mut simulation = LatticeMd {
+            programs: programs::<S, P>(&model),
+            arrays: Arrays::new(&model, &particles),
+            ids: particles.all().iter().map(|disc| disc.id).collect(),
+            start: particles,
+            model,
+            machine,
+            walls,
+            rival,
+            steps: 0,
+            deep: DeepContacts::default(),
+            timings: Timings::default(),
+        };
+        simulation.move_walls(0.0);
+        simulation.meet()?;
+        simulation.start_derivatives();
+        simulation.deep = DeepContacts::default();
+        simulation.timings = Timings::default();
+        Ok(simulation)
+    }
+
+    /// The second derivatives that belong to the first forces: a start from zero would spoil the order.
+    fn start_derivatives(&mut self) {
+        let Model { dt, gravity, inertia_factor, discs, .. } = self.model;
+        for (freedom, force) in [Array::Fx, Array::Fy, Array::Torque].into_iter().enumerate() {
+            let Some(column) = self.arrays.lattice(force) else { continue };
+            let acceleration: Vec<f64> = self
+                .start
+                .grains()
+                .iter()
+                .zip(self.arrays.cell())
+                .map(|(grain, &cell)| {
+                    let force = column[cell as usize - 1].to_f64();
+                    let inertia = match (discs, freedom) {
+                        (super::Discs::Equal { disc, .. }, 0 | 1) => 1.0 / disc.inverse_mass,
+                        (super::Discs::Equal { inverse_inertia, .. }, _) => 1.0 / inverse_inertia,
+                        (super::Discs::Varying, 0 | 1) => grain.mass,
+                        (super::Discs::Varying, _) => {
+                            inertia_factor * grain.mass * grain.radius * grain.radius
+                        }
+                    };
+                    force / inertia + gravity.get(freedom).copied().unwrap_or(0.0)
+                })
+                .collect();
+            if let Some(q2) = self.arrays.state_mut(STATE[freedom][2]) {
+                q2.iter_mut().zip(acceleration).for_each(|(q, a)| *q = S::from_f64(0.5 * dt * dt * a));
+            }
+        }
+    }
+
+    fn run(&mut self, parts: &[Part]) -> Result<[u64; COUNTERS], ProgramError> {
+        let (memory, lengths) = self.arrays.memory();
+        execute(&self.programs, parts, &memory, lengths, self.machine.execution, self.machine.set)?;
+        Ok([0, 1, 2, 3].map(|counter| memory.counted(Counter(counter))))
+    }
+
+    fn names(&self) -> Names<'_, S, P> {
+        Names { model: &self.model, arrays: &self.arrays, ids: &self.ids, step: self.steps }
+    }
+
+    fn move_walls(&mut self, time: f64) {
+        let (grains, discs) = (self.arrays.lengths().grains, self.arrays.lengths().discs);
+        if grains == discs || self.walls == WallMotion::Fixed {
+            return;
+        }
+        let (displacement, velocity) = self.walls.at(time);
+        for axis in 0..2 {
+            let start =
+                self.start.all()[grains..].iter().map(|disc| disc.position[axis] + displacement[axis]);
+            if let Some(position) = self.arrays.state_mut([Array::X0, Array::Y0][axis]) {
+                position[grains..].iter_mut().zip(start).for_each(|(to, from)| *to = S::from_f64(from));
+            }
+            if let Some(column) = self.arrays.lattice_mut([Array::DiscVx, Array::DiscVy][axis]) {
+                column[grains..].fill(P::from_f64(velocity[axis]));
+            }
+        }
+    }
+
+    /// Index, lattice vectors and forces of the positions as they stand.
+    fn meet(&mut self) -> Result<(), Failure> {
+        let mut timings = self.timings;
+        let counted = timings.time(Phase::Index, || self.run(&[Part::Index]))?;
+        let strays = counted[STRAYS.0 as usize];
+        if strays > 0
+            && let Some(failure) = self.names().stray(strays)
+        {
+            return Err(failure);
+        }
+        if counted[CONFLICTS.0 as usize] > 0
+            && self.rival.is_none()
+            && let Some(failure) = self.names().conflict()
+        {
+            return Err(failure);
+        }
+        let deepest = match self.rival.take() {
+            None => {
+                timings.time(Phase::Index, || self.run(&[Part::Lattice]))?;
+                let counted = timings.time(Phase::Forces, || self.run(&[Part::Forces]))?;
+                let deep = counted[DEEP.0 as usize];
+                self.deep.disc_steps += deep;
+                if deep > 0 { self.names().deepest_on_lattice() } else { None }
+            }
+            Some(mut rival) => {
+                timings.time(Phase::Index, || rival.keep(&self.model, &self.arrays));
+                timings.time(Phase::Forces, || rival.forces(&self.model, &mut self.arrays));
+                let deepest = rival.met.deepest;
+                self.rival = Some(rival);
+                deepest.map(|(_, i, j)| (self.names().penetration(i, j), i, j))
+            }
+        };
+        self.timings = timings;
+        if let (Some(deepest), Some(watch)) = (deepest, self.model.watch) {
+            if deepest.0 > self.deep.deepest {
+                self.deep.deepest = deepest.0;
+                self.deep.step = self.steps;
+            }
+            if deepest.0 > watch.stop_penetration {
+                return Err(self.names().too_deep(deepest, watch.stop_penetration));
+            }
+        }
+        Ok(())
+    }
+
+    /// Candidates of the neighbour lists and how often the lists were made anew; none on the lattice.
+    pub fn lists(&self) -> Option<(usize, u64)> {
+        self.rival.as_ref().map(|rival| (rival.candidates(), rival.rebuilds))
+    }
+
+    /// What is modelled.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The arrays as they stand.
+    pub fn arrays(&self) -> &Arrays<S, P> {
+        &self.arrays
+    }
+}
+
+impl<S: Precision, P: Precision> Method for LatticeMd<S, P> {
+    fn step(&mut self) -> Result<(), Failure> {
+        self.steps += 1;
+        let mut timings = self.timings;
+        timings.time(Phase::Predict, || self.run(&[Part::Predictor]))?;
+        self.timings = timings;
+        self.move_walls(self.time());
+        self.meet()?;
+        let mut timings = self.timings;
+        let counted = timings.time(Phase::Correct, || self.run(&[Part::Corrector]))?;
+        self.timings = timings;
+        let lost = counted[NOT_FINITE.0 as usize];
+        if lost > 0
+            && let Some(failure) = self.names().not_finite(lost)
+        {
+            return Err(failure);
+        }
+        Ok(())
+    }
+
+    fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    fn time(&self) -> f64 {
+        self.steps as f64 * self.model.dt
+    }
+
+    fn particles(&self) -> Particles {
+        let mut particles = self.start.clone();
+        let column = |array| self.arrays.state(array).unwrap_or(&[]);
+        let value = |array, disc: usize| column(array).get(disc).map_or(0.0, |x: &S| x.to_f64());
+        let (_, wall_velocity) = self.walls.at(self.time());
+        let grains = self.arrays.lengths().grains;
+        for (i, disc) in particles.all_mut().iter_mut().enumerate() {
+            disc.position = [value(Array::X0, i), value(Array::Y0, i)];
+            if i < grains {
+                disc.velocity = [Array::X1, Array::Y1].map(|array| value(array, i) / self.model.dt);
+                disc.omega = value(Array::Phi1, i) / self.model.dt;
+                disc.angle = value(Array::Phi0, i);
+            } else {
+                disc.velocity = wall_velocity;
+            }
+        }
+        particles
+    }
+
+    fn forces(&self) -> Vec<[f64; 3]> {
+        let on = |array, cell: u32| match (self.arrays.lattice(array), cell) {
+            (Some(column), 1..) => column[cell as usize - 1].to_f64(),
+            _ => 0.0,
+        };
+        let forces = |&cell: &u32| [Array::Fx, Array::Fy, Array::Torque].map(|array| on(array, cell));
+        self.arrays.cell().iter().map(forces).collect()
+    }
+
+    fn deep_contacts(&self) -> DeepContacts {
+        self.deep
+    }
+
+    fn state(&self) -> Vec<(String, StateColumn)> {
+        let column = |values: &[S]| match S::NAME {
+            f64::NAME => StateColumn::F64(values.iter().map(|x| x.to_f64()).collect()),
+            _ => StateColumn::F32(values.iter().map(|x| x.to_f64() as f32).collect()),
+        };
+        self.arrays.states().map(|(array, values)| (array.label().to_owned(), column(values))).collect()
+    }
+
+    fn restore(
+        &mut self,
+        steps: u64,
+        deep: DeepContacts,
+        columns: Vec<(String, StateColumn)>,
+    ) -> Result<(), String> {
+        let expected: Vec<Array> = self.arrays.states().map(|(array, _)| array).collect();
+        for array in expected {
+            let (_, column) = columns
+                .iter()
+                .find(|(name, _)| name == array.label())
+                .ok_or_else(|| format!("the column {} is missing", array.label()))?;
+            let values: Vec<S> = match column {
+                StateColumn::F64(values) if S::NAME == f64::NAME => {
+                    values.iter().map(|&x| S::from_f64(x)).collect()
+                }
+                StateColumn::F32(values) if S::NAME == f32::NAME => {
+                    values.iter().map(|&x| S::from_f64(x.into())).collect()
+                }
+                _ => return Err(format!("the column {} has another precision", array.label())),
+            };
+            let to = self.arrays.state_mut(array).unwrap_or(&mut []);
+            if to.len() != values.len() {
+                let label = array.label();
+                return Err(format!("the column {label} has {} entries, not {}", values.len(), to.len()));
+            }
+            to.copy_from_slice(&values);
+        }
+        self.steps = steps;
+        self.deep = deep;
+        self.move_walls(self.time());
+        Ok(())
+    }
+
+    fn ledger(&self) -> Ledger {
+        ledger(&self.programs)
+    }
+
+    fn timings(&self) -> &Timings {
+        &self.timings
+    }
+
+    fn reset_timings(&mut self) {
+        self.timings = Timings::default();
+    }
+}

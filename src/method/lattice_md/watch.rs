@@ -1,0 +1,122 @@
+//! Finding out who broke a precondition, once a counter says that somebody did.
+
+use super::{Arrays, Model};
+use crate::method::{Culprit, Failure};
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::isa::Array;
+
+/// What is needed to name a disc.
+pub(super) struct Names<'a, S, P> {
+    pub(super) model: &'a Model,
+    pub(super) arrays: &'a Arrays<S, P>,
+    pub(super) ids: &'a [u32],
+    pub(super) step: u64,
+}
+
+impl<S: Precision, P: Precision> Names<'_, S, P> {
+    fn position(&self, disc: usize) -> [f64; 2] {
+        [Array::X0, Array::Y0]
+            .map(|axis| self.arrays.state(axis).map_or(f64::NAN, |column| column[disc].to_f64()))
+    }
+
+    fn culprit(&self, disc: usize) -> Culprit {
+        let velocity = [Array::DiscVx, Array::DiscVy]
+            .map(|axis| self.arrays.lattice(axis).map_or(f64::NAN, |column| column[disc].to_f64()));
+        Culprit { id: self.ids[disc], position: self.position(disc), velocity }
+    }
+
+    /// From `from` to `to`, the shortest way.
+    fn way(&self, from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| {
+            let cells = [self.model.shape.columns(), self.model.shape.rows()][axis];
+            let period = cells as f64 * self.model.frame.edge[axis];
+            let way = to[axis] - from[axis];
+            if self.model.shape.periodic()[axis] { way - (way / period).round() * period } else { way }
+        })
+    }
+
+    fn distance(&self, first: usize, second: usize) -> f64 {
+        let [dx, dy] = self.way(self.position(first), self.position(second));
+        dx.hypot(dy)
+    }
+
+    /// Discs that belong to no cell.
+    pub(super) fn stray(&self, count: u64) -> Option<Failure> {
+        let strays = || (0..self.ids.len()).filter(|&disc| self.arrays.cell()[disc] == 0);
+        let lost = |disc: &usize| self.position(*disc).iter().any(|r| !r.is_finite());
+        if let Some(first) = strays().find(lost) {
+            let count = strays().filter(lost).count() as u64;
+            return Some(Failure::NotFinite { step: self.step, count, first: self.culprit(first) });
+        }
+        let first = self.culprit(strays().next()?);
+        Some(Failure::OutOfBox { step: self.step, count, first })
+    }
+
+    /// Discs whose cell another one took.
+    pub(super) fn conflict(&self) -> Option<Failure> {
+        let cell = self.arrays.cell();
+        let index = self.arrays.index();
+        let taken = |disc: &usize| cell[*disc] != 0 && index[cell[*disc] as usize - 1] != *disc as u32 + 1;
+        let first = (0..self.ids.len()).find(taken)?;
+        let second = index[cell[first] as usize - 1] as usize - 1;
+        let distance = self.distance(first, second);
+        let (first, second) = (self.culprit(first), self.culprit(second));
+        Some(Failure::Conflict { step: self.step, first, second, distance })
+    }
+
+    /// Discs whose correction was no finite number.
+    pub(super) fn not_finite(&self, count: u64) -> Option<Failure> {
+        let disc = (0..self.ids.len()).find(|&disc| {
+            let moved =
+                [Array::X2, Array::Y2, Array::Phi2].into_iter().filter_map(|array| self.arrays.state(array));
+            moved.into_iter().any(|column| !column[disc].to_f64().is_finite())
+        })?;
+        Some(Failure::NotFinite { step: self.step, count, first: self.culprit(disc) })
+    }
+
+    fn radius(&self, disc: usize) -> f64 {
+        match self.model.discs {
+            super::Discs::Equal { disc, .. } => disc.radius,
+            super::Discs::Varying => {
+                self.arrays.constant(Array::DiscRadius).map_or(f64::NAN, |radius| radius[disc].to_f64())
+            }
+        }
+    }
+
+    /// Penetration of two discs, as a fraction of the sum of their radii.
+    pub(super) fn penetration(&self, first: usize, second: usize) -> f64 {
+        let reach = self.radius(first) + self.radius(second);
+        1.0 - self.distance(first, second) / reach
+    }
+
+    /// The deepest contact of the lattice: penetration and the two discs. Looks only around the cells that the sweep
+    /// marked.
+    pub(super) fn deepest_on_lattice(&self) -> Option<(f64, usize, usize)> {
+        let excess = self.arrays.lattice(Array::Excess)?;
+        let index = self.arrays.index();
+        let mut deepest: Option<(f64, usize, usize)> = None;
+        for position in self.model.shape.swept() {
+            if index[position] == 0 || excess[position].to_f64() <= 0.0 {
+                continue;
+            }
+            let own = index[position] as usize - 1;
+            for &offset in self.model.mask.offsets() {
+                let there = index[position.wrapping_add_signed(self.model.shape.shift(offset))];
+                if there == 0 || there as usize - 1 == own {
+                    continue;
+                }
+                let penetration = self.penetration(own, there as usize - 1);
+                if deepest.is_none_or(|(deepest, ..)| penetration > deepest) {
+                    deepest = Some((penetration, own, there as usize - 1));
+                }
+            }
+        }
+        deepest
+    }
+
+    /// The failure of a contact that is too deep.
+    pub(super) fn too_deep(&self, (penetration, first, second): (f64, usize, usize), limit: f64) -> Failure {
+        let (first, second) = (self.culprit(first), self.culprit(second));
+        Failure::TooDeep { step: self.step, first, second, penetration, limit }
+    }
+}

@@ -1,0 +1,167 @@
+//! What can be wrong with a scene, and where.
+
+use serde::Serialize;
+
+/// A place in a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct Place {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+}
+
+/// What kind of mistake it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Reason {
+    /// The scene cannot be found or read.
+    Unreadable,
+    /// Not TOML.
+    Syntax,
+    /// A format version that this program does not read.
+    Format,
+    /// No such section or key.
+    Unknown,
+    /// A value of the wrong type, or a word that is not among the choices.
+    Type,
+    /// A number out of its range.
+    Range,
+    /// A key that must be given is not.
+    Missing,
+    /// A key that means nothing beside the other choices of the scene.
+    Unused,
+    /// Keys that cannot hold together.
+    Contradiction,
+    /// An override that is no `section.key=value`.
+    Override,
+    /// A file that the scene names cannot be read, or its content is wrong.
+    StartFile,
+    /// More discs than random placement finds room for.
+    Placement,
+    /// Discs that overlap at the start deeper than the scene allows.
+    Overlap,
+    /// A disc outside the domain.
+    Outside,
+    /// No lattice serves the discs.
+    Geometry,
+    /// A time step at which the integrator is unstable.
+    Stability,
+}
+
+/// A mistake of a scene.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
+#[error("{}", paragraph(self))]
+pub struct SceneError {
+    /// The file, the preset, or the option of the command line.
+    pub file: String,
+    /// Where in the file; nothing where no single place is wrong.
+    pub place: Option<Place>,
+    /// The kind of mistake.
+    pub reason: Reason,
+    /// What is wrong, with the numbers.
+    pub message: String,
+    /// What should stand there.
+    pub expected: Option<String>,
+    /// What to do about it.
+    pub suggestion: Option<String>,
+}
+
+fn paragraph(error: &SceneError) -> String {
+    let mut text = error.file.clone();
+    if let Some(Place { line, column }) = error.place {
+        text.push_str(&format!(":{line}:{column}"));
+    }
+    text.push_str(&format!(": {}", error.message));
+    for (what, words) in [("expected", &error.expected), ("help", &error.suggestion)] {
+        if let Some(words) = words {
+            text.push_str(&format!("\n  {what}: {words}"));
+        }
+    }
+    text
+}
+
+impl SceneError {
+    /// The same, with what should stand there.
+    #[must_use]
+    pub fn expecting(self, expected: impl Into<String>) -> Self {
+        SceneError { expected: Some(expected.into()), ..self }
+    }
+
+    /// The same, with what to do about it.
+    #[must_use]
+    pub fn advising(self, suggestion: impl Into<String>) -> Self {
+        SceneError { suggestion: Some(suggestion.into()), ..self }
+    }
+}
+
+/// Every mistake found in a scene, in the order of their places; at least one.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
+#[error("{}", paragraphs(.0))]
+#[serde(transparent)]
+pub struct SceneErrors(pub Vec<SceneError>);
+
+impl SceneErrors {
+    /// Nothing wrong, or all mistakes in the order of their places.
+    ///
+    /// # Errors
+    /// If there is any mistake.
+    pub(super) fn none_of(mut errors: Vec<SceneError>) -> Result<(), SceneErrors> {
+        if errors.is_empty() {
+            return Ok(());
+        }
+        errors.sort_by_key(|error| error.place.is_none());
+        errors.sort_by_key(|error| error.place);
+        // Those without a place last.
+        let placeless = errors.partition_point(|error| error.place.is_none());
+        errors.rotate_left(placeless);
+        Err(SceneErrors(errors))
+    }
+}
+
+impl From<SceneError> for SceneErrors {
+    fn from(error: SceneError) -> Self {
+        SceneErrors(vec![error])
+    }
+}
+
+fn paragraphs(errors: &[SceneError]) -> String {
+    let all: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    match all.len() {
+        1 => all.concat(),
+        count => format!("{count} mistakes in the scene\n\n{}\n", all.join("\n\n")),
+    }
+}
+
+/// Something that a scene may do but that seldom ends well.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
+#[error("{key}: {message}\n  help: {suggestion}")]
+pub struct Warning {
+    /// The key that decides it.
+    pub key: String,
+    /// What was found, with the numbers.
+    pub message: String,
+    /// What to do about it.
+    pub suggestion: String,
+}
+
+/// Where a value comes from, to be said in an error.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Spot {
+    pub(super) file: String,
+    pub(super) place: Option<Place>,
+}
+
+impl Spot {
+    pub(super) fn error(&self, reason: Reason, message: impl Into<String>) -> SceneError {
+        SceneError {
+            file: self.file.clone(),
+            place: self.place,
+            reason,
+            message: message.into(),
+            expected: None,
+            suggestion: None,
+        }
+    }
+}

@@ -1,0 +1,354 @@
+//! What a key is: its name, type, range, unit, default and documentation.
+
+use super::error::Reason;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeInteger, DeValue};
+
+/// The value of a key, read and in range.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(f64),
+    /// A whole number.
+    Whole(u64),
+    /// Yes or no.
+    Switch(bool),
+    /// One of the words to choose from, or free text.
+    Word(String),
+    /// A vector.
+    Pair([f64; 2]),
+    /// Yes or no for each axis.
+    Switches([bool; 2]),
+    /// A list of vectors.
+    Pairs(Vec<[f64; 2]>),
+    /// A list of numbers.
+    Numbers(Vec<f64>),
+}
+
+impl Value {
+    /// As TOML; numbers in shortest round-trip form.
+    pub fn to_toml(&self) -> String {
+        let list = |items: Vec<String>| format!("[{}]", items.join(", "));
+        let pair = |pair: &[f64; 2]| format!("[{:?}, {:?}]", pair[0], pair[1]);
+        match self {
+            Value::Number(value) => format!("{value:?}"),
+            Value::Whole(value) => value.to_string(),
+            Value::Switch(value) => value.to_string(),
+            Value::Word(word) => toml::Value::String(word.clone()).to_string(),
+            Value::Pair(value) => pair(value),
+            Value::Switches([x, y]) => format!("[{x}, {y}]"),
+            Value::Pairs(values) => list(values.iter().map(pair).collect()),
+            Value::Numbers(values) => list(values.iter().map(|value| format!("{value:?}")).collect()),
+        }
+    }
+}
+
+/// The range of a number; every number must be finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bounds {
+    /// Any finite number.
+    Finite,
+    /// Above zero.
+    Positive,
+    /// Zero or more.
+    NonNegative,
+    /// Above zero and below the bound.
+    Within(f64),
+    /// Zero or more, below the bound.
+    UpTo(f64),
+}
+
+impl Bounds {
+    /// Whether a number is in the range.
+    pub fn admit(self, value: f64) -> bool {
+        value.is_finite()
+            && match self {
+                Bounds::Finite => true,
+                Bounds::Positive => value > 0.0,
+                Bounds::NonNegative => value >= 0.0,
+                Bounds::Within(bound) => 0.0 < value && value < bound,
+                Bounds::UpTo(bound) => (0.0..bound).contains(&value),
+            }
+    }
+
+    fn words(self) -> String {
+        match self {
+            Bounds::Finite => "finite".to_owned(),
+            Bounds::Positive => "above 0".to_owned(),
+            Bounds::NonNegative => "0 or more".to_owned(),
+            Bounds::Within(bound) => format!("above 0 and below {bound}"),
+            Bounds::UpTo(bound) => format!("0 or more and below {bound}"),
+        }
+    }
+}
+
+/// The type of a key's value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// A number.
+    Number(Bounds),
+    /// A whole number of at least the first and at most the second bound.
+    Whole(u64, u64),
+    /// One of some whole numbers.
+    OneOf(&'static [u64]),
+    /// `true` or `false`.
+    Switch,
+    /// One of some words; `word:N` stands for the word, a colon and a whole number of at least 1.
+    Choice(&'static [&'static str]),
+    /// Text that is not empty, of one line.
+    Text,
+    /// `[x, y]`, both in the range.
+    Pair(Bounds),
+    /// `[x, y]`, each `true` or `false`.
+    Switches,
+    /// `[[x, y], …]`.
+    Pairs,
+    /// `[a, b, …]`, all in the range.
+    Numbers(Bounds),
+}
+
+/// Why a value cannot be read, and where in the text it stands.
+pub(super) struct Fault {
+    pub(super) span: Range<usize>,
+    pub(super) reason: Reason,
+    pub(super) found: String,
+    pub(super) nearest: Option<&'static str>,
+}
+
+impl Fault {
+    fn new(value: &Spanned<DeValue<'_>>, reason: Reason, found: impl Into<String>) -> Self {
+        Fault { span: value.span(), reason, found: found.into(), nearest: None }
+    }
+}
+
+type Read<T> = Result<T, Vec<Fault>>;
+
+impl Kind {
+    /// What is asked for, in words.
+    pub fn words(self) -> String {
+        let joined = |words: Vec<String>| match words.split_last() {
+            Some((last, [])) => last.clone(),
+            Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
+            None => String::new(),
+        };
+        match self {
+            Kind::Number(bounds) => format!("a number, {}", bounds.words()),
+            Kind::Whole(least, u64::MAX) => format!("a whole number, {least} or more"),
+            Kind::Whole(least, most) => format!("a whole number, {least} to {most}"),
+            Kind::OneOf(values) => joined(values.iter().map(ToString::to_string).collect()),
+            Kind::Switch => "true or false".to_owned(),
+            Kind::Choice(words) => joined(words.iter().map(|word| format!("\"{word}\"")).collect()),
+            Kind::Text => "text in quotes, one line".to_owned(),
+            Kind::Pair(bounds) => format!("[x, y], two numbers, {}", bounds.words()),
+            Kind::Switches => "[x, y], each true or false".to_owned(),
+            Kind::Pairs => "[[x, y], …], finite numbers".to_owned(),
+            Kind::Numbers(bounds) => format!("[a, b, …], numbers, {}", bounds.words()),
+        }
+    }
+
+    /// Reads a value, with every fault of it.
+    pub(super) fn read(self, value: &Spanned<DeValue<'_>>) -> Read<Value> {
+        Ok(match self {
+            Kind::Number(bounds) => Value::Number(number(value, bounds)?),
+            Kind::Whole(least, most) => Value::Whole(whole(value, |count| (least..=most).contains(&count))?),
+            Kind::OneOf(values) => Value::Whole(whole(value, |count| values.contains(&count))?),
+            Kind::Switch => Value::Switch(switch(value)?),
+            Kind::Choice(words) => Value::Word(choice(value, words)?),
+            Kind::Text => Value::Word(text(value)?),
+            Kind::Pair(bounds) => Value::Pair(pair(value, |item| number(item, bounds))?),
+            Kind::Switches => Value::Switches(pair(value, switch)?),
+            Kind::Pairs => {
+                Value::Pairs(list(value, |item| pair(item, |item| number(item, Bounds::Finite)))?)
+            }
+            Kind::Numbers(bounds) => Value::Numbers(list(value, |item| number(item, bounds))?),
+        })
+    }
+}
+
+/// What stands there, in words: a value where it is short.
+fn found(value: &DeValue<'_>) -> String {
+    let short = |text: &str| text.chars().take(40).collect::<String>();
+    match value {
+        DeValue::String(text) => format!("the text \"{}\"", short(text).escape_debug()),
+        DeValue::Integer(number) => format!("the number {}", short(number.as_str())),
+        DeValue::Float(number) => format!("the number {}", short(number.as_str())),
+        DeValue::Boolean(value) => value.to_string(),
+        DeValue::Datetime(_) => "a date".to_owned(),
+        DeValue::Array(items) => match items.len() {
+            1 => "a list of 1 item".to_owned(),
+            count => format!("a list of {count} items"),
+        },
+        DeValue::Table(_) => "a table".to_owned(),
+    }
+}
+
+fn wrong_type<T>(value: &Spanned<DeValue<'_>>) -> Read<T> {
+    Err(vec![Fault::new(value, Reason::Type, found(value.get_ref()))])
+}
+
+fn out_of_range<T>(value: &Spanned<DeValue<'_>>) -> Read<T> {
+    Err(vec![Fault::new(value, Reason::Range, found(value.get_ref()))])
+}
+
+fn magnitude(integer: &DeInteger<'_>) -> Option<f64> {
+    match integer.radix() {
+        10 => integer.as_str().parse().ok(),
+        radix => u64::from_str_radix(integer.as_str(), radix).ok().map(|value| value as f64),
+    }
+}
+
+fn number(value: &Spanned<DeValue<'_>>, bounds: Bounds) -> Read<f64> {
+    let number = match value.get_ref() {
+        DeValue::Integer(integer) => magnitude(integer),
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        _ => return wrong_type(value),
+    };
+    match number {
+        // No negative zero: what is written must come back equal.
+        Some(number) if bounds.admit(number) => Ok(number + 0.0),
+        _ => out_of_range(value),
+    }
+}
+
+fn whole(value: &Spanned<DeValue<'_>>, admit: impl Fn(u64) -> bool) -> Read<u64> {
+    let whole = match value.get_ref() {
+        DeValue::Integer(integer) => {
+            let digits = integer.as_str().trim_start_matches('+');
+            u64::from_str_radix(digits, integer.radix()).ok()
+        }
+        // 1e6 is a way to write a count.
+        DeValue::Float(float) => match float.as_str().parse::<f64>() {
+            Ok(number) if (0.0..=2f64.powi(53)).contains(&number) && number.fract() == 0.0 => {
+                Some(number as u64)
+            }
+            _ => None,
+        },
+        _ => return wrong_type(value),
+    };
+    match whole {
+        Some(count) if admit(count) => Ok(count),
+        _ => out_of_range(value),
+    }
+}
+
+fn switch(value: &Spanned<DeValue<'_>>) -> Read<bool> {
+    value.get_ref().as_bool().map_or_else(|| wrong_type(value), Ok)
+}
+
+fn text(value: &Spanned<DeValue<'_>>) -> Read<String> {
+    match value.get_ref().as_str() {
+        Some(text) if text.trim().is_empty() || text.chars().any(char::is_control) => out_of_range(value),
+        Some(text) => Ok(text.to_owned()),
+        None => wrong_type(value),
+    }
+}
+
+fn choice(value: &Spanned<DeValue<'_>>, words: &'static [&'static str]) -> Read<String> {
+    let Some(text) = value.get_ref().as_str() else { return wrong_type(value) };
+    let matches = |word: &&str| match word.strip_suffix("N") {
+        Some(stem) if stem.ends_with(':') => {
+            text.strip_prefix(stem).is_some_and(|count| matches!(count.parse::<u32>(), Ok(1..)))
+        }
+        _ => *word == text,
+    };
+    if words.iter().any(matches) {
+        return Ok(text.to_owned());
+    }
+    let nearest = nearest(text, words.iter().copied());
+    Err(vec![Fault { nearest, ..Fault::new(value, Reason::Type, found(value.get_ref())) }])
+}
+
+fn list<T>(
+    value: &Spanned<DeValue<'_>>,
+    item: impl Fn(&Spanned<DeValue<'_>>) -> Read<T>,
+) -> Read<Vec<T>> {
+    let Some(items) = value.get_ref().as_array() else { return wrong_type(value) };
+    let (mut good, mut faults) = (Vec::new(), Vec::new());
+    for read in items.iter().map(item) {
+        match read {
+            Ok(value) => good.push(value),
+            Err(more) => faults.extend(more),
+        }
+    }
+    if faults.is_empty() { Ok(good) } else { Err(faults) }
+}
+
+fn pair<T>(
+    value: &Spanned<DeValue<'_>>,
+    item: impl Fn(&Spanned<DeValue<'_>>) -> Read<T>,
+) -> Read<[T; 2]> {
+    let items = list(value, item)?;
+    items.try_into().or_else(|_| wrong_type(value))
+}
+
+/// The nearest of some names, if any is near enough to be meant.
+pub(super) fn nearest(
+    name: &str,
+    candidates: impl IntoIterator<Item = &'static str>,
+) -> Option<&'static str> {
+    let distance = |candidate: &str| strsim::damerau_levenshtein(&name.to_lowercase(), candidate);
+    let near = |candidate: &&str| distance(candidate) <= (candidate.len() / 3).max(2).min(name.len());
+    candidates.into_iter().filter(near).min_by_key(|candidate| distance(candidate))
+}
+
+/// What stands for a key that is not given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fallback {
+    /// Nothing: wherever the key is used it must be given.
+    Required,
+    /// This value, as TOML.
+    Is(&'static str),
+    /// What these words say.
+    Otherwise(&'static str),
+}
+
+/// A key by whose value it is decided which other keys are used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Selector {
+    /// `particles.generate`; a start file counts as the choice `file`.
+    Start,
+    /// `method.kind`.
+    Method,
+    /// `particles.wall_motion`.
+    WallMotion,
+}
+
+/// Where a key is used: everywhere, or with some choices of a selector.
+pub type Use = Option<(Selector, &'static [&'static str])>;
+
+/// A key of a scene file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Key {
+    /// The section, empty for the top of the file.
+    pub section: &'static str,
+    /// The name.
+    pub name: &'static str,
+    /// The type of its value.
+    pub kind: Kind,
+    /// The unit, empty for pure numbers and words.
+    pub unit: &'static str,
+    /// What stands where it is not given.
+    pub fallback: Fallback,
+    /// Where it is used.
+    pub used: Use,
+    /// What it means.
+    pub doc: &'static str,
+}
+
+impl Key {
+    /// Section and name, as `--set` takes them.
+    pub fn path(&self) -> String {
+        if self.section.is_empty() { self.name.to_owned() } else { format!("{}.{}", self.section, self.name) }
+    }
+
+    /// What should stand there, with the unit.
+    pub fn expected(&self) -> String {
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" ({})", self.unit) };
+        format!("{} = {}{unit}", self.name, self.kind.words())
+    }
+
+    pub(super) fn id(&self) -> (&'static str, &'static str) {
+        (self.section, self.name)
+    }
+}

@@ -1,0 +1,70 @@
+//! Small systems for the tests of the lattice method.
+#![allow(dead_code, reason = "each test file uses its part")]
+
+use stripmine::method::Method;
+use stripmine::method::lattice_md::{Contacts, Discs, GearValues, LatticeMd, Machine, Model, WallMotion, Watch};
+use stripmine::particles::Particles;
+use stripmine::placement::hexagonal;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::law::granular::{Contact, ContactArm};
+use stripmine_kernels::mask::Mask;
+use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
+use stripmine_kernels::{Execution, InstructionSet};
+
+pub const CONTACT: Contact = Contact {
+    stiffness: 187.0,
+    normal_damping: 0.05,
+    shear_damping: 0.02,
+    friction: 0.5,
+    cohesionless: true,
+    arm: ContactArm::Radius,
+};
+
+pub fn fast() -> Machine {
+    Machine { execution: Execution::Chained, set: InstructionSet::best() }
+}
+
+/// A dense periodic gas of discs with radii that vary by 5 %, and spins.
+pub fn gas(least: usize, packing_fraction: f64, seed: u64) -> (Model, Particles) {
+    let packing = hexagonal(least, packing_fraction, 0.01, seed);
+    let mut particles = packing.particles;
+    let mut random = Stream::new(seed, Purpose::Test, 0);
+    for disc in particles.all_mut() {
+        disc.radius = 0.5 - 0.05 * random.uniform();
+        disc.mass = 4.0 * disc.radius * disc.radius;
+        disc.omega = 0.2 * (random.uniform() - 0.5);
+    }
+    let mask = Mask::square(2);
+    let counts = packing.sides.map(|side| (side / 0.5) as usize);
+    let edge = [packing.sides[0] / counts[0] as f64, packing.sides[1] / counts[1] as f64];
+    let model = Model {
+        shape: LatticeShape::new(counts[0], counts[1], &mask, [true; 2]).unwrap(),
+        frame: Frame { origin: [0.0; 2], edge },
+        mask,
+        coordinates: Coordinates::CellRelative,
+        contact: CONTACT,
+        friction: true,
+        discs: Discs::Varying,
+        inertia_factor: 0.5,
+        values: GearValues::Five,
+        dt: 0.005,
+        gravity: [0.0; 2],
+        watch: Some(Watch { max_penetration: 0.1, stop_penetration: 0.3 }),
+    };
+    (model, particles)
+}
+
+pub fn simulate<S: Precision, P: Precision>(
+    (model, particles): &(Model, Particles),
+    contacts: Contacts,
+    machine: Machine,
+) -> LatticeMd<S, P> {
+    LatticeMd::new(model.clone(), contacts, machine, WallMotion::Fixed, particles.clone()).unwrap()
+}
+
+pub fn advance(method: &mut impl Method, steps: u64) {
+    for _ in 0..steps {
+        method.step().unwrap();
+    }
+}
