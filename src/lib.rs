@@ -5,8 +5,11 @@
 //! costs, studies that answer a user's question, and reports that show the answer.
 
 pub mod cli;
+pub mod domain;
+pub mod grid;
 pub mod method;
 pub mod model;
+pub mod observe;
 pub mod particles;
 pub mod placement;
 pub mod report;

@@ -1,4 +1,14 @@
-//! Initial states.
+//! Initial states: where discs are and how fast they start.
+
+mod area;
+mod near;
+mod random;
+mod rows;
+
+pub use area::Area;
+pub use near::Near;
+pub use random::{Filling, Jammed, random};
+pub use rows::{Row, row};
 
 use crate::particles::{Kind, Particle, Particles};
 use stripmine_kernels::noise::{Purpose, Stream, normals};

@@ -2,7 +2,9 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use stripmine::method::Method;
-use stripmine::method::lattice_md::{Contacts, Discs, GearValues, LatticeMd, Machine, Model, WallMotion, Watch};
+use stripmine::method::lattice_md::{
+    Contacts, Discs, GearValues, LatticeMd, Machine, Model, WallMotion, Watch,
+};
 use stripmine::particles::Particles;
 use stripmine::placement::hexagonal;
 use stripmine_kernels::backend::Precision;

@@ -1,5 +1,6 @@
 //! What is modelled: no more than a scene needs.
 
+use crate::domain::Domain;
 use stripmine_kernels::integrator::gear::{Acceleration, Inertia};
 use stripmine_kernels::law::granular::{Contact, Disc};
 use stripmine_kernels::mask::Mask;
@@ -93,6 +94,16 @@ impl Model {
         let Contact { normal_damping, shear_damping, .. } = self.contact;
         let damped = normal_damping != 0.0 || (self.friction && shear_damping != 0.0);
         if damped { Acceleration::OfVelocities } else { Acceleration::OfPositions }
+    }
+
+    /// The box that the lattice fills.
+    pub fn domain(&self) -> Domain {
+        let counts = [self.shape.columns(), self.shape.rows()];
+        Domain {
+            origin: self.frame.origin,
+            sides: [0, 1].map(|axis| counts[axis] as f64 * self.frame.edge[axis]),
+            periodic: self.shape.periodic(),
+        }
     }
 
     /// What forces and torques are divided by.

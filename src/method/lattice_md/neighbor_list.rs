@@ -2,6 +2,7 @@
 
 use super::programs::{WithLaw, with_law};
 use super::{Arrays, Discs, Model};
+use crate::grid::Bins;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Array;
 use stripmine_kernels::law::Law;
@@ -33,7 +34,7 @@ pub(super) struct Rival<P> {
     ways: Ways,
     lists: Lists,
     /// Positions when the lists were made.
-    made_at: [Vec<f64>; 2],
+    made_at: Vec<[f64; 2]>,
     /// Largest sum of radii.
     reach: f64,
     radius: Vec<P>,
@@ -48,7 +49,7 @@ impl<P: Precision> Rival<P> {
             options,
             ways: Ways::new(model.shape, model.frame, &model.mask, relative),
             lists: Lists::default(),
-            made_at: [vec![], vec![]],
+            made_at: vec![],
             reach: 2.0 * largest_radius,
             radius: vec![],
             rebuilds: 0,
@@ -64,34 +65,29 @@ impl<P: Precision> Rival<P> {
     /// Makes the lists anew if a pair that is not listed could have come into contact.
     pub(super) fn keep<S: Precision>(&mut self, model: &Model, arrays: &Arrays<S, P>) {
         let (Some(x), Some(y)) = (arrays.state(Array::X0), arrays.state(Array::Y0)) else { return };
-        let sides = [model.shape.columns(), model.shape.rows()];
-        let periods = [0, 1].map(|axis| match model.shape.periodic()[axis] {
-            true => sides[axis] as f64 * model.frame.edge[axis],
-            false => f64::INFINITY,
-        });
-        let nearest = |way: f64, period: f64| if way.abs() > 0.5 * period { way.abs() - period } else { way };
-        let square = |ax: f64, ay: f64, bx: f64, by: f64| {
-            let (dx, dy) = (nearest(ax - bx, periods[0]), nearest(ay - by, periods[1]));
+        let domain = model.domain();
+        let square = |from: [f64; 2], to: [f64; 2]| {
+            let [dx, dy] = domain.way(from, to);
             dx * dx + dy * dy
         };
         let moved_too_far = 0.25 * self.options.skin * self.options.skin;
-        let fresh = self.made_at[0].len() == x.len()
-            && (0..x.len()).all(|i| {
-                square(x[i].to_f64(), y[i].to_f64(), self.made_at[0][i], self.made_at[1][i]) < moved_too_far
-            });
+        let at = |i: usize| [x[i].to_f64(), y[i].to_f64()];
+        let discs = x.len();
+        let fresh =
+            self.made_at.len() == discs && (0..discs).all(|i| square(at(i), self.made_at[i]) < moved_too_far);
         if fresh {
             return;
         }
         self.rebuilds += 1;
-        self.made_at = [x, y].map(|axis| axis.iter().map(|r| r.to_f64()).collect());
-        let [x, y] = &self.made_at;
-        let limit = (self.reach + self.options.skin) * (self.reach + self.options.skin);
-        let near = |i: usize, j: usize| square(x[i], y[i], x[j], y[j]) < limit;
+        self.made_at = (0..discs).map(at).collect();
+        let made_at = &self.made_at;
+        let limit = self.reach + self.options.skin;
+        let near = |i: usize, j: usize| square(made_at[i], made_at[j]) < limit * limit;
         self.lists = match self.options.rebuild {
-            Rebuild::AllPairs => Lists::by_all_pairs(x.len(), near),
+            Rebuild::AllPairs => Lists::by_all_pairs(discs, near),
             Rebuild::Cells => {
-                let bins = Bins::new(model, &self.made_at, limit.sqrt());
-                Lists::by_candidates(x.len(), |i, take| bins.around(x[i], y[i], take), near)
+                let bins = Bins::new(domain, made_at.iter().copied(), limit);
+                Lists::by_candidates(discs, |i, take| bins.around(made_at[i], take), near)
             }
         };
     }
@@ -149,61 +145,5 @@ impl<S: Precision, P: Precision> WithLaw for Walk<'_, S, P> {
         walk(&law, lists, ways, discs, grains, reach, watched, |disc, sums| {
             self.sums.iter_mut().zip(sums).for_each(|(column, sum)| column[disc] = sum);
         })
-    }
-}
-
-/// Square bins at least as wide as the longest listed distance.
-struct Bins {
-    counts: [usize; 2],
-    origin: [f64; 2],
-    widths: [f64; 2],
-    periodic: [bool; 2],
-    discs: Vec<Vec<u32>>,
-}
-
-impl Bins {
-    fn new(model: &Model, positions: &[Vec<f64>; 2], reach: f64) -> Bins {
-        let cells = [model.shape.columns(), model.shape.rows()];
-        let sides = [0, 1].map(|axis| cells[axis] as f64 * model.frame.edge[axis]);
-        let counts = sides.map(|side| ((side / reach) as usize).max(1));
-        let widths = [sides[0] / counts[0] as f64, sides[1] / counts[1] as f64];
-        let discs = vec![Vec::new(); counts[0] * counts[1]];
-        let mut bins =
-            Bins { counts, origin: model.frame.origin, widths, periodic: model.shape.periodic(), discs };
-        for i in 0..positions[0].len() {
-            let [column, row] = bins.bin(positions[0][i], positions[1][i]);
-            bins.discs[row * counts[0] + column].push(i as u32);
-        }
-        bins
-    }
-
-    fn bin(&self, x: f64, y: f64) -> [usize; 2] {
-        // A cast saturates, so that a disc at a rim is in the bin at the rim.
-        let along = |r: f64, axis: usize| {
-            (((r - self.origin[axis]) / self.widths[axis]) as usize).min(self.counts[axis] - 1)
-        };
-        [along(x, 0), along(y, 1)]
-    }
-
-    /// The bins next to one along an axis, each once.
-    fn beside(&self, bin: usize, axis: usize) -> Vec<usize> {
-        let count = self.counts[axis] as isize;
-        let mut beside: Vec<usize> = (-1..=1)
-            .map(|step| bin as isize + step)
-            .filter(|next| self.periodic[axis] || (0..count).contains(next))
-            .map(|next| next.rem_euclid(count) as usize)
-            .collect();
-        beside.sort_unstable();
-        beside.dedup();
-        beside
-    }
-
-    fn around(&self, x: f64, y: f64, take: &mut dyn FnMut(u32)) {
-        let [column, row] = self.bin(x, y);
-        for row in self.beside(row, 1) {
-            for column in self.beside(column, 0) {
-                self.discs[row * self.counts[0] + column].iter().for_each(|&disc| take(disc));
-            }
-        }
     }
 }

@@ -25,18 +25,8 @@ impl<S: Precision, P: Precision> Names<'_, S, P> {
         Culprit { id: self.ids[disc], position: self.position(disc), velocity }
     }
 
-    /// From `from` to `to`, the shortest way.
-    fn way(&self, from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|axis| {
-            let cells = [self.model.shape.columns(), self.model.shape.rows()][axis];
-            let period = cells as f64 * self.model.frame.edge[axis];
-            let way = to[axis] - from[axis];
-            if self.model.shape.periodic()[axis] { way - (way / period).round() * period } else { way }
-        })
-    }
-
     fn distance(&self, first: usize, second: usize) -> f64 {
-        let [dx, dy] = self.way(self.position(first), self.position(second));
+        let [dx, dy] = self.model.domain().way(self.position(first), self.position(second));
         dx.hypot(dy)
     }
 

@@ -1,0 +1,196 @@
+//! Random placement without overlap.
+
+use super::{Area, Near};
+use crate::particles::{Kind, Particle};
+use stripmine_kernels::noise::{Purpose, Stream, normals};
+
+/// What is placed where.
+#[derive(Clone, Debug)]
+pub struct Filling<'a> {
+    /// The box.
+    pub area: Area,
+    /// Lower and upper corner of the room for discs, surfaces included (length). Along a periodic side that it spans
+    /// wholly, centres may be anywhere.
+    pub room: [[f64; 2]; 2],
+    /// Discs that are there already.
+    pub obstacles: &'a [Particle],
+    /// How many discs.
+    pub count: usize,
+    /// Mean radius (length).
+    pub radius: f64,
+    /// Standard deviation of the Gaussian radii, relative to the mean.
+    pub spread: f64,
+    /// Largest deviation of a radius, relative to the mean.
+    pub cut: f64,
+    /// Mass of a disc of the mean radius; others have it times (R/mean)².
+    pub mass: f64,
+    /// Seed.
+    pub seed: u64,
+}
+
+/// Random placement found no room.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("random placement found room for {placed} of {asked} discs; the next found none in {tries} tries")]
+pub struct Jammed {
+    /// Discs placed.
+    pub placed: usize,
+    /// Discs asked for.
+    pub asked: usize,
+    /// Tries for the one that found no room.
+    pub tries: usize,
+}
+
+/// Tries for one disc. Near saturation one in some ten thousand succeeds.
+const TRIES: usize = 200_000;
+
+/// Discs with ids from 1 on, at rest, one after the other where they overlap nothing; a function of the filling alone.
+///
+/// # Errors
+/// [`Jammed`] if a disc finds no room.
+pub fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
+    let Filling { area, room, obstacles, count, radius: mean, cut, mass, seed, .. } = *filling;
+    let obstacle = obstacles.iter().map(|disc| disc.radius).fold(0.0, f64::max);
+    let largest = mean * (1.0 + cut);
+    let mut near = Near::new(area, (2.0 * largest).max(largest + obstacle));
+    let mut circles: Vec<f64> = Vec::with_capacity(obstacles.len() + count.min(1 << 20));
+    for disc in obstacles {
+        near.add(circles.len() as u32, area.wrapped(disc.position));
+        circles.push(disc.radius);
+    }
+    let mut discs = Vec::new();
+    for id in 1..=count as u32 {
+        let mut stream = Stream::new(seed, Purpose::Placement, id);
+        let radius = mean * (1.0 + truncated_normal(&mut stream, filling.spread, cut));
+        let jammed = Jammed { placed: discs.len(), asked: count, tries: TRIES };
+        let ranges = [0, 1].map(|axis| {
+            let [low, high] = room.map(|corner| corner[axis]);
+            let open = area.periodic[axis] && high - low >= area.sides[axis];
+            if open { [low, high] } else { [low + radius, high - radius] }
+        });
+        if ranges.iter().any(|[low, high]| low > high) {
+            return Err(Jammed { tries: 0, ..jammed });
+        }
+        let mut draw = || {
+            let position = ranges.map(|[low, high]| low + (high - low) * stream.uniform());
+            area.wrapped(position)
+        };
+        let free = |position: &[f64; 2]| {
+            near.of(*position)
+                .all(|(other, there)| area.distance(*position, there) > radius + circles[other as usize])
+        };
+        let position = (0..TRIES).map(|_| draw()).find(free).ok_or(jammed)?;
+        near.add(circles.len() as u32, position);
+        circles.push(radius);
+        let share = radius / mean;
+        discs.push(Particle {
+            id,
+            kind: Kind::Grain,
+            position,
+            velocity: [0.0; 2],
+            angle: 0.0,
+            omega: 0.0,
+            radius,
+            mass: mass * share * share,
+        });
+    }
+    Ok(discs)
+}
+
+/// A Gaussian number of the given standard deviation, not larger than `cut` in magnitude.
+fn truncated_normal(stream: &mut Stream, deviation: f64, cut: f64) -> f64 {
+    if deviation == 0.0 || cut == 0.0 {
+        return 0.0;
+    }
+    loop {
+        // Narrow cuts by a flat proposal, wide ones by the Gaussian itself: either is accepted three times in five.
+        let number = if cut < deviation {
+            let flat = cut * (2.0 * stream.uniform() - 1.0);
+            let z = flat / deviation;
+            if stream.uniform() > libm::exp(-0.5 * z * z) {
+                continue;
+            }
+            flat
+        } else {
+            let radius = (-2.0 * libm::log(stream.uniform())).sqrt();
+            deviation * radius * libm::cos(std::f64::consts::TAU * stream.uniform())
+        };
+        if number.abs() <= cut {
+            return number;
+        }
+    }
+}
+
+/// Gaussian velocities of standard deviation `deviation(disc)` (length/time) for each component, a function of seed and
+/// id; without net momentum if `balanced`.
+pub(crate) fn stir(discs: &mut [Particle], seed: u64, balanced: bool, deviation: impl Fn(&Particle) -> f64) {
+    for disc in discs.iter_mut() {
+        disc.velocity = normals(seed, Purpose::Placement, disc.id, 1).map(|v| v * deviation(disc));
+    }
+    if balanced {
+        let mass: f64 = discs.iter().map(|disc| disc.mass).sum();
+        for axis in 0..2 {
+            let mean = discs.iter().map(|disc| disc.mass * disc.velocity[axis]).sum::<f64>() / mass;
+            discs.iter_mut().for_each(|disc| disc.velocity[axis] -= mean);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn filling() -> Filling<'static> {
+        Filling {
+            area: Area { origin: [-2.0, 1.0], sides: [30.0, 20.0], periodic: [true, false] },
+            room: [[-2.0, 1.0], [28.0, 21.0]],
+            obstacles: &[],
+            count: 300,
+            radius: 0.5,
+            spread: 0.05,
+            cut: 0.1,
+            mass: 2.0,
+            seed: 9,
+        }
+    }
+
+    #[test]
+    fn discs_overlap_nothing_and_lie_in_their_room() {
+        let filling = filling();
+        let discs = random(&filling).unwrap();
+        assert_eq!(discs.len(), 300);
+        for (i, a) in discs.iter().enumerate() {
+            assert_eq!(a.id as usize, i + 1);
+            assert!(filling.area.contains(a.position));
+            assert!(a.position[1] - a.radius >= 1.0 && a.position[1] + a.radius <= 21.0);
+            assert!((a.radius / 0.5 - 1.0).abs() <= 0.1);
+            assert!((a.mass - 2.0 * (a.radius / 0.5).powi(2)).abs() < 1e-12);
+            for b in &discs[..i] {
+                assert!(filling.area.distance(a.position, b.position) > a.radius + b.radius);
+            }
+        }
+        assert_eq!(discs, random(&filling).unwrap());
+        assert_ne!(discs, random(&Filling { seed: 10, ..filling }).unwrap());
+    }
+
+    #[test]
+    fn more_than_there_is_room_for_is_refused() {
+        let jammed = random(&Filling { count: 700, ..filling() }).unwrap_err();
+        assert!(jammed.asked == 700 && (350..450).contains(&jammed.placed), "{jammed}");
+        let narrow = Filling { room: [[-2.0, 1.0], [28.0, 1.3]], ..filling() };
+        assert_eq!(random(&narrow).unwrap_err().placed, 0);
+    }
+
+    /// Variance of a Gaussian cut at ± c standard deviations: 1 − 2 c φ(c)/(2Φ(c) − 1).
+    #[test]
+    fn radii_are_gaussian_within_the_cut() {
+        let mut stream = Stream::new(3, Purpose::Test, 1);
+        for (cut, variance) in [(0.5, 0.080_5), (2.0, 0.773_7), (9.0, 1.0)] {
+            let n = 40_000;
+            let numbers: Vec<f64> = (0..n).map(|_| truncated_normal(&mut stream, 1.0, cut)).collect();
+            assert!(numbers.iter().all(|z| z.abs() <= cut));
+            let (mean, square) =
+                numbers.iter().fold((0.0, 0.0), |(m, s), z| (m + z / f64::from(n), s + z * z / f64::from(n)));
+            assert!(mean.abs() < 0.03 && (square / variance - 1.0).abs() < 0.04, "{cut}: {mean} {square}");
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Rows of wall discs.
+
+use super::Area;
+use crate::particles::{Kind, Particle};
+
+/// A row of wall discs along x, across the whole box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Height of the centres (length).
+    pub y: f64,
+    /// By how much of the spacing the row is shifted along x.
+    pub shift: f64,
+    /// Radius (length).
+    pub radius: f64,
+    /// Distance of neighbouring centres (length); the nearest that divides the side of the box is taken.
+    pub spacing: f64,
+    /// Mass (mass), which only describes the material.
+    pub mass: f64,
+}
+
+/// The discs of a row, ids from `first_id` on.
+pub fn row(area: &Area, row: &Row, first_id: u32) -> Vec<Particle> {
+    let count = (area.sides[0] / row.spacing).round().clamp(1.0, f64::from(u32::MAX / 4)) as u32;
+    let spacing = area.sides[0] / f64::from(count);
+    let disc = |i: u32| Particle {
+        id: first_id + i,
+        kind: Kind::Wall,
+        position: area.wrapped([area.origin[0] + (f64::from(i) + row.shift) * spacing, row.y]),
+        velocity: [0.0; 2],
+        angle: 0.0,
+        omega: 0.0,
+        radius: row.radius,
+        mass: row.mass,
+    };
+    (0..count).map(disc).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_closes_across_the_periodic_side() {
+        let area = Area { origin: [1.0, 0.0], sides: [8.1, 0.1], periodic: [true, false] };
+        for shift in [0.0, 0.5] {
+            let discs = row(&area, &Row { y: 0.03, shift, radius: 0.009, spacing: 0.0271, mass: 1.0 }, 7);
+            assert_eq!(discs.len(), 299);
+            assert_eq!((discs[0].id, discs[298].id), (7, 305));
+            let spacing = 8.1 / 299.0;
+            for pair in 0..299 {
+                let (a, b) = (discs[pair].position, discs[(pair + 1) % 299].position);
+                assert!((area.distance(a, b) - spacing).abs() < 1e-9);
+            }
+        }
+    }
+}
