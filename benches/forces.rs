@@ -197,6 +197,8 @@ fn executions<P: ByHand>(criterion: &mut Criterion, precision: &str) {
 }
 
 fn forces(criterion: &mut Criterion) {
+    // One core, as the loop by hand.
+    rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("the first pool");
     executions::<f64>(criterion, "f64");
     executions::<f32>(criterion, "f32");
 }

@@ -7,10 +7,12 @@
 pub mod cli;
 pub mod domain;
 pub mod grid;
+pub mod io;
 pub mod method;
 pub mod model;
 pub mod observe;
 pub mod particles;
 pub mod placement;
 pub mod report;
+pub mod scene;
 pub mod study;

@@ -2,6 +2,7 @@
 
 mod listing;
 mod reproduce;
+mod scene;
 mod scene_choice;
 mod table;
 
@@ -36,6 +37,7 @@ enum Verb {
     Reproduce(reproduce::Reproduce),
     Table(table::TableVerb),
     Listing(listing::ListingVerb),
+    Scene(scene::SceneVerb),
 }
 
 /// Why a verb did not come to its end; each kind has its exit code.
@@ -47,6 +49,9 @@ pub(crate) enum Failure {
     /// A machine that there is not: exit code 2.
     #[error(transparent)]
     Machine(#[from] crate::model::machine::UnknownMachine),
+    /// A bad scene: exit code 3.
+    #[error(transparent)]
+    Scene(#[from] crate::scene::SceneErrors),
     /// Reading or writing: exit code 5.
     #[error("{what}: {cause}")]
     InputOutput {
@@ -68,6 +73,7 @@ impl Failure {
             // A reader that closes the pipe has seen enough.
             Failure::InputOutput { cause, .. } if cause.kind() == ErrorKind::BrokenPipe => 0,
             Failure::Usage(_) | Failure::Machine(_) => 2,
+            Failure::Scene(_) => 3,
             Failure::InputOutput { .. } => 5,
         }
     }
@@ -80,6 +86,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         Verb::Reproduce(verb) => verb.run(&common),
         Verb::Table(verb) => verb.run(&common),
         Verb::Listing(verb) => verb.run(&common),
+        Verb::Scene(verb) => verb.run(&common),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,12 +1,13 @@
 //! Initial states: where discs are and how fast they start.
 
-mod area;
+mod image;
 mod near;
 mod random;
 mod rows;
 
-pub use area::Area;
+pub use image::{distance, wrapped};
 pub use near::Near;
+pub(crate) use random::stir;
 pub use random::{Filling, Jammed, random};
 pub use rows::{Row, row};
 

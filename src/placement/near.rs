@@ -1,33 +1,33 @@
-//! Finding what is near a position.
+//! Finding what is near a position, while positions are added.
 
-use super::Area;
+use crate::domain::Domain;
 use std::collections::HashMap;
 
-/// Positions in an area, sorted into squares, so that what is within a reach is found without looking at all.
+/// Positions in a box, sorted into squares, so that what is within a reach is found without looking at all.
 #[derive(Clone, Debug)]
 pub struct Near {
-    area: Area,
+    domain: Domain,
     squares: [f64; 2],
     members: HashMap<[i64; 2], Vec<(u32, [f64; 2])>>,
 }
 
 impl Near {
     /// Nothing yet; looks for what is closer than `reach` (length).
-    pub fn new(area: Area, reach: f64) -> Self {
+    pub fn new(domain: Domain, reach: f64) -> Self {
         // Whole squares fill a side, so that a periodic one closes; 2^30 of them number far more than there are discs.
-        let squares = area.sides.map(|side| (side / reach).floor().clamp(1.0, 2f64.powi(30)));
-        Near { area, squares, members: HashMap::new() }
+        let squares = domain.sides.map(|side| (side / reach).floor().clamp(1.0, 2f64.powi(30)));
+        Near { domain, squares, members: HashMap::new() }
     }
 
     fn square(&self, position: [f64; 2]) -> [i64; 2] {
         [0, 1].map(|axis| {
-            let fraction = (position[axis] - self.area.origin[axis]) / self.area.sides[axis];
+            let fraction = (position[axis] - self.domain.origin[axis]) / self.domain.sides[axis];
             // Outside of a side that is not periodic the last square goes on.
             (fraction * self.squares[axis]).floor().clamp(0.0, self.squares[axis] - 1.0) as i64
         })
     }
 
-    /// Adds a position, wrapped into the area, under a number.
+    /// Adds a position, wrapped into the box, under a number.
     pub fn add(&mut self, number: u32, position: [f64; 2]) {
         self.members.entry(self.square(position)).or_default().push((number, position));
     }
@@ -35,7 +35,7 @@ impl Near {
     /// Along one axis, a square and its neighbours, each once.
     fn around(&self, axis: usize, square: i64) -> impl Iterator<Item = i64> + use<> {
         let count = self.squares[axis] as i64;
-        let (periodic, few) = (self.area.periodic[axis], count < 3);
+        let (periodic, few) = (self.domain.periodic[axis], count < 3);
         let range = if few { 0..=count - 1 } else { square - 1..=square + 1 };
         range.filter_map(move |at| match periodic {
             true => Some(at.rem_euclid(count)),
@@ -43,7 +43,7 @@ impl Near {
         })
     }
 
-    /// Everything that may be within reach of a position, wrapped into the area: number and position.
+    /// Everything that may be within reach of a position, wrapped into the box: number and position.
     pub fn of(&self, position: [f64; 2]) -> impl Iterator<Item = (u32, [f64; 2])> + '_ {
         let [column, row] = self.square(position);
         self.around(0, column)
@@ -56,6 +56,7 @@ impl Near {
 
 #[cfg(test)]
 mod tests {
+    use super::super::distance;
     use super::*;
     use stripmine_kernels::noise::{Purpose, Stream};
 
@@ -69,21 +70,21 @@ mod tests {
             ([2.5, 3.9], [true, true]),
             ([0.5, 40.0], [false, true]),
         ] {
-            let area = Area { origin: [-3.0, 1.0], sides, periodic };
+            let domain = Domain { origin: [-3.0, 1.0], sides, periodic };
             let points: Vec<[f64; 2]> = (0..150)
-                .map(|_| [0, 1].map(|axis| area.origin[axis] + sides[axis] * random.uniform()))
+                .map(|_| [0, 1].map(|axis| domain.origin[axis] + sides[axis] * random.uniform()))
                 .collect();
-            let mut near = Near::new(area, 1.0);
+            let mut near = Near::new(domain, 1.0);
             points.iter().enumerate().for_each(|(i, point)| near.add(i as u32, *point));
             for point in &points {
                 let mut found: Vec<u32> = near
                     .of(*point)
-                    .filter(|(_, other)| area.distance(*point, *other) < 1.0)
+                    .filter(|(_, other)| distance(&domain, *point, *other) < 1.0)
                     .map(|(i, _)| i)
                     .collect();
                 found.sort_unstable();
                 let all: Vec<u32> =
-                    (0..150).filter(|&i| area.distance(*point, points[i as usize]) < 1.0).collect();
+                    (0..150).filter(|&i| distance(&domain, *point, points[i as usize]) < 1.0).collect();
                 assert_eq!(found, all);
             }
         }

@@ -1,6 +1,7 @@
 //! Random placement without overlap.
 
-use super::{Area, Near};
+use super::{Near, distance, wrapped};
+use crate::domain::Domain;
 use crate::particles::{Kind, Particle};
 use stripmine_kernels::noise::{Purpose, Stream, normals};
 
@@ -8,7 +9,7 @@ use stripmine_kernels::noise::{Purpose, Stream, normals};
 #[derive(Clone, Debug)]
 pub struct Filling<'a> {
     /// The box.
-    pub area: Area,
+    pub domain: Domain,
     /// Lower and upper corner of the room for discs, surfaces included (length). Along a periodic side that it spans
     /// wholly, centres may be anywhere.
     pub room: [[f64; 2]; 2],
@@ -48,13 +49,13 @@ const TRIES: usize = 200_000;
 /// # Errors
 /// [`Jammed`] if a disc finds no room.
 pub fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
-    let Filling { area, room, obstacles, count, radius: mean, cut, mass, seed, .. } = *filling;
+    let Filling { domain, room, obstacles, count, radius: mean, cut, mass, seed, .. } = *filling;
     let obstacle = obstacles.iter().map(|disc| disc.radius).fold(0.0, f64::max);
     let largest = mean * (1.0 + cut);
-    let mut near = Near::new(area, (2.0 * largest).max(largest + obstacle));
+    let mut near = Near::new(domain, (2.0 * largest).max(largest + obstacle));
     let mut circles: Vec<f64> = Vec::with_capacity(obstacles.len() + count.min(1 << 20));
     for disc in obstacles {
-        near.add(circles.len() as u32, area.wrapped(disc.position));
+        near.add(circles.len() as u32, wrapped(&domain, disc.position));
         circles.push(disc.radius);
     }
     let mut discs = Vec::new();
@@ -64,7 +65,7 @@ pub fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
         let jammed = Jammed { placed: discs.len(), asked: count, tries: TRIES };
         let ranges = [0, 1].map(|axis| {
             let [low, high] = room.map(|corner| corner[axis]);
-            let open = area.periodic[axis] && high - low >= area.sides[axis];
+            let open = domain.periodic[axis] && high - low >= domain.sides[axis];
             if open { [low, high] } else { [low + radius, high - radius] }
         });
         if ranges.iter().any(|[low, high]| low > high) {
@@ -72,11 +73,11 @@ pub fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
         }
         let mut draw = || {
             let position = ranges.map(|[low, high]| low + (high - low) * stream.uniform());
-            area.wrapped(position)
+            wrapped(&domain, position)
         };
         let free = |position: &[f64; 2]| {
             near.of(*position)
-                .all(|(other, there)| area.distance(*position, there) > radius + circles[other as usize])
+                .all(|(other, there)| distance(&domain, *position, there) > radius + circles[other as usize])
         };
         let position = (0..TRIES).map(|_| draw()).find(free).ok_or(jammed)?;
         near.add(circles.len() as u32, position);
@@ -141,7 +142,7 @@ mod tests {
 
     fn filling() -> Filling<'static> {
         Filling {
-            area: Area { origin: [-2.0, 1.0], sides: [30.0, 20.0], periodic: [true, false] },
+            domain: Domain { origin: [-2.0, 1.0], sides: [30.0, 20.0], periodic: [true, false] },
             room: [[-2.0, 1.0], [28.0, 21.0]],
             obstacles: &[],
             count: 300,
@@ -160,12 +161,12 @@ mod tests {
         assert_eq!(discs.len(), 300);
         for (i, a) in discs.iter().enumerate() {
             assert_eq!(a.id as usize, i + 1);
-            assert!(filling.area.contains(a.position));
+            assert!(filling.domain.contains(a.position));
             assert!(a.position[1] - a.radius >= 1.0 && a.position[1] + a.radius <= 21.0);
             assert!((a.radius / 0.5 - 1.0).abs() <= 0.1);
             assert!((a.mass - 2.0 * (a.radius / 0.5).powi(2)).abs() < 1e-12);
             for b in &discs[..i] {
-                assert!(filling.area.distance(a.position, b.position) > a.radius + b.radius);
+                assert!(distance(&filling.domain, a.position, b.position) > a.radius + b.radius);
             }
         }
         assert_eq!(discs, random(&filling).unwrap());

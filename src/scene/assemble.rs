@@ -19,7 +19,7 @@ struct Values<'e>(&'e Entries);
 type Get<T> = Result<T, SceneError>;
 
 macro_rules! define_access {
-    ($($method:ident, $optional:ident, $variant:ident, $ty:ty;)*) => {
+    ($($($method:ident)?, $optional:ident, $variant:ident, $ty:ty;)*) => {
         impl Values<'_> {
             $(
                 fn $optional(&self, key: &Key) -> Option<$ty> {
@@ -29,9 +29,9 @@ macro_rules! define_access {
                     }
                 }
 
-                fn $method(&self, key: &Key) -> Get<$ty> {
+                $(fn $method(&self, key: &Key) -> Get<$ty> {
                     self.$optional(key).ok_or_else(|| self.missing(key))
-                }
+                })?
             )*
         }
     };
@@ -45,7 +45,7 @@ define_access! {
     pair, pair_if_any, Pair, [f64; 2];
     switches, switches_if_any, Switches, [bool; 2];
     pairs, pairs_if_any, Pairs, Vec<[f64; 2]>;
-    numbers, numbers_if_any, Numbers, Vec<f64>;
+    , numbers_if_any, Numbers, Vec<f64>;
 }
 
 impl Values<'_> {

@@ -244,8 +244,11 @@ impl Source<'_> {
             .error(Reason::Unknown, format!("unknown key `{}` {place}", name.get_ref().escape_debug()));
         let elsewhere = KEYS.iter().find(|key| key.name == name.get_ref());
         if let Some(key) = elsewhere {
-            let home =
-                if key.section.is_empty() { "at the top of the file".into() } else { format!("in [{}]", key.section) };
+            let home = if key.section.is_empty() {
+                "at the top of the file".into()
+            } else {
+                format!("in [{}]", key.section)
+            };
             error = error.advising(format!("`{}` belongs {home}", key.name));
             entries.faulty.insert(key.id());
         } else if let Some(nearest) = nearest(name.get_ref(), in_section()) {

@@ -158,9 +158,7 @@ impl Kind {
             Kind::Text => Value::Word(text(value)?),
             Kind::Pair(bounds) => Value::Pair(pair(value, |item| number(item, bounds))?),
             Kind::Switches => Value::Switches(pair(value, switch)?),
-            Kind::Pairs => {
-                Value::Pairs(list(value, |item| pair(item, |item| number(item, Bounds::Finite)))?)
-            }
+            Kind::Pairs => Value::Pairs(list(value, |item| pair(item, |item| number(item, Bounds::Finite)))?),
             Kind::Numbers(bounds) => Value::Numbers(list(value, |item| number(item, bounds))?),
         })
     }
@@ -259,10 +257,7 @@ fn choice(value: &Spanned<DeValue<'_>>, words: &'static [&'static str]) -> Read<
     Err(vec![Fault { nearest, ..Fault::new(value, Reason::Type, found(value.get_ref())) }])
 }
 
-fn list<T>(
-    value: &Spanned<DeValue<'_>>,
-    item: impl Fn(&Spanned<DeValue<'_>>) -> Read<T>,
-) -> Read<Vec<T>> {
+fn list<T>(value: &Spanned<DeValue<'_>>, item: impl Fn(&Spanned<DeValue<'_>>) -> Read<T>) -> Read<Vec<T>> {
     let Some(items) = value.get_ref().as_array() else { return wrong_type(value) };
     let (mut good, mut faults) = (Vec::new(), Vec::new());
     for read in items.iter().map(item) {
@@ -274,10 +269,7 @@ fn list<T>(
     if faults.is_empty() { Ok(good) } else { Err(faults) }
 }
 
-fn pair<T>(
-    value: &Spanned<DeValue<'_>>,
-    item: impl Fn(&Spanned<DeValue<'_>>) -> Read<T>,
-) -> Read<[T; 2]> {
+fn pair<T>(value: &Spanned<DeValue<'_>>, item: impl Fn(&Spanned<DeValue<'_>>) -> Read<T>) -> Read<[T; 2]> {
     let items = list(value, item)?;
     items.try_into().or_else(|_| wrong_type(value))
 }

@@ -53,8 +53,7 @@ impl Document {
         let text = String::from_utf8(bytes).map_err(|cause| {
             let good = cause.utf8_error().valid_up_to();
             let line = 1 + cause.as_bytes()[..good].iter().filter(|byte| **byte == b'\n').count();
-            let spot =
-                Spot { file: what.to_owned(), place: Some(super::Place { line, column: 1 }) };
+            let spot = Spot { file: what.to_owned(), place: Some(super::Place { line, column: 1 }) };
             spot.error(Reason::Syntax, "this line is not UTF-8 text").expecting("a TOML file in UTF-8")
         })?;
         Document::parse(what, &text, overrides)
@@ -79,6 +78,11 @@ impl Document {
             Some(entries) => entries.spot(key),
             None => Spot { file: "scene".to_owned(), place: None },
         }
+    }
+
+    /// Whether the text gives a key.
+    pub(super) fn gives(&self, key: &Key) -> bool {
+        self.entries.as_ref().is_some_and(|entries| entries.given(key).is_some())
     }
 
     /// Where an item of a list stands.

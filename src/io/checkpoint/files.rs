@@ -1,0 +1,140 @@
+//! Checkpoints in a folder: replaced in one step, the one before kept.
+
+use super::error::{CheckpointError, Fault, Kept};
+use super::{Checkpoint, WriteError, reading};
+use crate::io::FileError;
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{self, BufReader, BufWriter, ErrorKind};
+use std::path::{Path, PathBuf};
+
+/// Name of the newest checkpoint in the folder of a run.
+pub const NAME: &str = "run.checkpoint";
+
+/// The newest checkpoint that a folder has.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Latest {
+    /// Its file; the older one if the newest is not there.
+    pub file: PathBuf,
+    /// What it holds.
+    pub checkpoint: Checkpoint,
+}
+
+/// Where the checkpoint before this one is kept: `NAME.previous`.
+pub fn previous(path: &Path) -> PathBuf {
+    beside(path, ".previous")
+}
+
+fn beside(path: &Path, ending: &str) -> PathBuf {
+    let mut name = OsString::from(path);
+    name.push(ending);
+    PathBuf::from(name)
+}
+
+/// Reads the newest checkpoint of a folder, none if it has none. If the newest is missing but the one before it is
+/// there, reads that one; if the newest is corrupt, does not: that is for the user to decide.
+///
+/// # Errors
+/// If it is corrupt or cannot be read; the error says what is kept.
+pub fn read_latest(folder: &Path) -> Result<Option<Latest>, CheckpointError> {
+    let newest = folder.join(NAME);
+    for file in [previous(&newest), newest.clone()].into_iter().rev() {
+        match Checkpoint::read(&file) {
+            Ok(checkpoint) => return Ok(Some(Latest { file, checkpoint })),
+            Err(CheckpointError { fault: Fault::Io(cause), .. }) if cause.kind() == ErrorKind::NotFound => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(None)
+}
+
+impl Checkpoint {
+    /// Reads a checkpoint, every bit as it was written.
+    ///
+    /// # Errors
+    /// If it is truncated, changed in a single bit, longer than it says, of another version, or cannot be read; the
+    /// error says what is kept.
+    pub fn read(path: impl AsRef<Path>) -> Result<Checkpoint, CheckpointError> {
+        let path = path.as_ref();
+        read_one(path).map_err(|(offset, fault)| {
+            let older = previous(path);
+            let kept = match read_one(&older) {
+                Ok(Checkpoint { step, .. }) => Kept::Whole { file: older, step },
+                Err((_, Fault::Io(cause))) if cause.kind() == ErrorKind::NotFound => Kept::Nothing,
+                Err(_) => Kept::Unusable { file: older },
+            };
+            CheckpointError { file: path.to_owned(), offset, fault, kept }
+        })
+    }
+
+    /// Puts the checkpoint in the place of the one at `path`, which is kept as [`previous`]. At every moment there is
+    /// a whole checkpoint on the disk, and when this returns the new one is.
+    ///
+    /// # Errors
+    /// If two columns have one name, or the system does not let it be written; then the one at `path` stays.
+    pub fn write_atomically(&self, path: impl AsRef<Path>) -> Result<(), WriteError> {
+        let path = path.as_ref();
+        for (i, (name, _)) in self.columns.iter().enumerate() {
+            if self.columns[..i].iter().any(|(other, _)| other == name) {
+                return Err(WriteError::RepeatedColumn(name.clone()));
+            }
+        }
+        let new = beside(path, ".new");
+        let written = self
+            .write_synced(&new)
+            .map_err(FileError::at(&new, "writing the checkpoint"))
+            .and_then(|()| keep(path).map_err(FileError::at(path, "keeping the checkpoint")))
+            .and_then(|()| fs::rename(&new, path).map_err(FileError::at(path, "replacing the checkpoint")))
+            .and_then(|()| sync_folder(path).map_err(FileError::at(path, "replacing the checkpoint")));
+        if written.is_err() {
+            // What is left of the attempt; the error to report is the first one.
+            let _ = fs::remove_file(&new);
+        }
+        Ok(written?)
+    }
+
+    fn write_synced(&self, path: &Path) -> io::Result<()> {
+        let mut out = BufWriter::new(File::create(path)?);
+        self.encode(&mut out)?;
+        out.get_ref().sync_all()
+    }
+}
+
+fn read_one(path: &Path) -> Result<Checkpoint, reading::Found> {
+    let unreadable = |cause: io::Error| (None, Fault::Io(cause));
+    let file = File::open(path).map_err(unreadable)?;
+    let length = file.metadata().map_err(unreadable)?.len();
+    reading::decode(BufReader::new(file), length)
+}
+
+/// Gives the file at `path`, if there is one, its second name [`previous`], so that `path` is never without a file.
+/// Where the file system has no second names, moves it there.
+fn keep(path: &Path) -> io::Result<()> {
+    let (older, link) = (previous(path), beside(path, ".link"));
+    remove_if_there(&link)?;
+    match fs::hard_link(path, &link) {
+        Ok(()) => {
+            fs::rename(&link, &older)?;
+            // Renaming one name of a file to another of its names does nothing.
+            remove_if_there(&link)
+        }
+        Err(cause) if cause.kind() == ErrorKind::NotFound => Ok(()),
+        Err(_) => fs::rename(path, &older),
+    }
+}
+
+fn remove_if_there(path: &Path) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(cause) if cause.kind() != ErrorKind::NotFound => Err(cause),
+        _ => Ok(()),
+    }
+}
+
+/// Makes a renaming in the folder of `path` last.
+fn sync_folder(path: &Path) -> io::Result<()> {
+    if !cfg!(unix) {
+        return Ok(());
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    File::open(folder.unwrap_or(Path::new(".")))?.sync_all()
+}

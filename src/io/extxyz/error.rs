@@ -1,0 +1,246 @@
+//! What can be wrong with an extended XYZ file, and where.
+
+use std::fmt;
+use std::io;
+
+/// Why a file of frames cannot be used: all mistakes found, in the order of their lines.
+#[derive(Debug, thiserror::Error)]
+#[error("{}", listing(self))]
+pub struct ReadError {
+    /// The file.
+    pub file: String,
+    /// The first mistakes; at least one.
+    pub mistakes: Vec<Mistake>,
+    /// How many more there are.
+    pub more: usize,
+}
+
+/// One mistake.
+#[derive(Debug)]
+pub struct Mistake {
+    /// Line, from 1; nothing where the file cannot be read at all.
+    pub line: Option<usize>,
+    /// Column in characters, from 1; nothing where the whole line is meant.
+    pub column: Option<usize>,
+    /// What is wrong.
+    pub reason: Reason,
+}
+
+/// What is wrong at a place of an extended XYZ file.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Reason {
+    /// The system would not let it be read.
+    #[error("cannot be read: {0}")]
+    Io(#[from] io::Error),
+    /// Nothing in it.
+    #[error("the file is empty; expected the number of discs")]
+    Empty,
+    /// Bytes that are no text.
+    #[error("not UTF-8 text")]
+    NotText,
+    /// No number where a frame begins.
+    #[error("expected the number of discs, which begins a frame, found `{found}`{}", after(*.previous))]
+    Count {
+        /// What stands there.
+        found: String,
+        /// Line of the count of the frame before, which may be too small.
+        previous: Option<usize>,
+    },
+    /// The file ends within a frame.
+    #[error("truncated: the file ends after {found} of the {promised} discs that line {line} promises{}", whole(*.frames))]
+    Truncated {
+        /// Discs of the last frame that are there.
+        found: usize,
+        /// Discs that it should have.
+        promised: usize,
+        /// Line that promises them.
+        line: usize,
+        /// Frames before it, which are whole.
+        frames: usize,
+    },
+    /// A quote or bracket that does not close.
+    #[error("`{0}` is never closed")]
+    Unclosed(char),
+    /// No such key in the comment line.
+    #[error("the comment line has no `{key}`; expected {expected}")]
+    MissingKey {
+        /// The key.
+        key: &'static str,
+        /// What should stand there.
+        expected: &'static str,
+    },
+    /// A key given twice.
+    #[error("`{0}` is given twice")]
+    RepeatedKey(String),
+    /// A value that the key cannot have.
+    #[error("{key} is `{found}`; expected {expected}")]
+    Value {
+        /// The key.
+        key: &'static str,
+        /// What stands there.
+        found: String,
+        /// What should stand there.
+        expected: &'static str,
+    },
+    /// A column that `Properties` does not name.
+    #[error("Properties has no column `{0}`")]
+    MissingColumn(&'static str),
+    /// A column named twice.
+    #[error("Properties names the column `{0}` twice")]
+    RepeatedColumn(String),
+    /// A column of another type or width.
+    #[error("Properties has `{found}`; expected `{expected}`")]
+    ColumnShape {
+        /// What stands there.
+        found: String,
+        /// What should stand there.
+        expected: &'static str,
+    },
+    /// A row with too few or too many fields.
+    #[error("the row has {found} fields; Properties asks for {expected}")]
+    Fields {
+        /// Fields of the row.
+        found: usize,
+        /// Fields that `Properties` adds up to.
+        expected: usize,
+    },
+    /// A field that is no number.
+    #[error("{column} is `{found}`; expected a number")]
+    Number {
+        /// Name of the column.
+        column: &'static str,
+        /// What stands there.
+        found: String,
+    },
+    /// Infinite, or no number at all.
+    #[error("{column} is `{found}`; expected a finite number")]
+    NotFinite {
+        /// Name of the column.
+        column: &'static str,
+        /// What stands there.
+        found: String,
+    },
+    /// A radius or mass that is zero or negative.
+    #[error("{column} is {value}; expected a number greater than 0")]
+    NotPositive {
+        /// Name of the column.
+        column: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// A component that a disc in the plane does not have.
+    #[error("component {component} of {column} is {value}; discs lie in the plane, so expected 0")]
+    OutOfPlane {
+        /// Name of the column.
+        column: &'static str,
+        /// `x`, `y` or `z`.
+        component: char,
+        /// The number.
+        value: f64,
+    },
+    /// An id that is no positive whole number of 32 bits.
+    #[error("id is `{0}`; expected a whole number from 1 to 4294967295")]
+    Id(String),
+    /// An id that another disc has.
+    #[error("id {id} is taken by the disc in line {line}")]
+    RepeatedId {
+        /// The id.
+        id: u32,
+        /// The line that has it first.
+        line: usize,
+    },
+    /// Neither a grain nor a wall disc.
+    #[error("unknown species `{0}`; expected `Si` (a grain) or `W` (a wall disc)")]
+    Species(String),
+}
+
+fn after(previous: Option<usize>) -> String {
+    previous.map_or_else(String::new, |line| format!("; does line {line} promise too few?"))
+}
+
+fn whole(frames: usize) -> String {
+    match frames {
+        0 => String::new(),
+        1 => "; the frame before is whole".to_owned(),
+        _ => format!("; the {frames} frames before are whole"),
+    }
+}
+
+impl Mistake {
+    pub(super) fn in_line(line: usize, reason: Reason) -> Mistake {
+        Mistake { line: Some(line), column: None, reason }
+    }
+
+    /// At a byte of a line's text.
+    pub(super) fn at(line: usize, text: &str, byte: usize, reason: Reason) -> Mistake {
+        let column = text.get(..byte).map(|before| before.chars().count() + 1);
+        Mistake { line: Some(line), column, reason }
+    }
+
+    pub(super) fn reading(cause: io::Error) -> Mistake {
+        Mistake { line: None, column: None, reason: cause.into() }
+    }
+}
+
+impl From<Mistake> for Mistakes {
+    fn from(mistake: Mistake) -> Self {
+        Mistakes { first: vec![mistake], more: 0 }
+    }
+}
+
+/// Mistakes as they are found; keeps the first ones and counts the rest.
+#[derive(Debug, Default)]
+pub(super) struct Mistakes {
+    first: Vec<Mistake>,
+    more: usize,
+}
+
+impl Mistakes {
+    const KEPT: usize = 20;
+
+    pub(super) fn add(&mut self, mistake: Mistake) {
+        if self.first.len() < Mistakes::KEPT {
+            self.first.push(mistake);
+        } else {
+            self.more += 1;
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.first.is_empty()
+    }
+
+    pub(super) fn of_file(self, file: &str) -> ReadError {
+        ReadError { file: file.to_owned(), mistakes: self.first, more: self.more }
+    }
+}
+
+impl ReadError {
+    /// What the system said, if the file could not be read at all: a matter of input and output, not of content.
+    pub fn system(&self) -> Option<&io::Error> {
+        self.mistakes.iter().find_map(|mistake| match &mistake.reason {
+            Reason::Io(cause) => Some(cause),
+            _ => None,
+        })
+    }
+}
+
+/// `line:column: ` as far as known.
+impl fmt::Display for Mistake {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        for number in [self.line, self.column].into_iter().flatten() {
+            write!(f, "{number}:")?;
+        }
+        write!(f, " {}", self.reason)
+    }
+}
+
+fn listing(error: &ReadError) -> String {
+    let mut lines: Vec<String> =
+        error.mistakes.iter().map(|mistake| format!("{}:{mistake}", error.file)).collect();
+    if error.more > 0 {
+        lines.push(format!("{}: {} more mistakes", error.file, error.more));
+    }
+    lines.join("\n")
+}

@@ -1,0 +1,221 @@
+//! The comment line: `key=value` pairs, and the columns that `Properties` names.
+
+use super::error::{Mistake, Mistakes, Reason};
+use super::rows::Layout;
+
+/// What a comment line says.
+pub(super) struct Header {
+    pub(super) cell: [f64; 2],
+    pub(super) origin: [f64; 2],
+    pub(super) periodic: [bool; 2],
+    pub(super) time: f64,
+    pub(super) step: u64,
+    pub(super) seed: Option<u64>,
+    pub(super) layout: Layout,
+}
+
+/// A key and its value, with the byte where the key begins.
+struct Entry {
+    key: String,
+    value: String,
+    byte: usize,
+}
+
+impl Entry {
+    fn wrong(&self, key: &'static str, expected: &'static str) -> Reason {
+        Reason::Value { key, found: self.value.clone(), expected }
+    }
+
+    /// Numbers in any of the brackets in use.
+    fn numbers(&self, key: &'static str, expected: &'static str) -> Result<Vec<f64>, Reason> {
+        let parsed: Option<Vec<f64>> =
+            self.words().map(|word| word.parse().ok().filter(|number: &f64| number.is_finite())).collect();
+        parsed.ok_or_else(|| self.wrong(key, expected))
+    }
+
+    fn words(&self) -> impl Iterator<Item = &str> {
+        self.value.split(|c: char| c.is_whitespace() || ",[]{}()".contains(c)).filter(|word| !word.is_empty())
+    }
+}
+
+/// Reads a comment line; reports every key that is wrong.
+pub(super) fn parse(text: &str, line: usize) -> Result<Header, Mistakes> {
+    let mut mistakes = Mistakes::default();
+    let entries = entries(text).map_err(|(byte, reason)| Mistake::at(line, text, byte, reason))?;
+    for (i, entry) in entries.iter().enumerate() {
+        if KEYS.contains(&entry.key.as_str()) && entries[..i].iter().any(|other| other.key == entry.key) {
+            mistakes.add(Mistake::at(line, text, entry.byte, Reason::RepeatedKey(entry.key.clone())));
+        }
+    }
+    let find = |key: &str| entries.iter().find(|entry| entry.key == key);
+    let mut keep = |entry: &Entry, reason| mistakes.add(Mistake::at(line, text, entry.byte, reason));
+
+    let mut missing = Vec::new();
+    let mut cell = [0.0; 2];
+    match find("lattice") {
+        None => missing.push(Reason::MissingKey { key: "Lattice", expected: LATTICE }),
+        Some(entry) => match lattice(entry) {
+            Ok(sides) => cell = sides,
+            Err(reason) => keep(entry, reason),
+        },
+    }
+    let mut layout = None;
+    match find("properties") {
+        None => missing.push(Reason::MissingKey { key: "Properties", expected: PROPERTIES }),
+        Some(entry) => match Layout::parse(&entry.value) {
+            Ok(found) => layout = Some(found),
+            Err(reasons) => reasons.into_iter().for_each(|reason| keep(entry, reason)),
+        },
+    }
+    let mut origin = [0.0; 2];
+    if let Some(entry) = find("origin") {
+        match entry.numbers("Origin", ORIGIN).as_deref() {
+            Ok(&[x, y, _]) => origin = [x, y],
+            _ => keep(entry, entry.wrong("Origin", ORIGIN)),
+        }
+    }
+    let mut periodic = [true; 2];
+    if let Some(entry) = find("pbc") {
+        match boundaries(entry) {
+            Some(axes) => periodic = axes,
+            None => keep(entry, entry.wrong("pbc", BOUNDARIES)),
+        }
+    }
+    let mut time = 0.0;
+    if let Some(entry) = find("time") {
+        match entry.numbers("Time", "a finite number").as_deref() {
+            Ok(&[number]) => time = number,
+            _ => keep(entry, entry.wrong("Time", "a finite number")),
+        }
+    }
+    let mut whole = |key, label| {
+        let entry = find(key)?;
+        let number = entry.value.trim().parse::<u64>();
+        if number.is_err() {
+            keep(entry, entry.wrong(label, "a whole number from 0"));
+        }
+        number.ok()
+    };
+    let step = whole("step", "step").unwrap_or(0);
+    let seed = whole("seed", "seed");
+    missing.into_iter().for_each(|reason| mistakes.add(Mistake::in_line(line, reason)));
+    match layout {
+        Some(layout) if mistakes.is_empty() => {
+            Ok(Header { cell, origin, periodic, time, step, seed, layout })
+        }
+        _ => Err(mistakes),
+    }
+}
+
+const KEYS: [&str; 7] = ["lattice", "properties", "origin", "pbc", "time", "step", "seed"];
+const LATTICE: &str = "\"Lx 0 0 0 Ly 0 0 0 Lz\" with positive sides";
+const PROPERTIES: &str = super::PROPERTIES;
+const ORIGIN: &str = "\"x y z\"";
+const BOUNDARIES: &str = "\"T F F\", T where the box repeats along x, y, z";
+
+/// Sides of a rectangular box.
+fn lattice(entry: &Entry) -> Result<[f64; 2], Reason> {
+    match entry.numbers("Lattice", LATTICE)?[..] {
+        [x, 0.0, 0.0, 0.0, y, 0.0, 0.0, 0.0, _] if x > 0.0 && y > 0.0 => Ok([x, y]),
+        _ => Err(entry.wrong("Lattice", LATTICE)),
+    }
+}
+
+fn boundaries(entry: &Entry) -> Option<[bool; 2]> {
+    let axes: Option<Vec<bool>> = entry
+        .words()
+        .map(|word| match word.to_ascii_lowercase().as_str() {
+            "t" | "true" | "1" => Some(true),
+            "f" | "false" | "0" => Some(false),
+            _ => None,
+        })
+        .collect();
+    match axes?[..] {
+        [x, y, _] => Some([x, y]),
+        _ => None,
+    }
+}
+
+/// Cuts a comment line into its entries, keys in lower case; a key without a value has an empty one.
+fn entries(text: &str) -> Result<Vec<Entry>, (usize, Reason)> {
+    let mut rest = Cursor { text, byte: 0 };
+    let mut entries = Vec::new();
+    loop {
+        rest.skip_blanks();
+        let byte = rest.byte;
+        if rest.peek().is_none() {
+            return Ok(entries);
+        }
+        let key = rest.word(true)?.to_lowercase();
+        rest.skip_blanks();
+        let value = if rest.peek() == Some('=') {
+            rest.next();
+            rest.skip_blanks();
+            rest.word(false)?
+        } else {
+            String::new()
+        };
+        entries.push(Entry { key, value, byte });
+    }
+}
+
+struct Cursor<'a> {
+    text: &'a str,
+    byte: usize,
+}
+
+impl Cursor<'_> {
+    fn peek(&self) -> Option<char> {
+        self.text[self.byte..].chars().next()
+    }
+
+    fn next(&mut self) -> Option<char> {
+        let c = self.peek()?;
+        self.byte += c.len_utf8();
+        Some(c)
+    }
+
+    fn skip_blanks(&mut self) {
+        while self.peek().is_some_and(char::is_whitespace) {
+            self.next();
+        }
+    }
+
+    /// A word in quotes or brackets (which go), or up to the next blank; a key ends at `=` too.
+    fn word(&mut self, key: bool) -> Result<String, (usize, Reason)> {
+        let start = self.byte;
+        let mut word = String::new();
+        let closing = match self.peek() {
+            Some(quote @ ('"' | '\'')) => Some((quote, quote)),
+            Some('[') => Some(('[', ']')),
+            Some('{') => Some(('{', '}')),
+            _ => None,
+        };
+        let Some((open, close)) = closing else {
+            while let Some(c) = self.peek().filter(|&c| !(c.is_whitespace() || key && c == '=')) {
+                word.push(c);
+                self.next();
+            }
+            return Ok(word);
+        };
+        self.next();
+        let mut depth = 1;
+        while let Some(c) = self.next() {
+            match c {
+                '\\' if open == close => word.extend(self.next()),
+                _ if c == close => {
+                    depth -= 1;
+                    if depth == 0 {
+                        return Ok(word);
+                    }
+                    word.push(c);
+                }
+                _ => {
+                    depth += usize::from(c == open);
+                    word.push(c);
+                }
+            }
+        }
+        Err((start, Reason::Unclosed(open)))
+    }
+}

@@ -1,0 +1,51 @@
+//! Extended XYZ: one text frame after the other, as OVITO, ASE and MDAnalysis read it.
+//!
+//! A frame is the number of discs, a comment line of `key=value`, and a row for each disc:
+//!
+//! ```text
+//! 1
+//! Lattice="10.0 0.0 0.0 0.0 8.0 0.0 0.0 0.0 1.0" Origin="0.0 0.0 -0.5" pbc="T F F" Properties=… Time=0.5 step=100 seed=1
+//! Si 0.5 0.5 0.0 1 0.0 -0.1 0.0 0.5 1.0 0.0 0.0 0.25
+//! ```
+//!
+//! Species `Si` is a grain, `W` a wall disc. z is 0; the angular velocity stands in the z component of `omega`. The
+//! angle of a disc is not in the format.
+
+mod error;
+mod header;
+mod reader;
+mod rows;
+mod trajectory;
+mod writer;
+
+pub use error::{Mistake, ReadError, Reason};
+pub use reader::{Frames, Which, read};
+pub use trajectory::{Trajectory, TrajectoryError};
+pub use writer::write;
+
+use crate::particles::Particles;
+
+/// The columns of a frame as written.
+pub const PROPERTIES: &str = "species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
+
+/// Extent of the box in z (length), of no meaning in the plane: from −1/2 to 1/2, as LAMMPS wants it for two dimensions.
+pub(super) const DEPTH: [f64; 2] = [-0.5, 0.5];
+
+/// Discs in their box at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// The discs.
+    pub particles: Particles,
+    /// Sides of the box (length).
+    pub cell: [f64; 2],
+    /// Lower left corner of the box (length).
+    pub origin: [f64; 2],
+    /// Along which axes the box repeats.
+    pub periodic: [bool; 2],
+    /// Time (time).
+    pub time: f64,
+    /// Steps done.
+    pub step: u64,
+    /// Seed of the random numbers that made the scene.
+    pub seed: Option<u64>,
+}

@@ -1,0 +1,228 @@
+//! Reading frames, one after the other.
+
+use super::error::{Mistake, Mistakes, ReadError, Reason};
+use super::{Frame, header};
+use crate::particles::Particles;
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+/// Which frame of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Which {
+    /// The first; what follows it is looked at only to see that the count is right.
+    First,
+    /// The last; those before it are passed over unread.
+    #[default]
+    Last,
+}
+
+/// Reads one frame of a file.
+///
+/// # Errors
+/// All mistakes of the frame, with their lines; the first place where the file is not cut into frames.
+pub fn read(path: impl AsRef<Path>, which: Which) -> Result<Frame, ReadError> {
+    let mut frames = Frames::open(path)?;
+    match which {
+        Which::First => {
+            let frame = frames.parsed_next().map_err(|mistakes| mistakes.of_file(&frames.name))?;
+            frames.raw.check_boundary().map_err(|mistake| Mistakes::from(mistake).of_file(&frames.name))?;
+            frame
+        }
+        Which::Last => frames.last_frame().map_err(|mistakes| mistakes.of_file(&frames.name))?,
+    }
+    .ok_or_else(|| Mistakes::from(Mistake::in_line(1, Reason::Empty)).of_file(&frames.name))
+}
+
+/// The frames of a text, one after the other; ends after the first that is wrong.
+pub struct Frames<R> {
+    name: String,
+    raw: RawFrames<R>,
+    failed: bool,
+}
+
+impl Frames<BufReader<File>> {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// If the system does not let it be read.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+        let name = path.as_ref().display().to_string();
+        match File::open(path) {
+            Ok(file) => Ok(Frames::new(BufReader::new(file), name)),
+            Err(cause) => Err(Mistakes::from(Mistake::reading(cause)).of_file(&name)),
+        }
+    }
+}
+
+impl<R: BufRead> Frames<R> {
+    /// Reads from anything; errors call it by the name.
+    pub fn new(reader: R, name: impl Into<String>) -> Self {
+        Frames { name: name.into(), raw: RawFrames::new(reader), failed: false }
+    }
+
+    fn parsed_next(&mut self) -> Result<Option<Frame>, Mistakes> {
+        self.raw.next_frame()?.map(|raw| parse(&raw)).transpose()
+    }
+
+    fn last_frame(&mut self) -> Result<Option<Frame>, Mistakes> {
+        let mut last = None;
+        while let Some(raw) = self.raw.next_frame()? {
+            last = Some(raw);
+        }
+        last.map(|raw| parse(&raw)).transpose()
+    }
+}
+
+impl<R: BufRead> Iterator for Frames<R> {
+    type Item = Result<Frame, ReadError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.failed {
+            return None;
+        }
+        let frame = self.parsed_next().map_err(|mistakes| mistakes.of_file(&self.name));
+        self.failed = frame.is_err();
+        frame.transpose()
+    }
+}
+
+/// A frame cut out of a file, not yet read.
+pub(super) struct RawFrame {
+    /// Line of the count, from 1.
+    line: usize,
+    count: usize,
+    /// Comment line and rows.
+    text: Vec<u8>,
+    /// The byte of the file after it.
+    pub(super) end: u64,
+    /// Whether its last line has an end.
+    pub(super) ended: bool,
+}
+
+impl RawFrame {
+    /// What the comment line says.
+    pub(super) fn header(&self) -> Result<header::Header, Mistakes> {
+        let comment = self.text.split(|&byte| byte == b'\n').next().unwrap_or_default();
+        header::parse(utf8(comment, self.line + 1)?, self.line + 1)
+    }
+}
+
+/// Cuts a text into frames.
+pub(super) struct RawFrames<R> {
+    reader: R,
+    /// Lines read.
+    line: usize,
+    /// Bytes read.
+    byte: u64,
+    /// Line of the count of the frame before.
+    previous: Option<usize>,
+    /// Frames read.
+    frames: usize,
+    /// A count line read ahead.
+    ahead: Option<Vec<u8>>,
+}
+
+impl<R: BufRead> RawFrames<R> {
+    pub(super) fn new(reader: R) -> Self {
+        RawFrames { reader, line: 0, byte: 0, previous: None, frames: 0, ahead: None }
+    }
+
+    /// The next frame, none after the last; blank lines between frames are passed over.
+    pub(super) fn next_frame(&mut self) -> Result<Option<RawFrame>, Mistake> {
+        let Some(count) = self.count()? else { return Ok(None) };
+        let line = self.line;
+        let mut text = Vec::new();
+        for row in 0..=count {
+            if self.append_line(&mut text)? == 0 {
+                let found = row.saturating_sub(1);
+                let reason = Reason::Truncated { found, promised: count, line, frames: self.frames };
+                return Err(Mistake::in_line(self.line, reason));
+            }
+        }
+        self.previous = Some(line);
+        self.frames += 1;
+        let ended = text.last() == Some(&b'\n');
+        Ok(Some(RawFrame { line, count, text, end: self.byte, ended }))
+    }
+
+    /// That a frame, or nothing, begins here.
+    fn check_boundary(&mut self) -> Result<(), Mistake> {
+        let mut line = Vec::new();
+        self.count_line(&mut line)?;
+        self.parse_count(&line)?;
+        self.ahead = Some(line);
+        Ok(())
+    }
+
+    fn count(&mut self) -> Result<Option<usize>, Mistake> {
+        let mut line = self.ahead.take().unwrap_or_default();
+        if line.is_empty() {
+            self.count_line(&mut line)?;
+        }
+        self.parse_count(&line)
+    }
+
+    /// The next line that is not blank; stays empty at the end.
+    fn count_line(&mut self, line: &mut Vec<u8>) -> Result<(), Mistake> {
+        while line.trim_ascii().is_empty() {
+            line.clear();
+            if self.append_line(line)? == 0 {
+                return Ok(());
+            }
+        }
+        Ok(())
+    }
+
+    fn parse_count(&self, line: &[u8]) -> Result<Option<usize>, Mistake> {
+        if line.is_empty() {
+            return Ok(None);
+        }
+        let text = utf8(line, self.line)?.trim();
+        text.parse().map(Some).map_err(|_| {
+            let found = text.chars().take(60).collect();
+            Mistake::in_line(self.line, Reason::Count { found, previous: self.previous })
+        })
+    }
+
+    fn append_line(&mut self, text: &mut Vec<u8>) -> Result<usize, Mistake> {
+        let bytes = self.reader.read_until(b'\n', text).map_err(Mistake::reading)?;
+        self.line += usize::from(bytes > 0);
+        self.byte += bytes as u64;
+        Ok(bytes)
+    }
+}
+
+fn utf8(bytes: &[u8], line: usize) -> Result<&str, Mistake> {
+    std::str::from_utf8(bytes).map_err(|error| {
+        let before = String::from_utf8_lossy(&bytes[..error.valid_up_to()]).chars().count();
+        Mistake { line: Some(line), column: Some(before + 1), reason: Reason::NotText }
+    })
+}
+
+fn parse(raw: &RawFrame) -> Result<Frame, Mistakes> {
+    let header = raw.header()?;
+    let mut mistakes = Mistakes::default();
+    let mut discs = Vec::new();
+    let mut lines_of_ids = HashMap::new();
+    let mut fields = Vec::new();
+    let rows = raw.text.split(|&byte| byte == b'\n').skip(1).take(raw.count);
+    for (line, row) in (raw.line + 2..).zip(rows) {
+        match utf8(row, line).and_then(|row| header.layout.disc(row, line, &mut fields)) {
+            Err(mistake) => mistakes.add(mistake),
+            Ok(disc) => {
+                let first = *lines_of_ids.entry(disc.id).or_insert(line);
+                if first != line {
+                    mistakes.add(Mistake::in_line(line, Reason::RepeatedId { id: disc.id, line: first }));
+                }
+                discs.push(disc);
+            }
+        }
+    }
+    if !mistakes.is_empty() {
+        return Err(mistakes);
+    }
+    let header::Header { cell, origin, periodic, time, step, seed, .. } = header;
+    Ok(Frame { particles: Particles::new(discs), cell, origin, periodic, time, step, seed })
+}

@@ -1,0 +1,33 @@
+//! Writing a frame.
+
+use super::{DEPTH, Frame, PROPERTIES};
+use crate::particles::Kind;
+use std::io::{self, Write};
+
+/// Writes a frame, numbers in the shortest form that reads back to the same bits.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
+    let Frame { particles, cell: [lx, ly], origin: [x, y], periodic, time, step, seed } = frame;
+    let [px, py] = periodic.map(|yes| if yes { 'T' } else { 'F' });
+    let [bottom, top] = DEPTH;
+    writeln!(out, "{}", particles.len())?;
+    write!(out, "Lattice=\"{lx:?} 0.0 0.0 0.0 {ly:?} 0.0 0.0 0.0 {:?}\" ", top - bottom)?;
+    write!(out, "Origin=\"{x:?} {y:?} {bottom:?}\" pbc=\"{px} {py} F\" ")?;
+    write!(out, "Properties={PROPERTIES} Time={time:?} step={step}")?;
+    if let Some(seed) = seed {
+        write!(out, " seed={seed}")?;
+    }
+    writeln!(out)?;
+    for disc in particles.all() {
+        let species = match disc.kind {
+            Kind::Grain => "Si",
+            Kind::Wall => "W",
+        };
+        let ([x, y], [u, v]) = (disc.position, disc.velocity);
+        write!(out, "{species} {x:?} {y:?} 0.0 {} {u:?} {v:?} 0.0 ", disc.id)?;
+        writeln!(out, "{:?} {:?} 0.0 0.0 {:?}", disc.radius, disc.mass, disc.omega)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,76 @@
+//! LAMMPS files, to be opened by its users and their tools: a data file (`atom_style sphere`) and a text dump.
+//!
+//! Grains are of type 1, wall discs of type 2. The box reaches from −1/2 to 1/2 in z.
+
+use super::extxyz::{DEPTH, Frame};
+use crate::particles::Kind;
+use std::f64::consts::PI;
+use std::io::{self, Write};
+
+fn atom_type(kind: Kind) -> u8 {
+    match kind {
+        Kind::Grain => 1,
+        Kind::Wall => 2,
+    }
+}
+
+/// Lower and upper bounds of the box along x, y and z (length).
+fn bounds(frame: &Frame) -> [[f64; 2]; 3] {
+    let [x, y] = [0, 1].map(|axis| [frame.origin[axis], frame.origin[axis] + frame.cell[axis]]);
+    [x, y, DEPTH]
+}
+
+/// Writes a data file for `read_data`: `Atoms # sphere` with id, type, diameter, density and position, then
+/// `Velocities` with velocity and angular velocity.
+///
+/// The density is that of a ball, m / (4/3 π r³), because LAMMPS computes the mass of a sphere so in two
+/// dimensions too.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_data(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
+    let discs = frame.particles.all();
+    writeln!(out, "LAMMPS data file by stripmine, atom_style sphere, timestep = {}\n", frame.step)?;
+    writeln!(out, "{} atoms\n2 atom types\n", discs.len())?;
+    for (axis, [low, high]) in ['x', 'y', 'z'].into_iter().zip(bounds(frame)) {
+        writeln!(out, "{low:?} {high:?} {axis}lo {axis}hi")?;
+    }
+    if discs.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\nAtoms # sphere\n")?;
+    for disc in discs {
+        let density = disc.mass / (4.0 / 3.0 * PI * (disc.radius * disc.radius * disc.radius));
+        let ([x, y], diameter) = (disc.position, 2.0 * disc.radius);
+        writeln!(out, "{} {} {diameter:?} {density:?} {x:?} {y:?} 0.0", disc.id, atom_type(disc.kind))?;
+    }
+    writeln!(out, "\nVelocities\n")?;
+    for disc in discs {
+        let [u, v] = disc.velocity;
+        writeln!(out, "{} {u:?} {v:?} 0.0 0.0 0.0 {:?}", disc.id, disc.omega)?;
+    }
+    Ok(())
+}
+
+/// Writes a frame of a text dump with id, type, position, velocity, angular velocity, radius and mass; frames written
+/// one after the other are a trajectory.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_dump(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
+    let flag = |periodic| if periodic { "pp" } else { "ff" };
+    let [x, y] = frame.periodic.map(flag);
+    writeln!(out, "ITEM: TIMESTEP\n{}", frame.step)?;
+    writeln!(out, "ITEM: NUMBER OF ATOMS\n{}", frame.particles.len())?;
+    writeln!(out, "ITEM: BOX BOUNDS {x} {y} ff")?;
+    for [low, high] in bounds(frame) {
+        writeln!(out, "{low:?} {high:?}")?;
+    }
+    writeln!(out, "ITEM: ATOMS id type x y z vx vy vz omegaz radius mass")?;
+    for disc in frame.particles.all() {
+        let ([x, y], [u, v]) = (disc.position, disc.velocity);
+        write!(out, "{} {} {x:?} {y:?} 0.0 {u:?} {v:?} 0.0 ", disc.id, atom_type(disc.kind))?;
+        writeln!(out, "{:?} {:?} {:?}", disc.omega, disc.radius, disc.mass)?;
+    }
+    Ok(())
+}

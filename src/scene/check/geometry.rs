@@ -1,0 +1,268 @@
+//! The lattice that serves the discs: at most one centre a cell, and no contact beyond the mask.
+
+use super::super::Start;
+use super::super::error::{Reason, SceneError, Spot};
+use super::super::key_table::*;
+use super::super::keys::Key;
+use super::super::places::Document;
+use crate::domain::Domain;
+use stripmine_kernels::mask::Mask;
+use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
+
+/// The lattice of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Geometry {
+    /// Columns, rows, halo.
+    pub shape: LatticeShape,
+    /// Lower left corner and sides of a cell (length).
+    pub frame: Frame,
+    /// The neighbourhood.
+    pub mask: Mask,
+    /// Smallest and largest radius, walls included (length).
+    pub radii: [f64; 2],
+    /// What the side of a square cell may be at this mask (length): 2 R_max/h and d_min/√2.
+    pub edge_bounds: [f64; 2],
+    /// Discs for each cell.
+    pub occupancy: f64,
+}
+
+/// Rounding must not forbid what the bounds just allow.
+const SLACK: f64 = 1.0 + 1e-12;
+
+/// Counts on either side of the wanted one that are tried for each axis.
+const WINDOW: f64 = 64.0;
+
+/// What bounds the cells.
+#[derive(Clone, Copy)]
+struct Bounds {
+    half_width: u32,
+    /// 2 R_max/h: shorter sides let contacts escape the mask.
+    least: f64,
+    /// d_min: a longer diagonal lets two centres share a cell.
+    diagonal: f64,
+}
+
+impl Bounds {
+    fn new(half_width: u32, radii: [f64; 2], max_penetration: f64) -> Self {
+        let [smallest, largest] = radii;
+        Bounds {
+            half_width,
+            least: 2.0 * largest / f64::from(half_width),
+            diagonal: (1.0 - max_penetration) * 2.0 * smallest,
+        }
+    }
+
+    fn most(&self) -> f64 {
+        self.diagonal / std::f64::consts::SQRT_2
+    }
+
+    /// The longest side of a cell whose other side is as short as may be.
+    fn longest(&self) -> f64 {
+        (self.diagonal * self.diagonal - self.least * self.least).max(0.0).sqrt()
+    }
+}
+
+/// How many cells cover an axis, and how long they are.
+#[derive(Clone, Copy)]
+struct Cut {
+    count: f64,
+    edge: f64,
+}
+
+/// The cuts of an axis near the wanted edge that keep the bounds.
+fn cuts(side: f64, periodic: bool, bounds: &Bounds, wanted: f64) -> Vec<Cut> {
+    let fewest = (side / (bounds.longest() * SLACK)).ceil().max(1.0);
+    let (fewest, most) = if periodic {
+        let needed = f64::from(2 * bounds.half_width + 1);
+        (fewest.max(needed), (side / bounds.least * SLACK).floor())
+    } else {
+        (fewest, (side / bounds.least).ceil().max(1.0))
+    };
+    let target = (side / wanted).round();
+    let (from, to) = (fewest.max(target - WINDOW), most.min(target + WINDOW));
+    let counts = std::iter::successors(Some(from), |count| Some(count + 1.0)).take_while(move |n| *n <= to);
+    counts
+        .map(|count| {
+            // On an open side cells may reach beyond the box.
+            let edge = if periodic { side / count } else { (side / count).max(bounds.least) };
+            Cut { count, edge }
+        })
+        .collect()
+}
+
+/// Finds the lattice of a scene.
+///
+/// # Errors
+/// Every reason why there is none.
+pub(super) fn fit(
+    document: &Document,
+    domain: &Domain,
+    radii: [f64; 2],
+    discs: usize,
+) -> Result<Geometry, Vec<SceneError>> {
+    let scene = &document.scene;
+    let bounds = |half_width| Bounds::new(half_width, radii, scene.law.max_penetration);
+    let tries: Vec<Bounds> = match scene.method.mask {
+        Some(7) => vec![bounds(3)],
+        Some(_) => vec![bounds(2)],
+        None => vec![bounds(2), bounds(3)],
+    };
+    let roomy: Vec<Bounds> =
+        tries.iter().copied().filter(|bounds| bounds.least <= bounds.most() * SLACK).collect();
+    if roomy.is_empty() {
+        return Err(vec![ratio_error(document, radii)]);
+    }
+    let mut errors = Vec::new();
+    for bounds in &roomy {
+        match lattice(document, domain, bounds) {
+            Ok((shape, frame, mask)) => {
+                let occupancy = discs as f64 / shape.cells() as f64;
+                let edge_bounds = [bounds.least, bounds.most()];
+                return Ok(Geometry { shape, frame, mask, radii, edge_bounds, occupancy });
+            }
+            Err(more) if errors.is_empty() => errors = more,
+            Err(_) => {}
+        }
+    }
+    Err(errors)
+}
+
+fn lattice(
+    document: &Document,
+    domain: &Domain,
+    bounds: &Bounds,
+) -> Result<(LatticeShape, Frame, Mask), Vec<SceneError>> {
+    let asked = document.scene.method.cell_edge;
+    let wanted = asked.unwrap_or(bounds.most());
+    if wanted * SLACK < bounds.least || wanted > bounds.most() * SLACK {
+        let width = 2 * bounds.half_width + 1;
+        let (message, why) = if wanted < bounds.least {
+            let reach = f64::from(bounds.half_width) * wanted;
+            (
+                format!("`method.cell_edge` = {wanted} is too small: a {width}×{width} mask sees to {reach}"),
+                format!("but contacts reach to {}", f64::from(bounds.half_width) * bounds.least),
+            )
+        } else {
+            (
+                format!(
+                    "`method.cell_edge` = {wanted} is too large: the diagonal of a cell is {:.6}",
+                    wanted * std::f64::consts::SQRT_2
+                ),
+                format!("but centres may come as close as {:.6}", bounds.diagonal),
+            )
+        };
+        let error = document.spot(&CELL_EDGE).error(Reason::Geometry, format!("{message}, {why}"));
+        let range = format!("an edge from {} to {} (length)", bounds.least, bounds.most());
+        return Err(vec![error.expecting(range)]);
+    }
+    let axes = [0, 1].map(|axis| cuts(domain.sides[axis], domain.periodic[axis], bounds, wanted));
+    let short: Vec<SceneError> = (0..2)
+        .filter(|&axis| axes[axis].is_empty())
+        .map(|axis| short_side(document, domain, axis, bounds))
+        .collect();
+    if !short.is_empty() {
+        return Err(short);
+    }
+    // The fewest cells, or those nearest to the wanted edge; then the squarest.
+    let cost = |x: &Cut, y: &Cut| match asked {
+        None => (x.count * y.count, (x.edge - y.edge).abs()),
+        Some(_) => ((x.edge - wanted).abs() + (y.edge - wanted).abs(), x.count * y.count),
+    };
+    let square = bounds.diagonal * bounds.diagonal * SLACK;
+    let pairs = axes[0].iter().flat_map(|x| axes[1].iter().map(move |y| (x, y)));
+    let best = pairs
+        .filter(|(x, y)| x.edge * x.edge + y.edge * y.edge <= square)
+        .min_by(|a, b| cost(a.0, a.1).partial_cmp(&cost(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal));
+    let Some((x, y)) = best else {
+        let message = format!(
+            "no whole numbers of cells fill the sides {} and {}: a cell must have sides of at least {} and a diagonal \
+             of at most {}",
+            domain.sides[0], domain.sides[1], bounds.least, bounds.diagonal
+        );
+        let error = box_spot(document).error(Reason::Geometry, message);
+        return Err(vec![error.advising("make the box a little larger, or lower law.max_penetration")]);
+    };
+    let mask = Mask::square(bounds.half_width);
+    let shape = LatticeShape::new(x.count as usize, y.count as usize, &mask, domain.periodic)
+        .map_err(|cause| vec![box_spot(document).error(Reason::Geometry, cause.to_string())])?;
+    Ok((shape, Frame { origin: domain.origin, edge: [x.edge, y.edge] }, mask))
+}
+
+/// What decides how large the box is.
+fn box_spot(document: &Document) -> Spot {
+    match document.scene.start {
+        Start::Hexagonal { .. } => document.spot(&COUNT),
+        _ => document.spot(&SIDES),
+    }
+}
+
+fn short_side(document: &Document, domain: &Domain, axis: usize, bounds: &Bounds) -> SceneError {
+    let (side, name) = (domain.sides[axis], ["x", "y"][axis]);
+    let needed = 2 * bounds.half_width + 1;
+    let fit = (side / bounds.least * SLACK).floor();
+    let error = if domain.periodic[axis] && fit < f64::from(needed) {
+        let message = format!(
+            "the periodic side along {name} is {side} long and takes {fit} cells of at least {}; a {needed}×{needed} \
+             mask needs {needed} of them, or a pair would be met twice",
+            bounds.least
+        );
+        let least = f64::from(needed) * bounds.least;
+        box_spot(document).error(Reason::Geometry, message).expecting(format!("a side of at least {least}"))
+    } else {
+        let message = format!(
+            "no whole number of cells fills the side along {name}, {side} long: a cell must be {} to {} long",
+            bounds.least,
+            bounds.longest()
+        );
+        box_spot(document).error(Reason::Geometry, message)
+    };
+    error.advising("make the box larger, or the discs smaller")
+}
+
+/// The radii differ too much for the masks there are, or for the one asked for.
+fn ratio_error(document: &Document, radii: [f64; 2]) -> SceneError {
+    let scene = &document.scene;
+    let [smallest, largest] = radii;
+    let penetration = scene.law.max_penetration;
+    // 2 R_max/h ≤ (1 − p)·2 R_min/√2.
+    let limit = |half_width: f64| half_width * (1.0 - penetration) / std::f64::consts::SQRT_2;
+    let ratio = largest / smallest;
+    let [five, seven] = [limit(2.0), limit(3.0)];
+    let said = format!("the largest radius, {largest}, is {ratio:.4} times the smallest, {smallest}");
+    let error = match scene.method.mask {
+        Some(7) | None => ratio_spot(document).error(
+            Reason::Geometry,
+            format!(
+                "{said}; at law.max_penetration = {penetration} a 7×7 mask allows {seven:.4}, 5×5 {five:.4}"
+            ),
+        ),
+        Some(_) => document.spot(&MASK).error(
+            Reason::Geometry,
+            format!("{said}; at law.max_penetration = {penetration} a 5×5 mask allows {five:.4}"),
+        ),
+    };
+    let help = if scene.method.mask == Some(5) && ratio <= seven {
+        format!("use mask = 7, which allows {seven:.4}")
+    } else if ratio <= limit(3.0) / (1.0 - penetration) {
+        format!("bring the radii closer together, or lower law.max_penetration below {:.4}", {
+            1.0 - ratio * std::f64::consts::SQRT_2 / 3.0
+        })
+    } else {
+        "bring the radii closer together".to_owned()
+    };
+    error.expecting(format!("a ratio of at most {seven:.4}")).advising(help)
+}
+
+fn ratio_spot(document: &Document) -> Spot {
+    let keys: &[&Key] = match &document.scene.start {
+        Start::File(_) => &[&FILE],
+        Start::List(list) if list.wall_positions.is_empty() => &[&RADII, &RADIUS],
+        Start::Random { .. } | Start::Hexagonal { .. } => &[&RADIUS_CUT, &RADIUS_SPREAD, &RADIUS],
+        Start::Pipe { grains, .. } | Start::Box { grains, .. } if grains.cut > 0.2 => {
+            &[&RADIUS_CUT, &WALL_RADIUS, &RADIUS]
+        }
+        _ => &[&WALL_RADIUS, &RADII, &RADIUS_CUT, &RADIUS],
+    };
+    let given = keys.iter().find(|key| document.gives(key)).unwrap_or(&keys[0]);
+    document.spot(given)
+}

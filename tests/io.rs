@@ -1,0 +1,61 @@
+//! Files in and out: what is written is read to the same bits, and nothing else is read at all.
+
+#[path = "io/bad_frames.rs"]
+mod bad_frames;
+#[path = "io/checkpoint.rs"]
+mod checkpoint;
+#[path = "io/corrupt_checkpoint.rs"]
+mod corrupt_checkpoint;
+#[path = "io/frames.rs"]
+mod frames;
+#[path = "io/growing_files.rs"]
+mod growing_files;
+#[path = "io/lammps.rs"]
+mod lammps;
+
+use stripmine::io::extxyz::{Frame, write};
+use stripmine::particles::{Kind, Particle, Particles};
+
+/// A grain and a wall disc, of numbers that are hard to print.
+fn frame(step: u64) -> Frame {
+    let grain = Particle {
+        id: 7,
+        kind: Kind::Grain,
+        position: [0.1 + 0.2, -0.0],
+        velocity: [5e-324, -f64::MAX],
+        angle: 0.0,
+        omega: -1.0 / 3.0,
+        radius: 0.5,
+        mass: 1e-7,
+    };
+    let wall = Particle { id: u32::MAX, kind: Kind::Wall, position: [1e300, 2.0], mass: 1e16, ..grain };
+    Frame {
+        particles: Particles::new(vec![grain, wall]),
+        cell: [10.0 / 3.0, 8.0],
+        origin: [-1.5, 0.1],
+        periodic: [true, false],
+        time: 0.1 * step as f64,
+        step,
+        seed: Some(u64::MAX),
+    }
+}
+
+fn text(frame: &Frame) -> String {
+    let mut bytes = Vec::new();
+    write(frame, &mut bytes).unwrap();
+    String::from_utf8(bytes).unwrap()
+}
+
+/// Random bytes for damage: the sequence is the same in every run.
+struct Random(u64);
+
+impl Random {
+    /// Below `limit`.
+    fn below(&mut self, limit: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) % limit as u64) as usize
+    }
+}
