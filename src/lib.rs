@@ -14,5 +14,6 @@ pub mod observe;
 pub mod particles;
 pub mod placement;
 pub mod report;
+pub mod run;
 pub mod scene;
 pub mod study;

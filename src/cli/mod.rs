@@ -2,10 +2,12 @@
 
 mod listing;
 mod reproduce;
+mod run;
 mod scene;
 mod scene_choice;
 mod table;
 
+use crate::run::RunError;
 use clap::{Args, Parser, Subcommand};
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
@@ -30,6 +32,9 @@ struct Common {
     /// Nothing on standard error but errors
     #[arg(long, global = true)]
     quiet: bool,
+    /// Threads; all cores by default
+    #[arg(long, global = true, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
 }
 
 #[derive(Subcommand)]
@@ -38,6 +43,7 @@ enum Verb {
     Table(table::TableVerb),
     Listing(listing::ListingVerb),
     Scene(scene::SceneVerb),
+    Run(run::RunVerb),
 }
 
 /// Why a verb did not come to its end; each kind has its exit code.
@@ -52,6 +58,17 @@ pub(crate) enum Failure {
     /// A bad scene: exit code 3.
     #[error(transparent)]
     Scene(#[from] crate::scene::SceneErrors),
+    /// A run that did not come to its end: the exit code is that of the reason.
+    #[error(transparent)]
+    Run(#[from] crate::run::RunError),
+    /// Interrupted or terminated: exit code 130.
+    #[error("interrupted at step {step}; a checkpoint is written, go on with --resume --out {}", folder.display())]
+    Interrupted {
+        /// Steps done.
+        step: u64,
+        /// The folder of the run.
+        folder: std::path::PathBuf,
+    },
     /// Reading or writing: exit code 5.
     #[error("{what}: {cause}")]
     InputOutput {
@@ -74,6 +91,15 @@ impl Failure {
             Failure::InputOutput { cause, .. } if cause.kind() == ErrorKind::BrokenPipe => 0,
             Failure::Usage(_) | Failure::Machine(_) => 2,
             Failure::Scene(_) => 3,
+            Failure::Interrupted { .. } => 130,
+            Failure::Run(error) => match error {
+                RunError::Exists(_) | RunError::NothingToResume(_) | RunError::OtherScene { .. } => 2,
+                RunError::Scene(_) => 3,
+                RunError::Physics { .. } | RunError::Start(_) => 4,
+                RunError::Checkpoint(error) if error.is_corrupt() => 6,
+                RunError::Foreign { .. } => 6,
+                _ => 5,
+            },
             Failure::InputOutput { .. } => 5,
         }
     }
@@ -82,11 +108,17 @@ impl Failure {
 /// Runs the command with its arguments, the first of which is its name.
 pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     let CommandLine { verb, common } = CommandLine::parse_from(arguments);
+    // Without an answer the default pool has a thread for each core.
+    let threads = common.threads.map_or(0, usize::from);
+    if let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global() {
+        eprintln!("warning: {error}");
+    }
     let outcome = match verb {
         Verb::Reproduce(verb) => verb.run(&common),
         Verb::Table(verb) => verb.run(&common),
         Verb::Listing(verb) => verb.run(&common),
         Verb::Scene(verb) => verb.run(&common),
+        Verb::Run(verb) => verb.run(&common),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

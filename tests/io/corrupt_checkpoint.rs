@@ -40,7 +40,7 @@ fn sections(bytes: &[u8]) -> Vec<usize> {
 fn with_right_checksums(mut bytes: Vec<u8>, starts: &[usize]) -> Vec<u8> {
     let mut hasher = crc32fast::Hasher::new();
     let mut from = 0;
-    for end in [&starts[..], &[bytes.len()]].concat() {
+    for end in [starts, &[bytes.len()]].concat() {
         hasher.update(&bytes[from..end - 4]);
         bytes[end - 4..end].copy_from_slice(&hasher.clone().finalize().to_le_bytes());
         from = end;

@@ -1,0 +1,87 @@
+//! `stripmine run`: one simulation into a folder.
+
+use super::{Common, Failure, print, print_json};
+use crate::run::{Ending, Existing, Summary, run};
+use crate::scene::Document;
+use clap::Args;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// One simulation: observables, trajectory, summary and checkpoints in a folder
+#[derive(Args)]
+pub(super) struct RunVerb {
+    /// A preset's name, or a scene file
+    scene: String,
+    /// Overrides a value; may be given several times
+    #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
+    overrides: Vec<String>,
+    /// Folder for the results; the scene's name with `.run` by default
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Go on with the run in the folder
+    #[arg(long, conflicts_with = "overwrite")]
+    resume: bool,
+    /// Begin anew where the folder holds a run
+    #[arg(long)]
+    overwrite: bool,
+}
+
+impl RunVerb {
+    pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
+        let document = Document::load(&self.scene, &self.overrides)?;
+        let folder = self.out.clone().unwrap_or_else(|| {
+            let stem = Path::new(&self.scene).file_stem().unwrap_or_default();
+            PathBuf::from(format!("{}.run", stem.to_string_lossy()))
+        });
+        let existing = match (self.resume, self.overwrite) {
+            (true, _) => Existing::Resume,
+            (_, true) => Existing::Overwrite,
+            _ => Existing::Refuse,
+        };
+        let interrupted = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&interrupted);
+        ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
+            .map_err(|cause| Failure::writing("the handler of interruptions")(std::io::Error::other(cause)))?;
+        let bar = progress_bar(common);
+        let ending = run(document, &folder, existing, &interrupted, |step, steps| {
+            bar.set_length(steps);
+            bar.set_position(step);
+        });
+        bar.finish_and_clear();
+        match ending? {
+            Ending::Done(summary) if common.json => print_json(&summary),
+            Ending::Done(summary) => {
+                if !common.quiet {
+                    summary.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+                }
+                print(&text(&summary, &folder))
+            }
+            Ending::Interrupted { step } => Err(Failure::Interrupted { step, folder }),
+        }
+    }
+}
+
+/// Progress with ETA on a terminal, nothing elsewhere.
+fn progress_bar(common: &Common) -> ProgressBar {
+    let target = if common.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let bar = ProgressBar::with_draw_target(Some(0), target);
+    let style = ProgressStyle::with_template("{wide_bar} step {pos}/{len} [{elapsed}, ETA {eta}]");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}
+
+fn text(summary: &Summary, folder: &Path) -> String {
+    let Summary { discs: [grains, walls], lattice: [columns, rows], steps, seconds, last, .. } = summary;
+    let mut text = format!(
+        "{grains} grains and {walls} wall discs on {columns}×{rows} cells, occupancy {:.3}\n{steps} steps in {seconds:.2} \
+         s; time {:.6}, temperature {:.4e}, flow {:.4e}, contacts {}, deepest penetration {:.4}\n",
+        summary.occupancy, last.time, last.temperature, last.flow, last.contacts, last.deepest_penetration
+    );
+    for reason in &summary.left_out {
+        text.push_str(&format!("left out: {reason}\n"));
+    }
+    text.push_str(&format!("results in {}\n", folder.display()));
+    text
+}

@@ -1,0 +1,75 @@
+//! From a checked scene to the method that runs it.
+
+use crate::method::lattice_md::{
+    Contacts, Discs, GearValues, LatticeMd, ListOptions, Machine, Model, Rebuild, WallMotion, Watch,
+};
+use crate::method::{Failure, Method};
+use crate::scene::{self, Checked, MethodKind, Precision};
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::law::granular::Disc;
+
+/// What a checked scene models: no more than it needs.
+pub fn model(checked: &Checked) -> Model {
+    let Checked { scene, particles, alike, geometry, .. } = checked;
+    let factor = scene.law.inertia.factor();
+    let discs = match particles.grains().first() {
+        Some(disc) if *alike => Discs::Equal {
+            disc: Disc { radius: disc.radius, inverse_mass: 1.0 / disc.mass },
+            inverse_inertia: 1.0 / (factor * disc.mass * disc.radius * disc.radius),
+        },
+        _ => Discs::Varying,
+    };
+    Model {
+        shape: geometry.shape,
+        frame: geometry.frame,
+        mask: geometry.mask.clone(),
+        coordinates: scene.method.coordinates,
+        contact: scene.law.contact,
+        friction: scene.law.has_friction(),
+        discs,
+        inertia_factor: factor,
+        values: match scene.integrator.values {
+            4 => GearValues::Four,
+            5 => GearValues::Five,
+            _ => GearValues::Six,
+        },
+        dt: scene.integrator.dt,
+        gravity: scene.domain.gravity,
+        watch: Some(Watch {
+            max_penetration: scene.law.max_penetration,
+            stop_penetration: scene.law.stop_penetration,
+        }),
+    }
+}
+
+/// The method of a checked scene, at the start.
+///
+/// # Errors
+/// [`Failure`] if the start breaks a precondition, or the processor lacks the instruction set asked for.
+pub fn assemble(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
+    let Checked { scene, particles, geometry, .. } = checked;
+    let contacts = match scene.method.kind {
+        MethodKind::Lattice => Contacts::Lattice,
+        MethodKind::NeighborList { rebuild, skin } => Contacts::Lists(ListOptions {
+            rebuild: match rebuild {
+                scene::Rebuild::Cells => Rebuild::Cells,
+                scene::Rebuild::AllPairs => Rebuild::AllPairs,
+            },
+            skin: skin.unwrap_or(0.3 * geometry.radii[1]),
+        }),
+    };
+    let machine = Machine {
+        execution: scene.method.execution,
+        set: scene.method.instruction_set.unwrap_or_else(InstructionSet::best),
+    };
+    let walls = match scene.walls {
+        scene::WallMotion::Fixed => WallMotion::Fixed,
+        scene::WallMotion::Oscillating { amplitude, frequency } => WallMotion::Oscillating { amplitude, frequency },
+    };
+    let (model, particles) = (model(checked), particles.clone());
+    Ok(match scene.method.precision {
+        Precision::F64 => Box::new(LatticeMd::<f64, f64>::new(model, contacts, machine, walls, particles)?),
+        Precision::F32 => Box::new(LatticeMd::<f32, f32>::new(model, contacts, machine, walls, particles)?),
+        Precision::Mixed => Box::new(LatticeMd::<f64, f32>::new(model, contacts, machine, walls, particles)?),
+    })
+}

@@ -1,0 +1,96 @@
+//! What a run says of itself at the end.
+
+use crate::method::{Failure, Method, Phase};
+use crate::observe::{Observation, Scenery};
+use crate::report::origin::Origin;
+use crate::scene::Checked;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::ledger::Ledger;
+
+/// The content of `summary.json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// The program.
+    pub origin: Origin,
+    /// Instructions used.
+    pub instruction_set: &'static str,
+    /// Threads used.
+    pub threads: usize,
+    /// Grains, and wall discs.
+    pub discs: [usize; 2],
+    /// Columns and rows of the lattice.
+    pub lattice: [usize; 2],
+    /// Grains and wall discs for each cell.
+    pub occupancy: f64,
+    /// What the scene has no need of, with the reason.
+    pub left_out: Vec<String>,
+    /// What was warned about.
+    pub warnings: Vec<String>,
+    /// What stopped the run, if the physics did.
+    pub failure: Option<String>,
+    /// Steps done.
+    pub steps: u64,
+    /// Wall seconds of this session, writing included.
+    pub seconds: f64,
+    /// Wall seconds of this session in each phase of the steps.
+    pub phases: BTreeMap<&'static str, f64>,
+    /// Discs in contacts deeper than `max_penetration`, summed over the steps.
+    pub deep_disc_steps: u64,
+    /// The deepest such contact (fraction of the sum of the radii), 0 if there was none.
+    pub deepest_watched: f64,
+    /// Operations of a step in each part.
+    pub operations: BTreeMap<&'static str, u64>,
+    /// The last state.
+    pub last: Observation,
+}
+
+impl Summary {
+    pub(super) fn of(
+        checked: &Checked,
+        method: &dyn Method,
+        seconds: f64,
+        failure: Option<&Failure>,
+    ) -> Summary {
+        let Checked { scene, particles, geometry, left_out, warnings, .. } = checked;
+        let set = scene.method.instruction_set.unwrap_or_else(InstructionSet::best);
+        let grains = particles.grain_count();
+        let deep = method.deep_contacts();
+        let mut warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+        if deep.disc_steps > 0 {
+            warnings.push(format!(
+                "contacts were deeper than law.max_penetration = {}: {} disc-steps, the deepest {:.4} at step {}; the \
+                 contact law and the lattice are exact only for shallow contacts: stiffen them or slow the discs",
+                scene.law.max_penetration, deep.disc_steps, deep.deepest, deep.step
+            ));
+        }
+        let scenery = Scenery::of(&super::assemble::model(checked));
+        Summary {
+            origin: Origin::here(),
+            instruction_set: set.name(),
+            threads: rayon::current_num_threads(),
+            discs: [grains, particles.len() - grains],
+            lattice: [geometry.shape.columns(), geometry.shape.rows()],
+            occupancy: geometry.occupancy,
+            left_out: left_out.clone(),
+            warnings,
+            failure: failure.map(ToString::to_string),
+            steps: method.steps(),
+            seconds,
+            phases: Phase::ALL.iter().map(|&phase| (phase.name(), method.timings().seconds(phase))).collect(),
+            deep_disc_steps: deep.disc_steps,
+            deepest_watched: deep.deepest,
+            operations: operations(&method.ledger()),
+            last: Observation::of(method.steps(), method.time(), &method.particles(), &scenery),
+        }
+    }
+}
+
+fn operations(ledger: &Ledger) -> BTreeMap<&'static str, u64> {
+    let mut parts = BTreeMap::new();
+    for (part, _, counts) in ledger.parts() {
+        *parts.entry(part).or_insert(0) += counts.total();
+    }
+    parts
+}
