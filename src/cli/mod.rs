@@ -1,5 +1,6 @@
 //! The command line: one file per verb; composes, decides nothing.
 
+mod bench;
 mod listing;
 mod reproduce;
 mod run;
@@ -8,6 +9,7 @@ mod scene_choice;
 mod table;
 
 use crate::run::RunError;
+use crate::study::throughput::MeasurementError;
 use clap::{Args, Parser, Subcommand};
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
@@ -44,6 +46,7 @@ enum Verb {
     Listing(listing::ListingVerb),
     Scene(scene::SceneVerb),
     Run(run::RunVerb),
+    Bench(bench::BenchVerb),
 }
 
 /// Why a verb did not come to its end; each kind has its exit code.
@@ -61,6 +64,9 @@ pub(crate) enum Failure {
     /// A run that did not come to its end: the exit code is that of the reason.
     #[error(transparent)]
     Run(#[from] crate::run::RunError),
+    /// A measurement that broke: the exit code is that of the reason.
+    #[error(transparent)]
+    Measurement(#[from] crate::study::throughput::MeasurementError),
     /// Interrupted or terminated: exit code 130.
     #[error("interrupted at step {step}; a checkpoint is written, go on with --resume --out {}", folder.display())]
     Interrupted {
@@ -91,6 +97,8 @@ impl Failure {
             Failure::InputOutput { cause, .. } if cause.kind() == ErrorKind::BrokenPipe => 0,
             Failure::Usage(_) | Failure::Machine(_) => 2,
             Failure::Scene(_) => 3,
+            Failure::Measurement(MeasurementError::Scene(_)) => 3,
+            Failure::Measurement(MeasurementError::Physics(_)) => 4,
             Failure::Interrupted { .. } => 130,
             Failure::Run(error) => match error {
                 RunError::Exists(_) | RunError::NothingToResume(_) | RunError::OtherScene { .. } => 2,
@@ -119,6 +127,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         Verb::Listing(verb) => verb.run(&common),
         Verb::Scene(verb) => verb.run(&common),
         Verb::Run(verb) => verb.run(&common),
+        Verb::Bench(verb) => verb.run(&common),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

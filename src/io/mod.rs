@@ -21,7 +21,7 @@ pub struct FileError {
 
 impl FileError {
     /// Names the file and the action that failed.
-    fn at(file: &Path, action: &'static str) -> impl FnOnce(std::io::Error) -> FileError {
+    pub(crate) fn at(file: &Path, action: &'static str) -> impl FnOnce(std::io::Error) -> FileError {
         move |cause| FileError { file: file.to_owned(), action, cause }
     }
 }

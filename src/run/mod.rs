@@ -7,7 +7,7 @@ mod recorder;
 mod summary;
 mod work;
 
-pub use assemble::assemble;
+pub use assemble::{assemble, model};
 pub use summary::Summary;
 
 use crate::io::FileError;

@@ -62,7 +62,7 @@ impl Recorder {
         }
         let thermo = TableFile::create(folder.join("thermo.csv"), &THERMO)?;
         let trajectory = Trajectory::create(folder.join("trajectory.xyz"))?;
-        let scenery = Scenery::of(&super::assemble::model(checked));
+        let scenery = Scenery::of(&super::model(checked));
         let particles = method.particles();
         let first = Observation::of(method.steps(), method.time(), &particles, &scenery);
         let work = Work::begin(&first, &particles);
@@ -93,7 +93,7 @@ impl Recorder {
             run: checked.scene.run,
             output: checked.scene.output,
             seed,
-            scenery: Scenery::of(&super::assemble::model(checked)),
+            scenery: Scenery::of(&super::model(checked)),
             thermo,
             trajectory,
             work,

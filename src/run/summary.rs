@@ -65,7 +65,7 @@ impl Summary {
                 scene.law.max_penetration, deep.disc_steps, deep.deepest, deep.step
             ));
         }
-        let scenery = Scenery::of(&super::assemble::model(checked));
+        let scenery = Scenery::of(&super::model(checked));
         Summary {
             origin: Origin::here(),
             instruction_set: set.name(),

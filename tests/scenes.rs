@@ -1,0 +1,297 @@
+//! Scenes as a user meets them: presets, round trips, overrides, and every bad file with the error it carries.
+
+use assert_cmd::Command;
+use std::path::{Path, PathBuf};
+use stripmine::particles::Kind;
+use stripmine::scene::{Document, KEYS, PRESETS, Reason, Scene, Start};
+
+fn stripmine(arguments: &[&str]) -> std::process::Output {
+    Command::cargo_bin("stripmine").unwrap().args(arguments).output().unwrap()
+}
+
+fn bad_scenes() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/bad");
+    let mut files: Vec<PathBuf> =
+        std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path()).collect();
+    files.retain(|file| file.extension().is_some_and(|extension| extension == "toml"));
+    files.sort();
+    files
+}
+
+/// Every bad scene is refused with exit code 3, and says where and why as its leading comments demand: `# expect:
+/// line L column C`, `# expect: words`; `# set: section.key=value` is an override to check it with.
+#[test]
+fn bad_scenes_are_refused_as_they_say() {
+    let files = bad_scenes();
+    assert!(files.len() >= 42);
+    let mut wrong = Vec::new();
+    for file in &files {
+        let (path, text) = (file.to_str().unwrap(), std::fs::read_to_string(file).unwrap());
+        let comments = |kind: &str| -> Vec<String> {
+            let comments = text.lines().map_while(|line| line.strip_prefix("# "));
+            comments.filter_map(|line| line.strip_prefix(kind)).map(str::to_owned).collect()
+        };
+        let mut arguments = vec!["scene", "check", path];
+        let overrides = comments("set: ");
+        overrides.iter().for_each(|text| arguments.extend(["--set", text]));
+        let output = stripmine(&arguments);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let expected = comments("expect: ");
+        let mut complaints: Vec<String> = Vec::new();
+        for words in &expected {
+            let place: Vec<&str> = words.split(' ').collect();
+            let words = match place.as_slice() {
+                ["line", line, "column", column] => format!("{path}:{line}:{column}: "),
+                _ => words.clone(),
+            };
+            if !said.contains(&words) {
+                complaints.push(format!("does not say {words:?}"));
+            }
+        }
+        let named = said.contains(path) || !overrides.is_empty();
+        if expected.is_empty() || output.status.code() != Some(3) || !named || !output.stdout.is_empty() {
+            complaints.push(format!("ends with {:?}", output.status.code()));
+        }
+        if said.contains("panicked") || !complaints.is_empty() {
+            wrong.push(format!("{path}: {}\n{said}", complaints.join(", ")));
+        }
+    }
+    assert!(wrong.is_empty(), "{} of {}:\n\n{}", wrong.len(), files.len(), wrong.join("\n\n"));
+}
+
+/// Presets stand up to the check; the one that is there to fail is warned about, for its softness.
+#[test]
+fn presets_pass_the_check() {
+    for preset in PRESETS {
+        let checked = Document::load(preset.name, &[]).and_then(Document::check);
+        let checked = checked.unwrap_or_else(|errors| panic!("{}: {errors}", preset.name));
+        let soft = checked.warnings.iter().filter(|warning| warning.key == "law.stiffness").count();
+        assert_eq!(checked.warnings.len(), soft, "{}", preset.name);
+        assert_eq!(soft > 0, preset.name == "pipe-as-printed", "{}", preset.name);
+        assert!(preset.title().len() > 20 && !checked.particles.is_empty());
+        assert!((0.0..0.5).contains(&checked.geometry.occupancy));
+        let [dx, dy] = checked.geometry.frame.edge;
+        let [smallest, largest] = checked.geometry.radii;
+        assert!(dx.min(dy) >= largest && dx.hypot(dy) <= 0.9 * 2.0 * smallest * (1.0 + 1e-12));
+        let ids: Vec<u32> = checked.particles.all().iter().map(|disc| disc.id).collect();
+        assert!(ids.iter().copied().eq(1..=ids.len() as u32));
+        let again = Scene::load(preset.name).unwrap().check().unwrap();
+        assert_eq!(again, checked, "{}", preset.name);
+    }
+}
+
+/// The pipe is the one of the table "A complete set that was tried".
+#[test]
+fn the_pipe_is_built_as_tried() {
+    for (name, grains, walls) in [("pipe", 596, 600), ("pipe-small", 238, 240)] {
+        let checked = Scene::load(name).unwrap().check().unwrap();
+        let discs = &checked.particles;
+        assert_eq!((discs.grain_count(), discs.len() - discs.grain_count()), (grains, walls));
+        let lining = &discs.all()[grains..];
+        for (i, disc) in lining.iter().enumerate() {
+            let upper = i >= walls / 2;
+            let along = (i % (walls / 2)) as f64 + if upper { 0.5 } else { 0.0 };
+            assert!((disc.position[0] - 0.027 * along).abs() < 1e-9 && disc.radius == 0.009);
+            assert!((disc.position[1] - if upper { 0.0365 } else { -0.0365 }).abs() < 1e-12);
+            assert_eq!((disc.kind, disc.velocity), (Kind::Wall, [0.0; 2]));
+        }
+        let speeds: f64 = discs.grains().iter().map(|d| d.velocity[0].powi(2) + d.velocity[1].powi(2)).sum();
+        assert!(((speeds / (2.0 * grains as f64)).sqrt() / 0.3 - 1.0).abs() < 0.1);
+        for disc in discs.grains() {
+            assert!((disc.mass - 1e-6 * (disc.radius / 0.01).powi(2)).abs() < 1e-18);
+        }
+        // Started evenly: counts in bins of 20 radii vary far less than Poisson's.
+        let bins = (checked.domain.sides[0] / 0.2) as usize;
+        let mut counts = vec![0.0; bins];
+        discs.grains().iter().for_each(|disc| counts[(disc.position[0] / 0.2) as usize % bins] += 1.0);
+        let mean = grains as f64 / checked.domain.sides[0] * 0.2;
+        let variance = counts[..bins].iter().map(|count| (count - mean).powi(2)).sum::<f64>() / bins as f64;
+        assert!(variance / mean < 0.4, "{name}: {}", variance / mean);
+    }
+}
+
+/// The source's own cells, d = R_max, are 736 × 8.
+#[test]
+fn the_cells_of_the_source_can_be_asked_for() {
+    let scene = Scene::load("pipe").unwrap().with_overrides(&["method.cell_edge=0.011"]).unwrap();
+    let geometry = scene.check().unwrap().geometry;
+    assert_eq!((geometry.shape.columns(), geometry.shape.rows()), (736, 8));
+    let fewest = Scene::load("pipe").unwrap().check().unwrap().geometry;
+    assert!(fewest.shape.cells() < geometry.shape.cells());
+}
+
+/// What `to_toml` writes comes back equal, for every preset and for scenes that use every other key.
+#[test]
+fn scenes_survive_being_written() {
+    let two = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/bad/two.xyz");
+    let file = format!("particles.file=\"{}\"", two.display());
+    let variants: Vec<(&str, Vec<&str>)> = vec![
+        ("pipe", vec!["method.kind=neighbor-list", "method.skin=0.003", "method.rebuild=all-pairs"]),
+        ("pipe", vec!["method.mask=7", "method.cell_edge=0.0112", "particles.count=10", "run.steps=7"]),
+        (
+            "bench",
+            vec![
+                "method.execution=strip:64",
+                "method.precision=mixed",
+                "particles.seed=18446744073709551615",
+            ],
+        ),
+        ("bench", vec!["method.execution=eager", "method.instruction_set=scalar", "law.contact_arm=overlap"]),
+        ("two-discs", vec!["particles.radii=[0.5, 0.45]", "particles.wall_positions=[[1.0, 1.0]]"]),
+        ("two-discs", vec!["units=\"quotes \\\" and \\\\\"", "law.cohesionless=false", "law.inertia=sphere"]),
+        (
+            "dense-gas",
+            vec!["particles.generate=random", "particles.packing_fraction=0.3", "domain.sides=[30, 30]"],
+        ),
+        (
+            "shaken-box",
+            vec!["particles.wall_motion=fixed", "method.coordinates=absolute", "output.lammps_dump=true"],
+        ),
+        ("two-discs", vec![&file, "domain.sides=[10.0, 8.0]"]),
+    ];
+    let presets = PRESETS.iter().map(|preset| (preset.name, Vec::new()));
+    for (name, overrides) in presets.chain(variants) {
+        let scene = Scene::load(name).unwrap();
+        let scene = scene.with_overrides(&overrides).unwrap_or_else(|e| panic!("{name} {overrides:?}: {e}"));
+        let text = scene.to_toml();
+        let again =
+            Scene::parse("elsewhere/scene.toml", &text).unwrap_or_else(|e| panic!("{name}: {e}\n{text}"));
+        assert_eq!(again, scene, "{name} {overrides:?}");
+        assert_eq!(again.to_toml(), text);
+        again.check().unwrap_or_else(|errors| panic!("{name} {overrides:?}: {errors}"));
+    }
+}
+
+/// An override replaces a value, drops what excludes it and what another choice leaves without meaning.
+#[test]
+fn overrides_take_the_place_of_rivals() {
+    let load = |name: &str, overrides: &[&str]| {
+        let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
+        Document::load(name, &overrides).map(|document| document.scene)
+    };
+    let scene = load("pipe", &["run.steps=50", "law.friction=0", "particles.count=7"]).unwrap();
+    assert_eq!((scene.run.steps, scene.law.contact.friction), (50, 0.0));
+    assert!(matches!(scene.start, Start::Pipe { amount: stripmine::scene::Amount::Count(7), .. }));
+    assert_eq!(load("pipe", &["run.time=0.01"]).unwrap().run.steps, 100);
+    // The later of two rivals is not guessed.
+    assert!(load("pipe", &["run.time=0.01", "run.steps=3"]).is_err());
+    // A hexagonal start needs both, so that they are no rivals there.
+    let bench = load("bench", &["particles.count=500", "integrator.values=6"]).unwrap();
+    let Start::Hexagonal { count, packing_fraction, .. } = bench.start else { panic!() };
+    assert_eq!((count, packing_fraction, bench.integrator.values), (500, 0.6, 6));
+    // Numbers, words with and without quotes.
+    let scene = load("pipe", &["method.precision=f32", "method.coordinates=\"absolute\""]).unwrap();
+    assert_eq!(scene.method.precision, stripmine::scene::Precision::F32);
+    // An override mends a mistake of the file.
+    let preset = PRESETS.iter().find(|preset| preset.name == "two-discs").unwrap();
+    let broken = preset.text.replace("dt = 1e-3", "dt = -1");
+    assert!(Scene::parse("broken", &broken).is_err());
+}
+
+/// A start file is read beside its scene.
+#[test]
+fn start_files_are_read_beside_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let bad = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/bad");
+    std::fs::copy(bad.join("two.xyz"), folder.path().join("two.xyz")).unwrap();
+    let good = std::fs::read_to_string(bad.join("start-file-of-another-box.toml")).unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, good.replace("[20.0, 20.0]", "[10.0, 8.0]")).unwrap();
+    let checked = Document::load(path.to_str().unwrap(), &[]).and_then(Document::check).unwrap();
+    assert_eq!(checked.particles.len(), 2);
+    assert_eq!(checked.particles.all()[0].velocity, [1.0, 0.0]);
+    assert!(checked.alike);
+}
+
+/// Whatever is cut off or flipped in a scene, the answer is a scene or errors, never a panic.
+#[test]
+fn damaged_scenes_never_panic() {
+    for preset in PRESETS {
+        let bytes = preset.text.as_bytes();
+        for at in (0..bytes.len()).step_by(7) {
+            let _ = Scene::parse("cut", &String::from_utf8_lossy(&bytes[..at]));
+            let mut flipped = bytes.to_vec();
+            flipped[at] ^= 1 << (at % 7);
+            let _ = Scene::parse("flipped", &String::from_utf8_lossy(&flipped));
+        }
+    }
+    for text in [
+        "",
+        "\u{feff}",
+        "=",
+        "[",
+        "[[]]",
+        "a.b.c = 1",
+        "format.x = 1",
+        "law = { stiffness = {} }",
+        "\0",
+        "é = 1",
+    ] {
+        assert!(Scene::parse("odd", text).is_err(), "{text:?}");
+    }
+    let deep = format!("x = {}", "[".repeat(100_000));
+    assert!(Scene::parse("deep", &deep).is_err());
+}
+
+/// Scenes that are nowhere, are no text, or are not allowed.
+#[test]
+fn scenes_that_cannot_be_read_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let binary = folder.path().join("binary.toml");
+    std::fs::write(&binary, b"format = 1\nunits = \"\xff\xfe\"\n").unwrap();
+    let (folder, binary) = (folder.path().to_str().unwrap(), binary.to_str().unwrap());
+    for (scene, words) in [
+        ("pipe-smal", &["pipe-smal", "no such preset", "did you mean pipe-small?", "shaken-box"][..]),
+        ("no/such/file.toml", &["no/such/file.toml", "no such file", "two-discs"]),
+        (folder, &[folder, "cannot be read"]),
+        (binary, &["binary.toml:2:", "UTF-8"]),
+    ] {
+        let output = stripmine(&["scene", "check", scene]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{said}");
+        assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    }
+    let errors = Scene::load("no-such").unwrap_err();
+    assert_eq!(errors.0[0].reason, Reason::Unreadable);
+}
+
+/// The verbs print what they are asked for, as text and as data.
+#[test]
+fn the_verbs_print_presets_keys_and_checks() {
+    let json = |arguments: &[&str]| -> serde_json::Value {
+        let output = stripmine(arguments);
+        serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{arguments:?}"))
+    };
+    let list = json(&["scene", "list", "--json"]);
+    assert_eq!(list.as_array().unwrap().len(), PRESETS.len());
+    let shown = stripmine(&["scene", "show", "two-discs"]);
+    assert!(Scene::parse("shown", &String::from_utf8(shown.stdout).unwrap()).is_ok());
+    assert_eq!(stripmine(&["scene", "show", "three-discs"]).status.code(), Some(2));
+    let keys = json(&["scene", "keys", "--json"]);
+    assert_eq!(keys.as_array().unwrap().len(), KEYS.len());
+    let table = String::from_utf8(stripmine(&["scene", "keys"]).stdout).unwrap();
+    assert!(KEYS.iter().all(|key| table.contains(key.name)));
+    let found = json(&["scene", "check", "pipe-small", "--json", "--set", "particles.seed=4"]);
+    assert_eq!((found["grains"].as_u64(), found["rows"].as_u64()), (Some(238), Some(8)));
+    let warned = stripmine(&["scene", "check", "pipe-as-printed"]);
+    assert!(warned.status.success());
+    assert!(String::from_utf8_lossy(&warned.stderr).contains("sinks 0.1"));
+    assert!(stripmine(&["scene", "check", "pipe-as-printed", "--quiet"]).stderr.is_empty());
+    let refused = stripmine(&["scene", "check", "pipe", "--set", "law.friction=-1", "--json"]);
+    assert_eq!(refused.status.code(), Some(3));
+    let data: serde_json::Value = serde_json::from_slice(&refused.stdout).unwrap();
+    assert_eq!(data["errors"][0]["reason"], "range");
+    for (overrides, words) in [
+        (&["integrator.values=6"][..], &["0.3000 in a dense packing", "0.17", "5.6667e-5"][..]),
+        (&["integrator.dt=2e-4"], &["steps"]),
+        (&["law.shear_damping=0"], &["law.friction: "]),
+        (&["law.friction=0"], &["law.shear_damping has no effect"]),
+        (&["method.precision=f32", "method.coordinates=absolute"], &["absolute coordinates in f32"]),
+    ] {
+        let mut arguments = vec!["scene", "check", "pipe-small"];
+        overrides.iter().for_each(|text| arguments.extend(["--set", text]));
+        let output = stripmine(&arguments);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && words.iter().all(|word| said.contains(word)), "{said}");
+    }
+}
