@@ -121,7 +121,12 @@ fn a_folder_with_a_run_is_respected() {
     let run = folder.path().join("run");
     let steps = ["--set", "run.steps=20"];
     let none = pipe(&run, &[&steps[..], &["--resume"]].concat());
-    assert_eq!((none.status.code(), said(&none).contains("no checkpoint")), (Some(2), true), "{}", said(&none));
+    assert_eq!(
+        (none.status.code(), said(&none).contains("no checkpoint")),
+        (Some(2), true),
+        "{}",
+        said(&none)
+    );
     succeed(pipe(&run, &steps));
     let before = read(&run, "thermo.csv");
     let again = pipe(&run, &steps);
@@ -178,14 +183,40 @@ fn pipe_as_printed_is_caught_and_named() {
 fn bench_prints_what_it_promises() {
     for what in ["lattice", "neighbor-list"] {
         let measured = output(&[
-            "bench", what, "--particles", "300", "--packing-fraction", "0.6", "--steps", "20", "--repeats", "2", "--json",
+            "bench",
+            what,
+            "--particles",
+            "300",
+            "--packing-fraction",
+            "0.6",
+            "--steps",
+            "20",
+            "--repeats",
+            "2",
+            "--json",
         ]);
         assert!(measured.status.success(), "{}", said(&measured));
         let result: Value = serde_json::from_slice(&measured.stdout).unwrap();
         for key in [
-            "what", "particles", "packing_fraction", "precision", "integrator", "execution", "friction", "cell_edge",
-            "threads", "instruction_set", "repeats", "seconds", "cpu_seconds", "peak_memory_bytes", "temperature",
-            "checksum", "particle_steps_per_second", "particle_steps_per_second_median", "phases",
+            "what",
+            "particles",
+            "packing_fraction",
+            "precision",
+            "integrator",
+            "execution",
+            "friction",
+            "cell_edge",
+            "threads",
+            "instruction_set",
+            "repeats",
+            "seconds",
+            "cpu_seconds",
+            "peak_memory_bytes",
+            "temperature",
+            "checksum",
+            "particle_steps_per_second",
+            "particle_steps_per_second_median",
+            "phases",
         ] {
             assert!(!result[key].is_null() || key == "peak_memory_bytes", "{what}: {key}");
         }

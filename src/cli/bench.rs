@@ -76,7 +76,8 @@ impl BenchVerb {
         }
         overrides.extend(self.cell_edge.map(|edge| format!("method.cell_edge={edge}")));
         // About 10⁷ particle-steps a second, to the order of magnitude.
-        let steps = self.steps.unwrap_or_else(|| (10_000_000 / self.particles.max(1) as u64).clamp(20, 20_000));
+        let steps =
+            self.steps.unwrap_or_else(|| (10_000_000 / self.particles.max(1) as u64).clamp(20, 20_000));
         let measurement = Measurement {
             document: Document::load("bench", &overrides)?,
             equilibration: 200.max(steps / 10),

@@ -42,8 +42,9 @@ impl RunVerb {
         };
         let interrupted = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&interrupted);
-        ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
-            .map_err(|cause| Failure::writing("the handler of interruptions")(std::io::Error::other(cause)))?;
+        ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(|cause| {
+            Failure::writing("the handler of interruptions")(std::io::Error::other(cause))
+        })?;
         let bar = progress_bar(common);
         let ending = run(document, &folder, existing, &interrupted, |step, steps| {
             bar.set_length(steps);

@@ -64,7 +64,9 @@ pub fn assemble(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
     };
     let walls = match scene.walls {
         scene::WallMotion::Fixed => WallMotion::Fixed,
-        scene::WallMotion::Oscillating { amplitude, frequency } => WallMotion::Oscillating { amplitude, frequency },
+        scene::WallMotion::Oscillating { amplitude, frequency } => {
+            WallMotion::Oscillating { amplitude, frequency }
+        }
     };
     let (model, particles) = (model(checked), particles.clone());
     Ok(match scene.method.precision {

@@ -140,6 +140,7 @@ impl Recorder {
         method.restore(checkpoint.step, deep, state).map_err(foreign)?;
         let thermo = TableFile::resume(folder.join("thermo.csv"), &THERMO, checkpoint.step)?;
         let trajectory = Trajectory::resume(folder.join("trajectory.xyz"), checkpoint.step)?;
+        lammps::cut_dump(&folder.join("dump.lammpstrj"), checkpoint.step)?;
         let recorder = Recorder::with(folder, checked, thermo, trajectory, work);
         recorder.write("scene.toml", &recorder.scene)?;
         Ok(recorder)
@@ -279,7 +280,8 @@ impl Recorder {
     /// `summary.json`.
     pub(super) fn summary(&self, summary: &Summary) -> Result<(), RunError> {
         let path = self.folder.join("summary.json");
-        let text = serde_json::to_string_pretty(summary).map_err(|cause| at(&path, "writing")(cause.into()))?;
+        let text =
+            serde_json::to_string_pretty(summary).map_err(|cause| at(&path, "writing")(cause.into()))?;
         self.write("summary.json", &(text + "\n"))
     }
 }

@@ -88,9 +88,8 @@ pub fn throughput(measurement: Measurement) -> Result<Throughput, MeasurementErr
     let checked = document.check()?;
     let mut method = assemble(&checked)?;
     let scenery = Scenery::of(&crate::run::model(&checked));
-    let observe = |method: &dyn Method| {
-        Observation::of(method.steps(), method.time(), &method.particles(), &scenery)
-    };
+    let observe =
+        |method: &dyn Method| Observation::of(method.steps(), method.time(), &method.particles(), &scenery);
     advance(method.as_mut(), equilibration)?;
     let before = observe(method.as_ref()).temperature;
     let mut samples = Vec::new();
@@ -104,7 +103,8 @@ pub fn throughput(measurement: Measurement) -> Result<Throughput, MeasurementErr
     let after = observe(method.as_ref());
     let scene = &checked.scene;
     let particles = checked.particles.grain_count();
-    let discs: f64 = checked.particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius.powi(2)).sum();
+    let discs: f64 =
+        checked.particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius.powi(2)).sum();
     let work = particles as f64 * steps as f64;
     let (seconds, cpu_seconds, timings) = samples[0];
     Ok(Throughput {
