@@ -3,20 +3,19 @@
 
 mod support;
 
-use stripmine::method::Method;
 use stripmine::method::lattice_md::{Contacts, ListOptions, Rebuild};
-use stripmine_kernels::backend::Precision;
+use stripmine::scene::Precision;
 use stripmine_kernels::sweep::lattice::Coordinates;
 use support::{advance, fast, gas, simulate};
 
-fn trajectories_agree<S: Precision, P: Precision>(coordinates: Coordinates, rebuild: Rebuild, steps: u64) {
+fn trajectories_agree(precision: Precision, coordinates: Coordinates, rebuild: Rebuild, steps: u64) {
     let mut start = gas(400, 0.84, 7);
     start.0.coordinates = coordinates;
-    let mut lattice = simulate::<S, P>(&start, Contacts::Lattice, fast());
-    let mut list = simulate::<S, P>(&start, Contacts::Lists(ListOptions { rebuild, skin: 0.2 }), fast());
+    let mut lattice = simulate(precision, &start, Contacts::Lattice, fast());
+    let mut list = simulate(precision, &start, Contacts::Lists(ListOptions { rebuild, skin: 0.2 }), fast());
     for _ in 0..10 {
-        advance(&mut lattice, steps / 10);
-        advance(&mut list, steps / 10);
+        advance(lattice.as_mut(), steps / 10);
+        advance(list.as_mut(), steps / 10);
         assert!(lattice.state() == list.state(), "they differ after {} steps", lattice.steps());
     }
     let (_, rebuilds) = list.lists().unwrap();
@@ -27,15 +26,15 @@ fn trajectories_agree<S: Precision, P: Precision>(coordinates: Coordinates, rebu
 
 #[test]
 fn trajectories_are_equal_to_the_bit_over_ten_thousand_steps() {
-    trajectories_agree::<f64, f64>(Coordinates::CellRelative, Rebuild::Cells, 10_000);
+    trajectories_agree(Precision::F64, Coordinates::CellRelative, Rebuild::Cells, 10_000);
 }
 
 #[test]
 fn trajectories_are_equal_to_the_bit_with_absolute_positions_and_lists_of_all_pairs() {
-    trajectories_agree::<f64, f64>(Coordinates::Absolute, Rebuild::AllPairs, 2_000);
+    trajectories_agree(Precision::F64, Coordinates::Absolute, Rebuild::AllPairs, 2_000);
 }
 
 #[test]
 fn trajectories_are_equal_to_the_bit_in_single_precision() {
-    trajectories_agree::<f32, f32>(Coordinates::CellRelative, Rebuild::Cells, 2_000);
+    trajectories_agree(Precision::F32, Coordinates::CellRelative, Rebuild::Cells, 2_000);
 }

@@ -70,6 +70,9 @@ pub trait Method {
     /// What a step executes.
     fn ledger(&self) -> Ledger;
 
+    /// Entries of the neighbour lists, and how often they were made anew; none where there are no lists.
+    fn lists(&self) -> Option<(usize, u64)>;
+
     /// Seconds spent in each phase.
     fn timings(&self) -> &Timings;
 

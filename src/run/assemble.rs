@@ -1,10 +1,10 @@
 //! From a checked scene to the method that runs it.
 
 use crate::method::lattice_md::{
-    Contacts, Discs, GearValues, LatticeMd, ListOptions, Machine, Model, Rebuild, WallMotion, Watch,
+    Contacts, Discs, GearValues, ListOptions, Machine, Model, Rebuild, WallMotion, Watch, start,
 };
 use crate::method::{Failure, Method};
-use crate::scene::{self, Checked, MethodKind, Precision};
+use crate::scene::{self, Checked, MethodKind};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::law::granular::Disc;
 
@@ -69,9 +69,5 @@ pub fn assemble(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
         }
     };
     let (model, particles) = (model(checked), particles.clone());
-    Ok(match scene.method.precision {
-        Precision::F64 => Box::new(LatticeMd::<f64, f64>::new(model, contacts, machine, walls, particles)?),
-        Precision::F32 => Box::new(LatticeMd::<f32, f32>::new(model, contacts, machine, walls, particles)?),
-        Precision::Mixed => Box::new(LatticeMd::<f64, f32>::new(model, contacts, machine, walls, particles)?),
-    })
+    start(scene.method.precision, model, contacts, machine, walls, particles)
 }

@@ -2,12 +2,10 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use stripmine::method::Method;
-use stripmine::method::lattice_md::{
-    Contacts, Discs, GearValues, LatticeMd, Machine, Model, WallMotion, Watch,
-};
+use stripmine::method::lattice_md::{Contacts, Discs, GearValues, Machine, Model, WallMotion, Watch, start};
 use stripmine::particles::Particles;
 use stripmine::placement::hexagonal;
-use stripmine_kernels::backend::Precision;
+use stripmine::scene::Precision;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};
@@ -57,15 +55,17 @@ pub fn gas(least: usize, packing_fraction: f64, seed: u64) -> (Model, Particles)
     (model, particles)
 }
 
-pub fn simulate<S: Precision, P: Precision>(
+/// A running simulation. Compiled in the library, so that test files build fast.
+pub fn simulate(
+    precision: Precision,
     (model, particles): &(Model, Particles),
     contacts: Contacts,
     machine: Machine,
-) -> LatticeMd<S, P> {
-    LatticeMd::new(model.clone(), contacts, machine, WallMotion::Fixed, particles.clone()).unwrap()
+) -> Box<dyn Method> {
+    start(precision, model.clone(), contacts, machine, WallMotion::Fixed, particles.clone()).unwrap()
 }
 
-pub fn advance(method: &mut impl Method, steps: u64) {
+pub fn advance(method: &mut dyn Method, steps: u64) {
     for _ in 0..steps {
         method.step().unwrap();
     }

@@ -14,5 +14,5 @@ pub use arrays::{Arrays, Lengths};
 pub use model::{Discs, GearValues, Model, Watch};
 pub use neighbor_list::{ListOptions, Rebuild};
 pub use programs::{Part, StepProgram, execute, ledger, programs};
-pub use simulation::{Contacts, LatticeMd, Machine};
+pub use simulation::{Contacts, LatticeMd, Machine, start};
 pub use walls::WallMotion;

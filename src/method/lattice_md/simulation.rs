@@ -5,7 +5,8 @@ use super::watch::Names;
 use super::{Arrays, ListOptions, Model, Part, StepProgram, WallMotion, execute, ledger, programs};
 use crate::method::{DeepContacts, Failure, Method, Phase, StateColumn, Timings};
 use crate::particles::Particles;
-use stripmine_kernels::backend::Precision;
+use crate::scene::Precision;
+use stripmine_kernels::backend;
 use stripmine_kernels::integrator::gear::{NOT_FINITE, STATE};
 use stripmine_kernels::isa::{Array, COUNTERS, Counter, ProgramError, Storage};
 use stripmine_kernels::ledger::Ledger;
@@ -31,6 +32,25 @@ pub struct Machine {
     pub set: InstructionSet,
 }
 
+/// Begins a simulation in the precision asked for. Compiled here once, for all that run one.
+///
+/// # Errors
+/// As [`LatticeMd::new`].
+pub fn start(
+    precision: Precision,
+    model: Model,
+    contacts: Contacts,
+    machine: Machine,
+    walls: WallMotion,
+    particles: Particles,
+) -> Result<Box<dyn Method>, Failure> {
+    Ok(match precision {
+        Precision::F64 => Box::new(LatticeMd::<f64, f64>::new(model, contacts, machine, walls, particles)?),
+        Precision::F32 => Box::new(LatticeMd::<f32, f32>::new(model, contacts, machine, walls, particles)?),
+        Precision::Mixed => Box::new(LatticeMd::<f64, f32>::new(model, contacts, machine, walls, particles)?),
+    })
+}
+
 /// A simulation with state of precision `S` and forces of precision `P`.
 pub struct LatticeMd<S, P> {
     model: Model,
@@ -46,7 +66,7 @@ pub struct LatticeMd<S, P> {
     timings: Timings,
 }
 
-impl<S: Precision, P: Precision> LatticeMd<S, P> {
+impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
     /// Lays out `particles` and finds their first accelerations.
     ///
     /// # Errors
@@ -187,24 +207,9 @@ impl<S: Precision, P: Precision> LatticeMd<S, P> {
         }
         Ok(())
     }
-
-    /// Candidates of the neighbour lists and how often the lists were made anew; none on the lattice.
-    pub fn lists(&self) -> Option<(usize, u64)> {
-        self.rival.as_ref().map(|rival| (rival.candidates(), rival.rebuilds))
-    }
-
-    /// What is modelled.
-    pub fn model(&self) -> &Model {
-        &self.model
-    }
-
-    /// The arrays as they stand.
-    pub fn arrays(&self) -> &Arrays<S, P> {
-        &self.arrays
-    }
 }
 
-impl<S: Precision, P: Precision> Method for LatticeMd<S, P> {
+impl<S: backend::Precision, P: backend::Precision> Method for LatticeMd<S, P> {
     fn step(&mut self) -> Result<(), Failure> {
         self.steps += 1;
         let mut timings = self.timings;
@@ -308,6 +313,10 @@ impl<S: Precision, P: Precision> Method for LatticeMd<S, P> {
 
     fn ledger(&self) -> Ledger {
         ledger(&self.programs)
+    }
+
+    fn lists(&self) -> Option<(usize, u64)> {
+        self.rival.as_ref().map(|rival| (rival.candidates(), rival.rebuilds))
     }
 
     fn timings(&self) -> &Timings {
