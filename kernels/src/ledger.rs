@@ -17,6 +17,10 @@ pub enum Length {
     PaddedCells,
     /// The halo cells that repeat a cell.
     HaloCells,
+    /// Entries of neighbour lists: depends on the data.
+    Candidates,
+    /// Candidates near enough for the law to be asked: depends on the data.
+    Pairs,
 }
 
 impl Length {
@@ -28,6 +32,8 @@ impl Length {
             Length::SweptCells => "LMAX + row ends",
             Length::PaddedCells => "LMAX + halo",
             Length::HaloCells => "halo",
+            Length::Candidates => "candidates",
+            Length::Pairs => "pairs",
         }
     }
 }
@@ -54,6 +60,17 @@ impl Ledger {
     pub fn enter(&mut self, part: &'static str, length: Length, program: &dyn Runnable) {
         let entry = |(section, counts)| Entry { part, section, length, counts };
         self.0.extend(program.tally().into_iter().map(entry));
+    }
+
+    /// Enters counts that no program of its own stands behind.
+    pub fn enter_counts(
+        &mut self,
+        part: &'static str,
+        section: &'static str,
+        length: Length,
+        counts: OpCounts,
+    ) {
+        self.0.push(Entry { part, section, length, counts });
     }
 
     /// The entries, in the order of the step.

@@ -57,6 +57,11 @@ impl Mask {
         mask
     }
 
+    /// The right-hand cell alone: what one place costs. It covers the neighbourhood of no disc.
+    pub fn one_place() -> Mask {
+        Mask { offsets: vec![Offset { columns: 1, rows: 0 }], half_width: 1, covers_both_ways: true }
+    }
+
     /// One of every two opposite places, in the same order: each pair of cells is met once.
     #[must_use]
     pub fn half(&self) -> Mask {

@@ -83,6 +83,12 @@ fn text(summary: &Summary, folder: &Path) -> String {
     for reason in &summary.left_out {
         text.push_str(&format!("left out: {reason}\n"));
     }
+    if summary.work_relative_to_everything < 1.0 {
+        let saved = 100.0 * (1.0 - summary.work_relative_to_everything);
+        text.push_str(&format!(
+            "saved: {saved:.1} % of a step's operations with friction and different discs\n"
+        ));
+    }
     text.push_str(&format!("results in {}\n", folder.display()));
     text
 }

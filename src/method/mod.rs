@@ -8,7 +8,7 @@ pub use failure::{Culprit, Failure};
 pub use timings::{Phase, Timings};
 
 use crate::particles::Particles;
-use stripmine_kernels::ledger::Ledger;
+use stripmine_kernels::ledger::{Ledger, Length};
 
 /// One named column of a method's state, for a checkpoint.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,6 +69,9 @@ pub trait Method {
 
     /// What a step executes.
     fn ledger(&self) -> Ledger;
+
+    /// How long vectors of a symbolic length are, or were in the last step.
+    fn length(&self, length: Length) -> u64;
 
     /// Entries of the neighbour lists, and how often they were made anew; none where there are no lists.
     fn lists(&self) -> Option<(usize, u64)>;

@@ -1,5 +1,6 @@
 //! What a run says of itself at the end.
 
+use crate::method::lattice_md::{self, Discs, Lengths, Model, programs};
 use crate::method::{Failure, Method, Phase};
 use crate::observe::{Observation, Scenery};
 use crate::report::origin::Origin;
@@ -7,7 +8,8 @@ use crate::scene::Checked;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use stripmine_kernels::InstructionSet;
-use stripmine_kernels::ledger::Ledger;
+use stripmine_kernels::isa::OpCounts;
+use stripmine_kernels::ledger::Length;
 
 /// The content of `summary.json`.
 #[derive(Clone, Debug, Serialize)]
@@ -40,8 +42,10 @@ pub struct Summary {
     pub deep_disc_steps: u64,
     /// The deepest such contact (fraction of the sum of the radii), 0 if there was none.
     pub deepest_watched: f64,
-    /// Operations of a step in each part.
-    pub operations: BTreeMap<&'static str, u64>,
+    /// What a step executes.
+    pub ledger: Vec<LedgerRow>,
+    /// Operations times elements of a step, relative to a scene with friction and different discs.
+    pub work_relative_to_everything: f64,
     /// The last state.
     pub last: Observation,
 }
@@ -81,16 +85,45 @@ impl Summary {
             phases: Phase::ALL.iter().map(|&phase| (phase.name(), method.timings().seconds(phase))).collect(),
             deep_disc_steps: deep.disc_steps,
             deepest_watched: deep.deepest,
-            operations: operations(&method.ledger()),
+            ledger: ledger(method),
+            work_relative_to_everything: relative_work(checked),
             last: Observation::of(method.steps(), method.time(), &method.particles(), &scenery),
         }
     }
 }
 
-fn operations(ledger: &Ledger) -> BTreeMap<&'static str, u64> {
-    let mut parts = BTreeMap::new();
-    for (part, _, counts) in ledger.parts() {
-        *parts.entry(part).or_insert(0) += counts.total();
-    }
-    parts
+/// Part of a step.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LedgerRow {
+    /// The part.
+    pub part: &'static str,
+    /// Vector length, as a symbol.
+    pub length: &'static str,
+    /// Vector length in the last step.
+    pub n: u64,
+    /// Operations on each element.
+    pub operations: u64,
+}
+
+fn ledger(method: &dyn Method) -> Vec<LedgerRow> {
+    let rows = method.ledger().parts();
+    let row = |(part, length, counts): &(&'static str, Length, OpCounts)| LedgerRow {
+        part,
+        length: length.symbol(),
+        n: method.length(*length),
+        operations: counts.total(),
+    };
+    rows.iter().map(row).collect()
+}
+
+/// What leaving out saves: the programs as they are against those of the fullest model, on the same lattice.
+fn relative_work(checked: &Checked) -> f64 {
+    let model = super::model(checked);
+    let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
+    let work = |model: &Model| -> u64 {
+        let parts = lattice_md::ledger(&programs::<f64, f64>(model)).parts();
+        parts.iter().map(|(_, length, counts)| counts.total() * lengths.range(*length).len() as u64).sum()
+    };
+    let everything = Model { friction: true, discs: Discs::Varying, ..model.clone() };
+    work(&model) as f64 / work(&everything) as f64
 }

@@ -67,7 +67,7 @@ impl<'t> Lines<'t> {
         let before = self.text.as_bytes().get(start..offset.min(self.text.len())).unwrap_or_default();
         // Characters, not bytes: continuation bytes of UTF-8 do not count.
         let column = 1 + before.iter().filter(|byte| **byte & 0xC0 != 0x80).count();
-        Place { line, column }
+        Place { line: line as u32, column: column as u32 }
     }
 
     fn spot(&self, offset: usize) -> Spot {

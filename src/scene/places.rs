@@ -53,7 +53,8 @@ impl Document {
         let text = String::from_utf8(bytes).map_err(|cause| {
             let good = cause.utf8_error().valid_up_to();
             let line = 1 + cause.as_bytes()[..good].iter().filter(|byte| **byte == b'\n').count();
-            let spot = Spot { file: what.to_owned(), place: Some(super::Place { line, column: 1 }) };
+            let spot =
+                Spot { file: what.to_owned(), place: Some(super::Place { line: line as u32, column: 1 }) };
             spot.error(Reason::Syntax, "this line is not UTF-8 text").expecting("a TOML file in UTF-8")
         })?;
         Document::parse(what, &text, overrides)

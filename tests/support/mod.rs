@@ -3,7 +3,7 @@
 
 use stripmine::method::Method;
 use stripmine::method::lattice_md::{Contacts, Discs, GearValues, Machine, Model, WallMotion, Watch, start};
-use stripmine::particles::Particles;
+use stripmine::particles::{Kind, Particle, Particles};
 use stripmine::placement::hexagonal;
 use stripmine::scene::Precision;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
@@ -69,4 +69,19 @@ pub fn advance(method: &mut dyn Method, steps: u64) {
     for _ in 0..steps {
         method.step().unwrap();
     }
+}
+
+/// The steps of a model in a box of `cells` cells of side 0.5 whose corner is the origin: no damping, no friction.
+pub fn arena(cells: [usize; 2], periodic: bool, discs: &[Particle]) -> (Model, Particles) {
+    let (mut model, _) = gas(12, 0.5, 1);
+    model.shape = LatticeShape::new(cells[0], cells[1], &model.mask, [periodic; 2]).unwrap();
+    model.frame = Frame { origin: [0.0; 2], edge: [0.5; 2] };
+    model.contact = Contact { normal_damping: 0.0, shear_damping: 0.0, friction: 0.0, ..CONTACT };
+    model.friction = false;
+    (model, Particles::new(discs.to_vec()))
+}
+
+/// A grain without spin.
+pub fn grain(id: u32, position: [f64; 2], velocity: [f64; 2], radius: f64, mass: f64) -> Particle {
+    Particle { id, kind: Kind::Grain, position, velocity, angle: 0.0, omega: 0.0, radius, mass }
 }

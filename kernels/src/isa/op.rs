@@ -136,6 +136,14 @@ impl OpCounts {
         }
     }
 
+    /// The executions of operations that `keep` holds.
+    #[must_use]
+    pub fn filtered(&self, keep: impl Fn(Op) -> bool) -> OpCounts {
+        let mut kept = OpCounts::default();
+        Op::ALL.iter().filter(|&&op| keep(op)).for_each(|&op| kept.0[op as usize] = self.of(op));
+        kept
+    }
+
     /// Executions of one operation.
     pub fn of(&self, op: Op) -> u64 {
         self.0[op as usize]

@@ -45,6 +45,8 @@ impl Lengths {
             Length::SweptCells => self.swept.clone(),
             Length::PaddedCells => 0..self.padded,
             Length::HaloCells => 0..self.halo,
+            // Known only when the lists are walked.
+            Length::Candidates | Length::Pairs => 0..0,
         }
     }
 }

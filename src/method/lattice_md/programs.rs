@@ -4,10 +4,11 @@ use super::{Discs, GearValues, Lengths, Model};
 use std::marker::PhantomData;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::{Corrector, Predictor};
-use stripmine_kernels::isa::{Memory, ProgramError};
+use stripmine_kernels::isa::{Memory, Op, OpClass, ProgramError};
 use stripmine_kernels::law::granular::{Disc, Granular};
 use stripmine_kernels::law::{Field, Law};
 use stripmine_kernels::ledger::{Ledger, Length};
+use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::cells::{Check, Clear, Enter, Images};
 use stripmine_kernels::sweep::lattice::forces::Forces;
 use stripmine_kernels::sweep::lattice::vectors::Spread;
@@ -88,6 +89,37 @@ pub fn ledger(programs: &[StepProgram]) -> Ledger {
     let mut ledger = Ledger::default();
     for step in programs {
         ledger.enter(step.part.name(), step.length, step.program.as_ref());
+    }
+    ledger
+}
+
+/// What a step of the neighbour-list rival executes, element by element: the programs it shares with the lattice, and
+/// the law as its own text counts it, asked for its distance by every candidate and for the rest by every pair.
+pub(super) fn rival_ledger<S: Precision, P: Precision>(model: &Model) -> Ledger {
+    let one_place = Model { mask: Mask::one_place(), ..model.clone() };
+    let (law, _) = with_law(&one_place, LatticeSweep::<P>(&one_place, PhantomData));
+    let part = Part::Forces.name();
+    let mut ledger = Ledger::default();
+    for step in programs::<S, P>(model) {
+        match step.part {
+            Part::Lattice => {}
+            Part::Forces => {
+                for (section, counts) in law.tally() {
+                    let once = |op: Op| op.class() == OpClass::Store || op.class() == OpClass::Load;
+                    let length = match section {
+                        "distance" | "contact" => Length::Candidates,
+                        _ => Length::Pairs,
+                    };
+                    let (of_disc, of_pair) = (counts.filtered(once), counts.filtered(|op| !once(op)));
+                    for (length, counts) in [(Length::Grains, of_disc), (length, of_pair)] {
+                        if counts.total() > 0 {
+                            ledger.enter_counts(part, section, length, counts);
+                        }
+                    }
+                }
+            }
+            _ => ledger.enter(step.part.name(), step.length, step.program.as_ref()),
+        }
     }
     ledger
 }

@@ -1,6 +1,7 @@
 //! A running simulation: one step after the other, every broken precondition found in its step.
 
 use super::neighbor_list::Rival;
+use super::programs::rival_ledger;
 use super::watch::Names;
 use super::{Arrays, ListOptions, Model, Part, StepProgram, WallMotion, execute, ledger, programs};
 use crate::method::{DeepContacts, Failure, Method, Phase, StateColumn, Timings};
@@ -9,7 +10,7 @@ use crate::scene::Precision;
 use stripmine_kernels::backend;
 use stripmine_kernels::integrator::gear::{NOT_FINITE, STATE};
 use stripmine_kernels::isa::{Array, COUNTERS, Counter, ProgramError, Storage};
-use stripmine_kernels::ledger::Ledger;
+use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_kernels::sweep::lattice::cells::{CONFLICTS, STRAYS};
 use stripmine_kernels::sweep::lattice::forces::DEEP;
 use stripmine_kernels::{Execution, InstructionSet};
@@ -312,7 +313,18 @@ impl<S: backend::Precision, P: backend::Precision> Method for LatticeMd<S, P> {
     }
 
     fn ledger(&self) -> Ledger {
-        ledger(&self.programs)
+        match self.rival {
+            None => ledger(&self.programs),
+            Some(_) => rival_ledger::<S, P>(&self.model),
+        }
+    }
+
+    fn length(&self, length: Length) -> u64 {
+        match (length, &self.rival) {
+            (Length::Candidates, Some(rival)) => rival.candidates() as u64,
+            (Length::Pairs, Some(rival)) => rival.met.pairs,
+            _ => self.arrays.lengths().range(length).len() as u64,
+        }
     }
 
     fn lists(&self) -> Option<(usize, u64)> {

@@ -120,7 +120,8 @@ pub(super) fn fit(
                 let edge_bounds = [bounds.least, bounds.most()];
                 return Ok(Geometry { shape, frame, mask, radii, edge_bounds, occupancy });
             }
-            Err(more) if errors.is_empty() => errors = more,
+            // The smaller mask's reason is the plainer one, but a wrong edge is wrong for the larger one too.
+            Err(more) if errors.is_empty() || scene.method.cell_edge.is_some() => errors = more,
             Err(_) => {}
         }
     }

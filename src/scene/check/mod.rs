@@ -37,7 +37,7 @@ pub struct Checked {
 }
 
 /// At most this many overlaps or strays are named one by one.
-const NAMED: usize = 10;
+const NAMED: usize = 5;
 
 /// Makes the discs of a scene and holds it against every precondition.
 pub(super) fn check(document: Document) -> Result<Checked, SceneErrors> {
@@ -103,7 +103,7 @@ fn outside(document: &Document, domain: &Domain, particles: &Particles) -> Vec<s
     };
     let mut errors = Vec::new();
     for (number, disc) in particles.all().iter().enumerate() {
-        let ([x, y], what) = (disc.position, noun(disc.kind));
+        let ([x, y], what) = (disc.position.map(readable), noun(disc.kind));
         let spot = spot_of(document, particles, number);
         if !domain.contains(disc.position) {
             let message = format!("{what} {} at ({x}, {y}) is outside the box", disc.id);
@@ -130,6 +130,11 @@ fn noun(kind: Kind) -> &'static str {
         Kind::Grain => "disc",
         Kind::Wall => "wall disc",
     }
+}
+
+/// A coordinate to nine digits: the last ones of a sum say nothing.
+fn readable(coordinate: f64) -> f64 {
+    format!("{coordinate:.8e}").parse().unwrap_or(coordinate)
 }
 
 /// Where a disc is listed, or what made it.
@@ -169,7 +174,8 @@ fn overlaps(document: &Document, domain: &Domain, particles: &Particles) -> Vec<
     for (first, second, penetration) in deep.into_iter().take(NAMED) {
         let [a, b] = [first, second].map(|number| {
             let disc = &discs[number];
-            format!("{} {} at ({}, {})", noun(disc.kind), disc.id, disc.position[0], disc.position[1])
+            let [x, y] = disc.position.map(readable);
+            format!("{} {} at ({x}, {y})", noun(disc.kind), disc.id)
         });
         let reach = discs[first].radius + discs[second].radius;
         let message = format!(
@@ -181,7 +187,7 @@ fn overlaps(document: &Document, domain: &Domain, particles: &Particles) -> Vec<
         errors.push(spot_of(document, particles, second).error(Reason::Overlap, message).expecting(least));
     }
     if let (Some(last), true) = (errors.last_mut(), count > NAMED) {
-        last.suggestion = Some(format!("{} more pairs overlap less deeply", count - NAMED));
+        last.suggestion = Some(format!("{} more pairs overlap, no deeper", count - NAMED));
     }
     errors
 }

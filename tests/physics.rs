@@ -1,0 +1,401 @@
+//! Physics of whole simulations: what is conserved, what a collision gives back, what friction may do, that threads
+//! and instructions change nothing, and that what breaks is found in its step.
+
+mod support;
+
+use stripmine::method::lattice_md::{Contacts, GearValues, LatticeMd, Machine, Model, Watch};
+use stripmine::method::{Failure, Method, StateColumn};
+use stripmine::observe::{Observation, Scenery};
+use stripmine::particles::{Particle, Particles};
+use stripmine_kernels::law::granular::Contact;
+use stripmine_kernels::{Execution, InstructionSet};
+use support::{CONTACT, advance, arena, fast, gas, grain, simulate};
+
+type Lattice = LatticeMd<f64, f64>;
+
+fn lattice(start: &(Model, Particles)) -> Lattice {
+    simulate(start, Contacts::Lattice, fast())
+}
+
+fn observe(method: &Lattice) -> Observation {
+    let scenery = Scenery::of(method.model());
+    Observation::of(method.steps(), method.time(), &method.particles(), &scenery)
+}
+
+// ---- a gas ----------------------------------------------------------------------------------------------
+
+/// Rms and largest error of the energy over `time`, relative to the energy.
+fn energy_error(values: GearValues, dt: f64, time: f64) -> [f64; 2] {
+    let mut start = gas(400, 0.84, 11);
+    start.0.contact = Contact { normal_damping: 0.0, shear_damping: 0.0, friction: 0.0, ..CONTACT };
+    start.0.friction = false;
+    (start.0.values, start.0.dt) = (values, dt);
+    let mut gas = lattice(&start);
+    let energy = observe(&gas).energy();
+    let samples = 100;
+    let steps = (time / dt / f64::from(samples)).round() as u64;
+    let (mut square, mut most) = (0.0, 0.0_f64);
+    for _ in 0..samples {
+        advance(&mut gas, steps);
+        let seen = observe(&gas);
+        assert!(seen.elastic < 0.9 * energy, "the gas must be moving");
+        let error = seen.energy() / energy - 1.0;
+        square += error * error / f64::from(samples);
+        most = most.max(error.abs());
+    }
+    [square.sqrt(), most]
+}
+
+/// Undamped Hertz collisions converge at about dt^2.2, with any scheme: the force has half a derivative too few.
+#[test]
+fn energy_of_an_undamped_gas_converges_with_the_time_step() {
+    for values in GearValues::ALL {
+        let dts = [0.02, 0.01, 0.005, 0.0025];
+        let errors = dts.map(|dt| energy_error(values, dt, 10.0));
+        let orders: Vec<f64> = errors.windows(2).map(|pair| (pair[0][0] / pair[1][0]).log2()).collect();
+        println!("{values:?}: dt {dts:?}, rms and largest error of the energy {errors:.3e?}, orders {orders:.2?}");
+        assert!(orders.iter().all(|order| *order > 1.0), "{values:?}: {orders:?}");
+        let mean = orders.iter().sum::<f64>() / 3.0;
+        assert!((1.8..4.5).contains(&mean), "{values:?}: order {mean}");
+        assert!(errors[2][1] < 1e-3, "{values:?}: {errors:?}");
+    }
+}
+
+#[test]
+fn momentum_of_a_periodic_gas_is_conserved_to_rounding() {
+    let mut gas = lattice(&gas(400, 0.84, 5));
+    let first = observe(&gas);
+    let magnitude: f64 =
+        gas.particles().grains().iter().map(|disc| disc.mass * disc.velocity[0].hypot(disc.velocity[1])).sum();
+    let mut worst = 0.0_f64;
+    for _ in 0..20 {
+        advance(&mut gas, 100);
+        let seen = observe(&gas);
+        let lost = (seen.momentum_x - first.momentum_x).hypot(seen.momentum_y - first.momentum_y);
+        worst = worst.max(lost / magnitude);
+    }
+    println!("momentum lost in 2000 steps: {worst:.2e} of the sum of its magnitudes");
+    assert!(worst < 1e-13, "{worst:e}");
+    assert!(observe(&gas).kinetic < 0.99 * first.kinetic, "the gas must have collided and cooled");
+}
+
+// ---- one collision --------------------------------------------------------------------------------------
+
+const RADII: [f64; 2] = [0.5, 0.46];
+const MASSES: [f64; 2] = [1.0, 0.7];
+const EFFECTIVE: f64 = MASSES[0] * MASSES[1] / (MASSES[0] + MASSES[1]);
+
+/// Two discs about to touch, meeting at `normal`, sliding past each other at `shear`.
+fn pair(contact: Contact, dt: f64, normal: f64, shear: f64) -> (Model, Particles) {
+    let gap = 1.37 * normal * dt;
+    let x = 4.0 + RADII[0] + RADII[1] + gap;
+    // In the frame of the centre of mass.
+    let share = [MASSES[1], -MASSES[0]].map(|m| m / (MASSES[0] + MASSES[1]));
+    let discs = [
+        grain(1, [4.0, 4.1], [share[0] * normal, share[0] * shear], RADII[0], MASSES[0]),
+        grain(2, [x, 4.1], [share[1] * normal, share[1] * shear], RADII[1], MASSES[1]),
+    ];
+    let (mut model, particles) = arena([16, 16], true, &discs);
+    model.friction = contact.friction > 0.0;
+    (model.contact, model.dt, model.values) = (contact, dt, GearValues::Four);
+    (model, particles)
+}
+
+/// Overlap, normal from the second to the first, relative velocity along normal and tangent.
+fn apart(discs: &[Particle]) -> (f64, [f64; 2], [f64; 2]) {
+    let way = [0, 1].map(|axis| discs[0].position[axis] - discs[1].position[axis]);
+    let distance = way[0].hypot(way[1]);
+    let n = way.map(|w| w / distance);
+    let v = [0, 1].map(|axis| discs[0].velocity[axis] - discs[1].velocity[axis]);
+    (RADII[0] + RADII[1] - distance, n, [v[0] * n[0] + v[1] * n[1], v[1] * n[0] - v[0] * n[1]])
+}
+
+/// How a collision ends: overlap and speed of separation at the end, and how long they touched, if they parted.
+#[derive(Debug, Clone, Copy)]
+struct End {
+    overlap: f64,
+    speed: f64,
+    duration: Option<f64>,
+}
+
+fn simulated(contact: Contact, dt: f64, speed: f64, time: f64) -> End {
+    let mut collision = lattice(&pair(contact, dt, speed, 0.0));
+    let (mut before, _, _) = apart(collision.particles().all());
+    let (mut touched, mut parted) = (None, None);
+    loop {
+        advance(&mut collision, 1);
+        let (overlap, _, [away, _]) = apart(collision.particles().all());
+        let crossing = collision.time() - dt * overlap / (overlap - before);
+        match (before > 0.0, overlap > 0.0) {
+            (false, true) => touched = Some(crossing),
+            (true, false) => parted = Some(crossing),
+            _ => {}
+        }
+        before = overlap;
+        if touched.is_some_and(|touched| collision.time() >= touched + time) {
+            let duration = parted.zip(touched).map(|(parted, touched)| parted - touched);
+            return End { overlap, speed: away, duration };
+        }
+    }
+}
+
+/// M x'' = k x^1.5 − γ M v of the pair by Runge and Kutta's fourth order in tiny steps: nothing of the program is used.
+fn integrated(contact: Contact, speed: f64, time: f64) -> End {
+    let Contact { stiffness: k, normal_damping: gamma, cohesionless, .. } = contact;
+    // x is the overlap, u its rate.
+    let rate = |[x, u]: [f64; 2]| {
+        let push = if x > 0.0 { k * x * x.sqrt() + gamma * EFFECTIVE * u } else { 0.0 };
+        [u, -(if cohesionless { push.max(0.0) } else { push }) / EFFECTIVE]
+    };
+    let h = time / 400_000.0;
+    let go = |s: [f64; 2], d: [f64; 2], h: f64| [s[0] + h * d[0], s[1] + h * d[1]];
+    let mut s = [0.0, speed];
+    let mut duration = None;
+    for step in 0..400_000 {
+        let a = rate(if step == 0 { [1e-300, speed] } else { s });
+        let b = rate(go(s, a, 0.5 * h));
+        let c = rate(go(s, b, 0.5 * h));
+        let d = rate(go(s, c, h));
+        let next = [0, 1].map(|i| s[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
+        if duration.is_none() && next[0] <= 0.0 {
+            duration = Some(h * (f64::from(step) + s[0] / (s[0] - next[0])));
+        }
+        s = next;
+    }
+    End { overlap: s[0], speed: -s[1], duration }
+}
+
+fn hertz_time(stiffness: f64, speed: f64) -> f64 {
+    3.218 * (EFFECTIVE * EFFECTIVE / (stiffness * stiffness * speed)).powf(0.2)
+}
+
+/// Damped collisions converge at first order only: the damping jumps at the touch, which falls into a step.
+#[test]
+fn collisions_restitute_as_an_integration_of_its_own_says() {
+    println!("speed gamma clamped |  restitution, integrated |  duration, integrated");
+    for cohesionless in [true, false] {
+        for speed in [0.05, 0.2, 0.8] {
+            for normal_damping in [0.3, 1.0, 4.0] {
+                let contact = Contact { normal_damping, cohesionless, friction: 0.0, ..CONTACT };
+                let dt = 0.001;
+                let time = 3.0 * hertz_time(contact.stiffness, speed);
+                let ours = simulated(contact, dt, speed, time);
+                let theirs = integrated(contact, speed, time);
+                let [e, reference] = [ours.speed / speed, theirs.speed / speed];
+                println!(
+                    "{speed:5} {normal_damping:5} {cohesionless:7} | {e:.5} {reference:.5} | {:.5?} {:.5?}",
+                    ours.duration, theirs.duration
+                );
+                let what = format!("speed {speed}, damping {normal_damping}: {ours:?}, integrated {theirs:?}");
+                assert!((e - reference).abs() < 0.6 * normal_damping * dt, "{what}");
+                match (ours.duration, theirs.duration) {
+                    (Some(ours), Some(theirs)) => assert!((ours - theirs).abs() < 2.0 * dt, "{what}"),
+                    // Unclamped, strongly damped pairs creep.
+                    (None, None) => assert!((ours.overlap / theirs.overlap - 1.0).abs() < 0.01, "{what}"),
+                    _ => panic!("{what}"),
+                }
+                assert!(!cohesionless || ours.duration.is_some(), "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn undamped_collisions_last_as_long_as_hertz_says() {
+    for speed in [0.05, 0.2, 0.8] {
+        let contact = Contact { normal_damping: 0.0, friction: 0.0, ..CONTACT };
+        let hertz = hertz_time(contact.stiffness, speed);
+        let end = simulated(contact, 0.001, speed, 1.5 * hertz);
+        let duration = end.duration.unwrap();
+        println!("speed {speed}: duration {duration:.6}, Hertz {hertz:.6}; restitution {:.7}", end.speed / speed);
+        assert!((duration / hertz - 1.0).abs() < 5e-4, "{duration} {hertz}");
+        assert!((end.speed / speed - 1.0).abs() < 1e-4, "{end:?}");
+    }
+}
+
+/// Momentum that the first disc receives along the mean normal and tangent, and the slip of the surfaces before and
+/// after; the Coulomb bound is asserted in every step.
+fn oblique(contact: Contact, normal: f64, shear: f64) -> ([f64; 2], [f64; 2], Particles) {
+    let mut collision = lattice(&pair(contact, 0.0005, normal, shear));
+    let before = collision.particles();
+    let slip = |discs: &[Particle]| {
+        let (_, _, [_, along]) = apart(discs);
+        along - RADII[0] * discs[0].omega - RADII[1] * discs[1].omega
+    };
+    let (mut first, mut last) = (None, [0.0; 2]);
+    for _ in 0..1000 {
+        advance(&mut collision, 1);
+        let now = collision.particles();
+        let (overlap, n, _) = apart(now.all());
+        if overlap > 0.0 {
+            first.get_or_insert(n);
+            last = n;
+        } else if first.is_some() {
+            break;
+        }
+        let [fx, fy, torque] = collision.forces()[0];
+        // The torque is −R F_S whatever the normal of the predicted positions was.
+        let shear = -torque / RADII[0];
+        let push = (fx * fx + fy * fy - shear * shear).max(0.0).sqrt();
+        assert!(shear.abs() <= contact.friction * push * (1.0 + 1e-6) + 1e-9, "{shear} against {push}");
+    }
+    let after = collision.particles();
+    let n = [0, 1].map(|axis| 0.5 * (first.unwrap()[axis] + last[axis]));
+    let length = n[0].hypot(n[1]);
+    let n = n.map(|n| n / length);
+    let [px, py] = [0, 1].map(|axis| {
+        MASSES[0] * (after.all()[0].velocity[axis] - before.all()[0].velocity[axis])
+    });
+    ([px * n[0] + py * n[1], py * n[0] - px * n[1]], [slip(before.all()), slip(after.all())], after)
+}
+
+#[test]
+fn friction_is_coulombs_where_surfaces_slide_and_less_where_they_roll() {
+    let stiff = Contact { stiffness: 18_700.0, normal_damping: 0.0, friction: 0.3, ..CONTACT };
+    for shear in [-1.0, 1.0] {
+        let sliding = Contact { shear_damping: 1e5, ..stiff };
+        let ([push, drag], [before, after], _) = oblique(sliding, 0.2, shear);
+        println!("sliding at {shear}: drag/push {:.5}, slip {before:.4} to {after:.4}", drag / push);
+        assert!((drag / push + shear.signum() * 0.3).abs() < 0.003, "{drag} {push}");
+        assert!(after / before > 0.3, "it must slide to the end: {before} to {after}");
+        // 1 + 1/0.5 = 3 surfaces' worth of inertia against the momentum exchanged.
+        assert!((after - before - 3.0 * drag / EFFECTIVE).abs() < 0.02, "{before} {after} {drag}");
+
+        // Between the two: less than Coulomb's.
+        let weak = Contact { shear_damping: 1.0, ..stiff };
+        let ([push, drag], ..) = oblique(weak, 0.2, shear);
+        println!("viscous at {shear}: drag/push {:.5}", drag / push);
+        assert!(drag.abs() < 0.29 * push && drag * shear < 0.0);
+
+        let rolling = Contact { shear_damping: 200.0, friction: 5.0, ..stiff };
+        let shear = 0.05 * shear;
+        let ([push, drag], [before, after], discs) = oblique(rolling, 0.2, shear);
+        println!("rolling from {shear}: drag/push {:.5}, slip {before:.5} to {after:.2e}", drag / push);
+        assert!((before - shear).abs() < 1e-3 * shear.abs());
+        assert!(after.abs() < 1e-3 * shear.abs(), "{after}");
+        assert!(drag.abs() < 5.0 * push);
+        let spins = RADII[0] * discs.all()[0].omega + RADII[1] * discs.all()[1].omega;
+        // Of the slip two thirds become spin.
+        assert!((spins / shear - 2.0 / 3.0).abs() < 0.02, "{spins} {shear}");
+    }
+}
+
+// ---- the same bits --------------------------------------------------------------------------------------
+
+fn bits(method: &Lattice) -> Vec<(String, Vec<u64>)> {
+    let bits = |column: StateColumn| match column {
+        StateColumn::F64(values) => values.into_iter().map(f64::to_bits).collect(),
+        StateColumn::F32(values) => values.into_iter().map(|x| u64::from(x.to_bits())).collect(),
+    };
+    method.state().into_iter().map(|(name, column)| (name, bits(column))).collect()
+}
+
+#[test]
+fn threads_and_instructions_give_the_same_bits() {
+    let start = gas(8200, 0.84, 3);
+    let run = |threads: usize, set: InstructionSet| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            assert_eq!(rayon::current_num_threads(), threads);
+            let machine = Machine { execution: Execution::Chained, set };
+            let mut gas: Lattice = simulate(&start, Contacts::Lattice, machine);
+            advance(&mut gas, 50);
+            let touching = gas.forces().iter().filter(|force| force[0] != 0.0).count();
+            assert!(touching > 1000, "the gas must collide: {touching}");
+            bits(&gas)
+        })
+    };
+    let scalar = run(1, InstructionSet::Scalar);
+    for set in InstructionSet::available() {
+        for threads in [1, 2, 3] {
+            assert!(run(threads, set) == scalar, "{} on {threads} threads", set.name());
+        }
+    }
+}
+
+// ---- what breaks ----------------------------------------------------------------------------------------
+
+/// Steps until it breaks.
+fn breaks(start: &(Model, Particles), most: u64) -> (Failure, u64) {
+    let mut method = lattice(start);
+    for _ in 0..most {
+        if let Err(failure) = method.step() {
+            return (failure, method.steps());
+        }
+    }
+    panic!("nothing broke in {most} steps");
+}
+
+#[test]
+fn a_velocity_that_is_no_number_stops_the_first_step() {
+    let mut start = gas(400, 0.84, 2);
+    start.1.all_mut()[123].velocity[1] = f64::NAN;
+    let id = start.1.all()[123].id;
+    match breaks(&start, 1) {
+        (Failure::NotFinite { step: 1, count: 1, first }, 1) => assert_eq!(first.id, id),
+        (failure, _) => panic!("{failure}"),
+    }
+}
+
+#[test]
+fn a_disc_that_leaves_a_closed_box_is_named_in_its_step() {
+    // 0.3025 to go at 0.005 a step.
+    let discs = [
+        grain(7, [2.0, 2.0], [0.0; 2], 0.5, 1.0),
+        grain(31, [7.6975, 5.25], [1.0, 0.1], 0.5, 1.0),
+        grain(8, [2.0, 5.0], [0.1, 0.0], 0.5, 1.0),
+    ];
+    match breaks(&arena([16, 16], false, &discs), 100) {
+        (Failure::OutOfBox { step: 61, count: 1, first }, 61) => {
+            assert_eq!(first.id, 31);
+            assert!((first.position[0] - 8.0025).abs() < 1e-9, "{first}");
+        }
+        (failure, _) => panic!("{failure}"),
+    }
+}
+
+/// Two discs that hardly feel each other, closing in by 0.04 a step.
+fn ghosts(stop_penetration: f64) -> (Model, Particles) {
+    let discs = [
+        grain(5, [2.02, 3.25], [4.0, 0.0], 0.5, 1.0),
+        grain(9, [4.0, 1.0], [0.0; 2], 0.5, 1.0),
+        grain(12, [3.97, 3.25], [-4.0, 0.0], 0.5, 1.0),
+    ];
+    let (mut model, particles) = arena([16, 16], false, &discs);
+    model.contact.stiffness = 1e-9;
+    model.watch = Some(Watch { max_penetration: 0.1, stop_penetration });
+    (model, particles)
+}
+
+#[test]
+fn a_contact_beyond_the_limit_names_both_discs_in_its_step() {
+    // 1.95 − 0.04 n < 0.7: n = 32, at 0.67.
+    match breaks(&ghosts(0.3), 100) {
+        (Failure::TooDeep { step: 32, mut first, mut second, penetration, limit }, 32) => {
+            if first.id > second.id {
+                (first, second) = (second, first);
+            }
+            assert_eq!((first.id, second.id), (5, 12));
+            assert!((penetration - 0.33).abs() < 1e-6 && limit == 0.3, "{penetration}");
+        }
+        (failure, _) => panic!("{failure}"),
+    }
+}
+
+#[test]
+fn two_discs_in_one_cell_are_named_in_their_step() {
+    // The first enters [2.5, 3) at step 25 (2.52); the second leaves [3, 3.5) for it at step 49 (2.99), where the first
+    // has just left at step 50: they share it in step 49 at 3.00 − 2.99, but for the first at 2.02 + 0.98 = 3.00.
+    let mut start = ghosts(0.999);
+    start.1.all_mut()[0].position[0] = 2.01;
+    match breaks(&start, 100) {
+        (Failure::Conflict { step: 49, mut first, mut second, distance }, 49) => {
+            if first.id > second.id {
+                (first, second) = (second, first);
+            }
+            assert_eq!((first.id, second.id), (5, 12));
+            assert!((distance - 0.0).abs() < 1e-6, "{distance}");
+        }
+        (failure, _) => panic!("{failure}"),
+    }
+}
