@@ -2,8 +2,8 @@
 
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};
-use stripmine::particles::Kind;
-use stripmine::scene::{Document, KEYS, PRESETS, Reason, Scene, Start};
+use stripmine::particles;
+use stripmine::scene::{Document, KEYS, Kind, PRESETS, Reason, Scene, Start};
 
 fn stripmine(arguments: &[&str]) -> std::process::Output {
     Command::cargo_bin("stripmine").unwrap().args(arguments).output().unwrap()
@@ -93,7 +93,7 @@ fn the_pipe_is_built_as_tried() {
             let along = (i % (walls / 2)) as f64 + if upper { 0.5 } else { 0.0 };
             assert!((disc.position[0] - 0.027 * along).abs() < 1e-9 && disc.radius == 0.009);
             assert!((disc.position[1] - if upper { 0.0365 } else { -0.0365 }).abs() < 1e-12);
-            assert_eq!((disc.kind, disc.velocity), (Kind::Wall, [0.0; 2]));
+            assert_eq!((disc.kind, disc.velocity), (particles::Kind::Wall, [0.0; 2]));
         }
         let speeds: f64 = discs.grains().iter().map(|d| d.velocity[0].powi(2) + d.velocity[1].powi(2)).sum();
         assert!(((speeds / (2.0 * grains as f64)).sqrt() / 0.3 - 1.0).abs() < 0.1);
@@ -231,6 +231,37 @@ fn damaged_scenes_never_panic() {
     }
     let deep = format!("x = {}", "[".repeat(100_000));
     assert!(Scene::parse("deep", &deep).is_err());
+}
+
+/// Numbers at the ends of what can be written: a scene or errors, in finite time and memory.
+#[test]
+fn extreme_numbers_never_panic() {
+    for (preset, few) in [
+        ("pipe-small", "particles.count=20"),
+        ("shaken-box", "particles.count=9"),
+        ("dense-gas", "particles.count=64"),
+        ("two-discs", "run.steps=1"),
+    ] {
+        for key in KEYS {
+            let shapes: &[&str] = match key.kind {
+                Kind::Number(_) | Kind::Whole(..) => &["{}"],
+                Kind::Pair(_) => &["[{}, 1.0]", "[1.0, {}]"],
+                Kind::Pairs => &["[[{}, 1.0], [1.0, {}]]"],
+                Kind::Numbers(_) => &["[{}, 1.0]"],
+                _ => continue,
+            };
+            for (extreme, shape) in ["0", "5e-324", "1e-308", "1e-30", "1e20", "1e308", "-1e308", "-0.0"]
+                .iter()
+                .flat_map(|extreme| shapes.iter().map(move |shape| (extreme, shape)))
+            {
+                let set = format!("{}={}", key.path(), shape.replace("{}", extreme));
+                if let Ok(checked) = Document::load(preset, &[few.to_owned(), set]).and_then(Document::check)
+                {
+                    assert_eq!(Scene::parse("again", &checked.scene.to_toml()).unwrap(), checked.scene);
+                }
+            }
+        }
+    }
 }
 
 /// Scenes that are nowhere, are no text, or are not allowed.

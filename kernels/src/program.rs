@@ -17,7 +17,8 @@ pub enum Execution {
     Eager,
     /// The program runs instruction by instruction on strips of this many elements.
     Strip(usize),
-    /// The program is compiled for strips of this many registers, one of [`Execution::BLOCKS`].
+    /// The program is compiled for strips of this many registers, one of [`Execution::BLOCKS`]; a text that gains
+    /// nothing from that ([`Text::IN_BLOCKS`]) runs chained.
     Block(usize),
     /// The program is compiled for one register at a time: every result feeds the next instruction directly.
     Chained,
@@ -332,12 +333,14 @@ where
                 2 => self.strips(Block::<R, 2>(registers)),
                 _ => self.strips(registers),
             }
-        } else {
+        } else if const { T::IN_BLOCKS } {
             match self.execution {
                 Execution::Block(2) => self.strips(Block::<R, 2>(registers)),
                 Execution::Block(_) => self.strips(Block::<R, 8>(registers)),
                 _ => self.strips(registers),
             }
+        } else {
+            self.strips(registers);
         }
     }
 }

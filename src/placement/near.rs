@@ -3,20 +3,32 @@
 use crate::domain::Domain;
 use std::collections::HashMap;
 
-/// Positions in a box, sorted into squares, so that what is within a reach is found without looking at all.
+/// Positions in a box, sorted into squares, so that what is within a reach is found without looking at all. Takes memory
+/// for what is added, not for the box.
 #[derive(Clone, Debug)]
 pub struct Near {
     domain: Domain,
     squares: [f64; 2],
-    members: HashMap<[i64; 2], Vec<(u32, [f64; 2])>>,
+    /// The last member that came into a square.
+    last: HashMap<[i64; 2], u32>,
+    members: Vec<Member>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Member {
+    number: u32,
+    position: [f64; 2],
+    /// The one that came into the same square before.
+    before: Option<u32>,
 }
 
 impl Near {
     /// Nothing yet; looks for what is closer than `reach` (length).
     pub fn new(domain: Domain, reach: f64) -> Self {
         // Whole squares fill a side, so that a periodic one closes; 2^30 of them number far more than there are discs.
-        let squares = domain.sides.map(|side| (side / reach).floor().clamp(1.0, 2f64.powi(30)));
-        Near { domain, squares, members: HashMap::new() }
+        // What is no number becomes one square.
+        let squares = domain.sides.map(|side| (side / reach).floor().max(1.0).min(2f64.powi(30)));
+        Near { domain, squares, last: HashMap::new(), members: Vec::new() }
     }
 
     fn square(&self, position: [f64; 2]) -> [i64; 2] {
@@ -29,7 +41,8 @@ impl Near {
 
     /// Adds a position, wrapped into the box, under a number.
     pub fn add(&mut self, number: u32, position: [f64; 2]) {
-        self.members.entry(self.square(position)).or_default().push((number, position));
+        let before = self.last.insert(self.square(position), self.members.len() as u32);
+        self.members.push(Member { number, position, before });
     }
 
     /// Along one axis, a square and its neighbours, each once.
@@ -48,9 +61,11 @@ impl Near {
         let [column, row] = self.square(position);
         self.around(0, column)
             .flat_map(move |column| self.around(1, row).map(move |row| [column, row]))
-            .filter_map(|square| self.members.get(&square))
-            .flatten()
-            .copied()
+            .filter_map(|square| self.last.get(&square).copied())
+            .flat_map(|last| {
+                let chain = std::iter::successors(Some(last), |&at| self.members[at as usize].before);
+                chain.map(|at| (self.members[at as usize].number, self.members[at as usize].position))
+            })
     }
 }
 

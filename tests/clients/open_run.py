@@ -143,12 +143,10 @@ def with_json(run):
 
         with open(path) as file:
             content = json.load(file, parse_constant=refuse)
-        particles = len(run.frames[-1].columns["id"])
-        if isinstance(content.get("particles"), int):
-            same("particles", [content["particles"]], [particles])
-        for key in ("step", "steps"):
-            if isinstance(content.get(key), int) and content[key] < run.frames[-1].step:
-                raise Wrong(f"{key} is {content[key]}, but the trajectory reaches step {run.frames[-1].step}")
+        species = run.frames[-1].columns["species"]
+        same("discs", content["discs"], [species.count("Si"), species.count("W")])
+        if content["steps"] < run.frames[-1].step:
+            raise Wrong(f"steps is {content['steps']}, but the trajectory reaches step {run.frames[-1].step}")
         return f"{len(content)} keys"
 
     return [(run.path("summary.json"), summary)]
@@ -251,7 +249,11 @@ def with_mdanalysis(run):
     def dump(path):
         columns = ["omegaz", "radius", "mass"]
         universe = MDAnalysis.Universe(
-            str(path), format="LAMMPSDUMP", topology_format="LAMMPSDUMP", convert_units=False, additional_columns=columns
+            str(path),
+            format="LAMMPSDUMP",
+            topology_format="LAMMPSDUMP",
+            convert_units=False,
+            additional_columns=columns,
         )
         for now, frame in zip(universe.trajectory, run.frames):
             same("id", universe.atoms.ids, frame.columns["id"])

@@ -79,6 +79,10 @@ pub unsafe trait Text {
     /// The strip length that the order of summation is defined for, where it depends on it.
     const GROUP: Option<usize> = None;
 
+    /// Whether the text is also compiled for strips of several registers. Worth it where it computes a lot on what it
+    /// loads; other texts are bound by memory and run one register at a time instead.
+    const IN_BLOCKS: bool = false;
+
     /// The text.
     fn body<M: Machine<Lane = Self::Lane>>(&self, machine: M);
 }

@@ -5,6 +5,7 @@ use super::super::key_table::*;
 use super::super::keys::Key;
 use super::super::places::Document;
 use super::super::{Amount, Grains, Lining, List, Scene, Speed, Start, WallMotion};
+use super::readable;
 use crate::domain::Domain;
 use crate::io::extxyz;
 use crate::particles::{Kind, Particle, Particles};
@@ -41,6 +42,7 @@ pub(super) fn radii(scene: &Scene, found: Option<[f64; 2]>) -> Option<[f64; 2]> 
 pub(super) fn make(document: &Document) -> Result<(Domain, Particles), SceneError> {
     let scene = &document.scene;
     let domain = domain(scene).unwrap_or(Domain { origin: [0.0; 2], sides: [1.0; 2], periodic: [true; 2] });
+    resolved(document, &domain)?;
     let (domain, mut particles) = match &scene.start {
         Start::File(path) => (domain, from_file(document, &domain, path)?),
         Start::List(list) => (domain, listed(list)),
@@ -73,6 +75,27 @@ pub(super) fn make(document: &Document) -> Result<(Domain, Particles), SceneErro
         }
     }
     Ok((domain, particles))
+}
+
+/// Whether numbers can tell positions in the box apart far better than the smallest disc that the scene admits.
+fn resolved(document: &Document, domain: &Domain) -> Result<(), SceneError> {
+    /// Largest error of a position, relative to the smallest radius.
+    const COARSEST: f64 = 1e-6;
+    let Some([smallest, _]) = radii(&document.scene, None) else { return Ok(()) };
+    for axis in 0..2 {
+        let farthest = domain.origin[axis].abs() + domain.sides[axis];
+        let step = farthest * f64::EPSILON;
+        if step > COARSEST * smallest {
+            let far_away = domain.origin[axis].abs() > domain.sides[axis];
+            let key: &Key = if far_away { &ORIGIN } else { &SIDES };
+            let message = format!(
+                "positions as far as {farthest:e} are known to {step:.1e} only, too coarse for discs of radius {smallest:e}"
+            );
+            let error = document.spot(key).error(Reason::Geometry, message);
+            return Err(error.advising("bring the box nearer to the origin, or choose units that suit it"));
+        }
+    }
+    Ok(())
 }
 
 /// The discs of the last frame of a start file, which must be of the scene's box.
@@ -236,7 +259,7 @@ fn pipe(
     if 2.0 * reach >= domain.sides[1] {
         let message = format!(
             "the centres of the two walls are {} apart, but the box is {} high",
-            2.0 * reach,
+            readable(2.0 * reach),
             domain.sides[1]
         );
         let error = document.spot(&CLEAR_WIDTH).error(Reason::Outside, message);
@@ -269,8 +292,10 @@ fn above_floor(
     let floor = centres + lining.radius;
     let top = domain.origin[1] + domain.sides[1];
     if floor + fill_height > top {
-        let message =
-            format!("grains would be placed up to {}, but the box ends at {top}", floor + fill_height);
+        let message = format!(
+            "grains would be placed up to {}, but the box ends at {top}",
+            readable(floor + fill_height)
+        );
         let error = document.spot(&FILL_HEIGHT).error(Reason::Outside, message);
         return Err(error.advising("raise the second of domain.sides, or lower fill_height"));
     }

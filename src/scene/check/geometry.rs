@@ -5,6 +5,7 @@ use super::super::error::{Reason, SceneError, Spot};
 use super::super::key_table::*;
 use super::super::keys::Key;
 use super::super::places::Document;
+use super::readable;
 use crate::domain::Domain;
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
@@ -138,23 +139,37 @@ fn lattice(
     if wanted * SLACK < bounds.least || wanted > bounds.most() * SLACK {
         let width = 2 * bounds.half_width + 1;
         let (message, why) = if wanted < bounds.least {
-            let reach = f64::from(bounds.half_width) * wanted;
+            let reach = readable(f64::from(bounds.half_width) * wanted);
             (
                 format!("`method.cell_edge` = {wanted} is too small: a {width}×{width} mask sees to {reach}"),
-                format!("but contacts reach to {}", f64::from(bounds.half_width) * bounds.least),
+                format!("but contacts reach to {}", readable(f64::from(bounds.half_width) * bounds.least)),
             )
         } else {
             (
                 format!(
-                    "`method.cell_edge` = {wanted} is too large: the diagonal of a cell is {:.6}",
-                    wanted * std::f64::consts::SQRT_2
+                    "`method.cell_edge` = {wanted} is too large: the diagonal of a cell is {}",
+                    readable(wanted * std::f64::consts::SQRT_2)
                 ),
-                format!("but centres may come as close as {:.6}", bounds.diagonal),
+                format!("but centres may come as close as {}", readable(bounds.diagonal)),
             )
         };
         let error = document.spot(&CELL_EDGE).error(Reason::Geometry, format!("{message}, {why}"));
-        let range = format!("an edge from {} to {} (length)", bounds.least, bounds.most());
+        let range =
+            format!("an edge from {} to {} (length)", readable(bounds.least), readable(bounds.most()));
         return Err(vec![error.expecting(range)]);
+    }
+    // No index numbers that many, and beyond 2^53 counting stops.
+    if let Some(axis) = (0..2)
+        .find(|&axis| domain.sides[axis] / bounds.least >= 2f64.powi(32) || !domain.sides[axis].is_finite())
+    {
+        let message = format!(
+            "the side along {}, {:e} long, takes more cells of {:e} than the 2^32 − 1 that an index numbers",
+            ["x", "y"][axis],
+            domain.sides[axis],
+            bounds.most()
+        );
+        let error = box_spot(document).error(Reason::Geometry, message);
+        return Err(vec![error.advising("make the box smaller, or the discs larger")]);
     }
     let axes = [0, 1].map(|axis| cuts(domain.sides[axis], domain.periodic[axis], bounds, wanted));
     let short: Vec<SceneError> = (0..2)
@@ -178,7 +193,10 @@ fn lattice(
         let message = format!(
             "no whole numbers of cells fill the sides {} and {}: a cell must have sides of at least {} and a diagonal \
              of at most {}",
-            domain.sides[0], domain.sides[1], bounds.least, bounds.diagonal
+            domain.sides[0],
+            domain.sides[1],
+            readable(bounds.least),
+            readable(bounds.diagonal)
         );
         let error = box_spot(document).error(Reason::Geometry, message);
         return Err(vec![error.advising("make the box a little larger, or lower law.max_penetration")]);
@@ -205,15 +223,15 @@ fn short_side(document: &Document, domain: &Domain, axis: usize, bounds: &Bounds
         let message = format!(
             "the periodic side along {name} is {side} long and takes {fit} cells of at least {}; a {needed}×{needed} \
              mask needs {needed} of them, or a pair would be met twice",
-            bounds.least
+            readable(bounds.least)
         );
-        let least = f64::from(needed) * bounds.least;
+        let least = readable(f64::from(needed) * bounds.least);
         box_spot(document).error(Reason::Geometry, message).expecting(format!("a side of at least {least}"))
     } else {
         let message = format!(
             "no whole number of cells fills the side along {name}, {side} long: a cell must be {} to {} long",
-            bounds.least,
-            bounds.longest()
+            readable(bounds.least),
+            readable(bounds.longest())
         );
         box_spot(document).error(Reason::Geometry, message)
     };
@@ -223,11 +241,11 @@ fn short_side(document: &Document, domain: &Domain, axis: usize, bounds: &Bounds
 /// The radii differ too much for the masks there are, or for the one asked for.
 fn ratio_error(document: &Document, radii: [f64; 2]) -> SceneError {
     let scene = &document.scene;
-    let [smallest, largest] = radii;
+    let [smallest, largest] = radii.map(readable);
     let penetration = scene.law.max_penetration;
     // 2 R_max/h ≤ (1 − p)·2 R_min/√2.
     let limit = |half_width: f64| half_width * (1.0 - penetration) / std::f64::consts::SQRT_2;
-    let ratio = largest / smallest;
+    let ratio = radii[1] / radii[0];
     let [five, seven] = [limit(2.0), limit(3.0)];
     let said = format!("the largest radius, {largest}, is {ratio:.4} times the smallest, {smallest}");
     let error = match scene.method.mask {

@@ -132,9 +132,9 @@ fn noun(kind: Kind) -> &'static str {
     }
 }
 
-/// A coordinate to nine digits: the last ones of a sum say nothing.
-fn readable(coordinate: f64) -> f64 {
-    format!("{coordinate:.8e}").parse().unwrap_or(coordinate)
+/// A number to nine digits: the last ones of a sum say nothing.
+fn readable(number: f64) -> f64 {
+    format!("{number:.8e}").parse().unwrap_or(number)
 }
 
 /// Where a disc is listed, or what made it.

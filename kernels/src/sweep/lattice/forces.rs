@@ -166,6 +166,7 @@ impl<M: Machine, const HALF: bool> Env<2> for &Around<M, HALF> {
 unsafe impl<P: Element, L: Law<2>, const HALF: bool> Text for Forces<P, L, HALF> {
     type Lane = P;
     const GROUP: Option<usize> = if HALF { Some(GROUP) } else { None };
+    const IN_BLOCKS: bool = true;
 
     #[inline(always)]
     fn body<M: Machine<Lane = P>>(&self, m: M) {
