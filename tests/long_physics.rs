@@ -226,7 +226,8 @@ fn the_figures_are_reported() {
         let cells = [&PIPES, &HALVED, &WEAK, &ELASTIC].map(|pipes| figure(pipes, which).to_string());
         writeln!(text, "| {name} | {} | {} |", tried[which], cells.join(" | ")).unwrap();
     }
-    text += "\nSpec, Fano late: γ_N = 100: 0.29 (0.19–0.43); elastic gas: 0.16. A late: 0.04–0.05; 0.026.\n\n";
+    text +=
+        "\nSpec, Fano late: γ_N = 100: 0.29 (0.19–0.43); elastic gas: 0.16. A late: 0.04–0.05; 0.026.\n\n";
     text += "| mean velocity (m/s) in each tenth of the run | |\n|---|---|\n";
     let list = |values: &[f64]| values.iter().map(|x| format!("{x:.3}")).collect::<Vec<_>>().join(" ");
     for (seed, pipe) in PIPES.iter().enumerate() {

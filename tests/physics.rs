@@ -51,7 +51,9 @@ fn energy_of_an_undamped_gas_converges_with_the_time_step() {
         let dts = [0.02, 0.01, 0.005, 0.0025];
         let errors = dts.map(|dt| energy_error(values, dt, 10.0));
         let orders: Vec<f64> = errors.windows(2).map(|pair| (pair[0][0] / pair[1][0]).log2()).collect();
-        println!("{values:?}: dt {dts:?}, rms and largest error of the energy {errors:?}, orders {orders:.2?}");
+        println!(
+            "{values:?}: dt {dts:?}, rms and largest error of the energy {errors:?}, orders {orders:.2?}"
+        );
         assert!(orders.iter().all(|order| *order > 1.0), "{values:?}: {orders:?}");
         let mean = orders.iter().sum::<f64>() / 3.0;
         assert!((1.8..4.5).contains(&mean), "{values:?}: order {mean}");
@@ -64,8 +66,12 @@ fn momentum_of_a_periodic_gas_is_conserved_to_rounding() {
     let start = gas(400, 0.84, 5);
     let mut gas = lattice(&start);
     let first = observe(gas.as_ref(), &start.0);
-    let magnitude: f64 =
-        gas.particles().grains().iter().map(|disc| disc.mass * disc.velocity[0].hypot(disc.velocity[1])).sum();
+    let magnitude: f64 = gas
+        .particles()
+        .grains()
+        .iter()
+        .map(|disc| disc.mass * disc.velocity[0].hypot(disc.velocity[1]))
+        .sum();
     let mut worst = 0.0_f64;
     for _ in 0..20 {
         advance(gas.as_mut(), 100);
@@ -75,7 +81,10 @@ fn momentum_of_a_periodic_gas_is_conserved_to_rounding() {
     }
     println!("momentum lost in 2000 steps: {worst:.2e} of the sum of its magnitudes");
     assert!(worst < 1e-13, "{worst:e}");
-    assert!(observe(gas.as_ref(), &start.0).kinetic < 0.99 * first.kinetic, "the gas must have collided and cooled");
+    assert!(
+        observe(gas.as_ref(), &start.0).kinetic < 0.99 * first.kinetic,
+        "the gas must have collided and cooled"
+    );
 }
 
 // ---- one collision --------------------------------------------------------------------------------------
@@ -185,7 +194,8 @@ fn collisions_restitute_as_an_integration_of_its_own_says() {
                     "{speed:5} {normal_damping:5} {cohesionless:7} | {e:.5} {reference:.5} | {:.5?} {:.5?}",
                     ours.duration, theirs.duration
                 );
-                let what = format!("speed {speed}, damping {normal_damping}: {ours:?}, integrated {theirs:?}");
+                let what =
+                    format!("speed {speed}, damping {normal_damping}: {ours:?}, integrated {theirs:?}");
                 assert!((e - reference).abs() < 0.6 * normal_damping * dt, "{what}");
                 match (ours.duration, theirs.duration) {
                     (Some(ours), Some(theirs)) => assert!((ours - theirs).abs() < 2.0 * dt, "{what}"),
@@ -206,7 +216,10 @@ fn undamped_collisions_last_as_long_as_hertz_says() {
         let hertz = hertz_time(contact.stiffness, speed);
         let end = simulated(contact, 0.001, speed, 1.5 * hertz);
         let duration = end.duration.unwrap();
-        println!("speed {speed}: duration {duration:.6}, Hertz {hertz:.6}; restitution {:.7}", end.speed / speed);
+        println!(
+            "speed {speed}: duration {duration:.6}, Hertz {hertz:.6}; restitution {:.7}",
+            end.speed / speed
+        );
         assert!((duration / hertz - 1.0).abs() < 5e-4, "{duration} {hertz}");
         assert!((end.speed / speed - 1.0).abs() < 1e-4, "{end:?}");
     }
@@ -242,9 +255,8 @@ fn oblique(contact: Contact, normal: f64, shear: f64) -> ([f64; 2], [f64; 2], Pa
     let n = [0, 1].map(|axis| 0.5 * (first.unwrap()[axis] + last[axis]));
     let length = n[0].hypot(n[1]);
     let n = n.map(|n| n / length);
-    let [px, py] = [0, 1].map(|axis| {
-        MASSES[0] * (after.all()[0].velocity[axis] - before.all()[0].velocity[axis])
-    });
+    let [px, py] =
+        [0, 1].map(|axis| MASSES[0] * (after.all()[0].velocity[axis] - before.all()[0].velocity[axis]));
     ([px * n[0] + py * n[1], py * n[0] - px * n[1]], [slip(before.all()), slip(after.all())], after)
 }
 

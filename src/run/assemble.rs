@@ -1,7 +1,7 @@
 //! From a checked scene to the method that runs it.
 
 use crate::method::lattice_md::{
-    Contacts, Discs, GearValues, ListOptions, Machine, Model, Rebuild, WallMotion, Watch, start,
+    Contacts, Discs, GearValues, ListOptions, Machine, Model, Rebuild, Watch, start,
 };
 use crate::method::{Failure, Method};
 use crate::scene::{self, Checked, MethodKind};
@@ -62,12 +62,6 @@ pub fn assemble(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
         execution: scene.method.execution,
         set: scene.method.instruction_set.unwrap_or_else(InstructionSet::best),
     };
-    let walls = match scene.walls {
-        scene::WallMotion::Fixed => WallMotion::Fixed,
-        scene::WallMotion::Oscillating { amplitude, frequency } => {
-            WallMotion::Oscillating { amplitude, frequency }
-        }
-    };
     let (model, particles) = (model(checked), particles.clone());
-    start(scene.method.precision, model, contacts, machine, walls, particles)
+    start(scene.method.precision, model, contacts, machine, scene.walls, particles)
 }

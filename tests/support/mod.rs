@@ -2,10 +2,10 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use stripmine::method::Method;
-use stripmine::method::lattice_md::{Contacts, Discs, GearValues, Machine, Model, WallMotion, Watch, start};
+use stripmine::method::lattice_md::{Contacts, Discs, GearValues, Machine, Model, Watch, start};
 use stripmine::particles::{Kind, Particle, Particles};
 use stripmine::placement::hexagonal;
-use stripmine::scene::Precision;
+use stripmine::scene::{Precision, WallMotion};
 use stripmine_kernels::law::granular::{Contact, ContactArm};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};

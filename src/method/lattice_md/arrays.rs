@@ -143,14 +143,10 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
             constant.push((Array::Interior, model.shape.interior()));
         }
         // The predictor hands on the grains' velocities; a wall's stay until the wall is moved.
-        let velocities: [(Array, fn(&Particle) -> f64); 3] = [
-            (Array::DiscVx, |disc| disc.velocity[0]),
-            (Array::DiscVy, |disc| disc.velocity[1]),
-            (Array::DiscOmega, |disc| disc.omega),
-        ];
-        for (array, velocity) in velocities {
+        let velocity = |disc: &Particle| [disc.velocity[0], disc.velocity[1], disc.omega];
+        for (component, array) in [Array::DiscVx, Array::DiscVy, Array::DiscOmega].into_iter().enumerate() {
             if let Some((_, column)) = lattice.iter_mut().find(|(name, _)| *name == array) {
-                *column = particles.all().iter().map(|disc| P::from_f64(velocity(disc))).collect();
+                *column = particles.all().iter().map(|disc| P::from_f64(velocity(disc)[component])).collect();
             }
         }
 

@@ -15,4 +15,3 @@ pub use model::{Discs, GearValues, Model, Watch};
 pub use neighbor_list::{ListOptions, Rebuild};
 pub use programs::{Part, StepProgram, execute, ledger, programs};
 pub use simulation::{Contacts, LatticeMd, Machine, start};
-pub use walls::WallMotion;

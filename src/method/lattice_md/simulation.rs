@@ -2,11 +2,12 @@
 
 use super::neighbor_list::Rival;
 use super::programs::rival_ledger;
+use super::walls::walls_at;
 use super::watch::Names;
-use super::{Arrays, ListOptions, Model, Part, StepProgram, WallMotion, execute, ledger, programs};
+use super::{Arrays, ListOptions, Model, Part, StepProgram, execute, ledger, programs};
 use crate::method::{DeepContacts, Failure, Method, Phase, StateColumn, Timings};
 use crate::particles::Particles;
-use crate::scene::Precision;
+use crate::scene::{Precision, WallMotion};
 use stripmine_kernels::backend;
 use stripmine_kernels::integrator::gear::{NOT_FINITE, STATE};
 use stripmine_kernels::isa::{Array, COUNTERS, Counter, ProgramError, Storage};
@@ -151,7 +152,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         if grains == discs || self.walls == WallMotion::Fixed {
             return;
         }
-        let (displacement, velocity) = self.walls.at(time);
+        let (displacement, velocity) = walls_at(self.walls, time);
         for axis in 0..2 {
             let start =
                 self.start.all()[grains..].iter().map(|disc| disc.position[axis] + displacement[axis]);
@@ -242,7 +243,7 @@ impl<S: backend::Precision, P: backend::Precision> Method for LatticeMd<S, P> {
         let mut particles = self.start.clone();
         let column = |array| self.arrays.state(array).unwrap_or(&[]);
         let value = |array, disc: usize| column(array).get(disc).map_or(0.0, |x: &S| x.to_f64());
-        let (_, wall_velocity) = self.walls.at(self.time());
+        let (_, wall_velocity) = walls_at(self.walls, self.time());
         let grains = self.arrays.lengths().grains;
         for (i, disc) in particles.all_mut().iter_mut().enumerate() {
             disc.position = [value(Array::X0, i), value(Array::Y0, i)];
