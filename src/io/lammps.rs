@@ -1,4 +1,5 @@
-//! LAMMPS files, to be opened by its users and their tools: a data file (`atom_style sphere`) and a text dump.
+//! LAMMPS files, to be opened by its users and their tools: a data file (`atom_style sphere`) and a text
+//! dump.
 //!
 //! Grains are of type 1, wall discs of type 2. The box reaches from −1/2 to 1/2 in z.
 
@@ -91,8 +92,8 @@ pub fn cut_dump(path: &Path, step: u64) -> Result<(), FileError> {
     }
 }
 
-/// Writes a frame of a text dump with id, type, position, velocity, angular velocity, radius and mass; frames written
-/// one after the other are a trajectory.
+/// Writes a frame of a text dump with id, type, position, velocity, angular velocity, radius and mass; frames
+/// written one after the other are a trajectory.
 ///
 /// # Errors
 /// Those of the writer.

@@ -30,7 +30,10 @@ pub enum TableFileError {
         expected: String,
     },
     /// A row that does not begin with a step.
-    #[error("{}:{line}: expected a row of {columns} that begins with a step, found `{found}`", file.display())]
+    #[error(
+        "{}:{line}: expected a row of {columns} that begins with a step, found `{found}`",
+        file.display()
+    )]
     Row {
         /// The file.
         file: PathBuf,

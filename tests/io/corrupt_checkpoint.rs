@@ -124,7 +124,7 @@ fn absurd_lengths_are_refused() {
     let starts = sections(&whole);
     for absurd in [u64::MAX - 1, 1 << 62, 1 << 40, whole.len() as u64] {
         let new = absurd.to_le_bytes();
-        // Of the state, of its scene, of how many entries its origin has; of a column's name, of how many values.
+        // Of the state, of its scene, how many entries its origin has; of a column's name, how many values.
         let (state, column) = (starts[0], starts[1]);
         let origin = state + 12 + 16 + 8 + checkpoint(3).scene.len();
         for at in [state + 4, state + 12 + 16, origin, column + 12, column + 12 + 8 + 1 + 1] {

@@ -115,7 +115,8 @@ fn advice(file: &Path, kept: &Kept) -> String {
     match kept {
         Kept::Nothing => "\n  help: no older checkpoint is kept beside it; start the run again".to_owned(),
         Kept::Whole { file: older, step } => format!(
-            "\n  kept: the older one, {}, of step {step}, is whole\n  help: to go on from it, rename it to {}",
+            "\n  kept: the older one, {}, of step {step}, is whole\
+             \n  help: to go on from it, rename it to {}",
             older.display(),
             file.display()
         ),

@@ -31,8 +31,8 @@ fn beside(path: &Path, ending: &str) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// Reads the newest checkpoint of a folder, none if it has none. If the newest is missing but the one before it is
-/// there, reads that one; if the newest is corrupt, does not: that is for the user to decide.
+/// Reads the newest checkpoint of a folder, none if it has none. If the newest is missing but the one before
+/// it is there, reads that one; if the newest is corrupt, does not: that is for the user to decide.
 ///
 /// # Errors
 /// If it is corrupt or cannot be read; the error says what is kept.
@@ -52,8 +52,8 @@ impl Checkpoint {
     /// Reads a checkpoint, every bit as it was written.
     ///
     /// # Errors
-    /// If it is truncated, changed in a single bit, longer than it says, of another version, or cannot be read; the
-    /// error says what is kept.
+    /// If it is truncated, changed in a single bit, longer than it says, of another version, or cannot be read;
+    /// the error says what is kept.
     pub fn read(path: impl AsRef<Path>) -> Result<Checkpoint, CheckpointError> {
         let path = path.as_ref();
         read_one(path).map_err(|(offset, fault)| {
@@ -67,8 +67,8 @@ impl Checkpoint {
         })
     }
 
-    /// Puts the checkpoint in the place of the one at `path`, which is kept as [`previous`]. At every moment there is
-    /// a whole checkpoint on the disk, and when this returns the new one is.
+    /// Puts the checkpoint in the place of the one at `path`, which is kept as [`previous`]. At every moment
+    /// there is a whole checkpoint on the disk, and when this returns the new one is.
     ///
     /// # Errors
     /// If two columns have one name, or the system does not let it be written; then the one at `path` stays.
@@ -107,8 +107,8 @@ fn read_one(path: &Path) -> Result<Checkpoint, reading::Found> {
     reading::decode(BufReader::new(file), length)
 }
 
-/// Gives the file at `path`, if there is one, its second name [`previous`], so that `path` is never without a file.
-/// Where the file system has no second names, moves it there.
+/// Gives the file at `path`, if there is one, its second name [`previous`], so that `path` is never without a
+/// file. Where the file system has no second names, moves it there.
 fn keep(path: &Path) -> io::Result<()> {
     let (older, link) = (previous(path), beside(path, ".link"));
     remove_if_there(&link)?;

@@ -5,7 +5,8 @@
 //! ```text
 //! header   magic (8 bytes) · version u32 · sections u32 · length of the file u64 · checksum u32
 //! section  kind (4 bytes) · length of the payload u64 · payload · checksum u32
-//!   STAT   step u64 · time f64 · scene text · origin: count u64, (text, text)… · counters: count u64, (text, tag u8, 8 bytes)…
+//!   STAT   step u64 · time f64 · scene text
+//!          · origin: count u64, (text, text)… · counters: count u64, (text, tag u8, 8 bytes)…
 //!   COLM   name text · tag u8 · count u64 · elements
 //! ```
 //!

@@ -48,7 +48,10 @@ pub enum Reason {
         previous: Option<usize>,
     },
     /// The file ends within a frame.
-    #[error("truncated: the file ends after {found} of the {promised} discs that line {line} promises{}", whole(*.frames))]
+    #[error(
+        "truncated: the file ends after {found} of the {promised} discs that line {line} promises{}",
+        whole(*.frames)
+    )]
     Truncated {
         /// Discs of the last frame that are there.
         found: usize,
@@ -217,7 +220,8 @@ impl Mistakes {
 }
 
 impl ReadError {
-    /// What the system said, if the file could not be read at all: a matter of input and output, not of content.
+    /// What the system said, if the file could not be read at all: a matter of input and output, not of
+    /// content.
     pub fn system(&self) -> Option<&io::Error> {
         self.mistakes.iter().find_map(|mistake| match &mistake.reason {
             Reason::Io(cause) => Some(cause),

@@ -4,12 +4,12 @@
 //!
 //! ```text
 //! 1
-//! Lattice="10.0 0.0 0.0 0.0 8.0 0.0 0.0 0.0 1.0" Origin="0.0 0.0 -0.5" pbc="T F F" Properties=… Time=0.5 step=100 seed=1
+//! Lattice="9.0 0.0 0.0 0.0 8.0 0.0 0.0 0.0 1.0" Origin="0.0 0.0 -0.5" pbc="T F F" Properties=… Time=0.5 step=9
 //! Si 0.5 0.5 0.0 1 0.0 -0.1 0.0 0.5 1.0 0.0 0.0 0.25
 //! ```
 //!
-//! Species `Si` is a grain, `W` a wall disc. z is 0; the angular velocity stands in the z component of `omega`. The
-//! angle of a disc is not in the format.
+//! Species `Si` is a grain, `W` a wall disc. z is 0; the angular velocity stands in the z component of `omega`.
+//! The angle of a disc is not in the format.
 
 mod error;
 mod header;
@@ -28,7 +28,8 @@ use crate::particles::Particles;
 /// The columns of a frame as written.
 pub const PROPERTIES: &str = "species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
 
-/// Extent of the box in z (length), of no meaning in the plane: from −1/2 to 1/2, as LAMMPS wants it for two dimensions.
+/// Extent of the box in z (length), of no meaning in the plane: from −1/2 to 1/2, as LAMMPS wants it for two
+/// dimensions.
 pub(super) const DEPTH: [f64; 2] = [-0.5, 0.5];
 
 /// Discs in their box at one time.

@@ -60,8 +60,9 @@ impl Layout {
             layout.fields = end;
         }
         for (column, first) in COLUMNS.iter().zip(&layout.first) {
-            let misshapen = |reason: &Reason| matches!(reason, Reason::ColumnShape { expected, .. } if *expected == column.shape);
-            if column.required && first.is_none() && !reasons.iter().any(misshapen) {
+            // A column of the wrong shape is there.
+            let named = parts.chunks(3).any(|part| part[0] == column.name);
+            if column.required && first.is_none() && !named {
                 reasons.push(Reason::MissingColumn(column.shape));
             }
         }

@@ -37,7 +37,8 @@ impl Trajectory {
         Ok(Trajectory { path, out: BufWriter::new(file) })
     }
 
-    /// Goes on after the last frame of at most `step` steps; frames after it, and a torn one at the end, are cut off.
+    /// Goes on after the last frame of at most `step` steps; frames after it, and a torn one at the end, are
+    /// cut off.
     ///
     /// # Errors
     /// If the file is not there, or a comment line in it cannot be understood.
