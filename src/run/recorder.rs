@@ -53,11 +53,12 @@ impl Recorder {
 
     /// Begins the files with the state at the start.
     pub(super) fn begin(folder: &Path, checked: &Checked, method: &dyn Method) -> Result<Recorder, RunError> {
-        fs::create_dir_all(folder).map_err(at(folder, "creating the folder"))?;
+        fs::create_dir_all(folder).map_err(FileError::at(folder, "creating the folder"))?;
         for stale in ["summary.json", "dump.lammpstrj", "final.data", NAME, "run.checkpoint.previous"] {
             let path = folder.join(stale);
             if path.exists() {
-                fs::remove_file(&path).map_err(at(&path, "removing the file of an earlier run"))?;
+                fs::remove_file(&path)
+                    .map_err(FileError::at(&path, "removing the file of an earlier run"))?;
             }
         }
         let thermo = TableFile::create(folder.join("thermo.csv"), &THERMO)?;
@@ -148,7 +149,7 @@ impl Recorder {
 
     fn write(&self, name: &str, text: &str) -> Result<(), RunError> {
         let path = self.folder.join(name);
-        Ok(fs::write(&path, text).map_err(at(&path, "writing"))?)
+        Ok(fs::write(&path, text).map_err(FileError::at(&path, "writing"))?)
     }
 
     /// What is due after a step.
@@ -208,10 +209,12 @@ impl Recorder {
             self.trajectory.append(&frame)?;
         }
         if self.output.lammps_dump {
-            let path = self.folder.join("dump.lammpstrj");
+            let path = self.dump_path();
             let file = OpenOptions::new().create(true).append(true).open(&path);
-            let mut out = BufWriter::new(file.map_err(at(&path, "opening"))?);
-            lammps::write_dump(&frame, &mut out).and_then(|()| out.flush()).map_err(at(&path, "writing"))?;
+            let mut out = BufWriter::new(file.map_err(FileError::at(&path, "opening"))?);
+            lammps::write_dump(&frame, &mut out)
+                .and_then(|()| out.flush())
+                .map_err(FileError::at(&path, "writing"))?;
         }
         Ok(())
     }
@@ -228,10 +231,20 @@ impl Recorder {
         self.folder.join("trajectory.xyz")
     }
 
+    fn dump_path(&self) -> PathBuf {
+        self.folder.join("dump.lammpstrj")
+    }
+
     /// The complete state, after everything before it is on the disk.
     pub(super) fn checkpoint(&mut self, method: &dyn Method) -> Result<(), RunError> {
         self.thermo.sync()?;
         self.trajectory.sync()?;
+        let path = self.dump_path();
+        if self.output.lammps_dump && path.exists() {
+            File::open(&path)
+                .and_then(|dump| dump.sync_data())
+                .map_err(FileError::at(&path, "writing the dump"))?;
+        }
         let deep = method.deep_contacts();
         let counters = BTreeMap::from([
             ("deep.disc_steps".to_owned(), Counter::Count(deep.disc_steps)),
@@ -270,9 +283,11 @@ impl Recorder {
     pub(super) fn final_files(&mut self, method: &dyn Method) -> Result<(), RunError> {
         if self.output.lammps_data {
             let path = self.folder.join("final.data");
-            let mut out = BufWriter::new(File::create(&path).map_err(at(&path, "creating"))?);
+            let mut out = BufWriter::new(File::create(&path).map_err(FileError::at(&path, "creating"))?);
             let frame = self.frame(method);
-            lammps::write_data(&frame, &mut out).and_then(|()| out.flush()).map_err(at(&path, "writing"))?;
+            lammps::write_data(&frame, &mut out)
+                .and_then(|()| out.flush())
+                .map_err(FileError::at(&path, "writing"))?;
         }
         Ok(())
     }
@@ -280,15 +295,10 @@ impl Recorder {
     /// `summary.json`.
     pub(super) fn summary(&self, summary: &Summary) -> Result<(), RunError> {
         let path = self.folder.join("summary.json");
-        let text =
-            serde_json::to_string_pretty(summary).map_err(|cause| at(&path, "writing")(cause.into()))?;
+        let text = serde_json::to_string_pretty(summary)
+            .map_err(|cause| FileError::at(&path, "writing")(cause.into()))?;
         self.write("summary.json", &(text + "\n"))
     }
-}
-
-/// Names the file and the action that failed.
-fn at(file: &Path, action: &'static str) -> impl FnOnce(std::io::Error) -> FileError {
-    move |cause| FileError { file: file.to_owned(), action, cause }
 }
 
 /// Refuses a scene that differs from the run's in more than how long and what is written.
