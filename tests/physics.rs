@@ -93,10 +93,9 @@ const RADII: [f64; 2] = [0.5, 0.46];
 const MASSES: [f64; 2] = [1.0, 0.7];
 const EFFECTIVE: f64 = MASSES[0] * MASSES[1] / (MASSES[0] + MASSES[1]);
 
-/// Two discs about to touch, meeting at `normal`, sliding past each other at `shear`.
-fn pair(contact: Contact, dt: f64, normal: f64, shear: f64) -> (Model, Particles) {
-    let gap = 1.37 * normal * dt;
-    let x = 4.0 + RADII[0] + RADII[1] + gap;
+/// Two discs that touch after so many steps, meeting at `normal`, sliding past each other at `shear`.
+fn pair(contact: Contact, dt: f64, steps: f64, [normal, shear]: [f64; 2]) -> (Model, Particles) {
+    let x = 4.0 + RADII[0] + RADII[1] + steps * normal * dt;
     // In the frame of the centre of mass.
     let share = [MASSES[1], -MASSES[0]].map(|m| m / (MASSES[0] + MASSES[1]));
     let discs = [
@@ -127,7 +126,7 @@ struct End {
 }
 
 fn simulated(contact: Contact, dt: f64, speed: f64, time: f64) -> End {
-    let mut collision = lattice(&pair(contact, dt, speed, 0.0));
+    let mut collision = lattice(&pair(contact, dt, 1.37, [speed, 0.0]));
     let (mut before, _, _) = apart(collision.particles().all());
     let (mut touched, mut parted) = (None, None);
     loop {
@@ -155,11 +154,11 @@ fn integrated(contact: Contact, speed: f64, time: f64) -> End {
         let push = if x > 0.0 { k * x * x.sqrt() + gamma * EFFECTIVE * u } else { 0.0 };
         [u, -(if cohesionless { push.max(0.0) } else { push }) / EFFECTIVE]
     };
-    let h = time / 400_000.0;
+    let h = time / 100_000.0;
     let go = |s: [f64; 2], d: [f64; 2], h: f64| [s[0] + h * d[0], s[1] + h * d[1]];
     let mut s = [0.0, speed];
     let mut duration = None;
-    for step in 0..400_000 {
+    for step in 0..100_000 {
         let a = rate(if step == 0 { [1e-300, speed] } else { s });
         let b = rate(go(s, a, 0.5 * h));
         let c = rate(go(s, b, 0.5 * h));
@@ -183,10 +182,11 @@ fn collisions_restitute_as_an_integration_of_its_own_says() {
     println!("speed gamma clamped |  restitution, integrated |  duration, integrated");
     for cohesionless in [true, false] {
         for speed in [0.05, 0.2, 0.8] {
-            for normal_damping in [0.3, 1.0, 4.0] {
+            for normal_damping in [0.3, 1.0, 4.0, 40.0] {
                 let contact = Contact { normal_damping, cohesionless, friction: 0.0, ..CONTACT };
                 let dt = 0.001;
-                let time = 3.0 * hertz_time(contact.stiffness, speed);
+                let strong = normal_damping > 4.0;
+                let time = if strong { 12.0 } else { 3.0 } * hertz_time(contact.stiffness, speed);
                 let ours = simulated(contact, dt, speed, time);
                 let theirs = integrated(contact, speed, time);
                 let [e, reference] = [ours.speed / speed, theirs.speed / speed];
@@ -196,14 +196,19 @@ fn collisions_restitute_as_an_integration_of_its_own_says() {
                 );
                 let what =
                     format!("speed {speed}, damping {normal_damping}: {ours:?}, integrated {theirs:?}");
-                assert!((e - reference).abs() < 0.6 * normal_damping * dt, "{what}");
+                assert!((e - reference).abs() < 6e-4 * normal_damping.min(4.0), "{what}");
                 match (ours.duration, theirs.duration) {
-                    (Some(ours), Some(theirs)) => assert!((ours - theirs).abs() < 2.0 * dt, "{what}"),
+                    (Some(ours), Some(theirs)) => {
+                        assert!(
+                            (ours - theirs).abs() < if strong { 0.02 * theirs } else { 2.0 * dt },
+                            "{what}"
+                        );
+                    }
                     // Unclamped, strongly damped pairs creep.
                     (None, None) => assert!((ours.overlap / theirs.overlap - 1.0).abs() < 0.01, "{what}"),
                     _ => panic!("{what}"),
                 }
-                assert!(!cohesionless || ours.duration.is_some(), "{what}");
+                assert_eq!(ours.duration.is_some(), cohesionless || !strong, "{what}");
             }
         }
     }
@@ -225,10 +230,35 @@ fn undamped_collisions_last_as_long_as_hertz_says() {
     }
 }
 
+/// How fast an undamped collision gives back all its speed as the time step shrinks: rms over where in a step it
+/// begins.
+#[test]
+fn an_undamped_collision_converges_at_more_than_second_order() {
+    let contact = Contact { normal_damping: 0.0, friction: 0.0, ..CONTACT };
+    let (speed, phases, dts) = (0.2, 16, [0.016, 0.008, 0.004, 0.002]);
+    for values in GearValues::ALL {
+        let errors = dts.map(|dt| {
+            let square = |phase: i32| {
+                let mut start = pair(contact, dt, 1.0 + f64::from(phase) / f64::from(phases), [speed, 0.0]);
+                start.0.values = values;
+                let mut collision = lattice(&start);
+                advance(collision.as_mut(), (1.3 * hertz_time(contact.stiffness, speed) / dt) as u64 + 3);
+                let (overlap, _, [away, _]) = apart(collision.particles().all());
+                assert!(overlap < 0.0 && away > 0.0);
+                (away / speed - 1.0).powi(2)
+            };
+            ((0..phases).map(square).sum::<f64>() / f64::from(phases)).sqrt()
+        });
+        let orders: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
+        println!("{values:?}: dt {dts:?}, rms error of the speed given back {errors:?}, orders {orders:.2?}");
+        assert!(orders.iter().sum::<f64>() / 3.0 > 1.8, "{values:?}: {orders:?}");
+    }
+}
+
 /// Momentum that the first disc receives along the mean normal and tangent, and the slip of the surfaces before and
 /// after; the Coulomb bound is asserted in every step.
 fn oblique(contact: Contact, normal: f64, shear: f64) -> ([f64; 2], [f64; 2], Particles) {
-    let mut collision = lattice(&pair(contact, 0.0005, normal, shear));
+    let mut collision = lattice(&pair(contact, 0.0005, 1.37, [normal, shear]));
     let before = collision.particles();
     let slip = |discs: &[Particle]| {
         let (_, _, [_, along]) = apart(discs);
@@ -267,27 +297,27 @@ fn friction_is_coulombs_where_surfaces_slide_and_less_where_they_roll() {
         let sliding = Contact { shear_damping: 1e5, ..stiff };
         let ([push, drag], [before, after], _) = oblique(sliding, 0.2, shear);
         println!("sliding at {shear}: drag/push {:.5}, slip {before:.4} to {after:.4}", drag / push);
-        assert!((drag / push + shear.signum() * 0.3).abs() < 0.003, "{drag} {push}");
+        assert!((drag / push + before.signum() * 0.3).abs() < 0.003, "{drag} {push}");
         assert!(after / before > 0.3, "it must slide to the end: {before} to {after}");
         // 1 + 1/0.5 = 3 surfaces' worth of inertia against the momentum exchanged.
         assert!((after - before - 3.0 * drag / EFFECTIVE).abs() < 0.02, "{before} {after} {drag}");
 
         // Between the two: less than Coulomb's.
         let weak = Contact { shear_damping: 1.0, ..stiff };
-        let ([push, drag], ..) = oblique(weak, 0.2, shear);
+        let ([push, drag], [before, _], _) = oblique(weak, 0.2, shear);
         println!("viscous at {shear}: drag/push {:.5}", drag / push);
-        assert!(drag.abs() < 0.29 * push && drag * shear < 0.0);
+        assert!(drag.abs() < 0.29 * push && drag * before < 0.0);
 
         let rolling = Contact { shear_damping: 200.0, friction: 5.0, ..stiff };
         let shear = 0.05 * shear;
         let ([push, drag], [before, after], discs) = oblique(rolling, 0.2, shear);
         println!("rolling from {shear}: drag/push {:.5}, slip {before:.5} to {after:.2e}", drag / push);
-        assert!((before - shear).abs() < 1e-3 * shear.abs());
+        assert!((before.abs() / shear.abs() - 1.0).abs() < 1e-3, "{before}");
         assert!(after.abs() < 1e-3 * shear.abs(), "{after}");
         assert!(drag.abs() < 5.0 * push);
         let spins = RADII[0] * discs.all()[0].omega + RADII[1] * discs.all()[1].omega;
         // Of the slip two thirds become spin.
-        assert!((spins / shear - 2.0 / 3.0).abs() < 0.02, "{spins} {shear}");
+        assert!((spins / before - 2.0 / 3.0).abs() < 0.02, "{spins} {before}");
     }
 }
 
@@ -312,7 +342,7 @@ fn threads_and_instructions_give_the_same_bits() {
             let mut gas = simulate(Precision::F64, &start, Contacts::Lattice, machine);
             advance(gas.as_mut(), 50);
             let touching = gas.forces().iter().filter(|force| force[0] != 0.0).count();
-            assert!(touching > 1000, "the gas must collide: {touching}");
+            assert!(touching > 500, "the gas must collide: {touching}");
             bits(gas.as_ref())
         })
     };

@@ -273,8 +273,12 @@ pub fn efficiency_table(
     let mut parts: Vec<PartRow> = Vec::new();
     for (part, length, counts) in ledger.parts() {
         let named = Part::ALL.iter().copied().find(|known| known.name() == part);
-        let main =
-            matches!((named, length), (Some(Part::Forces), Length::SweptCells) | (Some(_), Length::Discs));
+        let main = match named {
+            Some(Part::Forces) => length == Length::SweptCells,
+            Some(Part::Index) => length == Length::Discs,
+            Some(Part::Predictor | Part::Corrector) => length == Length::Grains,
+            Some(Part::Lattice) | None => false,
+        };
         let printed = named.filter(|_| main).and_then(printed_nop);
         let printed_n = named.map_or(0, |part| printed_length(part, &lengths));
         parts.push(PartRow {
