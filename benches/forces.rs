@@ -10,7 +10,10 @@ use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterio
 use intrinsics::{Numbers, Place, Vectors};
 use std::hint::black_box;
 use std::time::Duration;
-use stripmine::method::lattice_md::{Arrays, Discs, GearValues, Model, Part, execute, programs};
+use stripmine::method::lattice_md::{
+    Arrays, Discs, GearValues, Model, Part, StepProgram, Watch, execute, programs as programs_of,
+};
+use stripmine::particles::Particles;
 use stripmine::placement::hexagonal;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Array;
@@ -29,7 +32,7 @@ const CONTACT: Contact = Contact {
 };
 
 /// A dense packing (0.84) on a lattice of about `cells` cells of the radius's width.
-fn dense<P: Precision>(cells: usize, friction: bool) -> (Model, Arrays<f64, P>) {
+fn dense<P: Precision>(cells: usize, friction: bool) -> (Model, Particles, Arrays<f64, P>) {
     let packing = hexagonal((cells as f64 * 0.84 / std::f64::consts::PI) as usize, 0.84, 0.01, 1);
     let radius = 0.5;
     let counts = packing.sides.map(|side| (side / radius) as usize);
@@ -50,14 +53,15 @@ fn dense<P: Precision>(cells: usize, friction: bool) -> (Model, Arrays<f64, P>) 
         gravity: [0.0; 2],
     };
     let mut arrays = Arrays::new(&model, &packing.particles);
-    let programs = programs::<f64, P>(&model);
+    warm_up::<P>(&programs_of::<f64, P>(&model), &mut arrays);
+    (model, packing.particles, arrays)
+}
+
+/// Everything of a step before the forces.
+fn warm_up<P: Precision>(programs: &[StepProgram], arrays: &mut Arrays<f64, P>) {
     let before = [Part::Predictor, Part::Index, Part::Lattice];
-    {
-        let (memory, lengths) = arrays.memory();
-        let set = InstructionSet::best();
-        execute(&programs, &before, &memory, lengths, Execution::Chained, set).expect("bound");
-    }
-    (model, arrays)
+    let (memory, lengths) = arrays.memory();
+    execute(programs, &before, &memory, lengths, Execution::Chained, InstructionSet::best()).expect("bound");
 }
 
 fn places<T: Precision>(model: &Model) -> Vec<Place<T>> {
@@ -118,7 +122,7 @@ fn hand_written<P: ByHand, const FRICTION: bool>(
     model: &Model,
     arrays: &mut Arrays<f64, P>,
 ) {
-    let programs = programs::<f64, P>(model);
+    let programs = programs_of::<f64, P>(model);
     {
         let (memory, lengths) = arrays.memory();
         let set = InstructionSet::best();
@@ -161,7 +165,7 @@ fn hand_written<P: ByHand, const FRICTION: bool>(
 
 fn executions<P: ByHand>(criterion: &mut Criterion, precision: &str) {
     for (cells, friction) in [(10_000, false), (10_000, true), (100_000, false), (100_000, true)] {
-        let (model, mut arrays) = dense::<P>(cells, friction);
+        let (model, particles, mut arrays) = dense::<P>(cells, friction);
         let law = if friction { "friction" } else { "normal" };
         let mut group = criterion.benchmark_group(format!("forces/{precision}/{law}/{cells}"));
         group.throughput(Throughput::Elements(model.shape.cells() as u64));
@@ -174,7 +178,7 @@ fn executions<P: ByHand>(criterion: &mut Criterion, precision: &str) {
         } else {
             hand_written::<P, false>(&mut group, "by hand", &model, &mut arrays);
         }
-        let programs = programs::<f64, P>(&model);
+        let programs = programs_of::<f64, P>(&model);
         let best = InstructionSet::best();
         let mut ways: Vec<(String, Execution, InstructionSet)> = Vec::new();
         ways.extend(
@@ -192,6 +196,15 @@ fn executions<P: ByHand>(criterion: &mut Criterion, precision: &str) {
                 bencher.iter(|| execute(&programs, &[Part::Forces], &memory, lengths, execution, set));
             });
         }
+        // What the checks of a run cost: the deepest contact watched in every cell.
+        let watch = Some(Watch { max_penetration: 0.1, stop_penetration: 0.3 });
+        let watching = programs_of::<f64, P>(&Model { watch, ..model.clone() });
+        let mut arrays = Arrays::<f64, P>::new(&Model { watch, ..model.clone() }, &particles);
+        warm_up::<P>(&watching, &mut arrays);
+        let (memory, lengths) = arrays.memory();
+        group.bench_function(format!("chained {}, with the checks", best.name()), |bencher| {
+            bencher.iter(|| execute(&watching, &[Part::Forces], &memory, lengths, Execution::Chained, best));
+        });
         group.finish();
     }
 }
