@@ -9,7 +9,7 @@ use crate::io::{FileError, lammps};
 use crate::method::{DeepContacts, Method, StateColumn};
 use crate::observe::{Observation, Scenery};
 use crate::report::origin::Origin;
-use crate::scene::{Checked, Start};
+use crate::scene::Checked;
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, Write};
@@ -81,19 +81,12 @@ impl Recorder {
         trajectory: Trajectory,
         work: Work,
     ) -> Recorder {
-        let seed = match &checked.scene.start {
-            Start::File(_) | Start::List(_) => None,
-            Start::Hexagonal { grains, .. }
-            | Start::Random { grains, .. }
-            | Start::Pipe { grains, .. }
-            | Start::Box { grains, .. } => Some(grains.seed),
-        };
         Recorder {
             folder: folder.to_owned(),
             scene: checked.scene.to_toml(),
             run: checked.scene.run,
             output: checked.scene.output,
-            seed,
+            seed: super::summary::seed(&checked.scene.start),
             scenery: Scenery::of(&super::model(checked)),
             thermo,
             trajectory,

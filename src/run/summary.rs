@@ -4,7 +4,7 @@ use crate::method::lattice_md::{self, Discs, Lengths, Model, programs};
 use crate::method::{Failure, Method, Phase};
 use crate::observe::{Observation, Scenery};
 use crate::report::origin::Origin;
-use crate::scene::Checked;
+use crate::scene::{Checked, Start};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use stripmine_kernels::InstructionSet;
@@ -16,6 +16,10 @@ use stripmine_kernels::ledger::Length;
 pub struct Summary {
     /// The program.
     pub origin: Origin,
+    /// The processor, where the system names it, and the platform.
+    pub host: String,
+    /// Seed of the random numbers that made the start; none where it was read or listed.
+    pub seed: Option<u64>,
     /// Instructions used.
     pub instruction_set: &'static str,
     /// Threads used.
@@ -72,6 +76,8 @@ impl Summary {
         let scenery = Scenery::of(&super::model(checked));
         Summary {
             origin: Origin::here(),
+            host: host(),
+            seed: seed(&scene.start),
             instruction_set: set.name(),
             threads: rayon::current_num_threads(),
             discs: [grains, particles.len() - grains],
@@ -90,6 +96,25 @@ impl Summary {
             last: Observation::of(method.steps(), method.time(), &method.particles(), &scenery),
         }
     }
+}
+
+/// Seed of a start that random numbers make.
+pub(super) fn seed(start: &Start) -> Option<u64> {
+    match start {
+        Start::File(_) | Start::List(_) => None,
+        Start::Hexagonal { grains, .. }
+        | Start::Random { grains, .. }
+        | Start::Pipe { grains, .. }
+        | Start::Box { grains, .. } => Some(grains.seed),
+    }
+}
+
+/// The processor (Linux says it in `/proc/cpuinfo`) and the platform.
+fn host() -> String {
+    let platform = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);
+    let cpuinfo = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = cpuinfo.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
+    name.map_or(platform.clone(), |(_, name)| format!("{name}, {platform}"))
 }
 
 /// Part of a step.
