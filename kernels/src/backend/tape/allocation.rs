@@ -1,6 +1,6 @@
 //! Register allocation: few registers, each written again once its last reader is past.
 
-use super::instruction::{File, Instruction, Role};
+use super::instruction::{File, Instruction};
 use crate::isa::Element;
 use std::collections::HashMap;
 
@@ -9,12 +9,12 @@ pub(super) type FileSizes = [usize; File::ALL.len()];
 
 /// Renames the registers of straight-line code (each written once) to as few as possible.
 ///
-/// A result never takes the register of an operand of the same instruction, so that executing one never overwrites
-/// what it still reads.
+/// A result takes the register of an operand that is read for the last time: instructions work lane by lane, and a lane
+/// is read before it is written. That keeps the registers in use few and warm.
 pub(super) fn allocate<L: Element>(instructions: &mut [Instruction<L>]) -> FileSizes {
     let mut last_use = HashMap::new();
     for (at, instruction) in instructions.iter_mut().enumerate() {
-        instruction.registers(|name, _| {
+        instruction.registers(|name| {
             last_use.insert(*name, at);
         });
     }
@@ -22,27 +22,19 @@ pub(super) fn allocate<L: Element>(instructions: &mut [Instruction<L>]) -> FileS
     let mut free: [Vec<u32>; File::ALL.len()] = Default::default();
     let mut sizes: FileSizes = Default::default();
     for (at, instruction) in instructions.iter_mut().enumerate() {
-        let mut dying = Vec::new();
-        instruction.registers(|name, role| {
+        instruction.registers(|name| {
             let file = name.file as usize;
-            if last_use[name] == at {
-                dying.push(*name);
-            }
-            if role == Role::Writes {
-                let home = free[file].pop().unwrap_or_else(|| {
+            let home = *homes.entry(*name).or_insert_with(|| {
+                free[file].pop().unwrap_or_else(|| {
                     sizes[file] += 1;
                     sizes[file] as u32 - 1
-                });
-                homes.insert(*name, home);
+                })
+            });
+            if last_use[name] == at && !free[file].contains(&home) {
+                free[file].push(home);
             }
-            name.number = homes[name];
+            name.number = home;
         });
-        dying.dedup();
-        for name in dying {
-            if let Some(home) = homes.remove(&name) {
-                free[name.file as usize].push(home);
-            }
-        }
     }
     sizes
 }

@@ -43,6 +43,8 @@ pub enum Operand<L> {
     Register(RegisterName),
     /// A scalar operand.
     Uniform(L),
+    /// An array as it lies in memory: what a load becomes where it is executed, never on the recorded tape.
+    Memory(Reference),
 }
 
 /// An array in memory as an instruction meets it.
@@ -128,55 +130,66 @@ impl<L: Element> Instruction<L> {
         std::iter::once(self.op).chain(converts.then_some(Op::Widen))
     }
 
-    /// Calls `visit` with every register it reads, then, where it writes one, with that.
-    pub fn registers(&mut self, mut visit: impl FnMut(&mut RegisterName, Role)) {
-        let mut read = |operand: &mut Operand<L>| {
-            if let Operand::Register(name) = operand {
-                visit(name, Role::Reads);
+    /// Whether it writes to the array that `reference` names.
+    pub fn overwrites(&self, reference: Reference) -> bool {
+        match self.action {
+            Action::Store(to, _) | Action::StoreIndex(to, _) | Action::ScatterIndex(to, ..) => {
+                (to.array, to.element) == (reference.array, reference.element)
             }
-        };
-        match &mut self.action {
-            Action::Unary(a) | Action::ToIndex(a) | Action::Store(_, a) => read(a),
-            Action::Binary(a, b) | Action::Compare(a, b) => {
-                read(a);
-                read(b);
-            }
-            Action::Select(predicate, a, b) => {
-                read(a);
-                read(b);
-                visit(predicate, Role::Reads);
-            }
-            Action::Gather(_, index, elsewhere) => {
-                read(elsewhere);
-                visit(index, Role::Reads);
-            }
-            Action::Logic(a, b) => {
-                visit(a, Role::Reads);
-                if let Some(b) = b {
-                    visit(b, Role::Reads);
-                }
-            }
-            Action::Count(a, _)
-            | Action::FromIndex(a)
-            | Action::StoreIndex(_, a)
-            | Action::GatherIndex(_, a) => visit(a, Role::Reads),
-            Action::ScatterIndex(_, a, b) => {
-                visit(a, Role::Reads);
-                visit(b, Role::Reads);
-            }
-            Action::Numbers | Action::Load(_) | Action::LoadIndex(_) => {}
-        }
-        if let Some(to) = &mut self.to {
-            visit(to, Role::Writes);
+            _ => false,
         }
     }
-}
 
-/// How an instruction uses a register.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
-    /// It reads the register.
-    Reads,
-    /// It writes the register.
-    Writes,
+    /// Calls `visit` with every operand of numbers.
+    pub fn operands(&mut self, mut visit: impl FnMut(&mut Operand<L>)) {
+        match &mut self.action {
+            Action::Unary(a) | Action::ToIndex(a) | Action::Store(_, a) | Action::Gather(_, _, a) => visit(a),
+            Action::Binary(a, b) | Action::Compare(a, b) | Action::Select(_, a, b) => {
+                visit(a);
+                visit(b);
+            }
+            Action::Logic(..)
+            | Action::Count(..)
+            | Action::Numbers
+            | Action::FromIndex(_)
+            | Action::Load(_)
+            | Action::LoadIndex(_)
+            | Action::StoreIndex(..)
+            | Action::GatherIndex(..)
+            | Action::ScatterIndex(..) => {}
+        }
+    }
+
+    /// Calls `visit` with every register it reads, then, where it writes one, with that.
+    pub fn registers(&mut self, mut visit: impl FnMut(&mut RegisterName)) {
+        self.operands(|operand| {
+            if let Operand::Register(name) = operand {
+                visit(name);
+            }
+        });
+        match &mut self.action {
+            Action::Select(a, ..)
+            | Action::Gather(_, a, _)
+            | Action::Logic(a, None)
+            | Action::Count(a, _)
+            | Action::FromIndex(a)
+            | Action::StoreIndex(_, a)
+            | Action::GatherIndex(_, a) => visit(a),
+            Action::Logic(a, Some(b)) | Action::ScatterIndex(_, a, b) => {
+                visit(a);
+                visit(b);
+            }
+            Action::Unary(_)
+            | Action::Binary(..)
+            | Action::Compare(..)
+            | Action::Numbers
+            | Action::ToIndex(_)
+            | Action::Load(_)
+            | Action::Store(..)
+            | Action::LoadIndex(_) => {}
+        }
+        if let Some(to) = &mut self.to {
+            visit(to);
+        }
+    }
 }

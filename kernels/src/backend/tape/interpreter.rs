@@ -3,32 +3,11 @@
 
 use super::Tape;
 use super::instruction::{Action, File, Instruction, Operand, RegisterName};
-use crate::backend::{Precision, Registers};
-use crate::isa::{Element, Memory, Op, ProgramError, Slot, Storage};
+use crate::backend::{IndexLanes, Precision, Registers, Scalar, Strip};
+use crate::isa::{Counter, Element, Machine, Memory, Op, Predicate, ProgramError, Slot, Storage, Vector};
 use crate::program::{InstructionSet, Task, dispatch};
-use std::mem::take;
+use std::cell::Cell;
 use std::ops::Range;
-
-/// The register files, each register as long as a strip.
-struct RegisterFiles<L> {
-    numbers: Vec<Vec<L>>,
-    predicates: Vec<Vec<u8>>,
-    indices: Vec<Vec<u32>>,
-}
-
-/// What an instruction reads, lane by lane.
-#[derive(Clone, Copy)]
-enum Source<'r, L> {
-    Lanes(&'r [L]),
-    Uniform(L),
-}
-
-/// The strip an instruction works on.
-#[derive(Clone, Copy)]
-struct Span {
-    base: usize,
-    length: usize,
-}
 
 impl<L: Precision> Tape<L> {
     /// Executes the program with passes compiled for an instruction set. The memory was admitted.
@@ -52,222 +31,244 @@ struct Passes<'r, L> {
 }
 
 impl<L: Precision> Task<L> for Passes<'_, L> {
+    /// Strips of whole hardware registers, and what is left of each element by element: the same bits.
     #[inline(always)]
-    fn on<R: Registers<Lane = L>>(self, _: R) {
-        // The passes are plain loops: the instruction set they are inlined into is what vectorises them.
-        self.tape.execute(self.memory, self.range, self.strip);
+    fn on<R: Registers<Lane = L>>(self, hardware: R) {
+        let strip = self.strip.min(self.range.len());
+        let whole = RegisterFiles::new(hardware, self.tape, strip / R::LANES);
+        let rest = RegisterFiles::new(Scalar::default(), self.tape, strip.min(R::LANES - 1));
+        for base in self.range.clone().step_by(strip.max(1)) {
+            let length = strip.min(self.range.end - base);
+            let registers = length / R::LANES;
+            whole.execute(self.tape, Span { hardware, memory: self.memory, base, length: registers });
+            let elements = length % R::LANES;
+            rest.execute_elements(self.tape, self.memory, base + length - elements, elements);
+        }
     }
 }
 
-impl<L: Element> Tape<L> {
-    /// Executes the program for the elements of `range`, in strips of at most `strip`.
+/// The register files of the machine. A vector register is a run of hardware registers.
+///
+/// Cells, because a result may take the place of an operand: every hardware register is read before it is written.
+struct RegisterFiles<R: Registers> {
+    numbers: Vec<Vec<Cell<R::V>>>,
+    predicates: Vec<Vec<Cell<Truth<R>>>>,
+    indices: Vec<Vec<Cell<R::Index>>>,
+}
+
+type Truth<R> = <<R as Registers>::V as Vector>::Predicate;
+
+/// What an instruction reads: consecutive lanes of a register or of memory, or the same number in every lane.
+#[derive(Clone, Copy)]
+enum Source<L> {
+    Lanes(*const L),
+    Uniform(L),
+}
+
+/// The strip that instructions pass over: so many hardware registers from element `base` on.
+#[derive(Clone, Copy)]
+struct Span<'m, R> {
+    hardware: R,
+    memory: &'m Memory<'m>,
+    base: usize,
+    length: usize,
+}
+
+impl<'m, R: Registers> Span<'m, R> {
+    /// The machine at the place of one hardware register.
+    #[inline(always)]
+    fn at(self, register: usize) -> Strip<'m, R> {
+        Strip::new(self.hardware, self.memory, self.base + register * R::LANES)
+    }
+
+    /// The lanes at the place of one hardware register.
     ///
-    /// Inlined into a function of the processor's instruction set, where the compiler vectorises the passes.
+    /// # Safety
+    /// `from` begins as many lanes as the span holds.
     #[inline(always)]
-    fn execute(&self, memory: &Memory<'_>, range: Range<usize>, strip: usize) {
-        let strip = strip.min(range.len());
-        let mut files = RegisterFiles {
-            numbers: vec![vec![L::default(); strip]; self.registers(File::Number)],
-            predicates: vec![vec![0; strip]; self.registers(File::Predicate)],
-            indices: vec![vec![0; strip]; self.registers(File::Index)],
-        };
-        let mut base = range.start;
-        while base < range.end {
-            let span = Span { base, length: strip.min(range.end - base) };
-            for instruction in &self.instructions {
-                files.step(instruction, memory, span);
+    unsafe fn read(self, from: *const R::Lane, register: usize) -> R::V {
+        // SAFETY: the caller's promise.
+        unsafe { self.hardware.load(from.add(register * R::LANES)) }
+    }
+
+    /// A pass of something made at each place.
+    #[inline(always)]
+    fn each<X>(self, to: &[Cell<X>], make: impl Fn(usize) -> X) {
+        for (i, to) in to[..self.length].iter().enumerate() {
+            to.set(make(i));
+        }
+    }
+
+    /// A pass of `f(place, a)`.
+    #[inline(always)]
+    fn unary<X: Copy>(self, to: &[Cell<X>], a: Source<R::Lane>, f: impl Fn(usize, R::V) -> X) {
+        match a {
+            // SAFETY: sources have the span's lanes.
+            Source::Lanes(a) => self.each(to, |i| f(i, unsafe { self.read(a, i) })),
+            Source::Uniform(a) => {
+                let a = self.hardware.splat(a);
+                self.each(to, |i| f(i, a));
             }
-            base += span.length;
         }
     }
-}
 
-#[inline(always)]
-fn unary<L: Copy, R>(to: &mut [R], a: Source<'_, L>, f: impl Fn(L) -> R) {
-    match a {
-        Source::Lanes(a) => to.iter_mut().zip(a).for_each(|(to, &a)| *to = f(a)),
-        Source::Uniform(a) => to.iter_mut().for_each(|to| *to = f(a)),
-    }
-}
-
-#[inline(always)]
-fn binary<L: Copy, R>(to: &mut [R], a: Source<'_, L>, b: Source<'_, L>, f: impl Fn(L, L) -> R) {
-    match (a, b) {
-        (Source::Lanes(a), Source::Lanes(b)) => {
-            to.iter_mut().zip(a).zip(b).for_each(|((to, &a), &b)| *to = f(a, b));
-        }
-        (Source::Lanes(a), Source::Uniform(b)) => to.iter_mut().zip(a).for_each(|(to, &a)| *to = f(a, b)),
-        (Source::Uniform(a), b) => unary(to, b, |b| f(a, b)),
-    }
-}
-
-/// One lane of what an instruction reads.
-#[inline(always)]
-fn lane<L: Copy>(source: Source<'_, L>, i: usize) -> L {
-    match source {
-        Source::Lanes(lanes) => lanes[i],
-        Source::Uniform(value) => value,
-    }
-}
-
-/// The strip of an array in memory.
-///
-/// # Safety
-/// The memory was admitted for the program's footprint, and no writer of the array is alive.
-#[inline(always)]
-unsafe fn strip_of<'m, T: Storage>(
-    memory: &'m Memory<'_>,
-    slot: Slot<T>,
-    shift: isize,
-    span: Span,
-) -> &'m [T] {
-    // SAFETY: the footprint covers base + shift and `length` elements from there on.
-    unsafe {
-        std::slice::from_raw_parts(memory.column(slot).at(span.base.wrapping_add_signed(shift)), span.length)
-    }
-}
-
-/// The strip of an array in memory, to be written.
-///
-/// # Safety
-/// As [`strip_of`]; moreover the array is writable and no other reader of it is alive.
-#[inline(always)]
-#[expect(clippy::mut_from_ref, reason = "the memory owns exclusive borrows behind its columns")]
-unsafe fn strip_of_mut<'m, T: Storage>(
-    memory: &'m Memory<'_>,
-    slot: Slot<T>,
-    shift: isize,
-    span: Span,
-) -> &'m mut [T] {
-    // SAFETY: the footprint covers base + shift and `length` elements from there on.
-    unsafe {
-        std::slice::from_raw_parts_mut(
-            memory.column(slot).at(span.base.wrapping_add_signed(shift)),
-            span.length,
-        )
-    }
-}
-
-impl<L: Element> RegisterFiles<L> {
+    /// A pass of `f(place, a, b)`.
     #[inline(always)]
-    fn source<'r>(&'r self, operand: &Operand<L>, length: usize) -> Source<'r, L> {
+    fn binary<X: Copy>(
+        self,
+        to: &[Cell<X>],
+        a: Source<R::Lane>,
+        b: Source<R::Lane>,
+        f: impl Fn(usize, R::V, R::V) -> X,
+    ) {
+        match (a, b) {
+            (Source::Lanes(a), Source::Lanes(b)) => {
+                // SAFETY: sources have the span's lanes.
+                self.each(to, |i| f(i, unsafe { self.read(a, i) }, unsafe { self.read(b, i) }));
+            }
+            (a, Source::Uniform(b)) => {
+                let b = self.hardware.splat(b);
+                self.unary(to, a, |i, a| f(i, a, b));
+            }
+            (Source::Uniform(a), b) => {
+                let a = self.hardware.splat(a);
+                self.unary(to, b, |i, b| f(i, a, b));
+            }
+        }
+    }
+}
+
+impl<L: Precision> RegisterFiles<Scalar<L>> {
+    /// The program on `length` elements from `base` on: the same for every instruction set.
+    #[inline(never)]
+    fn execute_elements(&self, tape: &Tape<L>, memory: &Memory<'_>, base: usize, length: usize) {
+        self.execute(tape, Span { hardware: Scalar::default(), memory, base, length });
+    }
+}
+
+impl<R: Registers> RegisterFiles<R> {
+    /// Registers for strips of at most `length` hardware registers.
+    #[inline(always)]
+    fn new(hardware: R, tape: &Tape<R::Lane>, length: usize) -> Self {
+        const { assert!(size_of::<R::V>() == R::LANES * size_of::<R::Lane>()) }
+        let zero = hardware.splat(R::Lane::default());
+        let [numbers, predicates, indices] = tape.pass_sizes.map(|size| 0..size);
+        RegisterFiles {
+            numbers: numbers.map(|_| vec![Cell::new(zero); length]).collect(),
+            predicates: predicates.map(|_| vec![Cell::new(zero.less_than(zero)); length]).collect(),
+            indices: indices.map(|_| vec![Cell::new(R::Index::none()); length]).collect(),
+        }
+    }
+
+    /// The program on one strip, instruction by instruction.
+    #[inline(always)]
+    fn execute(&self, tape: &Tape<R::Lane>, span: Span<'_, R>) {
+        if span.length > 0 {
+            for pass in &tape.passes {
+                self.step(pass, span);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn source(&self, operand: &Operand<R::Lane>, span: Span<'_, R>) -> Source<R::Lane> {
         match operand {
-            Operand::Register(name) => Source::Lanes(&self.numbers[name.number as usize][..length]),
+            Operand::Register(name) => {
+                Source::Lanes(self.numbers[name.number as usize][..span.length].as_ptr().cast())
+            }
             Operand::Uniform(value) => Source::Uniform(*value),
+            Operand::Memory(from) => {
+                let column = span.memory.column(Slot::<R::Lane>::new(from.array));
+                // SAFETY: the memory was admitted: the footprint covers base + shift and the span's lanes behind it.
+                Source::Lanes(unsafe { column.at(span.base.wrapping_add_signed(from.shift)) })
+            }
         }
     }
 
     #[inline(always)]
-    fn predicate(&self, name: RegisterName, length: usize) -> &[u8] {
-        &self.predicates[name.number as usize][..length]
+    fn predicate(&self, name: RegisterName) -> &[Cell<Truth<R>>] {
+        &self.predicates[name.number as usize]
     }
 
     #[inline(always)]
-    fn index(&self, name: RegisterName, length: usize) -> &[u32] {
-        &self.indices[name.number as usize][..length]
+    fn index(&self, name: RegisterName) -> &[Cell<R::Index>] {
+        &self.indices[name.number as usize]
     }
 
-    /// One instruction over one strip. The allocation keeps results apart from operands, so the result's register
-    /// is taken out of its file while the operands are read.
+    /// One instruction over one strip.
     #[inline(always)]
-    fn step(&mut self, instruction: &Instruction<L>, memory: &Memory<'_>, span: Span) {
-        let Some(name) = instruction.to else {
-            return self.effect(instruction, memory, span);
-        };
-        let number = name.number as usize;
-        match name.file {
-            File::Number => {
-                let mut to = take(&mut self.numbers[number]);
-                self.number(instruction, memory, span, &mut to[..span.length]);
-                self.numbers[number] = to;
+    fn step(&self, pass: &Instruction<R::Lane>, span: Span<'_, R>) {
+        match pass.to {
+            None => self.effect(pass, span),
+            Some(RegisterName { file: File::Number, number }) => {
+                self.number(pass, span, &self.numbers[number as usize]);
             }
-            File::Predicate => {
-                let mut to = take(&mut self.predicates[number]);
-                self.truth(instruction, span, &mut to[..span.length]);
-                self.predicates[number] = to;
+            Some(RegisterName { file: File::Predicate, number }) => {
+                self.truth(pass, span, &self.predicates[number as usize]);
             }
-            File::Index => {
-                let mut to = take(&mut self.indices[number]);
-                self.indexing(instruction, memory, span, &mut to[..span.length]);
-                self.indices[number] = to;
+            Some(RegisterName { file: File::Index, number }) => {
+                self.indexing(pass, span, &self.indices[number as usize]);
             }
         }
     }
 
     /// Instructions that write a register of numbers.
     #[inline(always)]
-    fn number(&self, instruction: &Instruction<L>, memory: &Memory<'_>, span: Span, to: &mut [L]) {
-        match &instruction.action {
+    fn number(&self, pass: &Instruction<R::Lane>, span: Span<'_, R>, to: &[Cell<R::V>]) {
+        match &pass.action {
             Action::Binary(a, b) => {
-                let (a, b) = (self.source(a, span.length), self.source(b, span.length));
-                match instruction.op {
-                    Op::Add => binary(to, a, b, |a, b| a + b),
-                    Op::Subtract => binary(to, a, b, |a, b| a - b),
-                    Op::Multiply => binary(to, a, b, |a, b| a * b),
-                    Op::Divide => binary(to, a, b, |a, b| a / b),
-                    Op::Minimum => binary(to, a, b, L::min),
-                    Op::Maximum => binary(to, a, b, L::max),
+                let (a, b) = (self.source(a, span), self.source(b, span));
+                match pass.op {
+                    Op::Add => span.binary(to, a, b, |_, a, b| a + b),
+                    Op::Subtract => span.binary(to, a, b, |_, a, b| a - b),
+                    Op::Multiply => span.binary(to, a, b, |_, a, b| a * b),
+                    Op::Divide => span.binary(to, a, b, |_, a, b| a / b),
+                    Op::Minimum => span.binary(to, a, b, |_, a, b| a.min(b)),
+                    Op::Maximum => span.binary(to, a, b, |_, a, b| a.max(b)),
                     op => unreachable!("{op:?} is no number of two"),
                 }
             }
             Action::Unary(a) => {
-                let a = self.source(a, span.length);
-                match instruction.op {
-                    Op::SquareRoot => unary(to, a, L::sqrt),
-                    Op::Absolute => unary(to, a, L::abs),
-                    Op::Truncate => unary(to, a, L::truncate),
+                let a = self.source(a, span);
+                match pass.op {
+                    Op::SquareRoot => span.unary(to, a, |_, a| a.sqrt()),
+                    Op::Absolute => span.unary(to, a, |_, a| a.abs()),
+                    Op::Truncate => span.unary(to, a, |_, a| a.truncate()),
                     op => unreachable!("{op:?} is no number of one"),
                 }
             }
             Action::Select(predicate, a, b) => {
-                let (a, b) = (self.source(a, span.length), self.source(b, span.length));
-                let predicate = self.predicate(*predicate, span.length);
-                match (a, b) {
-                    (Source::Lanes(a), Source::Lanes(b)) => {
-                        to.iter_mut().zip(predicate).zip(a.iter().zip(b)).for_each(
-                            |((to, &holds), (&a, &b))| {
-                                *to = if holds != 0 { a } else { b };
-                            },
-                        );
-                    }
-                    (Source::Lanes(a), Source::Uniform(b)) => {
-                        to.iter_mut().zip(predicate).zip(a).for_each(|((to, &holds), &a)| {
-                            *to = if holds != 0 { a } else { b };
-                        });
-                    }
-                    (Source::Uniform(a), b) => {
-                        to.iter_mut().zip(predicate).enumerate().for_each(|(i, (to, &holds))| {
-                            *to = if holds != 0 { a } else { lane(b, i) };
-                        });
-                    }
-                }
+                let predicate = self.predicate(*predicate);
+                let (a, b) = (self.source(a, span), self.source(b, span));
+                span.binary(to, a, b, |i, a, b| R::V::select(predicate[i].get(), a, b));
             }
             Action::Load(from) => match from.element {
                 f64::NAME => {
-                    // SAFETY: admitted; nothing writes the array while this strip is copied.
-                    let from = unsafe { strip_of(memory, Slot::<f64>::new(from.array), from.shift, span) };
-                    unary(to, Source::Lanes(from), L::from_f64);
+                    let slot = Slot::<f64>::new(from.array);
+                    span.each(to, |i| span.at(i).load_shifted(slot, from.shift));
                 }
                 _ => {
-                    // SAFETY: as above.
-                    let from = unsafe { strip_of(memory, Slot::<f32>::new(from.array), from.shift, span) };
-                    unary(to, Source::Lanes(from), |x| L::from_f64(x.to_f64()));
+                    let slot = Slot::<f32>::new(from.array);
+                    span.each(to, |i| span.at(i).load_shifted(slot, from.shift));
                 }
             },
             Action::Gather(from, index, elsewhere) => {
-                let elsewhere = self.source(elsewhere, span.length);
-                let index = self.index(*index, span.length);
+                let (index, elsewhere) = (self.index(*index), self.source(elsewhere, span));
                 match from.element {
-                    f64::NAME => gather(memory, Slot::<f64>::new(from.array), index, elsewhere, to),
-                    _ => gather(memory, Slot::<f32>::new(from.array), index, elsewhere, to),
+                    f64::NAME => {
+                        let slot = Slot::<f64>::new(from.array);
+                        span.unary(to, elsewhere, |i, other| span.at(i).gather(slot, index[i].get(), other));
+                    }
+                    _ => {
+                        let slot = Slot::<f32>::new(from.array);
+                        span.unary(to, elsewhere, |i, other| span.at(i).gather(slot, index[i].get(), other));
+                    }
                 }
             }
-            Action::Numbers => {
-                to.iter_mut().enumerate().for_each(|(i, to)| *to = L::from_f64((span.base + i + 1) as f64));
-            }
+            Action::Numbers => span.each(to, |i| span.at(i).numbers()),
             Action::FromIndex(index) => {
-                let index = self.index(*index, span.length);
-                to.iter_mut().zip(index).for_each(|(to, &number)| *to = L::from_f64(number.into()));
+                let index = self.index(*index);
+                span.each(to, |i| span.at(i).index_numbers(index[i].get()));
             }
             action => unreachable!("{action:?} writes no register of numbers"),
         }
@@ -275,22 +276,22 @@ impl<L: Element> RegisterFiles<L> {
 
     /// Instructions that write a predicate.
     #[inline(always)]
-    fn truth(&self, instruction: &Instruction<L>, span: Span, to: &mut [u8]) {
-        match &instruction.action {
+    fn truth(&self, pass: &Instruction<R::Lane>, span: Span<'_, R>, to: &[Cell<Truth<R>>]) {
+        match &pass.action {
             Action::Compare(a, b) => {
-                let (a, b) = (self.source(a, span.length), self.source(b, span.length));
-                match instruction.op {
-                    Op::LessThan => binary(to, a, b, |a, b| u8::from(a < b)),
-                    Op::LessEqual => binary(to, a, b, |a, b| u8::from(a <= b)),
-                    Op::Equal => binary(to, a, b, |a, b| u8::from(a == b)),
+                let (a, b) = (self.source(a, span), self.source(b, span));
+                match pass.op {
+                    Op::LessThan => span.binary(to, a, b, |_, a, b| a.less_than(b)),
+                    Op::LessEqual => span.binary(to, a, b, |_, a, b| a.less_equal(b)),
+                    Op::Equal => span.binary(to, a, b, |_, a, b| a.equal(b)),
                     op => unreachable!("{op:?} is no comparison"),
                 }
             }
             Action::Logic(a, b) => {
-                let a = Source::Lanes(self.predicate(*a, span.length));
-                match b {
-                    Some(b) => binary(to, a, Source::Lanes(self.predicate(*b, span.length)), |a, b| a & b),
-                    None => unary(to, a, |a| a ^ 1),
+                let a = self.predicate(*a);
+                match b.map(|b| self.predicate(b)) {
+                    Some(b) => span.each(to, |i| a[i].get().and(b[i].get())),
+                    None => span.each(to, |i| a[i].get().not()),
                 }
             }
             action => unreachable!("{action:?} writes no predicate"),
@@ -299,19 +300,16 @@ impl<L: Element> RegisterFiles<L> {
 
     /// Instructions that write an index vector.
     #[inline(always)]
-    fn indexing(&self, instruction: &Instruction<L>, memory: &Memory<'_>, span: Span, to: &mut [u32]) {
-        match &instruction.action {
-            Action::ToIndex(a) => unary(to, self.source(a, span.length), |a| a.to_f64() as u32),
+    fn indexing(&self, pass: &Instruction<R::Lane>, span: Span<'_, R>, to: &[Cell<R::Index>]) {
+        match &pass.action {
+            Action::ToIndex(a) => span.unary(to, self.source(a, span), |i, a| span.at(i).to_index(a)),
             Action::LoadIndex(from) => {
-                // SAFETY: admitted; nothing writes the array while this strip is copied.
-                to.copy_from_slice(unsafe { strip_of(memory, Slot::new(from.array), from.shift, span) });
+                let slot = Slot::new(from.array);
+                span.each(to, |i| span.at(i).load_index(slot));
             }
             Action::GatherIndex(from, index) => {
-                let column = memory.column(Slot::<u32>::new(from.array));
-                let index = self.index(*index, span.length);
-                to.iter_mut().zip(index).for_each(|(to, &number)| {
-                    *to = if number == 0 { 0 } else { column.read(number as usize - 1) };
-                });
+                let (slot, index) = (Slot::new(from.array), self.index(*index));
+                span.each(to, |i| span.at(i).gather_index(slot, index[i].get()));
             }
             action => unreachable!("{action:?} writes no index vector"),
         }
@@ -319,58 +317,43 @@ impl<L: Element> RegisterFiles<L> {
 
     /// Instructions that write memory or a counter.
     #[inline(always)]
-    fn effect(&self, instruction: &Instruction<L>, memory: &Memory<'_>, span: Span) {
-        match &instruction.action {
-            Action::Store(to, value) => {
-                let value = self.source(value, span.length);
-                match to.element {
-                    f64::NAME => {
-                        // SAFETY: admitted as written; registers do not alias memory.
-                        let to = unsafe { strip_of_mut(memory, Slot::<f64>::new(to.array), to.shift, span) };
-                        unary(to, value, L::to_f64);
-                    }
-                    _ => {
-                        // SAFETY: as above.
-                        let to = unsafe { strip_of_mut(memory, Slot::<f32>::new(to.array), to.shift, span) };
-                        unary(to, value, |x| f32::from_f64(x.to_f64()));
-                    }
+    fn effect(&self, pass: &Instruction<R::Lane>, span: Span<'_, R>) {
+        match &pass.action {
+            Action::Store(to, value) => match to.element {
+                f64::NAME => self.store(span, Slot::<f64>::new(to.array), to.shift, value),
+                _ => self.store(span, Slot::<f32>::new(to.array), to.shift, value),
+            },
+            Action::StoreIndex(to, value) => {
+                let (slot, value) = (Slot::new(to.array), self.index(*value));
+                for (i, value) in value[..span.length].iter().enumerate() {
+                    span.at(i).store_index(slot, value.get());
                 }
             }
-            Action::StoreIndex(to, value) => {
-                // SAFETY: admitted as written; registers do not alias memory.
-                unsafe { strip_of_mut(memory, Slot::new(to.array), to.shift, span) }
-                    .copy_from_slice(self.index(*value, span.length));
-            }
             Action::ScatterIndex(to, index, value) => {
-                let column = memory.column(Slot::<u32>::new(to.array));
-                let (index, value) = (self.index(*index, span.length), self.index(*value, span.length));
-                index.iter().zip(value).filter(|(number, _)| **number != 0).for_each(|(&number, &value)| {
-                    column.write(number as usize - 1, value);
-                });
+                let (slot, index, value) = (Slot::new(to.array), self.index(*index), self.index(*value));
+                for (i, (index, value)) in index[..span.length].iter().zip(value).enumerate() {
+                    span.at(i).scatter_index(slot, index.get(), value.get());
+                }
             }
             Action::Count(predicate, counter) => {
-                let holding =
-                    self.predicate(*predicate, span.length).iter().map(|&holds| u64::from(holds)).sum();
-                memory.count(crate::isa::Counter(*counter), holding);
+                for (i, predicate) in self.predicate(*predicate)[..span.length].iter().enumerate() {
+                    span.at(i).count(Counter(*counter), predicate.get());
+                }
             }
             action => unreachable!("{action:?} writes a register"),
         }
     }
-}
 
-#[inline(always)]
-fn gather<T: Element, L: Element>(
-    memory: &Memory<'_>,
-    slot: Slot<T>,
-    index: &[u32],
-    elsewhere: Source<'_, L>,
-    to: &mut [L],
-) {
-    let column = memory.column(slot);
-    to.iter_mut().zip(index).enumerate().for_each(|(i, (to, &number))| {
-        *to = match number {
-            0 => lane(elsewhere, i),
-            _ => L::from_f64(column.read(number as usize - 1).to_f64()),
-        };
-    });
+    #[inline(always)]
+    fn store<T: Element>(&self, span: Span<'_, R>, slot: Slot<T>, shift: isize, value: &Operand<R::Lane>) {
+        let value = self.source(value, span);
+        for i in 0..span.length {
+            let value = match value {
+                // SAFETY: sources have the span's lanes.
+                Source::Lanes(from) => unsafe { span.read(from, i) },
+                Source::Uniform(value) => span.hardware.splat(value),
+            };
+            span.at(i).store_shifted(slot, shift, value);
+        }
+    }
 }

@@ -19,6 +19,7 @@ impl<L: Element> fmt::Display for Operand<L> {
         match self {
             Operand::Register(name) => name.fmt(f),
             Operand::Uniform(value) => write!(f, "#{}", value.to_f64()),
+            Operand::Memory(from) => from.fmt(f),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The tape: a text recorded as vector instructions. It is counted, listed, and executed the CRAY's way.
 
 mod allocation;
+mod folding;
 mod instruction;
 mod interpreter;
 mod listing;
@@ -13,12 +14,14 @@ use crate::isa::{Element, Footprint, Op, OpCounts, Text};
 use allocation::FileSizes;
 use recorder::{Recorder, Recording};
 
-/// A recorded program: straight-line vector instructions with registers.
+/// A recorded program: straight-line vector instructions with registers, and the passes that execute them.
 #[derive(Clone, Debug)]
 pub struct Tape<L> {
     instructions: Vec<Instruction<L>>,
     sections: Vec<&'static str>,
     sizes: FileSizes,
+    passes: Vec<Instruction<L>>,
+    pass_sizes: FileSizes,
 }
 
 impl<L: Element> Tape<L> {
@@ -27,8 +30,10 @@ impl<L: Element> Tape<L> {
         let recorder = Recorder::new();
         text.body(Recording(&recorder));
         let mut instructions = recorder.instructions.into_inner();
+        let mut passes = folding::fold_loads(&instructions);
         let sizes = allocation::allocate(&mut instructions);
-        Tape { instructions, sections: recorder.sections.into_inner(), sizes }
+        let pass_sizes = allocation::allocate(&mut passes);
+        Tape { instructions, sections: recorder.sections.into_inner(), sizes, passes, pass_sizes }
     }
 
     /// The instructions, in order.

@@ -1,0 +1,302 @@
+//! What a tape promises about its instructions: registers, tallies, listings, folded arithmetic.
+
+use std::collections::HashMap;
+use stripmine_kernels::backend::tape::{Action, File, Operand, RegisterName};
+use stripmine_kernels::backend::{Precision, Tape};
+use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Inertia, Predictor};
+use stripmine_kernels::isa::{Array, Element, Machine, Memory, Op, OpCounts, Slot, Text, Vector};
+use stripmine_kernels::law::Law;
+use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
+use stripmine_kernels::mask::Mask;
+use stripmine_kernels::sweep::lattice::cells::{Check, Clear, Enter, Images};
+use stripmine_kernels::sweep::lattice::forces::{Forces, Join};
+use stripmine_kernels::sweep::lattice::vectors::Spread;
+use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
+use stripmine_kernels::{Execution, InstructionSet, Program};
+
+fn law<const FRICTION: bool, const EQUAL: bool>() -> Granular<FRICTION, EQUAL> {
+    let contact = Contact {
+        stiffness: 100.0,
+        normal_damping: 3.0,
+        shear_damping: 2.0,
+        friction: 0.5,
+        cohesionless: true,
+        arm: ContactArm::Overlap,
+    };
+    Granular { contact, disc: Disc { radius: 1.0, inverse_mass: 1.0 } }
+}
+
+fn lattice(mask: &Mask) -> (LatticeShape, Frame) {
+    let shape = LatticeShape::new(9, 7, mask, [true, false]).unwrap();
+    (shape, Frame { origin: [0.0, 0.0], edge: [1.1, 1.2] })
+}
+
+/// What an instruction reads, told from its action alone.
+fn reads<L: Copy>(action: &Action<L>) -> Vec<RegisterName> {
+    let register = |operand: &Operand<L>| match operand {
+        Operand::Register(name) => Some(*name),
+        Operand::Uniform(_) => None,
+        Operand::Memory(there) => panic!("a tape holds {there} as an operand"),
+    };
+    let names: Vec<Option<RegisterName>> = match action {
+        Action::Unary(a) | Action::ToIndex(a) | Action::Store(_, a) => vec![register(a)],
+        Action::Binary(a, b) | Action::Compare(a, b) => vec![register(a), register(b)],
+        Action::Logic(a, b) => vec![Some(*a), *b],
+        Action::Select(p, a, b) => vec![Some(*p), register(a), register(b)],
+        Action::Count(a, _) | Action::FromIndex(a) | Action::StoreIndex(_, a) | Action::GatherIndex(_, a) => {
+            vec![Some(*a)]
+        }
+        Action::Gather(_, a, elsewhere) => vec![Some(*a), register(elsewhere)],
+        Action::ScatterIndex(_, a, b) => vec![Some(*a), Some(*b)],
+        Action::Numbers | Action::Load(_) | Action::LoadIndex(_) => vec![],
+    };
+    names.into_iter().flatten().collect()
+}
+
+/// The register file an instruction's result goes to.
+fn result_file<L>(action: &Action<L>) -> Option<File> {
+    match action {
+        Action::Unary(_)
+        | Action::Binary(..)
+        | Action::Select(..)
+        | Action::Numbers
+        | Action::FromIndex(_)
+        | Action::Load(_)
+        | Action::Gather(..) => Some(File::Number),
+        Action::Compare(..) | Action::Logic(..) => Some(File::Predicate),
+        Action::ToIndex(_) | Action::LoadIndex(_) | Action::GatherIndex(..) => Some(File::Index),
+        Action::Count(..) | Action::Store(..) | Action::StoreIndex(..) | Action::ScatterIndex(..) => None,
+    }
+}
+
+/// Follows the registers through a tape: read only what was written, read before it is overwritten, and no more
+/// registers than values are alive at once.
+fn registers_are_sound<L: Element>(name: &str, tape: &Tape<L>) {
+    let mut held: HashMap<RegisterName, usize> = HashMap::new();
+    let mut last_read: Vec<(File, usize, usize)> = Vec::new();
+    for (at, instruction) in tape.instructions().iter().enumerate() {
+        for operand in reads(&instruction.action) {
+            let value = *held
+                .get(&operand)
+                .unwrap_or_else(|| panic!("{name}: {} reads {operand}, never written", at + 1));
+            last_read[value].2 = at;
+        }
+        assert_eq!(instruction.to.map(|to| to.file), result_file(&instruction.action), "{name}: {}", at + 1);
+        if let Some(to) = instruction.to {
+            if let Some(before) = held.insert(to, last_read.len()) {
+                let (_, written, read) = last_read[before];
+                assert!(read > written, "{name}: {} overwrites {to}, which nobody read", at + 1);
+            }
+            last_read.push((to.file, at, at));
+        }
+    }
+    assert!(last_read.iter().all(|(_, written, read)| read > written), "{name}: results that nobody reads");
+    for file in File::ALL {
+        let alive = |at: usize| {
+            last_read.iter().filter(|(of, written, read)| *of == file && *written <= at && at < *read).count()
+        };
+        let most = (0..tape.instructions().len()).map(alive).max().unwrap_or(0);
+        assert_eq!(tape.registers(file), most, "{name}: {file:?}");
+    }
+}
+
+/// Sums the instructions' operations by section and compares with the tally; conversions are found
+/// independently.
+fn tally_is_the_sum_over_instructions<L: Element>(name: &str, tape: &Tape<L>) {
+    let mut sections: Vec<(usize, OpCounts)> = vec![];
+    for instruction in tape.instructions() {
+        if !sections.iter().any(|(section, _)| *section == instruction.section) {
+            sections.push((instruction.section, OpCounts::default()));
+        }
+        let (_, counts) = sections.iter_mut().find(|(section, _)| *section == instruction.section).unwrap();
+        counts.record(instruction.op);
+        let converts = match instruction.action {
+            Action::Load(there) | Action::Store(there, _) | Action::Gather(there, ..) => {
+                there.element != L::NAME
+            }
+            _ => false,
+        };
+        if converts {
+            counts.record(Op::Widen);
+        }
+    }
+    sections.sort_by_key(|(section, _)| *section);
+    let tally = tape.tally();
+    assert_eq!(tally.len(), sections.len(), "{name}");
+    for ((section, counted), (_, expected)) in tally.iter().zip(&sections) {
+        assert_eq!(counted, expected, "{name}: {section}");
+    }
+    let executed: usize =
+        tape.instructions().iter().map(|instruction| instruction.operations().count()).sum();
+    let total: u64 = tally.iter().map(|(_, counts)| counts.total()).sum();
+    assert_eq!(total, executed as u64, "{name}");
+}
+
+/// One line an instruction, numbered, with its mnemonic and registers, and a comment where the section
+/// changes.
+fn listing_has_a_line_for_each_instruction<L: Element>(name: &str, tape: &Tape<L>) {
+    let listing = tape.listing().to_string();
+    let mut lines = listing.lines();
+    let mut order: Vec<usize> = tape.instructions().iter().map(|instruction| instruction.section).collect();
+    order.sort_unstable();
+    order.dedup();
+    let tally = tape.tally();
+    let mut section = None;
+    for (at, instruction) in tape.instructions().iter().enumerate() {
+        if section != Some(instruction.section) {
+            section = Some(instruction.section);
+            let named = tally[order.binary_search(&instruction.section).unwrap()].0;
+            assert_eq!(lines.next().unwrap(), format!("; {named}"), "{name}");
+        }
+        let line = lines.next().unwrap();
+        let mut words = line.split_whitespace();
+        assert_eq!(words.next(), Some((at + 1).to_string().as_str()), "{name}: {line}");
+        assert_eq!(words.next(), Some(instruction.op.mnemonic()), "{name}: {line}");
+        let rest = words.collect::<Vec<_>>().join(" ");
+        let mentioned: Vec<&str> = rest.split([',', ' ', '(', ')']).collect();
+        for register in instruction.to.into_iter().chain(reads(&instruction.action)) {
+            assert!(mentioned.contains(&register.to_string().as_str()), "{name}: {line} lacks {register}");
+        }
+        if let Some(there) = instruction.reference() {
+            assert!(line.contains(there.array.label()), "{name}: {line}");
+        }
+    }
+    assert_eq!(lines.next(), None, "{name}");
+}
+
+/// A full sweep is refused a half mask, and the other way round.
+#[test]
+#[should_panic(expected = "a half mask for a half sweep, a full one for a full sweep")]
+fn a_half_mask_is_none_for_a_full_sweep() {
+    let mask = Mask::square(2);
+    let (shape, frame) = lattice(&mask);
+    Forces::<f64, _, false>::new(law::<true, false>(), &mask.half(), shape, frame, Coordinates::Absolute);
+}
+
+/// Every kernel text with its options, recorded.
+fn every_tape(mut double: impl FnMut(&str, &Tape<f64>), mut single: impl FnMut(&str, &Tape<f32>)) {
+    let inertia = Inertia::Equal { inverse_mass: 1.0, inverse_inertia: 2.0 };
+    let fall = [0.0, -9.81];
+    double("Predictor 6", &Tape::record(&Predictor::<f64, f64, 6, 3>::new(1e-3)));
+    double("Predictor 4 to f32", &Tape::record(&Predictor::<f64, f32, 4, 2>::new(1e-3)));
+    single("Predictor f32", &Tape::record(&Predictor::<f32, f32, 5, 3>::new(1e-3)));
+    let corrector = Corrector::<f64, f64, 6, 3>::new(1e-3, Acceleration::OfPositions, Inertia::Varying, fall);
+    double("Corrector 6", &Tape::record(&corrector));
+    let corrector = Corrector::<f64, f32, 4, 3>::new(1e-3, Acceleration::OfVelocities, inertia, fall);
+    double("Corrector 4 of f32", &Tape::record(&corrector));
+    let corrector = Corrector::<f32, f32, 5, 2>::new(1e-3, Acceleration::OfVelocities, inertia, [0.0; 2]);
+    single("Corrector f32", &Tape::record(&corrector));
+
+    let mask = Mask::square(2);
+    let (shape, frame) = lattice(&mask);
+    double("Clear", &Tape::record(&Clear));
+    double("Check", &Tape::record(&Check));
+    double("Images", &Tape::record(&Images));
+    for coordinates in [Coordinates::Absolute, Coordinates::CellRelative] {
+        double("Enter f64", &Tape::record(&Enter::<f64, f64>::new(shape, frame, coordinates)));
+        double("Enter f32", &Tape::record(&Enter::<f32, f32>::new(shape, frame, coordinates)));
+        double("Enter f64 to f32", &Tape::record(&Enter::<f64, f32>::new(shape, frame, coordinates)));
+        let fields = law::<true, false>().fields();
+        double("Spread", &Tape::record(&Spread::<f64>::new(shape, coordinates, fields)));
+        single("Spread f32", &Tape::record(&Spread::<f32>::new(shape, coordinates, fields)));
+        let full = Forces::<f64, _, false>::new(law::<true, false>(), &mask, shape, frame, coordinates);
+        double("Forces", &Tape::record(&full));
+        let full = Forces::<f32, _, false>::new(law::<true, true>(), &mask, shape, frame, coordinates);
+        single("Forces f32", &Tape::record(&full));
+        let full = Forces::<f64, _, false>::new(law::<false, false>(), &mask, shape, frame, coordinates);
+        double("Forces without friction", &Tape::record(&full));
+        let half = Forces::<f64, _, true>::new(law::<true, false>(), &mask.half(), shape, frame, coordinates);
+        double("half Forces", &Tape::record(&half));
+    }
+    double("Join", &Tape::record(&Join::<f64>::new(law::<true, false>().sums())));
+    double("Folded", &Tape::record(&Folded::<f64>::default()));
+    single("Folded f32", &Tape::record(&Folded::<f32>::default()));
+}
+
+/// Registers of every kernel text.
+#[test]
+fn registers_are_read_as_written_and_no_more_than_values_alive() {
+    every_tape(registers_are_sound, registers_are_sound);
+}
+
+/// The tally of every kernel text.
+#[test]
+fn tallies_are_sums_over_instructions() {
+    every_tape(tally_is_the_sum_over_instructions, tally_is_the_sum_over_instructions);
+}
+
+/// The listing of every kernel text.
+#[test]
+fn listings_have_a_line_for_each_instruction() {
+    every_tape(listing_has_a_line_for_each_instruction, listing_has_a_line_for_each_instruction);
+}
+
+/// A change of precision is counted at every load, gather and store that makes one, and nowhere else.
+#[test]
+fn changes_of_precision_are_counted() {
+    fn widened<T: Text>(text: &T) -> u64 {
+        Tape::record(text).tally().iter().map(|(_, counts)| counts.of(Op::Widen)).sum()
+    }
+    assert_eq!(widened(&Predictor::<f64, f64, 5, 3>::new(1e-3)), 0);
+    assert_eq!(widened(&Predictor::<f64, f32, 5, 3>::new(1e-3)), 3);
+    let mixed =
+        Corrector::<f64, f32, 5, 2>::new(1e-3, Acceleration::OfVelocities, Inertia::Varying, [0.0; 2]);
+    assert_eq!(widened(&mixed), 2);
+    let (shape, frame) = lattice(&Mask::square(2));
+    // Periodic along x only: two loads, one store of the wrapped x, two stores for the lattice.
+    assert_eq!(widened(&Enter::<f32, f32>::new(shape, frame, Coordinates::CellRelative)), 5);
+    assert_eq!(widened(&Enter::<f64, f32>::new(shape, frame, Coordinates::CellRelative)), 2);
+}
+
+/// Stores numbers that are known when the text is recorded, and one that is not.
+#[derive(Clone, Copy, Default)]
+struct Folded<L>(std::marker::PhantomData<L>);
+
+// SAFETY: the body names its slots unconditionally.
+unsafe impl<L: Element> Text for Folded<L> {
+    type Lane = L;
+
+    fn body<M: Machine<Lane = L>>(&self, m: M) {
+        let [a, b] = [0.1, 0.2].map(|value| m.uniform(value));
+        let known = ((a + b) * a - b / a).abs().sqrt().min(m.uniform(7.7).truncate()).max(a);
+        m.store(Slot::<L>::new(Array::Fx), known);
+        m.store(Slot::<L>::new(Array::Fy), m.load(Slot::<L>::new(Array::X)) + known);
+    }
+}
+
+/// Arithmetic between scalar operands costs no instruction, is done in the lanes' precision, and gives what
+/// executing it gives.
+fn folding_costs_nothing<L: Precision>(expected: L) {
+    let program = Program::new(Folded::<L>::default());
+    let instructions = program.tape().instructions();
+    let ops: Vec<Op> = instructions.iter().map(|instruction| instruction.op).collect();
+    assert_eq!(ops, [Op::Store, Op::Load, Op::Add, Op::Store]);
+    let Action::Store(_, Operand::Uniform(known)) = instructions[0].action else {
+        panic!("{:?} stores no scalar operand", instructions[0]);
+    };
+    assert_eq!(known.bits(), expected.bits());
+    for execution in [Execution::Chained, Execution::Block(2), Execution::Strip(5), Execution::Eager] {
+        let set = InstructionSet::best();
+        let x: Vec<L> = (0..21).map(|i| L::from_f64(f64::from(i))).collect();
+        let (mut fx, mut fy) = (vec![L::default(); 21], vec![L::default(); 21]);
+        let memory = Memory::new()
+            .read(Slot::new(Array::X), &x)
+            .write(Slot::new(Array::Fx), &mut fx)
+            .write(Slot::new(Array::Fy), &mut fy);
+        program.run(&memory, 0..21, execution, set).unwrap();
+        assert!(fx.iter().all(|f| f.bits() == expected.bits()), "{execution:?} on {set:?}");
+        assert!(
+            fy.iter().zip(&x).all(|(f, &x)| f.bits() == (x + expected).bits()),
+            "{execution:?} on {set:?}"
+        );
+    }
+}
+
+/// Uniform arithmetic is folded, in either precision.
+#[test]
+fn uniform_arithmetic_is_folded() {
+    let (a, b) = (0.1f64, 0.2f64);
+    folding_costs_nothing(((a + b) * a - b / a).abs().sqrt());
+    let (a, b) = (0.1f32, 0.2f32);
+    folding_costs_nothing(((a + b) * a - b / a).abs().sqrt());
+}
