@@ -8,8 +8,9 @@ use stripmine_kernels::law::granular::{Contact, ContactArm};
 use stripmine_kernels::law::{Law, Sum};
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame};
+use stripmine_kernels::sweep::pair::Body;
 use stripmine_kernels::{Execution, InstructionSet};
-use support::{CONTACT, Case, Placed, System, equal, varying};
+use support::{CONTACT, Case, System, equal, varying};
 
 /// The ways a text is compiled that matter here; `identity.rs` compares the others.
 fn ways() -> [(Execution, InstructionSet); 2] {
@@ -318,7 +319,7 @@ fn naive_cells(places: &[[f64; 2]], frame: Frame, case: &Case) -> Cells {
 
 /// Indexes discs at `places` in every way and hands the first of the equal results back.
 fn indexed<S: Precision>(case: &Case, frame: Frame, places: &[[f64; 2]]) -> System<S, f64> {
-    let discs: Vec<_> = places.iter().map(|&[x, y]| Placed::at(x, y)).collect();
+    let discs: Vec<_> = places.iter().map(|&[x, y]| Body::at(x, y)).collect();
     let law = equal::<false>(case.contact);
     let [first, second] = ways().map(|how| {
         let mut system = System::<S, f64>::placed(case, frame, &discs);

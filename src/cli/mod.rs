@@ -1,7 +1,9 @@
 //! The command line: one file per verb; composes, decides nothing.
 
 mod bench;
+mod completions;
 mod listing;
+mod man;
 mod reproduce;
 mod run;
 mod scene;
@@ -9,6 +11,7 @@ mod scene_choice;
 mod table;
 
 use crate::run::RunError;
+use crate::study::StudyError;
 use crate::study::throughput::MeasurementError;
 use clap::{Args, Parser, Subcommand};
 use std::ffi::OsString;
@@ -47,6 +50,8 @@ enum Verb {
     Scene(scene::SceneVerb),
     Run(run::RunVerb),
     Bench(bench::BenchVerb),
+    Completions(completions::Completions),
+    Man(man::ManVerb),
 }
 
 /// Why a verb did not come to its end; each kind has its exit code.
@@ -58,6 +63,14 @@ pub(crate) enum Failure {
     /// A machine that there is not: exit code 2.
     #[error(transparent)]
     Machine(#[from] crate::model::machine::UnknownMachine),
+    /// A verb that there is not: exit code 2.
+    #[error("there is no verb {verb}; these are: {}", verbs.join(", "))]
+    UnknownVerb {
+        /// The verb asked for.
+        verb: String,
+        /// Those there are.
+        verbs: Vec<String>,
+    },
     /// A bad scene: exit code 3.
     #[error(transparent)]
     Scene(#[from] crate::scene::SceneErrors),
@@ -67,6 +80,12 @@ pub(crate) enum Failure {
     /// A measurement that broke: the exit code is that of the reason.
     #[error(transparent)]
     Measurement(#[from] crate::study::throughput::MeasurementError),
+    /// A study that broke: the exit code is that of the reason.
+    #[error(transparent)]
+    Study(#[from] crate::study::StudyError),
+    /// A picture that cannot be drawn: a mistake of ours, exit code 5.
+    #[error(transparent)]
+    Figure(#[from] crate::report::figure::FigureError),
     /// Interrupted or terminated: exit code 130.
     #[error("interrupted at step {step}; a checkpoint is written, go on with --resume --out {}", folder.display())]
     Interrupted {
@@ -95,10 +114,12 @@ impl Failure {
         match self {
             // A reader that closes the pipe has seen enough.
             Failure::InputOutput { cause, .. } if cause.kind() == ErrorKind::BrokenPipe => 0,
-            Failure::Usage(_) | Failure::Machine(_) => 2,
+            Failure::Usage(_) | Failure::Machine(_) | Failure::UnknownVerb { .. } => 2,
             Failure::Scene(_) => 3,
-            Failure::Measurement(MeasurementError::Scene(_)) => 3,
-            Failure::Measurement(MeasurementError::Physics(_)) => 4,
+            Failure::Measurement(MeasurementError::Scene(_)) | Failure::Study(StudyError::Scene(_)) => 3,
+            Failure::Measurement(MeasurementError::Physics(_)) | Failure::Study(StudyError::Physics(_)) => 4,
+            Failure::Study(StudyError::Question(_)) => 2,
+            Failure::Measurement(MeasurementError::Threads(_)) | Failure::Figure(_) => 5,
             Failure::Interrupted { .. } => 130,
             Failure::Run(error) => match error {
                 RunError::Exists(_) | RunError::NothingToResume(_) | RunError::OtherScene { .. } => 2,
@@ -128,6 +149,8 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         Verb::Scene(verb) => verb.run(&common),
         Verb::Run(verb) => verb.run(&common),
         Verb::Bench(verb) => verb.run(&common),
+        Verb::Completions(verb) => verb.run(),
+        Verb::Man(verb) => verb.run(),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -63,7 +63,7 @@ fn list(common: &Common) -> Result<(), Failure> {
         return print_json(&lines.collect::<Vec<_>>());
     }
     let table = Table {
-        name: "presets",
+        name: "presets".into(),
         title: "Presets".to_owned(),
         columns: ["name", "what it shows"].map(str::to_owned).to_vec(),
         rows: lines.map(|line| vec![line.name.into(), line.title.into()]).collect(),
@@ -168,7 +168,7 @@ impl<'c> Found<'c> {
         ];
         let rows = rows.into_iter().map(|(name, value)| vec![Cell::from(name), Cell::Text(value)]);
         Table {
-            name: "scene",
+            name: "scene".into(),
             title: format!("{}: nothing forbids it", self.scene),
             columns: ["of the scene", "value"].map(str::to_owned).to_vec(),
             rows: rows.collect(),
@@ -249,7 +249,7 @@ fn keys(common: &Common) -> Result<(), Failure> {
             };
             let rows = lines.iter().filter(|line| line.section == section).map(row).collect();
             let columns = ["key", "value", "unit", "default", "meaning"].map(str::to_owned).to_vec();
-            terminal::render(&Table { name: "keys", title, columns, rows, notes: Vec::new() })
+            terminal::render(&Table { name: "keys".into(), title, columns, rows, notes: Vec::new() })
         })
         .collect();
     print(&tables.join("\n"))

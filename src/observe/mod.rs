@@ -1,5 +1,7 @@
 //! What is measured of particles, whatever method moves them.
 
+pub mod waves;
+
 use crate::domain::Domain;
 use crate::grid::Bins;
 use crate::method::lattice_md::Model;

@@ -1,16 +1,47 @@
 //! The efficiency table as a reader wants it.
 
-use super::{Cell, Table};
+use super::{Cell, Section, Table, Verdict};
 use crate::method::lattice_md::Part;
 use crate::study::efficiency_table::EfficiencyTable;
+
+/// What came out.
+pub fn section(data: &EfficiencyTable) -> Section {
+    Section {
+        name: "table".into(),
+        title: "The efficiency table".into(),
+        says: "BP93, section 3, counts 59, 12, 1656 and 54 operations for predictor, index, forces and corrector, each at \
+               NOP·(n + D) clock periods with D = 20."
+            .into(),
+        came_out: came_out(data),
+        verdict: verdict(data),
+        again: "stripmine table, or stripmine reproduce --only table".into(),
+        figures: vec![],
+        tables: tables(data),
+        excerpt: None,
+        film: None,
+        seeds: vec![],
+        depends_on_host: false,
+        provenance: None,
+    }
+}
 
 /// The tables of the dataset: the source's own, and what explains the difference to ours.
 pub fn tables(data: &EfficiencyTable) -> Vec<Table> {
     vec![parts(data), force_sections(data), classes(data), savings(data)]
 }
 
+/// Whether every part's count is within a fifth of the printed one.
+fn verdict(data: &EfficiencyTable) -> Verdict {
+    let near = |part: &Part| {
+        let rows = || data.parts.iter().filter(|row| row.part == part.name());
+        let counted: u64 = rows().map(|row| row.counted).sum();
+        rows().find_map(|row| row.printed).is_none_or(|printed| counted.abs_diff(printed) * 5 <= printed)
+    };
+    if Part::ALL.iter().all(near) { Verdict::Reproduced } else { Verdict::Partly }
+}
+
 /// What came out, in a sentence.
-pub fn verdict(data: &EfficiencyTable) -> String {
+fn came_out(data: &EfficiencyTable) -> String {
     let parts: Vec<String> = Part::ALL
         .iter()
         .filter_map(|part| {
@@ -94,7 +125,7 @@ fn parts(data: &EfficiencyTable) -> Table {
         notes.push(format!("Assumed numbers of this machine: {}.", data.assumed.join(", ")));
     }
     Table {
-        name: "efficiency_table",
+        name: "efficiency_table".into(),
         title: "Operations and clock periods of one step (BP93, section 3)".to_owned(),
         columns: headings(&[
             "part",
@@ -139,7 +170,7 @@ fn force_sections(data: &EfficiencyTable) -> Table {
         Cell::Number(100.0, 1),
     ]);
     Table {
-        name: "force_sections",
+        name: "force_sections".into(),
         title: "Where the operations of the forces go".to_owned(),
         columns: headings(&[
             "section",
@@ -170,7 +201,7 @@ fn classes(data: &EfficiencyTable) -> Table {
         cells
     });
     Table {
-        name: "operation_classes",
+        name: "operation_classes".into(),
         title: "Counted operations by class".to_owned(),
         columns,
         rows: rows.collect(),
@@ -189,7 +220,7 @@ fn savings(data: &EfficiencyTable) -> Table {
         cells
     });
     Table {
-        name: "savings",
+        name: "savings".into(),
         title: "What a simpler scene saves".to_owned(),
         columns,
         rows: rows.collect(),

@@ -1,11 +1,23 @@
 //! Reports: finished data as tables. Each export is one small file; none of them runs physics.
 
 pub mod csv;
+pub mod damping;
+pub mod density_cost;
 pub mod efficiency_table;
+pub mod figure;
+pub mod html;
+pub mod identity;
+pub mod listing;
 pub mod markdown;
+pub mod mask;
+pub mod measured_cost;
+pub mod misprints;
 pub mod origin;
 pub mod page;
+pub mod pipe_flow;
+pub mod section;
 pub mod table;
 pub mod terminal;
 
+pub use section::{Section, Verdict};
 pub use table::{Cell, Table};

@@ -1,38 +1,63 @@
-//! The page of a reproduction: what the sources say, what came out, how to get it again.
+//! The page of a reproduction in Markdown, as a repository's site shows it.
 
-use super::origin::Origin;
+use super::{Section, markdown};
+use std::fmt::Write;
 
-/// One item of the page.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Section {
-    /// What it is.
-    pub title: String,
-    /// What the source says.
-    pub says: String,
-    /// What came out.
-    pub came_out: String,
-    /// The command that makes it again.
-    pub again: String,
-    /// Tables and pictures, in Markdown.
-    pub body: String,
-    /// Where the data lie, relative to the page.
-    pub files: String,
+/// The page. Pictures and data lie in a folder for each item, which bears its name.
+pub fn render(sections: &[Section]) -> String {
+    let mut page = String::from(
+        "# What came out\n\nWritten by `stripmine reproduce`; do not edit. The same with charts to hover over and a film \
+         to play: [index.html](index.html), one file, to be opened from a copy on the disk.\n\n| | verdict |\n|---|---|\n",
+    );
+    for section in sections {
+        let _ = writeln!(
+            page,
+            "| [{}](#{}) | {} |",
+            section.title,
+            anchor(&section.title),
+            section.verdict.word()
+        );
+    }
+    for section in sections {
+        page.push_str(&item(section));
+    }
+    page.push_str(
+        "\n---\n\nWhat depends on the host lies under `host/`; everything else but this page, `index.html` and the files \
+         `provenance.json` is the same everywhere, byte by byte.\n",
+    );
+    page
 }
 
-/// The page in Markdown.
-pub fn render(sections: &[Section], origin: &Origin) -> String {
-    let mut page = String::from("# What came out\n\nWritten by `stripmine reproduce`; do not edit.\n");
-    for Section { title, says, came_out, again, body, files } in sections {
-        page.push_str(&format!(
-            "\n## {title}\n\n*The source says:* {says}\n\n*What came out:* {came_out}\n\n*To get it again:* `{again}`. \
-             *Data:* [{files}]({files})\n\n{body}"
-        ));
+fn item(section: &Section) -> String {
+    let Section { title, says, came_out, verdict, again, .. } = section;
+    let folder = section.folder();
+    let mut text = format!(
+        "\n## {title}\n\n*The source says:* {says}\n\n*What came out:* **{}**. {came_out}\n",
+        verdict.word()
+    );
+    for figure in &section.figures {
+        let _ = write!(text, "\n![{}]({folder}/{}.svg)\n\n{}\n", figure.title, figure.name, figure.caption);
     }
-    let Origin { version, commit, dirty, target } = origin;
-    let state = if *dirty { " with changes that are in no commit" } else { "" };
-    page.push_str(&format!(
-        "\n---\n\nMade by stripmine {version}, source commit {commit}{state}, built for {target}. Nothing on this page \
-         depends on the host.\n"
-    ));
-    page
+    for table in &section.tables {
+        let _ = write!(text, "\n{}", markdown::render(table));
+    }
+    if let Some((what, lines)) = &section.excerpt {
+        let _ = write!(text, "\n{what}\n\n```text\n{lines}\n```\n");
+    }
+    let seeds: Vec<_> = section.seeds.iter().map(u64::to_string).collect();
+    let seeds = if seeds.is_empty() { String::new() } else { format!(" *Seeds:* {}.", seeds.join(", ")) };
+    let _ = write!(text, "\n*To get it again:* `{again}`. *Data:* [{folder}/]({folder}/).{seeds}\n");
+    if let Some(provenance) = &section.provenance {
+        let _ = write!(text, "\n{}\n", provenance.sentence());
+    }
+    text
+}
+
+/// What a heading is called in links, by the rule of the common hosts: lower case, words joined by dashes.
+fn anchor(title: &str) -> String {
+    title
+        .chars()
+        .filter(|c| c.is_alphanumeric() || *c == ' ' || *c == '-')
+        .map(|c| if c == ' ' { '-' } else { c.to_ascii_lowercase() })
+        .collect()
 }

@@ -1,7 +1,9 @@
 //! A table, before it is known where it will be read.
 
+use serde::{Deserialize, Serialize};
+
 /// What stands in a place of a table.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Cell {
     /// Words.
     Text(String),
@@ -72,10 +74,10 @@ fn grouped(digits: &str) -> String {
 }
 
 /// A titled table with notes below.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Table {
     /// A name for files, in lower case.
-    pub name: &'static str,
+    pub name: String,
     /// What it shows.
     pub title: String,
     /// Column headings, with units.

@@ -3,7 +3,7 @@
 use crate::method::lattice_md::{self, Discs, Lengths, Model, programs};
 use crate::method::{Failure, Method, Phase};
 use crate::observe::{Observation, Scenery};
-use crate::report::origin::Origin;
+use crate::report::origin::{Origin, host};
 use crate::scene::{Checked, Start};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -107,14 +107,6 @@ pub(super) fn seed(start: &Start) -> Option<u64> {
         | Start::Pipe { grains, .. }
         | Start::Box { grains, .. } => Some(grains.seed),
     }
-}
-
-/// The processor (Linux says it in `/proc/cpuinfo`) and the platform.
-fn host() -> String {
-    let platform = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);
-    let cpuinfo = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = cpuinfo.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
-    name.map_or(platform.clone(), |(_, name)| format!("{name}, {platform}"))
 }
 
 /// Part of a step.

@@ -30,6 +30,9 @@ pub enum MeasurementError {
     /// The physics.
     #[error(transparent)]
     Physics(#[from] Failure),
+    /// No thread to measure on.
+    #[error("no thread to measure on: {0}")]
+    Threads(rayon::ThreadPoolBuildError),
 }
 
 /// The result, with the names that outside programs rely on.
@@ -137,7 +140,7 @@ pub fn throughput(measurement: Measurement) -> Result<Throughput, MeasurementErr
         cpu_seconds,
         peak_memory_bytes: peak_memory(),
         temperature: [before, after.temperature],
-        checksum: checksum(method.as_ref()),
+        checksum: super::checksum(&method.particles()),
         particle_steps_per_second: work / seconds,
         particle_steps_per_second_median: work / samples[samples.len() / 2].0,
         phases: Phase::ALL.iter().map(|&phase| (phase.name(), timings.seconds(phase))).collect(),
@@ -154,17 +157,4 @@ fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
     Some(line.split_whitespace().nth(1)?.parse::<u64>().ok()? * 1024)
-}
-
-/// Of positions, velocities and spins, by id.
-fn checksum(method: &dyn Method) -> String {
-    let particles = method.particles();
-    let mut discs: Vec<_> = particles.all().iter().collect();
-    discs.sort_by_key(|disc| disc.id);
-    let mut hasher = crc32fast::Hasher::new();
-    for disc in discs {
-        let numbers = [disc.position[0], disc.position[1], disc.velocity[0], disc.velocity[1], disc.omega];
-        numbers.iter().for_each(|number| hasher.update(&number.to_bits().to_le_bytes()));
-    }
-    format!("{:08x}", hasher.finalize())
 }

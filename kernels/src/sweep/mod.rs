@@ -2,3 +2,4 @@
 
 pub mod lattice;
 pub mod neighbor_list;
+pub mod pair;

@@ -12,6 +12,7 @@ use stripmine_kernels::sweep::lattice::cells::{CONFLICTS, Check, Clear, Enter, I
 use stripmine_kernels::sweep::lattice::forces::{Forces, Join};
 use stripmine_kernels::sweep::lattice::vectors::Spread;
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
+use stripmine_kernels::sweep::pair::{Body, Pair};
 use stripmine_kernels::{Execution, InstructionSet, Program};
 
 pub const CONTACT: Contact = Contact {
@@ -72,23 +73,6 @@ pub struct System<S, P> {
     pub partners: [Vec<P>; 3],
     pub strays: u64,
     pub conflicts: u64,
-}
-
-/// A disc put on the lattice by hand.
-#[derive(Clone, Copy, Debug)]
-pub struct Placed {
-    pub position: [f64; 2],
-    pub velocity: [f64; 2],
-    pub omega: f64,
-    pub radius: f64,
-    pub inverse_mass: f64,
-}
-
-impl Placed {
-    /// A disc of radius and mass 1 at rest.
-    pub fn at(x: f64, y: f64) -> Placed {
-        Placed { position: [x, y], velocity: [0.0; 2], omega: 0.0, radius: 1.0, inverse_mass: 1.0 }
-    }
 }
 
 pub const DT: f64 = 1e-3;
@@ -154,15 +138,15 @@ impl<S: Precision, P: Precision> System<S, P> {
     }
 
     /// Discs as said, on a lattice at `frame`; derivatives beyond the velocity are zero.
-    pub fn placed(case: &Case, frame: Frame, discs: &[Placed]) -> Self {
+    pub fn placed(case: &Case, frame: Frame, discs: &[Body]) -> Self {
         let mut system = Self::random(&Case { fill: 0.0, ..*case });
-        let column = |of: &dyn Fn(&Placed) -> f64| discs.iter().map(|disc| P::from_f64(of(disc))).collect();
-        let state = |of: &dyn Fn(&Placed) -> f64| discs.iter().map(|disc| S::from_f64(of(disc))).collect();
+        let column = |of: &dyn Fn(&Body) -> f64| discs.iter().map(|disc| P::from_f64(of(disc))).collect();
+        let state = |of: &dyn Fn(&Body) -> f64| discs.iter().map(|disc| S::from_f64(of(disc))).collect();
         for (axis, row) in system.state.iter_mut().enumerate() {
             for q in row.iter_mut() {
                 *q = vec![S::from_f64(0.0); discs.len()];
             }
-            let rate = |disc: &Placed| [disc.velocity[0], disc.velocity[1], disc.omega][axis];
+            let rate = |disc: &Body| [disc.velocity[0], disc.velocity[1], disc.omega][axis];
             row[0] = state(&|disc| [disc.position[0], disc.position[1], 0.0][axis]);
             row[1] = state(&|disc| rate(disc) * DT);
             system.velocity[axis] = column(&rate);
@@ -337,6 +321,19 @@ pub fn varying<const FRICTION: bool>(contact: Contact) -> Granular<FRICTION, fal
 
 pub fn equal<const FRICTION: bool>(contact: Contact) -> Granular<FRICTION, true> {
     Granular { contact, disc: Disc { radius: 1.0, inverse_mass: 1.0 } }
+}
+
+/// The law's options that change forces: clamped or not, and the two arms.
+pub fn contacts() -> impl Iterator<Item = Contact> {
+    [true, false].into_iter().flat_map(|cohesionless| {
+        [ContactArm::Radius, ContactArm::Overlap].map(|arm| Contact { cohesionless, arm, ..CONTACT })
+    })
+}
+
+/// Pairs in contact, drawn at random.
+pub fn random_pairs(seed: u64, count: usize) -> impl Iterator<Item = Pair> {
+    let mut random = Stream::new(seed, Purpose::Test, 0);
+    (0..count).map(move |_| Pair::random(&mut random))
 }
 
 /// Every execution of programs without groups, on every instruction set of this processor.

@@ -13,5 +13,5 @@ mod watch;
 pub use arrays::{Arrays, Lengths};
 pub use model::{Discs, GearValues, Model, Watch};
 pub use neighbor_list::{ListOptions, Rebuild};
-pub use programs::{Part, StepProgram, execute, ledger, programs};
+pub use programs::{Part, StepProgram, execute, ledger, programs, rival_ledger};
 pub use simulation::{Contacts, LatticeMd, Machine, start};

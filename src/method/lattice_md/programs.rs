@@ -95,7 +95,7 @@ pub fn ledger(programs: &[StepProgram]) -> Ledger {
 
 /// What a step of the neighbour-list rival executes, element by element: the programs it shares with the lattice, and
 /// the law as its own text counts it, asked for its distance by every candidate and for the rest by every pair.
-pub(super) fn rival_ledger<S: Precision, P: Precision>(model: &Model) -> Ledger {
+pub fn rival_ledger<S: Precision, P: Precision>(model: &Model) -> Ledger {
     let one_place = Model { mask: Mask::one_place(), ..model.clone() };
     let (law, _) = with_law(&one_place, LatticeSweep::<P>(&one_place, PhantomData));
     let part = Part::Forces.name();

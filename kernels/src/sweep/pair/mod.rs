@@ -1,0 +1,195 @@
+//! Two discs that meet, as plain numbers: no lattice, no list, nothing but the law. What a law conserves, bounds and
+//! mirrors is seen here first.
+//!
+//! Nothing but + − × ÷ √ is used, and the portable `libm` where pairs are placed: every number is the same on every
+//! platform.
+
+mod motion;
+mod samples;
+
+use crate::law::{Env, Field, Law, Sum};
+use std::cell::Cell;
+
+/// A disc with all that a law may ask of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Centre.
+    pub position: [f64; 2],
+    /// Velocity.
+    pub velocity: [f64; 2],
+    /// Angular velocity, counter-clockwise.
+    pub omega: f64,
+    /// Radius.
+    pub radius: f64,
+    /// Inverse mass; 0 for a fixed disc.
+    pub inverse_mass: f64,
+}
+
+impl Body {
+    /// A disc of radius and mass 1 at rest.
+    pub fn at(x: f64, y: f64) -> Body {
+        Body { position: [x, y], velocity: [0.0; 2], omega: 0.0, radius: 1.0, inverse_mass: 1.0 }
+    }
+
+    /// Its mirror image in the x axis.
+    pub fn mirrored(self) -> Body {
+        let flip = |[x, y]: [f64; 2]| [x, -y];
+        Body { position: flip(self.position), velocity: flip(self.velocity), omega: -self.omega, ..self }
+    }
+
+    /// Velocity of its surface at `arm` from the centre: v + Ω × arm.
+    fn surface_velocity(&self, arm: [f64; 2]) -> [f64; 2] {
+        [self.velocity[0] - self.omega * arm[1], self.velocity[1] + self.omega * arm[0]]
+    }
+}
+
+/// Two discs, in contact or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// The law's own disc i, and its partner j.
+    pub bodies: [Body; 2],
+}
+
+impl Pair {
+    /// Force along x, along y, and torque, on each of the two.
+    pub fn sums<L: Law<2>>(&self, law: &L) -> [[f64; 3]; 2] {
+        let meeting = Meeting { bodies: &self.bodies, sums: Cell::default() };
+        let own = law.own(&meeting);
+        law.pair(&meeting, (), &own);
+        meeting.sums.get()
+    }
+
+    /// Depth of the contact, ξ = R_i + R_j − |r_i − r_j|; negative for discs apart.
+    pub fn depth(&self) -> f64 {
+        let [own, partner] = &self.bodies;
+        own.radius + partner.radius - length(self.displacement())
+    }
+
+    /// The unit vector n from the partner's centre to the own.
+    pub fn normal(&self) -> [f64; 2] {
+        let displacement = self.displacement();
+        let distance = length(displacement);
+        displacement.map(|component| component / distance)
+    }
+
+    /// The unit vector s = (−n_y, n_x), BP93 (13).
+    pub fn tangent(&self) -> [f64; 2] {
+        let [nx, ny] = self.normal();
+        [-ny, nx]
+    }
+
+    fn displacement(&self) -> [f64; 2] {
+        let [own, partner] = self.bodies.map(|body| body.position);
+        [own[0] - partner[0], own[1] - partner[1]]
+    }
+
+    /// Slip of the surfaces along the tangent, by the vectors: what BP93 (16) is about, in another way than the law has
+    /// it.
+    pub fn slip(&self) -> f64 {
+        let n = self.normal();
+        let surface = |body: &Body, towards: f64| {
+            body.surface_velocity(n.map(|component| towards * body.radius * component))
+        };
+        let [own, partner] = &self.bodies;
+        let (own, partner) = (surface(own, -1.0), surface(partner, 1.0));
+        dot([own[0] - partner[0], own[1] - partner[1]], self.tangent())
+    }
+
+    /// F_N and F_S: the force on the own disc along the normal and along the tangent.
+    pub fn normal_and_shear<L: Law<2>>(&self, law: &L) -> [f64; 2] {
+        let [[fx, fy, _], _] = self.sums(law);
+        [self.normal(), self.tangent()].map(|direction| dot([fx, fy], direction))
+    }
+
+    /// d(L_orbital + L_spin)/dt. Torques that act at the undeformed radii make it −ξ F_S.
+    pub fn angular_momentum_rate<L: Law<2>>(&self, law: &L) -> f64 {
+        let [first, second] = self.sums(law);
+        let [p, q] = self.bodies.map(|body| body.position);
+        p[0] * first[1] - p[1] * first[0] + q[0] * second[1] - q[1] * second[0] + first[2] + second[2]
+    }
+
+    /// By how much, in its worst component, the mirrored pair's forces are not the mirrored forces.
+    pub fn asymmetry<L: Law<2>>(&self, law: &L) -> f64 {
+        let (here, there) = (self.sums(law), self.mirrored().sums(law));
+        here.iter()
+            .zip(&there)
+            .flat_map(|(here, there)| [here[0] - there[0], here[1] + there[1], here[2] + there[2]])
+            .map(f64::abs)
+            .max_by(f64::total_cmp)
+            .unwrap_or(f64::NAN)
+    }
+
+    /// Its mirror image in the x axis.
+    pub fn mirrored(self) -> Pair {
+        Pair { bodies: self.bodies.map(Body::mirrored) }
+    }
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn length(vector: [f64; 2]) -> f64 {
+    dot(vector, vector).sqrt()
+}
+
+/// What the law sees of a pair.
+struct Meeting<'a> {
+    bodies: &'a [Body; 2],
+    sums: Cell<[[f64; 3]; 2]>,
+}
+
+impl Meeting<'_> {
+    fn field(&self, body: usize, field: Field) -> f64 {
+        let body = &self.bodies[body];
+        match field {
+            Field::Vx => body.velocity[0],
+            Field::Vy => body.velocity[1],
+            Field::Omega => body.omega,
+            Field::Radius => body.radius,
+            Field::InverseMass => body.inverse_mass,
+        }
+    }
+
+    fn add(&self, body: usize, sum: Sum, value: f64) {
+        let mut sums = self.sums.get();
+        sums[body][sum as usize] += value;
+        self.sums.set(sums);
+    }
+}
+
+impl Env<2> for &Meeting<'_> {
+    type V = f64;
+    type Place = ();
+    const BOTH_PARTNERS: bool = true;
+
+    fn own_position(self) -> [f64; 2] {
+        self.bodies[0].position
+    }
+    fn own(self, field: Field) -> f64 {
+        self.field(0, field)
+    }
+    fn displacement(self, own: [f64; 2], (): ()) -> [f64; 2] {
+        [own[0] - self.bodies[1].position[0], own[1] - self.bodies[1].position[1]]
+    }
+    fn partner(self, field: Field, (): ()) -> f64 {
+        self.field(1, field)
+    }
+    fn uniform(self, value: f64) -> f64 {
+        value
+    }
+    fn none(self, predicate: bool) -> bool {
+        !predicate
+    }
+    fn own_add(self, sum: Sum, value: f64) {
+        self.add(0, sum, value);
+    }
+    fn partner_sub(self, sum: Sum, (): (), value: f64) {
+        self.add(1, sum, -value);
+    }
+    fn watched_penetration(self) -> Option<f64> {
+        None
+    }
+    fn watch(self, _: f64) {}
+    fn section(self, _: &'static str) {}
+}

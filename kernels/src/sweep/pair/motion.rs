@@ -1,0 +1,74 @@
+//! A pair in motion: its energies, and its way under a law.
+
+use super::{Body, Pair, dot};
+use crate::law::Law;
+
+/// Rates of change of a body: of its position, its velocity, its angular velocity.
+type Rates = [f64; 5];
+
+impl Body {
+    /// Kinetic energy, of motion and spin; a fixed disc has none.
+    fn kinetic_energy(&self) -> f64 {
+        if self.inverse_mass == 0.0 {
+            return 0.0;
+        }
+        let rim = self.radius * self.omega;
+        0.5 / self.inverse_mass * (dot(self.velocity, self.velocity) + 0.5 * (rim * rim))
+    }
+
+    /// The disc after `dt` at constant rates.
+    fn moved(self, &[vx, vy, ax, ay, angular_acceleration]: &Rates, dt: f64) -> Body {
+        Body {
+            position: [self.position[0] + dt * vx, self.position[1] + dt * vy],
+            velocity: [self.velocity[0] + dt * ax, self.velocity[1] + dt * ay],
+            omega: self.omega + dt * angular_acceleration,
+            ..self
+        }
+    }
+}
+
+impl Pair {
+    /// Kinetic energy of motion and spin; the inertia is a disc's, ½ M R². Fixed discs have none.
+    pub fn kinetic_energy(&self) -> f64 {
+        self.bodies.iter().map(Body::kinetic_energy).sum()
+    }
+
+    /// Elastic energy of the contact, ⅖ k_N ξ^{5/2}.
+    pub fn elastic_energy(&self, stiffness: f64) -> f64 {
+        let depth = self.depth().max(0.0);
+        0.4 * stiffness * (depth * depth * depth.sqrt())
+    }
+
+    /// The pair now and after every step of `dt`, without end, by the classical Runge–Kutta method of fourth order;
+    /// the inertia is a disc's, ½ M R².
+    pub fn trajectory<L: Law<2>>(self, law: &L, dt: f64) -> impl Iterator<Item = Pair> {
+        std::iter::successors(Some(self), move |pair| Some(pair.stepped(law, dt)))
+    }
+
+    fn stepped<L: Law<2>>(self, law: &L, dt: f64) -> Pair {
+        let first = self.rates(law);
+        let second = self.moved(&first, 0.5 * dt).rates(law);
+        let third = self.moved(&second, 0.5 * dt).rates(law);
+        let fourth = self.moved(&third, dt).rates(law);
+        let mean = std::array::from_fn(|i| {
+            std::array::from_fn(|k| {
+                (first[i][k] + 2.0 * second[i][k] + 2.0 * third[i][k] + fourth[i][k]) / 6.0
+            })
+        });
+        self.moved(&mean, dt)
+    }
+
+    fn rates<L: Law<2>>(&self, law: &L) -> [Rates; 2] {
+        let sums = self.sums(law);
+        std::array::from_fn(|i| {
+            let Body { velocity: [vx, vy], inverse_mass, radius, .. } = self.bodies[i];
+            let [fx, fy, torque] = sums[i];
+            let inverse_inertia = 2.0 * inverse_mass / (radius * radius);
+            [vx, vy, fx * inverse_mass, fy * inverse_mass, torque * inverse_inertia]
+        })
+    }
+
+    fn moved(self, rates: &[Rates; 2], dt: f64) -> Pair {
+        Pair { bodies: std::array::from_fn(|i| self.bodies[i].moved(&rates[i], dt)) }
+    }
+}

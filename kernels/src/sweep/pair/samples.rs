@@ -1,0 +1,49 @@
+//! Pairs to try a law on.
+
+use super::{Body, Pair};
+use crate::noise::Stream;
+
+impl Pair {
+    /// Like discs of radius and mass 1 that touch along x, 5 % deep, at rest.
+    pub fn touching() -> Pair {
+        Pair { bodies: [Body::at(0.0, 0.0), Body::at(1.9, 0.0)] }
+    }
+
+    /// Discs that touch and whose opposite spins roll on each other; the second has the radius given.
+    pub fn gears(radius: f64) -> Pair {
+        let mut pair = Pair::touching();
+        let [first, second] = &mut pair.bodies;
+        second.radius = radius;
+        second.position[0] += radius - 1.0;
+        first.omega = 3.0;
+        second.omega = -3.0 / radius;
+        pair
+    }
+
+    /// Like discs about to collide, of kinetic energy ½ together, on lines of flight `offset` apart: 0 is head-on.
+    pub fn colliding(offset: f64) -> Pair {
+        let speed = 0.5f64.sqrt();
+        let mut bodies = [Body::at(-1.1, 0.5 * offset), Body::at(1.1, -0.5 * offset)];
+        bodies[0].velocity[0] = speed;
+        bodies[1].velocity[0] = -speed;
+        Pair { bodies }
+    }
+
+    /// A pair in contact at any angle, 0 to 10 % deep, with random velocities, spins, radii and masses.
+    pub fn random(random: &mut Stream) -> Pair {
+        let mut spread = |width: f64| width * (random.uniform() - 0.5);
+        let radii = [1.0 + spread(0.2), 1.0 + spread(0.2)];
+        let distance = (radii[0] + radii[1]) * (0.95 + spread(0.1));
+        let angle = spread(std::f64::consts::TAU);
+        let first = [spread(4.0), spread(4.0)];
+        let second = [first[0] + distance * libm::cos(angle), first[1] + distance * libm::sin(angle)];
+        let bodies = [(first, radii[0]), (second, radii[1])].map(|(position, radius)| Body {
+            position,
+            velocity: [spread(2.0), spread(2.0)],
+            omega: spread(4.0),
+            radius,
+            inverse_mass: 1.0 / (1.0 + spread(1.0)),
+        });
+        Pair { bodies }
+    }
+}

@@ -1,0 +1,136 @@
+//! Each of the source's four misprints failing a test of its own, which the law that runs passes.
+
+mod support;
+
+use stripmine_kernels::law::Law;
+use stripmine_kernels::law::as_printed::{AsPrinted, Misprint};
+use stripmine_kernels::law::granular::Contact;
+use stripmine_kernels::sweep::pair::Pair;
+use support::{CONTACT, contacts, random_pairs, varying};
+
+fn printed(misprint: Misprint, contact: Contact) -> AsPrinted {
+    AsPrinted { contact, misprint: Some(misprint) }
+}
+
+/// The control of the tests below: with no equation as printed, the law is ours.
+#[test]
+fn without_a_misprint_this_law_is_ours() {
+    for contact in contacts() {
+        let (ours, theirs) = (varying::<true>(contact), AsPrinted { contact, misprint: None });
+        for pair in random_pairs(9, 500) {
+            let (ours, theirs) = (pair.sums(&ours), pair.sums(&theirs));
+            for (ours, theirs) in ours.as_flattened().iter().zip(theirs.as_flattened()) {
+                assert!((ours - theirs).abs() < 1e-12, "{ours} {theirs}");
+            }
+        }
+    }
+}
+
+/// Kinetic energy before and after a collision on lines of flight `offset` apart.
+fn energies<L: Law<2>>(law: &L, offset: f64, stiffness: Option<f64>) -> (f64, f64) {
+    let mut pair = Pair::colliding(offset);
+    let before = pair.kinetic_energy();
+    let mut total = before;
+    for now in pair.trajectory(law, 1e-4).take(30_001) {
+        // Where the caller says the stiffness, energy including the elastic part must never grow.
+        if let Some(stiffness) = stiffness {
+            let energy = now.kinetic_energy() + now.elastic_energy(stiffness);
+            assert!(energy <= total + 1e-10, "energy grew from {total} to {energy}");
+            total = energy;
+        }
+        pair = now;
+    }
+    assert!(pair.depth() < 0.0, "the collision must be over");
+    (before, pair.kinetic_energy())
+}
+
+/// (14) as printed feeds energy in: a frictionless head-on collision ends faster than it began. Ours ends
+/// slower, and without damping as fast.
+#[test]
+fn printed_14_makes_kinetic_energy_grow_in_a_head_on_collision() {
+    let contact =
+        Contact { normal_damping: 0.18, friction: 0.0, shear_damping: 0.0, cohesionless: false, ..CONTACT };
+    let (before, printed) = energies(&printed(Misprint::NormalDamping, contact), 0.0, None);
+    let (_, ours) = energies(&varying::<true>(contact), 0.0, Some(contact.stiffness));
+    let elastic = Contact { normal_damping: 0.0, ..contact };
+    let (_, undamped) = energies(&varying::<true>(elastic), 0.0, Some(contact.stiffness));
+    println!("kinetic energy {before:.3}: printed (14) {printed:.3}, ours {ours:.3}, undamped {undamped:.6}");
+    assert!(printed > 1.01 * before, "{printed}");
+    assert!(ours < 0.99 * before, "{ours}");
+    assert!((undamped - before).abs() < 1e-6, "{undamped}");
+}
+
+/// (15) as printed bounds a force that is positive and lets a negative one grow: a sliding contact breaks the
+/// Coulomb bound for v_t > 0, keeps it for v_t < 0, and is not its own mirror image.
+#[test]
+fn printed_15_bounds_one_side_only() {
+    let contact = Contact { shear_damping: 1000.0, cohesionless: false, ..CONTACT };
+    let (printed, ours) = (printed(Misprint::CoulombBound, contact), varying::<true>(contact));
+    for speed in [1.0, -1.0] {
+        let mut pair = Pair::touching();
+        pair.bodies[0].velocity[1] = speed;
+        let slip = pair.slip();
+        let excess = |[normal, shear]: [f64; 2]| shear.abs() / (contact.friction * normal.abs());
+        let (theirs, here) = (excess(pair.normal_and_shear(&printed)), excess(pair.normal_and_shear(&ours)));
+        println!("slip {slip:+}: |F_S| / (mu |F_N|) printed (15) {theirs:.2}, ours {here:.2}");
+        assert!((here - 1.0).abs() < 1e-12, "{here}");
+        if slip > 0.0 {
+            assert!(theirs > 10.0, "{theirs}");
+        } else {
+            assert!((theirs - 1.0).abs() < 1e-12, "{theirs}");
+        }
+        assert!(pair.asymmetry(&printed) > 10.0);
+        assert_eq!(pair.asymmetry(&ours), 0.0);
+    }
+}
+
+/// (16) as printed lets a gear pair slip and equal spins not.
+#[test]
+fn printed_16_makes_a_gear_pair_slip() {
+    let contact = Contact { cohesionless: false, ..CONTACT };
+    let (printed, ours) = (printed(Misprint::Slip, contact), varying::<true>(contact));
+    let gears = Pair::gears(1.0);
+    let mut rubbing = gears;
+    rubbing.bodies[1].omega = rubbing.bodies[0].omega;
+    let shear = |pair: Pair| (pair.normal_and_shear(&printed)[1], pair.normal_and_shear(&ours)[1]);
+    println!("shear force (printed, ours): gear pair {:?}, equal spins {:?}", shear(gears), shear(rubbing));
+    assert!(shear(gears).0.abs() > 0.5);
+    assert_eq!(shear(gears).1, 0.0);
+    assert_eq!(shear(rubbing).0, 0.0);
+    assert!(shear(rubbing).1.abs() > 0.5);
+}
+
+/// (16) as printed makes energy grow in an oblique collision without normal damping; ours loses some.
+#[test]
+fn printed_16_makes_energy_grow_in_an_oblique_collision() {
+    let contact =
+        Contact { normal_damping: 0.0, shear_damping: 40.0, friction: 5.0, cohesionless: false, ..CONTACT };
+    let (before, printed) = energies(&printed(Misprint::Slip, contact), 1.4, None);
+    let (_, ours) = energies(&varying::<true>(contact), 1.4, Some(contact.stiffness));
+    println!("kinetic energy {before:.3}: printed (16) {printed:.3}, ours {ours:.3}");
+    assert!(printed > 1.01 * before, "{printed}");
+    assert!(ours < 0.99 * before, "{ours}");
+}
+
+/// (10)–(11) as printed, with the tangent (n_y, −n_x), give the pair −(2(R_i + R_j) − ξ) F_S of angular
+/// momentum where the rule is −ξ F_S.
+#[test]
+fn printed_10_and_11_break_the_rule_of_angular_momentum() {
+    let contact = Contact { cohesionless: false, ..CONTACT };
+    let (printed, ours) = (printed(Misprint::Tangent, contact), varying::<true>(contact));
+    let mut largest = 0.0f64;
+    for pair in random_pairs(10, 500) {
+        let depth = pair.depth();
+        let [first, second] = pair.bodies.map(|body| body.radius);
+        // The shear force proper: the torque on the first disc is −R F_S in either law.
+        let shear = -pair.sums(&printed)[0][2] / first;
+        let arms = 2.0 * (first + second) - depth;
+        assert!((pair.angular_momentum_rate(&printed) + arms * shear).abs() < 1e-12);
+        let off = |found: f64| (found + depth * shear).abs();
+        assert!(off(pair.angular_momentum_rate(&ours)) < 1e-12);
+        largest = largest.max(off(pair.angular_momentum_rate(&printed)));
+        assert!(off(pair.angular_momentum_rate(&printed)) > 3.0 * shear.abs());
+    }
+    println!("printed (10)-(11): off the rule by up to {largest:.2}");
+    assert!(largest > 1.0);
+}

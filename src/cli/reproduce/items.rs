@@ -1,0 +1,174 @@
+//! What can be reproduced: the list of items, each a study and its report.
+
+use crate::cli::{Failure, listing};
+use crate::method::lattice_md::Part;
+use crate::model::machine;
+use crate::report::pipe_flow::Showing;
+use crate::report::{self, Section};
+use crate::study::efficiency_table::Question;
+use crate::study::{damping, density_cost, efficiency_table, identity, measured_cost, misprints, pipe_flow};
+use clap::ValueEnum;
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use serde::Serialize;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// How much is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Effort {
+    /// Under a minute in all.
+    Quick,
+    /// As much as the sources show.
+    Full,
+}
+
+/// A finished item.
+pub(super) struct Made {
+    /// What is shown of it.
+    pub(super) section: Section,
+    /// The dataset.
+    pub(super) data: serde_json::Value,
+    /// Further files: name and contents.
+    pub(super) files: Vec<(String, String)>,
+}
+
+macro_rules! define_items {
+    ($(($variant:ident, $name:literal, $quick:expr, $full:expr, $doc:literal)),* $(,)?) => {
+        /// What can be reproduced.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+        pub(super) enum Item {
+            $(#[doc = $doc] #[value(name = $name)] $variant,)*
+        }
+
+        impl Item {
+            /// The name on the command line.
+            pub(super) const fn name(self) -> &'static str {
+                match self { $(Item::$variant => $name),* }
+            }
+
+            /// Seconds that an item takes about, for the estimate of what is left.
+            pub(super) const fn seconds(self, effort: Effort) -> f64 {
+                match self {
+                    $(Item::$variant => if matches!(effort, Effort::Quick) { $quick } else { $full },)*
+                }
+            }
+        }
+    };
+}
+
+define_items! {
+    (Table, "table", 0.1, 0.1, "BP93's efficiency table"),
+    (Listing, "listing", 0.1, 0.1, "The vector instructions of every part"),
+    (Mask, "mask", 0.1, 0.1, "BP93, figure 2: the mask"),
+    (Misprints, "misprints", 0.5, 0.5, "What the misprints of the contact law do"),
+    (Cost, "cost", 1.0, 1.0, "BP93, figures 3 and 4: cost over particles and density, by the model"),
+    (Measured, "measured", 8.0, 60.0, "The same, measured on this host"),
+    (Identity, "identity", 3.0, 3.0, "Lattice and neighbour lists: the same to the bit"),
+    (PipeSmall, "pipe-small", 3.0, 3.0, "BP93, figures 5 and 6, in two fifths of the pipe"),
+    (Pipe, "pipe", 120.0, 120.0, "BP93, figures 5 and 6, in the whole pipe"),
+    (Waves, "waves", 60.0, 60.0, "Density waves over dissipation, and controls without"),
+}
+
+impl Item {
+    /// Whether the item is made when none is named.
+    pub(super) const fn belongs_to(self, effort: Effort) -> bool {
+        matches!(effort, Effort::Full) || !matches!(self, Item::Pipe | Item::Waves)
+    }
+
+    /// Makes the item. `progress` gets the share that is done.
+    pub(super) fn make(self, effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, Failure> {
+        match self {
+            Item::Table => {
+                let data =
+                    efficiency_table::efficiency_table(&Question::default(), &machine::preset("paper")?)?;
+                made(report::efficiency_table::section(&data), &data)
+            }
+            Item::Listing => listings(),
+            Item::Mask => made(report::mask::section(), &()),
+            Item::Misprints => {
+                let data = misprints::misprints();
+                made(report::misprints::section(&data), &data)
+            }
+            Item::Cost => {
+                let data = density_cost::density_cost(&machine::preset("paper")?)?;
+                made(report::density_cost::section(&data), &data)
+            }
+            Item::Measured => {
+                let data = measured_cost::measured_cost(&measured_effort(effort), progress)?;
+                made(report::measured_cost::section(&data), &data)
+            }
+            Item::Identity => {
+                let data = identity::identity(progress)?;
+                made(report::identity::section(&data), &data)
+            }
+            Item::PipeSmall => {
+                let title = "Density waves in a short pipe (figures 5 and 6)";
+                let showing = Showing { name: self.name(), title, from: 0.0, snapshots: 11 };
+                pipes(showing, &[1], progress)
+            }
+            Item::Pipe => {
+                let title = "Density waves in the whole pipe (figures 5 and 6)";
+                let showing = Showing { name: self.name(), title, from: 10.0, snapshots: 14 };
+                pipes(showing, &[1, 2, 3, 4], progress)
+            }
+            Item::Waves => {
+                let seeds = [1, 2, 3, 4, 5, 6];
+                let data = damping::damping(&seeds, progress)?;
+                made(report::damping::section(&data), &data)
+            }
+        }
+    }
+}
+
+fn made(section: Section, data: &impl Serialize) -> Result<Made, Failure> {
+    let data = serde_json::to_value(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
+    Ok(Made { section, data, files: vec![] })
+}
+
+fn measured_effort(effort: Effort) -> measured_cost::Effort {
+    match effort {
+        Effort::Quick => measured_cost::Effort {
+            particles: vec![100, 1000],
+            occupancies: vec![0.1, 0.2],
+            equilibration: 50,
+            particle_steps: 40_000,
+            repeats: 3,
+        },
+        Effort::Full => measured_cost::Effort {
+            particles: vec![100, 300, 1000, 3000, 10_000],
+            occupancies: vec![0.01, 0.03, 0.1, 0.2, 0.25],
+            equilibration: 100,
+            particle_steps: 200_000,
+            repeats: 5,
+        },
+    }
+}
+
+/// Runs of the scene that bears the item's name, side by side; the first keeps its frames.
+fn pipes(showing: Showing, seeds: &[u64], progress: &(dyn Fn(f64) + Sync)) -> Result<Made, Failure> {
+    const PARTS: f64 = 1000.0;
+    let done: Vec<AtomicUsize> = seeds.iter().map(|_| AtomicUsize::new(0)).collect();
+    let numbered: Vec<(usize, u64)> = seeds.iter().copied().enumerate().collect();
+    let flows = numbered.par_iter().map(|&(at, seed)| {
+        let question =
+            pipe_flow::Question { scene: showing.name, overrides: vec![], seed, keep_frames: at == 0 };
+        pipe_flow::pipe_flow(&question, |share| {
+            done[at].store((PARTS * share) as usize, Ordering::Relaxed);
+            let sum: usize = done.iter().map(|part| part.load(Ordering::Relaxed)).sum();
+            progress(sum as f64 / PARTS / seeds.len() as f64);
+        })
+    });
+    let flows: Vec<pipe_flow::PipeFlow> = flows.collect::<Result<_, _>>()?;
+    made(report::pipe_flow::section(showing, &flows), &flows)
+}
+
+fn listings() -> Result<Made, Failure> {
+    let mut parts = vec![];
+    for &part in Part::ALL {
+        let listings = listing::listings(part, &Question::default())?;
+        let (text, instructions) = (listing::text(&listings), listing::instructions(&listings));
+        parts.push(report::listing::PartListing { part: part.name(), text, instructions });
+    }
+    let mut made = made(report::listing::section(&parts), &())?;
+    made.files = parts.into_iter().map(|part| (format!("{}.txt", part.part), part.text)).collect();
+    Ok(made)
+}

@@ -1,0 +1,93 @@
+//! `stripmine reproduce`: the main job.
+
+mod folder;
+mod items;
+
+use super::{Common, Failure, print_json};
+use crate::report::origin::Provenance;
+use clap::{Args, ValueEnum};
+use folder::Folder;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use items::{Effort, Item};
+use serde::Serialize;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Every table and figure of the sources, with data and a page that says what came out
+#[derive(Args)]
+pub(super) struct Reproduce {
+    /// Take less time: leaves out what needs minutes, and measures less
+    #[arg(long)]
+    quick: bool,
+    /// Only this item; may be given several times. The page keeps what the folder holds of the others
+    #[arg(long, value_enum)]
+    only: Vec<Item>,
+    /// Folder for the results
+    #[arg(long, default_value = "reports")]
+    out: PathBuf,
+}
+
+/// What was done with an item.
+#[derive(Serialize)]
+struct Outcome {
+    item: &'static str,
+    verdict: &'static str,
+    seconds: f64,
+    folder: PathBuf,
+}
+
+impl Reproduce {
+    pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
+        let effort = if self.quick { Effort::Quick } else { Effort::Full };
+        let asked = |item: &Item| {
+            if self.only.is_empty() { item.belongs_to(effort) } else { self.only.contains(item) }
+        };
+        let items: Vec<Item> = Item::value_variants().iter().copied().filter(asked).collect();
+        let folder = Folder::new(&self.out);
+        let bar = progress_bar(common, &items, effort);
+        let mut outcomes = Vec::new();
+        let mut before = 0.0;
+        for &item in &items {
+            bar.set_message(item.name());
+            let start = Instant::now();
+            let share = item.seconds(effort);
+            let made = item.make(effort, &|part| bar.set_position(ticks(before + part * share)))?;
+            before += share;
+            bar.set_position(ticks(before));
+            let seconds = start.elapsed().as_secs_f64();
+            let command = format!("stripmine reproduce{}", if self.quick { " --quick" } else { "" });
+            // Finished items are on the disk, and on the page, before the next one starts.
+            let path = folder.write(&made, &Provenance::here(command, seconds))?;
+            folder.write_page()?;
+            if !common.quiet {
+                let word = made.section.verdict.word();
+                bar.suspend(|| {
+                    eprintln!("{:<12} {word:<18} {seconds:>6.1} s  {}", item.name(), path.display())
+                });
+            }
+            outcomes.push(Outcome {
+                item: item.name(),
+                verdict: made.section.verdict.word(),
+                seconds,
+                folder: path,
+            });
+        }
+        bar.finish_and_clear();
+        if common.json { print_json(&outcomes) } else { Ok(()) }
+    }
+}
+
+/// Progress is counted in thousandths of an expected second.
+fn ticks(seconds: f64) -> u64 {
+    (1000.0 * seconds) as u64
+}
+
+/// Progress with ETA on a terminal, nothing elsewhere.
+fn progress_bar(common: &Common, items: &[Item], effort: Effort) -> ProgressBar {
+    let target = if common.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let expected = items.iter().map(|item| item.seconds(effort)).sum();
+    let bar = ProgressBar::with_draw_target(Some(ticks(expected)), target);
+    let style = ProgressStyle::with_template("{wide_bar} {msg} {percent}% [{elapsed}, ETA {eta}]");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}

@@ -1,0 +1,111 @@
+//! Curves and points over two axes.
+
+use serde::{Deserialize, Serialize};
+
+/// A chart. A point that an axis cannot show (zero or less on a logarithmic one, not finite) must not be in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Chart {
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+    /// What is drawn, in the order of the legend.
+    pub series: Vec<Series>,
+    /// Parts of the plane that mean something.
+    pub bands: Vec<Band>,
+}
+
+/// An axis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Axis {
+    /// The quantity.
+    pub label: String,
+    /// Its unit; none for counts and ratios.
+    pub unit: Option<String>,
+    /// How numbers lie on it.
+    pub scale: Scale,
+    /// Its ends; none to take them from the data.
+    pub limits: Option<[f64; 2]>,
+}
+
+impl Axis {
+    /// A linear axis that fits its data.
+    pub fn linear(label: &str, unit: Option<&str>) -> Axis {
+        Axis { label: label.to_owned(), unit: unit.map(str::to_owned), scale: Scale::Linear, limits: None }
+    }
+
+    /// A logarithmic axis that fits its data.
+    pub fn logarithmic(label: &str, unit: Option<&str>) -> Axis {
+        Axis { scale: Scale::Logarithmic, ..Axis::linear(label, unit) }
+    }
+
+    /// Label and unit as one text.
+    pub fn heading(&self) -> String {
+        match &self.unit {
+            Some(unit) => format!("{} ({unit})", self.label),
+            None => self.label.clone(),
+        }
+    }
+}
+
+/// How numbers lie on an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Scale {
+    /// Equal differences.
+    Linear,
+    /// Equal ratios, decades marked.
+    Logarithmic,
+}
+
+/// A named set of points.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Series {
+    /// Its name in the legend.
+    pub name: String,
+    /// How it is drawn.
+    pub style: Style,
+    /// Which colour of the palette; series that belong together share one.
+    pub hue: usize,
+    /// The points, by increasing x where they are joined.
+    pub points: Vec<Point>,
+}
+
+/// How a series is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Style {
+    /// A line: what a model says.
+    Line,
+    /// A dashed line: a rival, or what cannot be reached.
+    Dashed,
+    /// Points alone: what was measured.
+    Points,
+    /// Points joined by a line.
+    Joined,
+}
+
+/// A point of a series.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    /// On the horizontal axis.
+    pub x: f64,
+    /// On the vertical axis.
+    pub y: f64,
+    /// Lowest and highest value of y that was seen or is believable.
+    pub spread: Option<[f64; 2]>,
+}
+
+impl Point {
+    /// A point without spread.
+    pub fn at(x: f64, y: f64) -> Point {
+        Point { x, y, spread: None }
+    }
+}
+
+/// A hatched part of the plane between two values of x, such as densities that no configuration has.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Band {
+    /// What it means.
+    pub label: String,
+    /// Where it begins and ends on the horizontal axis.
+    pub x: [f64; 2],
+}

@@ -1,0 +1,74 @@
+//! What can be wrong with a figure.
+
+/// A figure that cannot be drawn.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("figure `{figure}`: {fault}")]
+pub struct FigureError {
+    /// The figure's name.
+    pub figure: String,
+    /// What is wrong with it.
+    pub fault: Fault,
+}
+
+/// What is wrong with a figure.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Fault {
+    /// A number that has no place.
+    #[error("{place} is {value}, which is not finite")]
+    NotFinite {
+        /// Where it stands.
+        place: String,
+        /// The number.
+        value: f64,
+    },
+    /// A number that a logarithmic axis cannot show.
+    #[error("{place} is {value}, but its axis is logarithmic")]
+    NotPositive {
+        /// Where it stands.
+        place: String,
+        /// The number.
+        value: f64,
+    },
+    /// Nothing to draw.
+    #[error("there is nothing in it")]
+    Empty,
+    /// Rows of a map that differ in length.
+    #[error("row {row} has {found} values, the rows before it {expected}")]
+    UnevenRows {
+        /// Its number, from 0.
+        row: usize,
+        /// How many values the others have.
+        expected: usize,
+        /// How many values it has.
+        found: usize,
+    },
+    /// A map's axis without ends.
+    #[error("the axis `{axis}` of a map needs limits")]
+    NoLimits {
+        /// The axis.
+        axis: String,
+    },
+    /// Ends that are no interval.
+    #[error("{place} goes from {} to {}, which is not upwards or too far", ends[0], ends[1])]
+    NotAnInterval {
+        /// Where they stand.
+        place: String,
+        /// The ends.
+        ends: [f64; 2],
+    },
+    /// A picture whose size makes no sense.
+    #[error("a picture of {width:.0} by {height:.0} pixels cannot be drawn")]
+    Size {
+        /// Its width.
+        width: f64,
+        /// Its height.
+        height: f64,
+    },
+}
+
+impl Fault {
+    /// The fault of a figure with this name.
+    pub(super) fn of(self, figure: &str) -> FigureError {
+        FigureError { figure: figure.to_owned(), fault: self }
+    }
+}

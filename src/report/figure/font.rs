@@ -1,0 +1,89 @@
+//! The one font, which is part of the program: no picture depends on what a machine has installed.
+
+use std::sync::LazyLock;
+use ttf_parser::{Face, OutlineBuilder};
+
+/// Height of a capital letter, in sizes of the letters.
+pub const CAPITAL: f64 = 0.729;
+/// How far letters reach below their line, in sizes of the letters.
+pub const DESCENT: f64 = 0.24;
+
+static FACE: LazyLock<Face<'static>> =
+    LazyLock::new(|| Face::parse(dejavu::sans::regular(), 0).expect("the font in the program is whole"));
+
+/// Width of words in one line.
+pub fn width(words: &str, size: f64) -> f64 {
+    let units: f64 = words.chars().map(advance).sum();
+    units * size / f64::from(FACE.units_per_em())
+}
+
+/// Width of the widest of some lines.
+pub fn widest<'a>(lines: impl IntoIterator<Item = &'a String>, size: f64) -> f64 {
+    lines.into_iter().map(|line| width(line, size)).fold(0.0, f64::max)
+}
+
+/// Cuts words into lines that are no wider than a width; a single word may be.
+pub fn wrap(words: &str, size: f64, most: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in words.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if width(&format!("{line} {word}"), size) <= most => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// Draws the outline of each letter: `place` makes a pen for a letter that begins so far to the right of the first,
+/// with so many pixels to a unit of the font.
+pub fn outline<Pen: OutlineBuilder>(
+    words: &str,
+    size: f64,
+    mut place: impl FnMut(f64, f64) -> Pen,
+) -> Vec<Pen> {
+    let scale = size / f64::from(FACE.units_per_em());
+    let mut right = 0.0;
+    words
+        .chars()
+        .map(|letter| {
+            let mut pen = place(right * scale, scale);
+            FACE.outline_glyph(FACE.glyph_index(letter).unwrap_or_default(), &mut pen);
+            right += advance(letter);
+            pen
+        })
+        .collect()
+}
+
+fn advance(letter: char) -> f64 {
+    let glyph = FACE.glyph_index(letter).unwrap_or_default();
+    FACE.glyph_hor_advance(glyph).map_or(0.0, f64::from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_font_has_the_letters_of_physics() {
+        for letter in "⁰¹²³⁴⁵⁶⁷⁸⁹⁻−×·νρωπμφτ°±≤≥√∞".chars() {
+            assert!(FACE.glyph_index(letter).is_some(), "{letter}");
+        }
+        let capital = FACE.glyph_bounding_box(FACE.glyph_index('H').unwrap()).unwrap().y_max;
+        assert!((f64::from(capital) / f64::from(FACE.units_per_em()) - CAPITAL).abs() < 1e-3);
+    }
+
+    #[test]
+    fn lines_break_at_blanks() {
+        let words = "measured on the host, chained, 24 places";
+        for most in [90.0, 150.0, 300.0] {
+            let lines = wrap(words, 17.0, most);
+            assert_eq!(lines.join(" "), words);
+            assert!(widest(&lines, 17.0) <= most, "{lines:?}");
+        }
+        assert_eq!(wrap("incompressible", 17.0, 10.0), ["incompressible"]);
+        assert_eq!(wrap("", 17.0, 10.0), Vec::<String>::new());
+    }
+}

@@ -1,0 +1,141 @@
+//! A figure of each kind, for the tests of everything that draws.
+
+use super::{Axis, Band, Chart, Drawing, Figure, Map, Picture, Point, Series, Shape, Style, Tint};
+
+/// All of them.
+pub fn all() -> Vec<Figure> {
+    vec![logarithmic(), linear(), map(), mask(), pipe(), long_pipe()]
+}
+
+fn figure(name: &str, title: &str, picture: Picture) -> Figure {
+    Figure {
+        name: name.into(),
+        title: title.into(),
+        caption: "What a reader must know besides.".into(),
+        picture,
+    }
+}
+
+fn series(name: &str, style: Style, hue: usize, points: Vec<Point>) -> Series {
+    Series { name: name.into(), style, hue, points }
+}
+
+/// Models and measurements over decades, and a band.
+pub fn logarithmic() -> Figure {
+    let models = ["clock of the paper: n + D", "clock with strips of 64", "chained, by level of memory"];
+    let measured = ["CRAY's way, measured", "strip-mined, measured", "chained, measured (AVX-512, one core)"];
+    let time = |kind: usize, length: f64| {
+        [2e-8 * (length + 120.0), 1.1e-8 * (length + 14.0), 1.4e-9 * (length + 40.0)][kind]
+    };
+    let mut all = Vec::new();
+    for kind in 0..3 {
+        let curve = (0..=60).map(|i| 10f64.powf(f64::from(i) * 0.1)).map(|x| Point::at(x, time(kind, x)));
+        all.push(series(models[kind], Style::Line, kind, curve.collect()));
+        let dots = (0..12).map(|i| 10f64.powf(0.2 + 0.5 * f64::from(i))).filter(|x| *x < 1e6).map(|x| {
+            let y = time(kind, x) * [0.8, 1.15, 1.3, 0.95][x as usize % 4];
+            Point { spread: Some([y * 0.6, y * 1.7]), ..Point::at(x, y) }
+        });
+        all.push(series(measured[kind], Style::Points, kind, dots.collect()));
+    }
+    let picture = Chart {
+        x: Axis::logarithmic("Vector length", None),
+        y: Axis::logarithmic("Time of a vector instruction", Some("s")),
+        series: all,
+        bands: vec![Band { label: "beyond the caches".into(), x: [2e5, f64::INFINITY] }],
+    };
+    figure(
+        "logarithmic",
+        "Time of a vector instruction by its length: models and measurements",
+        Picture::Chart(picture),
+    )
+}
+
+/// Three curves over linear axes.
+pub fn linear() -> Figure {
+    let grid = |count: u32| (0..=count).map(move |i| 0.9 * f64::from(i) / f64::from(count));
+    let friction = grid(90).map(|x| Point::at(x, (6.0 * x).sin() * 20.0 + 22.0 * x)).collect();
+    let rival = grid(90).map(|x| Point::at(x, 18.0 * x * x - 4.0)).collect();
+    let seen = grid(14).map(|x| Point::at(x, (6.0 * x).sin() * 18.0 + 24.0 * x)).collect();
+    let picture = Chart {
+        x: Axis::linear("Packing fraction ν", None),
+        y: Axis::linear("Flow", Some("kg/s")),
+        series: vec![
+            series("with friction", Style::Line, 0, friction),
+            series("what a neighbour list would need", Style::Dashed, 1, rival),
+            series("seen", Style::Joined, 2, seen),
+        ],
+        bands: vec![Band { label: "no configuration is denser".into(), x: [0.84, 0.9] }],
+    };
+    figure("linear", "Flow through the pipe", Picture::Chart(picture))
+}
+
+/// Density waves.
+pub fn map() -> Figure {
+    let value = |i: usize, j: usize| {
+        let (x, t) = (i as f64 / 120.0, j as f64 / 80.0);
+        let wave = ((x * 14.0 - t * 9.0).sin() + 0.6 * (x * 31.0 + t * 7.0).cos()).max(-0.9);
+        0.12 + 0.25 * (wave + 0.9) * (0.3 + 0.7 * t)
+    };
+    let limited = |label, unit, limits| Axis { limits: Some(limits), ..Axis::linear(label, Some(unit)) };
+    let picture = Map {
+        x: limited("Place along the pipe", "m", [0.0, 1.0]),
+        y: limited("Time", "s", [0.0, 4.0]),
+        value: Axis::linear("Packing fraction of the grains in a slice of the pipe", None),
+        rows: (0..80).map(|j| (0..120).map(|i| value(i, j)).collect()).collect(),
+    };
+    figure("map", "Grains bunch up: density over place and time", Picture::Map(picture))
+}
+
+/// A neighbourhood with numbers in its cells.
+pub fn mask() -> Figure {
+    let mut shapes = Vec::new();
+    let mut number = 0;
+    for j in (-2..=2).rev() {
+        for i in -2..=2_i32 {
+            let [x, y] = [f64::from(i), f64::from(j)];
+            let (tint, words) = match (i, j) {
+                (0, 0) => (Tint::Hue(0), "own".to_owned()),
+                _ => {
+                    number += 1;
+                    (if number > 12 { Tint::Still } else { Tint::Clear }, number.to_string())
+                }
+            };
+            let corners = [[x - 0.5, y - 0.5], [x + 0.5, y + 0.5]];
+            shapes.push(Shape::Rectangle { corners, tint, outlined: true });
+            shapes.push(Shape::Text { centre: [x, y], height: 0.26, words });
+        }
+    }
+    let picture = Drawing { window: [[-2.5, -2.5], [2.5, 2.5]], width: 420.0, shapes, shades: None };
+    figure("mask", "The 24 neighbours of a cell, in the order of their turn", Picture::Drawing(picture))
+}
+
+/// A piece of a pipe, with walls of discs and grains that spin.
+pub fn pipe() -> Figure {
+    pipe_of("pipe", 30, 900.0, "Grains in a piece of the pipe")
+}
+
+/// A whole pipe, a hundred times as long as wide.
+pub fn long_pipe() -> Figure {
+    pipe_of("long-pipe", 1000, 3600.0, "The whole pipe, a hundred times as long as wide")
+}
+
+fn pipe_of(name: &str, columns: u32, width: f64, title: &str) -> Figure {
+    let mut shapes = Vec::new();
+    let length = f64::from(columns);
+    for i in 0..=columns {
+        for y in [0.0, 10.0] {
+            shapes.push(Shape::Disc { centre: [f64::from(i), y], radius: 0.5, tint: Tint::Still });
+        }
+    }
+    for i in 0..columns {
+        for j in 0..10 {
+            // Any numbers between 0 and 1 that repeat.
+            let [a, b, c] = [7, 11, 13].map(|k| f64::from((i * 37 + j * 101 + 17) * k % 97) / 96.0);
+            let centre = [f64::from(i) + 0.5 + 0.1 * a, 0.95 + 0.85 * f64::from(j) + 0.1 * b];
+            shapes.push(Shape::Disc { centre, radius: 0.32 + 0.1 * c, tint: Tint::Shade(a) });
+        }
+    }
+    let window = [[0.0, -0.5], [length, 10.5]];
+    let shades = Some((-40.0, 40.0, "Spin (1/s)".into()));
+    figure(name, title, Picture::Drawing(Drawing { window, width, shapes, shades }))
+}

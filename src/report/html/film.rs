@@ -1,0 +1,102 @@
+//! What the player gets of a film.
+
+use super::quantised::Quantised;
+use crate::report::section::Film;
+use serde_json::{Value, json};
+
+/// Windows longer than this many times their width are cut into strips.
+const LONG: f64 = 6.0;
+
+/// The film, all frames of a quantity behind one another. Every frame has a place for each of the radii; a disc that a
+/// frame does not have is no number there.
+pub fn data(film: &Film) -> Value {
+    let Film { window, radii, fixed, frames, shade, shades, .. } = film;
+    let column = |number: fn(&([f64; 2], f64)) -> f64| {
+        let of_frame = |discs: &[_]| -> Vec<f64> {
+            (0..radii.len()).map(|i| discs.get(i).map_or(f64::NAN, number)).collect()
+        };
+        Quantised::of(&frames.iter().flat_map(|frame| of_frame(&frame.discs)).collect::<Vec<_>>())
+    };
+    let still =
+        |number: fn(&([f64; 2], f64)) -> f64| Quantised::of(&fixed.iter().map(number).collect::<Vec<_>>());
+    let [width, height] = [window[1][0] - window[0][0], window[1][1] - window[0][1]];
+    json!({
+        "window": window,
+        "long": width > LONG * height || height > LONG * width,
+        "shade": { "label": shade, "ends": shades },
+        "radii": Quantised::of(radii),
+        "fixed": { "x": still(|disc| disc.0[0]), "y": still(|disc| disc.0[1]), "radii": still(|disc| disc.1) },
+        "times": frames.iter().map(|frame| frame.time).collect::<Vec<_>>(),
+        "x": column(|disc| disc.0[0]),
+        "y": column(|disc| disc.0[1]),
+        "shades": column(|disc| disc.1),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::section::Frame;
+
+    fn pipe(frames: usize, discs: usize) -> Film {
+        let place = |frame: usize, disc: usize| {
+            let turn = (disc * 7919 + frame * 31) as f64 * 0.618;
+            ([8.1 * turn.fract(), 0.055 * (turn * 1.7).fract() - 0.0275], 3.0 * (turn * 0.3).fract())
+        };
+        Film {
+            title: "Grains".to_owned(),
+            window: [[0.0, -0.0275], [8.1, 0.0275]],
+            radii: (0..discs).map(|disc| 0.01 + 1e-5 * disc as f64).collect(),
+            fixed: (0..600).map(|i| ([0.027 * f64::from(i / 2), 0.0275], 0.009)).collect(),
+            frames: (0..frames)
+                .map(|frame| Frame {
+                    time: 0.05 * frame as f64,
+                    discs: (0..discs).map(|disc| place(frame, disc)).collect(),
+                })
+                .collect(),
+            shade: "speed (m/s)".to_owned(),
+            shades: [0.0, 3.0],
+        }
+    }
+
+    fn read(value: &Value) -> Vec<f64> {
+        let quantised = serde_json::from_value(value.clone()).unwrap();
+        super::super::quantised::tests::read(&quantised)
+    }
+
+    #[test]
+    fn places_come_back_within_half_a_pixel() {
+        let film = pipe(40, 300);
+        let data = data(&film);
+        let (x, y) = (read(&data["x"]), read(&data["y"]));
+        // Six strips side by side on a screen of twice as many dots as pixels.
+        let pixel = 8.1 / (6.0 * 2200.0);
+        for (i, disc) in film.frames.iter().flat_map(|frame| &frame.discs).enumerate() {
+            assert!((disc.0[0] - x[i]).abs() < 0.5 * pixel, "x of disc {i}");
+            assert!((disc.0[1] - y[i]).abs() < 0.5 * pixel, "y of disc {i}");
+        }
+    }
+
+    #[test]
+    fn forty_frames_of_six_hundred_discs_are_small() {
+        let letters = data(&pipe(40, 600)).to_string().len();
+        assert!(letters < 400_000, "{letters} bytes");
+    }
+
+    #[test]
+    fn a_frame_without_a_disc_leaves_its_place_empty() {
+        let mut film = pipe(2, 3);
+        film.frames[0].discs.truncate(2);
+        let x = read(&data(&film)["x"]);
+        assert_eq!(x.len(), 6);
+        assert!(x[2].is_nan() && x[5].is_finite());
+    }
+
+    #[test]
+    fn only_long_windows_are_cut_into_strips() {
+        let mut film = pipe(1, 1);
+        assert_eq!(data(&film)["long"], true);
+        film.window = [[0.0, 0.0], [2.0, 1.0]];
+        assert_eq!(data(&film)["long"], false);
+    }
+}

@@ -1,0 +1,146 @@
+//! One item of the page.
+
+use super::{badge, data, film, prose};
+use crate::report::figure::{Figure, Picture};
+use crate::report::section::Film;
+use crate::report::{Cell, Section, Table};
+use maud::{Markup, PreEscaped, html};
+
+/// The item with everything that belongs to it.
+pub fn render(section: &Section, drawn: &dyn Fn(&Figure) -> String) -> Markup {
+    let name = section.name.as_str();
+    html! {
+        section id=(name) aria-labelledby={ (name) "-title" } {
+            h2 id={ (name) "-title" } { a href={ "#" (name) } { (section.title) } }
+            dl.verdict {
+                dt { "The source says" }
+                dd { (prose(&section.says)) }
+                dt { "What came out" }
+                dd { (badge(section.verdict)) " " (prose(&section.came_out)) }
+            }
+            @for each in &section.figures {
+                (figure(name, each, drawn))
+            }
+            @if let Some(shown) = &section.film {
+                (moving(section, shown))
+            }
+            @for each in &section.tables {
+                (table(each))
+            }
+            @if let Some((what, lines)) = &section.excerpt {
+                figure.excerpt {
+                    figcaption { (prose(what)) }
+                    pre tabindex="0" { (lines) }
+                }
+            }
+            (again(section))
+        }
+    }
+}
+
+/// A figure: its picture, and below it what a reader must know.
+fn figure(section: &str, figure: &Figure, drawn: &dyn Fn(&Figure) -> String) -> Markup {
+    let svg = drawn(figure);
+    // What stands before the element itself belongs to a file of its own.
+    let svg = PreEscaped(svg.find("<svg").map_or("", |start| &svg[start..]));
+    let label = format!("{}. {}", figure.title, figure.caption);
+    html! {
+        figure id={ (section) "-" (figure.name) } {
+            @match &figure.picture {
+                Picture::Drawing(_) => div.drawing role="img" aria-label=(label) { (svg) },
+                Picture::Chart(chart) => (live("chart", &label, &data::chart(chart), svg)),
+                Picture::Map(map) => (live("map", &label, &data::map(map), svg)),
+            }
+            figcaption { (heading(&figure.title)) " " (prose(&figure.caption)) }
+        }
+    }
+}
+
+/// A title that begins a caption.
+fn heading(title: &str) -> Markup {
+    let ends_itself = title.ends_with(['.', '?', '!']);
+    html! { strong { (title) @if !ends_itself { "." } } }
+}
+
+/// A picture that a script draws from its data, and what stands for it where no script runs.
+fn live(kind: &str, label: &str, data: &serde_json::Value, instead: PreEscaped<&str>) -> Markup {
+    html! {
+        div.picture data-kind=(kind) data-label=(label) {
+            (data::embedded("", data))
+            noscript { (instead) }
+        }
+    }
+}
+
+fn moving(section: &Section, shown: &Film) -> Markup {
+    let instead = html! { p { "The film needs JavaScript. Its frames are in the folder " (folder(&section.folder())) "." } };
+    html! {
+        figure id={ (section.name) "-film" } {
+            (live("film", &shown.title, &film::data(shown), PreEscaped(&instead.into_string())))
+            figcaption { (heading(&shown.title)) }
+        }
+    }
+}
+
+/// A table in a box of its own, which scrolls where the table is wider than the page.
+fn table(table: &Table) -> Markup {
+    let numeric = |i: usize| table.rows.iter().all(|row| row.get(i).is_some_and(Cell::is_number));
+    html! {
+        div.scroll tabindex="0" role="region" aria-label=(table.title) {
+            table {
+                caption { (table.title) }
+                thead {
+                    tr {
+                        @for (i, column) in table.columns.iter().enumerate() {
+                            th.number[numeric(i)] scope="col" { (column) }
+                        }
+                    }
+                }
+                tbody {
+                    @for row in &table.rows {
+                        tr {
+                            @for cell in row {
+                                td.number[cell.is_number()] { (cell.for_reading()) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        @for note in &table.notes {
+            p.note { (prose(note)) }
+        }
+    }
+}
+
+/// What a reader needs to get the item again.
+fn again(section: &Section) -> Markup {
+    let seeds: Vec<String> = section.seeds.iter().map(u64::to_string).collect();
+    html! {
+        div.again {
+            h3 { "To get it again" }
+            div.command {
+                code { (section.again) }
+                button type="button" data-copy="" { "Copy" }
+            }
+            p {
+                "Data: " (folder(&section.folder())) "."
+                @if !seeds.is_empty() {
+                    @if seeds.len() == 1 { " Seed: " } @else { " Seeds: " }
+                    (seeds.join(", ")) "."
+                }
+                @if section.depends_on_host {
+                    " Times are of the host that made it; elsewhere they differ."
+                }
+            }
+            @if let Some(provenance) = &section.provenance {
+                p.provenance { (prose(&provenance.sentence())) }
+            }
+        }
+    }
+}
+
+/// The folder with an item's files, which lies beside the page.
+fn folder(path: &str) -> Markup {
+    html! { a href={ (path) "/" } { code { (path) "/" } } }
+}

@@ -1,0 +1,203 @@
+//! The page of a reproduction as one HTML file: charts to hover over, films to play, nothing fetched from anywhere.
+
+mod data;
+mod film;
+mod item;
+mod look;
+mod quantised;
+
+use super::figure::Figure;
+use super::{Section, Verdict};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+/// uPlot, the charting library: its version is in its first line, its licence beside it.
+const UPLOT: &str = include_str!("uplot/uPlot.iife.min.js");
+const UPLOT_LICENCE: &str = include_str!("uplot/LICENSE");
+
+/// Style sheets, in the order of the cascade.
+const STYLES: [&str; 2] = [include_str!("uplot/uPlot.min.css"), include_str!("page.css")];
+
+/// Scripts, each of which may use those before it.
+const SCRIPTS: [&str; 8] = [
+    UPLOT,
+    include_str!("page.js"),
+    include_str!("ticks.js"),
+    include_str!("plane.js"),
+    include_str!("charts.js"),
+    include_str!("maps.js"),
+    include_str!("strips.js"),
+    include_str!("player.js"),
+];
+
+/// What the browser is told to refuse: anything that is not in the file itself.
+const POLICY: &str =
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
+
+/// The page. `drawn` gives the SVG of a figure: drawings are shown with it, charts and maps only where no script runs
+/// and on paper.
+pub fn render(sections: &[Section], drawn: &dyn Fn(&Figure) -> String) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                title { "Stripmine: what came out" }
+                link rel="icon" href="data:,";
+                @for style in STYLES {
+                    style { (PreEscaped(style)) }
+                }
+            }
+            body {
+                a.skip href="#summary" { "To the summary" }
+                (contents(sections))
+                main {
+                    (summary(sections))
+                    @for section in sections {
+                        (item::render(section, drawn))
+                    }
+                    (footer())
+                }
+                (data::embedded("shades", &data::shades()))
+                @for script in SCRIPTS {
+                    script { (PreEscaped(script)) }
+                }
+            }
+        }
+    };
+    page.into_string()
+}
+
+/// The list of items at the side of a wide screen.
+fn contents(sections: &[Section]) -> Markup {
+    html! {
+        nav.contents aria-label="Contents" {
+            p { a href="#summary" { "What came out" } }
+            ol {
+                @for section in sections {
+                    li {
+                        a href={ "#" (section.name) } { (section.title) }
+                        "\u{a0}" span class={ "mark " (kind(section.verdict)) } title=(section.verdict.word()) {
+                            (sign(section.verdict))
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The head of the page: every item in a line.
+fn summary(sections: &[Section]) -> Markup {
+    html! {
+        header #summary {
+            h1 { "What came out" }
+            p {
+                "Every result of the sources that this program makes again, beside what the source says. Written by "
+                code { "stripmine reproduce" } "; each item names the command that makes it alone."
+            }
+            p { strong { (tally(sections)) } }
+        }
+        div.scroll tabindex="0" role="region" aria-label="Summary of all items" {
+            table.summary {
+                thead {
+                    tr {
+                        th scope="col" { "Item" }
+                        th scope="col" { "The source says" }
+                        th scope="col" { "What came out" }
+                        th scope="col" { "Verdict" }
+                    }
+                }
+                tbody {
+                    @for section in sections {
+                        tr {
+                            th scope="row" { a href={ "#" (section.name) } { (section.title) } }
+                            td { div.short { (prose(&section.says)) } }
+                            td { div.short { (prose(&section.came_out)) } }
+                            td { (badge(section.verdict)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// How many items have which verdict.
+fn tally(sections: &[Section]) -> String {
+    let all = [Verdict::Reproduced, Verdict::Partly, Verdict::Failed, Verdict::Shown];
+    let counts: Vec<String> = all
+        .into_iter()
+        .filter_map(|verdict| {
+            let count = sections.iter().filter(|section| section.verdict == verdict).count();
+            (count > 0).then(|| format!("{count} {}", verdict.word()))
+        })
+        .collect();
+    match sections.len() {
+        0 => "Nothing was made yet.".to_owned(),
+        1 => format!("1 item: {}.", counts.join(", ")),
+        number => format!("{number} items: {}.", counts.join(", ")),
+    }
+}
+
+/// A verdict as colour, sign and word.
+fn badge(verdict: Verdict) -> Markup {
+    html! {
+        span class={ "badge " (kind(verdict)) } { (sign(verdict)) " " (verdict.word()) }
+    }
+}
+
+/// A verdict's name in the style sheet.
+fn kind(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Reproduced => "reproduced",
+        Verdict::Partly => "partly",
+        Verdict::Failed => "failed",
+        Verdict::Shown => "shown",
+    }
+}
+
+/// A verdict as a sign that needs no colour.
+fn sign(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Reproduced => "✓",
+        Verdict::Partly => "◐",
+        Verdict::Failed => "✗",
+        Verdict::Shown => "○",
+    }
+}
+
+/// A sentence in which backquotes set apart what a machine reads, as in the page in Markdown.
+fn prose(text: &str) -> Markup {
+    let pieces: Vec<&str> = text.split('`').collect();
+    let paired = pieces.len() % 2 == 1;
+    html! {
+        @if paired {
+            @for (i, piece) in pieces.iter().enumerate() {
+                @if i % 2 == 1 { code { (piece) } } @else { (piece) }
+            }
+        } @else {
+            (text)
+        }
+    }
+}
+
+/// What is the same everywhere, and whose charts these are.
+fn footer() -> Markup {
+    html! {
+        footer {
+            p {
+                "What depends on the host lies under " code { "host/" } "; everything else but the pages themselves and the files "
+                code { "provenance.json" } " is the same everywhere, byte by byte."
+            }
+            details {
+                summary { "Charts are drawn with uPlot, under the MIT licence." }
+                pre { (UPLOT_LICENCE) }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,106 @@
+// The player of films: a screen, and what one does with it by mouse and keyboard.
+"use strict";
+
+const RATES = [1, 2, 5, 10, 20, 40]; // frames a second
+const DOTS_ON_PAPER = 3; // to a pixel
+
+/** Times as text, with as many decimals for each as the most exact one needs. */
+function timesAsText(times) {
+  const decimals = times.map((time) => (String(Number(time.toPrecision(6))).split(".")[1] ?? "").length);
+  const most = Math.max(0, ...decimals);
+  return times.map((time) => `t = ${time.toFixed(most)}\u202fs`);
+}
+
+/** The buttons and sliders of a player. */
+function filmControls(player, film) {
+  const controls = element("div", "controls", player);
+  const button = element("button", "play", controls);
+  button.type = "button";
+  const slider = element("input", "", controls);
+  Object.assign(slider, { type: "range", min: 0, max: film.times.length - 1, step: 1, value: 0 });
+  slider.setAttribute("aria-label", "Time");
+  const time = element("output", "time", controls);
+  const label = element("label", "", controls);
+  label.append("Speed ");
+  const speed = element("select", "", label);
+  for (const rate of RATES) speed.add(new Option(`${rate} frames/s`, rate, rate === 5, rate === 5));
+  colourBar(controls, film.shade);
+  return { button, slider, time, speed };
+}
+
+pictures("film", (holder, film) => {
+  const last = film.times.length - 1;
+  if (last < 0) return void (element("p", "", holder).textContent = "The film has no frames.");
+  const player = element("div", "player", holder);
+  player.tabIndex = 0;
+  player.setAttribute("role", "group");
+  const keys = "Space plays and stops, arrow keys go a frame on and back.";
+  player.setAttribute("aria-label", `${holder.dataset.label}. ${keys}`);
+  const canvas = element("canvas", "", player);
+  canvas.setAttribute("role", "img");
+  canvas.setAttribute("aria-label", holder.dataset.label);
+  const { button, slider, time, speed } = filmControls(player, film);
+  const screen = filmScreen(film, canvas);
+  const texts = timesAsText(film.times);
+
+  let frame = 0;
+  const go = (to) => {
+    frame = Math.min(Math.max(to, 0), last);
+    slider.value = player.dataset.frame = frame;
+    slider.setAttribute("aria-valuetext", texts[frame]);
+    time.textContent = texts[frame];
+    screen.show(frame);
+  };
+
+  let next; // the request for the next frame while the film plays
+  const play = (wanted) => {
+    cancelAnimationFrame(next);
+    next = undefined;
+    const playing = wanted && last > 0;
+    button.textContent = playing ? "❚❚ Pause" : "▶ Play";
+    if (!playing) return;
+    if (frame === last) go(0);
+    const [begin, begun] = [frame, performance.now()];
+    const tick = (now) => {
+      const to = begin + Math.floor(((now - begun) / 1000) * Number(speed.value));
+      if (to > frame) go(to);
+      if (frame === last) play(false);
+      else next = requestAnimationFrame(tick);
+    };
+    next = requestAnimationFrame(tick);
+  };
+  const toggle = () => play(next === undefined);
+  const step = (to) => {
+    play(false);
+    go(to);
+  };
+
+  button.addEventListener("click", toggle);
+  slider.addEventListener("input", () => step(Number(slider.value)));
+  speed.addEventListener("change", () => play(next !== undefined));
+  player.addEventListener("keydown", (event) => {
+    if (event.target !== player) return;
+    const doings = {
+      " ": toggle,
+      ArrowRight: () => step(frame + 1),
+      ArrowLeft: () => step(frame - 1),
+      Home: () => step(0),
+      End: () => step(last),
+    };
+    if (!Object.hasOwn(doings, event.key)) return;
+    event.preventDefault();
+    doings[event.key]();
+  });
+
+  const fit = (dots) => {
+    if (holder.clientWidth === 0) return;
+    screen.size(holder.clientWidth, dots);
+    go(frame);
+  };
+  const fitScreen = () => fit(window.devicePixelRatio || 1);
+  new ResizeObserver(fitScreen).observe(holder);
+  window.addEventListener("beforeprint", () => fit(DOTS_ON_PAPER));
+  window.addEventListener("afterprint", fitScreen);
+  fitScreen();
+  play(false);
+});

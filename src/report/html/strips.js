@@ -1,0 +1,139 @@
+// Discs on a canvas. A window much longer than wide is cut into strips that lie below one another, to be read like the
+// lines of a text.
+"use strict";
+
+const GUTTER = 64; // room for the place where a strip begins (pixels)
+const LOWEST_STRIP = 34; // a strip lower than this shows no discs
+const MOST_STRIPS = 16;
+
+/** Where everything lies on a canvas of a width: a strip's height, the scale, and the way from metres to pixels. */
+function layOut(film, width) {
+  const [[left, bottom], [right, top]] = film.window;
+  const [wide, high] = [right - left, top - bottom];
+  // A tall window lies down, its lower end to the right.
+  const tall = film.long && high > wide;
+  const [length, thick] = tall ? [high, wide] : [wide, high];
+  const free = film.long ? width - GUTTER : width;
+  let strips = 1;
+  if (film.long) {
+    strips = Math.min(Math.max(Math.ceil((LOWEST_STRIP * length) / (free * thick)), 4), MOST_STRIPS);
+  }
+  const scale = film.long ? (free * strips) / length : Math.min(free / length, 480 / thick);
+  const gap = film.long ? 10 : 0;
+  const head = film.long ? 26 : 0;
+  return {
+    strips,
+    scale,
+    head,
+    gap,
+    left: film.long ? GUTTER : (width - length * scale) / 2,
+    stripLength: length / strips,
+    stripHeight: thick * scale,
+    height: head + strips * (thick * scale + gap) - gap,
+    /** Distance along the long side and across it (m), from the upper left corner of the picture. */
+    along: tall ? (x, y) => top - y : (x) => x - left,
+    across: tall ? (x) => right - x : (x, y) => top - y,
+    /** What the axis along the long side says at a distance along it. */
+    place: (along) => (tall ? top - along : left + along),
+  };
+}
+
+/** Calls `circle(x, y, radius)` with the pixels of a disc if a strip shows a part of it. */
+function inStrip(layout, x, y, radius, strip, circle) {
+  const along = layout.along(x, y) - strip * layout.stripLength;
+  if (along + radius < 0 || along - radius > layout.stripLength) return;
+  circle(layout.left + along * layout.scale, layout.across(x, y) * layout.scale, radius * layout.scale);
+}
+
+/** The arrow of gravity, and what else a reader of strips must know. */
+function drawHead(ctx) {
+  const y = 10;
+  const [from, to] = [GUTTER + 48, GUTTER + 100];
+  ctx.textAlign = "left";
+  ctx.fillText("gravity", GUTTER, y);
+  ctx.lineWidth = 1.5;
+  ctx.beginPath();
+  ctx.moveTo(from, y);
+  ctx.lineTo(to, y);
+  ctx.moveTo(to - 7, y - 5);
+  ctx.lineTo(to, y);
+  ctx.lineTo(to - 7, y + 5);
+  ctx.stroke();
+  ctx.fillText("each line goes on in the next", to + 14, y);
+}
+
+/** A canvas for a film: `size(width, dots)` lays it out, `show(frame)` draws a frame. */
+function filmScreen(film, canvas) {
+  const radii = numbers(film.radii);
+  const [xs, ys, shades] = [film.x, film.y, film.shades].map(numbers);
+  const fixed = { x: numbers(film.fixed.x), y: numbers(film.fixed.y), radii: numbers(film.fixed.radii) };
+  const colour = (shade) => (Number.isNaN(shade) ? "#fff" : SHADES[shadeOf(shade, film.shade.ends)]);
+  // What stays the same from frame to frame is drawn once.
+  const still = document.createElement("canvas");
+  let layout, ctx, width;
+
+  const top = (strip) => layout.head + strip * (layout.stripHeight + layout.gap);
+  const eachStrip = (onto, paint) => {
+    for (let strip = 0; strip < layout.strips; strip++) {
+      onto.save();
+      onto.translate(0, top(strip));
+      onto.beginPath();
+      onto.rect(layout.left, 0, layout.stripLength * layout.scale, layout.stripHeight);
+      onto.clip();
+      paint(strip);
+      onto.restore();
+    }
+  };
+  const disc = (onto, x, y, radius, strip) =>
+    inStrip(layout, x, y, radius, strip, (...circle) => {
+      onto.beginPath();
+      onto.arc(...circle, 0, 2 * Math.PI);
+      onto.fill();
+      if (circle[2] > 2) onto.stroke();
+    });
+
+  const drawStill = (onto) => {
+    onto.fillStyle = "#fff";
+    onto.fillRect(0, 0, width, layout.height);
+    onto.strokeStyle = "#8a8a8a";
+    onto.lineWidth = 0.5;
+    eachStrip(onto, (strip) => {
+      onto.fillStyle = "#f6f6f6";
+      onto.fillRect(layout.left, 0, layout.stripLength * layout.scale, layout.stripHeight);
+      onto.fillStyle = "#b0b0b0";
+      fixed.radii.forEach((radius, i) => disc(onto, fixed.x[i], fixed.y[i], radius, strip));
+    });
+    if (!film.long) return;
+    onto.fillStyle = onto.strokeStyle = "#333";
+    onto.font = "12px system-ui, sans-serif";
+    onto.textBaseline = "middle";
+    onto.textAlign = "right";
+    for (let strip = 0; strip < layout.strips; strip++) {
+      const begin = readable(layout.place(strip * layout.stripLength), 3) + "\u202fm";
+      onto.fillText(begin, GUTTER - 8, top(strip) + layout.stripHeight / 2);
+    }
+    drawHead(onto);
+  };
+
+  return {
+    size(wide, dots) {
+      width = wide;
+      layout = layOut(film, width);
+      drawStill(sizeCanvas(still, width, layout.height, dots));
+      ctx = sizeCanvas(canvas, width, layout.height, dots);
+    },
+    show(frame) {
+      ctx.drawImage(still, 0, 0, width, layout.height);
+      ctx.strokeStyle = "rgba(0,0,0,0.55)";
+      ctx.lineWidth = 0.6;
+      eachStrip(ctx, (strip) => {
+        radii.forEach((radius, i) => {
+          const at = frame * radii.length + i;
+          if (Number.isNaN(xs[at])) return;
+          ctx.fillStyle = colour(shades[at]);
+          disc(ctx, xs[at], ys[at], radius, strip);
+        });
+      });
+    },
+  };
+}

@@ -1,0 +1,143 @@
+//! The page as a whole.
+
+use super::*;
+use crate::report::figure::{Axis, Chart, Drawing, Picture, Point, Series, Style};
+use crate::report::origin::{Origin, Provenance};
+use crate::report::section::{Film, Frame};
+use crate::report::{Cell, Table};
+
+const HOSTILE: &str = "<script>alert(\"&\")</script>";
+
+fn section(name: &str) -> Section {
+    let axis = |label: &str| Axis::linear(label, Some(HOSTILE));
+    let series = Series {
+        name: HOSTILE.to_owned(),
+        style: Style::Joined,
+        hue: 0,
+        points: vec![Point::at(1.0, 2.0), Point::at(2.0, 3.0)],
+    };
+    let figure = |name: &str, picture| Figure {
+        name: name.to_owned(),
+        title: HOSTILE.to_owned(),
+        caption: HOSTILE.to_owned(),
+        picture,
+    };
+    let chart = Chart { x: axis(HOSTILE), y: axis(HOSTILE), series: vec![series], bands: vec![] };
+    let drawing = Drawing { window: [[0.0; 2], [1.0; 2]], width: 100.0, shapes: vec![], shades: None };
+    Section {
+        name: name.to_owned(),
+        title: format!("{name} {HOSTILE}"),
+        says: HOSTILE.to_owned(),
+        came_out: format!("`{HOSTILE}` {HOSTILE}"),
+        verdict: Verdict::Partly,
+        again: HOSTILE.to_owned(),
+        figures: vec![figure("chart", Picture::Chart(chart)), figure("drawing", Picture::Drawing(drawing))],
+        tables: vec![Table {
+            name: "table".to_owned(),
+            title: HOSTILE.to_owned(),
+            columns: vec![HOSTILE.to_owned(), "count".to_owned()],
+            rows: vec![vec![HOSTILE.into(), Cell::Count(1_234_567)]],
+            notes: vec![HOSTILE.to_owned()],
+        }],
+        excerpt: Some((HOSTILE.to_owned(), HOSTILE.to_owned())),
+        film: Some(Film {
+            title: HOSTILE.to_owned(),
+            window: [[0.0; 2], [1.0; 2]],
+            radii: vec![0.1],
+            fixed: vec![],
+            frames: vec![Frame { time: 0.0, discs: vec![([0.5, 0.5], 1.0)] }],
+            shade: HOSTILE.to_owned(),
+            shades: [0.0, 1.0],
+        }),
+        seeds: vec![1993, 7],
+        depends_on_host: true,
+        provenance: Some(Provenance {
+            origin: Origin {
+                version: "1.2.3".into(),
+                commit: "0123abc".into(),
+                dirty: true,
+                target: "some-target".into(),
+            },
+            command: "some command".into(),
+            host: HOSTILE.into(),
+            threads: 2,
+            instruction_set: "scalar".into(),
+            seconds: 1.5,
+        }),
+    }
+}
+
+fn page() -> String {
+    let drawn = |_: &Figure| "<?xml version=\"1.0\"?>\n<svg viewBox=\"0 0 1 1\"></svg>".to_owned();
+    render(&[section("first"), section("second")], &drawn)
+}
+
+#[test]
+fn nothing_in_the_data_becomes_an_element() {
+    let page = page();
+    assert!(!page.contains("<script>alert"), "a text was not escaped");
+    assert!(page.contains("&lt;script&gt;alert(&quot;&amp;&quot;)&lt;/script&gt;"));
+    // Every script element is one of ours: opened and closed equally often, and as often as there are any.
+    let data = 1 + 2 * 2;
+    assert_eq!(page.matches("<script").count(), SCRIPTS.len() + data);
+    assert_eq!(page.matches("</script").count(), SCRIPTS.len() + data);
+}
+
+#[test]
+fn the_fixed_parts_cannot_end_their_elements() {
+    assert!(SCRIPTS.iter().all(|script| !script.contains("</script") && !script.contains("<!--")));
+    assert!(STYLES.iter().all(|style| !style.contains("</style")));
+}
+
+#[test]
+fn nothing_is_fetched() {
+    let page = page();
+    for attribute in
+        ["src=", "srcset=", "action=", "poster=", "@import", "url(", "fetch(", "XMLHttpRequest", "import("]
+    {
+        assert!(!page.contains(attribute), "{attribute}");
+    }
+    for link in page.split("href=\"").skip(1) {
+        let target = &link[..link.find('"').unwrap()];
+        assert!(!target.contains("//"), "{target}");
+    }
+    assert!(page.contains("default-src 'none'"));
+}
+
+#[test]
+fn every_item_is_in_summary_and_contents() {
+    let page = page();
+    for name in ["first", "second"] {
+        // Contents, summary and the heading itself.
+        assert_eq!(page.matches(&format!("href=\"#{name}\"")).count(), 3, "{name}");
+        assert!(page.contains(&format!("<section id=\"{name}\"")));
+    }
+    assert!(page.contains("2 items: 2 partly reproduced."));
+    assert!(page.contains("<span class=\"badge partly\">◐ partly reproduced</span>"));
+}
+
+#[test]
+fn an_item_names_its_numbers_command_seeds_data_and_origin() {
+    let page = page();
+    assert!(page.contains("<td class=\"number\">1\u{202f}234\u{202f}567</td>"));
+    assert!(page.contains("Seeds: 1993, 7."));
+    assert!(page.contains("href=\"host/first/\""));
+    assert!(
+        page.contains("Made in 1.5 s by <code>some command</code>, stripmine 1.2.3 of source commit 0123abc")
+    );
+    assert!(page.contains("in no commit"));
+    assert!(page.contains("The MIT License"));
+}
+
+#[test]
+fn backquotes_set_code_apart_if_they_come_in_pairs() {
+    assert_eq!(prose("a `b<c` d").into_string(), "a <code>b&lt;c</code> d");
+    assert_eq!(prose("a ` d").into_string(), "a ` d");
+}
+
+#[test]
+fn a_drawing_stands_in_the_page_without_its_prologue() {
+    let page = page();
+    assert!(!page.contains("<?xml"));
+    assert!(page.contains("&lt;/script&gt;\"><svg viewBox"));
+}

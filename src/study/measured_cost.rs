@@ -1,0 +1,139 @@
+//! What does a step take on this host, over the number of particles and their density?
+
+use super::throughput::{Measurement, MeasurementError, Throughput, throughput};
+use crate::scene::Document;
+use serde::Serialize;
+use std::f64::consts::PI;
+use stripmine_kernels::InstructionSet;
+
+/// A way to run the bench scene.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Way {
+    /// Its name in a legend.
+    pub name: &'static str,
+    /// `method.kind`.
+    pub kind: &'static str,
+    /// `method.execution`, for the lattice.
+    pub execution: Option<&'static str>,
+    /// How lists are made anew, for the lists.
+    pub rebuild: Option<&'static str>,
+}
+
+/// The ways that are compared.
+pub const WAYS: [Way; 5] = [
+    Way { name: "eager (unchained)", kind: "lattice", execution: Some("eager"), rebuild: None },
+    Way { name: "strips of 256", kind: "lattice", execution: Some("strip:256"), rebuild: None },
+    Way { name: "chained", kind: "lattice", execution: Some("chained"), rebuild: None },
+    Way { name: "lists, all pairs", kind: "neighbor-list", execution: None, rebuild: Some("all-pairs") },
+    Way { name: "lists, by cells", kind: "neighbor-list", execution: None, rebuild: Some("cells") },
+];
+
+/// How much is measured.
+#[derive(Clone, Debug)]
+pub struct Effort {
+    /// NP at occupancy [`OCCUPANCY`].
+    pub particles: Vec<usize>,
+    /// ρ at [`PARTICLES`].
+    pub occupancies: Vec<f64>,
+    /// Steps before the clock starts.
+    pub equilibration: u64,
+    /// Particle-steps of a repeat.
+    pub particle_steps: usize,
+    /// Repeats.
+    pub repeats: usize,
+}
+
+/// ρ of the measurements over NP, on cells as wide as the radius.
+pub const OCCUPANCY: f64 = 0.2;
+/// NP of the measurements over ρ.
+pub const PARTICLES: usize = 1000;
+
+/// A measurement.
+#[derive(Clone, Debug, Serialize)]
+pub struct Sample {
+    /// Index into [`WAYS`].
+    pub way: usize,
+    /// NP.
+    pub particles: usize,
+    /// ρ on cells as wide as the radius.
+    pub occupancy: f64,
+    /// Seconds a step, the median repeat: a single repeat may meet a making of lists or not.
+    pub seconds: f64,
+    /// Processor seconds a step of the best repeat.
+    pub best: f64,
+}
+
+/// The dataset.
+#[derive(Clone, Debug, Serialize)]
+pub struct MeasuredCost {
+    /// Instructions.
+    pub instruction_set: &'static str,
+    /// The ways.
+    pub ways: [Way; WAYS.len()],
+    /// Over NP at [`OCCUPANCY`].
+    pub over_particles: Vec<Sample>,
+    /// Over ρ with [`PARTICLES`].
+    pub over_density: Vec<Sample>,
+}
+
+/// Measures, on one thread. `progress` gets the share that is done.
+///
+/// # Errors
+/// [`MeasurementError`] if the scene breaks.
+pub fn measured_cost(
+    effort: &Effort,
+    progress: impl Fn(f64) + Sync,
+) -> Result<MeasuredCost, MeasurementError> {
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(MeasurementError::Threads)?;
+    let cases: Vec<(usize, f64)> = effort
+        .particles
+        .iter()
+        .map(|&particles| (particles, OCCUPANCY))
+        .chain(effort.occupancies.iter().map(|&occupancy| (PARTICLES, occupancy)))
+        .collect();
+    let mut samples = Vec::new();
+    for (done, &(particles, occupancy)) in cases.iter().enumerate() {
+        // The ways of a case one after the other, so that a busy moment of the machine meets them alike.
+        for way in 0..WAYS.len() {
+            samples.push(alone.install(|| sample(way, particles, occupancy, effort))?);
+            progress((done * WAYS.len() + way + 1) as f64 / (cases.len() * WAYS.len()) as f64);
+        }
+    }
+    let over_density = samples.split_off(effort.particles.len() * WAYS.len());
+    Ok(MeasuredCost {
+        instruction_set: InstructionSet::best().name(),
+        ways: WAYS,
+        over_particles: samples,
+        over_density,
+    })
+}
+
+fn sample(way: usize, particles: usize, occupancy: f64, effort: &Effort) -> Result<Sample, MeasurementError> {
+    let Way { kind, execution, rebuild, .. } = WAYS[way];
+    let mut overrides = vec![
+        format!("particles.count={particles}"),
+        format!("particles.packing_fraction={}", PI * occupancy),
+        format!("method.kind=\"{kind}\""),
+    ];
+    if kind == "lattice" {
+        // As the source has it; the largest cell that the geometry allows would need fewer.
+        overrides.push("method.cell_edge=0.5".to_owned());
+    }
+    overrides.extend(execution.map(|execution| format!("method.execution=\"{execution}\"")));
+    overrides.extend(rebuild.map(|rebuild| format!("method.rebuild=\"{rebuild}\"")));
+    let steps = (effort.particle_steps / particles).max(4) as u64;
+    let Throughput { cpu_seconds, particles, particle_steps_per_second_median, .. } =
+        throughput(Measurement {
+            document: Document::load("bench", &overrides)?,
+            equilibration: effort.equilibration,
+            steps,
+            repeats: effort.repeats,
+        })?;
+    Ok(Sample {
+        way,
+        particles,
+        occupancy,
+        seconds: particles as f64 / particle_steps_per_second_median,
+        best: cpu_seconds / steps as f64,
+    })
+}

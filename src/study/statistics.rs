@@ -1,0 +1,46 @@
+//! What several runs say together.
+
+use serde::Serialize;
+
+/// A figure over independent runs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    /// The mean.
+    pub mean: f64,
+    /// Standard error of the mean; none of a single run.
+    pub error: Option<f64>,
+    /// The smallest.
+    pub lowest: f64,
+    /// The largest.
+    pub highest: f64,
+    /// Runs.
+    pub runs: usize,
+}
+
+impl Spread {
+    /// Of at least one value.
+    pub fn of(values: &[f64]) -> Spread {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+        Spread {
+            mean,
+            error: (values.len() > 1).then(|| (squares / (n - 1.0) / n).sqrt()),
+            lowest: values.iter().copied().fold(f64::INFINITY, f64::min),
+            highest: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            runs: values.len(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_error_of_the_mean_needs_two_runs() {
+        assert_eq!(Spread::of(&[3.0]).error, None);
+        let spread = Spread::of(&[1.0, 3.0]);
+        assert_eq!((spread.mean, spread.error, spread.lowest, spread.highest), (2.0, Some(1.0), 1.0, 3.0));
+    }
+}
