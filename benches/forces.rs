@@ -4,65 +4,18 @@
 //! Throughput is in cells; `cargo bench --bench forces`.
 
 mod intrinsics;
+mod scenery;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use intrinsics::{Numbers, Place, Vectors};
+use scenery::{CONTACT, dense, warm_up};
 use std::hint::black_box;
 use std::time::Duration;
-use stripmine::method::lattice_md::{
-    Arrays, Discs, GearValues, Model, Part, StepProgram, Watch, execute, programs as programs_of,
-};
-use stripmine::particles::Particles;
-use stripmine::placement::hexagonal;
+use stripmine::method::lattice_md::{Arrays, Model, Part, Watch, execute, programs as programs_of};
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Array;
-use stripmine_kernels::law::granular::{Contact, ContactArm};
-use stripmine_kernels::mask::Mask;
-use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
 use stripmine_kernels::{Execution, InstructionSet};
-
-const CONTACT: Contact = Contact {
-    stiffness: 187.0,
-    normal_damping: 1e-6,
-    shear_damping: 3e-7,
-    friction: 0.5,
-    cohesionless: true,
-    arm: ContactArm::Radius,
-};
-
-/// A dense packing (0.84) on a lattice of about `cells` cells of the radius's width.
-fn dense<P: Precision>(cells: usize, friction: bool) -> (Model, Particles, Arrays<f64, P>) {
-    let packing = hexagonal((cells as f64 * 0.84 / std::f64::consts::PI) as usize, 0.84, 0.01, 1);
-    let radius = 0.5;
-    let counts = packing.sides.map(|side| (side / radius) as usize);
-    let edge = [packing.sides[0] / counts[0] as f64, packing.sides[1] / counts[1] as f64];
-    let mask = Mask::square(2);
-    let model = Model {
-        shape: LatticeShape::new(counts[0], counts[1], &mask, [true; 2]).expect("large enough"),
-        frame: Frame { origin: [0.0; 2], edge },
-        mask,
-        coordinates: Coordinates::CellRelative,
-        contact: CONTACT,
-        friction,
-        discs: Discs::Varying,
-        values: GearValues::Four,
-        inertia_factor: 0.5,
-        watch: None,
-        dt: 0.005,
-        gravity: [0.0; 2],
-    };
-    let mut arrays = Arrays::new(&model, &packing.particles);
-    warm_up::<P>(&programs_of::<f64, P>(&model), &mut arrays);
-    (model, packing.particles, arrays)
-}
-
-/// Everything of a step before the forces.
-fn warm_up<P: Precision>(programs: &[StepProgram], arrays: &mut Arrays<f64, P>) {
-    let before = [Part::Predictor, Part::Index, Part::Lattice];
-    let (memory, lengths) = arrays.memory();
-    execute(programs, &before, &memory, lengths, Execution::Chained, InstructionSet::best()).expect("bound");
-}
 
 fn places<T: Precision>(model: &Model) -> Vec<Place<T>> {
     let place = |offset: &stripmine_kernels::mask::Offset| {

@@ -4,13 +4,14 @@
 //! With `STRIPMINE_REPORTS` set, the figures go to `reports/physics/pipe_small.md`.
 
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
-use std::f64::consts::{SQRT_2, TAU};
+use std::f64::consts::SQRT_2;
 use std::fmt::Write;
 use std::sync::LazyLock;
-use stripmine::observe::{Observation, Scenery, contacts};
+use stripmine::observe::{Observation, Scenery, contacts, waves};
 use stripmine::particles::Particles;
 use stripmine::run::{assemble, model};
 use stripmine::scene::Document;
+use stripmine::study::statistics::Spread;
 
 const SEEDS: u64 = 6;
 /// Mean radius (m).
@@ -41,24 +42,16 @@ fn late(values: &[f64]) -> f64 {
 
 /// Variance over mean of the counts in bins as close to 20 R_0 as the length allows.
 fn fano(particles: &Particles, length: f64) -> f64 {
-    let bins = (length / (20.0 * RADIUS)).round();
-    let mut counts = vec![0.0; bins as usize];
-    for grain in particles.grains() {
-        counts[((grain.position[0] / length * bins) as usize).min(bins as usize - 1)] += 1.0;
-    }
-    let average = mean(&counts);
-    counts.iter().map(|count| (count - average).powi(2)).sum::<f64>() / bins / average
+    let bins = (length / (20.0 * RADIUS)).round() as usize;
+    waves::fano(&waves::histogram(along(particles), length, bins))
 }
 
 fn wave(particles: &Particles, length: f64) -> f64 {
-    let modes = (length / (80.0 * RADIUS)) as usize;
-    let amplitude = |mode: usize| {
-        let turn = TAU * mode as f64 / length;
-        let angles = || particles.grains().iter().map(|grain| turn * grain.position[0]);
-        let sums: [f64; 2] = [angles().map(f64::cos).sum(), angles().map(f64::sin).sum()];
-        sums[0].hypot(sums[1]) / particles.grain_count() as f64
-    };
-    (1..=modes).map(amplitude).fold(0.0, f64::max)
+    waves::strongest_mode(&along(particles), length, 80.0 * RADIUS)
+}
+
+fn along(particles: &Particles) -> Vec<f64> {
+    particles.grains().iter().map(|grain| grain.position[0]).collect()
 }
 
 fn run(seed: u64, time: f64, overrides: &[&str]) -> Pipe {
@@ -126,7 +119,7 @@ static ELASTIC: LazyLock<Vec<Pipe>> = LazyLock::new(|| {
 });
 static LONG: LazyLock<Pipe> = LazyLock::new(|| run(1, 12.0, &[]));
 
-/// Mean over the seeds, its standard error, smallest and largest.
+/// A figure over the seeds.
 #[derive(Clone, Copy)]
 struct Over {
     mean: f64,
@@ -136,11 +129,9 @@ struct Over {
 
 impl Over {
     fn seeds(pipes: &[Pipe], figure: impl Fn(&Pipe) -> f64) -> Over {
-        let values: Vec<f64> = pipes.iter().map(figure).collect();
-        let (n, mean) = (values.len() as f64, mean(&values));
-        let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        let range = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &x| [a.min(x), b.max(x)]);
-        Over { mean, error: (square / n).sqrt(), range }
+        let Spread { mean, error, lowest, highest, .. } =
+            Spread::of(&pipes.iter().map(figure).collect::<Vec<_>>());
+        Over { mean, error: error.expect("several seeds"), range: [lowest, highest] }
     }
 
     fn agrees(&self, other: &Over) -> bool {

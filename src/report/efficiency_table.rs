@@ -14,7 +14,7 @@ pub fn section(data: &EfficiencyTable) -> Section {
             .into(),
         came_out: came_out(data),
         verdict: verdict(data),
-        again: "stripmine table, or stripmine reproduce --only table".into(),
+        again: "stripmine reproduce --only table".into(),
         figures: vec![],
         tables: tables(data),
         excerpt: None,

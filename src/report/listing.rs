@@ -30,7 +30,7 @@ pub fn section(parts: &[PartListing]) -> Section {
         says: "BP93 gives the algorithm in vector notation and prints no code.".into(),
         came_out: format!("The programs that run, recorded: vector instructions {}.", lengths.join(", ")),
         verdict: Verdict::Shown,
-        again: "stripmine listing PART, or stripmine reproduce --only listing".into(),
+        again: "stripmine reproduce --only listing".into(),
         figures: vec![],
         tables: vec![],
         excerpt,

@@ -42,7 +42,7 @@ pub fn section(showing: Showing, flows: &[PipeFlow]) -> Section {
             first.late(&first.flow)
         ),
         verdict: if waves == flows.len() { Verdict::Reproduced } else { Verdict::Partly },
-        again: format!("stripmine reproduce --only {}, or stripmine run {}", showing.name, first.scene),
+        again: format!("stripmine reproduce --only {}", showing.name),
         figures: vec![piece(first), snapshots(showing, first), map(first), over_time(flows)],
         tables: vec![table(flows)],
         excerpt: None,
@@ -143,7 +143,7 @@ fn snapshots(showing: Showing, flow: &PipeFlow) -> Figure {
 /// The looks that are drawn: evenly spread from the time asked on.
 fn stills(showing: Showing, flow: &PipeFlow) -> Vec<usize> {
     let first = flow.times.partition_point(|&time| time < showing.from - 1e-9).min(flow.frames.len());
-    let stride = ((flow.frames.len() - first) / showing.snapshots.max(1)).max(1);
+    let stride = (flow.frames.len() - first).div_ceil(showing.snapshots.max(1)).max(1);
     (first..flow.frames.len()).step_by(stride).collect()
 }
 
@@ -160,7 +160,7 @@ fn map(flow: &PipeFlow) -> Figure {
         .chunks(stride)
         .map(|looks| {
             let sum = |bin: usize| looks.iter().map(|counts| f64::from(counts[bin])).sum::<f64>();
-            (0..bins as usize).map(|bin| sum(bin) / looks.len() as f64 / mean).collect()
+            (0..bins as usize).map(|bin| for_the_eye(sum(bin) / looks.len() as f64 / mean)).collect()
         })
         .collect();
     let look = flow.times.get(1).copied().unwrap_or(1.0);
@@ -247,6 +247,11 @@ fn table(flows: &[PipeFlow]) -> Table {
         rows: rows.collect(),
         notes: vec![format!("{} grains; late is the mean over the second half of the run.", flows[0].grains)],
     }
+}
+
+/// A tenth of a millimetre, or of a millimetre a second: what is only looked at needs no more digits.
+fn for_the_eye(value: f64) -> f64 {
+    (1e4 * value).round() / 1e4
 }
 
 /// Frames of a film that a page can bear.

@@ -35,10 +35,10 @@ pub struct Effort {
     pub particles: Vec<usize>,
     /// ρ at [`PARTICLES`].
     pub occupancies: Vec<f64>,
-    /// Steps before the clock starts.
+    /// Steps before the clock starts, at most.
     pub equilibration: u64,
-    /// Particle-steps of a repeat.
-    pub particle_steps: usize,
+    /// Elements times steps of a repeat: cells on the lattice, particles with lists.
+    pub element_steps: usize,
     /// Repeats.
     pub repeats: usize,
 }
@@ -121,11 +121,12 @@ fn sample(way: usize, particles: usize, occupancy: f64, effort: &Effort) -> Resu
     }
     overrides.extend(execution.map(|execution| format!("method.execution=\"{execution}\"")));
     overrides.extend(rebuild.map(|rebuild| format!("method.rebuild=\"{rebuild}\"")));
-    let steps = (effort.particle_steps / particles).max(4) as u64;
+    let elements = if kind == "lattice" { (particles as f64 / occupancy) as usize } else { particles };
+    let steps = (effort.element_steps / elements).clamp(4, 2000) as u64;
     let Throughput { cpu_seconds, particles, particle_steps_per_second_median, .. } =
         throughput(Measurement {
             document: Document::load("bench", &overrides)?,
-            equilibration: effort.equilibration,
+            equilibration: steps.min(effort.equilibration),
             steps,
             repeats: effort.repeats,
         })?;

@@ -79,7 +79,7 @@ def dots_of(picture):
 def read_out(page, picture):
     """What the pointer reads somewhere on a plane."""
     box = picture.query_selector(".u-over").bounding_box()
-    parts = [i / 12 for i in range(1, 12)]
+    parts = [i / 24 for i in range(1, 24)]
     for down in parts:
         for right in parts:
             page.mouse.move(box["x"] + right * box["width"], box["y"] + down * box["height"])

@@ -2,10 +2,11 @@
 
 use super::items::{Item, Made};
 use crate::cli::{Failure, to_json};
-use crate::report::figure::{png, svg};
+use crate::report::figure::{Figure, png, svg};
 use crate::report::origin::Provenance;
 use crate::report::{Section, csv, html, page};
 use clap::ValueEnum;
+use serde::Serialize;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -39,7 +40,7 @@ impl Folder {
             fs::write(&path, bytes).map_err(at(&path))
         };
         if !data.is_null() {
-            write("data.json", (to_json(data)? + "\n").as_bytes())?;
+            write("data.json", compact(data)?.as_bytes())?;
         }
         for table in &section.tables {
             let mut bytes = Vec::new();
@@ -70,7 +71,11 @@ impl Folder {
         for item in Item::value_variants() {
             sections.extend(self.read(item.name())?);
         }
-        let drawn = |figure: &_| svg(figure).unwrap_or_default();
+        // A picture that is gone leaves a gap in the page, and is there again with the item's next making.
+        let drawn = |section: &Section, figure: &Figure| {
+            let file = self.path.join(section.folder()).join(format!("{}.svg", figure.name));
+            fs::read_to_string(file).unwrap_or_default()
+        };
         for (name, text) in
             [("README.md", page::render(&sections)), ("index.html", html::render(&sections, &drawn))]
         {
@@ -98,4 +103,10 @@ impl Folder {
         section.provenance = Some(serde_json::from_str(&parsed(PROVENANCE)?).map_err(foreign)?);
         Ok(Some(section))
     }
+}
+
+/// JSON without blanks: datasets are for programs.
+fn compact(data: &impl Serialize) -> Result<String, Failure> {
+    let text = serde_json::to_string(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
+    Ok(text + "\n")
 }

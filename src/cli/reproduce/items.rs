@@ -130,14 +130,14 @@ fn measured_effort(effort: Effort) -> measured_cost::Effort {
             particles: vec![100, 1000],
             occupancies: vec![0.1, 0.2],
             equilibration: 50,
-            particle_steps: 40_000,
+            element_steps: 200_000,
             repeats: 3,
         },
         Effort::Full => measured_cost::Effort {
             particles: vec![100, 300, 1000, 3000, 10_000],
             occupancies: vec![0.01, 0.03, 0.1, 0.2, 0.25],
             equilibration: 100,
-            particle_steps: 200_000,
+            element_steps: 1_000_000,
             repeats: 5,
         },
     }

@@ -9,14 +9,15 @@ pub struct Drawing {
     pub window: [[f64; 2]; 2],
     /// Width of the picture (pixels); its height follows from the window.
     pub width: f64,
-    /// What is drawn, from back to front.
+    /// What is drawn, from back to front. Not kept with a section: the picture is, and nothing more is known of it.
+    #[serde(skip)]
     pub shapes: Vec<Shape>,
     /// What the shades mean: lowest and highest value and the quantity with its unit; none where shade means nothing.
     pub shades: Option<(f64, f64, String)>,
 }
 
 /// Something drawn.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// A disc.
     Disc {
@@ -53,7 +54,7 @@ pub enum Shape {
 }
 
 /// A filling.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tint {
     /// None.
     Clear,

@@ -8,6 +8,7 @@ mod drawing;
 mod error;
 mod font;
 mod layout;
+pub mod look;
 mod map;
 mod png;
 #[cfg(test)]
@@ -19,6 +20,7 @@ mod svg;
 pub use chart::{Axis, Band, Chart, Point, Scale, Series, Style};
 pub use drawing::{Drawing, Shape, Tint};
 pub use error::{Fault, FigureError};
+pub use layout::ends;
 pub use map::Map;
 pub use png::png;
 pub use svg::svg;

@@ -2,7 +2,7 @@
 
 use super::look;
 use super::quantised::{Quantised, ends};
-use crate::report::figure::{Axis, Chart, Map, Point, Scale, style};
+use crate::report::figure::{self, Axis, Chart, Map, Point, Scale, style};
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
@@ -76,7 +76,7 @@ fn axis(axis: &Axis, data: impl Iterator<Item = f64>) -> Value {
         "label": axis.label,
         "unit": axis.unit,
         "log": axis.scale == Scale::Logarithmic,
-        "ends": look::ends(axis, data.filter(|&value| lies_on(axis, value))),
+        "ends": figure::ends(axis, data.filter(|&value| lies_on(axis, value))).unwrap_or([0.1, 1.0]),
     })
 }
 

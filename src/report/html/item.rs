@@ -7,7 +7,7 @@ use crate::report::{Cell, Section, Table};
 use maud::{Markup, PreEscaped, html};
 
 /// The item with everything that belongs to it.
-pub fn render(section: &Section, drawn: &dyn Fn(&Figure) -> String) -> Markup {
+pub fn render(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) -> Markup {
     let name = section.name.as_str();
     html! {
         section id=(name) aria-labelledby={ (name) "-title" } {
@@ -19,7 +19,7 @@ pub fn render(section: &Section, drawn: &dyn Fn(&Figure) -> String) -> Markup {
                 dd { (badge(section.verdict)) " " (prose(&section.came_out)) }
             }
             @for each in &section.figures {
-                (figure(name, each, drawn))
+                (figure(section, each, drawn))
             }
             @if let Some(shown) = &section.film {
                 (moving(section, shown))
@@ -39,13 +39,13 @@ pub fn render(section: &Section, drawn: &dyn Fn(&Figure) -> String) -> Markup {
 }
 
 /// A figure: its picture, and below it what a reader must know.
-fn figure(section: &str, figure: &Figure, drawn: &dyn Fn(&Figure) -> String) -> Markup {
-    let svg = drawn(figure);
+fn figure(section: &Section, figure: &Figure, drawn: &dyn Fn(&Section, &Figure) -> String) -> Markup {
+    let svg = drawn(section, figure);
     // What stands before the element itself belongs to a file of its own.
     let svg = PreEscaped(svg.find("<svg").map_or("", |start| &svg[start..]));
     let label = format!("{}. {}", figure.title, figure.caption);
     html! {
-        figure id={ (section) "-" (figure.name) } {
+        figure id={ (section.name) "-" (figure.name) } {
             @match &figure.picture {
                 Picture::Drawing(_) => div.drawing role="img" aria-label=(label) { (svg) },
                 Picture::Chart(chart) => (live("chart", &label, &data::chart(chart), svg)),

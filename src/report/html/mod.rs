@@ -35,7 +35,7 @@ const POLICY: &str =
 
 /// The page. `drawn` gives the SVG of a figure: drawings are shown with it, charts and maps only where no script runs
 /// and on paper.
-pub fn render(sections: &[Section], drawn: &dyn Fn(&Figure) -> String) -> String {
+pub fn render(sections: &[Section], drawn: &dyn Fn(&Section, &Figure) -> String) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {

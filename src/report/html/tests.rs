@@ -68,7 +68,8 @@ fn section(name: &str) -> Section {
 }
 
 fn page() -> String {
-    let drawn = |_: &Figure| "<?xml version=\"1.0\"?>\n<svg viewBox=\"0 0 1 1\"></svg>".to_owned();
+    let drawn =
+        |_: &Section, _: &Figure| "<?xml version=\"1.0\"?>\n<svg viewBox=\"0 0 1 1\"></svg>".to_owned();
     render(&[section("first"), section("second")], &drawn)
 }
 

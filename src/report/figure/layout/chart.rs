@@ -1,7 +1,8 @@
 //! Charts on their sheet.
 
+use super::super::look::{Look, looks};
 use super::super::sheet::{Area, Mark, Paint, Place, Sheet, Stroke};
-use super::super::style::{self, Colour};
+use super::super::style;
 use super::super::{Band, Chart, Fault, Series, Style};
 use super::frame::{Frame, Span};
 use super::legend::Legend;
@@ -41,42 +42,6 @@ pub fn lay_out(title: &str, chart: &Chart) -> Result<Sheet, Fault> {
     Ok(Sheet { width, height: frame.sheet_height(), marks })
 }
 
-/// How a series looks.
-pub struct Look {
-    style: Style,
-    colour: Colour,
-    marker: style::Marker,
-    dash: &'static [f64],
-    hollow: bool,
-}
-
-/// The looks of a chart's series, all of them different.
-pub fn looks(chart: &Chart) -> Vec<Look> {
-    let look = |(i, series): (usize, &Series)| {
-        let alike = |other: &Series| {
-            other.style == series.style || (has_markers(other.style) && has_markers(series.style))
-        };
-        let twins = chart.series[..i].iter().filter(|other| other.hue == series.hue && alike(other)).count();
-        // Lines of one hue differ by their dashes; markers of one hue are full, hollow, and then of another shape.
-        Look {
-            style: series.style,
-            colour: style::hue(series.hue),
-            marker: style::marker(series.hue + twins / 2),
-            dash: match series.style {
-                Style::Line => style::line_dash(series.hue + twins),
-                Style::Dashed => style::short_dash(series.hue + twins),
-                Style::Points | Style::Joined => &[],
-            },
-            hollow: twins % 2 == 1,
-        }
-    };
-    chart.series.iter().enumerate().map(look).collect()
-}
-
-fn has_markers(style: Style) -> bool {
-    matches!(style, Style::Points | Style::Joined)
-}
-
 impl Look {
     fn curve(&self, frame: &Frame, series: &Series) -> Option<Mark> {
         let places: Vec<Place> = series.points.iter().map(|point| frame.place(point.x, point.y)).collect();
@@ -106,7 +71,7 @@ impl Look {
 
     fn markers(&self, frame: &Frame, series: &Series) -> Vec<Mark> {
         // One point is no line, but it must be seen.
-        if !has_markers(self.style) && series.points.len() > 1 {
+        if !self.has_markers() && series.points.len() > 1 {
             return Vec::new();
         }
         let places = series.points.iter().map(|point| frame.place(point.x, point.y));
@@ -120,7 +85,7 @@ impl Look {
     /// A sample for the legend, from a place to the right.
     pub fn sample(&self, [left, y]: Place, width: f64) -> Vec<Mark> {
         let line = self.line(vec![vec![[left, y], [left + width, y]]]);
-        let marker = has_markers(self.style).then(|| self.marker([left + width / 2.0, y]));
+        let marker = self.has_markers().then(|| self.marker([left + width / 2.0, y]));
         line.into_iter().chain(marker).collect()
     }
 }

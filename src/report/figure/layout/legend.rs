@@ -1,8 +1,9 @@
 //! What the curves, markers and hatchings of a chart mean, to the right of it.
 
+use super::super::look::{Look, looks};
 use super::super::sheet::{Anchor, Area, Mark, Place};
 use super::super::{Chart, font, style};
-use super::chart::{Look, band, looks};
+use super::chart::band;
 use super::title;
 
 /// From the chart to the legend.

@@ -13,6 +13,8 @@ mod ruler;
 mod ticks;
 mod title;
 
+pub use ruler::data_ends as ends;
+
 use super::check::check;
 use super::sheet::Sheet;
 use super::{Figure, FigureError, Picture};

@@ -69,6 +69,20 @@ pub fn ends(axis: &Axis, values: impl Iterator<Item = f64>) -> Result<[f64; 2], 
     Ok([if positive { (low - free).max(0.0) } else { low - free }, high + free])
 }
 
+/// The ends of an axis in the data's own numbers: its limits, or those of the data and a little more.
+///
+/// # Errors
+/// [`Fault`] if there is no data.
+pub fn data_ends(axis: &Axis, values: impl Iterator<Item = f64>) -> Result<[f64; 2], Fault> {
+    if let Some(limits) = axis.limits {
+        return Ok(limits);
+    }
+    Ok(ends(axis, values)?.map(|end| match axis.scale {
+        Scale::Linear => end,
+        Scale::Logarithmic => libm::pow(10.0, end),
+    }))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

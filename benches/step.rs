@@ -1,0 +1,49 @@
+//! What does a whole step cost beside its force sweep, and what its checks?
+//!
+//! The discs move: every iteration is a step. Throughput is in discs; `cargo bench --bench step`.
+
+mod scenery;
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use scenery::dense;
+use std::time::Duration;
+use stripmine::method::lattice_md::{Arrays, Model, Part, StepProgram, Watch, execute, programs};
+use stripmine_kernels::ledger::Length;
+use stripmine_kernels::{Execution, InstructionSet};
+
+/// The programs without the one that looks for lost discs: the last of the Index that runs over discs.
+fn without_check(mut programs: Vec<StepProgram>) -> Vec<StepProgram> {
+    let check = programs.iter().rposition(|step| step.part == Part::Index && step.length == Length::Discs);
+    programs.remove(check.expect("a step has an Index"));
+    programs
+}
+
+fn step(criterion: &mut Criterion) {
+    // One core, as the loop by hand of the forces.
+    rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("the first pool");
+    let (model, particles, _) = dense::<f64>(100_000, true);
+    let watched =
+        Model { watch: Some(Watch { max_penetration: 0.1, stop_penetration: 0.3 }), ..model.clone() };
+    let cases = [
+        ("with the checks", &watched, programs::<f64, f64>(&watched), Part::ALL),
+        ("without the checks", &model, without_check(programs::<f64, f64>(&model)), Part::ALL),
+        ("forces alone, without the checks", &model, programs::<f64, f64>(&model), &[Part::Forces]),
+    ];
+    let mut group = criterion.benchmark_group("step/f64/friction/100000");
+    group.throughput(Throughput::Elements(particles.len() as u64)).sample_size(20);
+    group.measurement_time(Duration::from_secs(2)).warm_up_time(Duration::from_millis(500));
+    for (name, model, programs, parts) in &cases {
+        let mut arrays = Arrays::<f64, f64>::new(model, &particles);
+        let mut run = |parts: &[Part]| {
+            let (memory, lengths) = arrays.memory();
+            execute(programs, parts, &memory, lengths, Execution::Chained, InstructionSet::best())
+                .expect("bound");
+        };
+        run(Part::ALL);
+        group.bench_function(*name, |bencher| bencher.iter(|| run(parts)));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, step);
+criterion_main!(benches);
