@@ -22,8 +22,10 @@ fn step(criterion: &mut Criterion) {
     // One core, as the loop by hand of the forces.
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("the first pool");
     let (model, particles, _) = dense::<f64>(100_000, true);
-    let watched =
-        Model { watch: Some(Watch { max_penetration: 0.1, stop_penetration: 0.3 }), ..model.clone() };
+    let watched = Model {
+        watch: Some(Watch { max_penetration: 0.1, stop_penetration: 0.3, smallest_radius: 0.5 }),
+        ..model.clone()
+    };
     let cases = [
         ("with the checks", &watched, programs::<f64, f64>(&watched), Part::ALL),
         ("without the checks", &model, without_check(programs::<f64, f64>(&model)), Part::ALL),

@@ -38,6 +38,7 @@ pub fn model(checked: &Checked) -> Model {
         watch: Some(Watch {
             max_penetration: scene.law.max_penetration,
             stop_penetration: scene.law.stop_penetration,
+            smallest_radius: geometry.radii[0],
         }),
     }
 }

@@ -99,7 +99,7 @@ define_arrays! {
     (Fx, "Fx", "cells: force along x"),
     (Fy, "Fy", "cells: force along y"),
     (Torque, "torque", "cells: torque"),
-    (Excess, "excess", "cells: how much deeper than watched the deepest contact is"),
+    (Deepest, "deepest", "cells: penetration (length) of the deepest contact"),
     (PartnerFx, "partner.Fx", "cells: force along x from pairs met as the partner"),
     (PartnerFy, "partner.Fy", "cells: force along y from pairs met as the partner"),
     (PartnerTorque, "partner.torque", "cells: torque from pairs met as the partner"),

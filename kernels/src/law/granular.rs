@@ -122,8 +122,8 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         let radius = self.radius(uniform, |field| env.partner(field, place));
         let reach = own.radius + radius;
         let penetration = reach - distance;
-        if let Some(limit) = env.watched_penetration() {
-            env.watch(penetration - uniform(limit) * reach);
+        if env.watches() {
+            env.watch(penetration);
         }
         let contact = zero.less_than(penetration);
         if env.none(contact) {

@@ -64,10 +64,10 @@ pub trait Env<const DIM: usize>: Copy {
     fn own_add(self, sum: Sum, value: Self::V);
     /// Subtracts from a sum of the partner. Called only where [`Env::BOTH_PARTNERS`].
     fn partner_sub(self, sum: Sum, place: Self::Place, value: Self::V);
-    /// The penetration (a fraction of the sum of the radii) beyond which pairs are watched, if they are.
-    fn watched_penetration(self) -> Option<f64>;
-    /// Reports by how much (length) a pair is deeper than watched; negative where it is not.
-    fn watch(self, excess: Self::V);
+    /// Whether penetrations are watched.
+    fn watches(self) -> bool;
+    /// Reports the penetration (length) of every pair, negative without contact. Called only where [`Env::watches`].
+    fn watch(self, penetration: Self::V);
     /// Names what follows, for the ledger and the listing.
     fn section(self, name: &'static str);
 }

@@ -77,12 +77,12 @@ pub struct Discs<'a, P> {
 }
 
 /// What a walk through the lists met.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Met {
     /// Pairs the law was asked about, each from both sides.
     pub pairs: u64,
-    /// The largest excess over the watched penetration (length), and where: disc and partner.
-    pub deepest: Option<(f64, usize, usize)>,
+    /// Contacts deeper than watched: disc and partner, each from both sides.
+    pub deep: Vec<(usize, usize)>,
 }
 
 /// How cells of the lattice are seen from each other.
@@ -151,8 +151,8 @@ struct Partner<P> {
 struct OneByOne<'a, P> {
     discs: Discs<'a, P>,
     own: usize,
-    watched: Option<f64>,
-    excess: Cell<P>,
+    watches: bool,
+    penetration: Cell<P>,
     sums: [Cell<P>; Sum::ALL.len()],
 }
 
@@ -199,17 +199,18 @@ impl<P: Precision> Env<2> for &OneByOne<'_, P> {
     fn partner_sub(self, _: Sum, _: Partner<P>, _: P) {
         unreachable!("every pair is met from both sides")
     }
-    fn watched_penetration(self) -> Option<f64> {
-        self.watched
+    fn watches(self) -> bool {
+        self.watches
     }
-    fn watch(self, excess: P) {
-        self.excess.set(self.excess.get().max(excess));
+    fn watch(self, penetration: P) {
+        self.penetration.set(penetration);
     }
     fn section(self, _: &'static str) {}
 }
 
 /// Walks the lists with a law; `write(disc, sums)` takes the sums (force along x, y, torque) of each of the first
-/// `grains` discs. Pairs farther apart than `reach` (length) are passed over without asking the law.
+/// `grains` discs. Pairs farther apart than `reach` (length) are passed over without asking the law; contacts deeper than
+/// `watched` (length) are listed.
 pub fn walk<P: Precision, L: Law<2>>(
     law: &L,
     lists: &Lists,
@@ -225,7 +226,13 @@ pub fn walk<P: Precision, L: Law<2>>(
     let places: Vec<[isize; 2]> = discs.cell.iter().map(|&cell| ways.column_and_row(cell)).collect();
     let mut met = Met::default();
     let mut contacts: Vec<Partner<P>> = Vec::new();
-    let mut env = OneByOne { discs, own: 0, watched, excess: Cell::new(zero), sums: Default::default() };
+    let mut env = OneByOne {
+        discs,
+        own: 0,
+        watches: watched.is_some(),
+        penetration: Cell::new(zero),
+        sums: Default::default(),
+    };
     for i in 0..grains {
         env.own = i;
         env.sums = [Cell::new(zero), Cell::new(zero), Cell::new(zero)];
@@ -249,11 +256,9 @@ pub fn walk<P: Precision, L: Law<2>>(
         contacts.sort_unstable_by_key(|partner| partner.place);
         let own = law.own(&env);
         for partner in &contacts {
-            env.excess.set(zero);
             law.pair(&env, *partner, &own);
-            let excess = env.excess.get();
-            if excess > zero && met.deepest.is_none_or(|(deepest, ..)| excess.to_f64() > deepest) {
-                met.deepest = Some((excess.to_f64(), i, partner.disc));
+            if watched.is_some_and(|depth| env.penetration.get().to_f64() > depth) {
+                met.deep.push((i, partner.disc));
             }
         }
         met.pairs += contacts.len() as u64;

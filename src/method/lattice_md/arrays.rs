@@ -139,7 +139,7 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
             columns(&[Array::Radius, Array::InverseMass], padded);
         }
         if model.watch.is_some() {
-            columns(&[Array::Excess], padded);
+            columns(&[Array::Deepest], padded);
             constant.push((Array::Interior, model.shape.interior()));
         }
         // The predictor hands on the grains' velocities; a wall's stay until the wall is moved.

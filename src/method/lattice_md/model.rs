@@ -45,13 +45,24 @@ pub enum Discs {
     Varying,
 }
 
-/// Which contacts are too deep (fractions of the sum of the radii).
+/// Which contacts are too deep; penetrations are fractions of the sum of the radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Watch {
     /// Deeper ones are counted.
     pub max_penetration: f64,
     /// Deeper ones stop the run.
     pub stop_penetration: f64,
+    /// The smallest radius (length), of walls too.
+    pub smallest_radius: f64,
+}
+
+impl Watch {
+    /// Penetration (length) that no pair passes whose fraction is at most `max_penetration`: what programs look for, so
+    /// that only what they find need be held against the pair's own radii.
+    pub fn depth(&self) -> f64 {
+        // Less by more than single precision rounds.
+        2.0 * self.max_penetration * self.smallest_radius * (1.0 - 1e-6)
+    }
 }
 
 /// What is modelled, on which lattice.

@@ -137,7 +137,7 @@ impl<S: Precision, P: Precision> WithLaw for Walk<'_, S, P> {
             cell: self.arrays.cell(),
         };
         debug_assert!(self.model.discs != Discs::Varying || discs.radius.len() == discs.cell.len());
-        let watched = self.model.watch.map(|watch| watch.max_penetration);
+        let watched = self.model.watch.map(|watch| watch.depth());
         // A rounding error more than contact, so that the law decides on every contact.
         let reach = self.rival.reach * (1.0 + 1e-6);
         let grains = self.arrays.lengths().grains;

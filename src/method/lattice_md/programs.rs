@@ -156,7 +156,7 @@ impl<P: Precision> WithLaw for LatticeSweep<'_, P> {
         let fields = law.fields();
         let mut forces = Forces::<P, L, false>::new(law, mask, *shape, *frame, *coordinates);
         if let Some(watch) = watch {
-            forces = forces.watching(watch.max_penetration);
+            forces = forces.watching(watch.depth());
         }
         (Box::new(Program::new(forces)), fields)
     }

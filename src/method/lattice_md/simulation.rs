@@ -181,24 +181,27 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         {
             return Err(failure);
         }
-        let deepest = match self.rival.take() {
+        let watch = self.model.watch;
+        let marked = match self.rival.take() {
             None => {
                 timings.time(Phase::Index, || self.run(&[Part::Lattice]))?;
                 let counted = timings.time(Phase::Forces, || self.run(&[Part::Forces]))?;
-                let deep = counted[DEEP.0 as usize];
-                self.deep.disc_steps += deep;
-                if deep > 0 { self.names().deepest_on_lattice() } else { None }
+                let found = watch.filter(|_| counted[DEEP.0 as usize] > 0);
+                found.map_or(vec![], |watch| self.names().marked_on_lattice(watch.depth()))
             }
             Some(mut rival) => {
                 timings.time(Phase::Index, || rival.keep(&self.model, &self.arrays));
                 timings.time(Phase::Forces, || rival.forces(&self.model, &mut self.arrays));
-                let deepest = rival.met.deepest;
+                let deep = std::mem::take(&mut rival.met.deep);
                 self.rival = Some(rival);
-                deepest.map(|(_, i, j)| (self.names().penetration(i, j), i, j))
+                deep
             }
         };
         self.timings = timings;
-        if let (Some(deepest), Some(watch)) = (deepest, self.model.watch) {
+        let Some(watch) = watch.filter(|_| !marked.is_empty()) else { return Ok(()) };
+        let (discs, deepest) = self.names().deep(&marked, watch.max_penetration);
+        self.deep.disc_steps += discs;
+        if let Some(deepest) = deepest {
             if deepest.0 > self.deep.deepest {
                 self.deep.deepest = deepest.0;
                 self.deep.step = self.steps;

@@ -79,29 +79,36 @@ impl<S: Precision, P: Precision> Names<'_, S, P> {
         1.0 - self.distance(first, second) / reach
     }
 
-    /// The deepest contact of the lattice: penetration and the two discs. Looks only around the cells that the sweep
-    /// marked.
-    pub(super) fn deepest_on_lattice(&self) -> Option<(f64, usize, usize)> {
-        let excess = self.arrays.lattice(Array::Excess)?;
+    /// Pairs that may be too deep: around the cells that the sweep marked.
+    pub(super) fn marked_on_lattice(&self, depth: f64) -> Vec<(usize, usize)> {
+        let Some(deepest) = self.arrays.lattice(Array::Deepest) else { return vec![] };
         let index = self.arrays.index();
-        let mut deepest: Option<(f64, usize, usize)> = None;
-        for position in self.model.shape.swept() {
-            if index[position] == 0 || excess[position].to_f64() <= 0.0 {
-                continue;
-            }
+        let marked = |position: &usize| index[*position] != 0 && deepest[*position].to_f64() > depth;
+        let around = |position: usize| {
             let own = index[position] as usize - 1;
-            for &offset in self.model.mask.offsets() {
-                let there = index[position.wrapping_add_signed(self.model.shape.shift(offset))];
-                if there == 0 || there as usize - 1 == own {
-                    continue;
-                }
-                let penetration = self.penetration(own, there as usize - 1);
-                if deepest.is_none_or(|(deepest, ..)| penetration > deepest) {
-                    deepest = Some((penetration, own, there as usize - 1));
+            let shifts = self.model.mask.offsets().iter().map(|&offset| self.model.shape.shift(offset));
+            let partners = shifts.map(move |shift| index[position.wrapping_add_signed(shift)] as usize);
+            partners.filter(move |&there| there != 0 && there - 1 != own).map(move |there| (own, there - 1))
+        };
+        self.model.shape.swept().filter(marked).flat_map(around).collect()
+    }
+
+    /// Of pairs, each from both sides and with the pairs of one disc side by side: how many discs are deeper in one than
+    /// the limit, and the deepest contact: penetration and the two discs.
+    pub(super) fn deep(&self, pairs: &[(usize, usize)], limit: f64) -> (u64, Option<(f64, usize, usize)>) {
+        let mut discs = 0;
+        let mut deepest: Option<(f64, usize, usize)> = None;
+        for of_disc in pairs.chunk_by(|a, b| a.0 == b.0) {
+            let penetrations = of_disc.iter().map(|&(own, there)| (self.penetration(own, there), own, there));
+            let Some(worst) = penetrations.max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+            if worst.0 > limit {
+                discs += 1;
+                if deepest.is_none_or(|(deepest, ..)| worst.0 > deepest) {
+                    deepest = Some(worst);
                 }
             }
         }
-        deepest
+        (discs, deepest)
     }
 
     /// The failure of a contact that is too deep.

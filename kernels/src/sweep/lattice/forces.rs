@@ -55,11 +55,11 @@ impl<P: Element, L: Law<2>, const HALF: bool> Forces<P, L, HALF> {
         Forces { law, places: places.collect(), relative, watched: None, precision: PhantomData }
     }
 
-    /// The same program, which also counts the cells with a contact deeper than `penetration` (a fraction of the sum of
-    /// the radii) in [`DEEP`] and writes by how much to the array `excess`.
+    /// The same program, which also writes the penetration of each cell's deepest contact to the array `deepest` and counts
+    /// the cells with one deeper than `depth` (length) in [`DEEP`].
     #[must_use]
-    pub fn watching(self, penetration: f64) -> Self {
-        Forces { watched: Some(penetration), ..self }
+    pub fn watching(self, depth: f64) -> Self {
+        Forces { watched: Some(depth), ..self }
     }
 }
 
@@ -76,8 +76,8 @@ const fn sum_arrays(sum: Sum) -> (Array, Array) {
 struct Around<M: Machine, const HALF: bool> {
     machine: M,
     relative: bool,
-    watched: Option<f64>,
-    excess: Cell<M::V>,
+    watches: bool,
+    deepest: Cell<M::V>,
     sums: [Cell<M::V>; Sum::ALL.len()],
 }
 
@@ -146,13 +146,13 @@ impl<M: Machine, const HALF: bool> Env<2> for &Around<M, HALF> {
     }
 
     #[inline(always)]
-    fn watched_penetration(self) -> Option<f64> {
-        self.watched
+    fn watches(self) -> bool {
+        self.watches
     }
 
     #[inline(always)]
-    fn watch(self, excess: M::V) {
-        self.excess.set(self.excess.get().max(excess));
+    fn watch(self, penetration: M::V) {
+        self.deepest.set(self.deepest.get().max(penetration));
     }
 
     #[inline(always)]
@@ -175,8 +175,8 @@ unsafe impl<P: Element, L: Law<2>, const HALF: bool> Text for Forces<P, L, HALF>
         let around = Around::<M, HALF> {
             machine: m,
             relative: self.relative,
-            watched: self.watched,
-            excess: Cell::new(zero),
+            watches: self.watched.is_some(),
+            deepest: Cell::new(zero),
             sums: [Cell::new(zero), Cell::new(zero), Cell::new(zero)],
         };
         let own = self.law.own(&around);
@@ -187,13 +187,13 @@ unsafe impl<P: Element, L: Law<2>, const HALF: bool> Text for Forces<P, L, HALF>
         for &sum in self.law.sums() {
             m.store(Slot::<P>::new(sum_arrays(sum).0), around.sums[sum as usize].get());
         }
-        if self.watched.is_some() {
+        if let Some(depth) = self.watched {
             m.section("watch");
             // A halo cell has false neighbours across the ends of the rows.
             let interior = zero.less_than(m.load(Slot::<P>::new(Array::Interior)));
-            let excess = M::V::select(interior, around.excess.get(), zero);
-            m.store(Slot::<P>::new(Array::Excess), excess);
-            m.count(DEEP, zero.less_than(excess));
+            let deepest = M::V::select(interior, around.deepest.get(), zero);
+            m.store(Slot::<P>::new(Array::Deepest), deepest);
+            m.count(DEEP, m.uniform(depth).less_than(deepest));
         }
     }
 }

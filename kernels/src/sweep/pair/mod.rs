@@ -187,8 +187,8 @@ impl Env<2> for &Meeting<'_> {
     fn partner_sub(self, sum: Sum, (): (), value: f64) {
         self.add(1, sum, -value);
     }
-    fn watched_penetration(self) -> Option<f64> {
-        None
+    fn watches(self) -> bool {
+        false
     }
     fn watch(self, _: f64) {}
     fn section(self, _: &'static str) {}
