@@ -113,12 +113,12 @@ fn snapshots(showing: Showing, flow: &PipeFlow) -> Figure {
     let shown: Vec<usize> = stills(showing, flow);
     let half = flow.frames.first().map_or(0.05, half_height);
     let pitch = (2.6 * half).max(flow.length / 45.0);
-    let left = 0.09 * flow.length;
+    let left = 0.12 * flow.length;
     let mut shapes = vec![];
     for (row, &at) in shown.iter().enumerate() {
         let down = -(row as f64 * pitch);
         let words = format!("{:.2} s", flow.times[at]);
-        shapes.push(Shape::Text { centre: [-0.5 * left, down], height: 0.28 * pitch, words });
+        shapes.push(Shape::Text { centre: [-0.5 * left, down], height: 0.45 * pitch, words });
         for rim in [-half, half] {
             shapes.push(Shape::Line { ends: [[0.0, down + rim], [flow.length, down + rim]] });
         }

@@ -79,14 +79,13 @@ def dots_of(picture):
 def read_out(page, picture):
     """What the pointer reads somewhere on a plane."""
     box = picture.query_selector(".u-over").bounding_box()
-    parts = [i / 24 for i in range(1, 24)]
-    for down in parts:
-        for right in parts:
-            page.mouse.move(box["x"] + right * box["width"], box["y"] + down * box["height"])
-            shown = picture.query_selector(".read-out:not([hidden])")
-            # A band's line has no axis; a point's or a cell's read-out has one.
-            if shown and len(shown.query_selector_all("div")) >= 2:
-                return shown.inner_text().splitlines()
+    # Coarsely first; a chart of few points needs a closer look.
+    for down, right in [(i / n, j / n) for n in (12, 24) for i in range(1, n) for j in range(1, n)]:
+        page.mouse.move(box["x"] + right * box["width"], box["y"] + down * box["height"])
+        shown = picture.query_selector(".read-out:not([hidden])")
+        # A band's line has no axis; a point's or a cell's read-out has one.
+        if shown and len(shown.query_selector_all("div")) >= 2:
+            return shown.inner_text().splitlines()
     return []
 
 

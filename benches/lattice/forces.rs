@@ -1,15 +1,12 @@
 //! What does the force sweep over 24 places cost, cell by cell, in every execution, against a loop written by hand?
 //!
 //! The sweep is branch-free: its cost does not depend on where the discs stand, so a frozen dense configuration will do.
-//! Throughput is in cells; `cargo bench --bench forces`.
+//! Throughput is in cells; `cargo bench --bench lattice forces`.
 
-mod intrinsics;
-mod scenery;
-
+use crate::intrinsics::{self, Numbers, Place, Vectors};
+use crate::scenery::{CONTACT, dense, warm_up};
 use criterion::measurement::WallTime;
-use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
-use intrinsics::{Numbers, Place, Vectors};
-use scenery::{CONTACT, dense, warm_up};
+use criterion::{BenchmarkGroup, Criterion, Throughput};
 use std::hint::black_box;
 use std::time::Duration;
 use stripmine::method::lattice_md::{Arrays, Model, Part, Watch, execute, programs as programs_of};
@@ -162,12 +159,7 @@ fn executions<P: ByHand>(criterion: &mut Criterion, precision: &str) {
     }
 }
 
-fn forces(criterion: &mut Criterion) {
-    // One core, as the loop by hand.
-    rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("the first pool");
+pub fn forces(criterion: &mut Criterion) {
     executions::<f64>(criterion, "f64");
     executions::<f32>(criterion, "f32");
 }
-
-criterion_group!(benches, forces);
-criterion_main!(benches);

@@ -1,11 +1,9 @@
 //! What does a whole step cost beside its force sweep, and what its checks?
 //!
-//! The discs move: every iteration is a step. Throughput is in discs; `cargo bench --bench step`.
+//! The discs move: every iteration is a step. Throughput is in discs; `cargo bench --bench lattice step`.
 
-mod scenery;
-
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use scenery::dense;
+use crate::scenery::dense;
+use criterion::{Criterion, Throughput};
 use std::time::Duration;
 use stripmine::method::lattice_md::{Arrays, Model, Part, StepProgram, Watch, execute, programs};
 use stripmine_kernels::ledger::Length;
@@ -18,9 +16,7 @@ fn without_check(mut programs: Vec<StepProgram>) -> Vec<StepProgram> {
     programs
 }
 
-fn step(criterion: &mut Criterion) {
-    // One core, as the loop by hand of the forces.
-    rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("the first pool");
+pub fn step(criterion: &mut Criterion) {
     let (model, particles, _) = dense::<f64>(100_000, true);
     let watched = Model {
         watch: Some(Watch { max_penetration: 0.1, stop_penetration: 0.3, smallest_radius: 0.5 }),
@@ -46,6 +42,3 @@ fn step(criterion: &mut Criterion) {
     }
     group.finish();
 }
-
-criterion_group!(benches, step);
-criterion_main!(benches);

@@ -1,0 +1,17 @@
+//! Benches of the lattice method, one file a question. One program, because every bench that steps compiles the texts for
+//! every instruction set again.
+
+mod forces;
+mod intrinsics;
+mod scenery;
+mod step;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+
+/// One core for all: the loop by hand uses one.
+fn alone(_: &mut Criterion) {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("the first pool");
+}
+
+criterion_group!(benches, alone, forces::forces, step::step);
+criterion_main!(benches);
