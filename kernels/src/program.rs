@@ -1,5 +1,6 @@
 //! A text made ready to run: recorded once, checked before every run, executed in one of several ways.
 
+use crate::backend::tape::Outlines;
 use crate::backend::{Block, Precision, Pulp, Registers, Scalar, Strip, Tape, Wide};
 use crate::isa::{Footprint, Memory, OpCounts, ProgramError, Text};
 use pulp::{Simd, WithSimd};
@@ -244,6 +245,9 @@ pub trait Runnable: Send + Sync {
 
     /// The vector instructions, as an assembly listing.
     fn listing(&self) -> String;
+
+    /// The vector instructions, and the passes that execute them, as a timing model sees them.
+    fn outlines(&self) -> Outlines;
 }
 
 impl<T: Text + Send + Sync> Runnable for Program<T>
@@ -266,6 +270,10 @@ where
 
     fn listing(&self) -> String {
         self.tape.listing().to_string()
+    }
+
+    fn outlines(&self) -> Outlines {
+        self.tape.outlines()
     }
 }
 

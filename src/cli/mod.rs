@@ -10,6 +10,7 @@ mod scene;
 mod scene_choice;
 mod table;
 
+use crate::model::machine::MachineError;
 use crate::run::RunError;
 use crate::study::StudyError;
 use crate::study::throughput::MeasurementError;
@@ -60,9 +61,9 @@ pub(crate) enum Failure {
     /// A question that has no answer: exit code 2.
     #[error(transparent)]
     Usage(#[from] crate::study::efficiency_table::QuestionError),
-    /// A machine that there is not: exit code 2.
+    /// A machine that there is not: exit code 2; a bad machine file: 3; one that cannot be read: 5.
     #[error(transparent)]
-    Machine(#[from] crate::model::machine::UnknownMachine),
+    Machine(#[from] crate::model::machine::MachineError),
     /// A verb that there is not: exit code 2.
     #[error("there is no verb {verb}; these are: {}", verbs.join(", "))]
     UnknownVerb {
@@ -114,7 +115,10 @@ impl Failure {
         match self {
             // A reader that closes the pipe has seen enough.
             Failure::InputOutput { cause, .. } if cause.kind() == ErrorKind::BrokenPipe => 0,
-            Failure::Usage(_) | Failure::Machine(_) | Failure::UnknownVerb { .. } => 2,
+            Failure::Usage(_) | Failure::UnknownVerb { .. } => 2,
+            Failure::Machine(MachineError::Unknown { .. }) => 2,
+            Failure::Machine(MachineError::File(_)) => 3,
+            Failure::Machine(MachineError::Read { .. }) => 5,
             Failure::Scene(_) => 3,
             Failure::Measurement(MeasurementError::Scene(_)) | Failure::Study(StudyError::Scene(_)) => 3,
             Failure::Measurement(MeasurementError::Physics(_)) | Failure::Study(StudyError::Physics(_)) => 4,

@@ -1,30 +1,47 @@
-//! `stripmine table`: the efficiency table.
+//! `stripmine table`: the efficiency table, and the ladder of clocks.
 
 use super::scene_choice::SceneChoice;
 use super::{Common, Failure, print, print_json};
 use crate::model::machine;
 use crate::report;
 use crate::study::efficiency_table::efficiency_table;
+use crate::study::ladder::ladder;
 use clap::Args;
-use clap::builder::PossibleValuesParser;
 
 /// BP93's efficiency table: NOP as printed and as counted, vector lengths, clock periods
 #[derive(Args)]
 pub(super) struct TableVerb {
     #[command(flatten)]
     scene: SceneChoice,
-    /// Machine whose clock is asked
-    #[arg(long, default_value = "paper", value_parser = PossibleValuesParser::new(machine::names()))]
+    #[arg(long, default_value = "paper", help = machine_help())]
     machine: String,
+    /// Instead: the clock periods of a step by every clock, from the trivial one to chaining and memory ports
+    #[arg(long)]
+    ladder: bool,
+}
+
+/// What `--machine` takes.
+pub(super) fn machine_help() -> String {
+    let names: Vec<_> = machine::names().collect();
+    format!("Machine whose clock is asked: {}, or the path of a machine file (.toml)", names.join(", "))
 }
 
 impl TableVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
-        let data = efficiency_table(&self.scene.question(), &machine::preset(&self.machine)?)?;
-        if common.json {
-            return print_json(&data);
-        }
-        let tables = report::efficiency_table::tables(&data);
+        let (question, machine) = (self.scene.question(), machine::find(&self.machine)?);
+        let tables = if self.ladder {
+            let data = ladder(&question, &machine)?;
+            if common.json {
+                return print_json(&data);
+            }
+            report::ladder::tables(&data)
+        } else {
+            let data = efficiency_table(&question, &machine)?;
+            if common.json {
+                return print_json(&data);
+            }
+            report::efficiency_table::tables(&data)
+        };
         let drawn: Vec<String> = tables.iter().map(report::terminal::render).collect();
         print(&drawn.join("\n"))
     }

@@ -1,6 +1,7 @@
 //! Machines of the timing model, and the presets that come with the program.
 
 use super::machine_file::MachineFileError;
+use super::units::{MemoryPorts, Units};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use stripmine_kernels::isa::op::{OpClass, OpCounts};
@@ -34,6 +35,18 @@ impl Provenance {
 pub struct Quantity {
     /// The number itself, positive and finite.
     pub value: f64,
+    /// Whether it was printed somewhere, follows from something or is our choice.
+    pub provenance: Provenance,
+    /// The source, the derivation or the reason; never empty.
+    pub note: String,
+}
+
+/// A property that a machine has or has not, with its provenance.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Fact {
+    /// Whether it has it.
+    pub value: bool,
     /// Whether it was printed somewhere, follows from something or is our choice.
     pub provenance: Provenance,
     /// The source, the derivation or the reason; never empty.
@@ -85,6 +98,10 @@ pub struct MachineModel {
     pub(super) year: Quantity,
     pub(super) clock_period_ns: Quantity,
     pub(super) vector_registers: Option<VectorRegisters>,
+    pub(super) chaining: Option<Fact>,
+    pub(super) loop_overhead: Option<Quantity>,
+    pub(super) units: Units,
+    pub(super) memory: Option<MemoryPorts>,
     pub(super) default_start_up: Option<Quantity>,
     pub(super) class_start_ups: BTreeMap<OpClass, Quantity>,
     pub(super) expansions: BTreeMap<OpClass, Expansion>,
@@ -128,16 +145,20 @@ impl MachineModel {
         self.expansions.get(&class)
     }
 
+    /// The operations executed for one of `class`: itself, or its expansion followed to the end.
+    pub fn steps(&self, class: OpClass) -> ClassCounts {
+        self.executed.get(&class).cloned().unwrap_or_else(|| ClassCounts::from([(class, 1)]))
+    }
+
     /// The operations executed for `counts`, once those that the machine lacks are expanded.
     ///
     /// Saturates where a count leaves the range of `u64`.
     pub fn expand(&self, counts: &OpCounts) -> ClassCounts {
         let mut executed = ClassCounts::new();
         for &class in OpClass::ALL {
-            match (counts.of_class(class), self.executed.get(&class)) {
-                (0, _) => {}
-                (count, Some(steps)) => add_scaled(&mut executed, steps, count),
-                (count, None) => add_scaled(&mut executed, &ClassCounts::from([(class, 1)]), count),
+            match counts.of_class(class) {
+                0 => {}
+                count => add_scaled(&mut executed, &self.steps(class), count),
             }
         }
         executed
@@ -161,17 +182,36 @@ impl MachineModel {
                         .iter()
                         .map(|(class, start_up)| (format!("start_up.{}", class.name()), start_up)),
                 )
+                .chain(self.unit_quantities())
                 .map(|(name, quantity)| Entry {
                     name,
                     provenance: quantity.provenance,
                     note: &quantity.note,
                 });
+        let chaining = self.chaining.iter().map(|fact| Entry {
+            name: "chaining".to_owned(),
+            provenance: fact.provenance,
+            note: &fact.note,
+        });
         let expansions = self.expansions.iter().map(|(class, expansion)| Entry {
             name: format!("expansions.{}", class.name()),
             provenance: expansion.provenance,
             note: &expansion.note,
         });
-        quantities.chain(expansions).collect()
+        quantities.chain(chaining).chain(expansions).collect()
+    }
+
+    /// The same machine with every assumed start-up, and an assumed loop overhead, at zero: what a result keeps without
+    /// them.
+    #[must_use]
+    pub fn without_assumed_start_ups(&self) -> MachineModel {
+        let mut known = self.clone();
+        let start_ups = known.class_start_ups.values_mut().chain(&mut known.default_start_up);
+        let quantities = start_ups.chain(&mut known.loop_overhead);
+        quantities
+            .filter(|quantity| quantity.provenance == Provenance::Assumed)
+            .for_each(|quantity| quantity.value = 0.0);
+        known
     }
 
     /// Names of the entries whose numbers are our own choice.
@@ -199,16 +239,44 @@ macro_rules! embedded {
 }
 
 /// The machines that come with the program: name and text of the file.
-const PRESETS: &[(&str, &str)] = embedded!["paper", "cray-1", "cray-x-mp", "cray-y-mp", "cray-y-mp-el"];
+const PRESETS: &[(&str, &str)] = embedded![
+    "paper",
+    "cray-1",
+    "cyber-205",
+    "cray-x-mp",
+    "cray-y-mp",
+    "nec-sx-3",
+    "cray-c90",
+    "cray-y-mp-el",
+    "cray-j90",
+    "sx-aurora",
+];
 
-/// No preset has the name asked for.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown machine `{name}`; known are {}", known.join(", "))]
-pub struct UnknownMachine {
-    /// The name asked for.
-    pub name: String,
-    /// All names that would have done.
-    pub known: Vec<&'static str>,
+/// Why there is no such machine.
+#[derive(Debug, thiserror::Error)]
+pub enum MachineError {
+    /// No preset has the name asked for, and it does not look like that of a file.
+    #[error(
+        "unknown machine `{name}`; known are {}, and machine files by their path, which ends in .toml",
+        known.join(", ")
+    )]
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// All names that would have done.
+        known: Vec<&'static str>,
+    },
+    /// A file that cannot be read.
+    #[error("machine file `{file}`: {cause}")]
+    Read {
+        /// Name of the file.
+        file: String,
+        /// What the system said.
+        cause: std::io::Error,
+    },
+    /// A file that cannot be used.
+    #[error(transparent)]
+    File(#[from] MachineFileError),
 }
 
 /// The names of the presets, the paper's own machine first.
@@ -216,17 +284,30 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     PRESETS.iter().map(|&(name, _)| name)
 }
 
+/// The machine called `name`: a preset, or the file at that path, if it ends in `.toml`.
+///
+/// # Errors
+/// [`MachineError`] where no preset has that name, or the file is bad.
+pub fn find(name: &str) -> Result<MachineModel, MachineError> {
+    if !name.ends_with(".toml") {
+        return preset(name);
+    }
+    let text =
+        std::fs::read_to_string(name).map_err(|cause| MachineError::Read { file: name.to_owned(), cause })?;
+    Ok(MachineModel::parse(name, &text)?)
+}
+
 /// The preset called `name`.
 ///
 /// # Errors
-/// [`UnknownMachine`] where no preset has that name.
-pub fn preset(name: &str) -> Result<MachineModel, UnknownMachine> {
+/// [`MachineError::Unknown`] where no preset has that name.
+pub fn preset(name: &str) -> Result<MachineModel, MachineError> {
     let (known, text) = PRESETS
         .iter()
         .find(|&&(known, _)| known == name)
-        .ok_or_else(|| UnknownMachine { name: name.to_owned(), known: names().collect() })?;
+        .ok_or_else(|| MachineError::Unknown { name: name.to_owned(), known: names().collect() })?;
     // The texts are part of the program and a test reads them all: no user can get here with a bad one.
-    Ok(MachineModel::parse(known, text).unwrap_or_else(|error: MachineFileError| unreachable!("{error}")))
+    Ok(MachineModel::parse(known, text)?)
 }
 
 #[cfg(test)]
@@ -277,7 +358,8 @@ mod tests {
         let error = preset("cray-3").unwrap_err();
         assert_eq!(
             error.to_string(),
-            "unknown machine `cray-3`; known are paper, cray-1, cray-x-mp, cray-y-mp, cray-y-mp-el"
+            "unknown machine `cray-3`; known are paper, cray-1, cyber-205, cray-x-mp, cray-y-mp, nec-sx-3, \
+             cray-c90, cray-y-mp-el, cray-j90, sx-aurora, and machine files by their path, which ends in .toml"
         );
     }
 

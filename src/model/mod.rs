@@ -9,3 +9,4 @@
 pub mod clock;
 pub mod machine;
 pub mod machine_file;
+pub mod units;

@@ -7,6 +7,7 @@ pub mod efficiency_table;
 pub mod figure;
 pub mod html;
 pub mod identity;
+pub mod ladder;
 pub mod listing;
 pub mod markdown;
 pub mod mask;

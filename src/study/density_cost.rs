@@ -161,7 +161,7 @@ impl Model<'_> {
             cause,
         })?;
         let lengths = Lengths::new(&model, particles, particles);
-        let clocks = |counts: &OpCounts, n| Clock::Paper.clocks(self.machine, counts, n);
+        let clocks = |counts: &OpCounts, n| Clock::Paper.clocks(self.machine, &counts.clone().into(), n);
         let counted = self
             .lattice
             .parts()
@@ -178,7 +178,8 @@ impl Model<'_> {
     /// A curve of the scalar rival: every operation costs the whole depth of the pipeline. The Index belongs to the
     /// lattice and is left out.
     fn with_lists(&self, figures: &ListFigures) -> Curve {
-        let clocks = |counts: &OpCounts, n: f64| n * Clock::Scalar.clocks(self.machine, counts, 1);
+        let clocks =
+            |counts: &OpCounts, n: f64| n * Clock::Scalar.clocks(self.machine, &counts.clone().into(), 1);
         let cost = |particles: usize| {
             let np = particles as f64;
             let rows = self.rival.parts();

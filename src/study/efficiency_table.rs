@@ -1,7 +1,7 @@
 //! What does a step cost, by the source's count and by ours? BP93 section 3.
 
 use crate::method::lattice_md::{Discs, GearValues, Lengths, Model, Part, StepProgram, ledger, programs};
-use crate::model::clock::Clock;
+use crate::model::clock::{Clock, Work};
 use crate::model::machine::MachineModel;
 use serde::Serialize;
 use stripmine_kernels::isa::{Op, OpClass, OpCounts};
@@ -268,7 +268,7 @@ pub fn efficiency_table(
     let (programs, lengths) = step(question)?;
     let ledger = ledger(&programs);
     let n = |length| lengths.range(length).len() as u64;
-    let clocks = |counts: &OpCounts, n| Clock::Paper.clocks(machine, counts, n);
+    let clocks = |counts: &OpCounts, n| Clock::Paper.clocks(machine, &counts.clone().into(), n);
 
     let mut parts: Vec<PartRow> = Vec::new();
     for (part, length, counts) in ledger.parts() {
@@ -330,7 +330,9 @@ fn step_clocks(clock: Clock, ledger: &Ledger, lengths: &Lengths, machine: &Machi
     let parts = ledger.parts();
     parts
         .iter()
-        .map(|(_, length, counts)| clock.clocks(machine, counts, lengths.range(*length).len() as u64))
+        .map(|(_, length, counts)| {
+            clock.clocks(machine, &Work::from(counts.clone()), lengths.range(*length).len() as u64)
+        })
         .sum()
 }
 

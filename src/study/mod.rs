@@ -4,6 +4,7 @@ pub mod damping;
 pub mod density_cost;
 pub mod efficiency_table;
 pub mod identity;
+pub mod ladder;
 pub mod measured_cost;
 pub mod misprints;
 pub mod pipe_flow;

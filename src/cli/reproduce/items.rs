@@ -6,7 +6,9 @@ use crate::model::machine;
 use crate::report::pipe_flow::Showing;
 use crate::report::{self, Section};
 use crate::study::efficiency_table::Question;
-use crate::study::{damping, density_cost, efficiency_table, identity, measured_cost, misprints, pipe_flow};
+use crate::study::{
+    damping, density_cost, efficiency_table, identity, ladder, measured_cost, misprints, pipe_flow,
+};
 use clap::ValueEnum;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
@@ -57,6 +59,7 @@ macro_rules! define_items {
 
 define_items! {
     (Table, "table", 0.1, 0.1, "BP93's efficiency table"),
+    (Ladder, "ladder", 0.1, 0.1, "What each refinement of the clock adds, machine by machine"),
     (Listing, "listing", 0.1, 0.1, "The vector instructions of every part"),
     (Mask, "mask", 0.1, 0.1, "BP93, figure 2: the mask"),
     (Misprints, "misprints", 0.5, 0.5, "What the misprints of the contact law do"),
@@ -81,6 +84,13 @@ impl Item {
                 let data =
                     efficiency_table::efficiency_table(&Question::default(), &machine::preset("paper")?)?;
                 made(report::efficiency_table::section(&data), &data)
+            }
+            Item::Ladder => {
+                let ladders: Vec<_> = ["cray-y-mp-el", "cray-1", "cray-c90", "sx-aurora"]
+                    .into_iter()
+                    .map(|name| Ok(ladder::ladder(&Question::default(), &machine::preset(name)?)?))
+                    .collect::<Result<_, Failure>>()?;
+                made(report::ladder::section(&ladders), &ladders)
             }
             Item::Listing => listings(),
             Item::Mask => made(report::mask::section(), &()),

@@ -1,6 +1,6 @@
 //! What can be wrong with a machine file.
 
-use super::FORMAT;
+use super::{FORMAT, Position};
 use stripmine_kernels::isa::op::OpClass;
 
 /// Why a machine file cannot be used.
@@ -14,76 +14,101 @@ pub enum MachineFileError {
         /// What the TOML reader says, with the place.
         cause: Box<toml::de::Error>,
     },
-    /// A format version that this program does not know.
-    #[error("machine file `{file}`: format = {found}, but this program reads format {FORMAT}")]
-    UnsupportedFormat {
+    /// An entry that cannot be; its place is where the file has it, or the table that should.
+    #[error("machine file `{file}`{}: {defect}", position.map_or(String::new(), |at| format!(", {at}")))]
+    Content {
         /// Name of the file.
         file: String,
+        /// Where.
+        position: Option<Position>,
+        /// What is wrong.
+        defect: Defect,
+    },
+}
+
+/// What is wrong with an entry.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Defect {
+    /// A format version that this program does not know.
+    #[error("format = {found}, but this program reads format {FORMAT}")]
+    UnsupportedFormat {
         /// The version it states.
         found: u32,
     },
     /// A name that is no class of operations.
-    #[error("machine file `{file}`: `{entry}` names no class of operations; known are {}", class_names())]
+    #[error("`{entry}`: `{name}` names no class of operations; known are {}", class_names())]
     UnknownClass {
-        /// Name of the file.
-        file: String,
         /// The entry with the unknown name.
         entry: String,
+        /// The name.
+        name: String,
     },
     /// A number that is zero, negative or not finite.
-    #[error("machine file `{file}`: `{entry}` is {value}, but must be positive and finite")]
+    #[error("`{entry}` is {value}, but must be positive and finite")]
     NotPositive {
-        /// Name of the file.
-        file: String,
         /// The entry with the number.
         entry: String,
         /// The number.
         value: f64,
     },
     /// A number with a fraction where things are counted.
-    #[error("machine file `{file}`: `{entry}` is {value}, but must be a whole number")]
+    #[error("`{entry}` is {value}, but must be a whole number")]
     NotWhole {
-        /// Name of the file.
-        file: String,
         /// The entry with the number.
         entry: String,
         /// The number.
         value: f64,
     },
     /// A number that does not say where it comes from.
-    #[error("machine file `{file}`: the note of `{entry}` is empty; say where the number comes from")]
+    #[error("the note of `{entry}` is empty; say where the number comes from")]
     EmptyNote {
-        /// Name of the file.
-        file: String,
         /// The entry without a note.
         entry: String,
     },
     /// A class that the machine executes, without a start-up.
-    #[error("machine file `{file}`: neither `{entry}` nor `start_up.default` is given")]
+    #[error("neither `{entry}` nor `start_up.default` is given")]
     MissingStartUp {
-        /// Name of the file.
-        file: String,
         /// The missing entry.
         entry: String,
     },
+    /// A class that the machine executes, without a unit among those that are named.
+    #[error("no unit of `{entry}` serves `{class}`, which the machine executes")]
+    NoUnit {
+        /// The table of units.
+        entry: String,
+        /// The class.
+        class: &'static str,
+    },
     /// An expansion into nothing.
-    #[error("machine file `{file}`: `{entry}` has no steps")]
+    #[error("`{entry}` has no steps")]
     EmptyExpansion {
-        /// Name of the file.
-        file: String,
         /// The entry without steps.
         entry: String,
     },
     /// Expansions that lead back to where they started.
-    #[error("machine file `{file}`: `{entry}` never ends: {}", cycle.join(" -> "))]
+    #[error("`{entry}` never ends: {}", cycle.join(" -> "))]
     EndlessExpansion {
-        /// Name of the file.
-        file: String,
         /// The entry from which the circle is reached.
         entry: String,
         /// The classes passed through; the last one occurred before.
         cycle: Vec<&'static str>,
     },
+}
+
+impl Defect {
+    /// The entry, as its file writes it.
+    pub fn entry(&self) -> String {
+        match self {
+            Defect::UnsupportedFormat { .. } => "format".to_owned(),
+            Defect::EmptyNote { entry } => format!("{entry}.note"),
+            Defect::NotPositive { entry, .. } | Defect::NotWhole { entry, .. } => format!("{entry}.value"),
+            Defect::UnknownClass { entry, .. }
+            | Defect::MissingStartUp { entry }
+            | Defect::NoUnit { entry, .. }
+            | Defect::EmptyExpansion { entry }
+            | Defect::EndlessExpansion { entry, .. } => entry.clone(),
+        }
+    }
 }
 
 fn class_names() -> String {

@@ -18,15 +18,32 @@
 //! steps = { divide = 1, multiply = 3 }
 //! provenance = "sourced"
 //! note = "where from"
+//!
+//! # All of the following may be left out; a clock that needs what is left out charges as the clock before it.
+//! chaining = { value = true, provenance = "sourced", note = "where from" } # above the tables
+//! loop_overhead = { value = 15, provenance = "assumed", note = "why" } # clock periods a strip; above the tables
+//!
+//! [units.add] # so many instructions of these classes run at once, each at so many elements a clock period
+//! serves = ["add", "convert"]
+//! count = { value = 1, provenance = "sourced", note = "where from" }
+//! rate = { value = 2, provenance = "sourced", note = "where from" } # 1 where it is left out
+//!
+//! [memory]
+//! load_ports = { value = 2, provenance = "sourced", note = "where from" }
+//! store_ports = { value = 1, provenance = "sourced", note = "where from" } # left out: stores take the ports of loads
+//! rate = { value = 1, provenance = "sourced", note = "where from" } # elements a clock period of each port
+//! gather_rate = { value = 0.5, provenance = "sourced", note = "where from" } # the same through an index vector
 //! ```
 
 mod check;
 mod error;
+mod position;
 
-pub use error::MachineFileError;
+pub use error::{Defect, MachineFileError};
+pub use position::Position;
 
-use super::machine::{Expansion, MachineModel, Provenance, Quantity, VectorRegisters};
-use check::Check;
+use super::machine::{Expansion, Fact, MachineModel, Provenance, Quantity, VectorRegisters};
+use super::units::{MemoryPorts, Unit, Units};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -42,9 +59,22 @@ struct MachineFile {
     year: Quantity,
     clock_period_ns: Quantity,
     vector_registers: Option<VectorRegisters>,
+    chaining: Option<Fact>,
+    loop_overhead: Option<Quantity>,
     start_up: BTreeMap<String, Quantity>,
     #[serde(default)]
+    units: BTreeMap<String, WrittenUnit>,
+    memory: Option<MemoryPorts>,
+    #[serde(default)]
     expansions: BTreeMap<String, WrittenExpansion>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenUnit {
+    serves: Vec<String>,
+    count: Quantity,
+    rate: Option<Quantity>,
 }
 
 #[derive(Deserialize)]
@@ -61,38 +91,58 @@ impl MachineModel {
     /// # Errors
     /// [`MachineFileError`] for the first entry found wrong.
     pub fn parse(file: &str, text: &str) -> Result<MachineModel, MachineFileError> {
-        let mut written: MachineFile = toml::from_str(text)
+        let written: MachineFile = toml::from_str(text)
             .map_err(|error| MachineFileError::Syntax { file: file.to_owned(), cause: Box::new(error) })?;
-        if written.format != FORMAT {
-            return Err(MachineFileError::UnsupportedFormat { file: file.to_owned(), found: written.format });
+        written.machine().map_err(|defect| MachineFileError::Content {
+            file: file.to_owned(),
+            position: Position::of(text, &defect.entry()),
+            defect,
+        })
+    }
+}
+
+impl MachineFile {
+    /// The machine, once everything beyond the grammar is in order.
+    fn machine(mut self) -> Result<MachineModel, Defect> {
+        if self.format != FORMAT {
+            return Err(Defect::UnsupportedFormat { found: self.format });
         }
-        let check = Check { file };
-        let default_start_up = written.start_up.remove("default");
-        let class_start_ups = check.named_by_class("start_up", written.start_up)?;
+        let default_start_up = self.start_up.remove("default");
+        let class_start_ups = check::named_by_class("start_up", self.start_up)?;
         let mut expansions = BTreeMap::new();
         for (class, WrittenExpansion { steps, provenance, note }) in
-            check.named_by_class("expansions", written.expansions)?
+            check::named_by_class("expansions", self.expansions)?
         {
             let entry = format!("expansions.{}.steps", class.name());
-            let steps = check.named_by_class(&entry, steps)?;
-            check.steps(&entry, &steps)?;
+            let steps = check::named_by_class(&entry, steps)?;
+            check::steps(&entry, &steps)?;
             expansions.insert(class, Expansion { steps, provenance, note });
         }
         let mut executed = BTreeMap::new();
         for &class in expansions.keys() {
-            executed.insert(class, check.expand_fully(class, &expansions)?);
+            executed.insert(class, check::expand_fully(class, &expansions)?);
+        }
+        let mut units = Units::new();
+        for (name, WrittenUnit { serves, count, rate }) in self.units {
+            let entry = format!("units.{name}.serves");
+            let serves = serves.iter().map(|class| check::class(class, &entry)).collect::<Result<_, _>>()?;
+            units.insert(name, Unit { serves, count, rate });
         }
         let machine = MachineModel {
-            title: written.title,
-            year: written.year,
-            clock_period_ns: written.clock_period_ns,
-            vector_registers: written.vector_registers,
+            title: self.title,
+            year: self.year,
+            clock_period_ns: self.clock_period_ns,
+            vector_registers: self.vector_registers,
+            chaining: self.chaining,
+            loop_overhead: self.loop_overhead,
+            units,
+            memory: self.memory,
             default_start_up,
             class_start_ups,
             expansions,
             executed,
         };
-        check.machine(&machine)?;
+        check::machine(&machine)?;
         Ok(machine)
     }
 }
@@ -150,15 +200,15 @@ mod tests {
             ("value = 1976", "value = -1", "`year` is -1, but must be positive"),
             ("why not", " ", "the note of `start_up.default` is empty"),
             ("\"here\"\n    ", "\"\"\n    ", "the note of `expansions.divide` is empty"),
-            ("divide = { value", "division = { value", "`start_up.division` names no class of operations"),
-            ("[expansions.divide]", "[expansions.root]", "`expansions.root` names no class of operations"),
-            ("multiply = 3", "times = 3", "`expansions.divide.steps.times` names no class of operations"),
+            ("divide = { value", "division = { value", "`division` names no class of operations"),
+            ("[expansions.divide]", "[expansions.root]", "`root` names no class of operations"),
+            ("multiply = 3", "times = 3", "`times` names no class of operations"),
             ("multiply = 3", "multiply = 0", "`expansions.divide.steps.multiply` is 0"),
             (divide, "steps = {}", "`expansions.divide.steps` has no steps"),
             (default, "", "neither `start_up.add` nor `start_up.default` is given"),
         ] {
             let complaint = complaint(old, new);
-            assert!(complaint.starts_with("machine file `bad.toml`: "), "{complaint}");
+            assert!(complaint.starts_with("machine file `bad.toml`, line "), "{complaint}");
             assert!(complaint.contains(expected), "{complaint}");
         }
     }
@@ -187,7 +237,10 @@ mod tests {
             note = "a circle"
         "#;
         let error = MachineModel::parse("bad.toml", &format!("{GOOD}{circle}")).unwrap_err();
-        let MachineFileError::EndlessExpansion { file, entry, cycle } = error else { panic!("{error}") };
+        let MachineFileError::Content { file, defect: Defect::EndlessExpansion { entry, cycle }, .. } = error
+        else {
+            panic!("{error}")
+        };
         assert_eq!((file.as_str(), entry.as_str()), ("bad.toml", "expansions.multiply"));
         assert_eq!(cycle, ["multiply", "divide", "multiply"]);
     }

@@ -5,10 +5,12 @@ mod folding;
 mod instruction;
 mod interpreter;
 mod listing;
+mod outline;
 mod recorder;
 
 pub use instruction::{Action, File, Instruction, Operand, Reference, RegisterName};
 pub use listing::Listing;
+pub use outline::{Outline, Outlines, Place, register_shape};
 
 use crate::isa::{Element, Footprint, Op, OpCounts, Text};
 use allocation::FileSizes;

@@ -1,0 +1,110 @@
+//! Instructions as a timing model sees them: which unit, from where, to where, whatever the lanes hold.
+
+use super::Tape;
+use super::instruction::{Action, File, Instruction, Operand, Reference, RegisterName};
+use crate::backend::{Precision, Registers};
+use crate::isa::{Element, Op, ProgramError, Vector};
+use crate::program::{InstructionSet, Task, dispatch};
+use std::cell::Cell;
+
+/// Where a vector lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In a vector register.
+    Register(RegisterName),
+    /// In an array, element after element.
+    Memory(Reference),
+    /// In an array, at the elements that an index vector numbers.
+    Indexed(Reference),
+}
+
+/// One vector instruction without its numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Outline {
+    /// The operation.
+    pub op: Op,
+    /// Whether numbers change their precision on the way ([`Op::Widen`] is counted besides).
+    pub converts: bool,
+    /// The vectors it reads; scalar operands are none.
+    pub reads: Vec<Place>,
+    /// The vector it writes; a population count writes none.
+    pub writes: Option<Place>,
+}
+
+impl Outline {
+    /// The operations it counts as, [`Instruction::operations`].
+    pub fn operations(&self) -> impl Iterator<Item = Op> {
+        std::iter::once(self.op).chain(self.converts.then_some(Op::Widen))
+    }
+
+    fn of<L: Element>(instruction: &Instruction<L>) -> Outline {
+        let mut reads = Vec::new();
+        let mut copy = *instruction;
+        copy.operands(|operand| {
+            if let Operand::Memory(reference) = operand {
+                reads.push(Place::Memory(*reference));
+            }
+        });
+        // Only the reads: a copy without a result visits no other register.
+        copy.to = None;
+        copy.registers(|name| reads.push(Place::Register(*name)));
+        let mut writes = instruction.to.map(Place::Register);
+        match instruction.action {
+            Action::Load(from) | Action::LoadIndex(from) => reads.push(Place::Memory(from)),
+            Action::Gather(from, ..) | Action::GatherIndex(from, _) => reads.push(Place::Indexed(from)),
+            Action::Store(to, _) | Action::StoreIndex(to, _) => writes = Some(Place::Memory(to)),
+            Action::ScatterIndex(to, ..) => writes = Some(Place::Indexed(to)),
+            _ => {}
+        }
+        Outline { op: instruction.op, converts: instruction.operations().count() > 1, reads, writes }
+    }
+}
+
+/// A recorded program as a timing model sees it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Outlines {
+    /// The number its lanes hold.
+    pub lane: &'static str,
+    /// The instructions of a machine that computes on registers, in order: what is counted and listed.
+    pub instructions: Vec<Outline>,
+    /// The passes that execute them here: loads are operands of their readers wherever the array keeps its contents.
+    pub passes: Vec<Outline>,
+    /// Registers of each file that the passes need at once, in the order of [`File::ALL`].
+    pub registers: [usize; File::ALL.len()],
+}
+
+impl<L: Element> Tape<L> {
+    /// The program as a timing model sees it.
+    pub fn outlines(&self) -> Outlines {
+        Outlines {
+            lane: L::NAME,
+            instructions: self.instructions.iter().map(Outline::of).collect(),
+            passes: self.passes.iter().map(Outline::of).collect(),
+            registers: self.pass_sizes,
+        }
+    }
+}
+
+/// Bytes that an element takes in a register of each file, in the order of [`File::ALL`], and the lanes of a hardware
+/// register.
+///
+/// # Errors
+/// [`ProgramError::NoSuchInstructionSet`].
+pub fn register_shape<L: Precision>(
+    set: InstructionSet,
+) -> Result<([f64; File::ALL.len()], usize), ProgramError> {
+    let shape = Cell::new(Default::default());
+    dispatch::<L, _>(set, Shape(&shape))?;
+    Ok(shape.get())
+}
+
+/// Looks up the sizes of a register file.
+struct Shape<'c>(&'c Cell<([f64; File::ALL.len()], usize)>);
+
+impl<L: Precision> Task<L> for Shape<'_> {
+    #[inline(always)]
+    fn on<R: Registers<Lane = L>>(self, _: R) {
+        let sizes = [size_of::<R::V>(), size_of::<<R::V as Vector>::Predicate>(), size_of::<R::Index>()];
+        self.0.set((sizes.map(|size| size as f64 / R::LANES as f64), R::LANES));
+    }
+}

@@ -1,0 +1,124 @@
+//! Convoys: sets of vector instructions that begin together, Hennessy and Patterson, *Computer Architecture*, vector
+//! processors.
+
+use crate::model::machine::{ClassCounts, MachineModel};
+use crate::model::units::Resource;
+use std::collections::HashMap;
+use stripmine_kernels::backend::tape::{Outline, Place, RegisterName};
+use stripmine_kernels::isa::{Array, OpClass};
+
+/// How loads and stores find memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Memory {
+    /// As many ports as instructions, an element a clock period each.
+    NeverBusy,
+    /// The ports and rates that the machine states.
+    Ports,
+}
+
+/// Instructions that run at once.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Convoy {
+    /// Clock periods until the last of its units delivers its first element.
+    pub start_up: f64,
+    /// Clock periods an element: those of its slowest unit.
+    pub chime: f64,
+    /// Instructions, those of expansions each for itself.
+    pub instructions: usize,
+}
+
+/// The convoys of a program: each instruction, in order, joins the convoy before it unless its unit is taken, or it needs
+/// a result of that convoy and the machine does not chain.
+///
+/// Registers are as many as the program needs and never in the way; only true dependences count. An expansion is a chain
+/// of dependent steps, its classes spread evenly over it: machine files say how many of each, not in which order. What a
+/// convoy has stored is not loaded by the same convoy.
+pub fn convoys(machine: &MachineModel, order: &[Outline], memory: Memory) -> Vec<Convoy> {
+    let mut issue = Issue { machine, memory, convoys: vec![], used: HashMap::new(), results: HashMap::new() };
+    for outline in order {
+        issue.instruction(outline);
+    }
+    issue.convoys
+}
+
+/// What an instruction may wait for.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Result {
+    Register(RegisterName),
+    Array(Array, &'static str),
+}
+
+impl Result {
+    fn at(place: &Place) -> Result {
+        match place {
+            Place::Register(name) => Result::Register(*name),
+            Place::Memory(reference) | Place::Indexed(reference) => {
+                Result::Array(reference.array, reference.element)
+            }
+        }
+    }
+}
+
+/// The convoy being filled, and what it has in hand.
+struct Issue<'m> {
+    machine: &'m MachineModel,
+    memory: Memory,
+    convoys: Vec<Convoy>,
+    /// Instructions of the open convoy on each unit.
+    used: HashMap<Resource<'m>, f64>,
+    /// Results of the open convoy: clock periods until their first element.
+    results: HashMap<Result, f64>,
+}
+
+impl Issue<'_> {
+    fn instruction(&mut self, outline: &Outline) {
+        let mut before: Option<f64> = None;
+        for class in outline.operations().flat_map(|op| spread(&self.machine.steps(op.class()))) {
+            before = Some(self.step(class, outline, before));
+        }
+        if let (Some(place), Some(first_element)) = (&outline.writes, before) {
+            self.results.insert(Result::at(place), first_element);
+        }
+    }
+
+    /// Issues one step, which needs what the instruction reads and its step `before`; when its first element comes.
+    fn step(&mut self, class: OpClass, outline: &Outline, before: Option<f64>) -> f64 {
+        let unit = self.machine.unit(class).filter(|unit| {
+            !(self.memory == Memory::NeverBusy && matches!(unit.resource, Resource::Loads | Resource::Stores))
+        });
+        let awaited = outline.reads.iter().filter_map(|place| {
+            let result = Result::at(place);
+            Some((matches!(result, Result::Array(..)), *self.results.get(&result)?))
+        });
+        let awaited: Vec<(bool, f64)> = awaited.chain(before.map(|before| (false, before))).collect();
+        let must_wait = awaited.iter().any(|&(stored, _)| stored || !self.machine.chains());
+        let taken =
+            unit.is_some_and(|unit| self.used.get(&unit.resource).is_some_and(|&used| used >= unit.count));
+        let opens = self.convoys.is_empty() || must_wait || taken;
+        if opens {
+            self.convoys.push(Convoy::default());
+            self.used.clear();
+            self.results.clear();
+        }
+        let begins = if opens { 0.0 } else { awaited.iter().map(|&(_, at)| at).fold(0.0, f64::max) };
+        let first_element = begins + self.machine.start_up(class);
+        if let Some(unit) = unit {
+            *self.used.entry(unit.resource).or_default() += 1.0;
+        }
+        let convoy = self.convoys.last_mut().expect("one was just opened if there was none");
+        convoy.start_up = convoy.start_up.max(first_element);
+        convoy.chime = convoy.chime.max(1.0 / unit.map_or(1.0, |unit| unit.rate));
+        convoy.instructions += 1;
+        first_element
+    }
+}
+
+/// The classes of an expansion, each as often as it occurs, spread evenly among the others.
+fn spread(steps: &ClassCounts) -> Vec<OpClass> {
+    let mut placed: Vec<(f64, OpClass)> = steps
+        .iter()
+        .flat_map(|(&class, &count)| (0..count).map(move |i| ((i as f64 + 0.5) / count as f64, class)))
+        .collect();
+    placed.sort_by(|a, b| a.0.total_cmp(&b.0));
+    placed.into_iter().map(|(_, class)| class).collect()
+}

@@ -1,0 +1,206 @@
+//! Golden values of the sources, and what every clock promises.
+
+use super::*;
+use crate::model::machine::{MachineModel, names, preset};
+use stripmine_kernels::backend::tape::{File, Outline, Place, Reference, RegisterName};
+use stripmine_kernels::isa::Array;
+use stripmine_kernels::isa::OpCounts;
+use stripmine_kernels::isa::op::Op;
+
+fn counts_of(op: Op, times: u64) -> Work {
+    let mut counts = OpCounts::default();
+    (0..times).for_each(|_| counts.record(op));
+    counts.into()
+}
+
+/// One time step as in the table of BP93 section 3: 59 + 12 + 54 operations on particles, 1656 on cells.
+fn paper_step(particles: u64, cells: u64) -> f64 {
+    let machine = preset("paper").unwrap();
+    [(59, particles), (12, particles), (1656, cells), (54, particles)]
+        .into_iter()
+        .map(|(operations, n)| Clock::Paper.clocks(&machine, &counts_of(Op::Multiply, operations), n))
+        .sum()
+}
+
+#[test]
+fn a_time_step_costs_what_the_paper_prints() {
+    for (particles, cells) in [(1, 1), (100, 1_000), (5_000, 20_000)] {
+        let printed = 125 * (particles + 20) + 1656 * (cells + 20);
+        assert_eq!(paper_step(particles, cells), printed as f64);
+    }
+}
+
+#[test]
+fn a_particle_costs_125_plus_1656_over_the_occupancy_in_a_large_system() {
+    let particles = 1_000_000_000;
+    for (cells_per_particle, per_particle) in [(10, 16_685.0), (4, 6_749.0)] {
+        let clocks = paper_step(particles, particles * cells_per_particle) / particles as f64;
+        assert!((clocks - per_particle).abs() < 1e-3, "{clocks} instead of {per_particle}");
+    }
+}
+
+#[test]
+fn the_paper_machine_charges_every_operation_alike() {
+    let machine = preset("paper").unwrap();
+    for &op in Op::ALL {
+        assert_eq!(Clock::Paper.clocks(&machine, &counts_of(op, 3), 100), 3.0 * 120.0, "{op:?}");
+    }
+}
+
+#[test]
+fn the_speed_up_over_scalar_is_n_d_over_n_plus_d_and_tends_to_d() {
+    let machine = preset("paper").unwrap();
+    let counts = counts_of(Op::Add, 7);
+    let speed_up = |n| Clock::Scalar.clocks(&machine, &counts, n) / Clock::Paper.clocks(&machine, &counts, n);
+    for n in [1_u64, 20, 64, 1_000] {
+        let expected = 20.0 * n as f64 / (n as f64 + 20.0);
+        assert!((speed_up(n) - expected).abs() < 1e-12, "n = {n}");
+    }
+    assert!((speed_up(1_000_000_000) - 20.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_missing_operation_is_charged_by_its_expansion() {
+    let machine = preset("cray-1").unwrap();
+    let divide = counts_of(Op::Divide, 1);
+    // One reciprocal approximation of depth 14 and three products of depth 7.
+    assert_eq!(Clock::Paper.clocks(&machine, &divide, 64), (64.0 + 14.0) + 3.0 * (64.0 + 7.0));
+    assert_eq!(Clock::Scalar.clocks(&machine, &divide, 64), 64.0 * (14.0 + 3.0 * 7.0));
+}
+
+#[test]
+fn empty_vectors_and_empty_counts_cost_nothing() {
+    let machine = preset("cray-x-mp").unwrap();
+    for &clock in Clock::ALL {
+        assert_eq!(clock.clocks(&machine, &counts_of(Op::SquareRoot, 5), 0), 0.0);
+        assert_eq!(clock.clocks(&machine, &Work::default(), 1_000), 0.0);
+    }
+}
+
+/// The machine of Hennessy and Patterson's examples; start-ups 12, 7 and 6, one memory port.
+fn textbook(chaining: bool) -> MachineModel {
+    let quantity = |value: f64| format!("{{ value = {value}, provenance = \"sourced\", note = \"H&P\" }}");
+    let unit = |name: &str, serves: &str| {
+        format!("[units.{name}]\nserves = [{serves}]\ncount = {}\n", quantity(1.0))
+    };
+    let text = [
+        "format = 1\ntitle = \"VMIPS\"\n".to_owned(),
+        format!("year = {}\nclock_period_ns = {}\n", quantity(1990.0), quantity(1.0)),
+        format!("chaining = {}\n", quantity(1.0).replace("1,", &format!("{chaining},"))),
+        format!("loop_overhead = {}\n", quantity(15.0)),
+        format!("[vector_registers]\ncount = {}\nlength = {}\n", quantity(8.0), quantity(64.0)),
+        format!(
+            "[start_up]\ndefault = {}\nmultiply = {}\nadd = {}\n",
+            quantity(12.0),
+            quantity(7.0),
+            quantity(6.0)
+        ),
+        unit("add", r#""add", "compare", "convert""#),
+        unit("multiply", r#""multiply""#),
+        unit("divide", r#""divide", "square_root""#),
+        unit("logical", r#""logical", "reduce""#),
+        format!("[memory]\nload_ports = {}\n", quantity(1.0)),
+    ];
+    MachineModel::parse("textbook.toml", &text.concat()).unwrap()
+}
+
+fn register(number: u32) -> Place {
+    Place::Register(RegisterName { file: File::Number, number })
+}
+
+fn array(array: Array) -> Place {
+    Place::Memory(Reference { array, element: "f64", shift: 0 })
+}
+
+fn instruction(op: Op, reads: &[Place], to: Place) -> Outline {
+    Outline { op, converts: false, reads: reads.to_vec(), writes: Some(to) }
+}
+
+/// Y = a X + Y.
+fn daxpy() -> Work {
+    Work::in_order(vec![
+        instruction(Op::Load, &[array(Array::X)], register(0)),
+        instruction(Op::Multiply, &[register(0)], register(1)),
+        instruction(Op::Load, &[array(Array::Y)], register(2)),
+        instruction(Op::Add, &[register(1), register(2)], register(3)),
+        instruction(Op::Store, &[register(3)], array(Array::Y)),
+    ])
+}
+
+#[test]
+fn the_strip_mining_formula_gives_hennessy_and_pattersons_values() {
+    let charge = |start: f64| Charge { strip: Some(64.0), each_strip: 15.0 + start, each_element: 3.0 };
+    assert_eq!(charge(49.0).clocks(200), 856.0);
+    assert_eq!(charge(49.0).clocks(1000), 4024.0);
+    assert_eq!(charge(31.0).clocks(200), 784.0);
+}
+
+#[test]
+fn the_convoys_of_daxpy_are_those_of_the_textbook() {
+    let machine = textbook(true);
+    let convoys = convoys(&machine, daxpy().order().unwrap(), Memory::Ports);
+    // Load and multiply, load and add, store: starts 12 + 7, 12 + 6 and 12, together 49; three chimes.
+    assert_eq!(convoys.iter().map(|convoy| convoy.instructions).collect::<Vec<_>>(), [2, 2, 1]);
+    assert_eq!(convoys.iter().map(|convoy| convoy.start_up).collect::<Vec<_>>(), [19.0, 18.0, 12.0]);
+    assert_eq!(Clock::Ports.clocks(&machine, &daxpy(), 200), 856.0);
+    assert_eq!(Clock::Ports.clocks(&machine, &daxpy(), 1000), 4024.0);
+    // With memory never busy all of it is one convoy, as long as its chain: 12 + 7 + 6 + 12.
+    assert_eq!(Clock::Chained.clocks(&machine, &daxpy(), 200), 4.0 * (15.0 + 37.0) + 200.0);
+}
+
+#[test]
+fn a_product_that_feeds_a_sum_takes_141_clocks_unchained_and_77_chained() {
+    let pair = Work::in_order(vec![
+        instruction(Op::Multiply, &[register(0), register(1)], register(2)),
+        instruction(Op::Add, &[register(2), register(3)], register(4)),
+    ]);
+    let without_loop = |chaining| Clock::Chained.clocks(&textbook(chaining), &pair, 64) - 15.0;
+    assert_eq!(without_loop(false), 141.0);
+    assert_eq!(without_loop(true), 77.0);
+}
+
+#[test]
+fn what_a_convoy_stored_is_loaded_by_a_later_one() {
+    let machine = textbook(true);
+    let program = Work::in_order(vec![
+        instruction(Op::Store, &[register(0)], array(Array::X)),
+        instruction(Op::Load, &[array(Array::X)], register(1)),
+        instruction(Op::Load, &[array(Array::Y)], register(2)),
+    ]);
+    let convoys = convoys(&machine, program.order().unwrap(), Memory::NeverBusy);
+    assert_eq!(convoys.iter().map(|convoy| convoy.instructions).collect::<Vec<_>>(), [1, 2]);
+}
+
+#[test]
+fn a_strip_of_registers_costs_the_papers_clock_and_the_loop() {
+    let machine = textbook(true);
+    let work = daxpy();
+    for n in [1, 63, 64] {
+        let paper = Clock::Paper.clocks(&machine, &work, n);
+        assert_eq!(Clock::Registers.clocks(&machine, &work, n), paper + 15.0, "n = {n}");
+    }
+    let two = Clock::Paper.clocks(&machine, &work, 64) + Clock::Paper.clocks(&machine, &work, 1) + 30.0;
+    assert_eq!(Clock::Registers.clocks(&machine, &work, 65), two);
+}
+
+#[test]
+fn chaining_never_costs_and_ports_never_save() {
+    for name in names() {
+        let machine = preset(name).unwrap();
+        for n in [1, 8, 64, 65, 1000, 100_000] {
+            let clocks = |clock: Clock| clock.clocks(&machine, &daxpy(), n);
+            assert!(clocks(Clock::Chained) <= clocks(Clock::Registers) + 1e-9, "{name}, n = {n}");
+            assert!(clocks(Clock::Paper) <= clocks(Clock::Registers) + 1e-9, "{name}, n = {n}");
+        }
+    }
+}
+
+#[test]
+fn on_the_papers_machine_every_vector_clock_is_the_papers() {
+    let machine = preset("paper").unwrap();
+    for clock in [Clock::Registers, Clock::Chained, Clock::Ports] {
+        for n in [1, 64, 1000] {
+            assert_eq!(clock.clocks(&machine, &daxpy(), n), Clock::Paper.clocks(&machine, &daxpy(), n));
+        }
+    }
+}

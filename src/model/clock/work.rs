@@ -1,0 +1,53 @@
+//! What a clock is asked about.
+
+use crate::model::machine::MachineModel;
+use stripmine_kernels::Runnable;
+use stripmine_kernels::backend::tape::Outline;
+use stripmine_kernels::isa::OpCounts;
+
+/// What a program executes: how often each operation and, where a program stands behind the counts, in which order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Work {
+    counts: OpCounts,
+    order: Vec<Outline>,
+}
+
+impl Work {
+    /// The instructions of a program.
+    pub fn of(program: &dyn Runnable) -> Work {
+        Work::in_order(program.outlines().instructions)
+    }
+
+    /// These instructions, one after the other.
+    pub fn in_order(order: Vec<Outline>) -> Work {
+        let mut counts = OpCounts::default();
+        order.iter().flat_map(Outline::operations).for_each(|op| counts.record(op));
+        Work { counts, order }
+    }
+
+    /// How often each operation is executed.
+    pub fn counts(&self) -> &OpCounts {
+        &self.counts
+    }
+
+    /// The instructions in their order; none where only counts are known, which no clock can chain.
+    pub fn order(&self) -> Option<&[Outline]> {
+        (!self.order.is_empty()).then_some(&self.order)
+    }
+
+    /// Adds up `each(D)` over all operations that `machine` executes.
+    pub(super) fn sum(&self, machine: &MachineModel, each: impl Fn(f64) -> f64) -> f64 {
+        machine
+            .expand(&self.counts)
+            .into_iter()
+            .map(|(class, count)| count as f64 * each(machine.start_up(class)))
+            .sum()
+    }
+}
+
+impl From<OpCounts> for Work {
+    /// Operations in no known order.
+    fn from(counts: OpCounts) -> Work {
+        Work { counts, order: vec![] }
+    }
+}
