@@ -2,6 +2,8 @@
 
 use assert_cmd::Command;
 use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::Path;
 
 fn stripmine(arguments: &[&str]) -> std::process::Output {
     Command::cargo_bin("stripmine").unwrap().args(arguments).output().unwrap()
@@ -82,24 +84,66 @@ fn bad_usage_exits_with_2_and_helps() {
     }
 }
 
+/// The files of a folder but those that say when and where, by name.
+fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+    let files =
+        entries.map(|entry| (entry.file_name().into_string().unwrap(), std::fs::read(entry.path()).unwrap()));
+    files.filter(|(name, _)| name != "provenance.json").collect()
+}
+
 /// Results go where they were asked for, and two runs write the same bytes.
 #[test]
 fn reproduce_writes_the_same_twice() {
     let folder = tempfile::tempdir().unwrap();
-    let write = |name: &str| {
+    let [first, second] = ["a", "b"].map(|name| {
         let out = folder.path().join(name);
-        json(&["reproduce", "--only", "table", "--out", out.to_str().unwrap(), "--json"])
-    };
-    let (first, second) = (write("a"), write("b"));
-    let files = |outcome: &Value| -> Vec<String> {
-        outcome["files"].as_array().unwrap().iter().map(|file| file.as_str().unwrap().to_owned()).collect()
-    };
-    assert_eq!(files(&first).len(), files(&second).len());
-    for (a, b) in files(&first).iter().zip(files(&second)) {
-        assert_eq!(std::fs::read(a).unwrap(), std::fs::read(b).unwrap(), "{a}");
+        let items = ["--only", "table", "--only", "mask", "--only", "misprints"];
+        let outcome = json(&[&["reproduce", "--out", out.to_str().unwrap(), "--json"][..], &items].concat());
+        assert_eq!(outcome.as_array().unwrap().len(), 3);
+        out
+    });
+    for (item, file) in
+        [("table", "efficiency_table.csv"), ("mask", "mask_5x5.svg"), ("misprints", "data.json")]
+    {
+        let [a, b] = [&first, &second].map(|out| contents(&out.join(item)));
+        assert!(a.contains_key(file), "{item}/{file}");
+        assert!(a == b, "{item}");
     }
-    let page = std::fs::read_to_string(folder.path().join("a/README.md")).unwrap();
-    assert!(page.contains("1 656") || page.contains("1\u{202f}656"));
+    let page = std::fs::read_to_string(first.join("README.md")).unwrap();
+    assert!(page.contains("1\u{202f}656"));
+}
+
+/// A single item renews itself and leaves the others, on the disk and on the pages.
+#[test]
+fn single_items_keep_the_rest() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let make = |item| assert!(stripmine(&["reproduce", "--only", item, "--out", out]).status.success());
+    make("mask");
+    let before = contents(&folder.path().join("mask"));
+    make("table");
+    assert!(before == contents(&folder.path().join("mask")));
+    for page in ["README.md", "index.html"] {
+        let page = std::fs::read_to_string(folder.path().join(page)).unwrap();
+        assert!(page.contains("The mask (figure 2)") && page.contains("The efficiency table"));
+        assert!(page.contains("stripmine reproduce --only mask"));
+    }
+}
+
+/// Completions and the manual page know every verb; a page of a verb that there is not names those there are.
+#[test]
+fn completions_and_manual_know_the_verbs() {
+    let text = |arguments: &[&str]| String::from_utf8(stripmine(arguments).stdout).unwrap();
+    for page in [text(&["completions", "bash"]), text(&["man"])] {
+        assert!(
+            ["reproduce", "table", "listing", "run", "scene", "bench"].iter().all(|verb| page.contains(verb))
+        );
+    }
+    assert!(text(&["man", "reproduce"]).contains("quick"));
+    let output = stripmine(&["man", "fly"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("reproduce"));
 }
 
 /// A folder that cannot be written is an input/output failure with its name.

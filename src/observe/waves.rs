@@ -1,5 +1,6 @@
 //! Density waves along an axis: what tells them from an even spread.
 
+use serde::Serialize;
 use std::f64::consts::TAU;
 
 /// How many places lie in each of `bins` equal parts of `0..length`. What lies at a rim, or beyond, is in the bin there.
@@ -33,9 +34,72 @@ pub fn strongest_mode(places: &[f64], length: f64, shortest: f64) -> f64 {
     (1..=(length / shortest) as usize).map(amplitude).fold(0.0, f64::max)
 }
 
+/// Which way waves run: shares of the spectral power at wavelengths from `shortest` on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Directions {
+    /// Of waves that run towards lower places.
+    pub back: f64,
+    /// Of what is the same all the time.
+    pub standing: f64,
+    /// Of waves that run towards higher places.
+    pub forth: f64,
+}
+
+/// Which way the waves run in counts taken at equal intervals of time, all with the same bins of `0..length`.
+///
+/// The density of each wavelength is a complex number that turns one way or the other: a density f(x − ct) turns by
+/// −kc a second.
+pub fn directions(looks: &[Vec<u32>], length: f64, shortest: f64) -> Directions {
+    let (mut back, mut standing, mut forth) = (0.0, 0.0, 0.0);
+    let times = looks.len();
+    for mode in 1..=(length / shortest) as usize {
+        let amplitudes: Vec<[f64; 2]> =
+            looks.iter().map(|counts| transform(mode, counts.iter().map(|&n| [f64::from(n), 0.0]))).collect();
+        for frequency in 0..times {
+            let [re, im] = transform(frequency, amplitudes.iter().copied());
+            let power = re * re + im * im;
+            // Frequencies above the half stand for negative ones.
+            match frequency {
+                0 => standing += power,
+                _ if 2 * frequency < times => back += power,
+                _ => forth += power,
+            }
+        }
+    }
+    let all = back + standing + forth;
+    Directions { back: back / all, standing: standing / all, forth: forth / all }
+}
+
+/// One component of the discrete Fourier transform.
+fn transform(frequency: usize, values: impl ExactSizeIterator<Item = [f64; 2]>) -> [f64; 2] {
+    let turn = -TAU * frequency as f64 / values.len() as f64;
+    values.enumerate().fold([0.0; 2], |[re, im], (i, [a, b])| {
+        let (sine, cosine) = libm::sincos(turn * i as f64);
+        [re + a * cosine - b * sine, im + a * sine + b * cosine]
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Counts of a wave of two wavelengths along the bins that moves by `shift` bins a look.
+    fn wave(shift: i32) -> Vec<Vec<u32>> {
+        let count = |look: i32, bin: i32| {
+            10 + (8.0 * (TAU * f64::from(bin - shift * look) / 16.0).cos()).round() as u32
+        };
+        (0..16).map(|look| (0..32).map(|bin| count(look, bin)).collect()).collect()
+    }
+
+    #[test]
+    fn a_wave_runs_the_way_it_is_shifted() {
+        for (shift, expected) in [(1, [0.0, 0.0, 1.0]), (-1, [1.0, 0.0, 0.0]), (0, [0.0, 1.0, 0.0])] {
+            let Directions { back, standing, forth } = directions(&wave(shift), 32.0, 8.0);
+            for (found, expected) in [back, standing, forth].into_iter().zip(expected) {
+                assert!((found - expected).abs() < 1e-2, "{shift}: {found} instead of {expected}");
+            }
+        }
+    }
 
     #[test]
     fn an_even_spread_has_no_variance_and_a_heap_has_all_of_it() {

@@ -3,6 +3,7 @@
 use super::figure::{Axis, Chart, Drawing, Figure, Map, Picture, Point, Series, Shape, Style, Tint};
 use super::section::{Film, Frame};
 use super::{Cell, Section, Table, Verdict};
+use crate::observe::waves::Directions;
 use crate::particles::{Kind, Particle, Particles};
 use crate::study::pipe_flow::{FANO_BIN, MAP_BIN, PipeFlow};
 
@@ -25,6 +26,13 @@ pub fn section(showing: Showing, flows: &[PipeFlow]) -> Section {
     let late: Vec<f64> = flows.iter().map(|flow| flow.late(&flow.fano)).collect();
     let waves = late.iter().filter(|&&fano| fano > 1.0).count();
     let lasting = first.times.last().copied().unwrap_or(0.0);
+    let mean = |share: fn(&Directions) -> f64| {
+        100.0 * flows.iter().map(|flow| share(&flow.directions)).sum::<f64>() / flows.len() as f64
+    };
+    let mut figures = vec![map(first), over_time(flows)];
+    if !first.frames.is_empty() {
+        figures.splice(0..0, [piece(first), snapshots(showing, first)]);
+    }
     Section {
         name: showing.name.into(),
         title: showing.title.into(),
@@ -33,17 +41,21 @@ pub fn section(showing: Showing, flows: &[PipeFlow]) -> Section {
             .into(),
         came_out: format!(
             "{waves} of {} runs of {lasting:.0} s form waves (Fano factor above 1): late Fano factor {}, from {:.2} at the \
-             start; strongest Fourier mode {:.3} at the start, {:.2} late; mean velocity {:.3} m/s.",
+             start; strongest Fourier mode {:.3} at the start, {:.2} late; mean velocity {:.3} m/s. Of the late spectral power \
+             {:.0} % runs against gravity, {:.0} % with it, {:.0} % stands.",
             flows.len(),
             late.iter().map(|fano| format!("{fano:.2}")).collect::<Vec<_>>().join(", "),
             first.fano[0],
             first.strongest_mode[0],
             first.late(&first.strongest_mode),
-            first.late(&first.flow)
+            first.late(&first.flow),
+            mean(|directions| directions.back),
+            mean(|directions| directions.forth),
+            mean(|directions| directions.standing)
         ),
         verdict: if waves == flows.len() { Verdict::Reproduced } else { Verdict::Partly },
         again: format!("stripmine reproduce --only {}", showing.name),
-        figures: vec![piece(first), snapshots(showing, first), map(first), over_time(flows)],
+        figures,
         tables: vec![table(flows)],
         excerpt: None,
         film: film(showing, first),
@@ -225,13 +237,20 @@ fn table(flows: &[PipeFlow]) -> Table {
             Cell::Number(flow.strongest_mode[0], 3),
             Cell::Number(flow.late(&flow.strongest_mode), 3),
             Cell::Number(flow.late(&flow.flow), 3),
+            Cell::Number(100.0 * flow.directions.back, 0),
+            Cell::Number(100.0 * flow.directions.standing, 0),
+            Cell::Number(100.0 * flow.directions.forth, 0),
             if flow.deepest > 0.0 { Cell::Number(flow.deepest, 3) } else { Cell::Nothing },
             flow.checksum.as_str().into(),
         ]
     });
     Table {
         name: "runs".into(),
-        title: format!("Runs of {}", flows[0].scene),
+        title: format!(
+            "Runs of {}{}",
+            flows[0].scene,
+            flows[0].overrides.iter().map(|text| format!(", {text}")).collect::<String>()
+        ),
         columns: [
             "seed",
             "Fano at the start",
@@ -239,13 +258,20 @@ fn table(flows: &[PipeFlow]) -> Table {
             "mode at the start",
             "mode late",
             "mean velocity late (m/s)",
+            "power against gravity (%)",
+            "standing (%)",
+            "with gravity (%)",
             "deepest penetration, where beyond the warned",
             "final state (CRC-32)",
         ]
         .map(str::to_owned)
         .to_vec(),
         rows: rows.collect(),
-        notes: vec![format!("{} grains; late is the mean over the second half of the run.", flows[0].grains)],
+        notes: vec![format!(
+            "{} grains; late is the mean over the second half of the run, whose spectral power at wavelengths from 80 mean \
+             radii on is divided by the way it runs.",
+            flows[0].grains
+        )],
     }
 }
 

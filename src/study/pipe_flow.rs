@@ -1,7 +1,7 @@
 //! Do grains that fall through a pipe gather into density waves? BP93 section 4, figures 5 and 6.
 
 use super::StudyError;
-use crate::observe::waves::{fano, histogram, strongest_mode};
+use crate::observe::waves::{Directions, directions, fano, histogram, strongest_mode};
 use crate::observe::{Observation, Scenery};
 use crate::particles::Particles;
 use crate::run::{assemble, model};
@@ -55,6 +55,8 @@ pub struct PipeFlow {
     pub flow: Vec<f64>,
     /// Grains in bins of [`MAP_BIN`] radii, at each look.
     pub density: Vec<Vec<u32>>,
+    /// Which way the waves ran in the last half of the run: forth is the way grains fall.
+    pub directions: Directions,
     /// Deepest penetration of all steps, and only what is deeper than the scene's `max_penetration` is followed
     /// (fraction of the sum of the radii).
     pub deepest: f64,
@@ -106,6 +108,7 @@ pub fn pipe_flow(question: &Question, progress: impl Fn(f64)) -> Result<PipeFlow
         strongest_mode: vec![],
         flow: vec![],
         density: vec![],
+        directions: Directions::default(),
         deepest: 0.0,
         checksum: String::new(),
         frames: vec![],
@@ -129,6 +132,8 @@ pub fn pipe_flow(question: &Question, progress: impl Fn(f64)) -> Result<PipeFlow
         }
         method.step()?;
     }
+    let late = &flow.density[flow.density.len() / 2..];
+    flow.directions = directions(late, length, SHORTEST_WAVE * radius);
     flow.deepest = method.deep_contacts().deepest;
     flow.checksum = super::checksum(&method.particles());
     Ok(flow)

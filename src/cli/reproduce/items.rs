@@ -68,13 +68,14 @@ define_items! {
     (Identity, "identity", 3.0, 3.0, "Lattice and neighbour lists: the same to the bit"),
     (PipeSmall, "pipe-small", 3.0, 3.0, "BP93, figures 5 and 6, in two fifths of the pipe"),
     (Pipe, "pipe", 120.0, 120.0, "BP93, figures 5 and 6, in the whole pipe"),
+    (PipeThin, "pipe-thin", 30.0, 30.0, "The whole pipe with fewer grains: waves both ways"),
     (Waves, "waves", 60.0, 60.0, "Density waves over dissipation, and controls without"),
 }
 
 impl Item {
     /// Whether the item is made when none is named.
     pub(super) const fn belongs_to(self, effort: Effort) -> bool {
-        matches!(effort, Effort::Full) || !matches!(self, Item::Pipe | Item::Waves)
+        matches!(effort, Effort::Full) || !matches!(self, Item::Pipe | Item::PipeThin | Item::Waves)
     }
 
     /// Makes the item. `progress` gets the share that is done.
@@ -113,12 +114,17 @@ impl Item {
             Item::PipeSmall => {
                 let title = "Density waves in a short pipe (figures 5 and 6)";
                 let showing = Showing { name: self.name(), title, from: 0.0, snapshots: 11 };
-                pipes(showing, &[1], progress)
+                pipes(showing, ("pipe-small", &[]), &[1], progress)
             }
             Item::Pipe => {
                 let title = "Density waves in the whole pipe (figures 5 and 6)";
                 let showing = Showing { name: self.name(), title, from: 10.0, snapshots: 14 };
-                pipes(showing, &[1, 2, 3, 4], progress)
+                pipes(showing, ("pipe", &[]), &[1, 2, 3, 4], progress)
+            }
+            Item::PipeThin => {
+                let title = "Density waves both ways in a thinner filling";
+                let showing = Showing { name: self.name(), title, from: 0.0, snapshots: 0 };
+                pipes(showing, ("pipe", &["particles.packing_fraction=0.35"]), &[1, 2], progress)
             }
             Item::Waves => {
                 let seeds = [1, 2, 3, 4, 5, 6];
@@ -153,14 +159,23 @@ fn measured_effort(effort: Effort) -> measured_cost::Effort {
     }
 }
 
-/// Runs of the scene that bears the item's name, side by side; the first keeps its frames.
-fn pipes(showing: Showing, seeds: &[u64], progress: &(dyn Fn(f64) + Sync)) -> Result<Made, Failure> {
+/// Runs of a scene with overrides, side by side; the first keeps its frames if snapshots are shown.
+fn pipes(
+    showing: Showing,
+    (scene, overrides): (&'static str, &[&str]),
+    seeds: &[u64],
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Made, Failure> {
     const PARTS: f64 = 1000.0;
     let done: Vec<AtomicUsize> = seeds.iter().map(|_| AtomicUsize::new(0)).collect();
     let numbered: Vec<(usize, u64)> = seeds.iter().copied().enumerate().collect();
     let flows = numbered.par_iter().map(|&(at, seed)| {
-        let question =
-            pipe_flow::Question { scene: showing.name, overrides: vec![], seed, keep_frames: at == 0 };
+        let question = pipe_flow::Question {
+            scene,
+            overrides: overrides.iter().map(|&text| text.to_owned()).collect(),
+            seed,
+            keep_frames: at == 0 && showing.snapshots > 0,
+        };
         pipe_flow::pipe_flow(&question, |share| {
             done[at].store((PARTS * share) as usize, Ordering::Relaxed);
             let sum: usize = done.iter().map(|part| part.load(Ordering::Relaxed)).sum();
