@@ -3,7 +3,7 @@
 
 mod support;
 
-use stripmine::method::lattice_md::{Contacts, GearValues, Machine, Model, Watch};
+use stripmine::method::lattice_md::{Contacts, GearValues, Machine, Model, Scheme, Watch};
 use stripmine::method::{Failure, Method, StateColumn};
 use stripmine::observe::{Observation, Scenery};
 use stripmine::particles::{Particle, Particles};
@@ -27,7 +27,7 @@ fn energy_error(values: GearValues, dt: f64, time: f64) -> [f64; 2] {
     let mut start = gas(400, 0.84, 11);
     start.0.contact = Contact { normal_damping: 0.0, shear_damping: 0.0, friction: 0.0, ..CONTACT };
     start.0.friction = false;
-    (start.0.values, start.0.dt) = (values, dt);
+    (start.0.scheme, start.0.dt) = (Scheme::Gear(values), dt);
     let mut gas = lattice(&start);
     let energy = observe(gas.as_ref(), &start.0).energy();
     let samples = 100;
@@ -104,7 +104,7 @@ fn pair(contact: Contact, dt: f64, steps: f64, [normal, shear]: [f64; 2]) -> (Mo
     ];
     let (mut model, particles) = arena([16, 16], true, &discs);
     model.friction = contact.friction > 0.0;
-    (model.contact, model.dt, model.values) = (contact, dt, GearValues::Four);
+    (model.contact, model.dt, model.scheme) = (contact, dt, Scheme::Gear(GearValues::Four));
     (model, particles)
 }
 
@@ -240,7 +240,7 @@ fn an_undamped_collision_converges_at_more_than_second_order() {
         let errors = dts.map(|dt| {
             let square = |phase: i32| {
                 let mut start = pair(contact, dt, 1.0 + f64::from(phase) / f64::from(phases), [speed, 0.0]);
-                start.0.values = values;
+                start.0.scheme = Scheme::Gear(values);
                 let mut collision = lattice(&start);
                 advance(collision.as_mut(), (1.3 * hertz_time(contact.stiffness, speed) / dt) as u64 + 3);
                 let (overlap, _, [away, _]) = apart(collision.particles().all());

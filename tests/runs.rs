@@ -83,6 +83,27 @@ fn a_run_is_the_same_for_threads_and_executions() {
     }
 }
 
+/// The fast execution: the same bytes for any number of threads and any instructions, and after going on.
+#[test]
+fn a_fast_run_is_the_same_for_threads_and_instructions_and_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let with = |name: &str, more: &[&str]| -> PathBuf {
+        let path = folder.path().join(name);
+        let fast = ["--set", "method.execution=fast", "--set", "integrator.kind=velocity-verlet"];
+        succeed(pipe(&path, &[&fast[..], &["--set", "run.steps=400"], more].concat()));
+        path
+    };
+    let one = with("one", &["--threads", "1"]);
+    for (name, more) in
+        [("three", &["--threads", "3"][..]), ("scalar", &["--set", "method.instruction_set=\"scalar\""])]
+    {
+        let other = with(name, more);
+        for file in ["thermo.csv", "trajectory.xyz"] {
+            assert!(read(&one, file) == read(&other, file), "{file} differs with {name}");
+        }
+    }
+}
+
 /// Interrupted or terminated, a run writes a checkpoint, exits with 130, and goes on to the same bits.
 #[cfg(unix)]
 #[test]
@@ -181,10 +202,20 @@ fn pipe_as_printed_is_caught_and_named() {
 /// What outside programs read from `bench --json`.
 #[test]
 fn bench_prints_what_it_promises() {
-    for what in ["lattice", "neighbor-list"] {
+    let programs = &["predict", "index", "forces", "correct"][..];
+    for (what, execution, integrator, phases) in [
+        ("lattice", "fast", "velocity-verlet", &["correct_predict", "index", "forces"][..]),
+        ("lattice", "fast", "gear5", &["correct_predict", "index", "forces"]),
+        ("lattice", "chained", "velocity-verlet", programs),
+        ("neighbor-list", "fast", "gear5", programs),
+    ] {
         let measured = output(&[
             "bench",
             what,
+            "--execution",
+            execution,
+            "--integrator",
+            integrator,
             "--particles",
             "300",
             "--packing-fraction",
@@ -220,7 +251,8 @@ fn bench_prints_what_it_promises() {
         ] {
             assert!(!result[key].is_null() || key == "peak_memory_bytes", "{what}: {key}");
         }
-        for phase in ["predict", "index", "forces", "correct"] {
+        assert_eq!(result["phases"].as_object().unwrap().len(), phases.len());
+        for phase in phases {
             assert!(result["phases"][phase].as_f64().unwrap() > 0.0, "{what}: {phase}");
         }
         let [start, end] = [0, 1].map(|i| result["temperature"][i].as_f64().unwrap());

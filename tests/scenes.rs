@@ -3,7 +3,7 @@
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};
 use stripmine::particles;
-use stripmine::scene::{Document, KEYS, Kind, PRESETS, Reason, Scene, Start};
+use stripmine::scene::{Document, KEYS, Kind, PRESETS, Reason, Scene, Scheme, Start};
 
 fn stripmine(arguments: &[&str]) -> std::process::Output {
     Command::cargo_bin("stripmine").unwrap().args(arguments).output().unwrap()
@@ -136,6 +136,7 @@ fn scenes_survive_being_written() {
                 "particles.seed=18446744073709551615",
             ],
         ),
+        ("bench", vec!["method.execution=fast", "integrator.kind=velocity-verlet"]),
         ("bench", vec!["method.execution=eager", "method.instruction_set=scalar", "law.contact_arm=overlap"]),
         ("two-discs", vec!["particles.radii=[0.5, 0.45]", "particles.wall_positions=[[1.0, 1.0]]"]),
         ("two-discs", vec!["units=\"quotes \\\" and \\\\\"", "law.cohesionless=false", "law.inertia=sphere"]),
@@ -178,7 +179,7 @@ fn overrides_take_the_place_of_rivals() {
     // A hexagonal start needs both, so that they are no rivals there.
     let bench = load("bench", &["particles.count=500", "integrator.values=6"]).unwrap();
     let Start::Hexagonal { count, packing_fraction, .. } = bench.start else { panic!() };
-    assert_eq!((count, packing_fraction, bench.integrator.values), (500, 0.6, 6));
+    assert_eq!((count, packing_fraction, bench.integrator.scheme), (500, 0.6, Scheme::Gear { values: 6 }));
     // Numbers, words with and without quotes.
     let scene = load("pipe", &["method.precision=f32", "method.coordinates=\"absolute\""]).unwrap();
     assert_eq!(scene.method.precision, stripmine::scene::Precision::F32);

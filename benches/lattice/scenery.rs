@@ -1,6 +1,8 @@
 //! The scene of the benches: a dense packing of discs with all contacts at work.
 
-use stripmine::method::lattice_md::{Arrays, Discs, GearValues, Model, Part, StepProgram, execute, programs};
+use stripmine::method::lattice_md::{
+    Arrays, Discs, GearValues, Model, Part, Scheme, StepProgram, execute, programs,
+};
 use stripmine::particles::Particles;
 use stripmine::placement::hexagonal;
 use stripmine_kernels::backend::Precision;
@@ -33,7 +35,7 @@ pub fn dense<P: Precision>(cells: usize, friction: bool) -> (Model, Particles, A
         contact: CONTACT,
         friction,
         discs: Discs::Varying,
-        values: GearValues::Four,
+        scheme: Scheme::Gear(GearValues::Four),
         inertia_factor: 0.5,
         watch: None,
         dt: 0.005,

@@ -21,10 +21,10 @@ pub(super) struct BenchVerb {
     #[arg(long, default_value = "f64", value_parser = ["f64", "f32", "mixed"])]
     precision: String,
     /// Integrator
-    #[arg(long, default_value = "gear5", value_parser = ["gear4", "gear5", "gear6"])]
+    #[arg(long, default_value = "gear5", value_parser = ["gear4", "gear5", "gear6", "velocity-verlet"])]
     integrator: String,
-    /// eager, strip:N or chained
-    #[arg(long, default_value = "chained")]
+    /// eager, strip:N, chained or fast
+    #[arg(long, default_value = "fast")]
     execution: String,
     /// Leave out friction, and with it rotation
     #[arg(long)]
@@ -63,8 +63,11 @@ impl BenchVerb {
             format!("particles.packing_fraction={}", self.packing_fraction),
             format!("method.kind=\"{method}\""),
             format!("method.precision=\"{}\"", self.precision),
-            format!("integrator.values={}", &self.integrator[4..]),
         ];
+        overrides.push(match self.integrator.strip_prefix("gear") {
+            Some(values) => format!("integrator.values={values}"),
+            None => format!("integrator.kind=\"{}\"", self.integrator),
+        });
         if self.what == What::Lattice {
             overrides.push(format!("method.execution=\"{}\"", self.execution));
         }

@@ -24,6 +24,7 @@ macro_rules! define_phases {
 
 define_phases! {
     (Predict, "predict", "prediction of the state"),
+    (CorrectPredict, "correct_predict", "correction of one step and prediction of the next in one pass"),
     (Index, "index", "cells, Index, lattice vectors, or the upkeep of the lists"),
     (Forces, "forces", "the law over all pairs"),
     (Correct, "correct", "correction of the state"),
@@ -47,5 +48,11 @@ impl Timings {
     /// Seconds spent in a phase.
     pub fn seconds(&self, phase: Phase) -> f64 {
         self.seconds[phase as usize]
+    }
+
+    /// The phases there were, by name.
+    pub fn named(&self) -> std::collections::BTreeMap<&'static str, f64> {
+        let there = Phase::ALL.iter().filter(|&&phase| self.seconds(phase) > 0.0);
+        there.map(|&phase| (phase.name(), self.seconds(phase))).collect()
     }
 }

@@ -1,7 +1,7 @@
 //! From a checked scene to the method that runs it.
 
 use crate::method::lattice_md::{
-    Contacts, Discs, GearValues, ListOptions, Machine, Model, Rebuild, Watch, start,
+    Contacts, Discs, GearValues, ListOptions, Machine, Model, Rebuild, Scheme, Watch, start,
 };
 use crate::method::{Failure, Method};
 use crate::scene::{self, Checked, MethodKind};
@@ -28,10 +28,11 @@ pub fn model(checked: &Checked) -> Model {
         friction: scene.law.has_friction(),
         discs,
         inertia_factor: factor,
-        values: match scene.integrator.values {
-            4 => GearValues::Four,
-            5 => GearValues::Five,
-            _ => GearValues::Six,
+        scheme: match scene.integrator.scheme {
+            scene::Scheme::Gear { values: 4 } => Scheme::Gear(GearValues::Four),
+            scene::Scheme::Gear { values: 5 } => Scheme::Gear(GearValues::Five),
+            scene::Scheme::Gear { .. } => Scheme::Gear(GearValues::Six),
+            scene::Scheme::VelocityVerlet => Scheme::VelocityVerlet,
         },
         dt: scene.integrator.dt,
         gravity: scene.domain.gravity,
@@ -50,6 +51,7 @@ pub fn model(checked: &Checked) -> Model {
 pub fn assemble(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
     let Checked { scene, particles, geometry, .. } = checked;
     let contacts = match scene.method.kind {
+        MethodKind::Lattice if scene.method.execution == scene::Execution::Fast => Contacts::Fast,
         MethodKind::Lattice => Contacts::Lattice,
         MethodKind::NeighborList { rebuild, skin } => Contacts::Lists(ListOptions {
             rebuild: match rebuild {
@@ -60,7 +62,7 @@ pub fn assemble(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
         }),
     };
     let machine = Machine {
-        execution: scene.method.execution,
+        execution: scene.method.execution.of_programs(),
         set: scene.method.instruction_set.unwrap_or_else(InstructionSet::best),
     };
     let (model, particles) = (model(checked), particles.clone());

@@ -1,7 +1,7 @@
 //! What a run says of itself at the end.
 
 use crate::method::lattice_md::{self, Discs, Lengths, Model, programs};
-use crate::method::{Failure, Method, Phase};
+use crate::method::{Failure, Method};
 use crate::observe::{Observation, Scenery};
 use crate::report::origin::{Origin, host};
 use crate::scene::{Checked, Start};
@@ -88,7 +88,7 @@ impl Summary {
             failure: failure.map(ToString::to_string),
             steps: method.steps(),
             seconds,
-            phases: Phase::ALL.iter().map(|&phase| (phase.name(), method.timings().seconds(phase))).collect(),
+            phases: method.timings().named(),
             deep_disc_steps: deep.disc_steps,
             deepest_watched: deep.deepest,
             ledger: ledger(method),

@@ -6,12 +6,12 @@ use super::key_table::*;
 use super::keys::{Fallback, Key, Selector, Value};
 use super::places::beside;
 use super::{
-    Amount, Domain, Grains, Inertia, Integrator, Law, Lining, List, Method, MethodKind, Output, Precision,
-    Rebuild, Run, Scene, Speed, Start, WallMotion,
+    Amount, Domain, Execution, Grains, Inertia, Integrator, Law, Lining, List, Method, MethodKind, Output,
+    Precision, Rebuild, Run, Scene, Scheme, Speed, Start, WallMotion,
 };
 use stripmine_kernels::law::granular::{Contact, ContactArm};
 use stripmine_kernels::sweep::lattice::Coordinates;
-use stripmine_kernels::{Execution, InstructionSet};
+use stripmine_kernels::{Execution as Programs, InstructionSet};
 
 /// A value of a key, given or by default.
 struct Values<'e>(&'e Entries);
@@ -88,7 +88,13 @@ pub(super) fn read(entries: &Entries) -> Get<Scene> {
         },
         law: law(&from)?,
         method: method(&from)?,
-        integrator: Integrator { values: from.whole(&VALUES)? as usize, dt },
+        integrator: Integrator {
+            scheme: match from.word(&INTEGRATOR)?.as_str() {
+                "velocity-verlet" => Scheme::VelocityVerlet,
+                _ => Scheme::Gear { values: from.whole(&VALUES)? as usize },
+            },
+            dt,
+        },
         run: Run {
             steps: match from.number_if_any(&TIME) {
                 Some(time) => (time / dt).round() as u64,
@@ -217,9 +223,10 @@ fn method(from: &Values<'_>) -> Get<Method> {
             _ => Precision::F64,
         },
         execution: match execution.strip_prefix("strip:").map(str::parse) {
-            Some(Ok(length)) => Execution::Strip(length),
-            _ if execution == "eager" => Execution::Eager,
-            _ => Execution::Chained,
+            Some(Ok(length)) => Execution::Programs(Programs::Strip(length)),
+            _ if execution == "eager" => Execution::Programs(Programs::Eager),
+            _ if execution == "fast" => Execution::Fast,
+            _ => Execution::Programs(Programs::Chained),
         },
         instruction_set: InstructionSet::ALL.iter().copied().find(|set| set.name() == instruction_set),
     })
@@ -267,8 +274,6 @@ fn values(scene: &Scene) -> Vec<(&'static Key, Value)> {
         (&CONTACT_ARM, word(if law.contact.arm == ContactArm::Overlap { "overlap" } else { "radius" })),
         (&MAX_PENETRATION, Value::Number(law.max_penetration)),
         (&STOP_PENETRATION, Value::Number(law.stop_penetration)),
-        (&INTEGRATOR, word("gear")),
-        (&VALUES, Value::Whole(integrator.values as u64)),
         (&DT, Value::Number(integrator.dt)),
         (&STEPS, Value::Whole(run.steps)),
         (&THERMO_EVERY, Value::Whole(run.thermo_every)),
@@ -290,6 +295,12 @@ fn values(scene: &Scene) -> Vec<(&'static Key, Value)> {
         WallMotion::Fixed => values.push((&WALL_MOTION, word("fixed"))),
     }
     method_values(method, &mut values);
+    match integrator.scheme {
+        Scheme::Gear { values: count } => {
+            values.extend([(&INTEGRATOR, word("gear")), (&VALUES, Value::Whole(count as u64))]);
+        }
+        Scheme::VelocityVerlet => values.push((&INTEGRATOR, word("velocity-verlet"))),
+    }
     values
 }
 
@@ -378,9 +389,9 @@ fn method_values(method: &Method, values: &mut Vec<(&'static Key, Value)>) {
     values.push((
         &EXECUTION,
         match method.execution {
-            Execution::Eager => word("eager"),
-            Execution::Strip(length) => Value::Word(format!("strip:{length}")),
-            _ => word("chained"),
+            // Scenes know no blocks.
+            Execution::Programs(Programs::Block(_)) => word("chained"),
+            execution => Value::Word(execution.name()),
         },
     ));
     values.push((&INSTRUCTION_SET, word(method.instruction_set.map_or("auto", InstructionSet::name))));

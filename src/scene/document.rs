@@ -280,13 +280,14 @@ impl Source<'_> {
 impl Selector {
     /// The choice that a scene makes; nothing where it makes none.
     pub(super) fn choice(self, entries: &Entries) -> Option<String> {
-        use super::key_table::{FILE, GENERATE, METHOD, WALL_MOTION};
+        use super::key_table::{FILE, GENERATE, INTEGRATOR, METHOD, WALL_MOTION};
         let key = match self {
             Selector::Start if entries.given(&FILE).is_some() => return Some("file".to_owned()),
             Selector::Start if entries.is_faulty(&FILE) => return None,
             Selector::Start => &GENERATE,
             Selector::Method => &METHOD,
             Selector::WallMotion => &WALL_MOTION,
+            Selector::Integrator => &INTEGRATOR,
         };
         if entries.is_faulty(key) {
             return None;
@@ -300,11 +301,12 @@ impl Selector {
 
     /// Whether an override made the choice.
     pub(super) fn is_overridden(self, entries: &Entries) -> bool {
-        use super::key_table::{FILE, GENERATE, METHOD, WALL_MOTION};
+        use super::key_table::{FILE, GENERATE, INTEGRATOR, METHOD, WALL_MOTION};
         let keys: &[&Key] = match self {
             Selector::Start => &[&FILE, &GENERATE],
             Selector::Method => &[&METHOD],
             Selector::WallMotion => &[&WALL_MOTION],
+            Selector::Integrator => &[&INTEGRATOR],
         };
         keys.iter().filter_map(|key| entries.given(key)).any(|entry| entry.overrides)
     }

@@ -28,6 +28,7 @@ const PIPE: Use = Some((Selector::Start, &["pipe"]));
 const BOX: Use = Some((Selector::Start, &["box"]));
 const LIST: Use = Some((Selector::Start, &["list"]));
 const OSCILLATING: Use = Some((Selector::WallMotion, &["oscillating"]));
+const GEAR: Use = Some((Selector::Integrator, &["gear"]));
 const LISTS: Use = Some((Selector::Method, &["neighbor-list"]));
 
 macro_rules! define_keys {
@@ -138,8 +139,8 @@ define_keys! {
         "What positions on the lattice are measured from.";
     PRECISION = "method" "precision", Choice(&["f64", "f32", "mixed"]), "", Is("\"f64\""), ALWAYS,
         "Precision; mixed keeps the state in f64 and computes forces in f32.";
-    EXECUTION = "method" "execution", Choice(&["chained", "eager", "strip:N"]), "", Is("\"chained\""), ALWAYS,
-        "How vector instructions meet elements: register by register, one whole-lattice pass each, or by strips of N; the same bits.";
+    EXECUTION = "method" "execution", Choice(&["chained", "eager", "strip:N", "fast"]), "", Is("\"chained\""), ALWAYS,
+        "How a step is executed: instructions register by register, one whole-lattice pass each, or by strips of N, all to the same bits; or fast, each pair once and the law for contacts only, with cell-relative coordinates, equal but for rounding.";
     INSTRUCTION_SET = "method" "instruction_set", Choice(&["auto", "scalar", "wide", "neon", "avx2", "avx512"]), "",
         Is("\"auto\""), ALWAYS,
         "The SIMD instructions; auto takes the widest that the processor has.";
@@ -148,9 +149,9 @@ define_keys! {
     SKIN = "method" "skin", Number(Positive), "length", Otherwise("0.3 R_max"), LISTS,
         "Listed pairs are up to this far from contact.";
 
-    INTEGRATOR = "integrator" "kind", Choice(&["gear"]), "", Is("\"gear\""), ALWAYS,
-        "Gear's predictor-corrector.";
-    VALUES = "integrator" "values", OneOf(&[4, 5, 6]), "", Is("4"), ALWAYS,
+    INTEGRATOR = "integrator" "kind", Choice(&["gear", "velocity-verlet"]), "", Is("\"gear\""), ALWAYS,
+        "Gear's predictor-corrector, or velocity Verlet, whose velocity-dependent forces are those after half a kick.";
+    VALUES = "integrator" "values", OneOf(&[4, 5, 6]), "", Is("4"), GEAR,
         "Derivatives carried, from the position on; fewer are stabler with damping, more are more accurate without.";
     DT = "integrator" "dt", Number(Positive), "time", Required, ALWAYS,
         "Time step.";

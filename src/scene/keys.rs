@@ -304,6 +304,8 @@ pub enum Selector {
     Method,
     /// `particles.wall_motion`.
     WallMotion,
+    /// `integrator.kind`.
+    Integrator,
 }
 
 /// Where a key is used: everywhere, or with some choices of a selector.

@@ -23,9 +23,9 @@ pub use places::Document;
 pub use presets::{PRESETS, Preset, preset};
 
 use std::path::PathBuf;
+use stripmine_kernels::InstructionSet;
 use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::sweep::lattice::Coordinates;
-use stripmine_kernels::{Execution, InstructionSet};
 
 /// The version of the scene format that this program reads.
 pub const FORMAT: u64 = 1;
@@ -246,7 +246,7 @@ pub struct Method {
     pub coordinates: Coordinates,
     /// Precision of state and forces.
     pub precision: Precision,
-    /// How vector instructions meet elements.
+    /// How a step is executed.
     pub execution: Execution,
     /// The SIMD instructions; none: the widest there are.
     pub instruction_set: Option<InstructionSet>,
@@ -287,11 +287,54 @@ pub enum Precision {
     Mixed,
 }
 
-/// Gear's predictor–corrector.
+/// How a step of the lattice is executed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Execution {
+    /// By vector programs over the whole lattice, as the source has it. All ways give the same bits.
+    Programs(stripmine_kernels::Execution),
+    /// Each pair once, the law for contacts only: equal to the programs but for rounding.
+    Fast,
+}
+
+impl Execution {
+    /// The name in scenes and on the command line.
+    pub fn name(self) -> String {
+        use stripmine_kernels::Execution as Programs;
+        match self {
+            Execution::Fast => "fast".to_owned(),
+            Execution::Programs(Programs::Chained) => "chained".to_owned(),
+            Execution::Programs(Programs::Eager) => "eager".to_owned(),
+            Execution::Programs(Programs::Strip(length)) => format!("strip:{length}"),
+            Execution::Programs(Programs::Block(registers)) => format!("block:{registers}"),
+        }
+    }
+
+    /// How vector programs are run, where there are some.
+    pub fn of_programs(self) -> stripmine_kernels::Execution {
+        match self {
+            Execution::Programs(execution) => execution,
+            Execution::Fast => stripmine_kernels::Execution::Chained,
+        }
+    }
+}
+
+/// How motion follows from forces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scheme {
+    /// Gear's predictor–corrector.
+    Gear {
+        /// Derivatives carried: 4, 5 or 6.
+        values: usize,
+    },
+    /// Velocity Verlet.
+    VelocityVerlet,
+}
+
+/// The integrator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Integrator {
-    /// Derivatives carried: 4, 5 or 6.
-    pub values: usize,
+    /// How motion follows from forces.
+    pub scheme: Scheme,
     /// Time step (time).
     pub dt: f64,
 }

@@ -79,6 +79,7 @@ fn unused(entries: &mut Entries) {
             (Selector::Start, choice) => format!("generate = \"{choice}\""),
             (Selector::Method, choice) => format!("kind = \"{choice}\""),
             (Selector::WallMotion, choice) => format!("wall_motion = \"{choice}\""),
+            (Selector::Integrator, choice) => format!("kind = \"{choice}\""),
         };
         let error = entry
             .spot

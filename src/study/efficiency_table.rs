@@ -1,6 +1,8 @@
 //! What does a step cost, by the source's count and by ours? BP93 section 3.
 
-use crate::method::lattice_md::{Discs, GearValues, Lengths, Model, Part, StepProgram, ledger, programs};
+use crate::method::lattice_md::{
+    Discs, GearValues, Lengths, Model, Part, Scheme, StepProgram, ledger, programs,
+};
 use crate::model::clock::{Clock, Work};
 use crate::model::machine::MachineModel;
 use serde::Serialize;
@@ -223,11 +225,11 @@ pub fn counting_model(cells: usize, choice: Choice) -> Result<Model, ShapeError>
         } else {
             Discs::Equal { disc, inverse_inertia: 8.0 }
         },
-        values: match choice.gear_values {
+        scheme: Scheme::Gear(match choice.gear_values {
             4 => GearValues::Four,
             5 => GearValues::Five,
             _ => GearValues::Six,
-        },
+        }),
         inertia_factor: 0.5,
         watch: None,
         dt: 1e-4,

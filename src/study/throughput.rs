@@ -1,12 +1,12 @@
 //! How fast is a method? Whole steps of moving particles, timed.
 
-use crate::method::{Failure, Method, Phase};
+use crate::method::{Failure, Method};
 use crate::observe::{Observation, Scenery};
 use crate::run::assemble;
-use crate::scene::{Document, MethodKind, Precision, SceneErrors};
+use crate::scene::{Document, MethodKind, Precision, SceneErrors, Scheme};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use stripmine_kernels::{Execution, InstructionSet};
+use stripmine_kernels::InstructionSet;
 
 /// What is measured.
 #[derive(Clone, Debug)]
@@ -122,13 +122,13 @@ pub fn throughput(measurement: Measurement) -> Result<Throughput, MeasurementErr
             Precision::F32 => "f32",
             Precision::Mixed => "mixed",
         },
-        integrator: format!("gear{}", scene.integrator.values),
+        integrator: match scene.integrator.scheme {
+            Scheme::Gear { values } => format!("gear{values}"),
+            Scheme::VelocityVerlet => "velocity-verlet".to_owned(),
+        },
         execution: match (scene.method.kind, scene.method.execution) {
             (MethodKind::NeighborList { .. }, _) => "scalar".to_owned(),
-            (_, Execution::Chained) => "chained".to_owned(),
-            (_, Execution::Eager) => "eager".to_owned(),
-            (_, Execution::Strip(length)) => format!("strip:{length}"),
-            (_, Execution::Block(registers)) => format!("block:{registers}"),
+            (MethodKind::Lattice, execution) => execution.name(),
         },
         friction: scene.law.has_friction(),
         cell_edge: checked.geometry.frame.edge,
@@ -143,7 +143,7 @@ pub fn throughput(measurement: Measurement) -> Result<Throughput, MeasurementErr
         checksum: super::checksum(&method.particles()),
         particle_steps_per_second: work / seconds,
         particle_steps_per_second_median: work / samples[samples.len() / 2].0,
-        phases: Phase::ALL.iter().map(|&phase| (phase.name(), timings.seconds(phase))).collect(),
+        phases: timings.named(),
         contacts: after.contacts,
     })
 }

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use stripmine::method::Method;
-use stripmine::method::lattice_md::{Contacts, Discs, GearValues, Machine, Model, Watch, start};
+use stripmine::method::lattice_md::{Contacts, Discs, GearValues, Machine, Model, Scheme, Watch, start};
 use stripmine::particles::{Kind, Particle, Particles};
 use stripmine::placement::hexagonal;
 use stripmine::scene::{Precision, WallMotion};
@@ -47,7 +47,7 @@ pub fn gas(least: usize, packing_fraction: f64, seed: u64) -> (Model, Particles)
         friction: true,
         discs: Discs::Varying,
         inertia_factor: 0.5,
-        values: GearValues::Five,
+        scheme: Scheme::Gear(GearValues::Five),
         dt: 0.005,
         gravity: [0.0; 2],
         watch: Some(Watch { max_penetration: 0.1, stop_penetration: 0.3, smallest_radius: 0.45 }),

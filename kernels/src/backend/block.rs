@@ -144,4 +144,14 @@ impl<R: Registers, const K: usize> Registers for Block<R, K> {
         }
         none
     }
+    #[inline(always)]
+    fn bits(self, predicate: Blocked<<R::V as Vector>::Predicate, K>) -> u64 {
+        let mut bits = 0;
+        let mut i = 0;
+        while i < K {
+            bits |= self.0.bits(predicate.0[i]) << (i * R::LANES);
+            i += 1;
+        }
+        bits
+    }
 }

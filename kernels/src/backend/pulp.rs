@@ -3,6 +3,8 @@
 use super::registers::Registers;
 use crate::isa::{Element, Predicate, Vector};
 use pulp::Simd;
+#[cfg(target_arch = "x86_64")]
+use std::any::TypeId;
 use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -51,12 +53,15 @@ pub trait PulpElement: Element {
     fn not<S: Simd>(simd: S, a: Self::Truth<S>) -> Self::Truth<S>;
     #[doc(hidden)]
     fn none<S: Simd>(simd: S, a: Self::Truth<S>) -> bool;
+    #[doc(hidden)]
+    fn bits<S: Simd>(simd: S, a: Self::Truth<S>) -> u64;
 }
 
 macro_rules! pulp_element {
     ($ty:ident, $register:ident, $truth:ident, $lanes:ident,
      $splat:ident $add:ident $sub:ident $mul:ident $div:ident $min:ident $max:ident $sqrt:ident $abs:ident
-     $less_than:ident $less_equal:ident $equal:ident $select:ident $and:ident $not:ident $first_true:ident) => {
+     $less_than:ident $less_equal:ident $equal:ident $select:ident $and:ident $not:ident $first_true:ident
+     $movemask:ident) => {
         impl PulpElement for $ty {
             type Register<S: Simd> = S::$register;
             type Truth<S: Simd> = S::$truth;
@@ -147,18 +152,46 @@ macro_rules! pulp_element {
             fn none<S: Simd>(simd: S, a: S::$truth) -> bool {
                 simd.$first_true(a) == S::$lanes
             }
+            #[inline(always)]
+            fn bits<S: Simd>(simd: S, a: S::$truth) -> u64 {
+                #[cfg(target_arch = "x86_64")]
+                if let (Some(v3), Some(truth)) = (same_value::<S, pulp::x86::V3>(simd), same_value(a)) {
+                    return u64::from(v3.avx.$movemask(truth) as u32);
+                }
+                bits_by_lane(pulp::bytemuck::bytes_of(&a), S::$lanes)
+            }
         }
     };
 }
 
 pulp_element!(
     f64, f64s, m64s, F64_LANES, splat_f64s add_f64s sub_f64s mul_f64s div_f64s min_f64s max_f64s sqrt_f64s abs_f64s
-    less_than_f64s less_than_or_equal_f64s equal_f64s select_f64s and_m64s not_m64s first_true_m64s
+    less_than_f64s less_than_or_equal_f64s equal_f64s select_f64s and_m64s not_m64s first_true_m64s _mm256_movemask_pd
 );
 pulp_element!(
     f32, f32s, m32s, F32_LANES, splat_f32s add_f32s sub_f32s mul_f32s div_f32s min_f32s max_f32s sqrt_f32s abs_f32s
-    less_than_f32s less_than_or_equal_f32s equal_f32s select_f32s and_m32s not_m32s first_true_m32s
+    less_than_f32s less_than_or_equal_f32s equal_f32s select_f32s and_m32s not_m32s first_true_m32s _mm256_movemask_ps
 );
+
+/// A value whose type turns out to be another of the same size: `pulp` has no instruction for this in all its sets.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn same_value<A: Copy + 'static, B: Copy + 'static>(value: A) -> Option<B> {
+    let register = [TypeId::of::<pulp::m64x4>(), TypeId::of::<pulp::m32x8>()].contains(&TypeId::of::<A>());
+    let same = TypeId::of::<A>() == TypeId::of::<B>() || (register && size_of::<A>() == size_of::<B>());
+    // SAFETY: one type, or a 256-bit register as plain data of the same size.
+    (same && size_of::<A>() == size_of::<B>()).then(|| unsafe { std::mem::transmute_copy(&value) })
+}
+
+/// Truth values as bits: already bits (a register of them is at most 8 bytes), or all bits of a lane set or clear.
+#[inline(always)]
+fn bits_by_lane(bytes: &[u8], lanes: usize) -> u64 {
+    if bytes.len() < lanes {
+        return bytes.iter().rev().fold(0, |bits, &byte| bits << 8 | u64::from(byte));
+    }
+    let lane = bytes.len() / lanes;
+    (0..lanes).fold(0, |bits, i| bits | u64::from(bytes[i * lane] & 1) << i)
+}
 
 /// Registers of the instruction set `S` with lanes of `T`.
 #[derive(Clone, Copy)]
@@ -265,5 +298,9 @@ impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
     #[inline(always)]
     fn none(self, predicate: Truth<S, T>) -> bool {
         T::none(self.simd, predicate.1)
+    }
+    #[inline(always)]
+    fn bits(self, predicate: Truth<S, T>) -> u64 {
+        <T as PulpElement>::bits(self.simd, predicate.1)
     }
 }

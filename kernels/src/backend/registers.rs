@@ -56,6 +56,8 @@ pub trait Registers: Copy {
     unsafe fn store(self, to: *mut Self::Lane, value: Self::V);
     /// Whether no lane holds.
     fn none(self, predicate: <Self::V as Vector>::Predicate) -> bool;
+    /// The truth values as bits, lane 0 lowest; at most 64 lanes.
+    fn bits(self, predicate: <Self::V as Vector>::Predicate) -> u64;
 }
 
 /// A strip of `R::LANES` elements of a memory, from element `base` on.

@@ -32,4 +32,8 @@ impl<T: Element> Registers for Scalar<T> {
     fn none(self, predicate: bool) -> bool {
         !predicate
     }
+    #[inline(always)]
+    fn bits(self, predicate: bool) -> u64 {
+        predicate.into()
+    }
 }

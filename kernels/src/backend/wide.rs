@@ -18,6 +18,8 @@ pub trait WideRegister<T>: Vector {
     fn splat(value: T) -> Self;
     /// Whether no lane holds.
     fn none(predicate: Self::Predicate) -> bool;
+    /// The truth values as bits.
+    fn bits(predicate: Self::Predicate) -> u64;
 }
 
 /// One register.
@@ -120,6 +122,10 @@ macro_rules! wide_element {
             fn none(predicate: Truth<$wide>) -> bool {
                 !predicate.0.any()
             }
+            #[inline(always)]
+            fn bits(predicate: Truth<$wide>) -> u64 {
+                predicate.0.to_bitmask().into()
+            }
         }
 
         impl WideElement for $ty {
@@ -153,5 +159,9 @@ impl<T: WideElement> Registers for Wide<T> {
     #[inline(always)]
     fn none(self, predicate: <T::Register as Vector>::Predicate) -> bool {
         T::Register::none(predicate)
+    }
+    #[inline(always)]
+    fn bits(self, predicate: <T::Register as Vector>::Predicate) -> u64 {
+        T::Register::bits(predicate)
     }
 }

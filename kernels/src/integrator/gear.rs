@@ -3,6 +3,7 @@
 //! The state is a row of scaled derivatives q_k = (dt^k/k!) d^k r/dt^k for each degree of freedom: x, y and, with
 //! rotation, the angle.
 
+use super::Scheme;
 use crate::isa::{Array, Counter, Element, Machine, Predicate, Slot, Text, Vector};
 use std::marker::PhantomData;
 
@@ -13,8 +14,8 @@ pub const STATE: [[Array; 6]; 3] = [
     [Array::Phi0, Array::Phi1, Array::Phi2, Array::Phi3, Array::Phi4, Array::Phi5],
 ];
 
-const VELOCITY: [Array; 3] = [Array::DiscVx, Array::DiscVy, Array::DiscOmega];
-const FORCE: [Array; 3] = [Array::Fx, Array::Fy, Array::Torque];
+pub(super) const VELOCITY: [Array; 3] = [Array::DiscVx, Array::DiscVy, Array::DiscOmega];
+pub(super) const FORCE: [Array; 3] = [Array::Fx, Array::Fy, Array::Torque];
 
 /// What the accelerations depend on, which decides the first coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,11 +52,53 @@ pub const fn coefficients(values: usize, acceleration: Acceleration) -> [f64; 6]
 
 /// Taylor expansion of one row over a step: Pascal's triangle, by sums alone.
 #[inline(always)]
-fn advance<V: Vector, const VALUES: usize>(q: &mut [V; VALUES]) {
+fn advance<V: Vector, const VALUES: usize>(q: &mut [V]) {
     for lowest in 0..VALUES - 1 {
         for k in (lowest..VALUES - 1).rev() {
             q[k] = q[k] + q[k + 1];
         }
+    }
+}
+
+/// Adds c_k Δ to every derivative.
+#[inline(always)]
+fn add_difference<V: Vector, const VALUES: usize>(
+    coefficients: &[f64; 6],
+    uniform: impl Fn(f64) -> V,
+    q: &mut [V],
+    difference: V,
+) {
+    for k in 0..VALUES {
+        let c = coefficients[k];
+        q[k] = q[k] + if c == 1.0 { difference } else { uniform(c) * difference };
+    }
+}
+
+/// Gear's scheme of `VALUES` values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gear<const VALUES: usize> {
+    coefficients: [f64; 6],
+}
+
+impl<const VALUES: usize> Gear<VALUES> {
+    /// For accelerations of some kind.
+    pub const fn new(acceleration: Acceleration) -> Self {
+        Gear { coefficients: coefficients(VALUES, acceleration) }
+    }
+}
+
+impl<const VALUES: usize> Scheme for Gear<VALUES> {
+    const CARRIED: usize = VALUES;
+
+    #[inline(always)]
+    fn correct<V: Vector>(&self, uniform: impl Fn(f64) -> V, row: &mut [V; 6], second: V) {
+        let difference = second - row[2];
+        add_difference::<V, VALUES>(&self.coefficients, uniform, row, difference);
+    }
+
+    #[inline(always)]
+    fn predict<V: Vector>(&self, row: &mut [V; 6]) {
+        advance::<V, VALUES>(row);
     }
 }
 
@@ -96,7 +139,7 @@ unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> 
         for freedom in 0..FREEDOMS {
             m.section("expansion");
             let mut q = row::<S, M, VALUES>(m, freedom);
-            advance(&mut q);
+            advance::<M::V, VALUES>(&mut q);
             for k in 0..VALUES - 1 {
                 m.store(Slot::<S>::new(STATE[freedom][k]), q[k]);
             }
@@ -118,6 +161,32 @@ pub enum Inertia {
     },
     /// Each disc its own, from arrays.
     Varying,
+}
+
+/// The acceleration of one degree of freedom, from the force gathered from the lattice.
+#[inline(always)]
+pub(super) fn acceleration<S: Element, P: Element, M: Machine>(
+    m: M,
+    cell: M::I,
+    freedom: usize,
+    inertia: Inertia,
+    gravity: [f64; 2],
+) -> M::V {
+    m.section("gather");
+    let force = m.gather(Slot::<P>::new(FORCE[freedom]), cell, m.uniform(0.0));
+    m.section("acceleration");
+    let inverse = match (inertia, freedom) {
+        (Inertia::Equal { inverse_mass, .. }, 0 | 1) => m.uniform(inverse_mass),
+        (Inertia::Equal { inverse_inertia, .. }, _) => m.uniform(inverse_inertia),
+        (Inertia::Varying, 0 | 1) => m.load(Slot::<S>::new(Array::DiscInverseMass)),
+        (Inertia::Varying, _) => m.load(Slot::<S>::new(Array::DiscInverseInertia)),
+    };
+    let acceleration = force * inverse;
+    if freedom < 2 && gravity[freedom] != 0.0 {
+        acceleration + m.uniform(gravity[freedom])
+    } else {
+        acceleration
+    }
 }
 
 /// Gathers the forces from the lattice and corrects the predicted state. Vector length: the discs.
@@ -170,28 +239,15 @@ unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> 
         let cell = m.load_index(Slot::new(Array::DiscCell));
         let mut magnitude = m.uniform(0.0);
         for freedom in 0..FREEDOMS {
-            m.section("gather");
-            let force = m.gather(Slot::<P>::new(FORCE[freedom]), cell, m.uniform(0.0));
-            m.section("acceleration");
-            let inverse = match (self.inertia, freedom) {
-                (Inertia::Equal { inverse_mass, .. }, 0 | 1) => m.uniform(inverse_mass),
-                (Inertia::Equal { inverse_inertia, .. }, _) => m.uniform(inverse_inertia),
-                (Inertia::Varying, 0 | 1) => m.load(Slot::<S>::new(Array::DiscInverseMass)),
-                (Inertia::Varying, _) => m.load(Slot::<S>::new(Array::DiscInverseInertia)),
-            };
-            let mut acceleration = force * inverse;
-            if freedom < 2 && self.gravity[freedom] != 0.0 {
-                acceleration = acceleration + m.uniform(self.gravity[freedom]);
-            }
+            let acceleration = acceleration::<S, P, M>(m, cell, freedom, self.inertia, self.gravity);
             m.section("correction");
             let mut q = row::<S, M, VALUES>(m, freedom);
             let difference = acceleration * m.uniform(self.half_dt_squared) - q[2];
             if self.checked {
                 magnitude = magnitude + difference.abs();
             }
+            add_difference::<M::V, VALUES>(&self.coefficients, |c| m.uniform(c), &mut q, difference);
             for k in 0..VALUES {
-                let c = self.coefficients[k];
-                q[k] = q[k] + if c == 1.0 { difference } else { m.uniform(c) * difference };
                 m.store(Slot::<S>::new(STATE[freedom][k]), q[k]);
             }
         }

@@ -5,9 +5,10 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Inertia, Predictor, STATE};
 use stripmine_kernels::isa::{Array, Memory, ProgramError, Slot};
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
-use stripmine_kernels::law::{Law, Sum};
+use stripmine_kernels::law::{Field, Law, Sum};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::sweep::fast::{self, Occupancy, SENTINELS, Sweep};
 use stripmine_kernels::sweep::lattice::cells::{CONFLICTS, Check, Clear, Enter, Images, STRAYS};
 use stripmine_kernels::sweep::lattice::forces::{Forces, Join};
 use stripmine_kernels::sweep::lattice::vectors::Spread;
@@ -268,6 +269,59 @@ impl<S: Precision, P: Precision> System<S, P> {
             })?;
         }
         Ok(())
+    }
+
+    /// Forces and torques on the discs as the fast sweep finds them, each disc numbered `order[n]`; nothing else changes.
+    pub fn fast_forces<L: Law<2> + Sync>(
+        &self,
+        law: &L,
+        order: &[u32],
+        set: InstructionSet,
+    ) -> Result<(Vec<[P; 3]>, fast::Met), ProgramError> {
+        let far = 100.0;
+        let sorted = |column: &[S], sentinels: [f64; SENTINELS]| -> Vec<S> {
+            let there = order.iter().map(|&disc| column[disc as usize]);
+            there.chain(sentinels.map(S::from_f64)).collect()
+        };
+        let state = |column: &[P]| -> Vec<S> {
+            let column: Vec<S> = column.iter().map(|x| S::from_f64(x.to_f64())).collect();
+            sorted(&column, [1.0; SENTINELS])
+        };
+        let mut occupancy =
+            Occupancy::new(self.shape, self.frame, self.discs, 2.2, law.fields().contains(&Field::Radius));
+        let mut places = [vec![S::default(); self.discs], vec![S::default(); self.discs]];
+        for (n, &disc) in order.iter().enumerate() {
+            let disc = disc as usize;
+            let mut cell = [0; 2];
+            for axis in 0..2 {
+                let (origin, edge) = (self.frame.origin[axis], self.frame.edge[axis]);
+                let along = self.state[axis][0][disc].to_f64() - origin;
+                cell[axis] = (along / edge) as usize;
+                places[axis][disc] = S::from_f64(along - (cell[axis] as f64 + 0.5) * edge);
+            }
+            let place = [places[0][disc].to_f64(), places[1][disc].to_f64()];
+            occupancy.enter(n, cell, place, self.radius[disc].to_f64()).unwrap();
+        }
+        occupancy.repeat_images();
+        let places = [sorted(&places[0], [0.0, far]), sorted(&places[1], [0.0, far])];
+        let velocity = self.velocity.each_ref().map(|column| state(column));
+        let (radius, inverse_mass) = (state(&self.radius), state(&self.lattice_inverse_mass));
+        let discs = fast::Discs {
+            place: [&places[0], &places[1]],
+            velocity: [&velocity[0], &velocity[1], &velocity[2]],
+            per_time: 1.0,
+            radius: &radius,
+            inverse_mass: &inverse_mass,
+        };
+        let mut sums = [0, 1, 2].map(|_| vec![P::default(); self.discs]);
+        let [fx, fy, torque] = &mut sums;
+        let mut sweep = Sweep::new(&occupancy, self.frame);
+        let met = sweep.run(law, &occupancy, &discs, [fx, fy, torque], Some(0.1), set)?;
+        let mut forces = vec![[P::default(); 3]; self.discs];
+        for (n, &disc) in order.iter().enumerate() {
+            forces[disc as usize] = [0, 1, 2].map(|sum| sums[sum][n]);
+        }
+        Ok((forces, met))
     }
 
     /// One whole step of the faithful method.

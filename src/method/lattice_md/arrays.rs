@@ -78,7 +78,7 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
 
         let mut state = Vec::new();
         for (freedom, row) in STATE.iter().enumerate().take(model.freedoms()) {
-            for (k, &array) in row.iter().enumerate().take(model.values.count()) {
+            for (k, &array) in row.iter().enumerate().take(model.scheme.values()) {
                 let column = particles.all().iter().map(|disc| match (k, freedom) {
                     (0, 0 | 1) => disc.position[freedom],
                     (1, 0 | 1) => disc.velocity[freedom] * model.dt,

@@ -3,6 +3,7 @@
 //! source compares with: scalar neighbour lists.
 
 mod arrays;
+mod fast;
 mod model;
 mod neighbor_list;
 mod programs;
@@ -11,7 +12,7 @@ mod walls;
 mod watch;
 
 pub use arrays::{Arrays, Lengths};
-pub use model::{Discs, GearValues, Model, Watch};
+pub use model::{Discs, GearValues, Model, Scheme, Watch};
 pub use neighbor_list::{ListOptions, Rebuild};
 pub use programs::{Part, StepProgram, execute, ledger, programs, rival_ledger};
 pub use simulation::{Contacts, LatticeMd, Machine, start};

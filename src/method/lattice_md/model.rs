@@ -31,6 +31,25 @@ impl GearValues {
     }
 }
 
+/// How motion follows from forces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scheme {
+    /// Gear's predictor–corrector.
+    Gear(GearValues),
+    /// Velocity Verlet.
+    VelocityVerlet,
+}
+
+impl Scheme {
+    /// Scaled derivatives of a degree of freedom: position, velocity, acceleration and what is carried beyond.
+    pub const fn values(self) -> usize {
+        match self {
+            Scheme::Gear(values) => values.count(),
+            Scheme::VelocityVerlet => 3,
+        }
+    }
+}
+
 /// Whether discs differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Discs {
@@ -85,7 +104,7 @@ pub struct Model {
     /// Moment of inertia of a disc of mass and radius 1: ½ for a disc, ⅖ for a sphere.
     pub inertia_factor: f64,
     /// The integrator.
-    pub values: GearValues,
+    pub scheme: Scheme,
     /// Time step (time).
     pub dt: f64,
     /// Acceleration of gravity (length/time²).

@@ -1,9 +1,10 @@
 //! The programs of a step, compiled for what a model needs.
 
-use super::{Discs, GearValues, Lengths, Model};
+use super::{Discs, GearValues, Lengths, Model, Scheme};
 use std::marker::PhantomData;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::{Corrector, Predictor};
+use stripmine_kernels::integrator::velocity_verlet::{Drift, Kick};
 use stripmine_kernels::isa::{Memory, Op, OpClass, ProgramError};
 use stripmine_kernels::law::granular::{Disc, Granular};
 use stripmine_kernels::law::{Field, Law};
@@ -164,8 +165,8 @@ impl<P: Precision> WithLaw for LatticeSweep<'_, P> {
 
 /// Calls the generic `$function::<S, P, VALUES, FREEDOMS>` that a model needs.
 macro_rules! for_scheme {
-    ($model:expr, $function:ident) => {
-        match ($model.values, $model.friction) {
+    ($model:expr, $values:expr, $function:ident) => {
+        match ($values, $model.friction) {
             (GearValues::Four, true) => $function::<S, P, 4, 3>($model),
             (GearValues::Four, false) => $function::<S, P, 4, 2>($model),
             (GearValues::Five, true) => $function::<S, P, 5, 3>($model),
@@ -182,7 +183,11 @@ fn predictor<S: Precision, P: Precision>(model: &Model) -> Box<dyn Runnable> {
     ) -> Box<dyn Runnable> {
         Box::new(Program::new(Predictor::<S, P, VALUES, FREEDOMS>::new(model.dt)))
     }
-    for_scheme!(model, scheme)
+    match (model.scheme, model.friction) {
+        (Scheme::Gear(values), _) => for_scheme!(model, values, scheme),
+        (Scheme::VelocityVerlet, true) => Box::new(Program::new(Drift::<S, P, 3>::new(model.dt))),
+        (Scheme::VelocityVerlet, false) => Box::new(Program::new(Drift::<S, P, 2>::new(model.dt))),
+    }
 }
 
 fn corrector<S: Precision, P: Precision>(model: &Model) -> Box<dyn Runnable> {
@@ -194,7 +199,15 @@ fn corrector<S: Precision, P: Precision>(model: &Model) -> Box<dyn Runnable> {
             Corrector::<S, P, VALUES, FREEDOMS>::new(dt, model.acceleration(), model.inertia(), gravity);
         Box::new(Program::new(if model.watch.is_some() { corrector.checked() } else { corrector }))
     }
-    for_scheme!(model, scheme)
+    fn kick<S: Precision, P: Precision, const FREEDOMS: usize>(model: &Model) -> Box<dyn Runnable> {
+        let kick = Kick::<S, P, FREEDOMS>::new(model.dt, model.inertia(), model.gravity);
+        Box::new(Program::new(if model.watch.is_some() { kick.checked() } else { kick }))
+    }
+    match (model.scheme, model.friction) {
+        (Scheme::Gear(values), _) => for_scheme!(model, values, scheme),
+        (Scheme::VelocityVerlet, true) => kick::<S, P, 3>(model),
+        (Scheme::VelocityVerlet, false) => kick::<S, P, 2>(model),
+    }
 }
 
 /// Runs the programs of some parts, in their order, on bound arrays.

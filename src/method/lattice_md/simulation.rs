@@ -1,5 +1,6 @@
 //! A running simulation: one step after the other, every broken precondition found in its step.
 
+use super::fast::FastLattice;
 use super::neighbor_list::Rival;
 use super::programs::rival_ledger;
 use super::walls::walls_at;
@@ -21,6 +22,8 @@ use stripmine_kernels::{Execution, InstructionSet};
 pub enum Contacts {
     /// On the lattice: the method of the source.
     Lattice,
+    /// On the lattice, each pair once and the law for contacts only; the machine's execution does not matter.
+    Fast,
     /// By neighbour lists: its rival.
     Lists(ListOptions),
 }
@@ -46,6 +49,14 @@ pub fn start(
     walls: WallMotion,
     particles: Particles,
 ) -> Result<Box<dyn Method>, Failure> {
+    if contacts == Contacts::Fast {
+        let set = machine.set;
+        return Ok(match precision {
+            Precision::F64 => Box::new(FastLattice::<f64, f64>::new(model, set, walls, particles)?),
+            Precision::F32 => Box::new(FastLattice::<f32, f32>::new(model, set, walls, particles)?),
+            Precision::Mixed => Box::new(FastLattice::<f64, f32>::new(model, set, walls, particles)?),
+        });
+    }
     Ok(match precision {
         Precision::F64 => Box::new(LatticeMd::<f64, f64>::new(model, contacts, machine, walls, particles)?),
         Precision::F32 => Box::new(LatticeMd::<f32, f32>::new(model, contacts, machine, walls, particles)?),
@@ -81,7 +92,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         particles: Particles,
     ) -> Result<Self, Failure> {
         let rival = match contacts {
-            Contacts::Lattice => None,
+            Contacts::Lattice | Contacts::Fast => None,
             Contacts::Lists(options) => {
                 let largest = particles.radii().map_or(1.0, |[_, largest]| largest);
                 Some(Rival::new(&model, options, largest))

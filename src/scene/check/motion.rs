@@ -4,7 +4,7 @@ use super::super::error::{Reason, SceneError, Warning};
 use super::super::key_table::*;
 use super::super::keys::Key;
 use super::super::places::Document;
-use super::super::{Inertia, Precision, Scene, WallMotion};
+use super::super::{Inertia, Precision, Scene, Scheme, WallMotion};
 use crate::particles::Particles;
 use serde::Serialize;
 use stripmine_kernels::sweep::lattice::Coordinates;
@@ -31,12 +31,21 @@ pub struct Estimates {
     pub damping_limit: f64,
 }
 
-/// Largest γ dt for which Gear's scheme is stable for pure drag.
-fn damping_limit(values: usize) -> f64 {
-    match values {
-        4 => 0.55,
-        5 => 0.31,
-        _ => 0.17,
+/// Largest γ dt for which a scheme is stable for pure drag.
+fn damping_limit(scheme: Scheme) -> f64 {
+    match scheme {
+        Scheme::Gear { values: 4 } => 0.55,
+        Scheme::Gear { values: 5 } => 0.31,
+        Scheme::Gear { .. } => 0.17,
+        // v is multiplied by 1 − γ dt: below 1 it does not even change its sign.
+        Scheme::VelocityVerlet => 1.0,
+    }
+}
+
+fn scheme_in_words(scheme: Scheme) -> String {
+    match scheme {
+        Scheme::Gear { values } => format!("Gear's scheme of {values} values"),
+        Scheme::VelocityVerlet => "velocity Verlet".to_owned(),
     }
 }
 
@@ -88,7 +97,7 @@ impl Estimates {
             resting_depth: (heaviest * gravity / stiffness).powf(2.0 / 3.0) / radius,
             damping,
             network_damping: NETWORK * damping,
-            damping_limit: damping_limit(scene.integrator.values),
+            damping_limit: damping_limit(scene.integrator.scheme),
         }
     }
 }
@@ -96,12 +105,13 @@ impl Estimates {
 /// A damping at which even a single contact is unstable.
 pub(super) fn instability(document: &Document) -> Option<SceneError> {
     let scene = &document.scene;
-    let (dt, values) = (scene.integrator.dt, scene.integrator.values);
-    let (gamma, limit) = (scene.law.contact.normal_damping, damping_limit(values));
+    let super::super::Integrator { dt, scheme } = scene.integrator;
+    let (gamma, limit) = (scene.law.contact.normal_damping, damping_limit(scheme));
+    let name = scheme_in_words(scheme);
     (gamma * dt > limit).then(|| {
         let message = format!(
-            "unstable: normal_damping·dt = {gamma}·{dt} = {:.4} for a single contact, but Gear's scheme of {values} \
-             values is stable below about {limit}",
+            "unstable: normal_damping·dt = {gamma}·{dt} = {:.4} for a single contact, but {name} is stable below \
+             about {limit}",
             gamma * dt
         );
         let error = document.spot(&DT).error(Reason::Stability, message);
@@ -109,8 +119,8 @@ pub(super) fn instability(document: &Document) -> Option<SceneError> {
             .expecting(format!("dt below {:.4e} (time), {:.4e} where packings are dense", limit / gamma, {
                 limit / (NETWORK * gamma)
             }))
-            .advising(match values {
-                4 => "lower dt or law.normal_damping",
+            .advising(match scheme {
+                Scheme::Gear { values: 4 } | Scheme::VelocityVerlet => "lower dt or law.normal_damping",
                 _ => "lower dt or law.normal_damping, or use fewer Gear values",
             })
     })
@@ -123,15 +133,15 @@ pub(super) fn warnings(scene: &Scene, particles: &Particles, estimates: &Estimat
         warnings.push(Warning { key: key.path(), message, suggestion });
     };
     let contact = &scene.law.contact;
-    let (dt, values) = (scene.integrator.dt, scene.integrator.values);
+    let super::super::Integrator { dt, scheme } = scene.integrator;
     let limit = estimates.damping_limit;
     if estimates.network_damping > limit {
         warn(
             &DT,
             format!(
-                "3·normal_damping·dt = {:.4} in a dense packing, but Gear's scheme of {values} values is stable below \
-                 about {limit}",
-                estimates.network_damping
+                "3·normal_damping·dt = {:.4} in a dense packing, but {} is stable below about {limit}",
+                estimates.network_damping,
+                scheme_in_words(scheme)
             ),
             format!("dt below {:.4e}, or fewer Gear values", limit / (NETWORK * contact.normal_damping)),
         );

@@ -1,0 +1,127 @@
+//! The velocity Verlet scheme, on scaled derivatives: half a kick, a drift, the forces, half a kick.
+//!
+//! With q_1 = dt v and q_2 = (dt²/2) a, half a kick is q_1 += q_2 and a drift q_0 += q_1. Forces that depend on
+//! velocities are those of the velocities after the first half kick, as is usual.
+
+use super::Scheme;
+use super::gear::{Inertia, NOT_FINITE, STATE, VELOCITY, acceleration};
+use crate::isa::{Array, Element, Machine, Predicate, Slot, Text, Vector};
+use std::marker::PhantomData;
+
+/// The scheme.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct VelocityVerlet;
+
+impl Scheme for VelocityVerlet {
+    // The acceleration is made anew from the forces.
+    const CARRIED: usize = 2;
+
+    #[inline(always)]
+    fn correct<V: Vector>(&self, _: impl Fn(f64) -> V, row: &mut [V; 6], second: V) {
+        row[1] = row[1] + second;
+        row[2] = second;
+    }
+
+    #[inline(always)]
+    fn predict<V: Vector>(&self, row: &mut [V; 6]) {
+        row[1] = row[1] + row[2];
+        row[0] = row[0] + row[1];
+    }
+}
+
+/// The first half kick and the drift; hands the velocities to the lattice. Vector length: the discs.
+///
+/// `S` is the state's precision, `P` the forces'; `FREEDOMS` is 2, or 3 with rotation.
+#[derive(Clone, Copy, Debug)]
+pub struct Drift<S, P, const FREEDOMS: usize> {
+    inverse_dt: f64,
+    precisions: PhantomData<(S, P)>,
+}
+
+impl<S: Element, P: Element, const FREEDOMS: usize> Drift<S, P, FREEDOMS> {
+    /// For steps of `dt` (time).
+    pub fn new(dt: f64) -> Self {
+        Drift { inverse_dt: 1.0 / dt, precisions: PhantomData }
+    }
+}
+
+/// The row of one degree of freedom; entries that the scheme has no use for are zero.
+#[inline(always)]
+fn row<S: Element, M: Machine>(m: M, freedom: usize) -> [M::V; 6] {
+    let mut row = [m.uniform(0.0); 6];
+    for (k, q) in row.iter_mut().enumerate().take(3) {
+        *q = m.load(Slot::<S>::new(STATE[freedom][k]));
+    }
+    row
+}
+
+// SAFETY: the slots depend on the const parameters only.
+unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Text for Drift<S, P, FREEDOMS> {
+    type Lane = S;
+
+    #[inline(always)]
+    fn body<M: Machine<Lane = S>>(&self, m: M) {
+        for freedom in 0..FREEDOMS {
+            m.section("drift");
+            let mut q = row::<S, M>(m, freedom);
+            VelocityVerlet.predict(&mut q);
+            m.store(Slot::<S>::new(STATE[freedom][0]), q[0]);
+            m.store(Slot::<S>::new(STATE[freedom][1]), q[1]);
+            m.section("velocities");
+            m.store(Slot::<P>::new(VELOCITY[freedom]), q[1] * m.uniform(self.inverse_dt));
+        }
+    }
+}
+
+/// Gathers the forces from the lattice and gives the second half kick. Vector length: the discs.
+#[derive(Clone, Copy, Debug)]
+pub struct Kick<S, P, const FREEDOMS: usize> {
+    half_dt_squared: f64,
+    inertia: Inertia,
+    gravity: [f64; 2],
+    checked: bool,
+    precisions: PhantomData<(S, P)>,
+}
+
+impl<S: Element, P: Element, const FREEDOMS: usize> Kick<S, P, FREEDOMS> {
+    /// For steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
+    pub fn new(dt: f64, inertia: Inertia, gravity: [f64; 2]) -> Self {
+        let half_dt_squared = 0.5 * dt * dt;
+        Kick { half_dt_squared, inertia, gravity, checked: false, precisions: PhantomData }
+    }
+
+    /// The same program, which also counts the discs whose acceleration is no finite number in
+    /// [`NOT_FINITE`](super::gear::NOT_FINITE).
+    #[must_use]
+    pub fn checked(self) -> Self {
+        Kick { checked: true, ..self }
+    }
+}
+
+// SAFETY: the slots depend on the const parameters, the inertia and which components gravity has.
+unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Text for Kick<S, P, FREEDOMS> {
+    type Lane = S;
+
+    #[inline(always)]
+    fn body<M: Machine<Lane = S>>(&self, m: M) {
+        m.section("gather");
+        let cell = m.load_index(Slot::new(Array::DiscCell));
+        let mut magnitude = m.uniform(0.0);
+        for freedom in 0..FREEDOMS {
+            let acceleration = acceleration::<S, P, M>(m, cell, freedom, self.inertia, self.gravity);
+            m.section("kick");
+            let second = acceleration * m.uniform(self.half_dt_squared);
+            if self.checked {
+                magnitude = magnitude + second.abs();
+            }
+            let mut q = row::<S, M>(m, freedom);
+            VelocityVerlet.correct(|value| m.uniform(value), &mut q, second);
+            m.store(Slot::<S>::new(STATE[freedom][1]), q[1]);
+            m.store(Slot::<S>::new(STATE[freedom][2]), q[2]);
+        }
+        if self.checked {
+            m.section("check");
+            m.count(NOT_FINITE, magnitude.less_than(m.uniform(f64::INFINITY)).not());
+        }
+    }
+}

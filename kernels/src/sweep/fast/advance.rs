@@ -1,0 +1,262 @@
+//! Corrector and next predictor in one pass over the discs.
+
+use super::occupancy::Occupancy;
+use crate::InstructionSet;
+use crate::backend::{Precision, Registers, Scalar};
+use crate::integrator::Scheme;
+use crate::integrator::gear::Inertia;
+use crate::isa::{Element, Predicate, ProgramError, Vector, same};
+use crate::program::{Task, dispatch};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use std::ops::Range;
+
+/// Discs that one thread moves at a time.
+const BAND: usize = 4096;
+
+/// How discs move under forces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion<C> {
+    /// The scheme.
+    pub scheme: C,
+    /// Time step (time).
+    pub dt: f64,
+    /// What forces are divided by.
+    pub inertia: Inertia,
+    /// Acceleration of gravity (length/time²).
+    pub gravity: [f64; 2],
+    /// Sides of a cell (length).
+    pub edge: [f64; 2],
+}
+
+impl<C: Scheme> Motion<C> {
+    /// (dt²/2) a of one degree of freedom.
+    #[inline(always)]
+    fn second<V: Vector>(&self, uniform: &impl Fn(f64) -> V, freedom: usize, force: V, inverse: V) -> V {
+        let mut acceleration = force * inverse;
+        if freedom < 2 && self.gravity[freedom] != 0.0 {
+            acceleration = acceleration + uniform(self.gravity[freedom]);
+        }
+        acceleration * uniform(0.5 * self.dt * self.dt)
+    }
+
+    /// The corrected row of one disc's degree of freedom, from the predicted one (its first [`Scheme::CARRIED`]
+    /// entries), the force and the inverse mass or moment of inertia.
+    pub fn corrected<S: Element>(&self, freedom: usize, predicted: [S; 6], force: S, inverse: S) -> [S; 6] {
+        let uniform = |value: f64| S::from_f64(value);
+        let mut row = predicted;
+        let second = self.second(&uniform, freedom, force, inverse);
+        self.scheme.correct(uniform, &mut row, second);
+        row
+    }
+}
+
+/// Corrects the state with the forces found and predicts it one step ahead.
+///
+/// Places are those inside the cells. The sums are set to zero behind the pass.
+pub struct Advance<'a, S, P, C> {
+    /// How discs move.
+    pub motion: &'a Motion<C>,
+    /// For each degree of freedom a column for each derivative that is carried; an entry a disc that moves, or more.
+    pub state: Vec<Vec<&'a mut [S]>>,
+    /// Force along x, along y, torque: as many as degrees of freedom.
+    pub sums: Vec<&'a mut [P]>,
+    /// Inverse masses and moments of inertia, where discs vary.
+    pub inverse: [&'a [S]; 2],
+    /// Discs that move: the first ones.
+    pub discs: usize,
+    /// Whether the state is corrected already, so that forces give no more than the acceleration: the first step.
+    pub corrected: bool,
+}
+
+impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
+    /// Does it; the discs that have left their cells, or have no finite place, are listed in order.
+    ///
+    /// # Errors
+    /// [`ProgramError::NoSuchInstructionSet`]; nothing was executed then.
+    ///
+    /// # Panics
+    /// If a column is shorter than said, or a disc that moves is in no cell.
+    pub fn run(mut self, occupancy: &mut Occupancy, set: InstructionSet) -> Result<Vec<u32>, ProgramError> {
+        let Advance { motion, discs, corrected, inverse, .. } = self;
+        let freedoms = self.state.len();
+        assert!((2..=3).contains(&freedoms) && self.sums.len() == freedoms, "2 or 3 degrees of freedom");
+        let vary = motion.inertia == Inertia::Varying;
+        assert!(!vary || inverse[..freedoms - 1].iter().all(|column| column.len() >= discs));
+        assert!(discs <= occupancy.discs());
+        let mut columns = [[std::ptr::null_mut(); 6]; 3];
+        for (to, from) in columns.iter_mut().zip(&mut self.state) {
+            assert!(from.len() == C::CARRIED && from.iter().all(|column| column.len() >= discs));
+            to.iter_mut().zip(from).for_each(|(to, from)| *to = from.as_mut_ptr());
+        }
+        let mut sums = [std::ptr::null_mut(); 3];
+        for (to, from) in sums.iter_mut().zip(&mut self.sums) {
+            assert!(from.len() >= discs);
+            *to = from.as_mut_ptr();
+        }
+        let (cells, places, unit) = occupancy.to_settle();
+        let lattice = places[0].len();
+        let settles = lattice > 0;
+        assert!(
+            !settles || cells[..discs].iter().all(|&cell| (cell as usize) < lattice),
+            "a disc is in no cell"
+        );
+        let arrays = Arrays {
+            columns,
+            sums,
+            inverse: inverse.map(<[S]>::as_ptr),
+            cells: cells.as_ptr(),
+            settles,
+            places: places.map(<[f32]>::as_mut_ptr),
+        };
+        let pass = |range: Range<usize>| -> Result<Vec<u32>, ProgramError> {
+            let mut movers = Vec::new();
+            let (arrays, movers_of) = (&arrays, &mut movers);
+            match freedoms {
+                2 => dispatch(
+                    set,
+                    Pass::<_, _, _, 2> { motion, arrays, range, corrected, unit, movers: movers_of },
+                ),
+                _ => dispatch(
+                    set,
+                    Pass::<_, _, _, 3> { motion, arrays, range, corrected, unit, movers: movers_of },
+                ),
+            }?;
+            Ok(movers)
+        };
+        if rayon::current_num_threads() == 1 || discs <= BAND {
+            return pass(0..discs);
+        }
+        let bands: Vec<Range<usize>> =
+            (0..discs).step_by(BAND).map(|start| start..(start + BAND).min(discs)).collect();
+        let movers: Result<Vec<Vec<u32>>, _> = bands.into_par_iter().map(pass).collect();
+        Ok(movers?.concat())
+    }
+}
+
+/// Pointers to what a pass works on.
+struct Arrays<S, P> {
+    columns: [[*mut S; 6]; 3],
+    sums: [*mut P; 3],
+    inverse: [*const S; 2],
+    cells: *const u32,
+    /// Whether places on the lattice are kept.
+    settles: bool,
+    places: [*mut f32; 2],
+}
+
+// SAFETY: passes over ranges that do not overlap touch different discs, and these are in different cells.
+unsafe impl<S: Send, P: Send> Sync for Arrays<S, P> {}
+
+/// The pass over some discs.
+struct Pass<'a, S, P, C, const FREEDOMS: usize> {
+    motion: &'a Motion<C>,
+    arrays: &'a Arrays<S, P>,
+    range: Range<usize>,
+    corrected: bool,
+    unit: f64,
+    movers: &'a mut Vec<u32>,
+}
+
+impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Task<S> for Pass<'_, S, P, C, FREEDOMS> {
+    #[inline(always)]
+    fn on<R: Registers<Lane = S>>(mut self, registers: R) {
+        let Range { start: mut first, end } = self.range.clone();
+        while first + R::LANES <= end {
+            self.register(registers, first);
+            first += R::LANES;
+        }
+        self.elements(first..end);
+    }
+}
+
+impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, C, FREEDOMS> {
+    /// What fills no register, disc by disc: the same bits, so not worth a copy for every register file.
+    #[inline(never)]
+    fn elements(&mut self, discs: Range<usize>) {
+        discs.for_each(|disc| self.register(Scalar::<S>::default(), disc));
+    }
+
+    #[inline(always)]
+    fn register<R: Registers<Lane = S>>(&mut self, registers: R, first: usize) {
+        let Pass { motion, arrays, corrected, .. } = *self;
+        let uniform = |value: f64| registers.splat(S::from_f64(value));
+        let mut place = [uniform(0.0); 2];
+        for freedom in 0..FREEDOMS {
+            // SAFETY: Advance has checked the columns; this thread alone works on these discs. Here and below.
+            let force = unsafe { take(registers, arrays.sums[freedom].add(first)) };
+            let inverse = match (motion.inertia, freedom) {
+                (Inertia::Equal { inverse_mass, .. }, 0 | 1) => uniform(inverse_mass),
+                (Inertia::Equal { inverse_inertia, .. }, _) => uniform(inverse_inertia),
+                // SAFETY: as above.
+                (Inertia::Varying, _) => unsafe { registers.load(arrays.inverse[freedom / 2].add(first)) },
+            };
+            let second = motion.second(&uniform, freedom, force, inverse);
+            let mut row = [uniform(0.0); 6];
+            for k in 0..C::CARRIED {
+                // SAFETY: as above.
+                row[k] = unsafe { registers.load(arrays.columns[freedom][k].add(first)) };
+            }
+            if corrected {
+                row[2] = second;
+            } else {
+                motion.scheme.correct(uniform, &mut row, second);
+            }
+            motion.scheme.predict(&mut row);
+            for k in 0..C::CARRIED {
+                // SAFETY: as above.
+                unsafe { registers.store(arrays.columns[freedom][k].add(first), row[k]) };
+            }
+            if freedom < 2 {
+                place[freedom] = row[0];
+            }
+        }
+        let half = |axis: usize| uniform(0.5 * motion.edge[axis]);
+        let stays = place[0].abs().less_equal(half(0)).and(place[1].abs().less_equal(half(1)));
+        let moved = registers.bits(stays.not());
+        if moved != 0 {
+            let lanes = (0..R::LANES).filter(|lane| moved >> lane & 1 == 1);
+            self.movers.extend(lanes.map(|lane| (first + lane) as u32));
+        }
+        if !arrays.settles {
+            return;
+        }
+        let unit = uniform(self.unit);
+        for axis in 0..2 {
+            let mut along = [S::default(); 16];
+            // SAFETY: LANES <= 16.
+            unsafe { registers.store(along.as_mut_ptr(), place[axis] * unit) };
+            for lane in 0..R::LANES {
+                // SAFETY: the cells are ones of the lattice, each of one disc only.
+                unsafe {
+                    let cell = *arrays.cells.add(first + lane) as usize;
+                    *arrays.places[axis].add(cell) = along[lane].to_f64() as f32;
+                }
+            }
+        }
+    }
+}
+
+/// Loads sums and sets them to zero.
+///
+/// # Safety
+/// There are as many as a register has lanes, at most 16, and nobody else touches them.
+#[inline(always)]
+unsafe fn take<R: Registers, P: Element>(registers: R, sums: *mut P) -> R::V {
+    if same::<P, R::Lane>() {
+        // SAFETY: P is Lane; the rest is the caller's promise.
+        return unsafe {
+            let value = registers.load(sums.cast());
+            registers.store(sums.cast(), registers.splat(R::Lane::default()));
+            value
+        };
+    }
+    let mut lanes = [R::Lane::default(); 16];
+    for (lane, number) in lanes.iter_mut().enumerate().take(R::LANES) {
+        // SAFETY: the caller's promise.
+        let sum = unsafe { &mut *sums.add(lane) };
+        *number = R::Lane::from_f64(sum.to_f64());
+        *sum = P::default();
+    }
+    // SAFETY: LANES <= 16 numbers.
+    unsafe { registers.load(lanes.as_ptr()) }
+}

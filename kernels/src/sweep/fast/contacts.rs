@@ -1,0 +1,318 @@
+//! The law for the contacts found, gathered into registers.
+
+use super::SENTINELS;
+use super::detection::{Candidate, codes};
+use super::occupancy::Occupancy;
+use crate::backend::{Precision, Registers};
+use crate::isa::{Element, Vector};
+use crate::law::{Env, Field, Law, Sum};
+use crate::program::{GROUP, Task};
+use crate::sweep::lattice::Frame;
+use std::cell::Cell;
+use std::mem::MaybeUninit;
+
+/// The discs' quantities as a fast sweep reads them: an entry a disc and [`SENTINELS`] more. What a law does not ask
+/// for may be empty.
+#[derive(Clone, Copy, Debug)]
+pub struct Discs<'a, S> {
+    /// Places inside the cells, seen from their centres (length).
+    pub place: [&'a [S]; 2],
+    /// Velocities along x and y and angular velocity, in some unit of time.
+    pub velocity: [&'a [S]; 3],
+    /// One over that unit.
+    pub per_time: f64,
+    /// Radii.
+    pub radius: &'a [S],
+    /// Inverse masses.
+    pub inverse_mass: &'a [S],
+}
+
+impl<'a, S: Element> Discs<'a, S> {
+    #[inline(always)]
+    fn column(&self, field: Field) -> &'a [S] {
+        match field {
+            Field::Vx => self.velocity[0],
+            Field::Vy => self.velocity[1],
+            Field::Omega => self.velocity[2],
+            Field::Radius => self.radius,
+            Field::InverseMass => self.inverse_mass,
+        }
+    }
+
+    /// Whether every column that a law asks for has an entry for every disc and sentinel.
+    pub(super) fn suffice(&self, fields: &[Field], discs: usize) -> bool {
+        let columns = fields.iter().map(|&field| self.column(field)).chain(self.place);
+        columns.into_iter().all(|column| column.len() == discs + SENTINELS)
+    }
+}
+
+/// What candidates' codes stand for.
+#[derive(Clone, Debug)]
+pub(super) struct Codes<P> {
+    /// From the group's first cell to the own cell and to the partner's.
+    cells: Vec<[i32; 2]>,
+    /// From the centre of the own cell to that of the partner's (length).
+    ways: [Vec<P>; 2],
+}
+
+impl<P: Precision> Codes<P> {
+    pub(super) fn new(occupancy: &Occupancy, frame: Frame) -> Self {
+        let stride = occupancy.shape().stride() as isize;
+        let all = || codes(occupancy.half_width());
+        Codes {
+            cells: all()
+                .map(|(lane, [column, row])| [lane as i32, (lane as isize + row * stride + column) as i32])
+                .collect(),
+            ways: [0, 1].map(|axis| {
+                all().map(|(_, place)| P::from_f64(place[axis] as f64 * frame.edge[axis])).collect()
+            }),
+        }
+    }
+}
+
+impl<P: Precision> Codes<P> {
+    /// The two discs of a candidate and the way between their cells.
+    #[inline(always)]
+    pub(super) fn pair(&self, candidate: Candidate, index: &[u32]) -> (Pair, [P; 2]) {
+        let (base, code) = (candidate.base(), candidate.code());
+        // SAFETY: searches make codes below the tables' length, of cells of the padded lattice.
+        unsafe {
+            let cells = *self.cells.get_unchecked(code);
+            let discs = cells.map(|cell| *index.get_unchecked(base.wrapping_add_signed(cell as isize)));
+            (discs, [*self.ways[0].get_unchecked(code), *self.ways[1].get_unchecked(code)])
+        }
+    }
+}
+
+/// Where the sums go; of these pointers' elements no other thread touches any that this one does.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SumColumns<P>(pub(super) [*mut P; 3]);
+
+// SAFETY: the bands of a sweep see to what is touched.
+unsafe impl<P: Send> Send for SumColumns<P> {}
+// SAFETY: as above.
+unsafe impl<P: Send> Sync for SumColumns<P> {}
+
+/// Two discs.
+type Pair = [u32; 2];
+
+/// What came up besides the sums.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Notes {
+    /// Pairs deeper than the depth watched.
+    pub(super) deep: Vec<Pair>,
+    /// Pairs whose force is no finite number.
+    pub(super) not_finite: Vec<Pair>,
+}
+
+/// Evaluates the law for candidates.
+pub(super) struct Evaluate<'a, S, P, L> {
+    pub(super) law: &'a L,
+    pub(super) index: &'a [u32],
+    pub(super) sentinel: u32,
+    pub(super) codes: &'a Codes<P>,
+    pub(super) discs: &'a Discs<'a, S>,
+    pub(super) candidates: &'a [Candidate],
+    pub(super) sums: SumColumns<P>,
+    pub(super) watched: Option<f64>,
+    pub(super) notes: &'a mut Notes,
+}
+
+/// As many entries as the widest register has lanes.
+type Lanes<T> = [T; GROUP];
+
+/// What the law sees: a register of pairs.
+struct Gathered<'a, R: Registers, S> {
+    registers: R,
+    discs: &'a Discs<'a, S>,
+    own: &'a Lanes<u32>,
+    partner: &'a Lanes<u32>,
+    way: [R::V; 2],
+    watched: Option<f64>,
+    penetration: Cell<R::V>,
+    own_sums: [Cell<R::V>; 3],
+    partner_sums: [Cell<R::V>; 3],
+}
+
+impl<R: Registers, S: Element> Gathered<'_, R, S> {
+    #[inline(always)]
+    fn gather(&self, column: &[S], discs: &Lanes<u32>) -> R::V {
+        assemble(self.registers, |lane| {
+            // SAFETY: the columns have an entry for every disc of the Index and for the sentinels (checked by Sweep).
+            R::Lane::from_f64(unsafe { column.get_unchecked(discs[lane] as usize) }.to_f64())
+        })
+    }
+
+    #[inline(always)]
+    fn field(&self, field: Field, discs: &Lanes<u32>) -> R::V {
+        let value = self.gather(self.discs.column(field), discs);
+        match field {
+            Field::Vx | Field::Vy | Field::Omega => value * self.uniform(self.discs.per_time),
+            Field::Radius | Field::InverseMass => value,
+        }
+    }
+}
+
+#[inline(always)]
+fn assemble<R: Registers>(registers: R, number: impl Fn(usize) -> R::Lane) -> R::V {
+    let mut lanes = MaybeUninit::<Lanes<R::Lane>>::uninit();
+    let first = lanes.as_mut_ptr().cast::<R::Lane>();
+    for lane in 0..R::LANES {
+        // SAFETY: LANES <= GROUP.
+        unsafe { first.add(lane).write(number(lane)) };
+    }
+    // SAFETY: just written.
+    unsafe { registers.load(first) }
+}
+
+#[inline(always)]
+fn spill<R: Registers>(registers: R, value: R::V) -> Lanes<R::Lane> {
+    let mut lanes = [R::Lane::default(); GROUP];
+    // SAFETY: LANES <= GROUP.
+    unsafe { registers.store(lanes.as_mut_ptr(), value) };
+    lanes
+}
+
+impl<R: Registers, S: Element> Env<2> for &Gathered<'_, R, S> {
+    type V = R::V;
+    type Place = ();
+    const BOTH_PARTNERS: bool = true;
+
+    #[inline(always)]
+    fn own_position(self) -> [R::V; 2] {
+        [self.gather(self.discs.place[0], self.own), self.gather(self.discs.place[1], self.own)]
+    }
+    #[inline(always)]
+    fn own(self, field: Field) -> R::V {
+        self.field(field, self.own)
+    }
+    #[inline(always)]
+    fn displacement(self, own: [R::V; 2], (): ()) -> [R::V; 2] {
+        let x = (own[0] - self.gather(self.discs.place[0], self.partner)) - self.way[0];
+        let y = (own[1] - self.gather(self.discs.place[1], self.partner)) - self.way[1];
+        [x, y]
+    }
+    #[inline(always)]
+    fn partner(self, field: Field, (): ()) -> R::V {
+        self.field(field, self.partner)
+    }
+    #[inline(always)]
+    fn uniform(self, value: f64) -> R::V {
+        self.registers.splat(R::Lane::from_f64(value))
+    }
+    #[inline(always)]
+    fn none(self, _: <R::V as Vector>::Predicate) -> bool {
+        false // Nearly all candidates are contacts.
+    }
+    #[inline(always)]
+    fn own_add(self, sum: Sum, value: R::V) {
+        self.own_sums[sum as usize].set(value);
+    }
+    #[inline(always)]
+    fn partner_sub(self, sum: Sum, (): (), value: R::V) {
+        self.partner_sums[sum as usize].set(value);
+    }
+    #[inline(always)]
+    fn watches(self) -> bool {
+        self.watched.is_some()
+    }
+    #[inline(always)]
+    fn watch(self, penetration: R::V) {
+        self.penetration.set(penetration);
+    }
+    #[inline(always)]
+    fn section(self, _: &'static str) {}
+}
+
+impl<S: Element, P: Precision, L: Law<2>> Task<P> for Evaluate<'_, S, P, L> {
+    #[inline(always)]
+    fn on<R: Registers<Lane = P>>(self, registers: R) {
+        const { assert!(R::LANES <= GROUP) }
+        let mut notes = std::mem::take(self.notes);
+        for pairs in self.candidates.chunks(R::LANES) {
+            self.register::<R>(registers, pairs, &mut notes);
+        }
+        *self.notes = notes;
+    }
+}
+
+impl<S: Element, P: Precision, L: Law<2>> Evaluate<'_, S, P, L> {
+    #[inline(always)]
+    fn register<R: Registers<Lane = P>>(&self, registers: R, pairs: &[Candidate], notes: &mut Notes) {
+        let count = pairs.len();
+        let mut own = [self.sentinel; GROUP];
+        let mut partner = [self.sentinel + 1; GROUP];
+        let mut ways = [[P::default(); GROUP]; 2];
+        // Nearly all registers are full: a loop over all lanes is unrolled.
+        for lane in 0..R::LANES {
+            if lane == count {
+                break;
+            }
+            ([own[lane], partner[lane]], [ways[0][lane], ways[1][lane]]) =
+                self.codes.pair(pairs[lane], self.index);
+        }
+        let zero = || Cell::new(registers.splat(P::default()));
+        // SAFETY: LANES <= GROUP.
+        let way = ways.map(|way| unsafe { registers.load(way.as_ptr()) });
+        let gathered = Gathered {
+            registers,
+            discs: self.discs,
+            own: &own,
+            partner: &partner,
+            way,
+            watched: self.watched,
+            penetration: zero(),
+            own_sums: [zero(), zero(), zero()],
+            partner_sums: [zero(), zero(), zero()],
+        };
+        let disc = self.law.own(&gathered);
+        self.law.pair(&gathered, (), &disc);
+
+        let sums = self.law.sums();
+        let (mut own_sums, mut partner_sums) = ([[P::default(); GROUP]; 3], [[P::default(); GROUP]; 3]);
+        let mut magnitude = registers.splat(P::default());
+        for (s, &sum) in sums.iter().enumerate() {
+            let value = gathered.own_sums[sum as usize].get();
+            magnitude = magnitude + value.abs();
+            own_sums[s] = spill(registers, value);
+            partner_sums[s] = spill(registers, gathered.partner_sums[sum as usize].get());
+        }
+        // One contact after the other, own before partner: the order of summation knows no registers.
+        for lane in 0..R::LANES {
+            if lane == count {
+                break;
+            }
+            for s in 0..sums.len() {
+                let column = self.sums.0[s];
+                // SAFETY: the columns have an entry for every disc of the Index (checked by Sweep); no other thread
+                // touches these.
+                unsafe {
+                    let to = &mut *column.add(own[lane] as usize);
+                    *to = *to + own_sums[s][lane];
+                }
+            }
+            for s in 0..sums.len() {
+                let column = self.sums.0[s];
+                // SAFETY: as above.
+                unsafe {
+                    let to = &mut *column.add(partner[lane] as usize);
+                    *to = *to - partner_sums[s][lane];
+                }
+            }
+        }
+        let list = |bits: u64, to: &mut Vec<Pair>| {
+            to.extend((0..count).filter(|lane| bits >> lane & 1 == 1).map(|lane| [own[lane], partner[lane]]));
+        };
+        if let Some(depth) = self.watched {
+            let depth = registers.splat(P::from_f64(depth));
+            let bits = registers.bits(depth.less_than(gathered.penetration.get()));
+            if bits != 0 {
+                list(bits, &mut notes.deep);
+            }
+        }
+        let finite = registers.bits(magnitude.less_than(registers.splat(P::from_f64(f64::INFINITY))));
+        if finite.trailing_ones() < R::LANES as u32 {
+            list(!finite, &mut notes.not_finite);
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! Finding contacts: registers of cells against the same cells at every place of the half mask.
+
+use super::occupancy::Occupancy;
+use crate::GROUP;
+use crate::backend::Registers;
+use crate::isa::Vector;
+use crate::program::Task;
+use std::ops::Range;
+
+/// Places of the mask whose findings share a word: 16 cells each.
+const PLACES: usize = 64 / GROUP;
+
+/// Squares of distances may be off by so much in single precision, and pairs beyond contact do no harm.
+pub(super) const MARGIN: f32 = 1.0 + 2e-5;
+
+/// A pair of cells whose discs may touch: the first cell of the group in the high bits, place and lane in the low ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Candidate(pub(super) u64);
+
+impl Candidate {
+    /// Bits of a code.
+    pub(super) const CODE: u32 = 9;
+
+    /// Position of the group's first cell.
+    #[inline(always)]
+    pub(super) fn base(self) -> usize {
+        (self.0 >> Self::CODE) as usize
+    }
+
+    /// Place and lane: an index into [`codes`].
+    #[inline(always)]
+    pub(super) fn code(self) -> usize {
+        (self.0 & ((1 << Self::CODE) - 1)) as usize
+    }
+}
+
+/// The places of a half mask in the order of the sweep: columns and rows.
+pub(super) fn places(half_width: usize) -> impl Iterator<Item = [isize; 2]> {
+    let h = half_width as isize;
+    let ahead = (1..=h).map(|column| [column, 0]);
+    ahead.chain((1..=h).flat_map(move |row| (-h..=h).map(move |column| [column, row])))
+}
+
+/// What a code stands for: lane and place.
+pub(super) fn codes(half_width: usize) -> impl Iterator<Item = (usize, [isize; 2])> {
+    places(half_width).flat_map(|place| (0..GROUP).map(move |lane| (lane, place)))
+}
+
+/// Where a search goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Cursor {
+    pub(super) row: usize,
+    pub(super) group: usize,
+}
+
+/// Searches groups of cells from `cursor` to the end of the rows, until `full` candidates are found.
+pub(super) struct Search<'a> {
+    pub(super) occupancy: &'a Occupancy,
+    pub(super) rows: Range<usize>,
+    pub(super) cursor: &'a mut Cursor,
+    pub(super) full: usize,
+    pub(super) found: &'a mut Vec<Candidate>,
+}
+
+impl Task<f32> for Search<'_> {
+    #[inline(always)]
+    fn on<R: Registers<Lane = f32>>(self, registers: R) {
+        match (self.occupancy.half_width(), self.occupancy.radii().is_some()) {
+            (2, false) => self.with::<R, 2, false>(registers),
+            (2, true) => self.with::<R, 2, true>(registers),
+            (_, false) => self.with::<R, 3, false>(registers),
+            (_, true) => self.with::<R, 3, true>(registers),
+        }
+    }
+}
+
+/// Words that the findings of a group take: 12 or 24 places.
+const fn words(half_width: usize) -> usize {
+    (half_width + half_width * (2 * half_width + 1)).div_ceil(PLACES)
+}
+
+impl Search<'_> {
+    #[inline(always)]
+    fn with<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(self, registers: R) {
+        let Search { occupancy, rows, cursor, full, found } = self;
+        let shape = occupancy.shape();
+        let stride = shape.stride();
+        let [x, y] = occupancy.places();
+        let radii = if VARY { occupancy.radii().unwrap_or(&[]) } else { x };
+        let occupied = occupancy.occupied();
+        let groups = shape.columns().div_ceil(GROUP);
+        let end = (rows.end - 1 + H) * stride + shape.position(0, 0) + shape.columns() + GROUP + H;
+        assert!(rows.end <= shape.rows() && end <= x.len() && x.len() == y.len() && x.len() == radii.len());
+        assert!(end < occupied.positions());
+        let (x, y, radii) = (x.as_ptr(), y.as_ptr(), radii.as_ptr());
+        while cursor.row < rows.end {
+            while cursor.group < groups {
+                let column = cursor.group * GROUP;
+                let base = shape.position(column as isize, cursor.row as isize);
+                let inside = (1 << GROUP.min(shape.columns() - column)) - 1;
+                // SAFETY: the group begins before `end`.
+                let own = unsafe { occupied.from(base) } & inside;
+                if own != 0 {
+                    if found.len() >= full {
+                        return;
+                    }
+                    // SAFETY: the group's cells and those at its places lie before `end`.
+                    let near = unsafe {
+                        compare::<R, H, VARY>(
+                            registers,
+                            [x.add(base), y.add(base)],
+                            radii.add(base),
+                            stride,
+                            occupancy.edge(),
+                        )
+                    };
+                    for (word, near) in near.into_iter().take(const { words(H) }).enumerate() {
+                        let own = own * 0x0001_0001_0001_0001;
+                        list(found, (base as u64) << Candidate::CODE | (word as u64) << 6, near & own);
+                    }
+                }
+                cursor.group += 1;
+            }
+            *cursor = Cursor { row: cursor.row + 1, group: 0 };
+        }
+    }
+}
+
+/// Which of the discs of a group are near the one at each place: 16 bits a place.
+///
+/// # Safety
+/// The pointers are to the own cells of a group, and all cells of it at all places exist.
+#[inline(always)]
+unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
+    registers: R,
+    [x, y]: [*const f32; 2],
+    radii: *const f32,
+    stride: usize,
+    edge: [f32; 2],
+) -> [u64; 6] {
+    let mut near = [0; 6];
+    let limit = registers.splat(MARGIN);
+    let mut part = 0;
+    while part < GROUP {
+        // SAFETY: the caller's promise, here and below.
+        let (own_x, own_y) = unsafe { (registers.load(x.add(part)), registers.load(y.add(part))) };
+        let own_radius = unsafe { registers.load(radii.add(part)) };
+        // The own position as seen from the centres of columns −3 … 3.
+        let from = |column: isize| own_x - registers.splat(edge[0] * column as f32);
+        let columns = [from(-3), from(-2), from(-1), own_x, from(1), from(2), from(3)];
+        let mut place = 0;
+        for row in 0..=H {
+            let from_y = own_y - registers.splat(edge[1] * row as f32);
+            let first = if row == 0 { 1 } else { -(H as isize) };
+            for column in first..=H as isize {
+                let shift = (row * stride) as isize + column + part as isize;
+                let (dx, dy) = unsafe {
+                    (
+                        columns[(column + 3) as usize] - registers.load(x.offset(shift)),
+                        from_y - registers.load(y.offset(shift)),
+                    )
+                };
+                let square = dx * dx + dy * dy;
+                let touch = if VARY {
+                    let reach = own_radius + unsafe { registers.load(radii.offset(shift)) };
+                    square.less_than(reach * reach * limit)
+                } else {
+                    square.less_than(limit)
+                };
+                near[place / PLACES] |= registers.bits(touch) << (GROUP * (place % PLACES) + part);
+                place += 1;
+            }
+        }
+        part += R::LANES;
+    }
+    near
+}
+
+/// Appends a candidate for every bit, lowest first.
+#[inline(always)]
+fn list(found: &mut Vec<Candidate>, prefix: u64, bits: u64) {
+    append_bits(found, bits, |bit| Candidate(prefix | bit));
+}
+
+/// Appends what `of` makes of the number of every bit, lowest first.
+#[inline(always)]
+pub(super) fn append_bits<T: Copy>(list: &mut Vec<T>, mut bits: u64, of: impl Fn(u64) -> T) {
+    // More than a few are rare: writing a few whether they are there or not spares the branches.
+    const AT_ONCE: usize = 4;
+    let count = bits.count_ones() as usize;
+    let length = list.len();
+    list.reserve(64 + AT_ONCE);
+    let mut listed = 0;
+    while {
+        for i in 0..AT_ONCE {
+            // SAFETY: listed < 64 here, and there is room for 64 more and a few.
+            unsafe { list.as_mut_ptr().add(length + listed + i).write(of(bits.trailing_zeros().into())) };
+            bits &= bits.wrapping_sub(1);
+        }
+        listed += AT_ONCE;
+        listed < count
+    } {}
+    // SAFETY: the first `count` were written.
+    unsafe { list.set_len(length + count) };
+}

@@ -1,0 +1,247 @@
+//! Who is where: the Index, kept up to date by the discs that change cells, and places inside cells.
+
+use super::SENTINELS;
+use super::bits::Bits;
+use crate::GROUP;
+use crate::sweep::lattice::{Frame, Image, LatticeShape};
+
+/// The cell is another disc's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("disc {0} is in that cell")]
+pub struct Taken(pub usize);
+
+/// The x of an empty cell: its square is a number in single precision, and nothing is near it.
+const FAR: f32 = 1e18;
+
+/// Part of the cells that discs must occupy for registers of cells to pay; below it, one cell after the other is asked
+/// for its neighbours. A function of the scene, so that no sum's order depends on anything else.
+const SPARSE: f64 = 0.15;
+
+/// Which disc is in which cell, and, where the lattice is not sparse, where in its cell it is and how large.
+///
+/// These lengths are in units of the largest contact distance and in single precision: good for finding contacts, not
+/// for forces. Every disc is in at most one cell, every cell has at most one disc.
+#[derive(Clone, Debug)]
+pub struct Occupancy {
+    shape: LatticeShape,
+    half_width: usize,
+    unit: f64,
+    /// From a column and from a row to the next.
+    edge: [f32; 2],
+    discs: usize,
+    cell: Vec<u32>,
+    index: Vec<u32>,
+    sparse: bool,
+    place: [Vec<f32>; 2],
+    radius: Option<Vec<f32>>,
+    occupied: Bits,
+    images: Vec<Image>,
+}
+
+/// The cell of a disc that is in none.
+const NOWHERE: u32 = u32::MAX;
+
+impl Occupancy {
+    /// An empty lattice for `discs` discs that touch when their centres are `reach` (length) apart, or, if they vary,
+    /// at most that.
+    ///
+    /// # Panics
+    /// If there are 2³² − 3 discs or more, or the mask is neither 5×5 nor 7×7.
+    pub fn new(shape: LatticeShape, frame: Frame, discs: usize, reach: f64, vary: bool) -> Self {
+        assert!(discs < u32::MAX as usize - SENTINELS, "{discs} discs are too many to number");
+        let half_width = (shape.stride() - shape.columns()) / 2;
+        assert!((2..=3).contains(&half_width), "searches are compiled for masks of 5×5 and 7×7 cells");
+        // The last register of the last row may reach beyond the padded lattice.
+        let length = shape.padded() + GROUP;
+        let sparse = (discs as f64) < SPARSE * shape.cells() as f64;
+        let places = if sparse { 0 } else { length };
+        Occupancy {
+            half_width,
+            unit: 1.0 / reach,
+            edge: frame.edge.map(|edge| (edge / reach) as f32),
+            discs,
+            cell: vec![NOWHERE; discs],
+            index: vec![discs as u32; length],
+            sparse,
+            place: [vec![FAR; places], vec![0.0; places]],
+            radius: (vary && !sparse).then(|| vec![0.0; length]),
+            occupied: Bits::new(&shape, half_width),
+            images: shape.images(),
+            shape,
+        }
+    }
+
+    /// The lattice.
+    pub fn shape(&self) -> &LatticeShape {
+        &self.shape
+    }
+
+    /// How many discs there are.
+    pub fn discs(&self) -> usize {
+        self.discs
+    }
+
+    /// Column and row of a disc; none if it is in no cell.
+    pub fn cell(&self, disc: usize) -> Option<[usize; 2]> {
+        let cell = self.cell[disc];
+        (cell != NOWHERE).then(|| self.column_and_row(cell as usize))
+    }
+
+    /// The disc in a cell of the lattice.
+    pub fn disc(&self, column: usize, row: usize) -> Option<usize> {
+        let disc = self.index[self.shape.position(column as isize, row as isize)] as usize;
+        (disc < self.discs).then_some(disc)
+    }
+
+    fn column_and_row(&self, position: usize) -> [usize; 2] {
+        let from_first = position - self.shape.position(0, 0);
+        [from_first % self.shape.stride(), from_first / self.shape.stride()]
+    }
+
+    /// Puts a disc of some radius (length) into a cell, at a place seen from the cell's centre (length).
+    ///
+    /// # Errors
+    /// [`Taken`] if another disc is there; nothing has changed then.
+    ///
+    /// # Panics
+    /// If the disc is in a cell already, or there is no such disc or cell.
+    pub fn enter(
+        &mut self,
+        disc: usize,
+        cell: [usize; 2],
+        place: [f64; 2],
+        radius: f64,
+    ) -> Result<(), Taken> {
+        assert!(self.cell[disc] == NOWHERE, "disc {disc} is in a cell already");
+        assert!(cell[0] < self.shape.columns() && cell[1] < self.shape.rows(), "no cell {cell:?}");
+        let at = self.shape.position(cell[0] as isize, cell[1] as isize);
+        if self.index[at] as usize != self.discs {
+            return Err(Taken(self.index[at] as usize));
+        }
+        self.cell[disc] = at as u32;
+        self.index[at] = disc as u32;
+        if let Some(radii) = &mut self.radius {
+            radii[at] = (radius * self.unit) as f32;
+        }
+        self.settle(disc, place);
+        self.occupied.set(at, true);
+        Ok(())
+    }
+
+    /// Takes a disc out of its cell, if it is in one.
+    pub fn leave(&mut self, disc: usize) {
+        if self.cell[disc] == NOWHERE {
+            return;
+        }
+        let at = self.cell[disc] as usize;
+        self.cell[disc] = NOWHERE;
+        self.index[at] = self.discs as u32;
+        if !self.sparse {
+            self.place[0][at] = FAR;
+            self.place[1][at] = 0.0;
+        }
+        if let Some(radii) = &mut self.radius {
+            radii[at] = 0.0;
+        }
+        self.occupied.set(at, false);
+    }
+
+    /// Moves a disc inside its cell.
+    ///
+    /// # Panics
+    /// If it is in none.
+    pub fn settle(&mut self, disc: usize, place: [f64; 2]) {
+        let at = self.cell[disc] as usize;
+        assert!(at < self.index.len(), "disc {disc} is in no cell");
+        if self.sparse {
+            return;
+        }
+        for (column, along) in self.place.iter_mut().zip(place) {
+            column[at] = (along * self.unit) as f32;
+        }
+    }
+
+    /// Repeats the cells at periodic sides in the halo.
+    pub fn repeat_images(&mut self) {
+        for image in &self.images {
+            let disc = self.index[image.source];
+            self.index[image.cell] = disc;
+            self.occupied.set(image.cell, (disc as usize) < self.discs);
+        }
+        for place in self.place.iter_mut().filter(|place| !place.is_empty()) {
+            self.images.iter().for_each(|image| place[image.cell] = place[image.source]);
+        }
+        if let Some(radii) = &mut self.radius {
+            self.images.iter().for_each(|image| radii[image.cell] = radii[image.source]);
+        }
+    }
+
+    /// The discs in order of their cells, row by row.
+    pub fn order(&self) -> Vec<u32> {
+        let rows = (0..self.shape.rows() as isize).map(|row| self.shape.position(0, row));
+        rows.flat_map(|first| &self.index[first..first + self.shape.columns()])
+            .copied()
+            .filter(|&disc| (disc as usize) < self.discs)
+            .collect()
+    }
+
+    /// Numbers the discs anew: disc `n` is from now on what disc `order[n]` was.
+    ///
+    /// # Panics
+    /// If `order` does not name every disc once.
+    pub fn renumber(&mut self, order: &[u32]) {
+        let old = std::mem::replace(&mut self.cell, vec![NOWHERE; self.discs]);
+        assert_eq!(order.len(), self.discs, "an order of all discs");
+        let mut named = vec![false; self.discs];
+        for (disc, &before) in order.iter().enumerate() {
+            let before = before as usize;
+            assert!(!std::mem::replace(&mut named[before], true), "disc {before} is named twice");
+            self.cell[disc] = old[before];
+            if old[before] != NOWHERE {
+                self.index[old[before] as usize] = disc as u32;
+            }
+        }
+        self.repeat_images();
+    }
+
+    /// The largest contact distance (length).
+    pub(super) fn reach(&self) -> f64 {
+        1.0 / self.unit
+    }
+
+    pub(super) fn half_width(&self) -> usize {
+        self.half_width
+    }
+
+    pub(super) fn edge(&self) -> [f32; 2] {
+        self.edge
+    }
+
+    pub(super) fn index(&self) -> &[u32] {
+        &self.index
+    }
+
+    pub(super) fn places(&self) -> [&[f32]; 2] {
+        [&self.place[0], &self.place[1]]
+    }
+
+    pub(super) fn radii(&self) -> Option<&[f32]> {
+        self.radius.as_deref()
+    }
+
+    /// Whether so few cells are occupied that places are not kept.
+    pub fn is_sparse(&self) -> bool {
+        self.sparse
+    }
+
+    /// Which cells are occupied, images included.
+    pub(super) fn occupied(&self) -> &Bits {
+        &self.occupied
+    }
+
+    /// The cells of the discs, the places inside the cells to be written (empty if sparse), and the unit they are in.
+    pub(super) fn to_settle(&mut self) -> (&[u32], [&mut [f32]; 2], f64) {
+        let [x, y] = &mut self.place;
+        (&self.cell, [x, y], self.unit)
+    }
+}

@@ -1,0 +1,79 @@
+//! Finding contacts where few cells are occupied: disc by disc, through a bit for every cell.
+
+use super::contacts::Codes;
+use super::detection::{Candidate, Cursor, MARGIN, append_bits};
+use super::occupancy::Occupancy;
+use crate::GROUP;
+use crate::backend::{Precision, Registers};
+use crate::isa::Element;
+use crate::program::Task;
+use std::ops::Range;
+
+/// Searches whole rows from `cursor` on, until `full` candidates are found.
+pub(super) struct SparseSearch<'a, S, P> {
+    pub(super) occupancy: &'a Occupancy,
+    pub(super) codes: &'a Codes<P>,
+    pub(super) places: [&'a [S]; 2],
+    pub(super) reach: f64,
+    pub(super) rows: Range<usize>,
+    pub(super) cursor: &'a mut Cursor,
+    pub(super) full: usize,
+    pub(super) found: &'a mut Vec<Candidate>,
+    /// Scratch: the occupied cells of a row.
+    pub(super) cells: &'a mut Vec<u64>,
+}
+
+/// No vectors here, but the processor's instructions on bits.
+impl<S: Element, P: Precision> Task<f32> for SparseSearch<'_, S, P> {
+    #[inline(always)]
+    fn on<R: Registers<Lane = f32>>(self, _: R) {
+        let SparseSearch { occupancy, codes, places: [x, y], reach, rows, cursor, full, found, cells } = self;
+        let (shape, occupied, index) = (occupancy.shape(), occupancy.occupied(), occupancy.index());
+        let h = occupancy.half_width();
+        let (ahead, around) = ((1 << h) - 1, (1 << (2 * h + 1)) - 1);
+        let limit = reach * reach * f64::from(MARGIN);
+        let end = (rows.end + h) * shape.stride() + shape.position(0, 0);
+        assert!(
+            rows.end <= shape.rows() && end < occupied.positions() && end <= index.len() + h * shape.stride()
+        );
+        while cursor.row < rows.end && found.len() < full {
+            let first = shape.position(0, cursor.row as isize);
+            cells.clear();
+            for column in (0..shape.columns()).step_by(64) {
+                let inside = u64::MAX >> (64 - (shape.columns() - column).min(64));
+                // SAFETY: the row ends before `end`.
+                let own = unsafe { occupied.from(first + column) } & inside;
+                if own != 0 {
+                    append_bits(cells, own, |bit| (first + column) as u64 + bit);
+                }
+            }
+            for &cell in cells.iter() {
+                let position = cell as usize;
+                // SAFETY: the cell is in one of the rows, so that its places are before `end`.
+                let mut near = unsafe { occupied.from(position + 1) } & ahead;
+                for row in 1..=h {
+                    let there = unsafe { occupied.from(position + row * shape.stride() - h) } & around;
+                    near |= there << (h + (row - 1) * (2 * h + 1));
+                }
+                let before = found.len();
+                append_bits(found, near, |place| Candidate(cell << Candidate::CODE | place * GROUP as u64));
+                let mut kept = before;
+                for listed in before..found.len() {
+                    let candidate = found[listed];
+                    let ([own, partner], way) = codes.pair(candidate, index);
+                    // SAFETY: the Index numbers discs and sentinels, which the columns have (checked by Sweep).
+                    let along = |column: &[S], way: P| unsafe {
+                        let (own, partner) =
+                            (column.get_unchecked(own as usize), column.get_unchecked(partner as usize));
+                        (own.to_f64() - partner.to_f64()) - way.to_f64()
+                    };
+                    let (dx, dy) = (along(x, way[0]), along(y, way[1]));
+                    found[kept] = candidate;
+                    kept += usize::from(dx * dx + dy * dy < limit);
+                }
+                found.truncate(kept);
+            }
+            *cursor = Cursor { row: cursor.row + 1, group: 0 };
+        }
+    }
+}

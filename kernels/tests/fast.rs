@@ -1,0 +1,145 @@
+//! The fast sweep against the faithful one, whose forces `oracle.rs` holds against all pairs: the same but for rounding;
+//! and against itself: the same bits for any instruction set, threads and order of the discs in memory.
+
+mod support;
+
+use proptest::prelude::*;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::law::granular::{Contact, ContactArm};
+use stripmine_kernels::law::{Law, Sum};
+use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::{Execution, sweep::lattice::Coordinates};
+use support::{CONTACT, Case, System, equal, varying};
+
+/// The numbers from 0 in a random order.
+fn shuffled(count: usize, seed: u64) -> Vec<u32> {
+    let mut random = Stream::new(seed, Purpose::Test, 1);
+    let mut order: Vec<(u64, u32)> = (0..count as u32).map(|n| (random.uniform().to_bits(), n)).collect();
+    order.sort_unstable();
+    order.into_iter().map(|(_, n)| n).collect()
+}
+
+/// Fast against chained within `bound` of the rms force; every way of running it to the same bits.
+fn agree<S: Precision, P: Precision, L: Law<2> + Sync>(case: &Case, law: &L, bound: f64) {
+    let mut faithful = System::<S, P>::random(case);
+    let start = faithful.clone();
+    let how = (Execution::Chained, InstructionSet::best());
+    faithful.index(case, law, how);
+    assert_eq!((faithful.strays, faithful.conflicts), (0, 0));
+    faithful.forces::<L, false>(case, law, how).unwrap();
+    let in_order: Vec<u32> = (0..start.discs as u32).collect();
+    let (forces, met) = start.fast_forces(law, &in_order, InstructionSet::Scalar).unwrap();
+    assert!(met.not_finite.is_empty());
+    for &sum in law.sums() {
+        let expected = faithful.on_discs(sum);
+        let rms = (expected.iter().map(|f| f * f).sum::<f64>() / expected.len().max(1) as f64).sqrt();
+        for (disc, (found, expected)) in forces.iter().zip(&expected).enumerate() {
+            let off = (found[sum as usize].to_f64() - expected).abs();
+            assert!(
+                off <= bound * rms,
+                "{sum:?} of disc {disc} is off by {:e} of the rms: {case:?}",
+                off / rms
+            );
+        }
+    }
+    let bits = |forces: &[[P; 3]]| -> Vec<u64> { forces.iter().flatten().map(|x| x.bits()).collect() };
+    let pairs = |mut deep: Vec<[u32; 2]>, order: &[u32]| {
+        deep.iter_mut().for_each(|pair| *pair = pair.map(|disc| order[disc as usize]));
+        deep.sort_unstable();
+        deep
+    };
+    let deep = pairs(met.deep.clone(), &in_order);
+    for set in InstructionSet::available() {
+        for order in [in_order.clone(), shuffled(start.discs, case.seed)] {
+            for threads in [1, 2, 3] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                let (again, met_again) = pool.install(|| start.fast_forces(law, &order, set).unwrap());
+                assert!(bits(&again) == bits(&forces), "{} on {threads} threads: {case:?}", set.name());
+                assert_eq!(met_again.pairs, met.pairs);
+                assert_eq!(pairs(met_again.deep, &order), deep);
+            }
+        }
+    }
+}
+
+fn agree_for_every_law(case: &Case) {
+    agree::<f64, f64, _>(case, &varying::<true>(case.contact), 1e-12);
+    agree::<f64, f32, _>(case, &varying::<true>(case.contact), 2e-4);
+    agree::<f32, f32, _>(case, &equal::<false>(case.contact), 2e-4);
+}
+
+#[test]
+fn fast_forces_are_those_of_the_faithful_sweep_on_lattices_of_every_kind() {
+    for (half_width, columns, rows) in [(2, 13, 9), (3, 11, 14), (2, 70, 101), (2, 5, 5), (3, 16, 33)] {
+        for periodic in [[true, true], [false, false], [true, false], [false, true]] {
+            let (short, least) = (columns.min(rows), 2 * half_width + 1);
+            if short < least as usize {
+                continue;
+            }
+            agree_for_every_law(&Case {
+                half_width,
+                periodic,
+                seed: columns as u64,
+                ..Case::new(columns, rows)
+            });
+        }
+    }
+}
+
+#[test]
+fn fast_forces_are_those_of_the_faithful_sweep_when_full_sparse_or_empty() {
+    for fill in [1.0, 0.05, 0.01, 0.0] {
+        agree_for_every_law(&Case { fill, ..Case::new(40, 67) });
+    }
+    for fill in [0.0, 1.0] {
+        agree_for_every_law(&Case { fill, periodic: [false, false], ..Case::new(1, 1) });
+    }
+}
+
+/// Action and reaction: the sums of all forces vanish but for rounding.
+#[test]
+fn forces_add_up_to_nothing() {
+    let case = Case { seed: 9, ..Case::new(60, 75) };
+    let system = System::<f64, f64>::random(&case);
+    let order: Vec<u32> = (0..system.discs as u32).collect();
+    let (forces, _) = system.fast_forces(&varying::<true>(CONTACT), &order, InstructionSet::best()).unwrap();
+    for sum in [Sum::Fx, Sum::Fy] {
+        let total: f64 = forces.iter().map(|force| force[sum as usize]).sum();
+        let magnitude: f64 = forces.iter().map(|force| force[sum as usize].abs()).sum();
+        assert!(magnitude > 100.0 && total.abs() < 1e-13 * magnitude, "{total:e} of {magnitude:e}");
+    }
+}
+
+#[test]
+fn an_instruction_set_that_is_not_there_is_refused() {
+    let system = System::<f64, f64>::random(&Case::new(9, 9));
+    let order: Vec<u32> = (0..system.discs as u32).collect();
+    for &set in InstructionSet::ALL {
+        let run = system.fast_forces(&varying::<true>(CONTACT), &order, set);
+        let refused = run.is_err_and(|error| matches!(error, ProgramError::NoSuchInstructionSet(_)));
+        assert_eq!(refused, !set.is_available());
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn fast_forces_are_those_of_the_faithful_sweep(
+        columns in 7usize..70,
+        rows in 7usize..80,
+        half_width in 2u32..4,
+        periodic: [bool; 2],
+        cohesionless: bool,
+        overlap: bool,
+        fill in 0.0..1.0,
+        seed: u64,
+    ) {
+        let arm = if overlap { ContactArm::Overlap } else { ContactArm::Radius };
+        let contact = Contact { cohesionless, arm, ..CONTACT };
+        let case = Case { columns, rows, half_width, periodic, coordinates: Coordinates::CellRelative, contact, fill, seed };
+        agree::<f64, f64, _>(&case, &varying::<true>(contact), 1e-12);
+    }
+}

@@ -1,0 +1,95 @@
+//! Who broke a precondition.
+
+use super::FastLattice;
+use super::state::Move;
+use crate::method::{Culprit, Failure};
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::sweep::fast::Met;
+
+impl<S: Precision, P: Precision> FastLattice<S, P> {
+    fn culprit_at(&self, disc: usize, position: [f64; 2]) -> Culprit {
+        let velocity = [0, 1].map(|axis| self.state.row(axis, disc)[1].to_f64() / self.model.dt);
+        let number = self.state.number(disc);
+        Culprit { id: self.start.all()[number].id, position, velocity }
+    }
+
+    fn culprit(&self, disc: usize) -> Culprit {
+        self.culprit_at(disc, self.position(disc, self.state.place(disc)))
+    }
+
+    /// A disc that no cell takes: outside the box, or nowhere.
+    pub(super) fn stray(&self, Move { disc, cell, place }: Move, count: u64) -> Failure {
+        let frame = self.model.frame;
+        let centre = [0, 1].map(|axis| frame.origin[axis] + (cell[axis] as f64 + 0.5) * frame.edge[axis]);
+        let first = self.culprit_at(disc, [centre[0] + place[0], centre[1] + place[1]]);
+        let step = self.steps;
+        if place.iter().all(|along| along.is_finite()) {
+            Failure::OutOfBox { step, count, first }
+        } else {
+            Failure::NotFinite { step, count, first }
+        }
+    }
+
+    /// Two discs that want one cell, with where they go if they are moving.
+    pub(super) fn conflict(&self, discs: [(usize, Option<&Move>); 2]) -> Failure {
+        let frame = self.model.frame;
+        let [first, second] = discs.map(|(disc, to)| match to {
+            None => self.culprit(disc),
+            Some(to) => {
+                let along = |axis: usize| (to.cell[axis] as f64 + 0.5) * frame.edge[axis] + to.place[axis];
+                self.culprit_at(disc, [0, 1].map(|axis| frame.origin[axis] + along(axis)))
+            }
+        });
+        let [dx, dy] = self.model.domain().way(first.position, second.position);
+        Failure::Conflict { step: self.steps, first, second, distance: dx.hypot(dy) }
+    }
+
+    /// Penetration of two discs, as a fraction of the sum of their radii.
+    fn penetration(&self, [first, second]: [usize; 2]) -> f64 {
+        let at = |disc: usize| self.position(disc, self.state.place(disc));
+        let [dx, dy] = self.model.domain().way(at(first), at(second));
+        let reach = self.state.radius(&self.model, first) + self.state.radius(&self.model, second);
+        1.0 - dx.hypot(dy) / reach
+    }
+
+    /// Counts deep contacts, and stops at what must not be.
+    pub(super) fn judge(&mut self, met: &Met) -> Result<(), Failure> {
+        let grains = self.start.grain_count();
+        let pairs = |list: &[[u32; 2]]| -> Vec<[usize; 2]> {
+            list.iter().map(|pair| pair.map(|disc| disc as usize)).collect()
+        };
+        // Two fixed discs have no effective mass: what they do to each other means nothing.
+        let of_grains =
+            pairs(&met.not_finite).into_iter().filter(|pair| pair.iter().any(|&disc| disc < grains));
+        let lost: Vec<usize> = of_grains.flatten().collect();
+        // A disc that is lost itself is named before one that only touches it.
+        let is_lost = |disc: usize| {
+            (0..self.model.freedoms()).any(|freedom| !self.state.row(freedom, disc)[1].to_f64().is_finite())
+        };
+        let first = lost.iter().min_by_key(|&&disc| (!is_lost(disc), self.state.number(disc)));
+        if let Some(&first) = first {
+            let first = self.culprit(first);
+            return Err(Failure::NotFinite { step: self.steps, count: lost.len() as u64, first });
+        }
+        let Some(watch) = self.model.watch else { return Ok(()) };
+        let penetrations = pairs(&met.deep).into_iter().map(|pair| (self.penetration(pair), pair));
+        let deep: Vec<(f64, [usize; 2])> =
+            penetrations.filter(|deep| deep.0 > watch.max_penetration).collect();
+        let mut discs: Vec<usize> = deep.iter().flat_map(|deep| deep.1).collect();
+        discs.sort_unstable();
+        discs.dedup();
+        self.deep.disc_steps += discs.len() as u64;
+        let deepest = deep.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((penetration, [first, second])) = deepest else { return Ok(()) };
+        if penetration > self.deep.deepest {
+            self.deep.deepest = penetration;
+            self.deep.step = self.steps;
+        }
+        if penetration > watch.stop_penetration {
+            let (first, second) = (self.culprit(first), self.culprit(second));
+            let (step, limit) = (self.steps, watch.stop_penetration);
+            return Err(Failure::TooDeep { step, first, second, penetration, limit });
+        }
+        Ok(())
+    }
+}

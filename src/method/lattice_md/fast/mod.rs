@@ -1,0 +1,250 @@
+//! The lattice method in its fast execution: the same physics, each pair met once, the law asked about contacts only,
+//! corrector and next predictor in one pass. Equal to the other executions but for rounding.
+
+mod failures;
+mod state;
+mod steps;
+
+use super::programs::{WithLaw, with_law};
+use super::walls::walls_at;
+use super::{Model, Scheme};
+use crate::method::{DeepContacts, Failure, Method, Phase, StateColumn, Timings};
+use crate::particles::Particles;
+use crate::scene::WallMotion;
+use state::{Move, State};
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::law::Law;
+use stripmine_kernels::ledger::{Ledger, Length};
+use stripmine_kernels::sweep::fast::{Met, Occupancy, Sweep};
+
+/// A fast simulation with state of precision `S` and forces of precision `P`.
+pub(super) struct FastLattice<S, P> {
+    model: Model,
+    set: InstructionSet,
+    walls: WallMotion,
+    start: Particles,
+    state: State<S>,
+    /// Force along x, along y, torque.
+    sums: [Vec<P>; 3],
+    occupancy: Occupancy,
+    sweep: Sweep<P>,
+    /// Changes of cells since the discs were put in order.
+    changes: usize,
+    met: u64,
+    /// Whether the state is predicted and its forces are not yet known.
+    awaits_forces: bool,
+    steps: u64,
+    deep: DeepContacts,
+    timings: Timings,
+}
+
+impl<S: Precision, P: Precision> FastLattice<S, P> {
+    /// Lays out `particles` and finds their first forces.
+    ///
+    /// # Errors
+    /// [`Failure`] if the start breaks a precondition already.
+    pub(super) fn new(
+        model: Model,
+        set: InstructionSet,
+        walls: WallMotion,
+        particles: Particles,
+    ) -> Result<Self, Failure> {
+        let occupancy = state::empty_lattice(&model, &particles);
+        let sums = [0, 1, 2].map(|_| vec![P::default(); particles.len()]);
+        let mut simulation = FastLattice {
+            sweep: Sweep::new(&occupancy, model.frame),
+            state: State::new(&model, &particles),
+            sums,
+            occupancy,
+            set,
+            walls,
+            start: particles,
+            changes: 0,
+            met: 0,
+            awaits_forces: false,
+            steps: 0,
+            deep: DeepContacts::default(),
+            timings: Timings::default(),
+            model,
+        };
+        simulation.state.turn_walls(walls_at(walls, 0.0).1, simulation.model.dt);
+        let positions = simulation.start.all().iter().map(|disc| disc.position);
+        let moves = positions.enumerate().map(|(disc, position)| simulation.locate(disc, position));
+        let moves: Vec<Move> = moves.collect::<Result<_, _>>()?;
+        simulation.rehouse(&moves)?;
+        simulation.put_in_order();
+        simulation.meet()?;
+        simulation.deep = DeepContacts::default();
+        Ok(simulation)
+    }
+
+    /// Numbers the discs in the order of their cells, so that neighbours are near in memory. No sum depends on it.
+    fn put_in_order(&mut self) {
+        let grains = self.start.grain_count();
+        let mut order = self.occupancy.order();
+        // Grains first, as ever.
+        order.sort_by_key(|&disc| disc as usize >= grains);
+        self.occupancy.renumber(&order);
+        self.state.renumber(&order);
+        for sum in &mut self.sums {
+            *sum = order.iter().map(|&disc| sum[disc as usize]).collect();
+        }
+        self.changes = 0;
+    }
+
+    /// All forces of the positions as they stand.
+    fn meet(&mut self) -> Result<(), Failure> {
+        let mut timings = self.timings;
+        let met = timings.time(Phase::Forces, || self.add_forces())?;
+        self.timings = timings;
+        self.met = met.pairs;
+        self.awaits_forces = false;
+        self.judge(&met)
+    }
+
+    fn add_forces(&mut self) -> Result<Met, ProgramError> {
+        let grains = self.start.grain_count();
+        // Grains' sums are zero already.
+        self.sums.iter_mut().for_each(|sum| sum[grains..].fill(P::default()));
+        let model = self.model.clone();
+        with_law(&model, Sweeping(self))
+    }
+
+    /// The state at the end of the step, a disc's position and velocity times dt among it.
+    fn corrected(&self, freedom: usize, disc: usize) -> [S; 6] {
+        let row = self.state.row(freedom, disc);
+        if self.steps == 0 || self.awaits_forces || disc >= self.start.grain_count() {
+            return row;
+        }
+        let force = S::from_f64(self.sums[freedom][disc].to_f64());
+        steps::corrected(&self.model, &self.state, freedom, disc, row, force)
+    }
+}
+
+/// A sweep with the law of the model.
+struct Sweeping<'a, S, P>(&'a mut FastLattice<S, P>);
+
+impl<S: Precision, P: Precision> WithLaw for Sweeping<'_, S, P> {
+    type Output = Result<Met, ProgramError>;
+
+    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
+        let FastLattice { model, state, sums, occupancy, sweep, set, .. } = self.0;
+        let watched = model.watch.map(|watch| watch.depth());
+        let sums = sums.each_mut().map(Vec::as_mut_slice);
+        sweep.run(&law, occupancy, &state.discs(model), sums, watched, *set)
+    }
+}
+
+impl<S: Precision, P: Precision> Method for FastLattice<S, P> {
+    fn step(&mut self) -> Result<(), Failure> {
+        let first = self.steps == 0;
+        let mut timings = self.timings;
+        if self.changes > self.start.grain_count() / 4 {
+            timings.time(Phase::Index, || self.put_in_order());
+        }
+        let left = timings.time(Phase::CorrectPredict, || steps::advance(self, first))?;
+        self.steps += 1;
+        self.awaits_forces = true;
+        self.timings = timings;
+        timings.time(Phase::Index, || self.keep_index(&left))?;
+        self.timings = timings;
+        self.meet()
+    }
+
+    fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    fn time(&self) -> f64 {
+        self.steps as f64 * self.model.dt
+    }
+
+    fn particles(&self) -> Particles {
+        let mut particles = self.start.clone();
+        let (grains, freedoms) = (self.start.grain_count(), self.model.freedoms());
+        let (_, wall_velocity) = walls_at(self.walls, self.time());
+        for disc in 0..particles.len() {
+            let rows = [0, 1, 2].map(|freedom| {
+                let row = if freedom < freedoms { self.corrected(freedom, disc) } else { Default::default() };
+                row.map(|q| q.to_f64())
+            });
+            let position = self.position(disc, [rows[0][0], rows[1][0]]);
+            let particle = &mut particles.all_mut()[self.state.number(disc)];
+            if disc < grains {
+                particle.position = position;
+                particle.velocity = [rows[0][1] / self.model.dt, rows[1][1] / self.model.dt];
+                particle.angle = rows[2][0];
+                particle.omega = rows[2][1] / self.model.dt;
+            } else {
+                particle.position = position;
+                particle.velocity = wall_velocity;
+            }
+        }
+        particles
+    }
+
+    fn forces(&self) -> Vec<[f64; 3]> {
+        let mut forces = vec![[0.0; 3]; self.start.len()];
+        for disc in 0..self.start.len() {
+            forces[self.state.number(disc)] = [0, 1, 2].map(|sum| self.sums[sum][disc].to_f64());
+        }
+        forces
+    }
+
+    fn deep_contacts(&self) -> DeepContacts {
+        self.deep
+    }
+
+    fn state(&self) -> Vec<(String, StateColumn)> {
+        self.columns()
+    }
+
+    fn restore(
+        &mut self,
+        steps: u64,
+        deep: DeepContacts,
+        columns: Vec<(String, StateColumn)>,
+    ) -> Result<(), String> {
+        self.take_up(columns)?;
+        self.steps = steps;
+        self.deep = deep;
+        self.state.turn_walls(walls_at(self.walls, self.time()).1, self.model.dt);
+        Ok(())
+    }
+
+    fn ledger(&self) -> Ledger {
+        // Its work depends on the data, contact by contact: no fixed program to count.
+        Ledger::default()
+    }
+
+    fn length(&self, length: Length) -> u64 {
+        match length {
+            Length::Pairs => self.met,
+            _ => super::Lengths::new(&self.model, self.start.grain_count(), self.start.len())
+                .range(length)
+                .len() as u64,
+        }
+    }
+
+    fn lists(&self) -> Option<(usize, u64)> {
+        None
+    }
+
+    fn timings(&self) -> &Timings {
+        &self.timings
+    }
+
+    fn reset_timings(&mut self) {
+        self.timings = Timings::default();
+    }
+}
+
+/// How many derivatives a scheme hands on from step to step.
+fn carried(scheme: Scheme) -> usize {
+    match scheme {
+        Scheme::Gear(values) => values.count(),
+        Scheme::VelocityVerlet => 2,
+    }
+}

@@ -1,0 +1,236 @@
+//! The discs of a fast simulation: columns in the order of their cells, positions seen from the cells' centres.
+
+use super::{FastLattice, carried};
+use crate::method::StateColumn;
+use crate::method::lattice_md::{Discs, Model};
+use crate::particles::{Kind, Particle, Particles};
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::integrator::gear::STATE;
+use stripmine_kernels::isa::{Element, Storage};
+use stripmine_kernels::sweep::fast::{self, Occupancy, SENTINELS};
+
+/// A disc with the cell it goes to and its place there, seen from the cell's centre (length).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Move {
+    pub(super) disc: usize,
+    pub(super) cell: [usize; 2],
+    pub(super) place: [f64; 2],
+}
+
+/// An empty lattice for the discs of a model.
+pub(super) fn empty_lattice(model: &Model, particles: &Particles) -> Occupancy {
+    let largest = particles.radii().map_or(1.0, |[_, largest]| largest);
+    let vary = particles.radii().is_some_and(|[smallest, largest]| smallest != largest);
+    Occupancy::new(model.shape, model.frame, particles.len(), 2.0 * largest, vary)
+}
+
+/// Columns with an entry a disc, grains first, and two discs behind them that never touch.
+#[derive(Clone, Debug)]
+pub(super) struct State<S> {
+    /// Scaled derivatives: for each degree of freedom those that are carried from step to step.
+    columns: Vec<Vec<Vec<S>>>,
+    /// Radii and inverse masses, and moments of inertia, where discs vary.
+    radius: Vec<S>,
+    inverse: [Vec<S>; 2],
+    /// Which of the scene's discs each is.
+    numbers: Vec<u32>,
+    grains: usize,
+}
+
+impl<S: Precision> State<S> {
+    pub(super) fn new(model: &Model, particles: &Particles) -> Self {
+        let discs = particles.all();
+        let column = |value: &dyn Fn(&Particle) -> f64, sentinel: f64| -> Vec<S> {
+            let values = discs.iter().map(value).chain(std::iter::repeat_n(sentinel, SENTINELS));
+            values.map(S::from_f64).collect()
+        };
+        let derivative = |freedom: usize, k: usize| {
+            let value = |disc: &Particle| match (k, freedom) {
+                (1, 0 | 1) => disc.velocity[freedom] * model.dt,
+                (0, 2) => disc.angle,
+                (1, _) => disc.omega * model.dt,
+                _ => 0.0,
+            };
+            column(&value, 0.0)
+        };
+        let mut columns: Vec<Vec<Vec<S>>> = (0..model.freedoms())
+            .map(|freedom| (0..carried(model.scheme)).map(|k| derivative(freedom, k)).collect())
+            .collect();
+        // The sentinels stand farther apart than any contact reaches.
+        let largest = particles.radii().map_or(1.0, |[_, largest]| largest);
+        columns[0][0][discs.len()] = S::from_f64(8.0 * largest);
+        let (mut radius, mut inverse) = (vec![], [vec![], vec![]]);
+        if model.discs == Discs::Varying {
+            let of_grain = |disc: &Particle, value: f64| if disc.kind == Kind::Wall { 0.0 } else { value };
+            radius = column(&|disc| disc.radius, largest);
+            inverse[0] = column(&|disc| of_grain(disc, 1.0 / disc.mass), 1.0);
+            let inertia = |disc: &Particle| model.inertia_factor * disc.mass * disc.radius * disc.radius;
+            inverse[1] = column(&|disc| of_grain(disc, 1.0 / inertia(disc)), 1.0);
+        }
+        let numbers = (0..discs.len() as u32).collect();
+        State { columns, radius, inverse, numbers, grains: particles.grain_count() }
+    }
+
+    /// Which of the scene's discs a disc is.
+    pub(super) fn number(&self, disc: usize) -> usize {
+        self.numbers[disc] as usize
+    }
+
+    /// The carried derivatives of a disc, the others zero.
+    pub(super) fn row(&self, freedom: usize, disc: usize) -> [S; 6] {
+        let mut row = [S::default(); 6];
+        row.iter_mut().zip(&self.columns[freedom]).for_each(|(q, column)| *q = column[disc]);
+        row
+    }
+
+    /// The place of a disc, seen from the centre of its cell (length).
+    pub(super) fn place(&self, disc: usize) -> [f64; 2] {
+        [self.columns[0][0][disc].to_f64(), self.columns[1][0][disc].to_f64()]
+    }
+
+    /// Puts a disc at a place.
+    pub(super) fn put(&mut self, disc: usize, place: [f64; 2]) {
+        (0..2).for_each(|axis| self.columns[axis][0][disc] = S::from_f64(place[axis]));
+    }
+
+    /// Gives all wall discs a velocity (length/time).
+    pub(super) fn turn_walls(&mut self, velocity: [f64; 2], dt: f64) {
+        let discs = self.numbers.len();
+        (0..2).for_each(|axis| {
+            self.columns[axis][1][self.grains..discs].fill(S::from_f64(velocity[axis] * dt))
+        });
+    }
+
+    /// Radius of a disc (length).
+    pub(super) fn radius(&self, model: &Model, disc: usize) -> f64 {
+        match model.discs {
+            Discs::Equal { disc, .. } => disc.radius,
+            Discs::Varying => self.radius[disc].to_f64(),
+        }
+    }
+
+    /// Inverse masses or moments of inertia, for a degree of freedom.
+    pub(super) fn inverse(&self, freedom: usize) -> &[S] {
+        &self.inverse[freedom / 2]
+    }
+
+    /// The columns to be moved by a pass, and inverse masses and moments of inertia.
+    pub(super) fn to_advance(&mut self) -> (&mut [Vec<Vec<S>>], [&[S]; 2]) {
+        (&mut self.columns, [&self.inverse[0], &self.inverse[1]])
+    }
+
+    /// The discs as a sweep reads them.
+    pub(super) fn discs(&self, model: &Model) -> fast::Discs<'_, S> {
+        let omega = if model.friction { self.columns[2][1].as_slice() } else { &[] };
+        fast::Discs {
+            place: [&self.columns[0][0], &self.columns[1][0]],
+            velocity: [&self.columns[0][1], &self.columns[1][1], omega],
+            per_time: 1.0 / model.dt,
+            radius: &self.radius,
+            inverse_mass: &self.inverse[0],
+        }
+    }
+
+    /// Disc `n` is from now on what disc `order[n]` was.
+    pub(super) fn renumber(&mut self, order: &[u32]) {
+        let derivatives = self.columns.iter_mut().flatten();
+        for column in derivatives.chain([&mut self.radius]).chain(&mut self.inverse) {
+            if !column.is_empty() {
+                let sentinels = &column[order.len()..];
+                let there = order.iter().map(|&disc| column[disc as usize]);
+                *column = there.chain(sentinels.iter().copied()).collect();
+            }
+        }
+        self.numbers = order.iter().map(|&disc| self.numbers[disc as usize]).collect();
+    }
+}
+
+/// A column in its precision, in the order of the scene's discs.
+fn to_column<T: Element>(numbers: &[u32], value: impl Fn(usize) -> T) -> StateColumn {
+    let mut column = vec![0.0; numbers.len()];
+    numbers.iter().enumerate().for_each(|(disc, &number)| column[number as usize] = value(disc).to_f64());
+    match T::NAME {
+        f64::NAME => StateColumn::F64(column),
+        _ => StateColumn::F32(column.into_iter().map(|x| x as f32).collect()),
+    }
+}
+
+const SUMS: [&str; 3] = ["Fx", "Fy", "torque"];
+const CELL: [&str; 2] = ["cell.column", "cell.row"];
+
+impl<S: Precision, P: Precision> FastLattice<S, P> {
+    /// Where a disc is, seen from the origin (length), when it is at `place` in its cell.
+    pub(super) fn position(&self, disc: usize, place: [f64; 2]) -> [f64; 2] {
+        let frame = self.model.frame;
+        let cell = self.occupancy.cell(disc).unwrap_or_default();
+        [0, 1].map(|axis| frame.origin[axis] + (cell[axis] as f64 + 0.5) * frame.edge[axis] + place[axis])
+    }
+
+    /// All columns, in the order of the scene's discs.
+    pub(super) fn columns(&self) -> Vec<(String, StateColumn)> {
+        let numbers = &self.state.numbers;
+        let mut columns = Vec::new();
+        for (names, rows) in STATE.iter().zip(&self.state.columns) {
+            for (name, column) in names.iter().zip(rows) {
+                columns.push((name.label().to_owned(), to_column(numbers, |disc| column[disc])));
+            }
+        }
+        for (name, sum) in SUMS.iter().zip(&self.sums) {
+            columns.push(((*name).to_owned(), to_column(numbers, |disc| sum[disc])));
+        }
+        for (axis, name) in CELL.iter().enumerate() {
+            let cell = |disc| self.occupancy.cell(disc).map_or(f64::NAN, |cell| cell[axis] as f64);
+            columns.push(((*name).to_owned(), to_column(numbers, cell)));
+        }
+        columns
+    }
+
+    /// Takes up columns that [`columns`](Self::columns) gave.
+    pub(super) fn take_up(&mut self, columns: Vec<(String, StateColumn)>) -> Result<(), String> {
+        let numbers = self.state.numbers.clone();
+        let find = |name: &str, precision: &str| -> Result<Vec<f64>, String> {
+            let (_, column) = columns
+                .iter()
+                .find(|(there, _)| there == name)
+                .ok_or_else(|| format!("the column {name} is missing"))?;
+            let (found, values) = match column {
+                StateColumn::F64(values) => (f64::NAME, values.clone()),
+                StateColumn::F32(values) => (f32::NAME, values.iter().map(|&x| x.into()).collect()),
+            };
+            if found != precision {
+                return Err(format!("the column {name} has another precision"));
+            }
+            if values.len() != numbers.len() {
+                return Err(format!("the column {name} has {} entries, not {}", values.len(), numbers.len()));
+            }
+            Ok(numbers.iter().map(|&number| values[number as usize]).collect())
+        };
+        let mut state = self.state.clone();
+        for (names, rows) in STATE.iter().zip(&mut state.columns) {
+            for (name, column) in names.iter().zip(rows) {
+                let values = find(name.label(), S::NAME)?;
+                column.iter_mut().zip(values).for_each(|(to, value)| *to = S::from_f64(value));
+            }
+        }
+        let mut sums = self.sums.clone();
+        for (name, sum) in SUMS.iter().zip(&mut sums) {
+            *sum = find(name, P::NAME)?.into_iter().map(P::from_f64).collect();
+        }
+        let cells = [find(CELL[0], f64::NAME)?, find(CELL[1], f64::NAME)?];
+        let counts = [self.model.shape.columns(), self.model.shape.rows()];
+        let inside = |axis: usize, &cell: &f64| (0.0..counts[axis] as f64).contains(&cell);
+        if (0..2).any(|axis| !cells[axis].iter().all(|cell| inside(axis, cell))) {
+            return Err("a cell lies outside the lattice".to_owned());
+        }
+        let mut occupancy = empty_lattice(&self.model, &self.start);
+        for disc in 0..numbers.len() {
+            let cell = [cells[0][disc] as usize, cells[1][disc] as usize];
+            let (place, radius) = (state.place(disc), state.radius(&self.model, disc));
+            occupancy.enter(disc, cell, place, radius).map_err(|_| "two discs are in one cell".to_owned())?;
+        }
+        occupancy.repeat_images();
+        (self.state, self.sums, self.occupancy) = (state, sums, occupancy);
+        self.put_in_order();
+        Ok(())
+    }
+}

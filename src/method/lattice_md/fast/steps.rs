@@ -1,0 +1,170 @@
+//! From one step to the next: the pass over the discs, and those that change cells.
+
+use super::state::{Move, State};
+use super::{FastLattice, walls_at};
+use crate::method::lattice_md::{Discs, GearValues, Model, Scheme};
+use crate::method::{Failure, Method};
+use crate::scene::WallMotion;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::integrator::gear::Gear;
+use stripmine_kernels::integrator::velocity_verlet::VelocityVerlet;
+use stripmine_kernels::integrator::{self};
+use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::sweep::fast::{Advance, Motion};
+
+/// Does something with the motion of a model, whichever scheme that has.
+macro_rules! with_motion {
+    ($model:expr, |$motion:ident| $work:expr) => {
+        match $model.scheme {
+            Scheme::Gear(GearValues::Four) => {
+                let $motion = motion($model, Gear::<4>::new($model.acceleration()));
+                $work
+            }
+            Scheme::Gear(GearValues::Five) => {
+                let $motion = motion($model, Gear::<5>::new($model.acceleration()));
+                $work
+            }
+            Scheme::Gear(GearValues::Six) => {
+                let $motion = motion($model, Gear::<6>::new($model.acceleration()));
+                $work
+            }
+            Scheme::VelocityVerlet => {
+                let $motion = motion($model, VelocityVerlet);
+                $work
+            }
+        }
+    };
+}
+
+fn motion<C: integrator::Scheme>(model: &Model, scheme: C) -> Motion<C> {
+    let Model { dt, gravity, frame, .. } = *model;
+    Motion { scheme, dt, inertia: model.inertia(), gravity, edge: frame.edge }
+}
+
+/// One row at the end of the step, from the one that the pass left.
+pub(super) fn corrected<S: Precision>(
+    model: &Model,
+    state: &State<S>,
+    freedom: usize,
+    disc: usize,
+    row: [S; 6],
+    force: S,
+) -> [S; 6] {
+    let inverse = match (model.discs, freedom) {
+        (Discs::Equal { disc, .. }, 0 | 1) => S::from_f64(disc.inverse_mass),
+        (Discs::Equal { inverse_inertia, .. }, _) => S::from_f64(inverse_inertia),
+        (Discs::Varying, _) => state.inverse(freedom)[disc],
+    };
+    with_motion!(model, |motion| motion.corrected(freedom, row, force, inverse))
+}
+
+/// Corrects the last step, unless the first begins, and predicts the next; gives the discs that left their cells.
+pub(super) fn advance<S: Precision, P: Precision>(
+    simulation: &mut FastLattice<S, P>,
+    first: bool,
+) -> Result<Vec<u32>, ProgramError> {
+    let FastLattice { model, state, sums, occupancy, start, set, .. } = simulation;
+    let freedoms = model.freedoms();
+    let (columns, inverse) = state.to_advance();
+    let state = columns.iter_mut().map(|row| row.iter_mut().map(Vec::as_mut_slice).collect()).collect();
+    let sums = sums.iter_mut().take(freedoms).map(Vec::as_mut_slice).collect();
+    let discs = start.grain_count();
+    with_motion!(model, |motion| {
+        Advance { motion: &motion, state, sums, inverse, discs, corrected: first }.run(occupancy, *set)
+    })
+}
+
+impl<S: Precision, P: Precision> FastLattice<S, P> {
+    /// The cell of a disc at a position (length), and its place there.
+    pub(super) fn locate(&self, disc: usize, position: [f64; 2]) -> Result<Move, Failure> {
+        let frame = self.model.frame;
+        let place = [0, 1].map(|axis| position[axis] - (frame.origin[axis] + 0.5 * frame.edge[axis]));
+        let from = Move { disc, cell: [0, 0], place };
+        self.settled(from).ok_or_else(|| self.stray(from, 1))
+    }
+
+    /// The cell and place of a disc at a place that may be outside the cell it is seen from; none if it belongs to no
+    /// cell.
+    fn settled(&self, from: Move) -> Option<Move> {
+        let Move { cell, place, .. } = from;
+        let shape = &self.model.shape;
+        let counts = [shape.columns(), shape.rows()];
+        let mut to = from;
+        for axis in 0..2 {
+            let (edge, count) = (self.model.frame.edge[axis], counts[axis] as f64);
+            let steps = (place[axis] / edge + 0.5).floor();
+            let mut there = cell[axis] as f64 + steps;
+            to.place[axis] = place[axis] - steps * edge;
+            if shape.periodic()[axis] && (-count..2.0 * count).contains(&there) {
+                there = there.rem_euclid(count);
+            } else if there == count && to.place[axis] <= -0.5 * edge {
+                // On the far side: that is the last cell's.
+                there -= 1.0;
+                to.place[axis] += edge;
+            }
+            if !(0.0..count).contains(&there) {
+                return None;
+            }
+            to.cell[axis] = there as usize;
+        }
+        Some(to)
+    }
+
+    /// Brings the Index up to date after a pass: walls, the discs that left their cells, the halo.
+    pub(super) fn keep_index(&mut self, left: &[u32]) -> Result<(), Failure> {
+        let mut moves = Vec::with_capacity(left.len());
+        let from = |disc: u32| {
+            let disc = disc as usize;
+            let cell = self.occupancy.cell(disc).unwrap_or_default();
+            Move { disc, cell, place: self.state.place(disc) }
+        };
+        let mut strays = Vec::new();
+        for from in left.iter().map(|&disc| from(disc)) {
+            match self.settled(from) {
+                Some(to) => moves.push(to),
+                None => strays.push(from),
+            }
+        }
+        if let Some(&first) = strays.iter().min_by_key(|from| self.state.number(from.disc)) {
+            return Err(self.stray(first, strays.len() as u64));
+        }
+        self.changes += moves.len();
+        if self.walls != WallMotion::Fixed {
+            let (displacement, velocity) = walls_at(self.walls, self.time());
+            self.state.turn_walls(velocity, self.model.dt);
+            for disc in self.start.grain_count()..self.start.len() {
+                let at = self.start.all()[self.state.number(disc)].position;
+                moves.push(self.locate(disc, [at[0] + displacement[0], at[1] + displacement[1]])?);
+            }
+        }
+        self.rehouse(&moves)
+    }
+
+    /// Moves discs into their new cells; of two in one cell none is moved.
+    pub(super) fn rehouse(&mut self, moves: &[Move]) -> Result<(), Failure> {
+        let mut targets: Vec<([usize; 2], usize)> = moves.iter().map(|to| (to.cell, to.disc)).collect();
+        targets.sort_unstable();
+        let mut moving: Vec<usize> = moves.iter().map(|to| to.disc).collect();
+        moving.sort_unstable();
+        let twice = targets.windows(2).find(|pair| pair[0].0 == pair[1].0).map(|pair| (pair[0].1, pair[1].1));
+        let taken = || {
+            targets.iter().find_map(|&([column, row], disc)| {
+                let there = self.occupancy.disc(column, row)?;
+                moving.binary_search(&there).is_err().then_some((there, disc))
+            })
+        };
+        if let Some((first, second)) = twice.or_else(taken) {
+            let of = |disc: usize| moves.iter().find(|to| to.disc == disc);
+            return Err(self.conflict([(first, of(first)), (second, of(second))]));
+        }
+        moves.iter().for_each(|to| self.occupancy.leave(to.disc));
+        for to in moves {
+            self.state.put(to.disc, to.place);
+            let radius = self.state.radius(&self.model, to.disc);
+            let entered = self.occupancy.enter(to.disc, to.cell, to.place, radius);
+            debug_assert!(entered.is_ok(), "looked for above");
+        }
+        self.occupancy.repeat_images();
+        Ok(())
+    }
+}

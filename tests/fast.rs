@@ -1,0 +1,227 @@
+//! Whole simulations in the fast execution: the faithful ones but for rounding, the same bits however they are run, and
+//! every failure found as there.
+
+mod support;
+
+use stripmine::method::lattice_md::{Contacts, GearValues, Machine, Model, Scheme, Watch};
+use stripmine::method::{Failure, Method, StateColumn};
+use stripmine::observe::{Observation, Scenery};
+use stripmine::particles::{Kind, Particles};
+use stripmine::scene::{Precision, WallMotion};
+use stripmine_kernels::law::granular::Contact;
+use stripmine_kernels::{Execution, InstructionSet};
+use support::{CONTACT, advance, arena, fast, gas, grain, simulate};
+
+const SCHEMES: [Scheme; 4] = [
+    Scheme::VelocityVerlet,
+    Scheme::Gear(GearValues::Four),
+    Scheme::Gear(GearValues::Five),
+    Scheme::Gear(GearValues::Six),
+];
+
+fn bits(method: &dyn Method) -> Vec<(String, Vec<u64>)> {
+    let bits = |column: StateColumn| match column {
+        StateColumn::F64(values) => values.into_iter().map(f64::to_bits).collect(),
+        StateColumn::F32(values) => values.into_iter().map(|x| u64::from(x.to_bits())).collect(),
+    };
+    method.state().into_iter().map(|(name, column)| (name, bits(column))).collect()
+}
+
+/// Largest difference of positions (length), across the box, and of velocities.
+fn differences(model: &Model, a: &Particles, b: &Particles) -> [f64; 2] {
+    let mut largest = [0.0_f64; 2];
+    for (a, b) in a.all().iter().zip(b.all()) {
+        assert_eq!(a.id, b.id);
+        let [dx, dy] = model.domain().way(a.position, b.position);
+        let dv = [0, 1].map(|axis| a.velocity[axis] - b.velocity[axis]);
+        let spin = (a.omega - b.omega).abs();
+        largest = [largest[0].max(dx.hypot(dy)), largest[1].max(dv[0].hypot(dv[1])).max(spin)];
+    }
+    largest
+}
+
+#[test]
+fn trajectories_are_the_faithful_ones_but_for_rounding() {
+    for scheme in SCHEMES {
+        for (packing_fraction, friction) in [(0.84, true), (0.3, true), (0.1, false)] {
+            let mut start = gas(400, packing_fraction, 7);
+            (start.0.scheme, start.0.friction) = (scheme, friction);
+            for (precision, bound) in
+                [(Precision::F64, 1e-10), (Precision::Mixed, 1e-3), (Precision::F32, 1e-3)]
+            {
+                let mut faithful = simulate(precision, &start, Contacts::Lattice, fast());
+                let mut other = simulate(precision, &start, Contacts::Fast, fast());
+                advance(faithful.as_mut(), 300);
+                advance(other.as_mut(), 300);
+                let off = differences(&start.0, &faithful.particles(), &other.particles());
+                assert!(off[0] < bound && off[1] < 10.0 * bound, "{scheme:?} {precision:?}: {off:e?}");
+                let moved = differences(&start.0, &start.1, &other.particles());
+                assert!(moved[0] > 0.1, "the discs must have moved: {moved:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn walls_gravity_and_a_shaken_floor_are_the_faithful_ones() {
+    let mut discs = Vec::new();
+    for column in 0..8u32 {
+        let x = 0.5 + f64::from(column);
+        let mut wall = grain(100 + column, [x, 1.0], [0.0; 2], 0.5, 1.0);
+        wall.kind = Kind::Wall;
+        discs.push(wall);
+        discs.push(grain(column, [x, 2.2 + 0.01 * f64::from(column)], [0.1, -0.2], 0.47, 0.9));
+    }
+    let (mut model, particles) = arena([16, 16], true, &discs);
+    (model.contact, model.friction, model.gravity) = (CONTACT, true, [0.3, -1.0]);
+    let walls = WallMotion::Oscillating { amplitude: [0.05, 0.2], frequency: 0.7 };
+    for scheme in SCHEMES {
+        model.scheme = scheme;
+        let run = |contacts| {
+            let (model, particles) = (model.clone(), particles.clone());
+            let start = stripmine::method::lattice_md::start;
+            let mut method = start(Precision::F64, model, contacts, fast(), walls, particles).unwrap();
+            advance(method.as_mut(), 400);
+            (method.particles(), method.deep_contacts())
+        };
+        let ((faithful, deep), (other, also_deep)) = (run(Contacts::Lattice), run(Contacts::Fast));
+        let off = differences(&model, &faithful, &other);
+        assert!(off[0] < 1e-10 && off[1] < 1e-9, "{scheme:?}: {off:e?}");
+        assert_eq!(deep.disc_steps, also_deep.disc_steps);
+        assert!((deep.deepest - also_deep.deepest).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
+    for (packing_fraction, precision) in
+        [(0.84, Precision::F64), (0.1, Precision::F64), (0.84, Precision::Mixed)]
+    {
+        let mut start = gas(8200, packing_fraction, 3);
+        start.0.scheme = Scheme::VelocityVerlet;
+        let run = |threads: usize, set: InstructionSet| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let machine = Machine { execution: Execution::Chained, set };
+                let mut gas = simulate(precision, &start, Contacts::Fast, machine);
+                advance(gas.as_mut(), 40);
+                bits(gas.as_ref())
+            })
+        };
+        let scalar = run(1, InstructionSet::Scalar);
+        for set in InstructionSet::available() {
+            for threads in [1, 2, 3] {
+                assert!(run(threads, set) == scalar, "{} on {threads} threads", set.name());
+            }
+        }
+        let mut first = simulate(precision, &start, Contacts::Fast, fast());
+        advance(first.as_mut(), 17);
+        let mut second = simulate(precision, &start, Contacts::Fast, fast());
+        second.restore(17, first.deep_contacts(), first.state()).unwrap();
+        assert!(second.particles() == first.particles());
+        advance(second.as_mut(), 23);
+        assert!(bits(second.as_ref()) == scalar, "a run that goes on differs");
+    }
+}
+
+#[test]
+fn momentum_is_conserved_to_rounding() {
+    let mut start = gas(400, 0.84, 5);
+    start.0.scheme = Scheme::VelocityVerlet;
+    let mut gas = simulate(Precision::F64, &start, Contacts::Fast, fast());
+    let observe =
+        |gas: &dyn Method| Observation::of(gas.steps(), 0.0, &gas.particles(), &Scenery::of(&start.0));
+    let first = observe(gas.as_ref());
+    advance(gas.as_mut(), 2000);
+    let seen = observe(gas.as_ref());
+    let lost = (seen.momentum_x - first.momentum_x).hypot(seen.momentum_y - first.momentum_y);
+    assert!(lost < 1e-12, "{lost:e}");
+    assert!(seen.kinetic < 0.99 * first.kinetic, "the gas must have collided and cooled");
+}
+
+/// Undamped: velocity Verlet in the fast execution keeps the energy as well as Gear's scheme in the faithful one.
+#[test]
+fn energy_is_kept_over_ten_thousand_steps() {
+    let drift = |scheme: Scheme, contacts: Contacts| {
+        let mut start = gas(400, 0.84, 11);
+        start.0.contact = Contact { normal_damping: 0.0, shear_damping: 0.0, friction: 0.0, ..CONTACT };
+        (start.0.friction, start.0.scheme) = (false, scheme);
+        let mut gas = simulate(Precision::F64, &start, contacts, fast());
+        let energy = |gas: &dyn Method| {
+            Observation::of(gas.steps(), 0.0, &gas.particles(), &Scenery::of(&start.0)).energy()
+        };
+        let first = energy(gas.as_ref());
+        (0..10)
+            .map(|_| {
+                advance(gas.as_mut(), 1000);
+                (energy(gas.as_ref()) / first - 1.0).abs()
+            })
+            .fold(0.0, f64::max)
+    };
+    let verlet = drift(Scheme::VelocityVerlet, Contacts::Fast);
+    let gear = drift(Scheme::Gear(GearValues::Five), Contacts::Lattice);
+    println!("largest error of the energy: velocity Verlet {verlet:.1e}, Gear {gear:.1e}");
+    assert!(verlet < 1e-4, "{verlet:e}");
+    assert!(gear < 1e-3, "{gear:e}");
+}
+
+/// What breaks breaks in the same step, with the same discs, as in the faithful execution.
+#[test]
+fn failures_are_found_in_their_step() {
+    let lost = [
+        grain(7, [2.0, 2.0], [0.0; 2], 0.5, 1.0),
+        grain(31, [7.6975, 5.25], [1.0, 0.1], 0.5, 1.0),
+        grain(8, [2.0, 5.0], [0.1, 0.0], 0.5, 1.0),
+    ];
+    let closing = [
+        grain(1, [3.0, 3.2], [4.0, 0.0], 0.5, 1.0),
+        grain(2, [4.3, 3.2], [-4.0, 0.0], 0.5, 1.0),
+        grain(3, [6.6, 6.2], [0.0, 0.0], 0.5, 1.0),
+    ];
+    let mut nan = gas(400, 0.84, 2);
+    nan.1.all_mut()[123].velocity[1] = f64::NAN;
+    let with = |stop: f64| {
+        let mut start = arena([16, 16], false, &closing);
+        start.0.contact.stiffness = 1e-6;
+        start.0.watch = Some(Watch { max_penetration: 0.1, stop_penetration: stop });
+        start
+    };
+    for mut start in [arena([16, 16], false, &lost), with(0.4), with(0.99), nan] {
+        start.0.scheme = Scheme::Gear(GearValues::Five);
+        let failure = |contacts| -> Failure {
+            let start = start.clone();
+            let (model, particles) = start;
+            let begin = stripmine::method::lattice_md::start;
+            let mut method =
+                match begin(Precision::F64, model, contacts, fast(), WallMotion::Fixed, particles) {
+                    Ok(method) => method,
+                    Err(failure) => return failure,
+                };
+            (0..200).find_map(|_| method.step().err()).expect("something breaks")
+        };
+        match (failure(Contacts::Lattice), failure(Contacts::Fast)) {
+            (Failure::OutOfBox { step, first, .. }, Failure::OutOfBox { step: at, first: disc, .. }) => {
+                assert_eq!((step, first.id), (at, disc.id));
+                assert!((first.position[0] - disc.position[0]).abs() < 1e-9);
+            }
+            (
+                Failure::TooDeep { step, penetration, .. },
+                Failure::TooDeep { step: at, penetration: also, .. },
+            ) => {
+                assert_eq!(step, at);
+                assert!((penetration - also).abs() < 1e-9);
+            }
+            (
+                Failure::Conflict { step, distance, .. },
+                Failure::Conflict { step: at, distance: also, .. },
+            ) => {
+                assert_eq!(step, at);
+                assert!((distance - also).abs() < 1e-9, "{distance} {also}");
+            }
+            (Failure::NotFinite { first, .. }, Failure::NotFinite { first: disc, .. }) => {
+                assert_eq!(first.id, disc.id);
+            }
+            (faithful, other) => panic!("{faithful}\nbut {other}"),
+        }
+    }
+}
