@@ -54,7 +54,7 @@ fn trajectories_are_the_faithful_ones_but_for_rounding() {
                 advance(faithful.as_mut(), 300);
                 advance(other.as_mut(), 300);
                 let off = differences(&start.0, &faithful.particles(), &other.particles());
-                assert!(off[0] < bound && off[1] < 10.0 * bound, "{scheme:?} {precision:?}: {off:e?}");
+                assert!(off[0] < bound && off[1] < 10.0 * bound, "{scheme:?} {precision:?}: {off:?}");
                 let moved = differences(&start.0, &start.1, &other.particles());
                 assert!(moved[0] > 0.1, "the discs must have moved: {moved:?}");
             }
@@ -86,7 +86,7 @@ fn walls_gravity_and_a_shaken_floor_are_the_faithful_ones() {
         };
         let ((faithful, deep), (other, also_deep)) = (run(Contacts::Lattice), run(Contacts::Fast));
         let off = differences(&model, &faithful, &other);
-        assert!(off[0] < 1e-10 && off[1] < 1e-9, "{scheme:?}: {off:e?}");
+        assert!(off[0] < 1e-10 && off[1] < 1e-9, "{scheme:?}: {off:?}");
         assert_eq!(deep.disc_steps, also_deep.disc_steps);
         assert!((deep.deepest - also_deep.deepest).abs() < 1e-9);
     }
@@ -183,7 +183,7 @@ fn failures_are_found_in_their_step() {
     let with = |stop: f64| {
         let mut start = arena([16, 16], false, &closing);
         start.0.contact.stiffness = 1e-6;
-        start.0.watch = Some(Watch { max_penetration: 0.1, stop_penetration: stop });
+        start.0.watch = Some(Watch { max_penetration: 0.1, stop_penetration: stop, smallest_radius: 0.5 });
         start
     };
     for mut start in [arena([16, 16], false, &lost), with(0.4), with(0.99), nan] {
