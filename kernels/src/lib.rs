@@ -48,5 +48,6 @@ pub mod mask;
 pub mod noise;
 mod program;
 pub mod sweep;
+mod threads;
 
 pub use program::{Execution, GROUP, InstructionSet, Program, Runnable};

@@ -3,8 +3,8 @@
 use crate::backend::tape::Outlines;
 use crate::backend::{Block, Precision, Pulp, Registers, Scalar, Strip, Tape, Wide};
 use crate::isa::{Footprint, Memory, OpCounts, ProgramError, Text};
+use crate::threads::{on_threads, pieces};
 use pulp::{Simd, WithSimd};
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::marker::PhantomData;
 use std::ops::Range;
 
@@ -191,16 +191,14 @@ where
             return self.run(memory, range, execution, set);
         }
         memory.admit(&self.footprint, &range)?;
-        let bands: Vec<Range<usize>> =
-            range.clone().step_by(BAND).map(|start| start..(start + BAND).min(range.end)).collect();
         let shared = Shared(memory);
-        let counters = bands.into_par_iter().map(|band| {
+        let counters = on_threads(pieces(range, BAND), |band| {
             // SAFETY: bands do not overlap, and the program writes only at the own place and reads at others only what
             // it does not write.
             let part = unsafe { shared.part() };
             self.run(&part, band, execution, set).map(|()| part.counters())
         });
-        let counters: Result<Vec<_>, _> = counters.collect();
+        let counters: Result<Vec<_>, _> = counters.into_iter().collect();
         counters?.into_iter().for_each(|more| memory.join(more));
         Ok(())
     }

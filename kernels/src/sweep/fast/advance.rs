@@ -7,7 +7,7 @@ use crate::integrator::Scheme;
 use crate::integrator::gear::Inertia;
 use crate::isa::{Element, Predicate, ProgramError, Vector, same};
 use crate::program::{Task, dispatch};
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use crate::threads::{on_threads, pieces};
 use std::ops::Range;
 
 /// Discs that one thread moves at a time.
@@ -123,12 +123,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             }?;
             Ok(movers)
         };
-        if rayon::current_num_threads() == 1 || discs <= BAND {
-            return pass(0..discs);
-        }
-        let bands: Vec<Range<usize>> =
-            (0..discs).step_by(BAND).map(|start| start..(start + BAND).min(discs)).collect();
-        let movers: Result<Vec<Vec<u32>>, _> = bands.into_par_iter().map(pass).collect();
+        let movers: Result<Vec<Vec<u32>>, _> = on_threads(pieces(0..discs, BAND), pass).into_iter().collect();
         Ok(movers?.concat())
     }
 }

@@ -11,7 +11,7 @@ use crate::isa::{Element, ProgramError};
 use crate::law::{Law, Sum};
 use crate::program::dispatch;
 use crate::sweep::lattice::{Frame, LatticeShape};
-use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
+use crate::threads::on_threads;
 use std::ops::Range;
 
 /// Rows of a band, at least; a function of nothing but the lattice may come into the order of summation.
@@ -94,7 +94,6 @@ impl<P: Precision> Sweep<P> {
         debug_assert!(law.sums().iter().zip(Sum::ALL).all(|(sum, there)| *sum == there));
         let sums = SumColumns(columns.each_mut().map(|column| column.1));
         let overlap = occupancy.half_width();
-        let bands = self.bands.len();
         let codes = &self.codes;
         let sweep = |band: &mut Band, rows: Range<usize>| -> Result<(), ProgramError> {
             let mut cursor = Cursor { row: rows.start, group: 0 };
@@ -133,11 +132,7 @@ impl<P: Precision> Sweep<P> {
             sweep(band, rows)
         };
         for last in [false, true] {
-            if bands == 1 || rayon::current_num_threads() == 1 {
-                self.bands.iter_mut().try_for_each(|band| each(band, last))?;
-            } else {
-                self.bands.par_iter_mut().try_for_each(|band| each(band, last))?;
-            }
+            on_threads(&mut self.bands, |band| each(band, last)).into_iter().collect::<Result<(), _>>()?;
         }
         let mut met = Met::default();
         for band in &mut self.bands {
