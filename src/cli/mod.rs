@@ -1,6 +1,8 @@
 //! The command line: one file per verb; composes, decides nothing.
 
 mod bench;
+mod calibrate;
+mod chart;
 mod completions;
 mod listing;
 mod man;
@@ -9,10 +11,13 @@ mod run;
 mod scene;
 mod scene_choice;
 mod table;
+mod validate_model;
 
 use crate::model::machine::MachineError;
 use crate::run::RunError;
 use crate::study::StudyError;
+use crate::study::host_ladder::LadderError;
+use crate::study::model_validation::ValidationError;
 use crate::study::throughput::MeasurementError;
 use clap::{Args, Parser, Subcommand};
 use std::ffi::OsString;
@@ -51,6 +56,9 @@ enum Verb {
     Scene(scene::SceneVerb),
     Run(run::RunVerb),
     Bench(bench::BenchVerb),
+    Calibrate(calibrate::CalibrateVerb),
+    ValidateModel(validate_model::ValidateModel),
+    Chart(chart::ChartVerb),
     Completions(completions::Completions),
     Man(man::ManVerb),
 }
@@ -64,6 +72,30 @@ pub(crate) enum Failure {
     /// A machine that there is not: exit code 2; a bad machine file: 3; one that cannot be read: 5.
     #[error(transparent)]
     Machine(#[from] crate::model::machine::MachineError),
+    /// A bad host file: exit code 3.
+    #[error(transparent)]
+    HostFile(#[from] crate::model::host::HostFileError),
+    /// A file that a calibration would write over: exit code 2.
+    #[error("{} is there already: --force writes over it, --out elsewhere", .0.display())]
+    HostFileExists(std::path::PathBuf),
+    /// A machine too busy to be measured: exit code 4.
+    #[error(
+        "the median repeat was {percent:.0} % slower than the best: the machine is too busy to be measured; nothing is \
+         written, try again when it is quiet, with more --sweeps, or --force"
+    )]
+    TooNoisy {
+        /// The spread.
+        percent: f64,
+    },
+    /// A program that a processor cannot run: exit code 5.
+    #[error(transparent)]
+    Program(#[from] stripmine_kernels::isa::ProgramError),
+    /// A step that the host model does not reach: exit code 4; no such lattice: 2.
+    #[error(transparent)]
+    HostLadder(#[from] crate::study::host_ladder::LadderError),
+    /// A validation that broke: outside the calibrated range 4, else that of the reason.
+    #[error(transparent)]
+    Validation(#[from] crate::study::model_validation::ValidationError),
     /// A verb that there is not: exit code 2.
     #[error("there is no verb {verb}; these are: {}", verbs.join(", "))]
     UnknownVerb {
@@ -115,7 +147,17 @@ impl Failure {
         match self {
             // A reader that closes the pipe has seen enough.
             Failure::InputOutput { cause, .. } if cause.kind() == ErrorKind::BrokenPipe => 0,
-            Failure::Usage(_) | Failure::UnknownVerb { .. } => 2,
+            Failure::Usage(_) | Failure::UnknownVerb { .. } | Failure::HostFileExists(_) => 2,
+            Failure::HostFile(_) => 3,
+            Failure::HostLadder(LadderError::Question(_)) => 2,
+            Failure::HostLadder(LadderError::OutOfRange(_)) | Failure::TooNoisy { .. } => 4,
+            Failure::Program(_) => 5,
+            Failure::Validation(error) => match error {
+                ValidationError::OutOfRange { .. } => 4,
+                ValidationError::Measurement(MeasurementError::Scene(_)) => 3,
+                ValidationError::Measurement(MeasurementError::Physics(_)) => 4,
+                ValidationError::Measurement(MeasurementError::Threads(_)) => 5,
+            },
             Failure::Machine(MachineError::Unknown { .. }) => 2,
             Failure::Machine(MachineError::File(_)) => 3,
             Failure::Machine(MachineError::Read { .. }) => 5,
@@ -153,6 +195,9 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         Verb::Scene(verb) => verb.run(&common),
         Verb::Run(verb) => verb.run(&common),
         Verb::Bench(verb) => verb.run(&common),
+        Verb::Calibrate(verb) => verb.run(&common),
+        Verb::ValidateModel(verb) => verb.run(&common),
+        Verb::Chart(verb) => verb.run(&common),
         Verb::Completions(verb) => verb.run(),
         Verb::Man(verb) => verb.run(),
     };
@@ -165,6 +210,17 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
             ExitCode::from(failure.exit_code())
         }
     }
+}
+
+/// Progress in thousandths, with ETA, on a terminal; nothing elsewhere.
+fn progress(common: &Common, what: &'static str) -> indicatif::ProgressBar {
+    use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+    let target = if common.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let bar = ProgressBar::with_draw_target(Some(1000), target);
+    let style = ProgressStyle::with_template("{wide_bar} {msg} {percent}% [{elapsed}, ETA {eta}]");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.set_message(what);
+    bar
 }
 
 /// Writes data to standard output.

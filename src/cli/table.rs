@@ -1,12 +1,15 @@
 //! `stripmine table`: the efficiency table, and the ladder of clocks.
 
 use super::scene_choice::SceneChoice;
+use super::validate_model::host_model;
 use super::{Common, Failure, print, print_json};
 use crate::model::machine;
 use crate::report;
 use crate::study::efficiency_table::efficiency_table;
+use crate::study::host_ladder::host_ladder;
 use crate::study::ladder::ladder;
 use clap::Args;
+use std::path::PathBuf;
 
 /// BP93's efficiency table: NOP as printed and as counted, vector lengths, clock periods
 #[derive(Args)]
@@ -18,6 +21,10 @@ pub(super) struct TableVerb {
     /// Instead: the clock periods of a step by every clock, from the trivial one to chaining and memory ports
     #[arg(long)]
     ladder: bool,
+    /// With --ladder: by the model of a host instead of a machine's clocks; a host file of `calibrate`, or the model that
+    /// comes with the program
+    #[arg(long, requires = "ladder", num_args = 0..=1)]
+    host: Option<Option<PathBuf>>,
 }
 
 /// What `--machine` takes.
@@ -28,6 +35,14 @@ pub(super) fn machine_help() -> String {
 
 impl TableVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
+        if let Some(file) = &self.host {
+            let (host, _) = host_model(file.as_deref(), common)?;
+            let data = host_ladder(&self.scene.question(), &host)?;
+            if common.json {
+                return print_json(&data);
+            }
+            return print(&report::terminal::render(&report::ladder::of_host(&data)));
+        }
         let (question, machine) = (self.scene.question(), machine::find(&self.machine)?);
         let tables = if self.ladder {
             let data = ladder(&question, &machine)?;

@@ -1,6 +1,8 @@
 //! The ladder of clocks as a reader wants it.
 
 use super::{Cell, Section, Table, Verdict};
+use crate::method::Phase;
+use crate::study::host_ladder::HostLadder;
 use crate::study::ladder::Ladder;
 
 /// What came out, for several machines.
@@ -100,5 +102,31 @@ fn convoys(data: &Ladder) -> Table {
              machine's file names no functional units: then every instruction runs alone."
                 .to_owned(),
         ],
+    }
+}
+
+/// The table of a host.
+pub fn of_host(data: &HostLadder) -> Table {
+    let mut columns = vec!["model".to_owned()];
+    columns.extend(Phase::ALL.iter().map(|phase| format!("{} (µs)", phase.name())));
+    columns.extend(["step (µs)".to_owned(), "a disc (ns)".to_owned()]);
+    let rows = data.rungs.iter().map(|rung| {
+        let mut cells = vec![rung.name.into()];
+        cells.extend(rung.phases.iter().map(|ns| Cell::Number(1e-3 * ns, 2)));
+        cells.extend([Cell::Number(1e-3 * rung.ns, 2), Cell::Number(rung.ns / data.particles as f64, 1)]);
+        cells
+    });
+    let mut notes: Vec<String> =
+        data.rungs.iter().map(|rung| format!("{}: {}", rung.name, rung.meaning)).collect();
+    notes.push(format!(
+        "NP = {} discs on LMAX = {} cells, double precision, one thread.",
+        data.particles, data.cells
+    ));
+    Table {
+        name: "host_ladder".into(),
+        title: format!("One step as the host model predicts it: {}", data.host),
+        columns,
+        rows: rows.collect(),
+        notes,
     }
 }

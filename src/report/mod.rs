@@ -1,5 +1,6 @@
 //! Reports: finished data as tables. Each export is one small file; none of them runs physics.
 
+pub mod calibration;
 pub mod csv;
 pub mod damping;
 pub mod density_cost;
@@ -13,12 +14,14 @@ pub mod markdown;
 pub mod mask;
 pub mod measured_cost;
 pub mod misprints;
+pub mod model_validation;
 pub mod origin;
 pub mod page;
 pub mod pipe_flow;
 pub mod section;
 pub mod table;
 pub mod terminal;
+pub mod useful_work;
 
 pub use section::{Section, Verdict};
 pub use table::{Cell, Table};

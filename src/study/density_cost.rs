@@ -211,7 +211,7 @@ impl Model<'_> {
 }
 
 /// Looks into the lists of a warm gas of about a thousand discs.
-fn list_figures(occupancy: f64) -> Result<ListFigures, StudyError> {
+pub(super) fn list_figures(occupancy: f64) -> Result<ListFigures, StudyError> {
     const EQUILIBRATION: u64 = 200;
     const STEPS: u64 = 1000;
     let overrides = [

@@ -1,15 +1,19 @@
 //! Studies: one file per question a user asks, each a function from parameters to a dataset.
 
+pub mod calibration;
 pub mod damping;
 pub mod density_cost;
 pub mod efficiency_table;
+pub mod host_ladder;
 pub mod identity;
 pub mod ladder;
 pub mod measured_cost;
 pub mod misprints;
+pub mod model_validation;
 pub mod pipe_flow;
 pub mod statistics;
 pub mod throughput;
+pub mod useful_work;
 
 use crate::particles::Particles;
 

@@ -16,17 +16,17 @@ const SECTION: &str = "section.json";
 const PROVENANCE: &str = "provenance.json";
 
 /// The folder.
-pub(super) struct Folder {
+pub(in crate::cli) struct Folder {
     path: PathBuf,
 }
 
 impl Folder {
-    pub(super) fn new(path: &Path) -> Folder {
+    pub(in crate::cli) fn new(path: &Path) -> Folder {
         Folder { path: path.to_owned() }
     }
 
     /// Writes an item's files: all of them, or, where that fails, none.
-    pub(super) fn write(&self, made: &Made, provenance: &Provenance) -> Result<PathBuf, Failure> {
+    pub(in crate::cli) fn write(&self, made: &Made, provenance: &Provenance) -> Result<PathBuf, Failure> {
         let Made { section, data, files } = made;
         let folder = self.path.join(section.folder());
         let part = folder.with_extension("part");

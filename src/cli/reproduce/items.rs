@@ -2,17 +2,22 @@
 
 use crate::cli::{Failure, listing};
 use crate::method::lattice_md::Part;
+use crate::model::host::default_model;
 use crate::model::machine;
+use crate::report::origin;
 use crate::report::pipe_flow::Showing;
 use crate::report::{self, Section};
+use crate::study::calibration::{self, calibrate};
 use crate::study::efficiency_table::Question;
 use crate::study::{
-    damping, density_cost, efficiency_table, identity, ladder, measured_cost, misprints, pipe_flow,
+    damping, density_cost, efficiency_table, identity, ladder, measured_cost, misprints, model_validation,
+    pipe_flow, useful_work,
 };
 use clap::ValueEnum;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use stripmine_kernels::InstructionSet;
 
 /// How much is done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +29,7 @@ pub(super) enum Effort {
 }
 
 /// A finished item.
-pub(super) struct Made {
+pub(in crate::cli) struct Made {
     /// What is shown of it.
     pub(super) section: Section,
     /// The dataset.
@@ -64,7 +69,9 @@ define_items! {
     (Mask, "mask", 0.1, 0.1, "BP93, figure 2: the mask"),
     (Misprints, "misprints", 0.5, 0.5, "What the misprints of the contact law do"),
     (Cost, "cost", 1.0, 1.0, "BP93, figures 3 and 4: cost over particles and density, by the model"),
+    (UsefulWork, "useful-work", 1.0, 1.0, "Operations that act on real contacts, over the density"),
     (Measured, "measured", 8.0, 60.0, "The same, measured on this host"),
+    (Validation, "validation", 10.0, 60.0, "The timing model of this host against wall time"),
     (Identity, "identity", 3.0, 3.0, "Lattice and neighbour lists: the same to the bit"),
     (PipeSmall, "pipe-small", 3.0, 3.0, "BP93, figures 5 and 6, in two fifths of the pipe"),
     (Pipe, "pipe", 120.0, 120.0, "BP93, figures 5 and 6, in the whole pipe"),
@@ -103,10 +110,15 @@ impl Item {
                 let data = density_cost::density_cost(&machine::preset("paper")?)?;
                 made(report::density_cost::section(&data), &data)
             }
+            Item::UsefulWork => {
+                let data = useful_work::useful_work()?;
+                made(report::useful_work::section(&data), &data)
+            }
             Item::Measured => {
                 let data = measured_cost::measured_cost(&measured_effort(effort), progress)?;
                 made(report::measured_cost::section(&data), &data)
             }
+            Item::Validation => validation(effort, progress),
             Item::Identity => {
                 let data = identity::identity(progress)?;
                 made(report::identity::section(&data), &data)
@@ -135,9 +147,34 @@ impl Item {
     }
 }
 
+impl Made {
+    /// Of a section and its dataset.
+    pub(in crate::cli) fn new(section: Section, data: &impl Serialize) -> Result<Made, Failure> {
+        let data = serde_json::to_value(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
+        Ok(Made { section, data, files: vec![] })
+    }
+}
+
 fn made(section: Section, data: &impl Serialize) -> Result<Made, Failure> {
-    let data = serde_json::to_value(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
-    Ok(Made { section, data, files: vec![] })
+    Made::new(section, data)
+}
+
+/// The shipped host model on few cases, or, in full, a fresh calibration on more of them.
+fn validation(effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, Failure> {
+    let (host, shipped, particles, occupancies) = match effort {
+        Effort::Quick => (default_model()?, true, vec![100, 2000], vec![0.2]),
+        Effort::Full => {
+            let best = InstructionSet::best();
+            let host = calibrate(origin::host(), best, calibration::Effort::default(), |share| {
+                progress(0.5 * share)
+            })?;
+            (host, false, vec![100, 700, 5000, 20_000], vec![0.05, 0.24])
+        }
+    };
+    let runs = model_validation::Effort { particles, occupancies, repeats: 5, particle_steps: 10_000 };
+    let data =
+        model_validation::model_validation(&host, shipped, &runs, |share| progress(0.5 + 0.5 * share))?;
+    made(report::model_validation::section(&data), &data)
 }
 
 fn measured_effort(effort: Effort) -> measured_cost::Effort {

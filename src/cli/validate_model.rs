@@ -1,0 +1,79 @@
+//! `stripmine validate-model`: the host model against wall time.
+
+use super::reproduce::{Folder, Made};
+use super::{Common, Failure, print, print_json};
+use crate::model::host::{HostModel, default_model};
+use crate::report;
+use crate::report::origin::Provenance;
+use crate::study::model_validation::{Effort, model_validation};
+use clap::Args;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Predicts runs that nothing was fitted to, measures them, and says how far off each prediction was
+#[derive(Args)]
+pub(super) struct ValidateModel {
+    /// Host file of `calibrate`; without one, the model that comes with the program
+    #[arg(long)]
+    host: Option<PathBuf>,
+    /// Numbers of particles
+    #[arg(long, value_delimiter = ',', default_values_t = [100, 700, 5000, 40_000])]
+    particles: Vec<usize>,
+    /// Occupancies, on cells as wide as the radius
+    #[arg(long, value_delimiter = ',', default_values_t = [0.05, 0.12, 0.24])]
+    occupancies: Vec<f64>,
+    /// Repeats of each run, of which the best counts
+    #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..))]
+    repeats: u16,
+    /// Folder for the result as data, tables and figures
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// The model of a host file, or the one that comes with the program; whether it is the latter.
+pub(super) fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, bool), Failure> {
+    let Some(file) = file else {
+        let model = default_model()?;
+        if !common.quiet {
+            eprintln!(
+                "no --host: using the model that comes with the program, of {}; see calibrate",
+                model.title
+            );
+        }
+        return Ok((model, true));
+    };
+    let text = std::fs::read_to_string(file).map_err(Failure::writing(file.display().to_string()))?;
+    Ok((HostModel::parse(&file.display().to_string(), &text)?, false))
+}
+
+impl ValidateModel {
+    pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
+        let (model, shipped) = host_model(self.host.as_deref(), common)?;
+        let effort = Effort {
+            particles: self.particles.clone(),
+            occupancies: self.occupancies.clone(),
+            repeats: self.repeats.into(),
+            particle_steps: 10_000,
+        };
+        let bar = super::progress(common, "validate-model");
+        let start = Instant::now();
+        let data =
+            model_validation(&model, shipped, &effort, |share| bar.set_position((1e3 * share) as u64))?;
+        bar.finish_and_clear();
+        if let Some(out) = &self.out {
+            let made = Made::new(report::model_validation::section(&data), &data)?;
+            let provenance =
+                Provenance::here("stripmine validate-model".to_owned(), start.elapsed().as_secs_f64());
+            let folder = Folder::new(out).write(&made, &provenance)?;
+            if !common.quiet {
+                eprintln!("written: {}", folder.display());
+            }
+        }
+        if common.json {
+            return print_json(&data);
+        }
+        let tables = report::model_validation::tables(&data);
+        let drawn: Vec<String> = tables.iter().take(2).map(report::terminal::render).collect();
+        print(&drawn.join("\n"))
+    }
+}

@@ -1,0 +1,209 @@
+//! Predicted against measured: the histogram of errors, the worst cases, measured over predicted.
+
+use super::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use super::{Cell, Section, Table, Verdict};
+use crate::study::model_validation::{Case, Errors, ModelValidation};
+
+/// How many of the worst cases are named.
+const NAMED: usize = 12;
+
+/// What came out.
+pub fn section(data: &ModelValidation) -> Section {
+    let all = data.errors.first();
+    let reached =
+        |errors: &Errors| errors.median <= 0.05 && errors.ninth_tenth <= 0.15 && errors.worst <= 0.3;
+    Section {
+        name: "validation".into(),
+        title: "The timing model against wall time".into(),
+        says: "BP93 predicts times and checks none of them. Aim: on runs that nothing was fitted to, a median error of at \
+               most 5 %, 90 % of the cases within 15 %, the worst 30 %."
+            .into(),
+        came_out: all.map_or(String::new(), said),
+        verdict: if all.is_some_and(reached) { Verdict::Reproduced } else { Verdict::Partly },
+        again: "stripmine calibrate --out host.toml, then stripmine validate-model --host host.toml".into(),
+        figures: vec![over_predicted(data), histogram(data)],
+        tables: tables(data),
+        excerpt: None,
+        film: None,
+        seeds: vec![1],
+        depends_on_host: true,
+        provenance: None,
+    }
+}
+
+fn percent(share: f64) -> Cell {
+    Cell::Number(100.0 * share, 1)
+}
+
+fn said(errors: &Errors) -> String {
+    let Errors { cases, median, ninth_tenth, worst, within, baseline_median, spread, .. } = errors;
+    format!(
+        "{cases} phases of steps: median error {:.1} %, nine of ten below {:.1} %, the worst {:.0} %; {} within 5 %, {} \
+         within 10 %, {} within 20 %, {} within 30 %. Time in proportion to the number of operations: median {:.0} %. \
+         Median repeats lie {:.1} % above the best ones that were compared.",
+        100.0 * median,
+        100.0 * ninth_tenth,
+        100.0 * worst,
+        within[0],
+        within[1],
+        within[2],
+        within[3],
+        100.0 * baseline_median,
+        100.0 * spread
+    )
+}
+
+/// Errors by group, and the worst cases.
+pub fn tables(data: &ModelValidation) -> Vec<Table> {
+    vec![errors(data), worst(data), cases(data)]
+}
+
+fn headings(words: &[&str]) -> Vec<String> {
+    words.iter().map(|&word| word.to_owned()).collect()
+}
+
+fn errors(data: &ModelValidation) -> Table {
+    let rows = data.errors.iter().map(|errors| {
+        let mut row = vec![
+            Cell::Text(errors.what.clone()),
+            Cell::Count(errors.cases as u64),
+            percent(errors.median),
+            percent(errors.ninth_tenth),
+            percent(errors.worst),
+        ];
+        row.extend(errors.within.map(|count| Cell::Count(count as u64)));
+        row.extend([percent(errors.baseline_median), percent(errors.spread)]);
+        row
+    });
+    let mut notes = vec![
+        format!("Host model: {}, {}.", data.host, data.instruction_set),
+        "Measured: the best repeat; the spread says how much slower the median one was. Baseline: operations times \
+         elements, at the cost of a sum in the cache."
+            .to_owned(),
+        "Not predicted: the neighbour lists, whose cost hangs on the data.".to_owned(),
+    ];
+    if data.shipped {
+        notes.push(
+            "This is the model that comes with the program, not one of this host: calibrate first."
+                .to_owned(),
+        );
+    }
+    Table {
+        name: "errors".into(),
+        title: "Errors of the predictions".into(),
+        columns: headings(&[
+            "cases of",
+            "cases",
+            "median (%)",
+            "90 % below (%)",
+            "worst (%)",
+            "within 5 %",
+            "10 %",
+            "20 %",
+            "30 %",
+            "baseline (%)",
+            "spread (%)",
+        ]),
+        rows: rows.collect(),
+        notes,
+    }
+}
+
+fn row(case: &Case) -> Vec<Cell> {
+    vec![
+        Cell::Text(case.name()),
+        Cell::Number(case.predicted, 0),
+        Cell::Number(case.measured, 0),
+        Cell::Number(case.median, 0),
+        Cell::Number(100.0 * (case.predicted / case.measured - 1.0), 1),
+    ]
+}
+
+const CASE: [&str; 5] = ["case", "predicted (ns)", "measured (ns)", "median repeat (ns)", "error (%)"];
+
+fn worst(data: &ModelValidation) -> Table {
+    Table {
+        name: "worst".into(),
+        title: "The worst cases".into(),
+        columns: headings(&CASE),
+        rows: data.worst().into_iter().take(NAMED).map(row).collect(),
+        notes: vec![],
+    }
+}
+
+fn cases(data: &ModelValidation) -> Table {
+    Table {
+        name: "cases".into(),
+        title: "Every case".into(),
+        columns: headings(&CASE),
+        rows: data.cases.iter().map(row).collect(),
+        notes: vec![],
+    }
+}
+
+/// The names of the executions, in the order in which they were run.
+fn executions(data: &ModelValidation) -> Vec<&'static str> {
+    let mut names = vec![];
+    for case in &data.cases {
+        if !names.contains(&case.execution) {
+            names.push(case.execution);
+        }
+    }
+    names
+}
+
+fn over_predicted(data: &ModelValidation) -> Figure {
+    let series = executions(data).into_iter().enumerate().map(|(hue, name)| {
+        let cases = data.cases.iter().filter(|case| case.execution == name && case.measured > 0.0);
+        let points = cases.map(|case| {
+            let ratio = case.measured / case.predicted;
+            let high = case.median / case.predicted;
+            Point { x: 1e-3 * case.predicted, y: ratio, spread: Some([ratio, high.max(ratio)]) }
+        });
+        Series { name: name.into(), style: Style::Points, hue, points: points.collect() }
+    });
+    Figure {
+        name: "measured_over_predicted".into(),
+        title: "Measured over predicted".into(),
+        caption: "Each point is a phase of a step of one run; the best repeat, bars up to the median one. 1 is right.".into(),
+        picture: Picture::Chart(Chart {
+            x: Axis::logarithmic("predicted time", Some("µs")),
+            y: Axis::logarithmic("measured over predicted", None),
+            series: series.collect(),
+            bands: vec![],
+        }),
+    }
+}
+
+fn histogram(data: &ModelValidation) -> Figure {
+    const BIN: f64 = 5.0;
+    const BINS: i32 = 20;
+    let series = executions(data).into_iter().enumerate().map(|(hue, name)| {
+        let errors: Vec<f64> = data
+            .cases
+            .iter()
+            .filter(|case| case.execution == name)
+            .map(|case| 100.0 * (case.predicted / case.measured - 1.0))
+            .collect();
+        let points = (-BINS..=BINS).map(|bin| {
+            let centre = BIN * f64::from(bin);
+            // What lies beyond the ends is counted there.
+            let last = |error: f64| error.clamp(-BIN * f64::from(BINS), BIN * f64::from(BINS));
+            let count = errors.iter().filter(|&&error| (last(error) - centre).abs() <= 0.5 * BIN).count();
+            Point::at(centre, count as f64)
+        });
+        Series { name: name.into(), style: Style::Joined, hue, points: points.collect() }
+    });
+    Figure {
+        name: "histogram".into(),
+        title: "Errors of the predictions".into(),
+        caption: "Cases in bins of 5 %; negative: predicted too short. The outermost bins hold all beyond."
+            .into(),
+        picture: Picture::Chart(Chart {
+            x: Axis::linear("predicted over measured - 1", Some("%")),
+            y: Axis::linear("cases", None),
+            series: series.collect(),
+            bands: vec![],
+        }),
+    }
+}

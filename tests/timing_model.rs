@@ -1,0 +1,76 @@
+//! The timing model on the command line: files of one's own, bad ones, and questions beyond what was calibrated.
+
+use assert_cmd::Command;
+
+fn stripmine(arguments: &[&str]) -> assert_cmd::assert::Assert {
+    Command::cargo_bin("stripmine").unwrap().args(arguments).assert()
+}
+
+fn file(folder: &tempfile::TempDir, text: &str) -> String {
+    let path = folder.path().join("mine.toml");
+    std::fs::write(&path, text).unwrap();
+    path.display().to_string()
+}
+
+const MACHINE: &str = r#"format = 1
+title = "Mine"
+year = { value = 2026, provenance = "assumed", note = "a test" }
+clock_period_ns = { value = 1, provenance = "assumed", note = "a test" }
+[start_up]
+default = { value = 20, provenance = "assumed", note = "a test" }
+"#;
+
+#[test]
+fn a_machine_file_of_ones_own_is_asked_and_every_clock_answers() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = file(&folder, MACHINE);
+    let out = stripmine(&["table", "--ladder", "--machine", &path, "--json"]).success();
+    let data: serde_json::Value = serde_json::from_slice(&out.get_output().stdout).unwrap();
+    assert_eq!(data["machine"], "Mine");
+    assert_eq!(data["rungs"].as_array().unwrap().len(), 6);
+    assert!(data["assumed_share"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn bad_machine_files_are_named_with_line_and_column() {
+    let folder = tempfile::tempdir().unwrap();
+    for (old, new, said) in [
+        ("value = 20", "value = -20", "line 6, column 21: `start_up.default` is -20"),
+        ("default =", "subtract =", "`subtract` names no class of operations"),
+        ("year = ", "jahr = ", "unknown field `jahr`"),
+        ("title = \"Mine\"\n", "", "missing field `title`"),
+    ] {
+        let path = file(&folder, &MACHINE.replace(old, new));
+        let out = stripmine(&["table", "--machine", &path]).code(3);
+        let complaint = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
+        assert!(complaint.contains(said) && complaint.contains("line "), "{complaint}");
+    }
+}
+
+#[test]
+fn a_machine_that_is_not_there_is_answered_with_those_that_are() {
+    stripmine(&["table", "--machine", "eniac"]).code(2);
+    stripmine(&["table", "--machine", "eniac.toml"]).code(5);
+}
+
+#[test]
+fn beyond_the_calibrated_range_nothing_is_predicted() {
+    for arguments in [
+        ["table", "--ladder", "--host", "--particles", "2000000"].as_slice(),
+        &["validate-model", "--particles", "5000000"],
+    ] {
+        let out = stripmine(arguments).code(4);
+        let complaint = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
+        assert!(complaint.contains("calibrated range of 8 to 4000000"), "{complaint}");
+    }
+}
+
+#[test]
+fn the_shipped_host_model_is_used_and_said_so_and_bad_host_files_are_refused() {
+    let out = stripmine(&["table", "--ladder", "--host"]).success();
+    assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("comes with the program"));
+    let folder = tempfile::tempdir().unwrap();
+    let path = file(&folder, "format = 1\n");
+    let out = stripmine(&["table", "--ladder", "--host", &path]).code(3);
+    assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("missing field"));
+}
