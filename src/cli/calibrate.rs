@@ -1,9 +1,10 @@
 //! `stripmine calibrate`: how long this host's operations take.
 
 use super::{Common, Failure, print, print_json};
+use crate::model::host::Measured;
 use crate::report;
 use crate::report::origin::host;
-use crate::study::calibration::{Effort, TOO_NOISY, calibrate};
+use crate::study::calibration::{Effort, TOO_DIFFERENT, TOO_NOISY, calibrate};
 use clap::Args;
 use std::path::PathBuf;
 use stripmine_kernels::InstructionSet;
@@ -40,15 +41,11 @@ impl CalibrateVerb {
                 report::calibration::tables(&model).iter().map(report::terminal::render).collect();
             print(&drawn.join("\n"))?;
         }
-        let spread = model.measured.spread;
-        if spread > TOO_NOISY && !self.force {
-            return Err(Failure::TooNoisy { percent: 100.0 * spread });
-        }
-        if spread > TOO_NOISY && !common.quiet {
-            eprintln!(
-                "warning: the median repeat was {:.0} % slower than the best: the machine is busy",
-                100.0 * spread
-            );
+        if let Some(noise) = noise(&model.measured) {
+            if !self.force {
+                return Err(Failure::TooNoisy(noise));
+            }
+            eprintln!("warning: {noise}: the machine is busy");
         }
         std::fs::write(&self.out, model.to_toml())
             .map_err(Failure::writing(self.out.display().to_string()))?;
@@ -56,5 +53,38 @@ impl CalibrateVerb {
             eprintln!("written: {}", self.out.display());
         }
         Ok(())
+    }
+}
+
+/// What shows that the machine was too busy, if it was.
+fn noise(measured: &Measured) -> Option<String> {
+    let Measured { spread, disagreement, .. } = *measured;
+    (spread > TOO_NOISY || disagreement > TOO_DIFFERENT).then(|| {
+        format!(
+            "the median sample was {:.0} % slower than the best, the best ones of the two halves of the measurement differ \
+             by {:.1} %",
+            100.0 * spread,
+            100.0 * disagreement
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_busy_machine_is_told_from_a_quiet_one() {
+        let measured = |spread, disagreement| Measured {
+            timer: 20.0,
+            spread,
+            disagreement,
+            shortest: 8,
+            longest: 100,
+            residual: 0.0,
+        };
+        assert_eq!(noise(&measured(0.05, 0.01)), None);
+        assert!(noise(&measured(2.0 * TOO_NOISY, 0.01)).unwrap().contains("50 % slower"));
+        assert!(noise(&measured(0.05, 2.0 * TOO_DIFFERENT)).unwrap().contains("differ by 10.0 %"));
     }
 }

@@ -1,11 +1,14 @@
 //! `stripmine chart`: studies as data and charts.
 
 use super::reproduce::{Folder, Made};
+use super::validate_model::host_model;
 use super::{Common, Failure, print, print_json};
 use crate::model::machine;
-use crate::report;
 use crate::report::origin::Provenance;
+use crate::report::{self, Section};
+use crate::study::break_even::atlas;
 use crate::study::density_cost::density_cost;
+use crate::study::measured_cost::{Effort, measured_cost};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -18,6 +21,9 @@ pub(super) struct ChartVerb {
     what: What,
     #[arg(long, default_value = "paper", help = super::table::machine_help())]
     machine: String,
+    /// Host file of `calibrate` for the atlas; without one, the model that comes with the program
+    #[arg(long)]
+    host: Option<PathBuf>,
     /// Folder for data, tables and figures
     #[arg(long, default_value = "charts")]
     out: PathBuf,
@@ -26,23 +32,54 @@ pub(super) struct ChartVerb {
 /// What can be charted so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum What {
-    /// BP93, figures 3 and 4: cost over particles and density, by the paper's clock of a machine
+    /// BP93, figures 3 and 4, by the paper's clock of a machine and measured here, and the break-even atlas: who wins where
     DensityCost,
 }
 
 impl ChartVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
         let What::DensityCost = self.what;
+        let machine = machine::find(&self.machine)?;
+        let (host, _) = host_model(self.host.as_deref(), common)?;
+        let again = format!("stripmine chart density-cost --machine {}", self.machine);
+        let bar = super::progress(common, "chart");
+        let show = |from: f64, share: f64| bar.set_position((1e3 * (from + 0.5 * share)) as u64);
+        let write = |section: Section, data: &serde_json::Value, start: Instant| -> Result<(), Failure> {
+            let provenance = Provenance::here(again.clone(), start.elapsed().as_secs_f64());
+            let folder = Folder::new(&self.out).write(&Made::new(section, data)?, &provenance)?;
+            if !common.quiet {
+                bar.suspend(|| eprintln!("written: {}", folder.display()));
+            }
+            Ok(())
+        };
+        let value = |data: serde_json::Result<serde_json::Value>| {
+            data.map_err(|cause| Failure::writing("JSON")(cause.into()))
+        };
         let start = Instant::now();
-        let data = density_cost(&machine::find(&self.machine)?)?;
-        let section = report::density_cost::section(&data);
-        let came_out = section.came_out.clone();
-        let command = format!("stripmine chart density-cost --machine {}", self.machine);
-        let provenance = Provenance::here(command, start.elapsed().as_secs_f64());
-        let folder = Folder::new(&self.out).write(&Made::new(section, &data)?, &provenance)?;
-        if !common.quiet {
-            eprintln!("written: {}", folder.display());
+        let by_model = density_cost(&machine)?;
+        let cost = report::density_cost::section(&by_model);
+        let mut came_out = vec![cost.came_out.clone()];
+        let model_data = value(serde_json::to_value(&by_model))?;
+        write(cost, &model_data, start)?;
+
+        let start = Instant::now();
+        let measured = measured_cost(&Effort::chart(), |share| show(0.0, share))?;
+        let section = report::measured_cost::section(&measured);
+        came_out.push(section.came_out.clone());
+        let measured_data = value(serde_json::to_value(&measured))?;
+        write(section, &measured_data, start)?;
+
+        let start = Instant::now();
+        let atlas = atlas(&[machine], &host, &[100, 1000, 10_000], 3, |share| show(0.5, share))?;
+        let section = report::break_even::section(&atlas, &again);
+        came_out.push(section.came_out.clone());
+        let atlas_data = value(serde_json::to_value(&atlas))?;
+        write(section, &atlas_data, start)?;
+        bar.finish_and_clear();
+        if common.json {
+            let all = serde_json::json!({ "model": model_data, "measured": measured_data, "atlas": atlas_data });
+            return print_json(&all);
         }
-        if common.json { print_json(&data) } else { print(&(came_out + "\n")) }
+        print(&(came_out.join("\n\n") + "\n"))
     }
 }

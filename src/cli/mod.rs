@@ -16,6 +16,8 @@ mod validate_model;
 use crate::model::machine::MachineError;
 use crate::run::RunError;
 use crate::study::StudyError;
+use crate::study::break_even::AtlasError;
+use crate::study::calibration::CalibrationError;
 use crate::study::host_ladder::LadderError;
 use crate::study::model_validation::ValidationError;
 use crate::study::throughput::MeasurementError;
@@ -79,23 +81,21 @@ pub(crate) enum Failure {
     #[error("{} is there already: --force writes over it, --out elsewhere", .0.display())]
     HostFileExists(std::path::PathBuf),
     /// A machine too busy to be measured: exit code 4.
-    #[error(
-        "the median repeat was {percent:.0} % slower than the best: the machine is too busy to be measured; nothing is \
-         written, try again when it is quiet, with more --sweeps, or --force"
-    )]
-    TooNoisy {
-        /// The spread.
-        percent: f64,
-    },
-    /// A program that a processor cannot run: exit code 5.
+    #[error("{0}: the machine is too busy to be measured; nothing is written, try again when it is quiet, with more \
+             --sweeps, or --force")]
+    TooNoisy(String),
+    /// A calibration that broke: the exit code is that of the reason.
     #[error(transparent)]
-    Program(#[from] stripmine_kernels::isa::ProgramError),
+    Calibration(#[from] crate::study::calibration::CalibrationError),
     /// A step that the host model does not reach: exit code 4; no such lattice: 2.
     #[error(transparent)]
     HostLadder(#[from] crate::study::host_ladder::LadderError),
     /// A validation that broke: outside the calibrated range 4, else that of the reason.
     #[error(transparent)]
     Validation(#[from] crate::study::model_validation::ValidationError),
+    /// An atlas that broke: outside the calibrated range 4, else that of the reason.
+    #[error(transparent)]
+    Atlas(#[from] crate::study::break_even::AtlasError),
     /// A verb that there is not: exit code 2.
     #[error("there is no verb {verb}; these are: {}", verbs.join(", "))]
     UnknownVerb {
@@ -150,22 +150,28 @@ impl Failure {
             Failure::Usage(_) | Failure::UnknownVerb { .. } | Failure::HostFileExists(_) => 2,
             Failure::HostFile(_) => 3,
             Failure::HostLadder(LadderError::Question(_)) => 2,
-            Failure::HostLadder(LadderError::OutOfRange(_)) | Failure::TooNoisy { .. } => 4,
-            Failure::Program(_) => 5,
-            Failure::Validation(error) => match error {
-                ValidationError::OutOfRange { .. } => 4,
-                ValidationError::Measurement(MeasurementError::Scene(_)) => 3,
-                ValidationError::Measurement(MeasurementError::Physics(_)) => 4,
-                ValidationError::Measurement(MeasurementError::Threads(_)) => 5,
+            Failure::HostLadder(LadderError::OutOfRange(_)) | Failure::TooNoisy(_) => 4,
+            Failure::Calibration(CalibrationError::Program(_)) => 5,
+            Failure::Validation(ValidationError::OutOfRange { .. })
+            | Failure::Atlas(AtlasError::OutOfRange(_)) => 4,
+            Failure::Validation(ValidationError::Measurement(error))
+            | Failure::Calibration(CalibrationError::Measurement(error))
+            | Failure::Atlas(AtlasError::Measurement(error))
+            | Failure::Measurement(error) => match error {
+                MeasurementError::Scene(_) => 3,
+                MeasurementError::Physics(_) => 4,
+                MeasurementError::Threads(_) => 5,
             },
             Failure::Machine(MachineError::Unknown { .. }) => 2,
             Failure::Machine(MachineError::File(_)) => 3,
             Failure::Machine(MachineError::Read { .. }) => 5,
             Failure::Scene(_) => 3,
-            Failure::Measurement(MeasurementError::Scene(_)) | Failure::Study(StudyError::Scene(_)) => 3,
-            Failure::Measurement(MeasurementError::Physics(_)) | Failure::Study(StudyError::Physics(_)) => 4,
-            Failure::Study(StudyError::Question(_)) => 2,
-            Failure::Measurement(MeasurementError::Threads(_)) | Failure::Figure(_) => 5,
+            Failure::Study(error) | Failure::Atlas(AtlasError::Study(error)) => match error {
+                StudyError::Scene(_) => 3,
+                StudyError::Physics(_) => 4,
+                StudyError::Question(_) => 2,
+            },
+            Failure::Figure(_) => 5,
             Failure::Interrupted { .. } => 130,
             Failure::Run(error) => match error {
                 RunError::Exists(_) | RunError::NothingToResume(_) | RunError::OtherScene { .. } => 2,

@@ -1,62 +1,102 @@
 //! A host model as a reader wants it.
 
 use super::{Cell, Table};
-use crate::model::host::{Estimate, HostModel};
+use crate::model::host::{Amounts, Estimate, HostModel, Measured};
 
 /// The tables of a host model.
 pub fn tables(model: &HostModel) -> Vec<Table> {
-    vec![operations(model), levels(model)]
+    vec![operations(model), loops(model), levels(model), rates(model)]
 }
 
+fn with(estimate: Estimate, decimals: usize) -> [Cell; 2] {
+    [Cell::Number(estimate.value, decimals), Cell::Number(estimate.interval, decimals)]
+}
+
+fn headings(words: &[&str]) -> Vec<String> {
+    words.iter().map(|&word| word.to_owned()).collect()
+}
+
+/// The row of something that starts and goes on, with Hockney's pair.
+fn hockney(names: [&str; 2], element: Estimate, start: Estimate) -> Vec<Cell> {
+    let mut row: Vec<Cell> = names.map(|name| Cell::Text(name.to_owned())).to_vec();
+    row.extend(with(element, 4));
+    row.extend(with(start, 1));
+    row.push(Cell::Number(1e3 / element.value.max(1e-6), 0));
+    row.push(Cell::Number(start.value / element.value.max(1e-6), 0));
+    row
+}
+
+const TIMES: [&str; 6] = ["tau (ns)", "± 95 %", "t0 (ns)", "± 95 %", "r_inf (million/s)", "n_half"];
+
 fn operations(model: &HostModel) -> Table {
-    let with = |estimate: Estimate, decimals: usize| {
-        [Cell::Number(estimate.value, decimals), Cell::Number(estimate.interval, decimals)]
-    };
-    let mut rows = vec![];
-    for (lane, costs) in &model.lanes {
-        for (op, cost) in &costs.passes {
-            let mut row = vec![Cell::Text(lane.clone()), Cell::Text(op.clone())];
-            row.extend(with(cost.element, 4));
-            row.extend(with(cost.start, 1));
-            // Hockney's pair.
-            row.push(Cell::Number(1e3 / cost.element.value.max(1e-6), 0));
-            row.push(Cell::Number(cost.start.value / cost.element.value.max(1e-6), 0));
-            row.extend(
-                costs.chained.get(op).map_or(vec![Cell::Nothing; 2], |&chained| with(chained, 4).to_vec()),
-            );
-            rows.push(row);
-        }
-    }
+    let rows = model.lanes.iter().flat_map(|(lane, costs)| {
+        costs.passes.iter().map(move |(op, cost)| hockney([lane, op], cost.element, cost.start))
+    });
+    let Measured { timer, spread, disagreement, shortest, longest, .. } = model.measured;
+    let changes = model.lanes.iter().map(|(lane, costs)| {
+        let each = costs.change.iter().map(|change| format!("{:.1} ns in {} passes", change.ns, change.passes));
+        format!("{lane}: {}", each.collect::<Vec<_>>().join(", "))
+    });
     Table {
         name: "operations".into(),
         title: format!("Operations of {}, {}", model.title, model.instruction_set),
-        columns: [
-            "lanes",
-            "operation",
-            "tau (ns)",
-            "± 95 %",
-            "t0 (ns)",
-            "± 95 %",
-            "r_inf (million/s)",
-            "n_half",
-            "chained (ns)",
-            "±",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows,
+        columns: headings(&[&["lanes", "operation"], TIMES.as_slice()].concat()),
+        rows: rows.collect(),
         notes: vec![
             format!(
-                "Passes over vectors in the first-level cache: t = t0 + n tau. Vectors of {} to {} elements; timer steps of {} \
-                 ns; the median repeat was {:.1} % slower than the best.",
-                model.measured.shortest,
-                model.measured.longest,
-                model.measured.timer,
-                100.0 * model.measured.spread
+                "Passes over vectors in the first-level cache: t = t0 + n tau. Vectors of {shortest} to {longest} elements; \
+                 timer steps of {timer} ns; the median sample was {:.1} % slower than the best; the best samples of the two \
+                 halves of the measurement differ by {:.1} %.",
+                100.0 * spread,
+                100.0 * disagreement
             ),
-            "Chained: what the operation adds to an element of compiled code; ± is the difference of two vector lengths."
-                .to_owned(),
+            format!("A pass before one of another kind takes longer. {}.", changes.collect::<Vec<_>>().join("; ")),
         ],
+    }
+}
+
+fn loops(model: &HostModel) -> Table {
+    let rows = model.loops.seen.iter().map(|(signature, seen)| {
+        let lane = signature.split('-').next().unwrap_or_default();
+        hockney([lane, &seen.what], seen.element, seen.start)
+    });
+    Table {
+        name: "loops".into(),
+        title: "Compiled loops".into(),
+        columns: headings(&[&["lanes", "loop"], TIMES.as_slice()].concat()),
+        rows: rows.collect(),
+        notes: vec![format!(
+            "Chained execution, in the first-level cache. Loops that are not among these are charged by their classes of \
+             operations, which deviate from these by {:.0} % (the median).",
+            100.0 * model.loops.residual
+        )],
+    }
+}
+
+fn rates(model: &HostModel) -> Table {
+    let mut rows = vec![];
+    for (method, rates) in &model.rates {
+        for (precision, phases) in &rates.0 {
+            for (phase, points) in phases {
+                for point in points {
+                    let mut row: Vec<Cell> =
+                        [method, precision, phase].map(|name| Cell::Text(name.clone())).to_vec();
+                    row.push(Cell::Count(point.discs as u64));
+                    row.extend(Amounts::NAMES.iter().map(|&name| {
+                        point.ns.get(name).map_or(Cell::Nothing, |&ns| Cell::Number(ns, 2))
+                    }));
+                    rows.push(row);
+                }
+            }
+        }
+    }
+    let units = Amounts::NAMES.map(|name| format!("ns a {name}"));
+    Table {
+        name: "rates".into(),
+        title: "Work whose amount hangs on the data".into(),
+        columns: headings(&["method", "precision", "phase", "discs"]).into_iter().chain(units).collect(),
+        rows,
+        notes: vec![],
     }
 }
 
@@ -65,21 +105,27 @@ fn levels(model: &HostModel) -> Table {
         vec![
             Cell::Text(level.name.clone()),
             level.capacity.map_or(Cell::Nothing, |bytes| Cell::Number(bytes / 1024.0, 0)),
-            Cell::Number(level.byte, 5),
-            Cell::Number(8.0 * level.byte, 3),
+            Cell::Number(level.fetch, 5),
+            Cell::Number(level.write_back, 5),
+            Cell::Number(8.0 * level.fetch, 3),
         ]
     });
     Table {
         name: "levels".into(),
         title: "Levels of memory".into(),
-        columns: ["level", "up to a reuse distance of (KiB)", "ns a byte", "ns an operand of 8 bytes"]
-            .map(str::to_owned)
-            .to_vec(),
+        columns: headings(&[
+            "level",
+            "up to a reuse distance of (KiB)",
+            "ns a byte fetched",
+            "ns a byte written back",
+            "ns an operand of 8 bytes",
+        ]),
         rows: rows.collect(),
         notes: vec![format!(
-            "A pass bound by memory takes {:.3} ns an element and the sum over its operands. The fitted passes deviate by \
-             {:.0} % on average.",
+            "A pass whose operands come from beyond the first level waits {:.3} ns an element besides; of the shorter of \
+             computing and waiting {:.0} % hide behind the longer. The fitted passes deviate by {:.0} % on average.",
             model.operand,
+            100.0 * model.overlap,
             100.0 * model.measured.residual
         )],
     }

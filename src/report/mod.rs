@@ -1,5 +1,6 @@
 //! Reports: finished data as tables. Each export is one small file; none of them runs physics.
 
+pub mod break_even;
 pub mod calibration;
 pub mod csv;
 pub mod damping;

@@ -48,7 +48,7 @@ fn said(errors: &Errors) -> String {
         within[1],
         within[2],
         within[3],
-        100.0 * baseline_median,
+        100.0 * baseline_median.unwrap_or(f64::NAN),
         100.0 * spread
     )
 }
@@ -72,7 +72,7 @@ fn errors(data: &ModelValidation) -> Table {
             percent(errors.worst),
         ];
         row.extend(errors.within.map(|count| Cell::Count(count as u64)));
-        row.extend([percent(errors.baseline_median), percent(errors.spread)]);
+        row.extend([errors.baseline_median.map_or(Cell::Nothing, percent), percent(errors.spread)]);
         row
     });
     let mut notes = vec![

@@ -105,6 +105,30 @@ pub fn density_cost(machine: &MachineModel) -> Result<DensityCost, StudyError> {
     })
 }
 
+/// NP, ρ and the clock periods of a step, on the lattice and with lists, wherever there is a lattice.
+///
+/// # Errors
+/// [`StudyError`] never for numbers of particles and occupancies that make lattices.
+pub(super) fn grid(
+    machine: &MachineModel,
+    lists: &[ListFigures],
+    particles: &[usize],
+) -> Result<Vec<(usize, f64, [f64; 2])>, StudyError> {
+    let choice = Question::default().choice;
+    let (programs, _) = step(&Question::default())?;
+    let model = Model { machine, choice, lattice: ledger(&programs), rival: rival(choice)? };
+    let mut costs = vec![];
+    for figures in lists {
+        for &particles in particles {
+            let cells = (particles as f64 / figures.occupancy).ceil() as usize;
+            let [vector, list] =
+                [model.step(particles, cells)?.counted, model.list_cost(particles, figures).counted];
+            costs.push((particles, figures.occupancy, [vector, list]));
+        }
+    }
+    Ok(costs)
+}
+
 /// NP of every curve: five a decade.
 fn particles() -> impl Iterator<Item = usize> {
     (5..=25).map(|fifth| 10f64.powf(f64::from(fifth) / 5.0).round() as usize)
@@ -175,30 +199,32 @@ impl Model<'_> {
         Ok(Cost { particles, printed: Some(printed.sum()), counted: counted.sum() })
     }
 
-    /// A curve of the scalar rival: every operation costs the whole depth of the pipeline. The Index belongs to the
-    /// lattice and is left out.
+    /// A curve of the scalar rival.
     fn with_lists(&self, figures: &ListFigures) -> Curve {
+        let costs = particles().map(|particles| self.list_cost(particles, figures)).collect();
+        Curve { cells: None, occupancy: Some(figures.occupancy), reachable: true, costs }
+    }
+
+    /// The scalar rival: every operation costs the whole depth of the pipeline. The Index belongs to the lattice and is
+    /// left out.
+    fn list_cost(&self, particles: usize, figures: &ListFigures) -> Cost {
         let clocks =
             |counts: &OpCounts, n: f64| n * Clock::Scalar.clocks(self.machine, &counts.clone().into(), 1);
-        let cost = |particles: usize| {
-            let np = particles as f64;
-            let rows = self.rival.parts();
-            let walking =
-                rows.iter().filter(|(part, ..)| *part != Part::Index.name()).map(|(_, length, counts)| {
-                    clocks(
-                        counts,
-                        match length {
-                            Length::Candidates => figures.candidates * np,
-                            Length::Pairs => figures.contacts * np,
-                            _ => np,
-                        },
-                    )
-                });
-            let making = clocks(&self.test(), 0.5 * np * (np - 1.0)) / figures.steps_a_list;
-            Cost { particles, printed: None, counted: walking.sum::<f64>() + making }
-        };
-        let costs = particles().map(cost).collect();
-        Curve { cells: None, occupancy: Some(figures.occupancy), reachable: true, costs }
+        let np = particles as f64;
+        let rows = self.rival.parts();
+        let walking =
+            rows.iter().filter(|(part, ..)| *part != Part::Index.name()).map(|(_, length, counts)| {
+                clocks(
+                    counts,
+                    match length {
+                        Length::Candidates => figures.candidates * np,
+                        Length::Pairs => figures.contacts * np,
+                        _ => np,
+                    },
+                )
+            });
+        let making = clocks(&self.test(), 0.5 * np * (np - 1.0)) / figures.steps_a_list;
+        Cost { particles, printed: None, counted: walking.sum::<f64>() + making }
     }
 
     /// Distance and contact of one pair.

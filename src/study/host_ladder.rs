@@ -1,7 +1,7 @@
 //! What does each term of the host model add? One step on this host, term by term, then in other executions.
 
 use super::efficiency_table::{Question, QuestionError, step};
-use super::model_validation::Step;
+use super::predicted_step::Step;
 use crate::method::Phase;
 use crate::model::host::{HostModel, OutOfRange};
 use serde::Serialize;

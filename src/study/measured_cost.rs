@@ -43,6 +43,19 @@ pub struct Effort {
     pub repeats: usize,
 }
 
+impl Effort {
+    /// As much as a chart needs: under half a minute.
+    pub fn chart() -> Effort {
+        Effort {
+            particles: vec![100, 300, 1000, 3000],
+            occupancies: vec![0.03, 0.1, 0.2, 0.25],
+            equilibration: 50,
+            element_steps: 300_000,
+            repeats: 3,
+        }
+    }
+}
+
 /// ρ of the measurements over NP, on cells as wide as the radius.
 pub const OCCUPANCY: f64 = 0.2;
 /// NP of the measurements over ρ.

@@ -1,5 +1,6 @@
 //! Studies: one file per question a user asks, each a function from parameters to a dataset.
 
+pub mod break_even;
 pub mod calibration;
 pub mod damping;
 pub mod density_cost;
@@ -10,7 +11,9 @@ pub mod ladder;
 pub mod measured_cost;
 pub mod misprints;
 pub mod model_validation;
+pub mod phase_times;
 pub mod pipe_flow;
+pub mod predicted_step;
 pub mod statistics;
 pub mod throughput;
 pub mod useful_work;

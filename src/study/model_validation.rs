@@ -1,18 +1,16 @@
 //! How good is the host model? Predicted against measured, on runs that nothing was fitted to: whole steps of moving
 //! discs, phase by phase.
 
+use super::phase_times::{FAST, LISTS, PhaseTimes, Run, Sampling, phase_times};
+use super::predicted_step::{Step, of_precision};
 use super::throughput::MeasurementError;
-use crate::method::lattice_md::{Lengths, Model, Part, StepProgram, programs};
-use crate::method::{Failure, Phase};
-use crate::model::host::{HostModel, OutOfRange, element_bytes};
-use crate::run::{assemble, model};
-use crate::scene::{Document, Precision};
+use crate::method::Phase;
+use crate::method::lattice_md::Lengths;
+use crate::model::host::{HostModel, OutOfRange};
+use crate::run::model;
+use crate::scene::Checked;
 use serde::Serialize;
-use std::collections::BTreeMap;
-use std::f64::consts::PI;
 use stripmine_kernels::Execution;
-use stripmine_kernels::backend::tape::{Outlines, Place};
-use stripmine_kernels::isa::Array;
 
 /// What is run.
 #[derive(Clone, Debug)]
@@ -27,12 +25,14 @@ pub struct Effort {
     pub particle_steps: usize,
 }
 
-/// The executions, by the name that a scene gives them.
-const EXECUTIONS: [(&str, Execution); 4] = [
-    ("eager", Execution::Eager),
-    ("strip:64", Execution::Strip(64)),
-    ("strip:512", Execution::Strip(512)),
-    ("chained", Execution::Chained),
+/// The executions, by the name that a scene gives them; the last two hang on the data.
+const EXECUTIONS: [(&str, Option<Execution>); 6] = [
+    ("eager", Some(Execution::Eager)),
+    ("strip:64", Some(Execution::Strip(64))),
+    ("strip:512", Some(Execution::Strip(512))),
+    ("chained", Some(Execution::Chained)),
+    (FAST, None),
+    (LISTS, None),
 ];
 
 const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
@@ -72,8 +72,9 @@ pub struct Case {
     pub measured: f64,
     /// Nanoseconds of the median repeat.
     pub median: f64,
-    /// Nanoseconds by the trivial baseline: operations times elements, at the cost of a sum in the cache.
-    pub baseline: f64,
+    /// Nanoseconds by the trivial baseline: operations times elements, at the cost of a sum in the cache; none where
+    /// what is executed hangs on the data.
+    pub baseline: Option<f64>,
 }
 
 impl Case {
@@ -83,8 +84,13 @@ impl Case {
     }
 
     /// The same of the baseline.
-    pub fn baseline_error(&self) -> f64 {
-        (self.baseline / self.measured - 1.0).abs()
+    pub fn baseline_error(&self) -> Option<f64> {
+        Some((self.baseline? / self.measured - 1.0).abs())
+    }
+
+    /// Whether what is executed hangs on the data.
+    pub fn hangs_on_data(&self) -> bool {
+        [FAST, LISTS].contains(&self.execution)
     }
 
     /// All that tells it from the others.
@@ -109,16 +115,16 @@ pub struct Errors {
     pub worst: f64,
     /// Cases within 5, 10, 20 and 30 %.
     pub within: [usize; 4],
-    /// The median error of the trivial baseline.
-    pub baseline_median: f64,
+    /// The median error of the trivial baseline; none where there is none.
+    pub baseline_median: Option<f64>,
     /// Median of how much slower the median repeat was than the best: what the measurement itself is good for.
     pub spread: f64,
 }
 
 impl Errors {
     fn of(what: String, cases: &[&Case]) -> Errors {
-        let sorted = |of: &dyn Fn(&Case) -> f64| {
-            let mut values: Vec<f64> = cases.iter().map(|case| of(case)).collect();
+        let sorted = |of: &dyn Fn(&Case) -> Option<f64>| {
+            let mut values: Vec<f64> = cases.iter().filter_map(|case| of(case)).collect();
             values.sort_by(f64::total_cmp);
             values
         };
@@ -126,7 +132,7 @@ impl Errors {
             let last = sorted.len().saturating_sub(1);
             sorted.get((share * last as f64).round() as usize).copied().unwrap_or(f64::NAN)
         };
-        let errors = sorted(&Case::error);
+        let errors = sorted(&|case| Some(case.error()));
         Errors {
             what,
             cases: cases.len(),
@@ -134,8 +140,8 @@ impl Errors {
             ninth_tenth: quantile(&errors, 0.9),
             worst: quantile(&errors, 1.0),
             within: [0.05, 0.1, 0.2, 0.3].map(|limit| errors.iter().filter(|&&error| error <= limit).count()),
-            baseline_median: quantile(&sorted(&Case::baseline_error), 0.5),
-            spread: quantile(&sorted(&|case| case.median / case.measured - 1.0), 0.5),
+            baseline_median: Some(quantile(&sorted(&Case::baseline_error), 0.5)).filter(|median| median.is_finite()),
+            spread: quantile(&sorted(&|case| Some(case.median / case.measured - 1.0)), 0.5),
         }
     }
 }
@@ -179,7 +185,8 @@ pub fn model_validation(
         for &occupancy in &effort.occupancies {
             for precision in PRECISIONS {
                 for (name, execution) in EXECUTIONS {
-                    scenes.push(Scene::new(host, particles, occupancy, precision, name, execution)?);
+                    let run = Run { particles, occupancy, precision, execution: name };
+                    scenes.push(Scene::new(host, run, execution)?);
                 }
             }
         }
@@ -187,160 +194,141 @@ pub fn model_validation(
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(MeasurementError::Threads)?;
     let mut cases = vec![];
     for (done, scene) in scenes.iter().enumerate() {
-        cases.extend(alone.install(|| scene.measure(effort))?);
+        cases.extend(alone.install(|| scene.measure(host, effort))?);
         progress((done + 1) as f64 / scenes.len() as f64);
     }
-    let all: Vec<&Case> = cases.iter().collect();
-    let mut errors = vec![Errors::of("all".to_owned(), &all)];
-    let mut group = |what: &str, keep: &dyn Fn(&Case) -> bool| {
-        let kept: Vec<&Case> = cases.iter().filter(|case| keep(case)).collect();
-        errors.push(Errors::of(what.to_owned(), &kept));
-    };
-    EXECUTIONS.iter().for_each(|(name, _)| group(name, &|case| case.execution == *name));
-    Phase::ALL.iter().for_each(|phase| group(phase.name(), &|case| case.phase == phase.name()));
-    PRECISIONS.iter().for_each(|name| group(name, &|case| case.precision == *name));
     Ok(ModelValidation {
         host: host.title.clone(),
         instruction_set: host.instruction_set.clone(),
         shipped,
+        errors: errors(&cases),
         cases,
-        errors,
     })
 }
 
-/// A run to be measured, with what is predicted of it.
+/// The errors by execution, phase and precision.
+fn errors(cases: &[Case]) -> Vec<Errors> {
+    let mut errors = vec![];
+    let mut group = |what: &str, keep: &dyn Fn(&Case) -> bool| {
+        let kept: Vec<&Case> = cases.iter().filter(|case| keep(case)).collect();
+        if !kept.is_empty() {
+            errors.push(Errors::of(what.to_owned(), &kept));
+        }
+    };
+    group("eager, strip-mined and chained", &|case| !case.hangs_on_data());
+    group("fast and lists", &Case::hangs_on_data);
+    EXECUTIONS.iter().for_each(|(name, _)| group(name, &|case| case.execution == *name));
+    let straight = |case: &Case| !case.hangs_on_data();
+    Phase::ALL.iter().for_each(|phase| {
+        group(&format!("{} of programs", phase.name()), &|case| straight(case) && case.phase == phase.name());
+    });
+    Phase::ALL.iter().for_each(|phase| {
+        let of_data = |case: &Case| case.hangs_on_data() && case.phase == phase.name();
+        group(&format!("{} of fast and lists", phase.name()), &of_data);
+    });
+    PRECISIONS.iter().for_each(|name| group(name, &|case| straight(case) && case.precision == *name));
+    errors
+}
+
+/// A run to be measured, with what is predicted of it before: nanoseconds of every phase, and the baseline's. What hangs on
+/// the data is predicted once the run has said how much there was to do.
 struct Scene {
-    overrides: Vec<String>,
-    particles: usize,
-    occupancy: f64,
-    precision: &'static str,
-    execution: &'static str,
-    /// Predicted nanoseconds of every phase, and the baseline's.
-    predicted: Vec<[f64; 2]>,
+    run: Run,
+    checked: Checked,
+    predicted: Option<Vec<[f64; 2]>>,
 }
 
 impl Scene {
-    fn new(
-        host: &HostModel,
-        particles: usize,
-        occupancy: f64,
-        precision: &'static str,
-        name: &'static str,
-        execution: Execution,
-    ) -> Result<Scene, ValidationError> {
-        let case = || format!("{name}, {precision}, NP = {particles}, ρ = {occupancy}");
-        host.admits(particles).map_err(|cause| ValidationError::OutOfRange { case: case(), cause })?;
-        let overrides = vec![
-            format!("particles.count={particles}"),
-            format!("particles.packing_fraction={}", PI * occupancy),
-            "method.cell_edge=0.5".to_owned(),
-            format!("method.precision=\"{precision}\""),
-            format!("method.execution=\"{name}\""),
-        ];
-        let document = Document::load("bench", &overrides).map_err(MeasurementError::from)?;
-        let checked = document.check().map_err(MeasurementError::from)?;
-        let model = model(&checked);
-        let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
-        let step = Step::new(&of_precision(&model, checked.scene.method.precision), &lengths);
-        let predicted = Phase::ALL.iter().map(|&phase| step.phase(host, phase, execution));
-        let predicted = predicted
-            .collect::<Result<_, _>>()
-            .map_err(|cause| ValidationError::OutOfRange { case: case(), cause })?;
-        Ok(Scene { overrides, particles, occupancy, precision, execution: name, predicted })
-    }
-
-    fn measure(&self, effort: &Effort) -> Result<Vec<Case>, MeasurementError> {
-        let mut method = assemble(&Document::load("bench", &self.overrides)?.check()?)?;
-        let steps = (effort.particle_steps / self.particles).clamp(2, 2000);
-        let mut advance = |times: usize| -> Result<[f64; Phase::ALL.len()], Failure> {
-            method.reset_timings();
-            (0..times).try_for_each(|_| method.step())?;
-            let mut each = [0.0; Phase::ALL.len()];
-            for (ns, &phase) in each.iter_mut().zip(Phase::ALL) {
-                *ns = 1e9 * method.timings().seconds(phase) / times as f64;
+    fn new(host: &HostModel, run: Run, execution: Option<Execution>) -> Result<Scene, ValidationError> {
+        let out = |cause| ValidationError::OutOfRange { case: run.name(), cause };
+        host.admits(run.particles).map_err(out)?;
+        let checked = run.scene(&[])?;
+        let predicted = match execution {
+            None => {
+                rated(host, &run, &PhaseTimes::none(run.particles)).map_err(out)?;
+                None
             }
-            Ok(each)
-        };
-        advance(steps.clamp(5, 50))?;
-        let repeats: Vec<_> = (0..effort.repeats).map(|_| advance(steps)).collect::<Result<_, _>>()?;
-        let case = |(at, phase): (usize, &Phase)| {
-            let mut samples: Vec<f64> = repeats.iter().map(|repeat| repeat[at]).collect();
-            samples.sort_by(f64::total_cmp);
-            Case {
-                particles: self.particles,
-                occupancy: self.occupancy,
-                precision: self.precision,
-                execution: self.execution,
-                phase: phase.name(),
-                predicted: self.predicted[at][0],
-                measured: samples[0],
-                median: samples[samples.len() / 2],
-                baseline: self.predicted[at][1],
+            Some(execution) => {
+                let model = model(&checked);
+                let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
+                let step = Step::new(&of_precision(&model, checked.scene.method.precision), &lengths);
+                let phases = Phase::ALL.iter().map(|&phase| step.phase(host, phase, execution));
+                Some(phases.collect::<Result<_, _>>().map_err(out)?)
             }
         };
-        Ok(Phase::ALL.iter().enumerate().map(case).collect())
+        Ok(Scene { run, checked, predicted })
     }
-}
 
-/// The programs of a model in its precision.
-pub fn of_precision(model: &Model, precision: Precision) -> Vec<StepProgram> {
-    match precision {
-        Precision::F64 => programs::<f64, f64>(model),
-        Precision::F32 => programs::<f32, f32>(model),
-        Precision::Mixed => programs::<f64, f32>(model),
-    }
-}
-
-/// The programs of a step as the model sees them.
-pub struct Step {
-    programs: Vec<(Part, Outlines, usize)>,
-    /// Bytes of all arrays of the step, and how many there are.
-    bytes: f64,
-    arrays: usize,
-}
-
-impl Step {
-    /// Of programs over vectors of these lengths.
-    pub fn new(step: &[StepProgram], lengths: &Lengths) -> Step {
-        let programs: Vec<(Part, Outlines, usize)> = step
-            .iter()
-            .map(|step| (step.part, step.program.outlines(), lengths.range(step.length).len()))
-            .collect();
-        let mut arrays: BTreeMap<(Array, &'static str), f64> = BTreeMap::new();
-        for (_, outlines, n) in &programs {
-            for place in outlines.passes.iter().flat_map(|pass| pass.reads.iter().chain(&pass.writes)) {
-                if let Place::Memory(reference) | Place::Indexed(reference) = place {
-                    let bytes = arrays.entry((reference.array, reference.element)).or_default();
-                    *bytes = bytes.max(element_bytes(reference.element) * *n as f64);
-                }
+    fn measure(&self, host: &HostModel, effort: &Effort) -> Result<Vec<Case>, ValidationError> {
+        let lists = self.run.execution == LISTS;
+        let sampling = Sampling {
+            equilibration: (effort.particle_steps / self.run.particles).clamp(5, 50),
+            repeats: effort.repeats,
+            particle_steps: effort.particle_steps,
+            // Lists are made anew every few steps only.
+            least_steps: if lists { 6 } else { 2 },
+        };
+        let times = phase_times(&self.checked, &sampling)?;
+        let predicted: Vec<(f64, Option<f64>)> = match &self.predicted {
+            Some(phases) => phases.iter().map(|&[ns, baseline]| (ns, Some(baseline))).collect(),
+            None => {
+                let phases = rated(host, &self.run, &times);
+                let phases = phases
+                    .map_err(|cause| ValidationError::OutOfRange { case: self.run.name(), cause })?;
+                phases.into_iter().map(|ns| (ns, None)).collect()
             }
+        };
+        let Run { particles, occupancy, precision, execution } = self.run;
+        let cases = Phase::ALL.iter().zip(predicted).map(|(&phase, (predicted, baseline))| Case {
+            particles,
+            occupancy,
+            precision,
+            execution,
+            phase: phase.name(),
+            predicted,
+            measured: times.best(phase),
+            median: times.median(phase),
+            baseline,
+        });
+        // Not every execution has every phase.
+        Ok(cases.filter(|case| case.measured > 0.0).collect())
+    }
+}
+
+/// Nanoseconds of every phase of a run whose cost hangs on the data.
+fn rated(host: &HostModel, run: &Run, times: &PhaseTimes) -> Result<Vec<f64>, OutOfRange> {
+    let method = run.rates().unwrap_or_default();
+    let rates = host.rates.get(method).ok_or_else(|| OutOfRange::NotMeasured(format!("method {method}")))?;
+    Phase::ALL.iter().map(|phase| rates.phase(run.precision, phase.name(), &times.amounts)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn case(predicted: f64, execution: &'static str) -> Case {
+        Case {
+            particles: 100,
+            occupancy: 0.1,
+            precision: "f64",
+            execution,
+            phase: "forces",
+            predicted,
+            measured: 100.0,
+            median: 101.0,
+            baseline: (execution != LISTS).then_some(50.0),
         }
-        Step { programs, bytes: arrays.values().sum(), arrays: arrays.len() }
     }
 
-    /// Nanoseconds of a phase, and the baseline's.
-    ///
-    /// # Errors
-    /// [`OutOfRange`] where the model does not reach.
-    pub fn phase(
-        &self,
-        host: &HostModel,
-        phase: Phase,
-        execution: Execution,
-    ) -> Result<[f64; 2], OutOfRange> {
-        let parts: &[Part] = match phase {
-            Phase::Predict => &[Part::Predictor],
-            Phase::Index => &[Part::Index, Part::Lattice],
-            Phase::Forces => &[Part::Forces],
-            Phase::Correct => &[Part::Corrector],
-        };
-        // Every part binds the arrays of the step anew.
-        let mut sum = parts.len() as f64 * self.arrays as f64 * host.bind;
-        let mut baseline = 0.0;
-        for (_, outlines, n) in self.programs.iter().filter(|(part, ..)| parts.contains(part)) {
-            sum += host.program(outlines, *n, execution, self.bytes)?;
-            baseline += host.baseline(outlines, *n, execution);
-        }
-        Ok([sum, baseline])
+    #[test]
+    fn errors_are_counted_group_by_group() {
+        let cases = [case(102.0, "eager"), case(92.0, "eager"), case(140.0, "chained"), case(80.0, LISTS)];
+        let errors = errors(&cases);
+        let of = |what: &str| errors.iter().find(|errors| errors.what == what).unwrap();
+        let programs = of("eager, strip-mined and chained");
+        assert_eq!((programs.cases, programs.within), (3, [1, 2, 2, 2]));
+        assert!((programs.median - 0.08).abs() < 1e-9 && (programs.worst - 0.4).abs() < 1e-9);
+        assert_eq!(programs.baseline_median, Some(0.5));
+        assert_eq!(of("fast and lists").baseline_median, None);
     }
 }

@@ -32,7 +32,7 @@ impl<const N: usize> IndexLanes for [u32; N] {
 }
 
 /// A register file: how vectors of one width come from memory and go back.
-pub trait Registers: Copy {
+pub trait Registers: Copy + 'static {
     /// The number a lane holds.
     type Lane: Element;
     /// A register, or a fixed number of them.

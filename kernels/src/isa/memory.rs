@@ -159,18 +159,28 @@ impl<'a> Memory<'a> {
     /// Binds a slice for reading.
     #[must_use]
     pub fn read<T: Storage>(mut self, slot: Slot<T>, slice: &'a [T]) -> Self {
+        self.bind_read(slot, slice);
+        self
+    }
+
+    /// As [`Memory::read`], in place: a memory is kilobytes of columns, and many bindings would move it many times.
+    pub fn bind_read<T: Storage>(&mut self, slot: Slot<T>, slice: &'a [T]) {
         // The pointer is never written through: the column is not writable.
         let origin = slice.as_ptr().cast_mut();
         self.bind(slot, Column { origin, length: slice.len(), writable: false });
-        self
     }
 
     /// Binds a slice for reading and writing.
     #[must_use]
     pub fn write<T: Storage>(mut self, slot: Slot<T>, slice: &'a mut [T]) -> Self {
+        self.bind_write(slot, slice);
+        self
+    }
+
+    /// As [`Memory::write`], in place.
+    pub fn bind_write<T: Storage>(&mut self, slot: Slot<T>, slice: &'a mut [T]) {
         let length = slice.len();
         self.bind(slot, Column { origin: slice.as_mut_ptr(), length, writable: true });
-        self
     }
 
     fn bind<T: Storage>(&mut self, slot: Slot<T>, column: Column<T>) {

@@ -10,7 +10,7 @@ use crate::report::{self, Section};
 use crate::study::calibration::{self, calibrate};
 use crate::study::efficiency_table::Question;
 use crate::study::{
-    damping, density_cost, efficiency_table, identity, ladder, measured_cost, misprints, model_validation,
+    break_even, damping, density_cost, efficiency_table, identity, ladder, measured_cost, misprints, model_validation,
     pipe_flow, useful_work,
 };
 use clap::ValueEnum;
@@ -72,6 +72,7 @@ define_items! {
     (UsefulWork, "useful-work", 1.0, 1.0, "Operations that act on real contacts, over the density"),
     (Measured, "measured", 8.0, 60.0, "The same, measured on this host"),
     (Validation, "validation", 10.0, 60.0, "The timing model of this host against wall time"),
+    (Atlas, "atlas", 8.0, 60.0, "Who wins where: occupancy, number of particles, method and machine"),
     (Identity, "identity", 3.0, 3.0, "Lattice and neighbour lists: the same to the bit"),
     (PipeSmall, "pipe-small", 3.0, 3.0, "BP93, figures 5 and 6, in two fifths of the pipe"),
     (Pipe, "pipe", 120.0, 120.0, "BP93, figures 5 and 6, in the whole pipe"),
@@ -119,6 +120,7 @@ impl Item {
                 made(report::measured_cost::section(&data), &data)
             }
             Item::Validation => validation(effort, progress),
+            Item::Atlas => atlas(effort, progress),
             Item::Identity => {
                 let data = identity::identity(progress)?;
                 made(report::identity::section(&data), &data)
@@ -175,6 +177,18 @@ fn validation(effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, F
     let data =
         model_validation::model_validation(&host, shipped, &runs, |share| progress(0.5 + 0.5 * share))?;
     made(report::model_validation::section(&data), &data)
+}
+
+/// The machine of the source, the CRAY of the application, and this host, by the model that comes with the program.
+fn atlas(effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, Failure> {
+    let machines = [machine::preset("paper")?, machine::preset("cray-y-mp-el")?];
+    let host = default_model()?;
+    let (measured, repeats): (&[usize], usize) = match effort {
+        Effort::Quick => (&[100, 1000], 2),
+        Effort::Full => (&[100, 300, 1000, 3000, 10_000], 5),
+    };
+    let data = break_even::atlas(&machines, &host, measured, repeats, progress)?;
+    made(report::break_even::section(&data, "stripmine reproduce --only atlas"), &data)
 }
 
 fn measured_effort(effort: Effort) -> measured_cost::Effort {

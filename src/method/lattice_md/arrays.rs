@@ -169,20 +169,20 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
 
     /// All arrays, bound to their slots, with the lengths of the vectors.
     pub fn memory(&mut self) -> (Memory<'_>, &Lengths) {
-        let mut memory = Memory::new()
-            .write(Slot::new(Array::DiscCell), &mut self.cell)
-            .write(Slot::new(Array::Index), &mut self.index)
-            .read(Slot::new(Array::HaloCell), &self.halo_cell)
-            .read(Slot::new(Array::HaloSource), &self.halo_source);
+        let mut memory = Memory::new();
+        memory.bind_write(Slot::new(Array::DiscCell), &mut self.cell);
+        memory.bind_write(Slot::new(Array::Index), &mut self.index);
+        memory.bind_read(Slot::new(Array::HaloCell), &self.halo_cell);
+        memory.bind_read(Slot::new(Array::HaloSource), &self.halo_source);
         // Constants first: where state and lattice have one precision, the state's copy of a quantity takes its place.
         for (array, column) in &self.constant {
-            memory = memory.read(Slot::new(*array), column);
+            memory.bind_read(Slot::new(*array), column);
         }
         for (array, column) in &mut self.lattice {
-            memory = memory.write(Slot::new(*array), column);
+            memory.bind_write(Slot::new(*array), column);
         }
         for (array, column) in &mut self.state {
-            memory = memory.write(Slot::new(*array), column);
+            memory.bind_write(Slot::new(*array), column);
         }
         (memory, &self.lengths)
     }

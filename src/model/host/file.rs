@@ -4,7 +4,7 @@ use super::HostModel;
 use crate::model::machine_file::Position;
 
 /// The version of the file format that this program reads.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
 /// Why a host file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -17,37 +17,48 @@ pub enum HostFileError {
         /// What the TOML reader says, with the place.
         cause: Box<toml::de::Error>,
     },
-    /// An entry that cannot be.
-    #[error("host file `{file}`{}: `{entry}` {what}", position.map_or(String::new(), |at| format!(", {at}")))]
+    /// Entries that cannot be, all of them, a line each.
+    #[error("{}", lines(file, entries))]
     Content {
         /// Name of the file.
         file: String,
-        /// Where.
-        position: Option<Position>,
-        /// The entry.
-        entry: String,
-        /// What is wrong.
-        what: String,
+        /// Every one of them.
+        entries: Vec<BadEntry>,
     },
+}
+
+/// An entry of a host file that cannot be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BadEntry {
+    /// Where.
+    pub position: Option<Position>,
+    /// The entry.
+    pub entry: String,
+    /// What is wrong.
+    pub what: String,
+}
+
+fn lines(file: &str, entries: &[BadEntry]) -> String {
+    let line = |bad: &BadEntry| {
+        let at = bad.position.map_or(String::new(), |at| format!(", {at}"));
+        format!("host file `{file}`{at}: `{}` {}", bad.entry, bad.what)
+    };
+    entries.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
 impl HostModel {
     /// Reads a host file; `file` is the name that errors give it.
     ///
     /// # Errors
-    /// [`HostFileError`] for the first entry found wrong.
+    /// [`HostFileError`]: the grammar's first defect, or every entry that cannot be.
     pub fn parse(file: &str, text: &str) -> Result<HostModel, HostFileError> {
         let model: HostModel = toml::from_str(text)
             .map_err(|cause| HostFileError::Syntax { file: file.to_owned(), cause: Box::new(cause) })?;
-        match model.defect() {
-            None => Ok(model),
-            Some((entry, what)) => Err(HostFileError::Content {
-                file: file.to_owned(),
-                position: Position::of(text, &entry),
-                entry,
-                what,
-            }),
-        }
+        let defects = model.defects().into_iter();
+        let entries: Vec<BadEntry> = defects
+            .map(|(entry, what)| BadEntry { position: Position::of(text, &entry), entry, what })
+            .collect();
+        if entries.is_empty() { Ok(model) } else { Err(HostFileError::Content { file: file.to_owned(), entries }) }
     }
 
     /// The text of its file.
@@ -56,40 +67,47 @@ impl HostModel {
         toml::to_string(self).unwrap_or_default()
     }
 
-    /// The first entry that cannot be, and why.
-    fn defect(&self) -> Option<(String, String)> {
+    /// The entries that cannot be, and why.
+    fn defects(&self) -> Vec<(String, String)> {
+        let mut defects = vec![];
         if self.format != FORMAT {
-            return Some((
-                "format".to_owned(),
-                format!("is {}, but this program reads {FORMAT}", self.format),
-            ));
+            let what = format!("is {}, but this program reads {FORMAT}", self.format);
+            defects.push(("format".to_owned(), what));
         }
         let lanes = self.lanes.iter().flat_map(|(lane, costs)| {
             let passes = costs.passes.iter().flat_map(move |(op, cost)| {
                 [("element", cost.element.value), ("start", cost.start.value)]
                     .map(|(what, value)| (format!("lanes.{lane}.passes.{op}.{what}.value"), value))
             });
-            let chained = costs.chained.iter();
-            let chained =
-                chained.map(move |(op, cost)| (format!("lanes.{lane}.chained.{op}.value"), cost.value));
-            passes.chain(chained)
+            passes.chain([(format!("lanes.{lane}.array_operand"), costs.array_operand)])
         });
-        let levels = self.levels.iter().map(|level| ("levels".to_owned(), level.byte));
+        let levels = self.levels.iter().flat_map(|level| [level.fetch, level.write_back]);
+        let loops = self.loops.seen.iter().flat_map(|(name, seen)| {
+            [("element", seen.element.value), ("start", seen.start.value)]
+                .map(|(what, value)| (format!("loops.seen.{name}.{what}.value"), value))
+        });
+        let rates = self.rates.iter().flat_map(|(method, rates)| {
+            let points = rates.0.values().flat_map(|phases| phases.values()).flatten();
+            points.flat_map(|point| point.ns.values()).map(move |&ns| (format!("rates.{method}"), ns))
+        });
         let rest = [
             ("operand", self.operand),
+            ("overlap", self.overlap),
             ("bind", self.bind),
-            ("chained_run", self.chained_run),
-            ("chained_overlap", self.chained_overlap),
+            ("run", self.run),
             ("measured.spread", self.measured.spread),
         ];
-        let mut numbers = lanes.chain(levels).chain(rest.map(|(entry, value)| (entry.to_owned(), value)));
-        if let Some((entry, value)) = numbers.find(|(_, value)| !(value.is_finite() && *value >= 0.0)) {
-            return Some((entry, format!("is {value}, but must be finite and not negative")));
+        let rest = rest.map(|(entry, value)| (entry.to_owned(), value));
+        let levels = levels.map(|value| ("levels".to_owned(), value));
+        for (entry, value) in rest.into_iter().chain(levels).chain(lanes).chain(loops).chain(rates) {
+            if !(value.is_finite() && value >= 0.0) {
+                defects.push((entry, format!("is {value}, but must be finite and not negative")));
+            }
         }
-        if self.levels.is_empty() || self.set_up.len() < 2 || self.lanes.is_empty() {
-            return Some(("levels".to_owned(), "with `set_up` and `lanes` must not be empty".to_owned()));
+        if self.levels.is_empty() || self.lanes.is_empty() {
+            defects.push(("levels".to_owned(), "with `lanes` must not be empty".to_owned()));
         }
-        None
+        defects
     }
 }
 
@@ -121,9 +139,9 @@ mod tests {
         for (old, new, expected) in [
             ("operand = ", "operand = -", "`operand` is -"),
             ("operand = ", "operands = ", "unknown field `operands`"),
-            ("chained_run", "chaind_run", "unknown field `chaind_run`"),
-            ("format = 1", "format = 7", "`format` is 7"),
-            ("format = 1\n", "", "missing field `format`"),
+            ("overlap", "overlapp", "unknown field `overlapp`"),
+            ("format = 2", "format = 7", "`format` is 7"),
+            ("format = 2\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
             assert!(said.contains(expected) && said.contains("line "), "{said}");

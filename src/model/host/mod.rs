@@ -1,16 +1,23 @@
 //! Today's hosts: what a pass of the interpreter takes, `t = t0 + n max(tau, e0 + sum of e_level)`, with the level of each
-//! operand found by reuse distance on the passes that are executed, and what chained code takes.
+//! operand found by reuse distance on the passes that are executed; what compiled loops take; and what a unit of the work
+//! takes whose amount hangs on the data.
 
 mod file;
+mod levels;
+mod loops;
+mod rates;
 mod reuse;
 
-pub use file::{HostFileError, default_model};
-pub use reuse::{Since, Touch, element_bytes, touches};
+pub use file::{BadEntry, FORMAT, HostFileError, default_model};
+pub use levels::{LINE, Level, Surroundings, beyond, byte};
+pub use loops::{LoopCost, LoopCosts, class_counts};
+pub use rates::{Amounts, RatePoint, Rates};
+pub use reuse::{Since, Touch, Vector, element_bytes, touches};
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::Execution;
-use stripmine_kernels::backend::tape::Outlines;
+use stripmine_kernels::backend::tape::{Outline, Outlines};
 use stripmine_kernels::isa::Op;
 
 /// A fitted number.
@@ -19,11 +26,12 @@ use stripmine_kernels::isa::Op;
 pub struct Estimate {
     /// The number.
     pub value: f64,
-    /// Half the width of its 95 % confidence interval, from the residuals of the fit.
+    /// Half the width of its 95 % confidence interval: from the residuals of the fit, and from how far the two halves of
+    /// the measurement differ.
     pub interval: f64,
 }
 
-/// A pass of one operation over a vector in the first-level cache: Hockney's `r_inf = 1/tau`, `n_half = t0/tau`.
+/// A pass of one kind over a vector in the first-level cache: Hockney's `r_inf = 1/tau`, `n_half = t0/tau`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PassCost {
@@ -41,31 +49,22 @@ pub struct LaneCosts {
     pub register_bytes: [f64; 3],
     /// Lanes of a hardware register.
     pub lanes: usize,
-    /// A pass, by the mnemonic of its operation.
+    /// Nanoseconds an element of a pass, besides its tau, for each operand that is an array: its registers lie across
+    /// lines.
+    pub array_operand: f64,
+    /// Nanoseconds that a pass takes besides where the next one is of another kind, by the passes of the program.
+    pub change: Vec<Change>,
+    /// A pass, by the name of its kind.
     pub passes: BTreeMap<String, PassCost>,
-    /// An element in chained code, by the mnemonic (ns).
-    pub chained: BTreeMap<String, Estimate>,
 }
 
-/// A level of memory.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Level {
-    /// Its name.
-    pub name: String,
-    /// Up to which reuse distance it serves (bytes); none for the last.
-    pub capacity: Option<f64>,
-    /// Nanoseconds a byte of an operand.
-    pub byte: f64,
-}
-
-/// What it takes to make one vector register of the interpreter ready.
+/// What it takes that the next pass is of another kind.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SetUp {
-    /// Bytes of the register.
-    pub bytes: f64,
-    /// Nanoseconds.
+pub struct Change {
+    /// Passes of the program: of a long one neither the instructions nor the branches stay at hand.
+    pub passes: usize,
+    /// Nanoseconds a pass.
     pub ns: f64,
 }
 
@@ -75,13 +74,15 @@ pub struct SetUp {
 pub struct Measured {
     /// Smallest step of the timer seen (ns).
     pub timer: f64,
-    /// Median, over all points, of how much slower the median repeat was than the best.
+    /// Median, over all points, of how much slower the median sample was than the best.
     pub spread: f64,
+    /// Median, over all points, of how far the best samples of the two halves of the measurement differ.
+    pub disagreement: f64,
     /// Shortest vectors.
     pub shortest: usize,
     /// Longest vectors.
     pub longest: usize,
-    /// Mean deviation of the fitted passes from the measured ones.
+    /// Median deviation of the fitted passes from the measured ones.
     pub residual: f64,
 }
 
@@ -99,19 +100,20 @@ pub struct HostModel {
     pub measured: Measured,
     /// Nanoseconds an element of a pass whose operands come from memory, besides what their bytes take: e0.
     pub operand: f64,
+    /// Of the shorter of computing and waiting for memory, the share that hides behind the longer.
+    pub overlap: f64,
     /// Nanoseconds to bind an array to a program's memory.
     pub bind: f64,
-    /// Nanoseconds of a run of chained code besides its elements.
-    pub chained_run: f64,
-    /// Of the smaller of what the divider and the other units take in chained code, the share that does not overlap with
-    /// the larger.
-    pub chained_overlap: f64,
+    /// Nanoseconds of a run of an interpreted program besides its passes.
+    pub run: f64,
     /// The levels, nearest first.
     pub levels: Vec<Level>,
-    /// Making registers ready, by rising size.
-    pub set_up: Vec<SetUp>,
     /// Costs by the element type of the lanes.
     pub lanes: BTreeMap<String, LaneCosts>,
+    /// Compiled loops.
+    pub loops: LoopCosts,
+    /// Work whose amount hangs on the data, by method.
+    pub rates: BTreeMap<String, Rates>,
 }
 
 /// Why there is no prediction.
@@ -130,42 +132,38 @@ pub enum OutOfRange {
         /// Longest vectors.
         longest: usize,
     },
-    /// An execution or precision that was not measured.
+    /// More or fewer discs than those that were measured.
+    #[error("{discs} discs lie outside the calibrated range of {fewest} to {most}: ask for another number of particles")]
+    Discs {
+        /// Discs asked for.
+        discs: usize,
+        /// Fewest discs.
+        fewest: usize,
+        /// Most discs.
+        most: usize,
+    },
+    /// An execution, precision or program that was not measured.
     #[error("{0} was not calibrated")]
     NotMeasured(String),
 }
 
-/// Operations that are charged as another one, which works in the same way.
-pub fn measured_as(op: Op) -> Op {
-    match op {
-        Op::Subtract => Op::Add,
-        Op::Maximum => Op::Minimum,
-        Op::LessEqual | Op::Equal | Op::And | Op::Not => Op::LessThan,
-        Op::Load | Op::LoadShifted | Op::Widen => Op::Absolute,
-        Op::StoreShifted => Op::Store,
-        Op::Numbers | Op::ToIndex => Op::FromIndex,
-        op => op,
+/// Kinds of passes that are charged as another one, which works in the same way.
+fn measured_as(kind: &str) -> &str {
+    match kind {
+        "lds" => Op::Load.mnemonic(),
+        "sts" => Op::Store.mnemonic(),
+        "lds.convert" => "ld.convert",
+        "sts.convert" => "st.convert",
+        kind => kind,
     }
 }
 
 impl HostModel {
-    /// Nanoseconds a byte of an operand last touched so many bytes ago; half an octave around a capacity belongs to both
-    /// levels, for caches do not end sharply.
-    pub fn byte(&self, distance: f64) -> f64 {
-        let mut cost = self.levels.first().map_or(0.0, |level| level.byte);
-        for pair in self.levels.windows(2) {
-            if let Some(capacity) = pair[0].capacity {
-                cost += beyond(distance, capacity) * (pair[1].byte - pair[0].byte);
-            }
-        }
-        cost
-    }
-
-    /// The same host with every operand in the first-level cache, registers and bindings for nothing.
+    /// The same host with every operand in the first-level cache, and programs started and arrays bound for nothing.
     #[must_use]
     pub fn in_cache(&self) -> HostModel {
-        let mut model = HostModel { operand: 0.0, bind: 0.0, set_up: vec![], ..self.clone() };
-        model.levels.iter_mut().for_each(|level| level.byte = 0.0);
+        let mut model = HostModel { operand: 0.0, bind: 0.0, run: 0.0, ..self.clone() };
+        model.levels.iter_mut().for_each(|level| (level.fetch, level.write_back) = (0.0, 0.0));
         model
     }
 
@@ -181,7 +179,7 @@ impl HostModel {
         Ok(())
     }
 
-    /// Nanoseconds of a run of a program over `n` elements whose arrays were last touched `resident` bytes ago.
+    /// Nanoseconds of a run of a program over `n` elements.
     ///
     /// # Errors
     /// [`OutOfRange`] where nothing was measured that could say.
@@ -190,129 +188,138 @@ impl HostModel {
         outlines: &Outlines,
         n: usize,
         execution: Execution,
-        resident: f64,
+        around: &Surroundings,
     ) -> Result<f64, OutOfRange> {
         if n == 0 {
             return Ok(0.0);
         }
         self.admits(n)?;
-        let lane = self
-            .lanes
-            .get(outlines.lane)
-            .ok_or_else(|| OutOfRange::NotMeasured(format!("precision {}", outlines.lane)))?;
         match execution {
-            Execution::Eager => self.interpreted(lane, outlines, n, n, resident),
-            Execution::Strip(strip) => self.interpreted(lane, outlines, n, strip.min(n), resident),
-            Execution::Chained => self.chained(lane, outlines, n, resident),
+            Execution::Eager => self.interpreted(outlines, n, n, around),
+            Execution::Strip(strip) => self.interpreted(outlines, n, strip.min(n), around),
+            Execution::Chained => self.chained(outlines, n, around),
             Execution::Block(_) => Err(OutOfRange::NotMeasured("execution in blocks".to_owned())),
         }
     }
 
     /// The trivial baseline: operations times elements, each at the cost of a sum in the first-level cache (ns).
     pub fn baseline(&self, outlines: &Outlines, n: usize, execution: Execution) -> f64 {
-        let add = Op::Add.mnemonic();
-        let each = self.lanes.get(outlines.lane).and_then(|lane| match execution {
-            Execution::Chained => lane.chained.get(add).map(|cost| cost.value),
-            _ => lane.passes.get(add).map(|cost| cost.element.value),
-        });
+        let each = match execution {
+            Execution::Chained => self.loops.operation(outlines.lane),
+            _ => {
+                let add = self.lanes.get(outlines.lane).and_then(|lane| lane.passes.get(Op::Add.mnemonic()));
+                add.map_or(0.0, |cost| cost.element.value)
+            }
+        };
         let operations: usize =
             outlines.instructions.iter().map(|outline| outline.operations().count()).sum();
-        each.unwrap_or(0.0) * (operations * n) as f64
+        each * (operations * n) as f64
+    }
+
+    fn lane(&self, name: &str) -> Result<&LaneCosts, OutOfRange> {
+        self.lanes.get(name).ok_or_else(|| OutOfRange::NotMeasured(format!("precision {name}")))
     }
 
     fn interpreted(
         &self,
-        lane: &LaneCosts,
         outlines: &Outlines,
         n: usize,
         strip: usize,
-        resident: f64,
+        around: &Surroundings,
     ) -> Result<f64, OutOfRange> {
+        let lane = self.lane(outlines.lane)?;
         let touched = touches(outlines, lane.register_bytes);
-        let mut sum = 0.0;
+        let change = lane.change(outlines.passes.len());
+        let mut sum = self.run;
         for (strips, length) in [(n / strip, strip), (1, n % strip)] {
             if strips == 0 || length == 0 {
                 continue;
             }
             let mut each = 0.0;
             for (pass, touches) in outlines.passes.iter().zip(&touched) {
-                each += self.pass(lane, pass.op, touches, length, resident)?;
+                each += change + self.pass(lane, pass, touches, length, around)?;
             }
             sum += strips as f64 * each;
         }
-        let registers = outlines.registers.iter().zip(lane.register_bytes);
-        let set_up = registers.map(|(&count, bytes)| count as f64 * self.set_up(bytes * strip as f64));
-        Ok(sum + set_up.sum::<f64>())
+        Ok(sum)
     }
 
     /// Nanoseconds of a pass over `n` elements.
     ///
     /// # Errors
-    /// [`OutOfRange`] where the operation was not measured.
+    /// [`OutOfRange`] where its kind was not measured.
     pub fn pass(
         &self,
         lane: &LaneCosts,
-        op: Op,
+        pass: &Outline,
         touches: &[Touch],
         n: usize,
-        resident: f64,
+        around: &Surroundings,
     ) -> Result<f64, OutOfRange> {
-        let cost = cost_of(&lane.passes, op)?;
-        let from = touches.iter().map(|touch| {
-            let distance = match touch.since {
-                Since::Here(distance) => distance * n as f64,
-                Since::Before => resident,
-            };
-            touch.bytes * self.byte(distance)
-        });
-        let memory = self.operand + from.sum::<f64>();
+        let cost = lane.cost(pass)?;
+        let wait = around.wait(&self.levels, touches, n as f64);
+        let wait = if wait > 0.0 { wait + self.operand * n as f64 } else { 0.0 };
         // What is left of a strip beyond whole hardware registers goes element by element, in passes of its own.
         let rest = n % lane.lanes.max(1);
         let starts = if rest == 0 || n < lane.lanes { 1.0 } else { 2.0 };
-        Ok(starts * cost.start.value + n as f64 * cost.element.value.max(memory))
+        Ok(starts * cost.start.value + self.overlapped(n as f64 * cost.element.value, wait))
     }
 
-    fn set_up(&self, bytes: f64) -> f64 {
-        let at =
-            self.set_up.partition_point(|point| point.bytes < bytes).clamp(1, self.set_up.len().max(2) - 1);
-        let (Some(low), Some(high)) = (self.set_up.get(at - 1), self.set_up.get(at)) else { return 0.0 };
-        let share = ((bytes / low.bytes).ln() / (high.bytes / low.bytes).ln()).max(0.0);
-        (low.ns.max(1e-3).ln() * (1.0 - share) + high.ns.max(1e-3).ln() * share).exp()
+    /// Nanoseconds of computing so long and waiting so long for memory.
+    pub fn overlapped(&self, compute: f64, wait: f64) -> f64 {
+        compute.max(wait) + (1.0 - self.overlap) * compute.min(wait)
     }
 
-    fn chained(
-        &self,
-        lane: &LaneCosts,
-        outlines: &Outlines,
-        n: usize,
-        resident: f64,
-    ) -> Result<f64, OutOfRange> {
-        let [mut divider, mut others] = [0.0; 2];
-        for outline in &outlines.instructions {
-            let cost = cost_of(&lane.chained, outline.op)?.value;
-            *(if matches!(outline.op, Op::Divide | Op::SquareRoot) { &mut divider } else { &mut others }) +=
-                cost;
+    fn chained(&self, outlines: &Outlines, n: usize, around: &Surroundings) -> Result<f64, OutOfRange> {
+        let cost = self.loops.of(outlines)?;
+        // One pass over all arrays, each of which is touched once.
+        let mut once: Vec<Touch> = vec![];
+        for touch in touches(outlines, [0.0; 3]).into_iter().flatten() {
+            match once.iter_mut().find(|known| known.vector == touch.vector) {
+                Some(known) => known.written |= touch.written,
+                None => once.push(touch),
+            }
         }
-        let compute = self.overlapped(divider, others);
-        let arrays = touches(outlines, lane.register_bytes).into_iter().flatten();
-        let arrays = arrays.filter(|touch| touch.since == Since::Before);
-        let memory: f64 = arrays.map(|touch| touch.bytes * self.byte(resident)).sum();
-        Ok(self.chained_run + n as f64 * compute.max(memory))
-    }
-
-    /// Nanoseconds of work that takes so much of the divider and so much of the other units.
-    pub fn overlapped(&self, divider: f64, others: f64) -> f64 {
-        divider.max(others) + self.chained_overlap * divider.min(others)
+        once.retain(|touch| touch.since == Since::Before);
+        let wait = around.wait(&self.levels, &once, n as f64);
+        Ok(cost.start.value + self.overlapped(n as f64 * cost.element.value, wait))
     }
 }
 
-/// The cost of an operation, or of the one it is measured as.
-fn cost_of<T: Copy>(costs: &BTreeMap<String, T>, op: Op) -> Result<T, OutOfRange> {
-    let found = costs.get(op.mnemonic()).or_else(|| costs.get(measured_as(op).mnemonic()));
-    found.copied().ok_or_else(|| OutOfRange::NotMeasured(format!("operation {}", op.mnemonic())))
+impl LaneCosts {
+    /// What a pass takes in the first-level cache.
+    ///
+    /// # Errors
+    /// [`OutOfRange::NotMeasured`] where its kind was not measured.
+    pub fn cost(&self, pass: &Outline) -> Result<PassCost, OutOfRange> {
+        let kind = pass.kind();
+        let found = self.passes.get(&kind).or_else(|| self.passes.get(measured_as(&kind)));
+        let mut cost = *found.ok_or_else(|| OutOfRange::NotMeasured(format!("operation {kind}")))?;
+        if pass.computes() {
+            cost.element.value += self.array_operand * pass.array_operands() as f64;
+        }
+        Ok(cost)
+    }
+
+    /// Nanoseconds a pass of a program of so many, because the next one is of another kind.
+    pub fn change(&self, passes: usize) -> f64 {
+        let points: Vec<(f64, f64)> =
+            self.change.iter().map(|change| (change.passes as f64, change.ns)).collect();
+        interpolated(&points, passes as f64)
+    }
 }
 
-/// How much of what lies `distance` bytes back a cache of so many bytes has lost.
-pub fn beyond(distance: f64, capacity: f64) -> f64 {
-    ((distance / capacity).log2() + 0.5).clamp(0.0, 1.0)
+/// Between points of rising positive abscissae, linearly over their logarithm; beyond the ends as there.
+pub(super) fn interpolated(points: &[(f64, f64)], at: f64) -> f64 {
+    let Some(&(first, value)) = points.first() else { return 0.0 };
+    if at <= first {
+        return value;
+    }
+    for pair in points.windows(2) {
+        let [(x0, y0), (x1, y1)] = [pair[0], pair[1]];
+        if at <= x1 {
+            return y0 + (y1 - y0) * (at / x0).ln() / (x1 / x0).ln();
+        }
+    }
+    points.last().map_or(0.0, |&(_, value)| value)
 }

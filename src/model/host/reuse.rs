@@ -1,15 +1,21 @@
 //! Reuse distances: how much is touched between two passes over the same vector.
 
-use stripmine_kernels::backend::tape::{Outlines, Place, RegisterName};
+use stripmine_kernels::backend::tape::{Outline, Outlines, Place, RegisterName};
 use stripmine_kernels::isa::Array;
 
-/// A vector that a pass touches.
+/// A vector that a pass reads, writes or both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
+    /// Which.
+    pub vector: Vector,
     /// Bytes of an element.
     pub bytes: f64,
     /// Since when it was last touched.
     pub since: Since,
+    /// Whether it is written.
+    pub written: bool,
+    /// Whether it is met through an index vector.
+    pub indexed: bool,
 }
 
 /// Where a vector was last touched.
@@ -21,54 +27,72 @@ pub enum Since {
     Before,
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum Vector {
+/// A register of the interpreter or an array, by its name and element type.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Vector {
+    /// A register.
     Register(RegisterName),
+    /// An array.
     Array(Array, &'static str),
 }
 
-/// What every pass touches, register elements taking `register_bytes` by file.
-///
-/// A register that a program has not written yet was written when the register files were made, or by the strip before:
-/// the whole program lies between.
-pub fn touches(outlines: &Outlines, register_bytes: [f64; 3]) -> Vec<Vec<Touch>> {
-    let seen = |place: &Place| match *place {
+/// The vector at a place, and the bytes of its elements, registers by file.
+fn vector(place: &Place, register_bytes: [f64; 3]) -> (Vector, f64) {
+    match *place {
         Place::Register(name) => (Vector::Register(name), register_bytes[name.file as usize]),
         Place::Memory(reference) | Place::Indexed(reference) => {
             (Vector::Array(reference.array, reference.element), element_bytes(reference.element))
         }
-    };
-    // The least recently touched first; everything is on it once the program has run.
-    let mut stack: Vec<(Vector, f64)> = vec![];
-    for pass in &outlines.passes {
-        for place in pass.reads.iter().chain(&pass.writes) {
-            let vector = seen(place);
-            if !stack.iter().any(|(known, _)| *known == vector.0) {
-                stack.push(vector);
+    }
+}
+
+/// The vectors of a pass, each once, at no distance yet.
+fn vectors(pass: &Outline, register_bytes: [f64; 3]) -> Vec<Touch> {
+    let mut touches: Vec<Touch> = vec![];
+    let read = pass.reads.iter().map(|place| (place, false));
+    for (place, written) in read.chain(pass.writes.iter().map(|place| (place, true))) {
+        let (vector, bytes) = vector(place, register_bytes);
+        let indexed = matches!(place, Place::Indexed(_));
+        match touches.iter_mut().find(|touch| touch.vector == vector) {
+            Some(touch) => {
+                touch.written |= written;
+                touch.indexed &= indexed;
             }
+            None => touches.push(Touch { vector, bytes, since: Since::Before, written, indexed }),
         }
     }
-    let all: f64 = stack.iter().map(|(_, bytes)| bytes).sum();
+    touches
+}
+
+/// What every pass touches, register elements taking `register_bytes` by file.
+///
+/// A register that a program has not written yet was last written by the run or the strip before: the whole program lies
+/// between.
+pub fn touches(outlines: &Outlines, register_bytes: [f64; 3]) -> Vec<Vec<Touch>> {
+    let mut passes: Vec<Vec<Touch>> =
+        outlines.passes.iter().map(|pass| vectors(pass, register_bytes)).collect();
+    // The least recently touched first; everything is on it once the program has run.
+    let mut all: Vec<(Vector, f64)> = vec![];
+    for touch in passes.iter().flatten() {
+        if !all.iter().any(|(known, _)| *known == touch.vector) {
+            all.push((touch.vector, touch.bytes));
+        }
+    }
+    let all: f64 = all.iter().map(|(_, bytes)| bytes).sum();
     let mut touched: Vec<(Vector, f64)> = vec![];
-    let mut touch = |place: &Place| {
-        let (vector, bytes) = seen(place);
-        let since = match touched.iter().rposition(|(known, _)| *known == vector) {
+    for touch in passes.iter_mut().flatten() {
+        touch.since = match touched.iter().rposition(|(known, _)| *known == touch.vector) {
             Some(at) => {
                 let distance = touched[at..].iter().map(|(_, bytes)| bytes).sum();
                 touched.remove(at);
                 Since::Here(distance)
             }
-            None if matches!(vector, Vector::Register(_)) => Since::Here(all),
+            None if matches!(touch.vector, Vector::Register(_)) => Since::Here(all),
             None => Since::Before,
         };
-        touched.push((vector, bytes));
-        Touch { bytes, since }
-    };
-    let of_pass = outlines.passes.iter().map(|pass| {
-        // A result in the register of an operand is one vector touched twice: at no distance.
-        pass.reads.iter().chain(&pass.writes).map(&mut touch).collect()
-    });
-    of_pass.collect()
+        touched.push((touch.vector, touch.bytes));
+    }
+    passes
 }
 
 /// Bytes of an element type by its name.
@@ -79,7 +103,7 @@ pub fn element_bytes(element: &str) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stripmine_kernels::backend::tape::{File, Outline, Reference};
+    use stripmine_kernels::backend::tape::{File, Reference};
     use stripmine_kernels::isa::Op;
 
     #[test]
@@ -96,15 +120,18 @@ mod tests {
             pass(&[x, x], register(0)),
             pass(&[register(0), x], register(1)),
             pass(&[register(1), register(1)], register(0)),
+            pass(&[register(0), x], register(0)),
         ];
         let outlines = Outlines { lane: "f64", instructions: vec![], passes, registers: [2, 0, 0] };
-        let since: Vec<Vec<Since>> = touches(&outlines, [8.0, 1.0, 4.0])
-            .into_iter()
-            .map(|pass| pass.into_iter().map(|touch| touch.since).collect())
-            .collect();
-        // x, then x again, then a register not written yet: x and two registers lie behind.
-        assert_eq!(since[0], [Since::Before, Since::Here(4.0), Since::Here(20.0)]);
+        let touched = touches(&outlines, [8.0, 1.0, 4.0]);
+        let since: Vec<Vec<Since>> =
+            touched.iter().map(|pass| pass.iter().map(|touch| touch.since).collect()).collect();
+        // x, then a register not written yet: x and two registers lie behind.
+        assert_eq!(since[0], [Since::Before, Since::Here(20.0)]);
         assert_eq!(since[1], [Since::Here(8.0), Since::Here(12.0), Since::Here(20.0)]);
-        assert_eq!(since[2], [Since::Here(8.0), Since::Here(8.0), Since::Here(20.0)]);
+        assert_eq!(since[2], [Since::Here(8.0), Since::Here(20.0)]);
+        // A result in the register of an operand is one vector.
+        assert_eq!(since[3], [Since::Here(8.0), Since::Here(20.0)]);
+        assert!(touched[3][0].written && !touched[3][1].written);
     }
 }

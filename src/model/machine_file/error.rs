@@ -14,16 +14,22 @@ pub enum MachineFileError {
         /// What the TOML reader says, with the place.
         cause: Box<toml::de::Error>,
     },
-    /// An entry that cannot be; its place is where the file has it, or the table that should.
-    #[error("machine file `{file}`{}: {defect}", position.map_or(String::new(), |at| format!(", {at}")))]
+    /// Entries that cannot be, all of them, a line each.
+    #[error("{}", lines(file, defects))]
     Content {
         /// Name of the file.
         file: String,
-        /// Where.
-        position: Option<Position>,
-        /// What is wrong.
-        defect: Defect,
+        /// What is wrong, each with its place: where the file has the entry, or the table that should.
+        defects: Vec<(Option<Position>, Defect)>,
     },
+}
+
+fn lines(file: &str, defects: &[(Option<Position>, Defect)]) -> String {
+    let line = |(position, defect): &(Option<Position>, Defect)| {
+        let at = position.map_or(String::new(), |at| format!(", {at}"));
+        format!("machine file `{file}`{at}: {defect}")
+    };
+    defects.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// What is wrong with an entry.
@@ -34,6 +40,30 @@ pub enum Defect {
     UnsupportedFormat {
         /// The version it states.
         found: u32,
+    },
+    /// A key that no table of its place has.
+    #[error("unknown field `{name}`")]
+    UnknownField {
+        /// The entry.
+        entry: String,
+        /// Its key.
+        name: String,
+    },
+    /// A key that must be there and is not.
+    #[error("missing field `{name}`")]
+    MissingField {
+        /// The missing entry.
+        entry: String,
+        /// Its key.
+        name: String,
+    },
+    /// Something of another kind than must stand there.
+    #[error("`{entry}` must be {expected}")]
+    WrongType {
+        /// The entry.
+        entry: String,
+        /// What must stand there.
+        expected: String,
     },
     /// A name that is no class of operations.
     #[error("`{entry}`: `{name}` names no class of operations; known are {}", class_names())]
@@ -102,7 +132,10 @@ impl Defect {
             Defect::UnsupportedFormat { .. } => "format".to_owned(),
             Defect::EmptyNote { entry } => format!("{entry}.note"),
             Defect::NotPositive { entry, .. } | Defect::NotWhole { entry, .. } => format!("{entry}.value"),
-            Defect::UnknownClass { entry, .. }
+            Defect::UnknownField { entry, .. }
+            | Defect::MissingField { entry, .. }
+            | Defect::WrongType { entry, .. }
+            | Defect::UnknownClass { entry, .. }
             | Defect::MissingStartUp { entry }
             | Defect::NoUnit { entry, .. }
             | Defect::EmptyExpansion { entry }

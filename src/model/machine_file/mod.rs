@@ -37,6 +37,7 @@
 
 mod check;
 mod error;
+mod grammar;
 mod position;
 
 pub use error::{Defect, MachineFileError};
@@ -89,15 +90,20 @@ impl MachineModel {
     /// Reads a machine from the `text` of a machine file; `file` is the name that errors give it.
     ///
     /// # Errors
-    /// [`MachineFileError`] for the first entry found wrong.
+    /// [`MachineFileError`]: not TOML, or every entry found wrong; what only the whole machine can show is looked for once
+    /// every entry is right.
     pub fn parse(file: &str, text: &str) -> Result<MachineModel, MachineFileError> {
+        let content = |defects: Vec<Defect>| MachineFileError::Content {
+            file: file.to_owned(),
+            defects: defects.into_iter().map(|defect| (Position::of(text, &defect.entry()), defect)).collect(),
+        };
+        let defects = grammar::defects(text);
+        if !defects.is_empty() {
+            return Err(content(defects));
+        }
         let written: MachineFile = toml::from_str(text)
             .map_err(|error| MachineFileError::Syntax { file: file.to_owned(), cause: Box::new(error) })?;
-        written.machine().map_err(|defect| MachineFileError::Content {
-            file: file.to_owned(),
-            position: Position::of(text, &defect.entry()),
-            defect,
-        })
+        written.machine().map_err(|defect| content(vec![defect]))
     }
 }
 
@@ -218,13 +224,14 @@ mod tests {
         for (old, new, expected) in [
             ("title = ", "name = ", "unknown field `name`"),
             ("title = \"A machine\"", "", "missing field `title`"),
-            ("provenance = \"derived\"", "provenance = \"guessed\"", "unknown variant `guessed`"),
+            ("provenance = \"derived\"", "provenance = \"guessed\"", "must be \"sourced\" or"),
             ("value = 12.5, ", "", "missing field `value`"),
-            ("value = 12.5", "value = \"fast\"", "expected f64"),
-            ("multiply = 3", "multiply = -3", "expected u64"),
+            ("value = 12.5", "value = \"fast\"", "`clock_period_ns.value` must be a number"),
+            ("multiply = 3", "multiply = -3", "must be a whole number, not negative"),
+            ("title = \"A machine\"", "title = ", "TOML parse error at"),
         ] {
             let complaint = complaint(old, new);
-            assert!(complaint.contains(expected) && complaint.contains("at line "), "{complaint}");
+            assert!(complaint.contains(expected) && complaint.contains("line "), "{complaint}");
         }
     }
 
@@ -237,12 +244,10 @@ mod tests {
             note = "a circle"
         "#;
         let error = MachineModel::parse("bad.toml", &format!("{GOOD}{circle}")).unwrap_err();
-        let MachineFileError::Content { file, defect: Defect::EndlessExpansion { entry, cycle }, .. } = error
-        else {
-            panic!("{error}")
-        };
+        let MachineFileError::Content { file, defects } = &error else { panic!("{error}") };
+        let [(_, Defect::EndlessExpansion { entry, cycle })] = defects.as_slice() else { panic!("{error}") };
         assert_eq!((file.as_str(), entry.as_str()), ("bad.toml", "expansions.multiply"));
-        assert_eq!(cycle, ["multiply", "divide", "multiply"]);
+        assert_eq!(*cycle, ["multiply", "divide", "multiply"]);
     }
 
     #[test]

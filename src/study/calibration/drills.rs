@@ -1,168 +1,300 @@
 //! Drills: small texts that do one operation again and again, and the arrays that they work on.
+//!
+//! Which operation is a number of the text, not a type: the interpreter never sees the branch, and a text a precision is
+//! all that is compiled.
 
 use std::marker::PhantomData;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::isa::{Array, Counter, Element, Machine, Memory, Op, Slot, Text, Vector};
+use stripmine_kernels::isa::{Array, Counter, Element, Machine, Memory, Op, Predicate, Slot, Text, Vector};
 use stripmine_kernels::{Program, Runnable};
 
-/// Vectors that a drill works on at once: enough to keep a pipelined unit busy.
+/// Registers that a drill works on at once.
 const WIDTH: usize = 8;
-/// Executions of the drilled operation.
-pub(super) const ROUNDS: usize = 48;
+/// Predicates and index vectors at once.
+const FEW: usize = 4;
+/// Executions of the drilled operation in a long and in a short drill; their difference leaves beginning and end out.
+pub(super) const ROUNDS: [usize; 2] = [36, 8];
+/// How far the operand of [`Kind::Shifted`] lies: no whole number of registers.
+const SHIFT: usize = 5;
 
-/// The operations that are drilled, by number: a text's code must not branch over them.
-pub(super) const DRILLED: [Op; 14] = [
-    Op::Add,
-    Op::Multiply,
-    Op::Divide,
-    Op::SquareRoot,
-    Op::Minimum,
-    Op::Absolute,
-    Op::Truncate,
-    Op::Select,
-    Op::Count,
-    Op::LessThan,
-    Op::FromIndex,
-    Op::Gather,
-    Op::Scatter,
-    Op::Store,
-];
+/// What is drilled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// An operation on numbers, predicates or index vectors in registers.
+    Plain(Op),
+    /// The same on entries of an index vector in memory.
+    Index(Op),
+    /// The same on numbers that change their precision.
+    Convert(Op),
+    /// A difference of a register and an array met at a shift.
+    Shifted,
+}
+
+impl Kind {
+    /// Every kind.
+    pub(super) const ALL: [Kind; 30] = [
+        Kind::Plain(Op::Add),
+        Kind::Plain(Op::Subtract),
+        Kind::Plain(Op::Multiply),
+        Kind::Plain(Op::Divide),
+        Kind::Plain(Op::SquareRoot),
+        Kind::Plain(Op::Absolute),
+        Kind::Plain(Op::Minimum),
+        Kind::Plain(Op::Maximum),
+        Kind::Plain(Op::Truncate),
+        Kind::Plain(Op::LessThan),
+        Kind::Plain(Op::LessEqual),
+        Kind::Plain(Op::Equal),
+        Kind::Plain(Op::And),
+        Kind::Plain(Op::Not),
+        Kind::Plain(Op::Select),
+        Kind::Plain(Op::Count),
+        Kind::Plain(Op::Numbers),
+        Kind::Plain(Op::ToIndex),
+        Kind::Plain(Op::FromIndex),
+        Kind::Plain(Op::Store),
+        Kind::Plain(Op::Gather),
+        Kind::Index(Op::Load),
+        Kind::Index(Op::Store),
+        Kind::Index(Op::Gather),
+        Kind::Index(Op::Scatter),
+        Kind::Convert(Op::Load),
+        Kind::Convert(Op::Store),
+        Kind::Convert(Op::Gather),
+        Kind::Plain(Op::Load),
+        Kind::Shifted,
+    ];
+
+    /// Those by which the levels of memory are told apart: operands in place, from afar, written over, stored.
+    pub(super) const MOVING: [Kind; 4] =
+        [Kind::Plain(Op::Add), Kind::Plain(Op::Absolute), Kind::Plain(Op::Store), Kind::Shifted];
+
+    /// The name of the pass, as outlines give it.
+    pub(super) fn name(self) -> String {
+        match self {
+            Kind::Plain(op) => op.mnemonic().to_owned(),
+            Kind::Index(op) => format!("{}.index", op.mnemonic()),
+            Kind::Convert(op) => format!("{}.convert", op.mnemonic()),
+            Kind::Shifted => "shifted".to_owned(),
+        }
+    }
+}
 
 /// Where stores go.
 const STORED: [Array; WIDTH] = [
     Array::Fx,
     Array::Fy,
     Array::Torque,
-    Array::Excess,
+    Array::Deepest,
     Array::PartnerFx,
     Array::PartnerFy,
     Array::PartnerTorque,
     Array::Vx,
 ];
 
-/// One execution of an operation on the vectors.
-#[inline(always)]
-fn round<M: Machine, const OPERATION: usize>(
-    m: M,
-    v: &mut [M::V; WIDTH],
-    i: usize,
-    next: usize,
-    y: M::V,
-    index: M::I,
-    holds: M::P,
-) {
-    match DRILLED[OPERATION] {
-        Op::Add => v[i] = v[i] + v[next],
-        Op::Multiply => v[i] = v[i] * y,
-        Op::Divide => v[i] = v[i] / y,
-        Op::SquareRoot => v[i] = v[i].sqrt(),
-        Op::Minimum => v[i] = v[i].min(v[next]),
-        Op::Absolute => v[i] = v[next].abs(),
-        Op::Truncate => v[i] = v[next].truncate(),
-        Op::Select => v[i] = M::V::select(holds, v[next], v[i]),
-        Op::Count => m.count(Counter(0), holds),
-        Op::LessThan => m.count(Counter(0), v[i].less_than(v[next])),
-        Op::FromIndex => v[i] = m.index_numbers(m.to_index(v[next])),
-        Op::Gather => v[i] = m.gather(Slot::<M::Lane>::new(Array::Y), index, v[i]),
-        Op::Scatter => m.scatter_index(Slot::new(Array::HaloCell), index, index),
-        _ => m.store(Slot::<M::Lane>::new(STORED[i]), v[i]),
+/// The registers of a drill.
+struct Registers<M: Machine> {
+    numbers: [M::V; WIDTH],
+    predicates: [M::P; FEW],
+    indices: [M::I; FEW],
+    one: M::V,
+}
+
+impl<M: Machine> Registers<M> {
+    #[inline(always)]
+    fn new(m: M) -> Self {
+        let x = m.load(Slot::<M::Lane>::new(Array::X));
+        let numbers = [0, 1, 2, 3, 4, 5, 6, 7].map(|i| x + m.uniform(f64::from(i)));
+        let index = || m.load_index(Slot::new(Array::Index));
+        Registers {
+            one: m.load(Slot::<M::Lane>::new(Array::Y)) + m.uniform(0.0),
+            // None of them holds, as hardly any lane that is counted does.
+            predicates: [0, 1, 2, 3].map(|i| numbers[i + 1].less_than(numbers[i])),
+            indices: [index(), index(), index(), index()],
+            numbers,
+        }
+    }
+
+    /// One execution.
+    #[inline(always)]
+    fn round<O: Element>(&mut self, m: M, kind: Kind, round: usize) {
+        let Registers { numbers: v, predicates: p, indices: index, one } = self;
+        let (i, next, few, other) = (round % WIDTH, (round + 1) % WIDTH, round % FEW, (round + 1) % FEW);
+        let own = Slot::<M::Lane>::new(Array::Y);
+        let converted = Slot::<O>::new(Array::DiscX);
+        match kind {
+            Kind::Plain(op) => match op {
+                Op::Subtract => v[i] = v[i] - v[next],
+                Op::Multiply => v[i] = v[i] * *one,
+                Op::Divide => v[i] = v[i] / *one,
+                Op::SquareRoot => v[i] = v[i].sqrt(),
+                Op::Absolute => v[i] = v[next].abs(),
+                Op::Minimum => v[i] = v[i].min(v[next]),
+                Op::Maximum => v[i] = v[i].max(v[next]),
+                Op::Truncate => v[i] = v[next].truncate(),
+                Op::LessThan => p[few] = v[next].less_than(v[i]),
+                Op::LessEqual => p[few] = v[next].less_equal(v[i]),
+                Op::Equal => p[few] = v[next].equal(v[i]),
+                Op::And => p[few] = p[few].and(p[other]),
+                Op::Not => p[few] = p[other].not(),
+                Op::Select => v[i] = M::V::select(p[few], v[next], v[i]),
+                Op::Count => m.count(Counter(0), p[few]),
+                Op::Numbers => v[i] = m.numbers(),
+                Op::ToIndex => index[few] = m.to_index(v[i]),
+                Op::FromIndex => v[i] = m.index_numbers(index[few]),
+                Op::Store => m.store(Slot::<M::Lane>::new(STORED[i]), v[i]),
+                Op::Gather => v[i] = m.gather(own, index[few], v[next]),
+                // An array that is stored below while its old contents are still needed: no operand of its readers.
+                Op::Load => v[i] = m.load(Slot::<M::Lane>::new(Array::Vy)),
+                _ => v[i] = v[i] + v[next],
+            },
+            Kind::Index(Op::Load) => index[few] = m.load_index(Slot::new(Array::Index)),
+            Kind::Index(Op::Store) => m.store_index(Slot::new(Array::DiscCell), index[few]),
+            Kind::Index(Op::Scatter) => m.scatter_index(Slot::new(Array::HaloCell), index[few], index[other]),
+            Kind::Index(_) => index[few] = m.gather_index(Slot::new(Array::HaloSource), index[few]),
+            Kind::Convert(Op::Load) => v[i] = m.load(converted),
+            Kind::Convert(Op::Store) => m.store(Slot::<O>::new(Array::DiscY), v[i]),
+            Kind::Convert(_) => v[i] = m.gather(converted, index[few], v[next]),
+            Kind::Shifted => v[i] = v[i] - m.load_shifted(Slot::<M::Lane>::new(Array::X), SHIFT as isize),
+        }
+    }
+
+    /// Reads every register once more, so that none is given up before.
+    #[inline(always)]
+    fn end(self, m: M) {
+        m.store(Slot::<M::Lane>::new(Array::Vy), m.uniform(1.0));
+        let Registers { numbers, predicates, indices, one } = self;
+        let mut sum = one;
+        for number in numbers {
+            sum = sum + number;
+        }
+        for (predicate, index) in predicates.into_iter().zip(indices) {
+            m.count(Counter(0), predicate);
+            m.store_index(Slot::new(Array::DiscCell), index);
+        }
+        m.store(Slot::<M::Lane>::new(Array::Omega), sum);
     }
 }
 
-/// `ROUNDS` executions of one operation between the same beginning and end, or, without rounds, these alone.
+/// `rounds` executions of one kind between the same beginning and end.
 #[derive(Clone, Copy)]
-struct Drill<L, const OPERATION: usize, const ROUNDS: usize>(PhantomData<L>);
+struct Drill<L, O> {
+    kind: Kind,
+    rounds: usize,
+    precisions: PhantomData<(L, O)>,
+}
 
-// SAFETY: the slots depend on the constants only.
-unsafe impl<L: Element, const OPERATION: usize, const ROUNDS: usize> Text for Drill<L, OPERATION, ROUNDS> {
+// SAFETY: the slots depend on the kind and the rounds only.
+unsafe impl<L: Element, O: Element> Text for Drill<L, O> {
     type Lane = L;
 
     #[inline(always)]
     fn body<M: Machine<Lane = L>>(&self, m: M) {
-        let x = m.load(Slot::<L>::new(Array::X));
-        let y = m.load(Slot::<L>::new(Array::Y));
-        let index = m.load_index(Slot::new(Array::Index));
-        let holds = x.less_than(y);
-        let mut v = [0, 1, 2, 3, 4, 5, 6, 7].map(|i| x + m.uniform(f64::from(i)));
-        // Written out, for a loop that is not unrolled would keep its vectors in memory.
-        macro_rules! rounds {
-            ($($round:literal)*) => {
-                $(if $round < ROUNDS {
-                    round::<M, OPERATION>(m, &mut v, $round % WIDTH, ($round + 1) % WIDTH, y, index, holds);
-                })*
-            };
+        let mut registers = Registers::new(m);
+        for round in 0..self.rounds {
+            registers.round::<O>(m, self.kind, round);
         }
-        rounds!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23);
-        rounds!(24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39 40 41 42 43 44 45 46 47);
-        let sum = v.into_iter().reduce(|a, b| a + b);
-        m.store(Slot::<L>::new(Array::Vy), sum.unwrap_or(x));
+        registers.end(m);
     }
 }
 
-/// A drill and the same without its rounds.
-pub(super) struct Pair {
-    /// What is drilled.
-    pub(super) op: Op,
-    /// With the rounds.
-    pub(super) drill: Box<dyn Runnable>,
-    /// Without.
-    pub(super) rest: Box<dyn Runnable>,
+/// Executions of cheap kinds in no order: what a pass takes where the next one is another.
+#[derive(Clone, Copy)]
+struct Mixture<L, O> {
+    passes: usize,
+    precisions: PhantomData<(L, O)>,
 }
 
-/// Every drill on lanes of `L`.
-pub(super) fn drills<L: Precision>() -> Vec<Pair> {
-    macro_rules! pairs {
-        ($($number:literal),*) => {
-            vec![$(Pair {
-                op: DRILLED[$number],
-                drill: Box::new(Program::new(Drill::<L, $number, ROUNDS>(PhantomData))),
-                rest: Box::new(Program::new(Drill::<L, 0, 0>(PhantomData))),
-            }),*]
-        };
+// SAFETY: the slots depend on the number of passes only.
+unsafe impl<L: Element, O: Element> Text for Mixture<L, O> {
+    type Lane = L;
+
+    #[inline(always)]
+    fn body<M: Machine<Lane = L>>(&self, m: M) {
+        let mut registers = Registers::new(m);
+        let mut state = 1_u32;
+        for round in 0..self.passes {
+            // Numerical Recipes' generator; its high bits are the good ones.
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let kind = match state >> 29 {
+                0 | 1 => Kind::Plain(Op::Multiply),
+                2 => Kind::Plain(Op::Subtract),
+                3 => Kind::Plain(Op::Minimum),
+                4 => Kind::Plain(Op::LessThan),
+                5 => Kind::Plain(Op::Select),
+                6 => Kind::Plain(Op::Maximum),
+                _ => Kind::Shifted,
+            };
+            registers.round::<O>(m, kind, round);
+        }
+        registers.end(m);
     }
-    pairs![0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13]
+}
+
+/// A long and a short drill of a kind on lanes of `L`, conversions from and to `O`.
+pub(super) fn drill<L: Precision, O: Precision>(kind: Kind) -> [Box<dyn Runnable>; 2] {
+    ROUNDS.map(|rounds| -> Box<dyn Runnable> {
+        Box::new(Program::new(Drill::<L, O> { kind, rounds, precisions: PhantomData }))
+    })
+}
+
+/// A mixture of so many passes.
+pub(super) fn mixture<L: Precision, O: Precision>(passes: usize) -> Box<dyn Runnable> {
+    Box::new(Program::new(Mixture::<L, O> { passes, precisions: PhantomData }))
 }
 
 /// Most elements of a vector in a calibration.
 pub(super) const LONGEST: usize = 4_000_000;
 
 /// The arrays of the drills.
-pub(super) struct Arrays<L> {
+pub(super) struct Arrays<L, O> {
     read: [Vec<L>; 2],
     written: Vec<Vec<L>>,
+    others: [Vec<O>; 2],
     index: Vec<u32>,
-    scattered: Vec<u32>,
+    through: Vec<u32>,
+    written_index: [Vec<u32>; 2],
 }
 
-impl<L: Element> Arrays<L> {
+impl<L: Element, O: Element> Arrays<L, O> {
     /// For vectors of up to `n` elements.
     pub(super) fn new(n: usize) -> Self {
+        let n = n + SHIFT;
         // Near 1, so that no chain of products, quotients or roots leaves the normal numbers.
         let near_one = |step: f64| (0..n).map(|i| L::from_f64(1.0 + step * (i % 97) as f64)).collect();
         // As discs lie in cells at a usual occupancy: every fourth element, in order.
         let index: Vec<u32> = (0..n).map(|i| ((4 * i) % n) as u32 + 1).collect();
         Arrays {
             read: [near_one(1e-7), near_one(2e-7)],
-            written: vec![vec![L::default(); n]; STORED.len() + 1],
-            scattered: vec![0; n],
+            written: vec![vec![L::from_f64(1.0); n]; STORED.len() + 2],
+            others: [vec![O::from_f64(1.0); n], vec![O::from_f64(1.0); n]],
+            through: index.clone(),
+            written_index: [vec![1; n], vec![1; n]],
             index,
         }
     }
 
     /// How many arrays there are.
     pub(super) fn count(&self) -> usize {
-        self.read.len() + self.written.len() + 2
+        self.read.len() + self.written.len() + self.others.len() + 2 + self.written_index.len()
     }
 
     /// The arrays bound to their slots.
     pub(super) fn memory(&mut self) -> Memory<'_> {
-        let mut memory = Memory::new()
-            .read(Slot::new(Array::X), &self.read[0])
-            .read(Slot::new(Array::Y), &self.read[1])
-            .read(Slot::new(Array::Index), &self.index)
-            .write(Slot::new(Array::HaloCell), &mut self.scattered);
-        for (&array, column) in STORED.iter().chain(&[Array::Vy]).zip(&mut self.written) {
-            memory = memory.write(Slot::new(array), column);
+        let mut memory = Memory::new();
+        for (array, column) in [Array::X, Array::Y].into_iter().zip(&self.read) {
+            memory.bind_read(Slot::new(array), column);
+        }
+        let [from, to] = &mut self.others;
+        memory.bind_read(Slot::new(Array::DiscX), from);
+        memory.bind_write(Slot::new(Array::DiscY), to);
+        memory.bind_read(Slot::new(Array::Index), &self.index);
+        memory.bind_read(Slot::new(Array::HaloSource), &self.through);
+        for (array, column) in [Array::DiscCell, Array::HaloCell].into_iter().zip(&mut self.written_index) {
+            memory.bind_write(Slot::new(array), column);
+        }
+        for (&array, column) in STORED.iter().chain(&[Array::Vy, Array::Omega]).zip(&mut self.written) {
+            memory.bind_write(Slot::new(array), column);
         }
         memory
     }

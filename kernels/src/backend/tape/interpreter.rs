@@ -3,6 +3,7 @@
 
 use super::Tape;
 use super::instruction::{Action, File, Instruction, Operand, RegisterName};
+use super::pool;
 use crate::backend::{IndexLanes, Precision, Registers, Scalar, Strip};
 use crate::isa::{Counter, Element, Machine, Memory, Op, Predicate, ProgramError, Slot, Storage, Vector};
 use crate::program::{InstructionSet, Task, dispatch};
@@ -35,8 +36,10 @@ impl<L: Precision> Task<L> for Passes<'_, L> {
     #[inline(always)]
     fn on<R: Registers<Lane = L>>(self, hardware: R) {
         let strip = self.strip.min(self.range.len());
-        let whole = RegisterFiles::new(hardware, self.tape, strip / R::LANES);
-        let rest = RegisterFiles::new(Scalar::default(), self.tape, strip.min(R::LANES - 1));
+        let mut whole: Box<RegisterFiles<R>> = pool::take();
+        let mut rest: Box<RegisterFiles<Scalar<L>>> = pool::take();
+        whole.provide(hardware, self.tape, strip / R::LANES);
+        rest.provide(Scalar::default(), self.tape, strip.min(R::LANES - 1));
         for base in self.range.clone().step_by(strip.max(1)) {
             let length = strip.min(self.range.end - base);
             let registers = length / R::LANES;
@@ -44,6 +47,8 @@ impl<L: Precision> Task<L> for Passes<'_, L> {
             let elements = length % R::LANES;
             rest.execute_elements(self.tape, self.memory, base + length - elements, elements);
         }
+        pool::give_back(whole);
+        pool::give_back(rest);
     }
 }
 
@@ -54,6 +59,26 @@ struct RegisterFiles<R: Registers> {
     numbers: Vec<Vec<Cell<R::V>>>,
     predicates: Vec<Vec<Cell<Truth<R>>>>,
     indices: Vec<Vec<Cell<R::Index>>>,
+}
+
+impl<R: Registers> Default for RegisterFiles<R> {
+    fn default() -> Self {
+        RegisterFiles { numbers: vec![], predicates: vec![], indices: vec![] }
+    }
+}
+
+/// At least `count` registers, the first `count` of them of at least `length` entries.
+#[inline(always)]
+fn lengthen<X: Copy>(file: &mut Vec<Vec<Cell<X>>>, count: usize, length: usize, entry: X) {
+    if file.len() < count {
+        file.resize_with(count, Vec::new);
+    }
+    for register in &mut file[..count] {
+        if register.len() < length {
+            // Nothing of the old entries is worth a copy.
+            *register = vec![Cell::new(entry); length];
+        }
+    }
 }
 
 type Truth<R> = <<R as Registers>::V as Vector>::Predicate;
@@ -147,17 +172,16 @@ impl<L: Precision> RegisterFiles<Scalar<L>> {
 }
 
 impl<R: Registers> RegisterFiles<R> {
-    /// Registers for strips of at most `length` hardware registers.
+    /// Sees to it that there are the registers that a tape needs for strips of `length` hardware registers. What an
+    /// earlier run left in them is never read: code writes a register before it reads it.
     #[inline(always)]
-    fn new(hardware: R, tape: &Tape<R::Lane>, length: usize) -> Self {
+    fn provide(&mut self, hardware: R, tape: &Tape<R::Lane>, length: usize) {
         const { assert!(size_of::<R::V>() == R::LANES * size_of::<R::Lane>()) }
         let zero = hardware.splat(R::Lane::default());
-        let [numbers, predicates, indices] = tape.pass_sizes.map(|size| 0..size);
-        RegisterFiles {
-            numbers: numbers.map(|_| vec![Cell::new(zero); length]).collect(),
-            predicates: predicates.map(|_| vec![Cell::new(zero.less_than(zero)); length]).collect(),
-            indices: indices.map(|_| vec![Cell::new(R::Index::none()); length]).collect(),
-        }
+        let [numbers, predicates, indices] = tape.pass_sizes;
+        lengthen(&mut self.numbers, numbers, length, zero);
+        lengthen(&mut self.predicates, predicates, length, zero.less_than(zero));
+        lengthen(&mut self.indices, indices, length, R::Index::none());
     }
 
     /// The program on one strip, instruction by instruction.

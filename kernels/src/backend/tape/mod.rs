@@ -6,6 +6,7 @@ mod instruction;
 mod interpreter;
 mod listing;
 mod outline;
+mod pool;
 mod recorder;
 
 pub use instruction::{Action, File, Instruction, Operand, Reference, RegisterName};

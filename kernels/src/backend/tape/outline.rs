@@ -3,7 +3,7 @@
 use super::Tape;
 use super::instruction::{Action, File, Instruction, Operand, Reference, RegisterName};
 use crate::backend::{Precision, Registers};
-use crate::isa::{Element, Op, ProgramError, Vector};
+use crate::isa::{Element, Op, ProgramError, Storage, Vector};
 use crate::program::{InstructionSet, Task, dispatch};
 use std::cell::Cell;
 
@@ -35,6 +35,28 @@ impl Outline {
     /// The operations it counts as, [`Instruction::operations`].
     pub fn operations(&self) -> impl Iterator<Item = Op> {
         std::iter::once(self.op).chain(self.converts.then_some(Op::Widen))
+    }
+
+    /// The name under which a pass is timed: the mnemonic, `.index` where entries of an index vector are moved, `.convert`
+    /// where numbers change their precision on the way.
+    pub fn kind(&self) -> String {
+        let moves = |place: &Place| match place {
+            Place::Memory(reference) | Place::Indexed(reference) => reference.element == u32::NAME,
+            Place::Register(_) => false,
+        };
+        let index = if self.reads.iter().chain(&self.writes).any(moves) { ".index" } else { "" };
+        let convert = if self.converts { ".convert" } else { "" };
+        format!("{}{index}{convert}", self.op.mnemonic())
+    }
+
+    /// Whether it computes on numbers, which may be operands from arrays, rather than moving them.
+    pub fn computes(&self) -> bool {
+        !self.op.class().moves_data()
+    }
+
+    /// Reads of arrays element by element.
+    pub fn array_operands(&self) -> usize {
+        self.reads.iter().filter(|place| matches!(place, Place::Memory(_))).count()
     }
 
     fn of<L: Element>(instruction: &Instruction<L>) -> Outline {
@@ -71,6 +93,20 @@ pub struct Outlines {
     pub passes: Vec<Outline>,
     /// Registers of each file that the passes need at once, in the order of [`File::ALL`].
     pub registers: [usize; File::ALL.len()],
+}
+
+impl Outlines {
+    /// A name that programs share exactly if they do the same operations in the same order on lanes of one precision:
+    /// arrays, shifts and scalar operands may differ.
+    pub fn signature(&self) -> String {
+        // FNV-1a over the names.
+        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+        let kinds = self.instructions.iter().map(Outline::kind);
+        for byte in kinds.flat_map(|kind| (kind + " ").into_bytes()) {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+        format!("{}-{}-{hash:016x}", self.lane, self.instructions.len())
+    }
 }
 
 impl<L: Element> Tape<L> {

@@ -21,7 +21,7 @@ mod sparse;
 pub use advance::{Advance, Motion};
 pub use bands::{Met, Sweep};
 pub use contacts::Discs;
-pub use occupancy::{Occupancy, Taken};
+pub use occupancy::{Occupancy, SPARSE, Taken};
 
 /// Elements behind the discs' own in every column that a sweep reads: two discs that never touch, which fill up
 /// registers.

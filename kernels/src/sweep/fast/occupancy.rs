@@ -15,7 +15,7 @@ const FAR: f32 = 1e18;
 
 /// Part of the cells that discs must occupy for registers of cells to pay; below it, one cell after the other is asked
 /// for its neighbours. A function of the scene, so that no sum's order depends on anything else.
-const SPARSE: f64 = 0.15;
+pub const SPARSE: f64 = 0.15;
 
 /// Which disc is in which cell, and, where the lattice is not sparse, where in its cell it is and how large.
 ///

@@ -1,0 +1,42 @@
+//! Register files kept from run to run: fresh pages for every run would cost more than the passes over them.
+//!
+//! Taken and given back by two calls, not lent to a closure: a closure would leave the function that is compiled for the
+//! instruction set.
+
+use std::any::Any;
+use std::cell::RefCell;
+
+thread_local! {
+    static KEPT: RefCell<Vec<Box<dyn Any>>> = const { RefCell::new(Vec::new()) };
+}
+
+/// This thread's `T`, its default where there is none or another run has it.
+#[inline(never)]
+pub(super) fn take<T: Default + 'static>() -> Box<T> {
+    let kept = KEPT.with_borrow_mut(|kept| {
+        let at = kept.iter().position(|any| any.is::<T>());
+        at.and_then(|at| kept.swap_remove(at).downcast::<T>().ok())
+    });
+    kept.unwrap_or_default()
+}
+
+/// Keeps it for the next run.
+#[inline(never)]
+pub(super) fn give_back<T: 'static>(kept: Box<T>) {
+    KEPT.with_borrow_mut(|all| all.push(kept));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_given_back_is_found_again_and_what_is_in_use_is_not() {
+        let mut kept: Box<Vec<u8>> = take();
+        kept.push(1);
+        assert!(take::<Vec<u8>>().is_empty());
+        give_back(kept);
+        assert!(take::<Vec<u16>>().is_empty());
+        assert_eq!(*take::<Vec<u8>>(), [1]);
+    }
+}

@@ -1,0 +1,165 @@
+//! The levels of memory: what it takes to bring the bytes of a vector from where they lie.
+
+use super::reuse::{Since, Touch, Vector, element_bytes};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use stripmine_kernels::backend::tape::{Outlines, Place};
+use stripmine_kernels::isa::Array;
+
+/// A level of memory.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Level {
+    /// Its name.
+    pub name: String,
+    /// Up to which reuse distance it serves (bytes); none for the last.
+    pub capacity: Option<f64>,
+    /// Nanoseconds a byte of a vector that is read or written comes from there; none is cheaper than a nearer one.
+    pub fetch: f64,
+    /// Nanoseconds a byte besides where the vector is written: it must go back.
+    pub write_back: f64,
+}
+
+/// Bytes of a line, the least that moves between levels.
+pub const LINE: f64 = 64.0;
+
+/// How much of what lies `distance` bytes back a cache of so many bytes has lost; half an octave around a capacity belongs
+/// to both levels, for caches do not end sharply.
+pub fn beyond(distance: f64, capacity: f64) -> f64 {
+    ((distance / capacity).log2() + 0.5).clamp(0.0, 1.0)
+}
+
+/// Nanoseconds a byte of a vector last touched so many bytes ago.
+pub fn byte(levels: &[Level], distance: f64, written: bool) -> f64 {
+    let cost = |level: &Level| level.fetch + if written { level.write_back } else { 0.0 };
+    let nearest = levels.first().map_or(0.0, cost);
+    let farther = levels.windows(2).filter_map(|pair| {
+        Some(beyond(distance, pair[0].capacity?) * (cost(&pair[1]) - cost(&pair[0])))
+    });
+    nearest + farther.sum::<f64>()
+}
+
+/// The arrays around a program: how long each is, and how much is touched between its last use and this one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surroundings {
+    arrays: BTreeMap<(Array, &'static str), Neighbourhood>,
+}
+
+/// An array as a program finds it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Neighbourhood {
+    /// All its bytes.
+    extent: f64,
+    /// Bytes touched since it was.
+    distance: f64,
+}
+
+impl Surroundings {
+    /// Of each of some programs, run one after the other over vectors of these lengths again and again.
+    pub fn of_cycle(programs: &[(&Outlines, usize)]) -> Vec<Surroundings> {
+        let mut extents: BTreeMap<(Array, &'static str), [f64; 2]> = BTreeMap::new();
+        let uses: Vec<Vec<(Array, &'static str)>> = programs
+            .iter()
+            .map(|(outlines, n)| {
+                let mut used = vec![];
+                for place in outlines.passes.iter().flat_map(|pass| pass.reads.iter().chain(&pass.writes)) {
+                    let (Place::Memory(reference) | Place::Indexed(reference)) = place else { continue };
+                    let name = (reference.array, reference.element);
+                    let met_directly = usize::from(matches!(place, Place::Memory(_)));
+                    let extent = &mut extents.entry(name).or_default()[met_directly];
+                    *extent = extent.max(element_bytes(name.1) * *n as f64);
+                    if !used.contains(&name) {
+                        used.push(name);
+                    }
+                }
+                used
+            })
+            .collect();
+        // What is met element by element somewhere is as long as there; an index vector says nothing about it.
+        let extent = |name: &(Array, &'static str)| match extents.get(name) {
+            Some(&[_, directly]) if directly > 0.0 => directly,
+            Some(&[through, _]) => through,
+            None => 0.0,
+        };
+        let mut stack: Vec<(Array, &'static str)> = vec![];
+        let mut around = vec![Surroundings::default(); programs.len()];
+        // Twice: in the first round everything is new.
+        for (used, surroundings) in uses.iter().zip(0..).chain(uses.iter().zip(0..)) {
+            for name in used {
+                let at = stack.iter().rposition(|known| known == name);
+                let behind = &stack[at.unwrap_or(0)..];
+                let distance: f64 = behind.iter().map(extent).sum();
+                if let Some(at) = at {
+                    stack.remove(at);
+                }
+                stack.push(*name);
+                around[surroundings].arrays.insert(*name, Neighbourhood { extent: extent(name), distance });
+            }
+        }
+        around
+    }
+
+    /// The arrays.
+    pub fn arrays(&self) -> impl Iterator<Item = (Array, &'static str)> {
+        self.arrays.keys().copied()
+    }
+
+    /// Nanoseconds that a pass over `n` elements waits for what it touches.
+    pub fn wait(&self, levels: &[Level], touches: &[Touch], n: f64) -> f64 {
+        let each = touches.iter().map(|touch| {
+            let there = match touch.vector {
+                Vector::Array(array, element) => self.arrays.get(&(array, element)).copied(),
+                Vector::Register(_) => None,
+            };
+            let bytes = match there {
+                // Through an index vector every element may lie in a line of its own.
+                Some(array) if touch.indexed => array.extent.min(n * LINE),
+                _ => touch.bytes * n,
+            };
+            let distance = match touch.since {
+                Since::Here(distance) => distance * n,
+                Since::Before => there.map_or(0.0, |array| array.distance),
+            };
+            bytes * byte(levels, distance, touch.written)
+        });
+        each.sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stripmine_kernels::backend::tape::{Outline, Reference};
+    use stripmine_kernels::isa::Op;
+
+    fn levels() -> Vec<Level> {
+        let level = |name: &str, capacity, fetch, write_back| Level {
+            name: name.to_owned(),
+            capacity,
+            fetch,
+            write_back,
+        };
+        vec![level("near", Some(1024.0), 0.0, 0.0), level("far", None, 0.5, 0.25)]
+    }
+
+    #[test]
+    fn bytes_cost_more_from_afar_and_more_where_they_go_back() {
+        assert_eq!(byte(&levels(), 64.0, true), 0.0);
+        assert_eq!(byte(&levels(), 1e6, false), 0.5);
+        assert_eq!(byte(&levels(), 1e6, true), 0.75);
+        assert_eq!(byte(&levels(), 1024.0, false), 0.25);
+    }
+
+    #[test]
+    fn an_array_is_as_far_as_all_that_is_touched_in_a_cycle() {
+        let read = |array| {
+            let from = Place::Memory(Reference { array, element: "f64", shift: 0 });
+            let pass = Outline { op: Op::Load, converts: false, reads: vec![from], writes: None };
+            Outlines { lane: "f64", instructions: vec![], passes: vec![pass], registers: [0; 3] }
+        };
+        let [x, y] = [read(Array::X), read(Array::Y)];
+        let around = Surroundings::of_cycle(&[(&x, 10), (&y, 100), (&y, 100)]);
+        let distance = |at: usize, array| around[at].arrays[&(array, "f64")].distance;
+        assert_eq!([distance(0, Array::X), distance(1, Array::Y), distance(2, Array::Y)], [880.0, 880.0, 800.0]);
+    }
+}

@@ -1,0 +1,78 @@
+//! Compiled loops. What the compiler makes of a text (which values spill, how instructions are ordered) does not follow
+//! from the operations it counts, so loops that a calibration has seen are charged what they took on short vectors; others
+//! by their classes of operations, fitted to those that were seen.
+
+use super::{Estimate, OutOfRange, PassCost};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use stripmine_kernels::backend::tape::Outlines;
+use stripmine_kernels::isa::OpClass;
+
+/// A loop in the first-level cache.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LoopCost {
+    /// What it does.
+    pub what: String,
+    /// Nanoseconds an element.
+    pub element: Estimate,
+    /// Nanoseconds of a run besides.
+    pub start: Estimate,
+}
+
+/// All that is known of loops.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LoopCosts {
+    /// Nanoseconds that an operation of a class adds to an element, by lanes and class.
+    pub classes: BTreeMap<String, BTreeMap<String, f64>>,
+    /// Median deviation of the classes' sums from the loops they were fitted to.
+    pub residual: f64,
+    /// Loops by the signature of their instructions.
+    pub seen: BTreeMap<String, LoopCost>,
+}
+
+impl LoopCosts {
+    /// The cost of a program's loop: as it was seen, or by its classes.
+    ///
+    /// # Errors
+    /// [`OutOfRange::NotMeasured`] where not even its lanes were.
+    pub fn of(&self, outlines: &Outlines) -> Result<PassCost, OutOfRange> {
+        if let Some(LoopCost { element, start, .. }) = self.seen.get(&outlines.signature()) {
+            return Ok(PassCost { element: *element, start: *start });
+        }
+        self.by_classes(outlines)
+            .ok_or_else(|| OutOfRange::NotMeasured(format!("chained execution of {} lanes", outlines.lane)))
+    }
+
+    /// The cost of a loop by its classes of operations.
+    pub fn by_classes(&self, outlines: &Outlines) -> Option<PassCost> {
+        let classes = self.classes.get(outlines.lane)?;
+        let counts = class_counts(outlines);
+        let value = counts.iter().map(|(class, count)| classes.get(*class).copied().unwrap_or(0.0) * count).sum();
+        let starts: Vec<f64> = self.seen.values().map(|seen| seen.start.value).collect();
+        let start = starts.iter().sum::<f64>() / starts.len().max(1) as f64;
+        let interval = |value: f64| Estimate { value, interval: self.residual * value };
+        Some(PassCost { element: interval(value), start: interval(start) })
+    }
+
+    /// Nanoseconds of the cheapest class that computes: what the trivial baseline charges for everything.
+    pub fn operation(&self, lane: &str) -> f64 {
+        let classes = self.classes.get(lane);
+        classes.and_then(|classes| classes.get(OpClass::Add.name())).copied().unwrap_or(0.0)
+    }
+}
+
+/// Operations of each class of an element.
+pub fn class_counts(outlines: &Outlines) -> BTreeMap<&'static str, f64> {
+    let mut counts = BTreeMap::new();
+    for op in outlines.instructions.iter().flat_map(|outline| outline.operations()) {
+        // Cheap classes share the same units: one number for all of them.
+        let class = match op.class() {
+            OpClass::Multiply | OpClass::Compare | OpClass::Logical | OpClass::Shift | OpClass::Load => OpClass::Add,
+            class => class,
+        };
+        *counts.entry(class.name()).or_insert(0.0) += 1.0;
+    }
+    counts
+}

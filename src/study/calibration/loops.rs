@@ -1,0 +1,155 @@
+//! Compiled loops: the programs of a step on vectors in the first-level cache, and their classes of operations.
+
+use super::fit;
+use super::passes::estimate;
+use super::timing::Samples;
+use crate::method::lattice_md::{Arrays, Lengths, StepProgram, programs};
+use crate::model::host::{LoopCost, LoopCosts, class_counts};
+use crate::run::model;
+use crate::study::phase_times::Run;
+use crate::study::throughput::MeasurementError;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::isa::{Memory, OpClass};
+use stripmine_kernels::{Execution, InstructionSet};
+
+/// Elements of the short and of the longer runs of a loop: whole registers, and in the first-level cache.
+const ELEMENTS: [usize; 2] = [48, 192];
+/// Least nanoseconds of a sample.
+const SHORTEST: f64 = 40_000.0;
+/// The drill scene: discs at rest that do not touch, as no validation runs them.
+const DRILL: Run = Run { particles: 240, occupancy: 0.13, precision: "f64", execution: "chained" };
+/// What the drill scenes leave out, one after the other.
+const MODELS: [&[&str]; 2] = [
+    &["particles.temperature=0", "particles.seed=7"],
+    &["particles.temperature=0", "particles.seed=7", "law.friction=0", "law.shear_damping=0"],
+];
+
+/// The loops of one model in one precision.
+struct Step {
+    name: String,
+    programs: Vec<StepProgram>,
+    ranges: Vec<Range<usize>>,
+    memory: usize,
+    samples: Vec<[Samples; 2]>,
+}
+
+/// Arrays of either precision.
+trait Bound {
+    fn memory(&mut self) -> Memory<'_>;
+}
+
+impl<S: Precision, P: Precision> Bound for Arrays<S, P> {
+    fn memory(&mut self) -> Memory<'_> {
+        Arrays::memory(self).0
+    }
+}
+
+/// Every loop to be measured, and the arrays they run on.
+pub(super) struct Loops {
+    steps: Vec<Step>,
+    arrays: Vec<Box<dyn Bound>>,
+}
+
+impl Loops {
+    /// Lays out the drill scenes.
+    pub(super) fn new() -> Result<Loops, MeasurementError> {
+        let mut loops = Loops { steps: vec![], arrays: vec![] };
+        for overrides in MODELS {
+            for precision in ["f64", "f32", "mixed"] {
+                match precision {
+                    "f64" => loops.lay_out::<f64, f64>(precision, overrides)?,
+                    "f32" => loops.lay_out::<f32, f32>(precision, overrides)?,
+                    _ => loops.lay_out::<f64, f32>(precision, overrides)?,
+                }
+            }
+        }
+        Ok(loops)
+    }
+
+    fn lay_out<S: Precision, P: Precision>(
+        &mut self,
+        precision: &'static str,
+        overrides: &[&str],
+    ) -> Result<(), MeasurementError> {
+        let checked = Run { precision, ..DRILL }.scene(overrides)?;
+        let model = model(&checked);
+        let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
+        let programs = programs::<S, P>(&model);
+        let ranges = programs.iter().map(|step| lengths.range(step.length)).collect();
+        let samples = programs.iter().map(|_| Default::default()).collect();
+        let friction = if model.friction { "" } else { ", frictionless" };
+        let name = format!("{precision}{friction}");
+        self.steps.push(Step { name, programs, ranges, memory: self.arrays.len(), samples });
+        self.arrays.push(Box::new(Arrays::<S, P>::new(&model, &checked.particles)));
+        Ok(())
+    }
+
+    /// One more sample of every loop.
+    pub(super) fn sweep(&mut self, set: InstructionSet) {
+        for step in &mut self.steps {
+            let memory = self.arrays[step.memory].memory();
+            for ((program, range), samples) in step.programs.iter().zip(&step.ranges).zip(&mut step.samples) {
+                let run = |n: usize| {
+                    let outcome =
+                        program.program.run(&memory, range.start..range.start + n, Execution::Chained, set);
+                    debug_assert!(outcome.is_ok(), "{outcome:?}");
+                };
+                // In the order of the step, so that every disc has its cell before it is asked for.
+                run(range.len());
+                for (samples, n) in samples.iter_mut().zip(ELEMENTS) {
+                    samples.take(SHORTEST, || run(n.min(range.len())));
+                }
+            }
+        }
+    }
+
+    /// All samples.
+    pub(super) fn samples(&self) -> impl Iterator<Item = &Samples> {
+        self.steps.iter().flat_map(|step| step.samples.iter().flatten())
+    }
+
+    /// The costs.
+    pub(super) fn costs(&self) -> LoopCosts {
+        let mut seen = BTreeMap::new();
+        let mut of_lane: BTreeMap<String, Vec<(BTreeMap<&'static str, f64>, f64)>> = BTreeMap::new();
+        for step in &self.steps {
+            for (program, samples) in step.programs.iter().zip(&step.samples) {
+                let [short, long] = ELEMENTS.map(|n| n as f64);
+                let element = estimate(|of| ((of(&samples[1]) - of(&samples[0])) / (long - short)).max(1e-4));
+                let start = estimate(|of| {
+                    let slope = (of(&samples[1]) - of(&samples[0])) / (long - short);
+                    (of(&samples[0]) - short * slope).max(0.0)
+                });
+                let outlines = program.program.outlines();
+                let what = format!("{}, {}", program.part.name(), step.name);
+                of_lane
+                    .entry(outlines.lane.to_owned())
+                    .or_default()
+                    .push((class_counts(&outlines), element.value));
+                seen.entry(outlines.signature()).or_insert(LoopCost { what, element, start });
+            }
+        }
+        let mut classes = BTreeMap::new();
+        let mut residuals = vec![];
+        for (lane, loops) in of_lane {
+            let names: Vec<&'static str> = OpClass::ALL.iter().map(|class| class.name()).collect();
+            let count = |counts: &BTreeMap<&'static str, f64>, name| counts.get(name).copied().unwrap_or(0.0);
+            let rows: Vec<([f64; OpClass::ALL.len()], f64)> = loops
+                .iter()
+                .map(|(counts, ns)| {
+                    (std::array::from_fn(|at| names.get(at).map_or(0.0, |name| count(counts, name)) / ns), 1.0)
+                })
+                .collect();
+            let costs = fit::non_negative(&rows);
+            for (counts, ns) in &loops {
+                let sum: f64 = names.iter().zip(costs).map(|(name, cost)| count(counts, name) * cost).sum();
+                residuals.push((sum / ns - 1.0).abs());
+            }
+            let named = names.iter().zip(costs).filter(|(_, cost)| *cost > 0.0);
+            classes.insert(lane, named.map(|(name, cost)| ((*name).to_owned(), cost)).collect());
+        }
+        LoopCosts { classes, residual: fit::median(residuals.into_iter()), seen }
+    }
+}

@@ -1,0 +1,291 @@
+//! Passes of the interpreter: what each kind takes in the first-level cache, and what waiting for the levels beyond adds.
+
+use super::drills::{Kind, LONGEST, ROUNDS, drill, mixture};
+use super::fit::{self, median};
+use super::timing::Samples;
+use crate::model::host::{
+    Change, Estimate, LaneCosts, Level, PassCost, Surroundings, Touch, touches,
+};
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::backend::tape::{Outline, register_shape};
+use stripmine_kernels::isa::{Memory, ProgramError};
+use stripmine_kernels::{Execution, InstructionSet, Runnable};
+
+/// Vectors that stay in the first-level cache.
+pub(super) const SHORT: [usize; 6] = [8, 16, 32, 64, 128, 256];
+/// Vectors that do not.
+const LONG: [usize; 13] =
+    [512, 1024, 2048, 4096, 8192, 16_384, 32_768, 65_536, 131_072, 262_144, 524_288, 1_300_000, LONGEST];
+/// Longest vectors that both precisions are drilled on: beyond, bytes are bytes.
+const BOTH: usize = 300_000;
+/// Passes of the mixtures.
+const MIXED: [usize; 4] = [40, 300, 1500, 4000];
+/// Vectors of the mixtures.
+const MIXED_LENGTHS: [usize; 2] = [16, 64];
+/// Least nanoseconds of a sample.
+const SHORTEST: f64 = 60_000.0;
+
+/// A kind over vectors of `n` elements: long and short drill.
+struct Point {
+    kind: usize,
+    n: usize,
+    samples: [Samples; 2],
+}
+
+impl Point {
+    /// Nanoseconds of one pass, by a quantile of the samples.
+    fn each(&self, of: impl Fn(&Samples) -> f64) -> f64 {
+        ((of(&self.samples[0]) - of(&self.samples[1])) / (ROUNDS[0] - ROUNDS[1]) as f64).max(1e-3)
+    }
+}
+
+/// Everything measured on lanes of one precision.
+pub(super) struct Lane {
+    pub(super) name: &'static str,
+    programs: Vec<[Box<dyn Runnable>; 2]>,
+    points: Vec<Point>,
+    mixtures: Vec<Box<dyn Runnable>>,
+    mixed: Vec<(usize, usize, Samples)>,
+    pub(super) costs: LaneCosts,
+}
+
+impl Lane {
+    /// Nothing measured yet; conversions are from and to `O`.
+    pub(super) fn new<L: Precision, O: Precision>(set: InstructionSet) -> Result<Lane, ProgramError> {
+        let mut points = vec![];
+        for (at, kind) in Kind::ALL.iter().enumerate() {
+            let wide = L::BYTES == 8;
+            let long = LONG.iter().filter(|&&n| Kind::MOVING.contains(kind) && (wide || n <= BOTH));
+            let lengths = SHORT.iter().chain(long);
+            points.extend(lengths.map(|&n| Point { kind: at, n, samples: Default::default() }));
+        }
+        let (register_bytes, lanes) = register_shape::<L>(set)?;
+        let lengths = (0..MIXED.len()).flat_map(|at| MIXED_LENGTHS.map(|n| (at, n, Samples::default())));
+        Ok(Lane {
+            name: L::NAME,
+            programs: Kind::ALL.iter().map(|&kind| drill::<L, O>(kind)).collect(),
+            points,
+            mixtures: MIXED.map(mixture::<L, O>).into_iter().collect(),
+            mixed: lengths.collect(),
+            costs: LaneCosts { register_bytes, lanes, ..LaneCosts::default() },
+        })
+    }
+
+    /// One more sample of every point, the long vectors' only if `all`.
+    pub(super) fn sweep(&mut self, memory: &Memory<'_>, set: InstructionSet, all: bool) {
+        let run = |program: &dyn Runnable, n: usize| {
+            let outcome = program.run(memory, 0..n, Execution::Eager, set);
+            debug_assert!(outcome.is_ok(), "{outcome:?}");
+        };
+        for point in self.points.iter_mut().filter(|point| all || point.n <= BOTH / 8) {
+            for (samples, program) in point.samples.iter_mut().zip(&self.programs[point.kind]) {
+                samples.take(SHORTEST, || run(program.as_ref(), point.n));
+            }
+        }
+        for (at, n, samples) in &mut self.mixed {
+            samples.take(SHORTEST, || run(self.mixtures[*at].as_ref(), *n));
+        }
+    }
+
+    /// All samples.
+    pub(super) fn samples(&self) -> impl Iterator<Item = &Samples> {
+        let mixed = self.mixed.iter().map(|(_, _, samples)| samples);
+        self.points.iter().flat_map(|point| &point.samples).chain(mixed)
+    }
+
+    fn short_line(&self, kind: usize, of: impl Fn(&Samples) -> f64) -> PassCost {
+        let points = self.points.iter().filter(|point| point.kind == kind && SHORT.contains(&point.n));
+        fit::line(&points.map(|point| (point.n as f64, point.each(&of))).collect::<Vec<_>>())
+    }
+
+    /// Start and slope of every kind, and what a change of kind costs.
+    pub(super) fn fit(&mut self) {
+        for (at, kind) in Kind::ALL.iter().enumerate() {
+            let mut cost = self.short_line(at, Samples::best);
+            let halves = [0, 1].map(|half| self.short_line(at, |samples| samples.best_of_half(half)));
+            let widen = |of: fn(&PassCost) -> f64| (of(&halves[0]) - of(&halves[1])).abs();
+            cost.element.interval += widen(|cost| cost.element.value);
+            cost.start.interval += widen(|cost| cost.start.value);
+            self.costs.passes.insert(kind.name(), cost);
+        }
+        let shifted = self.costs.passes.remove(&Kind::Shifted.name()).unwrap_or_default();
+        let plain = self.costs.passes.get("sub").copied().unwrap_or_default();
+        self.costs.array_operand = (shifted.element.value - plain.element.value).max(0.0);
+        self.costs.change = MIXED.iter().enumerate().map(|(at, &passes)| self.change(at, passes)).collect();
+    }
+
+    /// What the passes of a program take in the first-level cache.
+    fn in_cache(&self, program: &dyn Runnable, n: usize) -> f64 {
+        let cost = |pass: &Outline| {
+            self.costs.cost(pass).map_or(0.0, |cost| cost.start.value + n as f64 * cost.element.value)
+        };
+        program.outlines().passes.iter().map(cost).sum()
+    }
+
+    fn change(&self, at: usize, passes: usize) -> Change {
+        let of_mixture = self.mixed.iter().filter(|(mixture, ..)| *mixture == at);
+        let each = of_mixture.map(|(_, n, samples)| {
+            (samples.best() - self.in_cache(self.mixtures[at].as_ref(), *n)) / passes as f64
+        });
+        Change { passes, ns: median(each).max(0.0) }
+    }
+
+    /// Nanoseconds of a run besides its passes.
+    pub(super) fn run(&self) -> f64 {
+        let shortest = self.points.iter().filter(|point| point.n == SHORT[0]);
+        median(shortest.map(|point| {
+            point.samples[1].best() - self.in_cache(self.programs[point.kind][1].as_ref(), point.n)
+        }))
+        .max(0.0)
+    }
+
+    /// The passes over vectors beyond the first-level cache.
+    fn long_passes(&self) -> impl Iterator<Item = LongPass> {
+        self.points.iter().filter(|point| Kind::MOVING.contains(&Kind::ALL[point.kind])).filter_map(|point| {
+            let outlines = self.programs[point.kind][0].outlines();
+            let kind = match Kind::ALL[point.kind] {
+                Kind::Shifted => "sub".to_owned(),
+                kind => kind.name(),
+            };
+            let alike: Vec<usize> =
+                (0..outlines.passes.len()).filter(|&at| outlines.passes[at].kind() == kind).collect();
+            // The rounds are alike once every vector has been touched: one in the middle stands for all.
+            let middle = *alike.get(alike.len() / 2)?;
+            let touched = touches(&outlines, self.costs.register_bytes).swap_remove(middle);
+            let cost = self.costs.cost(&outlines.passes[middle]).ok()?;
+            Some(LongPass {
+                n: point.n as f64,
+                cost,
+                touched,
+                around: Surroundings::of_cycle(&[(&outlines, point.n)]).pop()?,
+                ns: point.each(Samples::best),
+            })
+        })
+    }
+}
+
+/// A measured pass, as the levels see it.
+struct LongPass {
+    n: f64,
+    cost: PassCost,
+    touched: Vec<Touch>,
+    around: Surroundings,
+    ns: f64,
+}
+
+/// What is fitted: e0, and what each level beyond the first adds to a byte fetched and to a byte that must go back.
+const UNKNOWN: usize = 7;
+
+impl LongPass {
+    /// What is paid for: no level is cheaper than a nearer one, so every level adds to those before it.
+    fn features(&self, capacities: [f64; 3]) -> [f64; UNKNOWN] {
+        let mut features = [0.0; UNKNOWN];
+        for (level, capacity) in capacities.into_iter().enumerate() {
+            // A level that costs 1 a byte beyond its capacity, and none before.
+            let step = |fetch, write_back| {
+                let level = |capacity, fetch, write_back| Level { name: String::new(), capacity, fetch, write_back };
+                [level(Some(capacity), 0.0, 0.0), level(None, fetch, write_back)]
+            };
+            features[1 + 2 * level] = self.around.wait(&step(1.0, 0.0), &self.touched, self.n) / self.n;
+            features[2 + 2 * level] = self.around.wait(&step(0.0, 1.0), &self.touched, self.n) / self.n;
+        }
+        // Where everything is near there is nothing to wait for.
+        features[0] = if features[1] > 0.0 { 1.0 } else { 0.0 };
+        features
+    }
+}
+
+/// The levels that suit the long passes best.
+pub(super) struct Levels {
+    pub(super) operand: f64,
+    pub(super) overlap: f64,
+    pub(super) levels: Vec<Level>,
+    pub(super) residual: f64,
+}
+
+/// Capacities and costs of the levels, and how much of the waiting hides behind computing.
+pub(super) fn fit_levels(lanes: &[Lane]) -> Levels {
+    let passes: Vec<LongPass> = lanes.iter().flat_map(Lane::long_passes).collect();
+    const KIB: f64 = 1024.0;
+    let mut best: Option<(f64, [f64; 3], f64, [f64; UNKNOWN])> = None;
+    for l1 in [24.0, 32.0, 48.0] {
+        for l2 in [256.0, 384.0, 512.0, 768.0, 1024.0, 2048.0] {
+            for l3 in [4.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0] {
+                let capacities = [l1 * KIB, l2 * KIB, l3 * KIB * KIB];
+                let features: Vec<[f64; UNKNOWN]> =
+                    passes.iter().map(|pass| pass.features(capacities)).collect();
+                for overlap in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                    let costs = fit_costs(&passes, &features, overlap);
+                    let error = deviation(&passes, &features, overlap, &costs);
+                    if best.is_none_or(|(least, ..)| error < least) {
+                        best = Some((error, capacities, overlap, costs));
+                    }
+                }
+            }
+        }
+    }
+    let (residual, capacities, overlap, [operand, bytes @ ..]) = best.unwrap_or_default();
+    let names = ["first-level cache", "second-level cache", "third-level cache", "memory"];
+    let capacities = capacities.into_iter().map(Some).chain([None]);
+    let [mut fetch, mut write_back] = [0.0; 2];
+    let levels = names.into_iter().zip(capacities).enumerate().map(|(at, (name, capacity))| {
+        if at > 0 {
+            fetch += bytes[2 * at - 2];
+            write_back += bytes[2 * at - 1];
+        }
+        Level { name: name.to_owned(), capacity, fetch, write_back }
+    });
+    Levels { operand, overlap, levels: levels.collect(), residual }
+}
+
+/// Nanoseconds an element of computing and of waiting.
+fn joined(overlap: f64, compute: f64, wait: f64) -> f64 {
+    compute.max(wait) + (1.0 - overlap) * compute.min(wait)
+}
+
+fn waits(features: &[f64; UNKNOWN], costs: &[f64; UNKNOWN]) -> f64 {
+    features.iter().zip(costs).map(|(feature, cost)| feature * cost).sum()
+}
+
+/// The costs that suit the passes, weighted alike in their relative error. Which of computing and waiting is the longer
+/// depends on the costs: so some rounds.
+fn fit_costs(passes: &[LongPass], features: &[[f64; UNKNOWN]], overlap: f64) -> [f64; UNKNOWN] {
+    let mut costs: Option<[f64; UNKNOWN]> = None;
+    for _ in 0..4 {
+        let rows = passes.iter().zip(features).filter_map(|(pass, features)| {
+            let value = (pass.ns - pass.cost.start.value) / pass.n;
+            let compute = pass.cost.element.value;
+            let wait = costs.map_or(value, |costs| waits(features, &costs));
+            let (weight, rest) = if wait > compute {
+                (1.0, value - (1.0 - overlap) * compute)
+            } else {
+                (1.0 - overlap, value - compute)
+            };
+            let scale = pass.n / pass.ns;
+            (weight > 0.0 && features[1] > 0.0)
+                .then(|| (features.map(|feature| weight * feature * scale), rest * scale))
+        });
+        costs = Some(fit::non_negative(&rows.collect::<Vec<_>>()));
+    }
+    costs.unwrap_or_default()
+}
+
+fn deviation(
+    passes: &[LongPass],
+    features: &[[f64; UNKNOWN]],
+    overlap: f64,
+    costs: &[f64; UNKNOWN],
+) -> f64 {
+    let errors = passes.iter().zip(features).map(|(pass, features)| {
+        let each = joined(overlap, pass.cost.element.value, waits(features, costs));
+        ((pass.cost.start.value + pass.n * each) / pass.ns).ln().abs()
+    });
+    errors.sum::<f64>() / passes.len().max(1) as f64
+}
+
+/// A number with the difference of two halves as its interval.
+pub(super) fn estimate(of: impl Fn(&dyn Fn(&Samples) -> f64) -> f64) -> Estimate {
+    let value = of(&Samples::best);
+    let halves = [0, 1].map(|half| of(&|samples: &Samples| samples.best_of_half(half)));
+    Estimate { value, interval: (halves[0] - halves[1]).abs() + 0.01 * value }
+}
