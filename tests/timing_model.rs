@@ -48,6 +48,24 @@ fn bad_machine_files_are_named_with_line_and_column() {
 }
 
 #[test]
+fn all_defects_of_a_machine_file_are_said_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let text =
+        MACHINE.replace("value = 20", "value = -20").replace("year = ", "jahr = ").replace("\"Mine\"", "7");
+    let path = file(&folder, &text);
+    let out = stripmine(&["table", "--machine", &path]).code(3);
+    let complaint = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
+    for said in [
+        "missing field `year`",
+        "line 2, column 9: `title` must be words in quotes",
+        "line 3, column 8: unknown field `jahr`",
+        "line 6, column 21: `start_up.default` is -20",
+    ] {
+        assert!(complaint.contains(said), "{said}: {complaint}");
+    }
+}
+
+#[test]
 fn a_machine_that_is_not_there_is_answered_with_those_that_are() {
     stripmine(&["table", "--machine", "eniac"]).code(2);
     stripmine(&["table", "--machine", "eniac.toml"]).code(5);
@@ -63,6 +81,9 @@ fn beyond_the_calibrated_range_nothing_is_predicted() {
         let complaint = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
         assert!(complaint.contains("calibrated range of 8 to 4000000"), "{complaint}");
     }
+    let out = stripmine(&["validate-model", "--particles", "200000"]).code(4);
+    let complaint = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
+    assert!(complaint.contains("200000 discs lie outside the calibrated range of "), "{complaint}");
 }
 
 #[test]
@@ -70,7 +91,7 @@ fn the_shipped_host_model_is_used_and_said_so_and_bad_host_files_are_refused() {
     let out = stripmine(&["table", "--ladder", "--host"]).success();
     assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("comes with the program"));
     let folder = tempfile::tempdir().unwrap();
-    let path = file(&folder, "format = 1\n");
+    let path = file(&folder, "format = 2\n");
     let out = stripmine(&["table", "--ladder", "--host", &path]).code(3);
     assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("missing field"));
 }

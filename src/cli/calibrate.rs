@@ -29,7 +29,7 @@ impl CalibrateVerb {
             return Err(Failure::HostFileExists(self.out.clone()));
         }
         let bar = super::progress(common, "calibrate");
-        let effort = Effort { sweeps: self.sweeps.into(), ..Effort::default() };
+        let effort = Effort { sweeps: self.sweeps.into() };
         let model = calibrate(host(), InstructionSet::best(), effort, |share| {
             bar.set_position((1e3 * share) as u64)
         })?;

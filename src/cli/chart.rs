@@ -77,7 +77,8 @@ impl ChartVerb {
         write(section, &atlas_data, start)?;
         bar.finish_and_clear();
         if common.json {
-            let all = serde_json::json!({ "model": model_data, "measured": measured_data, "atlas": atlas_data });
+            let all =
+                serde_json::json!({ "model": model_data, "measured": measured_data, "atlas": atlas_data });
             return print_json(&all);
         }
         print(&(came_out.join("\n\n") + "\n"))

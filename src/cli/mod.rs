@@ -81,8 +81,10 @@ pub(crate) enum Failure {
     #[error("{} is there already: --force writes over it, --out elsewhere", .0.display())]
     HostFileExists(std::path::PathBuf),
     /// A machine too busy to be measured: exit code 4.
-    #[error("{0}: the machine is too busy to be measured; nothing is written, try again when it is quiet, with more \
-             --sweeps, or --force")]
+    #[error(
+        "{0}: the machine is too busy to be measured; nothing is written, try again when it is quiet, with more \
+             --sweeps, or --force"
+    )]
     TooNoisy(String),
     /// A calibration that broke: the exit code is that of the reason.
     #[error(transparent)]

@@ -22,8 +22,11 @@ pub(super) struct ValidateModel {
     /// Occupancies, on cells as wide as the radius
     #[arg(long, value_delimiter = ',', default_values_t = [0.05, 0.12, 0.24])]
     occupancies: Vec<f64>,
-    /// Repeats of each run, of which the best counts
-    #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..))]
+    /// Rounds over all runs; the best repeat of all rounds counts
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..))]
+    rounds: u16,
+    /// Repeats of each run in a round
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
     /// Folder for the result as data, tables and figures
     #[arg(long)]
@@ -52,6 +55,7 @@ impl ValidateModel {
         let effort = Effort {
             particles: self.particles.clone(),
             occupancies: self.occupancies.clone(),
+            rounds: self.rounds.into(),
             repeats: self.repeats.into(),
             particle_steps: 10_000,
         };

@@ -50,7 +50,8 @@ fn figure(sheet: &Sheet) -> Figure {
         let points = won.map(|place| Point::at(place.occupancy, place.particles as f64)).collect();
         Series { name: name.clone(), style: Style::Points, hue, points }
     });
-    let narrow = sheet.places.iter().filter(|place| place.winner().is_some_and(|(_, lead)| lead < DRAW)).count();
+    let narrow =
+        sheet.places.iter().filter(|place| place.winner().is_some_and(|(_, lead)| lead < DRAW)).count();
     let estimated = if sheet.measured {
         "Moving discs, one thread, double precision; the sum of the best repeats of all phases."
     } else {

@@ -34,7 +34,8 @@ fn operations(model: &HostModel) -> Table {
     });
     let Measured { timer, spread, disagreement, shortest, longest, .. } = model.measured;
     let changes = model.lanes.iter().map(|(lane, costs)| {
-        let each = costs.change.iter().map(|change| format!("{:.1} ns in {} passes", change.ns, change.passes));
+        let each =
+            costs.change.iter().map(|change| format!("{:.1} ns in {} passes", change.ns, change.passes));
         format!("{lane}: {}", each.collect::<Vec<_>>().join(", "))
     });
     Table {
@@ -50,7 +51,10 @@ fn operations(model: &HostModel) -> Table {
                 100.0 * spread,
                 100.0 * disagreement
             ),
-            format!("A pass before one of another kind takes longer. {}.", changes.collect::<Vec<_>>().join("; ")),
+            format!(
+                "A pass before one of another kind takes longer. {}.",
+                changes.collect::<Vec<_>>().join("; ")
+            ),
         ],
     }
 }
@@ -67,8 +71,10 @@ fn loops(model: &HostModel) -> Table {
         rows: rows.collect(),
         notes: vec![format!(
             "Chained execution, in the first-level cache. Loops that are not among these are charged by their classes of \
-             operations, which deviate from these by {:.0} % (the median).",
-            100.0 * model.loops.residual
+             operations, which deviate from these by {:.0} % (the median). A loop waits {:.2} times as long as a pass for the \
+             same bytes from beyond.",
+            100.0 * model.loops.residual,
+            model.loops.streams
         )],
     }
 }
@@ -82,9 +88,11 @@ fn rates(model: &HostModel) -> Table {
                     let mut row: Vec<Cell> =
                         [method, precision, phase].map(|name| Cell::Text(name.clone())).to_vec();
                     row.push(Cell::Count(point.discs as u64));
-                    row.extend(Amounts::NAMES.iter().map(|&name| {
-                        point.ns.get(name).map_or(Cell::Nothing, |&ns| Cell::Number(ns, 2))
-                    }));
+                    row.extend(
+                        Amounts::NAMES
+                            .iter()
+                            .map(|&name| point.ns.get(name).map_or(Cell::Nothing, |&ns| Cell::Number(ns, 2))),
+                    );
                     rows.push(row);
                 }
             }
@@ -107,6 +115,7 @@ fn levels(model: &HostModel) -> Table {
             level.capacity.map_or(Cell::Nothing, |bytes| Cell::Number(bytes / 1024.0, 0)),
             Cell::Number(level.fetch, 5),
             Cell::Number(level.write_back, 5),
+            Cell::Number(level.line, 2),
             Cell::Number(8.0 * level.fetch, 3),
         ]
     });
@@ -118,12 +127,13 @@ fn levels(model: &HostModel) -> Table {
             "up to a reuse distance of (KiB)",
             "ns a byte fetched",
             "ns a byte written back",
+            "ns a line through an index",
             "ns an operand of 8 bytes",
         ]),
         rows: rows.collect(),
         notes: vec![format!(
             "A pass whose operands come from beyond the first level waits {:.3} ns an element besides; of the shorter of \
-             computing and waiting {:.0} % hide behind the longer. The fitted passes deviate by {:.0} % on average.",
+             computing and waiting {:.0} % hide behind the longer. The fitted passes deviate by {:.0} % (the median).",
             model.operand,
             100.0 * model.overlap,
             100.0 * model.measured.residual

@@ -2,24 +2,26 @@
 
 use super::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use super::{Cell, Section, Table, Verdict};
-use crate::study::model_validation::{Case, Errors, ModelValidation};
+use crate::study::model_validation::{Case, Errors, ModelValidation, OF_DATA, PROGRAMS};
 
 /// How many of the worst cases are named.
 const NAMED: usize = 12;
 
 /// What came out.
 pub fn section(data: &ModelValidation) -> Section {
-    let all = data.errors.first();
-    let reached =
-        |errors: &Errors| errors.median <= 0.05 && errors.ninth_tenth <= 0.15 && errors.worst <= 0.3;
+    let group = |what: &str| data.errors.iter().find(|errors| errors.what == what);
+    let (programs, of_data) = (group(PROGRAMS), group(OF_DATA));
+    let reached = programs
+        .is_some_and(|errors| errors.median <= 0.05 && errors.ninth_tenth <= 0.15 && errors.worst <= 0.3)
+        && of_data.is_none_or(|errors| errors.median <= 0.1);
     Section {
         name: "validation".into(),
         title: "The timing model against wall time".into(),
         says: "BP93 predicts times and checks none of them. Aim: on runs that nothing was fitted to, a median error of at \
-               most 5 %, 90 % of the cases within 15 %, the worst 30 %."
+               most 5 %, 90 % of the cases within 15 %, the worst 30 %; where the work hangs on the data, a median of 10 %."
             .into(),
-        came_out: all.map_or(String::new(), said),
-        verdict: if all.is_some_and(reached) { Verdict::Reproduced } else { Verdict::Partly },
+        came_out: [programs, of_data].into_iter().flatten().map(said).collect::<Vec<_>>().join(" "),
+        verdict: if reached { Verdict::Reproduced } else { Verdict::Partly },
         again: "stripmine calibrate --out host.toml, then stripmine validate-model --host host.toml".into(),
         figures: vec![over_predicted(data), histogram(data)],
         tables: tables(data),
@@ -36,11 +38,14 @@ fn percent(share: f64) -> Cell {
 }
 
 fn said(errors: &Errors) -> String {
-    let Errors { cases, median, ninth_tenth, worst, within, baseline_median, spread, .. } = errors;
+    let Errors { what, cases, median, ninth_tenth, worst, within, baseline_median, spread } = errors;
+    let baseline = baseline_median.map_or(String::new(), |median| {
+        format!(" Time in proportion to the number of operations: median {:.0} %.", 100.0 * median)
+    });
     format!(
-        "{cases} phases of steps: median error {:.1} %, nine of ten below {:.1} %, the worst {:.0} %; {} within 5 %, {} \
-         within 10 %, {} within 20 %, {} within 30 %. Time in proportion to the number of operations: median {:.0} %. \
-         Median repeats lie {:.1} % above the best ones that were compared.",
+        "Executions {what}, {cases} phases of steps: median error {:.1} %, nine of ten below {:.1} %, the worst {:.0} %; {} \
+         within 5 %, {} within 10 %, {} within 20 %, {} within 30 %.{baseline} Median repeats lie {:.1} % above the best \
+         ones that were compared.",
         100.0 * median,
         100.0 * ninth_tenth,
         100.0 * worst,
@@ -48,7 +53,6 @@ fn said(errors: &Errors) -> String {
         within[1],
         within[2],
         within[3],
-        100.0 * baseline_median.unwrap_or(f64::NAN),
         100.0 * spread
     )
 }
@@ -80,7 +84,7 @@ fn errors(data: &ModelValidation) -> Table {
         "Measured: the best repeat; the spread says how much slower the median one was. Baseline: operations times \
          elements, at the cost of a sum in the cache."
             .to_owned(),
-        "Not predicted: the neighbour lists, whose cost hangs on the data.".to_owned(),
+        "Fast and lists: predicted from the numbers of candidates and contacts that the run itself had.".to_owned(),
     ];
     if data.shipped {
         notes.push(

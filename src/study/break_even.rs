@@ -80,10 +80,12 @@ impl Atlas {
     /// At how many places of the measured sheet the model of the host names the winner, or one that was measured no more
     /// than a tenth slower; and at how many it was asked.
     pub fn agreement(&self) -> (usize, usize) {
-        let sheet = |measured| self.sheets.iter().find(|sheet| sheet.unit == "ns" && sheet.measured == measured);
+        let sheet =
+            |measured| self.sheets.iter().find(|sheet| sheet.unit == "ns" && sheet.measured == measured);
         let (Some(measured), Some(predicted)) = (sheet(true), sheet(false)) else { return (0, 0) };
         let asked = measured.places.iter().filter_map(|place| {
-            let there = |other: &&Place| (other.particles, other.occupancy) == (place.particles, place.occupancy);
+            let there =
+                |other: &&Place| (other.particles, other.occupancy) == (place.particles, place.occupancy);
             let (named, _) = predicted.places.iter().find(there)?.winner()?;
             let (winner, _) = place.winner()?;
             Some(place.costs[named] <= 1.1 * place.costs[winner])
@@ -124,7 +126,10 @@ pub fn atlas(
     for machine in machines {
         let places = grid(machine, &lists, &PARTICLES)?.into_iter();
         sheets.push(Sheet {
-            name: format!("atlas_{}", machine.title().to_lowercase().replace(|c: char| !c.is_alphanumeric(), "_")),
+            name: format!(
+                "atlas_{}",
+                machine.title().to_lowercase().replace(|c: char| !c.is_alphanumeric(), "_")
+            ),
             title: format!("{}, by the paper's clock", machine.title()),
             unit: "clock periods",
             measured: false,

@@ -19,7 +19,9 @@ pub struct Effort {
     pub particles: Vec<usize>,
     /// ρ on cells as wide as the radius.
     pub occupancies: Vec<f64>,
-    /// Repeats, of which the best counts.
+    /// Rounds over all runs: what one of them meets in a busy moment, another does not.
+    pub rounds: usize,
+    /// Repeats of a run in a round; the best of all rounds counts.
     pub repeats: usize,
     /// Particle-steps of a repeat, about.
     pub particle_steps: usize,
@@ -34,6 +36,11 @@ const EXECUTIONS: [(&str, Option<Execution>); 6] = [
     (FAST, None),
     (LISTS, None),
 ];
+
+/// The group of all executions of programs.
+pub const PROGRAMS: &str = "eager, strip-mined and chained";
+/// The group of all executions whose work hangs on the data.
+pub const OF_DATA: &str = "fast and lists";
 
 const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
 
@@ -140,7 +147,8 @@ impl Errors {
             ninth_tenth: quantile(&errors, 0.9),
             worst: quantile(&errors, 1.0),
             within: [0.05, 0.1, 0.2, 0.3].map(|limit| errors.iter().filter(|&&error| error <= limit).count()),
-            baseline_median: Some(quantile(&sorted(&Case::baseline_error), 0.5)).filter(|median| median.is_finite()),
+            baseline_median: Some(quantile(&sorted(&Case::baseline_error), 0.5))
+                .filter(|median| median.is_finite()),
             spread: quantile(&sorted(&|case| Some(case.median / case.measured - 1.0)), 0.5),
         }
     }
@@ -181,21 +189,34 @@ pub fn model_validation(
     progress: impl Fn(f64) + Sync,
 ) -> Result<ModelValidation, ValidationError> {
     let mut scenes = vec![];
-    for &particles in &effort.particles {
-        for &occupancy in &effort.occupancies {
-            for precision in PRECISIONS {
-                for (name, execution) in EXECUTIONS {
-                    let run = Run { particles, occupancy, precision, execution: name };
-                    scenes.push(Scene::new(host, run, execution)?);
-                }
-            }
+    // Before discs are placed: large scenes take their time.
+    for run in runs(effort) {
+        let out = |cause| ValidationError::OutOfRange { case: run.name(), cause };
+        host.admits(run.particles).map_err(out)?;
+        if run.rates().is_some() {
+            rated(host, &run, &PhaseTimes::none(run.particles)).map_err(out)?;
         }
     }
+    for run in runs(effort) {
+        scenes.push(Scene::new(host, run)?);
+    }
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(MeasurementError::Threads)?;
+    let mut times: Vec<Option<PhaseTimes>> = scenes.iter().map(|_| None).collect();
+    for round in 0..effort.rounds {
+        for (at, (scene, times)) in scenes.iter().zip(&mut times).enumerate() {
+            let more = alone.install(|| scene.measure(effort))?;
+            *times = Some(match times.take() {
+                Some(before) => before.joined(more),
+                None => more,
+            });
+            progress((round * scenes.len() + at + 1) as f64 / (effort.rounds * scenes.len()) as f64);
+        }
+    }
     let mut cases = vec![];
-    for (done, scene) in scenes.iter().enumerate() {
-        cases.extend(alone.install(|| scene.measure(host, effort))?);
-        progress((done + 1) as f64 / scenes.len() as f64);
+    for (scene, times) in scenes.iter().zip(&times) {
+        if let Some(times) = times {
+            cases.extend(scene.cases(host, times)?);
+        }
     }
     Ok(ModelValidation {
         host: host.title.clone(),
@@ -203,6 +224,19 @@ pub fn model_validation(
         shipped,
         errors: errors(&cases),
         cases,
+    })
+}
+
+/// Every run, in order.
+fn runs(effort: &Effort) -> impl Iterator<Item = Run> {
+    let places = effort
+        .particles
+        .iter()
+        .flat_map(|&particles| effort.occupancies.iter().map(move |&occupancy| (particles, occupancy)));
+    places.flat_map(|(particles, occupancy)| {
+        PRECISIONS.into_iter().flat_map(move |precision| {
+            EXECUTIONS.map(|(execution, _)| Run { particles, occupancy, precision, execution })
+        })
     })
 }
 
@@ -215,8 +249,8 @@ fn errors(cases: &[Case]) -> Vec<Errors> {
             errors.push(Errors::of(what.to_owned(), &kept));
         }
     };
-    group("eager, strip-mined and chained", &|case| !case.hangs_on_data());
-    group("fast and lists", &Case::hangs_on_data);
+    group(PROGRAMS, &|case| !case.hangs_on_data());
+    group(OF_DATA, &Case::hangs_on_data);
     EXECUTIONS.iter().for_each(|(name, _)| group(name, &|case| case.execution == *name));
     let straight = |case: &Case| !case.hangs_on_data();
     Phase::ALL.iter().for_each(|phase| {
@@ -239,27 +273,21 @@ struct Scene {
 }
 
 impl Scene {
-    fn new(host: &HostModel, run: Run, execution: Option<Execution>) -> Result<Scene, ValidationError> {
+    fn new(host: &HostModel, run: Run) -> Result<Scene, ValidationError> {
         let out = |cause| ValidationError::OutOfRange { case: run.name(), cause };
-        host.admits(run.particles).map_err(out)?;
         let checked = run.scene(&[])?;
-        let predicted = match execution {
-            None => {
-                rated(host, &run, &PhaseTimes::none(run.particles)).map_err(out)?;
-                None
-            }
-            Some(execution) => {
-                let model = model(&checked);
-                let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
-                let step = Step::new(&of_precision(&model, checked.scene.method.precision), &lengths);
-                let phases = Phase::ALL.iter().map(|&phase| step.phase(host, phase, execution));
-                Some(phases.collect::<Result<_, _>>().map_err(out)?)
-            }
+        let execution = EXECUTIONS.iter().find(|(name, _)| *name == run.execution);
+        let Some(execution) = execution.and_then(|(_, execution)| *execution) else {
+            return Ok(Scene { run, checked, predicted: None });
         };
-        Ok(Scene { run, checked, predicted })
+        let model = model(&checked);
+        let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
+        let step = Step::new(&of_precision(&model, checked.scene.method.precision), &lengths);
+        let phases = Phase::ALL.iter().map(|&phase| step.phase(host, phase, execution));
+        Ok(Scene { run, predicted: Some(phases.collect::<Result<_, _>>().map_err(out)?), checked })
     }
 
-    fn measure(&self, host: &HostModel, effort: &Effort) -> Result<Vec<Case>, ValidationError> {
+    fn measure(&self, effort: &Effort) -> Result<PhaseTimes, MeasurementError> {
         let lists = self.run.execution == LISTS;
         let sampling = Sampling {
             equilibration: (effort.particle_steps / self.run.particles).clamp(5, 50),
@@ -268,13 +296,16 @@ impl Scene {
             // Lists are made anew every few steps only.
             least_steps: if lists { 6 } else { 2 },
         };
-        let times = phase_times(&self.checked, &sampling)?;
+        phase_times(&self.checked, &sampling)
+    }
+
+    fn cases(&self, host: &HostModel, times: &PhaseTimes) -> Result<Vec<Case>, ValidationError> {
         let predicted: Vec<(f64, Option<f64>)> = match &self.predicted {
             Some(phases) => phases.iter().map(|&[ns, baseline]| (ns, Some(baseline))).collect(),
             None => {
-                let phases = rated(host, &self.run, &times);
-                let phases = phases
-                    .map_err(|cause| ValidationError::OutOfRange { case: self.run.name(), cause })?;
+                let phases = rated(host, &self.run, times);
+                let phases =
+                    phases.map_err(|cause| ValidationError::OutOfRange { case: self.run.name(), cause })?;
                 phases.into_iter().map(|ns| (ns, None)).collect()
             }
         };
@@ -325,10 +356,10 @@ mod tests {
         let cases = [case(102.0, "eager"), case(92.0, "eager"), case(140.0, "chained"), case(80.0, LISTS)];
         let errors = errors(&cases);
         let of = |what: &str| errors.iter().find(|errors| errors.what == what).unwrap();
-        let programs = of("eager, strip-mined and chained");
+        let programs = of(PROGRAMS);
         assert_eq!((programs.cases, programs.within), (3, [1, 2, 2, 2]));
         assert!((programs.median - 0.08).abs() < 1e-9 && (programs.worst - 0.4).abs() < 1e-9);
         assert_eq!(programs.baseline_median, Some(0.5));
-        assert_eq!(of("fast and lists").baseline_median, None);
+        assert_eq!(of(OF_DATA).baseline_median, None);
     }
 }

@@ -85,6 +85,19 @@ impl PhaseTimes {
         PhaseTimes { amounts, repeats: vec![], by_bursts: false }
     }
 
+    /// The same run measured once more, at another time.
+    #[must_use]
+    pub fn joined(mut self, more: PhaseTimes) -> PhaseTimes {
+        let (a, b) = (self.repeats.len() as f64, more.repeats.len() as f64);
+        let means = self.amounts.values().into_iter().zip(more.amounts.values());
+        let mut mean = means.map(|(x, y)| (a * x + b * y) / (a + b));
+        let mut next = || mean.next().unwrap_or(0.0);
+        self.amounts =
+            Amounts { discs: next(), cells: next(), candidates: next(), contacts: next(), relisted: next() };
+        self.repeats.extend(more.repeats);
+        self
+    }
+
     /// Nanoseconds of a phase: the best repeat, or, where repeats differ in what they had to do, their mean.
     pub fn best(&self, phase: Phase) -> f64 {
         let samples = self.repeats.iter().map(|repeat| repeat[phase as usize]);

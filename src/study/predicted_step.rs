@@ -32,7 +32,8 @@ impl Step {
             .collect();
         let cycle: Vec<(&Outlines, usize)> = programs.iter().map(|(_, outlines, n)| (outlines, *n)).collect();
         let around = Surroundings::of_cycle(&cycle);
-        let arrays = around.iter().flat_map(Surroundings::arrays).collect::<std::collections::BTreeSet<_>>().len();
+        let arrays =
+            around.iter().flat_map(Surroundings::arrays).collect::<std::collections::BTreeSet<_>>().len();
         Step { programs, around, arrays }
     }
 
@@ -55,7 +56,7 @@ impl Step {
             Phase::CorrectPredict => &[],
         };
         // Every part binds the arrays of the step anew.
-        let mut sum = parts.len() as f64 * self.arrays as f64 * host.bind;
+        let mut sum = parts.len() as f64 * (host.clock + self.arrays as f64 * host.bind);
         let mut baseline = 0.0;
         for ((part, outlines, n), around) in self.programs.iter().zip(&self.around) {
             if parts.contains(part) {

@@ -10,8 +10,8 @@ use crate::report::{self, Section};
 use crate::study::calibration::{self, calibrate};
 use crate::study::efficiency_table::Question;
 use crate::study::{
-    break_even, damping, density_cost, efficiency_table, identity, ladder, measured_cost, misprints, model_validation,
-    pipe_flow, useful_work,
+    break_even, damping, density_cost, efficiency_table, host_ladder, identity, ladder, measured_cost,
+    misprints, model_validation, pipe_flow, useful_work,
 };
 use clap::ValueEnum;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -99,7 +99,10 @@ impl Item {
                     .into_iter()
                     .map(|name| Ok(ladder::ladder(&Question::default(), &machine::preset(name)?)?))
                     .collect::<Result<_, Failure>>()?;
-                made(report::ladder::section(&ladders), &ladders)
+                let host = host_ladder::host_ladder(&Question::default(), &default_model()?)?;
+                let mut section = report::ladder::section(&ladders);
+                section.tables.push(report::ladder::of_host(&host));
+                made(section, &serde_json::json!({ "machines": ladders, "host": host }))
             }
             Item::Listing => listings(),
             Item::Mask => made(report::mask::section(), &()),
@@ -173,7 +176,8 @@ fn validation(effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, F
             (host, false, vec![100, 700, 5000, 20_000], vec![0.05, 0.24])
         }
     };
-    let runs = model_validation::Effort { particles, occupancies, repeats: 5, particle_steps: 10_000 };
+    let runs =
+        model_validation::Effort { particles, occupancies, rounds: 2, repeats: 4, particle_steps: 10_000 };
     let data =
         model_validation::model_validation(&host, shipped, &runs, |share| progress(0.5 + 0.5 * share))?;
     made(report::model_validation::section(&data), &data)

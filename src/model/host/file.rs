@@ -58,7 +58,11 @@ impl HostModel {
         let entries: Vec<BadEntry> = defects
             .map(|(entry, what)| BadEntry { position: Position::of(text, &entry), entry, what })
             .collect();
-        if entries.is_empty() { Ok(model) } else { Err(HostFileError::Content { file: file.to_owned(), entries }) }
+        if entries.is_empty() {
+            Ok(model)
+        } else {
+            Err(HostFileError::Content { file: file.to_owned(), entries })
+        }
     }
 
     /// The text of its file.
@@ -81,7 +85,7 @@ impl HostModel {
             });
             passes.chain([(format!("lanes.{lane}.array_operand"), costs.array_operand)])
         });
-        let levels = self.levels.iter().flat_map(|level| [level.fetch, level.write_back]);
+        let levels = self.levels.iter().flat_map(|level| [level.fetch, level.write_back, level.line]);
         let loops = self.loops.seen.iter().flat_map(|(name, seen)| {
             [("element", seen.element.value), ("start", seen.start.value)]
                 .map(|(what, value)| (format!("loops.seen.{name}.{what}.value"), value))
@@ -95,6 +99,8 @@ impl HostModel {
             ("overlap", self.overlap),
             ("bind", self.bind),
             ("run", self.run),
+            ("clock", self.clock),
+            ("loops.streams", self.loops.streams),
             ("measured.spread", self.measured.spread),
         ];
         let rest = rest.map(|(entry, value)| (entry.to_owned(), value));

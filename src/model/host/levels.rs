@@ -18,6 +18,8 @@ pub struct Level {
     pub fetch: f64,
     /// Nanoseconds a byte besides where the vector is written: it must go back.
     pub write_back: f64,
+    /// Nanoseconds a line that is met through an index vector, where no stream can be foreseen.
+    pub line: f64,
 }
 
 /// Bytes of a line, the least that moves between levels.
@@ -29,13 +31,12 @@ pub fn beyond(distance: f64, capacity: f64) -> f64 {
     ((distance / capacity).log2() + 0.5).clamp(0.0, 1.0)
 }
 
-/// Nanoseconds a byte of a vector last touched so many bytes ago.
-pub fn byte(levels: &[Level], distance: f64, written: bool) -> f64 {
-    let cost = |level: &Level| level.fetch + if written { level.write_back } else { 0.0 };
-    let nearest = levels.first().map_or(0.0, cost);
-    let farther = levels.windows(2).filter_map(|pair| {
-        Some(beyond(distance, pair[0].capacity?) * (cost(&pair[1]) - cost(&pair[0])))
-    });
+/// What something costs that was last touched so many bytes ago.
+pub fn from_afar(levels: &[Level], distance: f64, cost: impl Fn(&Level) -> f64) -> f64 {
+    let nearest = levels.first().map_or(0.0, &cost);
+    let farther = levels
+        .windows(2)
+        .filter_map(|pair| Some(beyond(distance, pair[0].capacity?) * (cost(&pair[1]) - cost(&pair[0]))));
     nearest + farther.sum::<f64>()
 }
 
@@ -104,6 +105,15 @@ impl Surroundings {
         self.arrays.keys().copied()
     }
 
+    /// Says how many elements an array has, where no program that is known meets all of them.
+    pub fn widen(&mut self, array: Array, elements: f64) {
+        for ((name, element), there) in &mut self.arrays {
+            if *name == array {
+                there.extent = elements * element_bytes(element);
+            }
+        }
+    }
+
     /// Nanoseconds that a pass over `n` elements waits for what it touches.
     pub fn wait(&self, levels: &[Level], touches: &[Touch], n: f64) -> f64 {
         let each = touches.iter().map(|touch| {
@@ -111,16 +121,20 @@ impl Surroundings {
                 Vector::Array(array, element) => self.arrays.get(&(array, element)).copied(),
                 Vector::Register(_) => None,
             };
-            let bytes = match there {
-                // Through an index vector every element may lie in a line of its own.
-                Some(array) if touch.indexed => array.extent.min(n * LINE),
-                _ => touch.bytes * n,
-            };
             let distance = match touch.since {
                 Since::Here(distance) => distance * n,
                 Since::Before => there.map_or(0.0, |array| array.distance),
             };
-            bytes * byte(levels, distance, touch.written)
+            if let Some(array) = there.filter(|_| touch.indexed) {
+                // Where every line is met they come in a stream; where the next one is far, each is waited for.
+                let gap = array.extent / LINE / n;
+                let alone = (gap - 1.0).clamp(0.0, 1.0);
+                let streams = from_afar(levels, distance, |level| level.fetch * LINE);
+                let lines = from_afar(levels, distance, |level| level.line);
+                return n * gap.min(1.0) * (alone * lines + (1.0 - alone) * streams);
+            }
+            let written = f64::from(u8::from(touch.written));
+            touch.bytes * n * from_afar(levels, distance, |level| level.fetch + written * level.write_back)
         });
         each.sum()
     }
@@ -138,16 +152,18 @@ mod tests {
             capacity,
             fetch,
             write_back,
+            line: 0.0,
         };
         vec![level("near", Some(1024.0), 0.0, 0.0), level("far", None, 0.5, 0.25)]
     }
 
     #[test]
     fn bytes_cost_more_from_afar_and_more_where_they_go_back() {
-        assert_eq!(byte(&levels(), 64.0, true), 0.0);
-        assert_eq!(byte(&levels(), 1e6, false), 0.5);
-        assert_eq!(byte(&levels(), 1e6, true), 0.75);
-        assert_eq!(byte(&levels(), 1024.0, false), 0.25);
+        let cost = |distance, written| {
+            from_afar(&levels(), distance, |level| level.fetch + if written { level.write_back } else { 0.0 })
+        };
+        assert_eq!([cost(64.0, true), cost(1e6, false), cost(1e6, true)], [0.0, 0.5, 0.75]);
+        assert_eq!(cost(1024.0, false), 0.25);
     }
 
     #[test]
@@ -160,6 +176,9 @@ mod tests {
         let [x, y] = [read(Array::X), read(Array::Y)];
         let around = Surroundings::of_cycle(&[(&x, 10), (&y, 100), (&y, 100)]);
         let distance = |at: usize, array| around[at].arrays[&(array, "f64")].distance;
-        assert_eq!([distance(0, Array::X), distance(1, Array::Y), distance(2, Array::Y)], [880.0, 880.0, 800.0]);
+        assert_eq!(
+            [distance(0, Array::X), distance(1, Array::Y), distance(2, Array::Y)],
+            [880.0, 880.0, 800.0]
+        );
     }
 }

@@ -28,6 +28,8 @@ pub struct LoopCosts {
     pub classes: BTreeMap<String, BTreeMap<String, f64>>,
     /// Median deviation of the classes' sums from the loops they were fitted to.
     pub residual: f64,
+    /// How many times as long as a pass of the interpreter a loop waits for the same bytes: it has many streams at once.
+    pub streams: f64,
     /// Loops by the signature of their instructions.
     pub seen: BTreeMap<String, LoopCost>,
 }
@@ -49,7 +51,8 @@ impl LoopCosts {
     pub fn by_classes(&self, outlines: &Outlines) -> Option<PassCost> {
         let classes = self.classes.get(outlines.lane)?;
         let counts = class_counts(outlines);
-        let value = counts.iter().map(|(class, count)| classes.get(*class).copied().unwrap_or(0.0) * count).sum();
+        let value =
+            counts.iter().map(|(class, count)| classes.get(*class).copied().unwrap_or(0.0) * count).sum();
         let starts: Vec<f64> = self.seen.values().map(|seen| seen.start.value).collect();
         let start = starts.iter().sum::<f64>() / starts.len().max(1) as f64;
         let interval = |value: f64| Estimate { value, interval: self.residual * value };
@@ -69,7 +72,9 @@ pub fn class_counts(outlines: &Outlines) -> BTreeMap<&'static str, f64> {
     for op in outlines.instructions.iter().flat_map(|outline| outline.operations()) {
         // Cheap classes share the same units: one number for all of them.
         let class = match op.class() {
-            OpClass::Multiply | OpClass::Compare | OpClass::Logical | OpClass::Shift | OpClass::Load => OpClass::Add,
+            OpClass::Multiply | OpClass::Compare | OpClass::Logical | OpClass::Shift | OpClass::Load => {
+                OpClass::Add
+            }
             class => class,
         };
         *counts.entry(class.name()).or_insert(0.0) += 1.0;

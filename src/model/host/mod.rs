@@ -9,7 +9,7 @@ mod rates;
 mod reuse;
 
 pub use file::{BadEntry, FORMAT, HostFileError, default_model};
-pub use levels::{LINE, Level, Surroundings, beyond, byte};
+pub use levels::{LINE, Level, Surroundings, beyond, from_afar};
 pub use loops::{LoopCost, LoopCosts, class_counts};
 pub use rates::{Amounts, RatePoint, Rates};
 pub use reuse::{Since, Touch, Vector, element_bytes, touches};
@@ -106,6 +106,8 @@ pub struct HostModel {
     pub bind: f64,
     /// Nanoseconds of a run of an interpreted program besides its passes.
     pub run: f64,
+    /// Nanoseconds that timing a phase adds to it.
+    pub clock: f64,
     /// The levels, nearest first.
     pub levels: Vec<Level>,
     /// Costs by the element type of the lanes.
@@ -133,7 +135,9 @@ pub enum OutOfRange {
         longest: usize,
     },
     /// More or fewer discs than those that were measured.
-    #[error("{discs} discs lie outside the calibrated range of {fewest} to {most}: ask for another number of particles")]
+    #[error(
+        "{discs} discs lie outside the calibrated range of {fewest} to {most}: ask for another number of particles"
+    )]
     Discs {
         /// Discs asked for.
         discs: usize,
@@ -162,8 +166,11 @@ impl HostModel {
     /// The same host with every operand in the first-level cache, and programs started and arrays bound for nothing.
     #[must_use]
     pub fn in_cache(&self) -> HostModel {
-        let mut model = HostModel { operand: 0.0, bind: 0.0, run: 0.0, ..self.clone() };
-        model.levels.iter_mut().for_each(|level| (level.fetch, level.write_back) = (0.0, 0.0));
+        let mut model = HostModel { operand: 0.0, bind: 0.0, run: 0.0, clock: 0.0, ..self.clone() };
+        model
+            .levels
+            .iter_mut()
+            .for_each(|level| (level.fetch, level.write_back, level.line) = (0.0, 0.0, 0.0));
         model
     }
 
@@ -281,7 +288,7 @@ impl HostModel {
             }
         }
         once.retain(|touch| touch.since == Since::Before);
-        let wait = around.wait(&self.levels, &once, n as f64);
+        let wait = self.loops.streams * around.wait(&self.levels, &once, n as f64);
         Ok(cost.start.value + self.overlapped(n as f64 * cost.element.value, wait))
     }
 }

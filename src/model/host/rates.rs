@@ -60,7 +60,8 @@ impl Rates {
             return Err(OutOfRange::Discs { discs, fewest: first.discs, most: last.discs });
         }
         let unit = |name: &str| {
-            let ns = points.iter().map(|point| (point.discs as f64, point.ns.get(name).copied().unwrap_or(0.0)));
+            let ns =
+                points.iter().map(|point| (point.discs as f64, point.ns.get(name).copied().unwrap_or(0.0)));
             interpolated(&ns.collect::<Vec<_>>(), amounts.discs)
         };
         Ok(Amounts::NAMES.iter().zip(amounts.values()).map(|(name, amount)| unit(name) * amount).sum())

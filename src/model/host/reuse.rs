@@ -1,5 +1,6 @@
 //! Reuse distances: how much is touched between two passes over the same vector.
 
+use super::LINE;
 use stripmine_kernels::backend::tape::{Outline, Outlines, Place, RegisterName};
 use stripmine_kernels::isa::Array;
 
@@ -46,6 +47,13 @@ fn vector(place: &Place, register_bytes: [f64; 3]) -> (Vector, f64) {
     }
 }
 
+impl Touch {
+    /// Bytes an element that go through the caches: whole lines where an index vector leads.
+    fn moved(&self) -> f64 {
+        if self.indexed { LINE } else { self.bytes }
+    }
+}
+
 /// The vectors of a pass, each once, at no distance yet.
 fn vectors(pass: &Outline, register_bytes: [f64; 3]) -> Vec<Touch> {
     let mut touches: Vec<Touch> = vec![];
@@ -75,7 +83,7 @@ pub fn touches(outlines: &Outlines, register_bytes: [f64; 3]) -> Vec<Vec<Touch>>
     let mut all: Vec<(Vector, f64)> = vec![];
     for touch in passes.iter().flatten() {
         if !all.iter().any(|(known, _)| *known == touch.vector) {
-            all.push((touch.vector, touch.bytes));
+            all.push((touch.vector, touch.moved()));
         }
     }
     let all: f64 = all.iter().map(|(_, bytes)| bytes).sum();
@@ -90,7 +98,7 @@ pub fn touches(outlines: &Outlines, register_bytes: [f64; 3]) -> Vec<Vec<Touch>>
             None if matches!(touch.vector, Vector::Register(_)) => Since::Here(all),
             None => Since::Before,
         };
-        touched.push((touch.vector, touch.bytes));
+        touched.push((touch.vector, touch.moved()));
     }
     passes
 }

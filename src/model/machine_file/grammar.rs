@@ -28,10 +28,16 @@ enum Shape {
 }
 
 const PROVENANCE: Shape = Shape::OneOf(&["sourced", "derived", "assumed"]);
-const QUANTITY: Shape =
-    Shape::Table(&[("value", true, Shape::Positive), ("provenance", true, PROVENANCE), ("note", true, Shape::Words)]);
-const FACT: Shape =
-    Shape::Table(&[("value", true, Shape::Truth), ("provenance", true, PROVENANCE), ("note", true, Shape::Words)]);
+const QUANTITY: Shape = Shape::Table(&[
+    ("value", true, Shape::Positive),
+    ("provenance", true, PROVENANCE),
+    ("note", true, Shape::Words),
+]);
+const FACT: Shape = Shape::Table(&[
+    ("value", true, Shape::Truth),
+    ("provenance", true, PROVENANCE),
+    ("note", true, Shape::Words),
+]);
 const REGISTERS: Shape = Shape::Table(&[("count", true, QUANTITY), ("length", true, QUANTITY)]);
 const UNIT: Shape =
     Shape::Table(&[("serves", true, Shape::Classes), ("count", true, QUANTITY), ("rate", false, QUANTITY)]);
@@ -176,7 +182,11 @@ mod tests {
             "`division` names no class",
             "`start_up.division` is 0",
         ] {
-            assert_eq!(said.iter().filter(|said| said.contains(expected)).count(), 1, "{expected}: {said:#?}");
+            assert_eq!(
+                said.iter().filter(|said| said.contains(expected)).count(),
+                1,
+                "{expected}: {said:#?}"
+            );
         }
         assert_eq!(said.len(), 8, "{said:#?}");
     }

@@ -95,7 +95,10 @@ impl MachineModel {
     pub fn parse(file: &str, text: &str) -> Result<MachineModel, MachineFileError> {
         let content = |defects: Vec<Defect>| MachineFileError::Content {
             file: file.to_owned(),
-            defects: defects.into_iter().map(|defect| (Position::of(text, &defect.entry()), defect)).collect(),
+            defects: defects
+                .into_iter()
+                .map(|defect| (Position::of(text, &defect.entry()), defect))
+                .collect(),
         };
         let defects = grammar::defects(text);
         if !defects.is_empty() {

@@ -17,6 +17,15 @@ pub(super) const ROUNDS: [usize; 2] = [36, 8];
 /// How far the operand of [`Kind::Shifted`] lies: no whole number of registers.
 const SHIFT: usize = 5;
 
+/// The index vector of [`Kind::Sparse`].
+const SPARSE_INDEX: Slot<u32> = Slot::new(Array::Interior);
+/// Elements of the array that it leads through, for each of its own, on average.
+pub(super) const GAP: usize = 32;
+/// Most elements of a sparse gather.
+pub(super) const LONGEST_SPARSE: usize = 131_072;
+/// Passes after which the mixture begins again, as a law does at every place of the mask.
+const PERIOD: usize = 61;
+
 /// What is drilled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -28,11 +37,13 @@ pub(super) enum Kind {
     Convert(Op),
     /// A difference of a register and an array met at a shift.
     Shifted,
+    /// Numbers gathered from a wide array, hardly two of them from one line, as discs lie in a sparse lattice.
+    Sparse,
 }
 
 impl Kind {
     /// Every kind.
-    pub(super) const ALL: [Kind; 30] = [
+    pub(super) const ALL: [Kind; 31] = [
         Kind::Plain(Op::Add),
         Kind::Plain(Op::Subtract),
         Kind::Plain(Op::Multiply),
@@ -63,6 +74,7 @@ impl Kind {
         Kind::Convert(Op::Gather),
         Kind::Plain(Op::Load),
         Kind::Shifted,
+        Kind::Sparse,
     ];
 
     /// Those by which the levels of memory are told apart: operands in place, from afar, written over, stored.
@@ -76,6 +88,7 @@ impl Kind {
             Kind::Index(op) => format!("{}.index", op.mnemonic()),
             Kind::Convert(op) => format!("{}.convert", op.mnemonic()),
             Kind::Shifted => "shifted".to_owned(),
+            Kind::Sparse => "sparse".to_owned(),
         }
     }
 }
@@ -97,6 +110,7 @@ struct Registers<M: Machine> {
     numbers: [M::V; WIDTH],
     predicates: [M::P; FEW],
     indices: [M::I; FEW],
+    sparse: M::I,
     one: M::V,
 }
 
@@ -111,6 +125,7 @@ impl<M: Machine> Registers<M> {
             // None of them holds, as hardly any lane that is counted does.
             predicates: [0, 1, 2, 3].map(|i| numbers[i + 1].less_than(numbers[i])),
             indices: [index(), index(), index(), index()],
+            sparse: m.load_index(SPARSE_INDEX),
             numbers,
         }
     }
@@ -118,7 +133,7 @@ impl<M: Machine> Registers<M> {
     /// One execution.
     #[inline(always)]
     fn round<O: Element>(&mut self, m: M, kind: Kind, round: usize) {
-        let Registers { numbers: v, predicates: p, indices: index, one } = self;
+        let Registers { numbers: v, predicates: p, indices: index, sparse, one } = self;
         let (i, next, few, other) = (round % WIDTH, (round + 1) % WIDTH, round % FEW, (round + 1) % FEW);
         let own = Slot::<M::Lane>::new(Array::Y);
         let converted = Slot::<O>::new(Array::DiscX);
@@ -155,6 +170,7 @@ impl<M: Machine> Registers<M> {
             Kind::Convert(Op::Load) => v[i] = m.load(converted),
             Kind::Convert(Op::Store) => m.store(Slot::<O>::new(Array::DiscY), v[i]),
             Kind::Convert(_) => v[i] = m.gather(converted, index[few], v[next]),
+            Kind::Sparse => v[i] = m.gather(Slot::<M::Lane>::new(Array::Radius), *sparse, v[next]),
             Kind::Shifted => v[i] = v[i] - m.load_shifted(Slot::<M::Lane>::new(Array::X), SHIFT as isize),
         }
     }
@@ -163,7 +179,7 @@ impl<M: Machine> Registers<M> {
     #[inline(always)]
     fn end(self, m: M) {
         m.store(Slot::<M::Lane>::new(Array::Vy), m.uniform(1.0));
-        let Registers { numbers, predicates, indices, one } = self;
+        let Registers { numbers, predicates, indices, sparse, one } = self;
         let mut sum = one;
         for number in numbers {
             sum = sum + number;
@@ -172,6 +188,7 @@ impl<M: Machine> Registers<M> {
             m.count(Counter(0), predicate);
             m.store_index(Slot::new(Array::DiscCell), index);
         }
+        m.store_index(Slot::new(Array::DiscCell), sparse);
         m.store(Slot::<M::Lane>::new(Array::Omega), sum);
     }
 }
@@ -198,7 +215,7 @@ unsafe impl<L: Element, O: Element> Text for Drill<L, O> {
     }
 }
 
-/// Executions of cheap kinds in no order: what a pass takes where the next one is another.
+/// Executions of cheap kinds in turns: what a pass takes where the next one is another.
 #[derive(Clone, Copy)]
 struct Mixture<L, O> {
     passes: usize,
@@ -214,6 +231,9 @@ unsafe impl<L: Element, O: Element> Text for Mixture<L, O> {
         let mut registers = Registers::new(m);
         let mut state = 1_u32;
         for round in 0..self.passes {
+            if round % PERIOD == 0 {
+                state = 1;
+            }
             // Numerical Recipes' generator; its high bits are the good ones.
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             let kind = match state >> 29 {
@@ -253,6 +273,8 @@ pub(super) struct Arrays<L, O> {
     others: [Vec<O>; 2],
     index: Vec<u32>,
     through: Vec<u32>,
+    sparse: Vec<u32>,
+    wide: Vec<L>,
     written_index: [Vec<u32>; 2],
 }
 
@@ -264,7 +286,17 @@ impl<L: Element, O: Element> Arrays<L, O> {
         let near_one = |step: f64| (0..n).map(|i| L::from_f64(1.0 + step * (i % 97) as f64)).collect();
         // As discs lie in cells at a usual occupancy: every fourth element, in order.
         let index: Vec<u32> = (0..n).map(|i| ((4 * i) % n) as u32 + 1).collect();
+        let wide = GAP * LONGEST_SPARSE.min(n);
+        let mut at = 0;
+        let mut state = 1_u32;
+        let sparse = (0..n).map(|_| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            at = (at + 1 + (state >> 8) as usize % (2 * GAP - 1)) % wide;
+            at as u32 + 1
+        });
         Arrays {
+            sparse: sparse.collect(),
+            wide: vec![L::from_f64(1.0); wide],
             read: [near_one(1e-7), near_one(2e-7)],
             written: vec![vec![L::from_f64(1.0); n]; STORED.len() + 2],
             others: [vec![O::from_f64(1.0); n], vec![O::from_f64(1.0); n]],
@@ -276,7 +308,7 @@ impl<L: Element, O: Element> Arrays<L, O> {
 
     /// How many arrays there are.
     pub(super) fn count(&self) -> usize {
-        self.read.len() + self.written.len() + self.others.len() + 2 + self.written_index.len()
+        self.read.len() + self.written.len() + self.others.len() + 4 + self.written_index.len()
     }
 
     /// The arrays bound to their slots.
@@ -290,6 +322,8 @@ impl<L: Element, O: Element> Arrays<L, O> {
         memory.bind_write(Slot::new(Array::DiscY), to);
         memory.bind_read(Slot::new(Array::Index), &self.index);
         memory.bind_read(Slot::new(Array::HaloSource), &self.through);
+        memory.bind_read(SPARSE_INDEX, &self.sparse);
+        memory.bind_read(Slot::new(Array::Radius), &self.wide);
         for (array, column) in [Array::DiscCell, Array::HaloCell].into_iter().zip(&mut self.written_index) {
             memory.bind_write(Slot::new(array), column);
         }

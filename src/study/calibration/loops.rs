@@ -4,13 +4,14 @@ use super::fit;
 use super::passes::estimate;
 use super::timing::Samples;
 use crate::method::lattice_md::{Arrays, Lengths, StepProgram, programs};
-use crate::model::host::{LoopCost, LoopCosts, class_counts};
+use crate::model::host::{HostModel, LoopCost, LoopCosts, Surroundings, class_counts};
 use crate::run::model;
 use crate::study::phase_times::Run;
 use crate::study::throughput::MeasurementError;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
+use stripmine_kernels::backend::tape::Outlines;
 use stripmine_kernels::isa::{Memory, OpClass};
 use stripmine_kernels::{Execution, InstructionSet};
 
@@ -20,6 +21,8 @@ const ELEMENTS: [usize; 2] = [48, 192];
 const SHORTEST: f64 = 40_000.0;
 /// The drill scene: discs at rest that do not touch, as no validation runs them.
 const DRILL: Run = Run { particles: 240, occupancy: 0.13, precision: "f64", execution: "chained" };
+/// NP of the larger drill scenes, whose arrays lie in the levels beyond the first.
+const LARGE: [usize; 2] = [1800, 9000];
 /// What the drill scenes leave out, one after the other.
 const MODELS: [&[&str]; 2] = [
     &["particles.temperature=0", "particles.seed=7"],
@@ -32,7 +35,10 @@ struct Step {
     programs: Vec<StepProgram>,
     ranges: Vec<Range<usize>>,
     memory: usize,
+    large: bool,
     samples: Vec<[Samples; 2]>,
+    /// Whole vectors, one program after the other as in a step.
+    whole: Vec<Samples>,
 }
 
 /// Arrays of either precision.
@@ -56,12 +62,16 @@ impl Loops {
     /// Lays out the drill scenes.
     pub(super) fn new() -> Result<Loops, MeasurementError> {
         let mut loops = Loops { steps: vec![], arrays: vec![] };
-        for overrides in MODELS {
+        let large = LARGE.iter().map(|&particles| (particles, MODELS[0]));
+        for (particles, overrides) in
+            MODELS.map(|overrides| (DRILL.particles, overrides)).into_iter().chain(large)
+        {
             for precision in ["f64", "f32", "mixed"] {
+                let run = Run { particles, precision, ..DRILL };
                 match precision {
-                    "f64" => loops.lay_out::<f64, f64>(precision, overrides)?,
-                    "f32" => loops.lay_out::<f32, f32>(precision, overrides)?,
-                    _ => loops.lay_out::<f64, f32>(precision, overrides)?,
+                    "f64" => loops.lay_out::<f64, f64>(&run, overrides)?,
+                    "f32" => loops.lay_out::<f32, f32>(&run, overrides)?,
+                    _ => loops.lay_out::<f64, f32>(&run, overrides)?,
                 }
             }
         }
@@ -70,18 +80,20 @@ impl Loops {
 
     fn lay_out<S: Precision, P: Precision>(
         &mut self,
-        precision: &'static str,
+        run: &Run,
         overrides: &[&str],
     ) -> Result<(), MeasurementError> {
-        let checked = Run { precision, ..DRILL }.scene(overrides)?;
+        let checked = run.scene(overrides)?;
         let model = model(&checked);
         let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
         let programs = programs::<S, P>(&model);
         let ranges = programs.iter().map(|step| lengths.range(step.length)).collect();
         let samples = programs.iter().map(|_| Default::default()).collect();
+        let whole = programs.iter().map(|_| Samples::default()).collect();
         let friction = if model.friction { "" } else { ", frictionless" };
-        let name = format!("{precision}{friction}");
-        self.steps.push(Step { name, programs, ranges, memory: self.arrays.len(), samples });
+        let large = run.particles != DRILL.particles;
+        let name = format!("{}{friction}", run.precision);
+        self.steps.push(Step { name, programs, ranges, memory: self.arrays.len(), large, samples, whole });
         self.arrays.push(Box::new(Arrays::<S, P>::new(&model, &checked.particles)));
         Ok(())
     }
@@ -90,15 +102,18 @@ impl Loops {
     pub(super) fn sweep(&mut self, set: InstructionSet) {
         for step in &mut self.steps {
             let memory = self.arrays[step.memory].memory();
-            for ((program, range), samples) in step.programs.iter().zip(&step.ranges).zip(&mut step.samples) {
+            let programs = step.programs.iter().zip(&step.ranges).zip(&mut step.samples).zip(&mut step.whole);
+            for (((program, range), samples), whole) in programs {
                 let run = |n: usize| {
                     let outcome =
                         program.program.run(&memory, range.start..range.start + n, Execution::Chained, set);
                     debug_assert!(outcome.is_ok(), "{outcome:?}");
                 };
                 // In the order of the step, so that every disc has its cell before it is asked for.
-                run(range.len());
-                for (samples, n) in samples.iter_mut().zip(ELEMENTS) {
+                whole.take_once(|| run(range.len()));
+                // Of large scenes only this: what is near is learned from the small ones.
+                let near = if step.large { &mut [] } else { samples.as_mut_slice() };
+                for (samples, n) in near.iter_mut().zip(ELEMENTS) {
                     samples.take(SHORTEST, || run(n.min(range.len())));
                 }
             }
@@ -107,14 +122,14 @@ impl Loops {
 
     /// All samples.
     pub(super) fn samples(&self) -> impl Iterator<Item = &Samples> {
-        self.steps.iter().flat_map(|step| step.samples.iter().flatten())
+        self.steps.iter().filter(|step| !step.large).flat_map(|step| step.samples.iter().flatten())
     }
 
     /// The costs.
     pub(super) fn costs(&self) -> LoopCosts {
         let mut seen = BTreeMap::new();
         let mut of_lane: BTreeMap<String, Vec<(BTreeMap<&'static str, f64>, f64)>> = BTreeMap::new();
-        for step in &self.steps {
+        for step in self.steps.iter().filter(|step| !step.large) {
             for (program, samples) in step.programs.iter().zip(&step.samples) {
                 let [short, long] = ELEMENTS.map(|n| n as f64);
                 let element = estimate(|of| ((of(&samples[1]) - of(&samples[0])) / (long - short)).max(1e-4));
@@ -139,7 +154,10 @@ impl Loops {
             let rows: Vec<([f64; OpClass::ALL.len()], f64)> = loops
                 .iter()
                 .map(|(counts, ns)| {
-                    (std::array::from_fn(|at| names.get(at).map_or(0.0, |name| count(counts, name)) / ns), 1.0)
+                    (
+                        std::array::from_fn(|at| names.get(at).map_or(0.0, |name| count(counts, name)) / ns),
+                        1.0,
+                    )
                 })
                 .collect();
             let costs = fit::non_negative(&rows);
@@ -150,6 +168,36 @@ impl Loops {
             let named = names.iter().zip(costs).filter(|(_, cost)| *cost > 0.0);
             classes.insert(lane, named.map(|(name, cost)| ((*name).to_owned(), cost)).collect());
         }
-        LoopCosts { classes, residual: fit::median(residuals.into_iter()), seen }
+        LoopCosts { classes, residual: fit::median(residuals.into_iter()), streams: 1.0, seen }
+    }
+
+    /// How many times as long as a pass a loop waits for the same bytes, given all else of the host: it has many streams at
+    /// once. That which suits the large drill scenes best.
+    pub(super) fn streams(&self, host: &HostModel) -> f64 {
+        let error = |streams: f64| {
+            let mut host = host.clone();
+            host.loops.streams = streams;
+            let errors = self.steps.iter().filter(|step| step.large).flat_map(|step| {
+                let outlines: Vec<Outlines> =
+                    step.programs.iter().map(|step| step.program.outlines()).collect();
+                let cycle: Vec<(&Outlines, usize)> = outlines
+                    .iter()
+                    .zip(&step.ranges)
+                    .map(|(outlines, range)| (outlines, range.len()))
+                    .collect();
+                let around = Surroundings::of_cycle(&cycle);
+                let errors =
+                    cycle.iter().zip(&around).zip(&step.whole).map(|(((outlines, n), around), whole)| {
+                        let predicted = host.program(outlines, *n, Execution::Chained, around);
+                        predicted.map_or(f64::NAN, |ns| (ns / whole.best()).ln().abs())
+                    });
+                errors.collect::<Vec<_>>()
+            });
+            let errors: Vec<f64> = errors.filter(|error| error.is_finite()).collect();
+            errors.iter().sum::<f64>() / errors.len().max(1) as f64
+        };
+        let candidates = (-8..=16).map(|quarter| 2f64.powf(f64::from(quarter) / 4.0));
+        let errors = candidates.map(|streams| (error(streams), streams));
+        errors.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(1.0, |(_, streams)| streams)
     }
 }

@@ -5,14 +5,16 @@ mod drills;
 mod fit;
 mod loops;
 mod passes;
-mod rates;
+mod scenes;
 mod timing;
 
 use super::throughput::MeasurementError;
+use crate::method::{Phase, Timings};
 use crate::model::host::{FORMAT, HostModel, Measured};
 use drills::{Arrays, LONGEST};
 use loops::Loops;
 use passes::{Lane, Levels, SHORT, fit_levels};
+use scenes::Scenes;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::isa::ProgramError;
 use timing::{Samples, timer_resolution};
@@ -22,13 +24,11 @@ use timing::{Samples, timer_resolution};
 pub struct Effort {
     /// Sweeps over all points: the more, the surer every point meets quiet moments.
     pub sweeps: usize,
-    /// Of so many sweeps one is over the long vectors, too, which take most of the time.
-    pub long_every: usize,
 }
 
 impl Default for Effort {
     fn default() -> Self {
-        Effort { sweeps: 64, long_every: 8 }
+        Effort { sweeps: 40 }
     }
 }
 
@@ -49,7 +49,9 @@ pub enum CalibrationError {
 }
 
 /// Share of the time that the drill scenes take.
-const SCENES: f64 = 0.4;
+const SCENES: f64 = 0.5;
+/// How often they are run.
+const PARTS: usize = 3;
 
 /// Measures this host, called `title`, on one thread, and fits its model. `progress` gets the share that is done.
 ///
@@ -75,23 +77,30 @@ fn measured(
     let mut lanes = [Lane::new::<f64, f32>(set)?, Lane::new::<f32, f64>(set)?];
     let mut arrays = (Arrays::<f64, f32>::new(LONGEST), Arrays::<f32, f64>::new(LONGEST));
     let mut loops = Loops::new()?;
-    let mut binding = Samples::default();
-    let rates = rates::rates(|share| progress(SCENES * share))?;
+    let [mut binding, mut clock] = [Samples::default(), Samples::default()];
+    let mut scenes = Scenes::new()?;
     for sweep in 0..effort.sweeps {
+        // The scenes at the beginning, in the middle and at the end.
+        if let Some(part) = (0..PARTS).find(|part| sweep == part * (effort.sweeps - 1) / (PARTS - 1).max(1)) {
+            let done = (sweep as f64 / effort.sweeps as f64, part as f64 / PARTS as f64);
+            let from = (1.0 - SCENES) * done.0 + SCENES * done.1;
+            scenes.sweep(|share| progress(from + SCENES * share / PARTS as f64))?;
+        }
+        let mut timings = Timings::default();
+        clock.take(20_000.0, || timings.time(Phase::Predict, || ()));
         binding.take(20_000.0, || drop(std::hint::black_box(arrays.0.memory())));
         let memories = [arrays.0.memory(), arrays.1.memory()];
         for (lane, memory) in lanes.iter_mut().zip(&memories) {
-            lane.sweep(memory, set, sweep % effort.long_every.max(1) == 0);
+            lane.sweep(memory, set, sweep);
         }
         loops.sweep(set);
-        progress(SCENES + (1.0 - SCENES) * (sweep + 1) as f64 / effort.sweeps as f64);
     }
     for lane in &mut lanes {
         lane.fit();
     }
     let Levels { operand, overlap, levels, residual } = fit_levels(&lanes);
     let samples = || lanes.iter().flat_map(Lane::samples).chain(loops.samples());
-    Ok(HostModel {
+    let mut model = HostModel {
         format: FORMAT,
         title,
         instruction_set: set.name().to_owned(),
@@ -107,9 +116,13 @@ fn measured(
         overlap,
         bind: binding.best() / arrays.0.count() as f64,
         run: fit::median(lanes.iter().map(Lane::run)),
+        // Half of the two looks at the clock lies between them.
+        clock: 0.5 * clock.best(),
         levels,
         loops: loops.costs(),
         lanes: lanes.into_iter().map(|lane| (lane.name.to_owned(), lane.costs)).collect(),
-        rates,
-    })
+        rates: scenes.rates(),
+    };
+    model.loops.streams = loops.streams(&model);
+    Ok(model)
 }

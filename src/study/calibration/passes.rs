@@ -1,14 +1,12 @@
 //! Passes of the interpreter: what each kind takes in the first-level cache, and what waiting for the levels beyond adds.
 
-use super::drills::{Kind, LONGEST, ROUNDS, drill, mixture};
+use super::drills::{GAP, Kind, LONGEST, LONGEST_SPARSE, ROUNDS, drill, mixture};
 use super::fit::{self, median};
 use super::timing::Samples;
-use crate::model::host::{
-    Change, Estimate, LaneCosts, Level, PassCost, Surroundings, Touch, touches,
-};
+use crate::model::host::{Change, Estimate, LaneCosts, Level, PassCost, Surroundings, Touch, touches};
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::backend::tape::{Outline, register_shape};
-use stripmine_kernels::isa::{Memory, ProgramError};
+use stripmine_kernels::isa::{Array, Memory, Op, ProgramError};
 use stripmine_kernels::{Execution, InstructionSet, Runnable};
 
 /// Vectors that stay in the first-level cache.
@@ -37,6 +35,23 @@ impl Point {
     fn each(&self, of: impl Fn(&Samples) -> f64) -> f64 {
         ((of(&self.samples[0]) - of(&self.samples[1])) / (ROUNDS[0] - ROUNDS[1]) as f64).max(1e-3)
     }
+
+    /// Whether the long drill took as much more than the short one as it must at least, and the halves of the measurement
+    /// agree: of the longest vectors there are few samples, and all of them may have met a busy moment.
+    fn is_settled(&self) -> bool {
+        let longer = self.samples[0].best() > 1.15 * self.samples[1].best();
+        longer && self.samples.iter().all(|samples| samples.disagreement() < 0.25)
+    }
+}
+
+/// Of so many sweeps one is over vectors of this length: the longest would take all the time.
+fn turn(n: usize) -> usize {
+    match n {
+        ..=40_000 => 1,
+        ..=150_000 => 2,
+        ..=600_000 => 4,
+        _ => 16,
+    }
 }
 
 /// Everything measured on lanes of one precision.
@@ -55,7 +70,10 @@ impl Lane {
         let mut points = vec![];
         for (at, kind) in Kind::ALL.iter().enumerate() {
             let wide = L::BYTES == 8;
-            let long = LONG.iter().filter(|&&n| Kind::MOVING.contains(kind) && (wide || n <= BOTH));
+            let long = LONG.iter().filter(|&&n| match kind {
+                Kind::Sparse => wide && n <= LONGEST_SPARSE,
+                kind => Kind::MOVING.contains(kind) && (wide || n <= BOTH),
+            });
             let lengths = SHORT.iter().chain(long);
             points.extend(lengths.map(|&n| Point { kind: at, n, samples: Default::default() }));
         }
@@ -71,13 +89,14 @@ impl Lane {
         })
     }
 
-    /// One more sample of every point, the long vectors' only if `all`.
-    pub(super) fn sweep(&mut self, memory: &Memory<'_>, set: InstructionSet, all: bool) {
+    /// The sweep of this number: one more sample of every point, of long vectors only in some sweeps.
+    pub(super) fn sweep(&mut self, memory: &Memory<'_>, set: InstructionSet, number: usize) {
         let run = |program: &dyn Runnable, n: usize| {
             let outcome = program.run(memory, 0..n, Execution::Eager, set);
             debug_assert!(outcome.is_ok(), "{outcome:?}");
         };
-        for point in self.points.iter_mut().filter(|point| all || point.n <= BOTH / 8) {
+        let takes_turn = |point: &&mut Point| number.is_multiple_of(turn(point.n));
+        for point in self.points.iter_mut().filter(takes_turn) {
             for (samples, program) in point.samples.iter_mut().zip(&self.programs[point.kind]) {
                 samples.take(SHORTEST, || run(program.as_ref(), point.n));
             }
@@ -108,6 +127,7 @@ impl Lane {
             cost.start.interval += widen(|cost| cost.start.value);
             self.costs.passes.insert(kind.name(), cost);
         }
+        self.costs.passes.remove(&Kind::Sparse.name());
         let shifted = self.costs.passes.remove(&Kind::Shifted.name()).unwrap_or_default();
         let plain = self.costs.passes.get("sub").copied().unwrap_or_default();
         self.costs.array_operand = (shifted.element.value - plain.element.value).max(0.0);
@@ -139,12 +159,14 @@ impl Lane {
         .max(0.0)
     }
 
-    /// The passes over vectors beyond the first-level cache.
-    fn long_passes(&self) -> impl Iterator<Item = LongPass> {
-        self.points.iter().filter(|point| Kind::MOVING.contains(&Kind::ALL[point.kind])).filter_map(|point| {
+    /// The passes of some kinds over vectors beyond the first-level cache.
+    fn long_passes(&self, kinds: &[Kind]) -> impl Iterator<Item = LongPass> {
+        let points = self.points.iter().filter(|point| kinds.contains(&Kind::ALL[point.kind]));
+        points.filter(|point| !SHORT.contains(&point.n) && point.is_settled()).filter_map(|point| {
             let outlines = self.programs[point.kind][0].outlines();
             let kind = match Kind::ALL[point.kind] {
                 Kind::Shifted => "sub".to_owned(),
+                Kind::Sparse => Kind::Plain(Op::Gather).name(),
                 kind => kind.name(),
             };
             let alike: Vec<usize> =
@@ -153,13 +175,9 @@ impl Lane {
             let middle = *alike.get(alike.len() / 2)?;
             let touched = touches(&outlines, self.costs.register_bytes).swap_remove(middle);
             let cost = self.costs.cost(&outlines.passes[middle]).ok()?;
-            Some(LongPass {
-                n: point.n as f64,
-                cost,
-                touched,
-                around: Surroundings::of_cycle(&[(&outlines, point.n)]).pop()?,
-                ns: point.each(Samples::best),
-            })
+            let mut around = Surroundings::of_cycle(&[(&outlines, point.n)]).pop()?;
+            around.widen(Array::Radius, (GAP * point.n) as f64);
+            Some(LongPass { n: point.n as f64, cost, touched, around, ns: point.each(Samples::best) })
         })
     }
 }
@@ -173,6 +191,9 @@ struct LongPass {
     ns: f64,
 }
 
+/// A level that costs nothing.
+const NOWHERE: Level = Level { name: String::new(), capacity: None, fetch: 0.0, write_back: 0.0, line: 0.0 };
+
 /// What is fitted: e0, and what each level beyond the first adds to a byte fetched and to a byte that must go back.
 const UNKNOWN: usize = 7;
 
@@ -183,7 +204,7 @@ impl LongPass {
         for (level, capacity) in capacities.into_iter().enumerate() {
             // A level that costs 1 a byte beyond its capacity, and none before.
             let step = |fetch, write_back| {
-                let level = |capacity, fetch, write_back| Level { name: String::new(), capacity, fetch, write_back };
+                let level = |capacity, fetch, write_back| Level { capacity, fetch, write_back, ..NOWHERE };
                 [level(Some(capacity), 0.0, 0.0), level(None, fetch, write_back)]
             };
             features[1 + 2 * level] = self.around.wait(&step(1.0, 0.0), &self.touched, self.n) / self.n;
@@ -203,24 +224,51 @@ pub(super) struct Levels {
     pub(super) residual: f64,
 }
 
+/// Capacities of the three cache levels that are tried (bytes): what the system says, of the last level, which others
+/// share, also parts; where it says nothing, what processors have.
+fn candidates() -> Vec<[f64; 3]> {
+    const KIB: f64 = 1024.0;
+    let known: Vec<f64> = (1..=3).filter_map(cache_size).collect();
+    if let [l1, l2, l3] = *known.as_slice() {
+        return [0.125, 0.25, 0.5, 1.0].map(|share| [l1, l2, share * l3]).to_vec();
+    }
+    let mut all = vec![];
+    for l1 in [32.0, 48.0, 64.0, 128.0] {
+        for l2 in [256.0, 512.0, 1024.0, 2048.0, 4096.0] {
+            for l3 in [4.0, 8.0, 16.0, 32.0] {
+                all.push([l1 * KIB, l2 * KIB, l3 * KIB * KIB]);
+            }
+        }
+    }
+    all
+}
+
+/// Bytes of this processor's data cache of a level, where the system says it.
+fn cache_size(level: usize) -> Option<f64> {
+    let read = |index: usize, what: &str| {
+        let path = format!("/sys/devices/system/cpu/cpu0/cache/index{index}/{what}");
+        Some(std::fs::read_to_string(path).ok()?.trim().to_owned())
+    };
+    let of_level = |index: &usize| {
+        read(*index, "level") == Some(level.to_string())
+            && read(*index, "type").as_deref() != Some("Instruction")
+    };
+    let size = read((0..8).find(of_level)?, "size")?;
+    let kib: f64 = size.strip_suffix('K')?.parse().ok()?;
+    Some(1024.0 * kib)
+}
+
 /// Capacities and costs of the levels, and how much of the waiting hides behind computing.
 pub(super) fn fit_levels(lanes: &[Lane]) -> Levels {
-    let passes: Vec<LongPass> = lanes.iter().flat_map(Lane::long_passes).collect();
-    const KIB: f64 = 1024.0;
+    let passes: Vec<LongPass> = lanes.iter().flat_map(|lane| lane.long_passes(&Kind::MOVING)).collect();
     let mut best: Option<(f64, [f64; 3], f64, [f64; UNKNOWN])> = None;
-    for l1 in [24.0, 32.0, 48.0] {
-        for l2 in [256.0, 384.0, 512.0, 768.0, 1024.0, 2048.0] {
-            for l3 in [4.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0] {
-                let capacities = [l1 * KIB, l2 * KIB, l3 * KIB * KIB];
-                let features: Vec<[f64; UNKNOWN]> =
-                    passes.iter().map(|pass| pass.features(capacities)).collect();
-                for overlap in [0.0, 0.25, 0.5, 0.75, 1.0] {
-                    let costs = fit_costs(&passes, &features, overlap);
-                    let error = deviation(&passes, &features, overlap, &costs);
-                    if best.is_none_or(|(least, ..)| error < least) {
-                        best = Some((error, capacities, overlap, costs));
-                    }
-                }
+    for capacities in candidates() {
+        let features: Vec<[f64; UNKNOWN]> = passes.iter().map(|pass| pass.features(capacities)).collect();
+        for overlap in [0.0, 0.25, 0.5, 0.75, 1.0] {
+            let costs = fit_costs(&passes, &features, overlap);
+            let error = deviation(&passes, &features, overlap, &costs);
+            if best.is_none_or(|(least, ..)| error < least) {
+                best = Some((error, capacities, overlap, costs));
             }
         }
     }
@@ -233,9 +281,39 @@ pub(super) fn fit_levels(lanes: &[Lane]) -> Levels {
             fetch += bytes[2 * at - 2];
             write_back += bytes[2 * at - 1];
         }
-        Level { name: name.to_owned(), capacity, fetch, write_back }
+        Level { name: name.to_owned(), capacity, fetch, write_back, line: 0.0 }
     });
-    Levels { operand, overlap, levels: levels.collect(), residual }
+    let mut levels = Levels { operand, overlap, levels: levels.collect(), residual };
+    let sparse: Vec<LongPass> = lanes.iter().flat_map(|lane| lane.long_passes(&[Kind::Sparse])).collect();
+    levels.fit_lines(&sparse);
+    levels
+}
+
+impl Levels {
+    /// What a line costs that is met through an index vector, from each level, given what all else costs.
+    fn fit_lines(&mut self, passes: &[LongPass]) {
+        let capacities: Vec<f64> = self.levels.iter().filter_map(|level| level.capacity).collect();
+        let rows = passes.iter().map(|pass| {
+            let lines = |capacity: f64| {
+                let level = |capacity, line| Level { capacity, line, ..NOWHERE };
+                let step = [level(Some(capacity), 0.0), level(None, 1.0)];
+                pass.around.wait(&step, &pass.touched, pass.n) / pass.ns
+            };
+            let features: [f64; 3] =
+                std::array::from_fn(|at| capacities.get(at).map_or(0.0, |&capacity| lines(capacity)));
+            let streams = pass.around.wait(&self.levels, &pass.touched, pass.n);
+            let compute = pass.cost.start.value + pass.n * pass.cost.element.value;
+            let rest = (1.0 - self.overlap) * compute + streams;
+            // Where computing is the longer, waiting shows by what does not hide.
+            (features, ((pass.ns - rest) / pass.ns).max(0.0))
+        });
+        let lines = fit::non_negative(&rows.collect::<Vec<_>>());
+        let mut line = 0.0;
+        for (level, more) in self.levels.iter_mut().skip(1).zip(lines) {
+            line += more;
+            level.line = line;
+        }
+    }
 }
 
 /// Nanoseconds an element of computing and of waiting.
@@ -247,21 +325,24 @@ fn waits(features: &[f64; UNKNOWN], costs: &[f64; UNKNOWN]) -> f64 {
     features.iter().zip(costs).map(|(feature, cost)| feature * cost).sum()
 }
 
-/// The costs that suit the passes, weighted alike in their relative error. Which of computing and waiting is the longer
-/// depends on the costs: so some rounds.
+/// The costs that suit the passes, weighted alike in their relative error; some rounds, in which points far from the fit
+/// weigh less and less, so that a busy moment does not count for more than it is.
 fn fit_costs(passes: &[LongPass], features: &[[f64; UNKNOWN]], overlap: f64) -> [f64; UNKNOWN] {
     let mut costs: Option<[f64; UNKNOWN]> = None;
-    for _ in 0..4 {
+    for _ in 0..6 {
         let rows = passes.iter().zip(features).filter_map(|(pass, features)| {
             let value = (pass.ns - pass.cost.start.value) / pass.n;
             let compute = pass.cost.element.value;
-            let wait = costs.map_or(value, |costs| waits(features, &costs));
-            let (weight, rest) = if wait > compute {
+            // Which of computing and waiting is the longer shows in what both take together.
+            let waits_longer = value > (2.0 - overlap) * compute;
+            let (weight, rest) = if waits_longer {
                 (1.0, value - (1.0 - overlap) * compute)
             } else {
-                (1.0 - overlap, value - compute)
+                (1.0 - overlap, (value - compute).max(0.0))
             };
-            let scale = pass.n / pass.ns;
+            let far = costs
+                .map_or(0.0, |costs| (joined(overlap, compute, waits(features, &costs)) / value - 1.0).abs());
+            let scale = (0.05 / (0.05 + far)).sqrt() * pass.n / pass.ns;
             (weight > 0.0 && features[1] > 0.0)
                 .then(|| (features.map(|feature| weight * feature * scale), rest * scale))
         });
@@ -270,17 +351,12 @@ fn fit_costs(passes: &[LongPass], features: &[[f64; UNKNOWN]], overlap: f64) -> 
     costs.unwrap_or_default()
 }
 
-fn deviation(
-    passes: &[LongPass],
-    features: &[[f64; UNKNOWN]],
-    overlap: f64,
-    costs: &[f64; UNKNOWN],
-) -> f64 {
+fn deviation(passes: &[LongPass], features: &[[f64; UNKNOWN]], overlap: f64, costs: &[f64; UNKNOWN]) -> f64 {
     let errors = passes.iter().zip(features).map(|(pass, features)| {
         let each = joined(overlap, pass.cost.element.value, waits(features, costs));
         ((pass.cost.start.value + pass.n * each) / pass.ns).ln().abs()
     });
-    errors.sum::<f64>() / passes.len().max(1) as f64
+    median(errors)
 }
 
 /// A number with the difference of two halves as its interval.

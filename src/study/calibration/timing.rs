@@ -43,6 +43,13 @@ impl Samples {
         self.each.push(clock(self.runs) / self.runs as f64);
     }
 
+    /// Times one run as it comes, with whatever the caches hold.
+    pub(super) fn take_once(&mut self, work: impl FnOnce()) {
+        let start = Instant::now();
+        work();
+        self.each.push(start.elapsed().as_nanos() as f64);
+    }
+
     /// The best sample; infinite before there is one.
     pub(super) fn best(&self) -> f64 {
         self.each.iter().copied().fold(f64::INFINITY, f64::min)

@@ -3,6 +3,7 @@
 use super::fit;
 use crate::method::Phase;
 use crate::model::host::{Amounts, RatePoint, Rates};
+use crate::scene::Checked;
 use crate::study::phase_times::{FAST, LISTS, PhaseTimes, Run, Sampling, phase_times};
 use crate::study::throughput::MeasurementError;
 use std::collections::BTreeMap;
@@ -15,28 +16,52 @@ const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
 
 /// Steps before the clock starts, and those that are timed: fewer of many discs.
 fn sampling(particles: usize) -> Sampling {
-    let equilibration = (400_000 / particles).clamp(6, 30);
-    Sampling { equilibration, repeats: 5, particle_steps: 20_000, least_steps: 4 }
+    let equilibration = (200_000 / particles).clamp(4, 30);
+    Sampling { equilibration, repeats: 3, particle_steps: 15_000, least_steps: 4 }
 }
 
-/// The rates of the methods. `progress` gets the share that is done.
-///
-/// # Errors
-/// [`MeasurementError`] if a drill scene breaks.
-pub(super) fn rates(progress: impl Fn(f64)) -> Result<BTreeMap<String, Rates>, MeasurementError> {
-    let mut measured: Vec<(Run, PhaseTimes)> = vec![];
-    let all = (PARTICLES.len() * OCCUPANCIES.len() * PRECISIONS.len() * 2) as f64;
-    for particles in PARTICLES {
-        for occupancy in OCCUPANCIES {
-            for precision in PRECISIONS {
-                for execution in [FAST, LISTS] {
-                    let run = Run { particles, occupancy, precision, execution };
-                    measured.push((run, phase_times(&run.scene(&["particles.seed=11"])?, &sampling(particles))?));
-                    progress(measured.len() as f64 / all);
+/// Every drill scene, and what was measured of it.
+pub(super) struct Scenes(Vec<(Run, Checked, Option<PhaseTimes>)>);
+
+impl Scenes {
+    /// Nothing measured yet.
+    pub(super) fn new() -> Result<Scenes, MeasurementError> {
+        let mut scenes = vec![];
+        for particles in PARTICLES {
+            for occupancy in OCCUPANCIES {
+                for precision in PRECISIONS {
+                    for execution in [FAST, LISTS] {
+                        let run = Run { particles, occupancy, precision, execution };
+                        scenes.push((run, run.scene(&["particles.seed=11"])?, None));
+                    }
                 }
             }
         }
+        Ok(Scenes(scenes))
     }
+
+    /// Runs every scene once more. `progress` gets the share that is done.
+    pub(super) fn sweep(&mut self, progress: impl Fn(f64)) -> Result<(), MeasurementError> {
+        let all = self.0.len() as f64;
+        for (at, (run, checked, times)) in self.0.iter_mut().enumerate() {
+            let more = phase_times(checked, &sampling(run.particles))?;
+            *times = Some(match times.take() {
+                Some(before) => before.joined(more),
+                None => more,
+            });
+            progress((at + 1) as f64 / all);
+        }
+        Ok(())
+    }
+
+    /// The rates of the methods.
+    pub(super) fn rates(&self) -> BTreeMap<String, Rates> {
+        let measured = self.0.iter().filter_map(|(run, _, times)| Some((*run, times.as_ref()?)));
+        rates(&measured.collect::<Vec<_>>())
+    }
+}
+
+fn rates(measured: &[(Run, &PhaseTimes)]) -> BTreeMap<String, Rates> {
     let mut methods: BTreeMap<String, Rates> = BTreeMap::new();
     for particles in PARTICLES {
         for precision in PRECISIONS {
@@ -48,7 +73,7 @@ pub(super) fn rates(progress: impl Fn(f64)) -> Result<BTreeMap<String, Rates>, M
                             && run.precision == precision
                             && run.rates() == Some(method)
                     })
-                    .map(|(_, times)| times)
+                    .map(|(_, times)| *times)
                     .collect();
                 let phases =
                     methods.entry(method.to_owned()).or_default().0.entry(precision.to_owned()).or_default();
@@ -62,7 +87,7 @@ pub(super) fn rates(progress: impl Fn(f64)) -> Result<BTreeMap<String, Rates>, M
             }
         }
     }
-    Ok(methods)
+    methods
 }
 
 /// What each unit takes in a phase.
