@@ -56,9 +56,9 @@ fn all_defects_of_a_machine_file_are_said_at_once() {
     let out = stripmine(&["table", "--machine", &path]).code(3);
     let complaint = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
     for said in [
-        "missing field `year`",
+        "line 1, column 1: missing field `year`",
         "line 2, column 9: `title` must be words in quotes",
-        "line 3, column 8: unknown field `jahr`",
+        "line 3, column 1: unknown field `jahr`",
         "line 6, column 21: `start_up.default` is -20",
     ] {
         assert!(complaint.contains(said), "{said}: {complaint}");

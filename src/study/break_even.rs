@@ -16,8 +16,8 @@ use stripmine_kernels::Execution;
 
 /// ρ of the atlas, below the ceiling of cells as wide as the radius.
 pub const OCCUPANCIES: [f64; 7] = [0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.25];
-/// NP of the atlas by models.
-pub const PARTICLES: [usize; 7] = [100, 300, 1000, 3000, 10_000, 20_000, 40_000];
+/// NP of the atlas by models; at the lowest occupancy the lattice of the last is as large as calibrations go.
+pub const PARTICLES: [usize; 6] = [100, 300, 1000, 3000, 10_000, 30_000];
 
 /// Ways of a host, as scenes name them.
 const WAYS: [(&str, Option<Execution>); 5] = [

@@ -13,11 +13,12 @@ pub struct Position {
 }
 
 impl Position {
-    /// Of `entry`, a path of keys joined by dots; where it is missing, of the table that it is missing from.
+    /// Of `entry`, a path of keys joined by dots; where it is missing, of the table that it is missing from; none
+    /// if the text is not TOML.
     pub fn of(text: &str, entry: &str) -> Option<Position> {
         let document = DeTable::parse(text).ok()?;
         let mut table = Some(document.get_ref());
-        let mut found = None;
+        let mut found = 0;
         for key in entry.split('.') {
             let Some((name, value)) =
                 table.and_then(|table| table.iter().find(|(name, _)| name.get_ref() == key))
@@ -25,13 +26,13 @@ impl Position {
                 break;
             };
             // A table's own span may be that of its last header: its key says where it begins.
-            found = Some(if value.get_ref().is_table() { name.span().start } else { value.span().start });
+            found = if value.get_ref().is_table() { name.span().start } else { value.span().start };
             table = match value.get_ref() {
                 DeValue::Table(inner) => Some(inner),
                 _ => None,
             };
         }
-        let before = text.get(..found?)?;
+        let before = text.get(..found)?;
         let line = before.matches('\n').count() + 1;
         let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) + 1;
         Some(Position { line, column })
@@ -56,6 +57,6 @@ mod tests {
         assert_eq!(at("b.c.value"), Some((3, 15)));
         assert_eq!(at("b.c.nothing"), Some((3, 1)));
         assert_eq!(at("b.d"), Some((2, 2)));
-        assert_eq!(at("z"), None);
+        assert_eq!(at("z"), Some((1, 1)));
     }
 }
