@@ -6,6 +6,7 @@ use super::efficiency_table::{Question, counting_model, step};
 use crate::method::lattice_md::{Part, ledger, rival_ledger};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
+use stripmine_kernels::isa::OpClass;
 use stripmine_kernels::ledger::{Ledger, Length};
 
 /// The share of useful operations at a density.
@@ -49,15 +50,14 @@ fn share(figures: ListFigures) -> Result<Share, StudyError> {
     let discs = question.particles as f64;
     let contacts = figures.contacts * discs;
     let lattice = ledger(&programs);
-    // Operations of a place of the mask: what is done once a cell is not among them.
+    // Operations of a place of the mask: what is done once a cell is not among them. The law adds to its sums in a section
+    // of the same name as the one that stores them.
     let places = 24.0;
     let of_places: u64 = lattice
         .entries()
         .iter()
-        .filter(|entry| {
-            entry.part == Part::Forces.name() && !["own disc", "sums", "watch"].contains(&entry.section)
-        })
-        .map(|entry| entry.counts.total())
+        .filter(|entry| entry.part == Part::Forces.name() && !["own disc", "watch"].contains(&entry.section))
+        .map(|entry| entry.counts.filtered(|op| op.class() != OpClass::Store).total())
         .sum();
     let useful = contacts * of_places as f64 / places;
     let sum = |ledger: &Ledger, forces_only: bool| -> f64 {
