@@ -29,6 +29,9 @@ const MODELS: [&[&str]; 2] = [
     &["particles.temperature=0", "particles.seed=7", "law.friction=0", "law.shear_damping=0"],
 ];
 
+/// Operations of each class of an element, and the nanoseconds it took.
+type Counted = (BTreeMap<&'static str, f64>, f64);
+
 /// The loops of one model in one precision.
 struct Step {
     name: String,
@@ -128,7 +131,7 @@ impl Loops {
     /// The costs.
     pub(super) fn costs(&self) -> LoopCosts {
         let mut seen = BTreeMap::new();
-        let mut of_lane: BTreeMap<String, Vec<(BTreeMap<&'static str, f64>, f64)>> = BTreeMap::new();
+        let mut of_lane: BTreeMap<String, Vec<Counted>> = BTreeMap::new();
         for step in self.steps.iter().filter(|step| !step.large) {
             for (program, samples) in step.programs.iter().zip(&step.samples) {
                 let [short, long] = ELEMENTS.map(|n| n as f64);

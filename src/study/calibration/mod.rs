@@ -88,7 +88,7 @@ fn measured(
         }
         let mut timings = Timings::default();
         clock.take(20_000.0, || timings.time(Phase::Predict, || ()));
-        binding.take(20_000.0, || drop(std::hint::black_box(arrays.0.memory())));
+        binding.take(20_000.0, || _ = std::hint::black_box(arrays.0.memory()));
         let memories = [arrays.0.memory(), arrays.1.memory()];
         for (lane, memory) in lanes.iter_mut().zip(&memories) {
             lane.sweep(memory, set, sweep);

@@ -47,9 +47,9 @@ impl Point {
 /// Of so many sweeps one is over vectors of this length: the longest would take all the time.
 fn turn(n: usize) -> usize {
     match n {
-        ..=40_000 => 1,
-        ..=150_000 => 2,
-        ..=600_000 => 4,
+        0..=40_000 => 1,
+        40_001..=150_000 => 2,
+        150_001..=600_000 => 4,
         _ => 16,
     }
 }
