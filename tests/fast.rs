@@ -3,7 +3,7 @@
 
 mod support;
 
-use stripmine::method::lattice_md::{Contacts, GearValues, Machine, Model, Scheme, Watch};
+use stripmine::method::lattice_md::{Contacts, GearValues, Machine, Model, Scheme, Search, Watch};
 use stripmine::method::{Failure, Method, StateColumn};
 use stripmine::observe::{Observation, Scenery};
 use stripmine::particles::{Kind, Particles};
@@ -50,7 +50,7 @@ fn trajectories_are_the_faithful_ones_but_for_rounding() {
                 [(Precision::F64, 1e-10), (Precision::Mixed, 1e-3), (Precision::F32, 1e-3)]
             {
                 let mut faithful = simulate(precision, &start, Contacts::Lattice, fast());
-                let mut other = simulate(precision, &start, Contacts::Fast, fast());
+                let mut other = simulate(precision, &start, Contacts::Fast(Search::Lattice), fast());
                 advance(faithful.as_mut(), 300);
                 advance(other.as_mut(), 300);
                 let off = differences(&start.0, &faithful.particles(), &other.particles());
@@ -84,7 +84,7 @@ fn walls_gravity_and_a_shaken_floor_are_the_faithful_ones() {
             advance(method.as_mut(), 400);
             (method.particles(), method.deep_contacts())
         };
-        let ((faithful, deep), (other, also_deep)) = (run(Contacts::Lattice), run(Contacts::Fast));
+        let ((faithful, deep), (other, also_deep)) = (run(Contacts::Lattice), run(Contacts::Fast(Search::Lattice)));
         let off = differences(&model, &faithful, &other);
         assert!(off[0] < 1e-10 && off[1] < 1e-9, "{scheme:?}: {off:?}");
         assert_eq!(deep.disc_steps, also_deep.disc_steps);
@@ -103,7 +103,7 @@ fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let machine = Machine { execution: Execution::Chained, set };
-                let mut gas = simulate(precision, &start, Contacts::Fast, machine);
+                let mut gas = simulate(precision, &start, Contacts::Fast(Search::Lattice), machine);
                 advance(gas.as_mut(), 40);
                 bits(gas.as_ref())
             })
@@ -114,9 +114,9 @@ fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
                 assert!(run(threads, set) == scalar, "{} on {threads} threads", set.name());
             }
         }
-        let mut first = simulate(precision, &start, Contacts::Fast, fast());
+        let mut first = simulate(precision, &start, Contacts::Fast(Search::Lattice), fast());
         advance(first.as_mut(), 17);
-        let mut second = simulate(precision, &start, Contacts::Fast, fast());
+        let mut second = simulate(precision, &start, Contacts::Fast(Search::Lattice), fast());
         second.restore(17, first.deep_contacts(), first.state()).unwrap();
         assert!(second.particles() == first.particles());
         advance(second.as_mut(), 23);
@@ -128,7 +128,7 @@ fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
 fn momentum_is_conserved_to_rounding() {
     let mut start = gas(400, 0.84, 5);
     start.0.scheme = Scheme::VelocityVerlet;
-    let mut gas = simulate(Precision::F64, &start, Contacts::Fast, fast());
+    let mut gas = simulate(Precision::F64, &start, Contacts::Fast(Search::Lattice), fast());
     let observe =
         |gas: &dyn Method| Observation::of(gas.steps(), 0.0, &gas.particles(), &Scenery::of(&start.0));
     let first = observe(gas.as_ref());
@@ -158,7 +158,7 @@ fn energy_is_kept_over_ten_thousand_steps() {
             })
             .fold(0.0, f64::max)
     };
-    let verlet = drift(Scheme::VelocityVerlet, Contacts::Fast);
+    let verlet = drift(Scheme::VelocityVerlet, Contacts::Fast(Search::Lattice));
     let gear = drift(Scheme::Gear(GearValues::Five), Contacts::Lattice);
     println!("largest error of the energy: velocity Verlet {verlet:.1e}, Gear {gear:.1e}");
     assert!(verlet < 1e-4, "{verlet:e}");
@@ -199,7 +199,7 @@ fn failures_are_found_in_their_step() {
                 };
             (0..200).find_map(|_| method.step().err()).expect("something breaks")
         };
-        match (failure(Contacts::Lattice), failure(Contacts::Fast)) {
+        match (failure(Contacts::Lattice), failure(Contacts::Fast(Search::Lattice))) {
             (Failure::OutOfBox { step, first, .. }, Failure::OutOfBox { step: at, first: disc, .. }) => {
                 assert_eq!((step, first.id), (at, disc.id));
                 assert!((first.position[0] - disc.position[0]).abs() < 1e-9);

@@ -1,12 +1,15 @@
 //! From a checked scene to the method that runs it.
 
 use crate::method::lattice_md::{
-    Contacts, Discs, GearValues, ListOptions, Machine, Model, Rebuild, Scheme, Watch, start,
+    Contacts, Discs, GearValues, ListOptions, Machine, Model, Rebuild, Scheme, Search, Watch, start,
 };
 use crate::method::{Failure, Method};
 use crate::scene::{self, Checked, MethodKind};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::law::granular::Disc;
+
+/// Skin of neighbour lists where the scene gives none, in largest radii.
+const SKIN: f64 = 0.3;
 
 /// What a checked scene models: no more than it needs.
 pub fn model(checked: &Checked) -> Model {
@@ -50,15 +53,20 @@ pub fn model(checked: &Checked) -> Model {
 /// [`Failure`] if the start breaks a precondition, or the processor lacks the instruction set asked for.
 pub fn assemble(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
     let Checked { scene, particles, geometry, .. } = checked;
+    let fast = scene.method.execution == scene::Execution::Fast;
     let contacts = match scene.method.kind {
-        MethodKind::Lattice if scene.method.execution == scene::Execution::Fast => Contacts::Fast,
+        MethodKind::Lattice if fast => Contacts::Fast(Search::Lattice),
         MethodKind::Lattice => Contacts::Lattice,
+        MethodKind::Sectors => Contacts::Fast(Search::Sectors),
+        MethodKind::NeighborList { skin, .. } if fast => {
+            Contacts::Fast(Search::Lists { skin: skin.unwrap_or(SKIN * geometry.radii[1]) })
+        }
         MethodKind::NeighborList { rebuild, skin } => Contacts::Lists(ListOptions {
             rebuild: match rebuild {
                 scene::Rebuild::Cells => Rebuild::Cells,
                 scene::Rebuild::AllPairs => Rebuild::AllPairs,
             },
-            skin: skin.unwrap_or(0.3 * geometry.radii[1]),
+            skin: skin.unwrap_or(SKIN * geometry.radii[1]),
         }),
     };
     let machine = Machine {

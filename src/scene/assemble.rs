@@ -209,6 +209,7 @@ fn method(from: &Values<'_>) -> Get<Method> {
                 },
                 skin: from.number_if_any(&SKIN),
             },
+            "sectors" => MethodKind::Sectors,
             _ => MethodKind::Lattice,
         },
         cell_edge: from.number_if_any(&CELL_EDGE),
@@ -368,6 +369,7 @@ fn start_values(start: &Start, values: &mut Vec<(&'static Key, Value)>) {
 fn method_values(method: &Method, values: &mut Vec<(&'static Key, Value)>) {
     match method.kind {
         MethodKind::Lattice => values.push((&METHOD, word("lattice"))),
+        MethodKind::Sectors => values.push((&METHOD, word("sectors"))),
         MethodKind::NeighborList { rebuild, skin } => {
             values.push((&METHOD, word("neighbor-list")));
             values.push((&REBUILD, word(if rebuild == Rebuild::Cells { "cells" } else { "all-pairs" })));

@@ -129,8 +129,8 @@ define_keys! {
     STOP_PENETRATION = "law" "stop_penetration", Number(Within(1.0)), "", Is("0.3"), ALWAYS,
         "Penetration that stops the run.";
 
-    METHOD = "method" "kind", Choice(&["lattice", "neighbor-list"]), "", Is("\"lattice\""), ALWAYS,
-        "How contacts are found: on the exclusive lattice of BP93, or by its rival.";
+    METHOD = "method" "kind", Choice(&["lattice", "sectors", "neighbor-list"]), "", Is("\"lattice\""), ALWAYS,
+        "How contacts are found: on the exclusive lattice of BP93, in sectors that hold any number of discs (with execution = \"fast\" only), or by lists of neighbours.";
     CELL_EDGE = "method" "cell_edge", Number(Positive), "length", Otherwise("the fewest cells"), ALWAYS,
         "Side d of a lattice cell; fitted to periodic sides. The source has d = R_max.";
     MASK = "method" "mask", OneOf(&[5, 7]), "", Otherwise("the smallest that serves"), ALWAYS,

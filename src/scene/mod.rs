@@ -252,11 +252,24 @@ pub struct Method {
     pub instruction_set: Option<InstructionSet>,
 }
 
+impl Method {
+    /// Whether discs must have a cell of the exclusive lattice to themselves, or be seen through its mask.
+    pub fn needs_lattice(&self) -> bool {
+        match self.kind {
+            MethodKind::Lattice => true,
+            MethodKind::Sectors => false,
+            MethodKind::NeighborList { .. } => self.execution != Execution::Fast,
+        }
+    }
+}
+
 /// How contacts are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MethodKind {
     /// On the exclusive lattice.
     Lattice,
+    /// In sectors that hold any number of discs.
+    Sectors,
     /// By neighbour lists.
     NeighborList {
         /// How lists are made.

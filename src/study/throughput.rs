@@ -3,7 +3,7 @@
 use crate::method::{Failure, Method};
 use crate::observe::{Observation, Scenery};
 use crate::run::assemble;
-use crate::scene::{Document, MethodKind, Precision, SceneErrors, Scheme};
+use crate::scene::{Document, Execution, MethodKind, Precision, SceneErrors, Scheme};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use stripmine_kernels::InstructionSet;
@@ -113,6 +113,7 @@ pub fn throughput(measurement: Measurement) -> Result<Throughput, MeasurementErr
     Ok(Throughput {
         what: match scene.method.kind {
             MethodKind::Lattice => "lattice",
+            MethodKind::Sectors => "sectors",
             MethodKind::NeighborList { .. } => "neighbor-list",
         },
         particles,
@@ -127,8 +128,9 @@ pub fn throughput(measurement: Measurement) -> Result<Throughput, MeasurementErr
             Scheme::VelocityVerlet => "velocity-verlet".to_owned(),
         },
         execution: match (scene.method.kind, scene.method.execution) {
+            (_, Execution::Fast) => Execution::Fast.name(),
             (MethodKind::NeighborList { .. }, _) => "scalar".to_owned(),
-            (MethodKind::Lattice, execution) => execution.name(),
+            (_, execution) => execution.name(),
         },
         friction: scene.law.has_friction(),
         cell_edge: checked.geometry.frame.edge,

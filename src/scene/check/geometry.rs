@@ -102,7 +102,12 @@ pub(super) fn fit(
     discs: usize,
 ) -> Result<Geometry, Vec<SceneError>> {
     let scene = &document.scene;
-    let bounds = |half_width| Bounds::new(half_width, radii, scene.law.max_penetration);
+    let bounds = |half_width| {
+        let exclusive = Bounds::new(half_width, radii, scene.law.max_penetration);
+        // Where no disc must have a cell to itself, any cell will do.
+        let diagonal = if scene.method.needs_lattice() { exclusive.diagonal } else { f64::INFINITY };
+        Bounds { diagonal, ..exclusive }
+    };
     let tries: Vec<Bounds> = match scene.method.mask {
         Some(7) => vec![bounds(3)],
         Some(_) => vec![bounds(2)],

@@ -12,16 +12,18 @@
 
 mod advance;
 mod bands;
-mod bits;
 mod contacts;
-mod detection;
-mod occupancy;
-mod sparse;
+mod finder;
+pub mod lattice;
+mod sectors;
+mod verlet;
 
-pub use advance::{Advance, Motion};
+pub use advance::{Advance, Copies, Leash, Motion};
 pub use bands::{Met, Sweep};
 pub use contacts::Discs;
-pub use occupancy::{Occupancy, Taken};
+pub use finder::{Cursor, Finder, Pairs, Rows};
+pub use sectors::{Grid, Sectors, Touches};
+pub use verlet::VerletList;
 
 /// Elements behind the discs' own in every column that a sweep reads: two discs that never touch, which fill up
 /// registers.

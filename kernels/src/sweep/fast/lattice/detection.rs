@@ -1,57 +1,16 @@
 //! Finding contacts: registers of cells against the same cells at every place of the half mask.
 
+use super::codes::Candidate;
 use super::occupancy::Occupancy;
 use crate::GROUP;
 use crate::backend::Registers;
 use crate::isa::Vector;
 use crate::program::Task;
+use crate::sweep::fast::finder::{Cursor, MARGIN};
 use std::ops::Range;
 
 /// Places of the mask whose findings share a word: 16 cells each.
 const PLACES: usize = 64 / GROUP;
-
-/// Squares of distances may be off by so much in single precision, and pairs beyond contact do no harm.
-pub(super) const MARGIN: f32 = 1.0 + 2e-5;
-
-/// A pair of cells whose discs may touch: the first cell of the group in the high bits, place and lane in the low ones.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Candidate(pub(super) u64);
-
-impl Candidate {
-    /// Bits of a code.
-    pub(super) const CODE: u32 = 9;
-
-    /// Position of the group's first cell.
-    #[inline(always)]
-    pub(super) fn base(self) -> usize {
-        (self.0 >> Self::CODE) as usize
-    }
-
-    /// Place and lane: an index into [`codes`].
-    #[inline(always)]
-    pub(super) fn code(self) -> usize {
-        (self.0 & ((1 << Self::CODE) - 1)) as usize
-    }
-}
-
-/// The places of a half mask in the order of the sweep: columns and rows.
-pub(super) fn places(half_width: usize) -> impl Iterator<Item = [isize; 2]> {
-    let h = half_width as isize;
-    let ahead = (1..=h).map(|column| [column, 0]);
-    ahead.chain((1..=h).flat_map(move |row| (-h..=h).map(move |column| [column, row])))
-}
-
-/// What a code stands for: lane and place.
-pub(super) fn codes(half_width: usize) -> impl Iterator<Item = (usize, [isize; 2])> {
-    places(half_width).flat_map(|place| (0..GROUP).map(move |lane| (lane, place)))
-}
-
-/// Where a search goes on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Cursor {
-    pub(super) row: usize,
-    pub(super) group: usize,
-}
 
 /// Searches groups of cells from `cursor` to the end of the rows, until `full` candidates are found.
 pub(super) struct Search<'a> {
@@ -94,8 +53,8 @@ impl Search<'_> {
         assert!(end < occupied.positions());
         let (x, y, radii) = (x.as_ptr(), y.as_ptr(), radii.as_ptr());
         while cursor.row < rows.end {
-            while cursor.group < groups {
-                let column = cursor.group * GROUP;
+            while cursor.along < groups {
+                let column = cursor.along * GROUP;
                 let base = shape.position(column as isize, cursor.row as isize);
                 let inside = (1 << GROUP.min(shape.columns() - column)) - 1;
                 // SAFETY: the group begins before `end`.
@@ -119,9 +78,9 @@ impl Search<'_> {
                         list(found, (base as u64) << Candidate::CODE | (word as u64) << 6, near & own);
                     }
                 }
-                cursor.group += 1;
+                cursor.along += 1;
             }
-            *cursor = Cursor { row: cursor.row + 1, group: 0 };
+            *cursor = Cursor::at(cursor.row + 1);
         }
     }
 }
@@ -139,7 +98,7 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
     edge: [f32; 2],
 ) -> [u64; 6] {
     let mut near = [0; 6];
-    let limit = registers.splat(MARGIN);
+    let limit = registers.splat(MARGIN as f32);
     let mut part = 0;
     while part < GROUP {
         // SAFETY: the caller's promise, here and below.

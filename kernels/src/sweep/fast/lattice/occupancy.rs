@@ -1,8 +1,10 @@
 //! Who is where: the Index, kept up to date by the discs that change cells, and places inside cells.
 
-use super::SENTINELS;
 use super::bits::Bits;
 use crate::GROUP;
+use crate::sweep::fast::SENTINELS;
+use crate::sweep::fast::advance::Copies;
+use crate::sweep::fast::sectors::Grid;
 use crate::sweep::lattice::{Frame, Image, LatticeShape};
 
 /// The cell is another disc's.
@@ -24,6 +26,7 @@ const SPARSE: f64 = 0.15;
 #[derive(Clone, Debug)]
 pub struct Occupancy {
     shape: LatticeShape,
+    frame: Frame,
     half_width: usize,
     unit: f64,
     /// From a column and from a row to the next.
@@ -56,6 +59,7 @@ impl Occupancy {
         let sparse = (discs as f64) < SPARSE * shape.cells() as f64;
         let places = if sparse { 0 } else { length };
         Occupancy {
+            frame,
             half_width,
             unit: 1.0 / reach,
             edge: frame.edge.map(|edge| (edge / reach) as f32),
@@ -74,6 +78,12 @@ impl Occupancy {
     /// The lattice.
     pub fn shape(&self) -> &LatticeShape {
         &self.shape
+    }
+
+    /// Its cells.
+    pub fn grid(&self) -> Grid {
+        let counts = [self.shape.columns(), self.shape.rows()];
+        Grid { frame: self.frame, counts, periodic: self.shape.periodic() }
     }
 
     /// How many discs there are.
@@ -239,9 +249,9 @@ impl Occupancy {
         &self.occupied
     }
 
-    /// The cells of the discs, the places inside the cells to be written (empty if sparse), and the unit they are in.
-    pub(super) fn to_settle(&mut self) -> (&[u32], [&mut [f32]; 2], f64) {
+    /// What a pass over the discs is to keep up to date; nothing if the lattice is sparse.
+    pub fn copies(&mut self) -> Option<Copies<'_>> {
         let [x, y] = &mut self.place;
-        (&self.cell, [x, y], self.unit)
+        (!self.sparse).then_some(Copies { cells: &self.cell, places: [x, y], unit: self.unit })
     }
 }
