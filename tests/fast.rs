@@ -3,7 +3,9 @@
 
 mod support;
 
-use stripmine::method::lattice_md::{Contacts, GearValues, Machine, Model, Scheme, Search, Watch};
+use stripmine::method::lattice_md::{
+    Contacts, GearValues, Machine, Model, OnConflict, Scheme, Search, Watch,
+};
 use stripmine::method::{Failure, Method, StateColumn};
 use stripmine::observe::{Observation, Scenery};
 use stripmine::particles::{Kind, Particles};
@@ -11,6 +13,11 @@ use stripmine::scene::{Precision, WallMotion};
 use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, advance, arena, fast, gas, grain, simulate};
+
+const LATTICE: Search = Search::Lattice(OnConflict::Stop);
+
+/// All ways of finding contacts.
+const SEARCHES: [Search; 3] = [LATTICE, Search::Sectors, Search::Lists { skin: 0.15 }];
 
 const SCHEMES: [Scheme; 4] = [
     Scheme::VelocityVerlet,
@@ -50,13 +57,16 @@ fn trajectories_are_the_faithful_ones_but_for_rounding() {
                 [(Precision::F64, 1e-10), (Precision::Mixed, 1e-3), (Precision::F32, 1e-3)]
             {
                 let mut faithful = simulate(precision, &start, Contacts::Lattice, fast());
-                let mut other = simulate(precision, &start, Contacts::Fast(Search::Lattice), fast());
                 advance(faithful.as_mut(), 300);
-                advance(other.as_mut(), 300);
-                let off = differences(&start.0, &faithful.particles(), &other.particles());
-                assert!(off[0] < bound && off[1] < 10.0 * bound, "{scheme:?} {precision:?}: {off:?}");
-                let moved = differences(&start.0, &start.1, &other.particles());
+                let moved = differences(&start.0, &start.1, &faithful.particles());
                 assert!(moved[0] > 0.1, "the discs must have moved: {moved:?}");
+                for search in SEARCHES {
+                    let mut other = simulate(precision, &start, Contacts::Fast(search), fast());
+                    advance(other.as_mut(), 300);
+                    let off = differences(&start.0, &faithful.particles(), &other.particles());
+                    let close = off[0] < bound && off[1] < 10.0 * bound;
+                    assert!(close, "{search:?} {scheme:?} {precision:?}: {off:?}");
+                }
             }
         }
     }
@@ -84,43 +94,54 @@ fn walls_gravity_and_a_shaken_floor_are_the_faithful_ones() {
             advance(method.as_mut(), 400);
             (method.particles(), method.deep_contacts())
         };
-        let ((faithful, deep), (other, also_deep)) = (run(Contacts::Lattice), run(Contacts::Fast(Search::Lattice)));
-        let off = differences(&model, &faithful, &other);
-        assert!(off[0] < 1e-10 && off[1] < 1e-9, "{scheme:?}: {off:?}");
-        assert_eq!(deep.disc_steps, also_deep.disc_steps);
-        assert!((deep.deepest - also_deep.deepest).abs() < 1e-9);
+        let (faithful, deep) = run(Contacts::Lattice);
+        for search in SEARCHES {
+            let (other, also_deep) = run(Contacts::Fast(search));
+            let off = differences(&model, &faithful, &other);
+            assert!(off[0] < 1e-10 && off[1] < 1e-9, "{search:?} {scheme:?}: {off:?}");
+            assert_eq!(deep.disc_steps, also_deep.disc_steps);
+            assert!((deep.deepest - also_deep.deepest).abs() < 1e-9);
+        }
     }
 }
 
 #[test]
 fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
-    for (packing_fraction, precision) in
-        [(0.84, Precision::F64), (0.1, Precision::F64), (0.84, Precision::Mixed)]
-    {
+    // Long enough for lists to be made anew.
+    const STEPS: u64 = 60;
+    let (lattice, [_, sectors, lists]) = (LATTICE, SEARCHES);
+    for (search, packing_fraction, precision) in [
+        (lattice, 0.84, Precision::F64),
+        (lattice, 0.1, Precision::F64),
+        (lattice, 0.84, Precision::Mixed),
+        (sectors, 0.3, Precision::F64),
+        (lists, 0.84, Precision::F32),
+        (lists, 0.1, Precision::F64),
+    ] {
         let mut start = gas(8200, packing_fraction, 3);
         start.0.scheme = Scheme::VelocityVerlet;
         let run = |threads: usize, set: InstructionSet| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let machine = Machine { execution: Execution::Chained, set };
-                let mut gas = simulate(precision, &start, Contacts::Fast(Search::Lattice), machine);
-                advance(gas.as_mut(), 40);
+                let mut gas = simulate(precision, &start, Contacts::Fast(search), machine);
+                advance(gas.as_mut(), STEPS);
                 bits(gas.as_ref())
             })
         };
         let scalar = run(1, InstructionSet::Scalar);
         for set in InstructionSet::available() {
             for threads in [1, 2, 3] {
-                assert!(run(threads, set) == scalar, "{} on {threads} threads", set.name());
+                assert!(run(threads, set) == scalar, "{search:?} {} on {threads} threads", set.name());
             }
         }
-        let mut first = simulate(precision, &start, Contacts::Fast(Search::Lattice), fast());
-        advance(first.as_mut(), 17);
-        let mut second = simulate(precision, &start, Contacts::Fast(Search::Lattice), fast());
-        second.restore(17, first.deep_contacts(), first.state()).unwrap();
+        let mut first = simulate(precision, &start, Contacts::Fast(search), fast());
+        advance(first.as_mut(), 37);
+        let mut second = simulate(precision, &start, Contacts::Fast(search), fast());
+        second.restore(37, first.deep_contacts(), first.state()).unwrap();
         assert!(second.particles() == first.particles());
-        advance(second.as_mut(), 23);
-        assert!(bits(second.as_ref()) == scalar, "a run that goes on differs");
+        advance(second.as_mut(), STEPS - 37);
+        assert!(bits(second.as_ref()) == scalar, "{search:?}: a run that goes on differs");
     }
 }
 
@@ -128,7 +149,7 @@ fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
 fn momentum_is_conserved_to_rounding() {
     let mut start = gas(400, 0.84, 5);
     start.0.scheme = Scheme::VelocityVerlet;
-    let mut gas = simulate(Precision::F64, &start, Contacts::Fast(Search::Lattice), fast());
+    let mut gas = simulate(Precision::F64, &start, Contacts::Fast(LATTICE), fast());
     let observe =
         |gas: &dyn Method| Observation::of(gas.steps(), 0.0, &gas.particles(), &Scenery::of(&start.0));
     let first = observe(gas.as_ref());
@@ -158,7 +179,7 @@ fn energy_is_kept_over_ten_thousand_steps() {
             })
             .fold(0.0, f64::max)
     };
-    let verlet = drift(Scheme::VelocityVerlet, Contacts::Fast(Search::Lattice));
+    let verlet = drift(Scheme::VelocityVerlet, Contacts::Fast(LATTICE));
     let gear = drift(Scheme::Gear(GearValues::Five), Contacts::Lattice);
     println!("largest error of the energy: velocity Verlet {verlet:.1e}, Gear {gear:.1e}");
     assert!(verlet < 1e-4, "{verlet:e}");
@@ -186,7 +207,13 @@ fn failures_are_found_in_their_step() {
         start.0.watch = Some(Watch { max_penetration: 0.1, stop_penetration: stop, smallest_radius: 0.5 });
         start
     };
-    for mut start in [arena([16, 16], false, &lost), with(0.4), with(0.99), nan] {
+    let cases = [arena([16, 16], false, &lost), with(0.4), nan, with(0.99)];
+    // Two discs in one cell break the lattice only.
+    let runs = SEARCHES.into_iter().flat_map(|search| {
+        let apply = if search == LATTICE { 4 } else { 3 };
+        cases.iter().take(apply).cloned().map(move |start| (search, start))
+    });
+    for (search, mut start) in runs {
         start.0.scheme = Scheme::Gear(GearValues::Five);
         let failure = |contacts| -> Failure {
             let start = start.clone();
@@ -199,10 +226,16 @@ fn failures_are_found_in_their_step() {
                 };
             (0..200).find_map(|_| method.step().err()).expect("something breaks")
         };
-        match (failure(Contacts::Lattice), failure(Contacts::Fast(Search::Lattice))) {
+        match (failure(Contacts::Lattice), failure(Contacts::Fast(search))) {
             (Failure::OutOfBox { step, first, .. }, Failure::OutOfBox { step: at, first: disc, .. }) => {
-                assert_eq!((step, first.id), (at, disc.id));
-                assert!((first.position[0] - disc.position[0]).abs() < 1e-9);
+                assert_eq!(first.id, disc.id);
+                // Lists do not look where a disc is before it has gone half the skin.
+                if let Search::Lists { .. } = search {
+                    assert!((step..step + 20).contains(&at), "{step} {at}");
+                } else {
+                    assert_eq!(step, at);
+                    assert!((first.position[0] - disc.position[0]).abs() < 1e-9);
+                }
             }
             (
                 Failure::TooDeep { step, penetration, .. },

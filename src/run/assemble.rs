@@ -1,7 +1,8 @@
 //! From a checked scene to the method that runs it.
 
 use crate::method::lattice_md::{
-    Contacts, Discs, GearValues, ListOptions, Machine, Model, Rebuild, Scheme, Search, Watch, start,
+    Contacts, Discs, GearValues, ListOptions, Machine, Model, OnConflict, Rebuild, Scheme, Search, Watch,
+    start,
 };
 use crate::method::{Failure, Method};
 use crate::scene::{self, Checked, MethodKind};
@@ -55,7 +56,10 @@ pub fn assemble(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
     let Checked { scene, particles, geometry, .. } = checked;
     let fast = scene.method.execution == scene::Execution::Fast;
     let contacts = match scene.method.kind {
-        MethodKind::Lattice if fast => Contacts::Fast(Search::Lattice),
+        MethodKind::Lattice if fast => Contacts::Fast(Search::Lattice(match scene.method.on_conflict {
+            scene::OnConflict::Stop => OnConflict::Stop,
+            scene::OnConflict::Resolve => OnConflict::Resolve,
+        })),
         MethodKind::Lattice => Contacts::Lattice,
         MethodKind::Sectors => Contacts::Fast(Search::Sectors),
         MethodKind::NeighborList { skin, .. } if fast => {

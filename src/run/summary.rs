@@ -44,6 +44,8 @@ pub struct Summary {
     pub phases: BTreeMap<&'static str, f64>,
     /// Discs in contacts deeper than `max_penetration`, summed over the steps.
     pub deep_disc_steps: u64,
+    /// Discs beside the lattice because their cell was another's, summed over the steps.
+    pub resolved_conflicts: u64,
     /// The deepest such contact (fraction of the sum of the radii), 0 if there was none.
     pub deepest_watched: f64,
     /// What a step executes.
@@ -73,6 +75,13 @@ impl Summary {
                 scene.law.max_penetration, deep.disc_steps, deep.deepest, deep.step
             ));
         }
+        if deep.shared_cells > 0 {
+            warnings.push(format!(
+                "{} times a disc was in a lattice cell that was another's, and was kept beside the lattice: exact, but \
+                 slower the more there are",
+                deep.shared_cells
+            ));
+        }
         let scenery = Scenery::of(&super::model(checked));
         Summary {
             origin: Origin::here(),
@@ -90,6 +99,7 @@ impl Summary {
             seconds,
             phases: method.timings().named(),
             deep_disc_steps: deep.disc_steps,
+            resolved_conflicts: deep.shared_cells,
             deepest_watched: deep.deepest,
             ledger: ledger(method),
             work_relative_to_everything: relative_work(checked),

@@ -29,6 +29,7 @@ const BOX: Use = Some((Selector::Start, &["box"]));
 const LIST: Use = Some((Selector::Start, &["list"]));
 const OSCILLATING: Use = Some((Selector::WallMotion, &["oscillating"]));
 const GEAR: Use = Some((Selector::Integrator, &["gear"]));
+const EXCLUSIVE: Use = Some((Selector::Method, &["lattice"]));
 const LISTS: Use = Some((Selector::Method, &["neighbor-list"]));
 
 macro_rules! define_keys {
@@ -135,6 +136,8 @@ define_keys! {
         "Side d of a lattice cell; fitted to periodic sides. The source has d = R_max.";
     MASK = "method" "mask", OneOf(&[5, 7]), "", Otherwise("the smallest that serves"), ALWAYS,
         "Width of the neighbourhood in cells: 5×5 or 7×7.";
+    ON_CONFLICT = "method" "on_conflict", Choice(&["stop", "resolve"]), "", Is("\"stop\""), EXCLUSIVE,
+        "What becomes of a disc whose lattice cell is another's: the run stops, or the disc is kept in a list beside the lattice and counted (with execution = \"fast\" only; a cell_edge may then be too large for one disc a cell).";
     COORDINATES = "method" "coordinates", Choice(&["cell-relative", "absolute"]), "", Is("\"cell-relative\""), ALWAYS,
         "What positions on the lattice are measured from.";
     PRECISION = "method" "precision", Choice(&["f64", "f32", "mixed"]), "", Is("\"f64\""), ALWAYS,

@@ -242,6 +242,8 @@ pub struct Method {
     pub cell_edge: Option<f64>,
     /// Width of the mask in cells, 5 or 7; none: the smallest that serves.
     pub mask: Option<usize>,
+    /// What becomes of a disc whose lattice cell is another's.
+    pub on_conflict: OnConflict,
     /// What positions on the lattice are measured from.
     pub coordinates: Coordinates,
     /// Precision of state and forces.
@@ -261,6 +263,16 @@ impl Method {
             MethodKind::NeighborList { .. } => self.execution != Execution::Fast,
         }
     }
+}
+
+/// What becomes of a disc whose lattice cell is another's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OnConflict {
+    /// The run stops.
+    #[default]
+    Stop,
+    /// It is kept beside the lattice, and counted.
+    Resolve,
 }
 
 /// How contacts are found.

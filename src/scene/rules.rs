@@ -128,7 +128,15 @@ fn search(entries: &Entries) -> Option<SceneError> {
     if word(&METHOD) == Some("sectors") && !fast && !entries.is_faulty(&EXECUTION) {
         let key = if entries.given(&EXECUTION).is_some() { &EXECUTION } else { &METHOD };
         let message = "sectors have no vector programs: they are searched by the fast execution only";
-        return Some(entries.spot(key).error(Reason::Contradiction, message).expecting("execution = \"fast\""));
+        return Some(
+            entries.spot(key).error(Reason::Contradiction, message).expecting("execution = \"fast\""),
+        );
+    }
+    if word(&ON_CONFLICT) == Some("resolve") && !fast && !entries.is_faulty(&EXECUTION) {
+        let message =
+            "the source's programs know one disc a cell: only the fast execution resolves conflicts";
+        let error = entries.spot(&ON_CONFLICT).error(Reason::Contradiction, message);
+        return Some(error.expecting("execution = \"fast\""));
     }
     if fast && word(&REBUILD) == Some("all-pairs") {
         let message = "the fast execution makes its lists by cells";

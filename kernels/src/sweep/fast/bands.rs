@@ -3,6 +3,7 @@
 use super::SENTINELS;
 use super::contacts::{Discs, Evaluate, Notes, SumColumns};
 use super::finder::{Cursor, Finder, Pairs, Rows};
+use super::sectors::Touches;
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};
@@ -34,7 +35,7 @@ pub struct Met {
 /// A law over all contacts, each met once.
 ///
 /// First every band sweeps its rows but the last ones, whose partners are all its own; then every band sweeps its last
-/// rows, whose partners may be the next band's first. So no two threads ever add to one disc, and the order of every
+/// rows, whose partners may be the next band's first; last come the pairs that are in no row. So no two threads ever add to one disc, and the order of every
 /// sum depends on the scene alone.
 #[derive(Clone, Debug)]
 pub struct Sweep<F> {
@@ -100,6 +101,15 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         };
         for last in [false, true] {
             on_threads(&mut self.bands, |band| each(band, last)).into_iter().collect::<Result<(), _>>()?;
+        }
+        let mut beside = Touches::default();
+        finder.find_beside_rows(&mut beside);
+        let pairs = &beside;
+        if pairs.count() > 0 {
+            let Band { notes, pairs: count_of_band, .. } = &mut self.bands[0];
+            *count_of_band += pairs.count() as u64;
+            let sentinel = count as u32;
+            dispatch(set, Evaluate { law, pairs: &pairs, sentinel, discs, sums, watched, notes })?;
         }
         let mut met = Met::default();
         for band in &mut self.bands {

@@ -1,6 +1,7 @@
 //! What a sweep asks of whatever finds its pairs.
 
 use super::contacts::Pair;
+use super::sectors::Touches;
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::ProgramError;
@@ -46,6 +47,9 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
         found: &mut Self::Found,
         set: InstructionSet,
     ) -> Result<(), ProgramError>;
+
+    /// Appends the pairs that are found in no row.
+    fn find_beside_rows(&self, _: &mut Touches<P>) {}
 
     /// What was found.
     fn pairs<'a>(&'a self, found: &'a Self::Found) -> impl Pairs<P> + 'a;

@@ -255,6 +255,13 @@ pub struct Touch<P> {
 #[derive(Clone, Debug, Default)]
 pub struct Touches<P>(Vec<Touch<P>>);
 
+impl<P: Precision> Touches<P> {
+    /// Appends a pair.
+    pub(super) fn push(&mut self, discs: [u32; 2], way: [f64; 2]) {
+        self.0.push(Touch { discs, way: way.map(P::from_f64) });
+    }
+}
+
 impl<P: Precision> Pairs<P> for &Touches<P> {
     #[inline(always)]
     fn count(&self) -> usize {

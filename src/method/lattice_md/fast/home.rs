@@ -17,7 +17,7 @@ use stripmine_kernels::sweep::fast::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Search {
     /// On the lattice with at most one disc a cell.
-    Lattice,
+    Lattice(OnConflict),
     /// In sectors, which hold any number of discs.
     Sectors,
     /// In lists of near partners, made anew whenever a disc has moved half the skin.
@@ -27,14 +27,19 @@ pub enum Search {
     },
 }
 
+/// What becomes of a disc whose cell is another's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OnConflict {
+    /// The run stops.
+    Stop,
+    /// It is kept in a list beside the lattice, and every such disc and step counted.
+    Resolve,
+}
+
 /// Cells and who is in them. A disc's place is seen from the centre of its cell.
 pub(super) enum Home<S, P> {
     /// Cells of the lattice.
-    Lattice {
-        occupancy: Occupancy,
-        codes: Codes<P>,
-        sweep: Sweep<Candidates>,
-    },
+    Lattice { occupancy: Occupancy, on_conflict: OnConflict, codes: Codes<P>, sweep: Sweep<Candidates> },
     /// Sectors.
     Sectors { sectors: Sectors, sweep: Sweep<Touches<P>> },
     /// The sectors in which discs were when the lists were made.
@@ -60,15 +65,18 @@ impl<S: Precision, P: Precision> Home<S, P> {
         let sectors = |skin: f64| {
             let Domain { origin, sides, periodic } = model.domain();
             let grid = Grid::new(origin, sides, periodic, reach + skin, discs)?;
-            Some((Sectors::new(grid, discs, reach), Sweep::new(rows::<S, P, _>(&Sectors::new(grid, 0, reach)))))
+            Some((
+                Sectors::new(grid, discs, reach),
+                Sweep::new(rows::<S, P, _>(&Sectors::new(grid, 0, reach))),
+            ))
         };
         Some(match search {
-            Search::Lattice => {
+            Search::Lattice(on_conflict) => {
                 let vary = radii.is_some_and(|[smallest, largest]| smallest != largest);
                 let occupancy = Occupancy::new(model.shape, model.frame, discs, reach, vary);
                 let codes = Codes::new(&occupancy, model.frame);
                 let sweep = Sweep::new(rows::<S, P, _>(&Lattice { occupancy: &occupancy, codes: &codes }));
-                Home::Lattice { occupancy, codes, sweep }
+                Home::Lattice { occupancy, on_conflict, codes, sweep }
             }
             Search::Sectors => {
                 let (sectors, sweep) = sectors(0.0)?;
@@ -98,16 +106,24 @@ impl<S: Precision, P: Precision> Home<S, P> {
         }
     }
 
-    /// Whether a cell holds one disc only.
+    /// Whether a cell must hold one disc only.
     pub(super) fn is_exclusive(&self) -> bool {
-        matches!(self, Home::Lattice { .. })
+        matches!(self, Home::Lattice { on_conflict: OnConflict::Stop, .. })
     }
 
-    /// The disc that has a cell to itself.
+    /// How many discs are in cells that are another disc's.
+    pub(super) fn guests(&self) -> usize {
+        match self {
+            Home::Lattice { occupancy, .. } => occupancy.guests().len(),
+            Home::Sectors { .. } | Home::Lists { .. } => 0,
+        }
+    }
+
+    /// The disc that must have a cell to itself.
     pub(super) fn owner(&self, [column, row]: [usize; 2]) -> Option<usize> {
         match self {
-            Home::Lattice { occupancy, .. } => occupancy.disc(column, row),
-            Home::Sectors { .. } | Home::Lists { .. } => None,
+            Home::Lattice { occupancy, on_conflict: OnConflict::Stop, .. } => occupancy.disc(column, row),
+            Home::Lattice { .. } | Home::Sectors { .. } | Home::Lists { .. } => None,
         }
     }
 
@@ -126,7 +142,23 @@ impl<S: Precision, P: Precision> Home<S, P> {
     pub(super) fn enter(&mut self, to: &Move, model: &Model, state: &State<S>) -> Result<(), Taken> {
         let Move { disc, cell, place } = *to;
         match self {
-            Home::Lattice { occupancy, .. } => occupancy.enter(disc, cell, place, state.radius(model, disc)),
+            Home::Lattice { occupancy, on_conflict, .. } => {
+                let radius = |disc: usize| state.radius(model, disc);
+                let entered = occupancy.enter(disc, cell, place, radius(disc));
+                let Err(Taken(owner)) = entered else { return Ok(()) };
+                if *on_conflict == OnConflict::Stop {
+                    return entered;
+                }
+                // The cell is that one's with the smallest number: a state knows no history.
+                let mut guest = disc;
+                if state.number(disc) < state.number(owner) {
+                    occupancy.leave(owner);
+                    occupancy.enter(disc, cell, place, radius(disc))?;
+                    guest = owner;
+                }
+                occupancy.enter_as_guest(guest, cell, |disc| state.number(disc));
+                Ok(())
+            }
             Home::Sectors { sectors, .. } | Home::Lists { sectors, .. } => {
                 sectors.enter(disc, cell, |disc| state.number(disc));
                 Ok(())
@@ -135,8 +167,18 @@ impl<S: Precision, P: Precision> Home<S, P> {
     }
 
     /// What is to be done when discs have changed their cells.
-    pub(super) fn settle(&mut self) {
+    pub(super) fn settle(&mut self, model: &Model, state: &State<S>) {
         if let Home::Lattice { occupancy, .. } = self {
+            // Guests whose host has gone have the cell to themselves.
+            for (guest, cell) in occupancy.guests().to_vec() {
+                let guest = guest as usize;
+                if occupancy.disc(cell[0], cell[1]).is_none() {
+                    occupancy.leave(guest);
+                    let entered =
+                        occupancy.enter(guest, cell, state.place(guest), state.radius(model, guest));
+                    debug_assert!(entered.is_ok(), "the cell is empty");
+                }
+            }
             occupancy.repeat_images();
         }
     }
@@ -182,9 +224,7 @@ impl<S: Precision, P: Precision> Home<S, P> {
     /// How far discs may go, and what else is written when they do.
     pub(super) fn leash(&mut self) -> (Leash<'_, S>, Option<Copies<'_>>) {
         match self {
-            Home::Lattice { occupancy, .. } => {
-                (Leash::Cell(occupancy.grid().frame.edge), occupancy.copies())
-            }
+            Home::Lattice { occupancy, .. } => (Leash::Cell(occupancy.grid().frame.edge), occupancy.copies()),
             Home::Sectors { sectors, .. } => (Leash::Cell(sectors.grid().frame.edge), None),
             Home::Lists { lists, .. } => {
                 let [x, y] = &lists.made_at;
@@ -203,7 +243,7 @@ impl<S: Precision, P: Precision> Home<S, P> {
         set: InstructionSet,
     ) -> Result<Met, ProgramError> {
         match self {
-            Home::Lattice { occupancy, codes, sweep } => {
+            Home::Lattice { occupancy, codes, sweep, .. } => {
                 sweep.run(law, &Lattice { occupancy, codes }, discs, sums, watched, set)
             }
             Home::Sectors { sectors, sweep } => sweep.run(law, sectors, discs, sums, watched, set),

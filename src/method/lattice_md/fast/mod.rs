@@ -13,8 +13,8 @@ use super::{Model, Scheme};
 use crate::method::{DeepContacts, Failure, Method, Phase, StateColumn, Timings};
 use crate::particles::Particles;
 use crate::scene::WallMotion;
-pub use home::Search;
 use home::Home;
+pub use home::{OnConflict, Search};
 use state::{Move, State};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
@@ -156,6 +156,7 @@ impl<S: Precision, P: Precision> Method for FastMd<S, P> {
         self.timings = timings;
         timings.time(Phase::Index, || self.keep_index(&left))?;
         self.timings = timings;
+        self.deep.shared_cells += self.home.guests() as u64;
         self.meet()
     }
 

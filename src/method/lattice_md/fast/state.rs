@@ -238,7 +238,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             let entered = self.home.enter(&to, &self.model, &state);
             entered.map_err(|_| "two discs are in one cell".to_owned())?;
         }
-        self.home.settle();
+        self.home.settle(&self.model, &state);
         (self.state, self.sums) = (state, sums);
         // Lists are made of the places of then.
         let now: Vec<[f64; 2]> = (0..numbers.len()).map(|disc| self.state.place(disc)).collect();

@@ -193,7 +193,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             let entered = self.home.enter(to, &self.model, &self.state);
             debug_assert!(entered.is_ok(), "looked for above");
         }
-        self.home.settle();
+        self.home.settle(&self.model, &self.state);
         Ok(())
     }
 }

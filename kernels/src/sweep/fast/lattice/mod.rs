@@ -10,6 +10,7 @@ pub use codes::Codes;
 pub use occupancy::{Occupancy, Taken};
 
 use super::finder::{AT_ONCE, Cursor, Finder, Pairs, Rows};
+use super::sectors::{Grid, Touches};
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};
@@ -69,6 +70,34 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
             )
         } else {
             dispatch(set, Search { occupancy, rows, cursor, full: AT_ONCE, found })
+        }
+    }
+
+    /// Guests with everybody around them, and with each other.
+    fn find_beside_rows(&self, found: &mut Touches<P>) {
+        let occupancy = self.occupancy;
+        let (guests, shape) = (occupancy.guests(), occupancy.shape());
+        let Grid { frame, counts, periodic } = occupancy.grid();
+        let half = occupancy.half_width() as isize;
+        let way = |offset: [isize; 2]| [0, 1].map(|axis| offset[axis] as f64 * frame.edge[axis]);
+        for (at, &(guest, [column, row])) in guests.iter().enumerate() {
+            for offset in (-half..=half).flat_map(|rows| (-half..=half).map(move |columns| [columns, rows])) {
+                let position = shape.position(column as isize + offset[0], row as isize + offset[1]);
+                let there = occupancy.index()[position];
+                if (there as usize) < occupancy.discs() {
+                    found.push([guest, there], way(offset));
+                }
+            }
+            for &(other, cell) in &guests[at + 1..] {
+                let offset = [0, 1].map(|axis| {
+                    let (count, way) =
+                        (counts[axis] as isize, cell[axis] as isize - [column, row][axis] as isize);
+                    if periodic[axis] && way.abs() > half { way - way.signum() * count } else { way }
+                });
+                if offset.iter().all(|way| way.abs() <= half) {
+                    found.push([guest, other], way(offset));
+                }
+            }
         }
     }
 
