@@ -12,6 +12,17 @@ use stripmine_kernels::law::granular::Disc;
 /// Skin of neighbour lists where the scene gives none, in largest radii.
 const SKIN: f64 = 0.3;
 
+/// Skin of the fast lists (length) where the scene gives none: half of the gap between the discs, were they spread evenly,
+/// within bounds. The wider the skin, the longer the lists, and the longer they last.
+fn roomy_skin(checked: &Checked) -> f64 {
+    let Checked { domain, particles, geometry, .. } = checked;
+    let largest = geometry.radii[1];
+    let area = domain.sides[0] * domain.sides[1] / particles.len().max(1) as f64;
+    // Neighbours on a hexagonal lattice are so far apart.
+    let spacing = (area * 2.0 / 3f64.sqrt()).sqrt();
+    (0.5 * (spacing - 2.0 * largest)).clamp(SKIN * largest, largest)
+}
+
 /// What a checked scene models: no more than it needs.
 pub fn model(checked: &Checked) -> Model {
     let Checked { scene, particles, alike, geometry, .. } = checked;
@@ -63,7 +74,7 @@ pub fn assemble(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
         MethodKind::Lattice => Contacts::Lattice,
         MethodKind::Sectors => Contacts::Fast(Search::Sectors),
         MethodKind::NeighborList { skin, .. } if fast => {
-            Contacts::Fast(Search::Lists { skin: skin.unwrap_or(SKIN * geometry.radii[1]) })
+            Contacts::Fast(Search::Lists { skin: skin.unwrap_or_else(|| roomy_skin(checked)) })
         }
         MethodKind::NeighborList { rebuild, skin } => Contacts::Lists(ListOptions {
             rebuild: match rebuild {

@@ -149,7 +149,7 @@ define_keys! {
         "The SIMD instructions; auto takes the widest that the processor has.";
     REBUILD = "method" "rebuild", Choice(&["cells", "all-pairs"]), "", Is("\"cells\""), LISTS,
         "How neighbour lists are made: by cells, or by all pairs as in the source.";
-    SKIN = "method" "skin", Number(Positive), "length", Otherwise("0.3 R_max"), LISTS,
+    SKIN = "method" "skin", Number(Positive), "length", Otherwise("0.3 R_max; with execution = \"fast\" half of the mean gap, from there to R_max"), LISTS,
         "Listed pairs are up to this far from contact.";
 
     INTEGRATOR = "integrator" "kind", Choice(&["gear", "velocity-verlet"]), "", Is("\"gear\""), ALWAYS,

@@ -266,12 +266,11 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             let mut along = [S::default(); 16];
             // SAFETY: LANES <= 16.
             unsafe { registers.store(along.as_mut_ptr(), place[axis] * unit) };
-            for lane in 0..R::LANES {
+            // First all, then one by one: so they are converted at once.
+            let along = along.map(|along| along.to_f64() as f32);
+            for (lane, &along) in along.iter().enumerate().take(R::LANES) {
                 // SAFETY: the cells are ones of the lattice, each of one disc only.
-                unsafe {
-                    let cell = *arrays.cells.add(first + lane) as usize;
-                    *arrays.places[axis].add(cell) = along[lane].to_f64() as f32;
-                }
+                unsafe { *arrays.places[axis].add(*arrays.cells.add(first + lane) as usize) = along };
             }
         }
     }

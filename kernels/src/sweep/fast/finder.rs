@@ -82,7 +82,13 @@ pub struct Cursor {
 }
 
 impl Cursor {
-    pub(super) fn at(row: usize) -> Self {
+    /// At the beginning of a row.
+    pub fn at(row: usize) -> Self {
         Cursor { row, along: 0 }
+    }
+
+    /// The row that is searched.
+    pub fn row(&self) -> usize {
+        self.row
     }
 }

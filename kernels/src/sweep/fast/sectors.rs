@@ -53,12 +53,20 @@ impl Grid {
         Some(Grid { frame: Frame { origin, edge }, counts, periodic })
     }
 
-    /// The sector that lies so many columns and rows from one.
+    /// The sector that lies at most one column and one row from one.
+    #[inline(always)]
     fn beside(&self, [column, row]: [usize; 2], [columns, rows]: [isize; 2]) -> Option<[usize; 2]> {
         let along = |axis: usize, from: usize, by: isize| {
             let (count, there) = (self.counts[axis] as isize, from as isize + by);
-            let inside = (0..count).contains(&there);
-            (inside || self.periodic[axis]).then(|| there.rem_euclid(count) as usize)
+            // No division: that would cost more than what is done with the sector.
+            let inside = if there < 0 {
+                there + count
+            } else if there >= count {
+                there - count
+            } else {
+                return Some(there as usize);
+            };
+            self.periodic[axis].then_some(inside as usize)
         };
         Some([along(0, column, columns)?, along(1, row, rows)?])
     }
@@ -163,6 +171,32 @@ impl Sectors {
         let before = members[..occupants].iter().take_while(|&&member| number(member as usize) < own).count();
         members.copy_within(before..occupants, before + 1);
         members[before] = disc as u32;
+    }
+
+    /// Empties all sectors and puts every disc into the one that `cell` says, those of a sector in order of their
+    /// `number`.
+    ///
+    /// # Panics
+    /// If there is no such sector.
+    pub fn refill(&mut self, cell: impl Fn(usize) -> [usize; 2], number: impl Fn(usize) -> usize) {
+        self.occupants.fill(0);
+        for disc in 0..self.sector.len() {
+            let cell = cell(disc);
+            assert!(cell[0] < self.grid.counts[0] && cell[1] < self.grid.counts[1], "no sector {cell:?}");
+            let sector = Self::sector(cell, &self.grid);
+            let occupants = self.occupants[sector] as usize;
+            if occupants == self.room {
+                self.make_room();
+            }
+            self.members[sector * self.room + occupants] = disc as u32;
+            self.occupants[sector] += 1;
+            self.sector[disc] = sector as u32;
+        }
+        for (members, &occupants) in self.members.chunks_exact_mut(self.room).zip(&self.occupants) {
+            if occupants > 1 {
+                members[..occupants as usize].sort_unstable_by_key(|&disc| number(disc as usize));
+            }
+        }
     }
 
     /// Takes a disc out of its sector, if it is in one.

@@ -166,6 +166,13 @@ impl<S: Precision, P: Precision> Home<S, P> {
         }
     }
 
+    /// Moves all discs, given in their order, into the sectors that lists are made from.
+    pub(super) fn refill(&mut self, moves: &[Move], state: &State<S>) {
+        if let Home::Lists { sectors, .. } = self {
+            sectors.refill(|disc| moves[disc].cell, |disc| state.number(disc));
+        }
+    }
+
     /// What is to be done when discs have changed their cells.
     pub(super) fn settle(&mut self, model: &Model, state: &State<S>) {
         if let Home::Lattice { occupancy, .. } = self {

@@ -134,9 +134,10 @@ impl<S: Precision> State<S> {
         let derivatives = self.columns.iter_mut().flatten();
         for column in derivatives.chain([&mut self.radius]).chain(&mut self.inverse) {
             if !column.is_empty() {
-                let sentinels = &column[order.len()..];
-                let there = order.iter().map(|&disc| column[disc as usize]);
-                *column = there.chain(sentinels.iter().copied()).collect();
+                let mut anew = Vec::with_capacity(column.len());
+                anew.extend(order.iter().map(|&disc| column[disc as usize]));
+                anew.extend_from_slice(&column[order.len()..]);
+                *column = anew;
             }
         }
         self.numbers = order.iter().map(|&disc| self.numbers[disc as usize]).collect();

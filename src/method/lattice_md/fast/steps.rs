@@ -92,6 +92,9 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
         let mut to = from;
         for axis in 0..2 {
             let (edge, count) = (frame.edge[axis], counts[axis] as f64);
+            if place[axis].abs() < 0.5 * edge {
+                continue;
+            }
             let steps = (place[axis] / edge + 0.5).floor();
             let mut there = cell[axis] as f64 + steps;
             to.place[axis] = place[axis] - steps * edge;
@@ -163,7 +166,8 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
         }
         if stale {
             let moves = self.settle_all(0..self.start.len())?;
-            self.rehouse(&moves)?;
+            moves.iter().for_each(|to| self.state.put(to.disc, to.place));
+            self.home.refill(&moves, &self.state);
             self.put_in_order();
         }
         Ok(())

@@ -26,11 +26,23 @@ impl Candidate {
     }
 }
 
-/// The places of a half mask in the order of the sweep: columns and rows.
-pub(super) fn places(half_width: usize) -> impl Iterator<Item = [isize; 2]> {
-    let h = half_width as isize;
-    let ahead = (1..=h).map(|column| [column, 0]);
-    ahead.chain((1..=h).flat_map(move |row| (-h..=h).map(move |column| [column, row])))
+/// How many places a half mask has.
+pub(super) const fn place_count(half_width: usize) -> usize {
+    half_width + half_width * (2 * half_width + 1)
+}
+
+/// A place of a half mask in the order of the sweep: column and row. Those beyond the last are no places.
+pub(super) const fn place(half_width: usize, number: usize) -> [isize; 2] {
+    if number < half_width {
+        return [number as isize + 1, 0];
+    }
+    let (width, behind) = (2 * half_width + 1, number - half_width);
+    [(behind % width) as isize - half_width as isize, (behind / width) as isize + 1]
+}
+
+/// The places of a half mask in their order.
+fn places(half_width: usize) -> impl Iterator<Item = [isize; 2]> {
+    (0..place_count(half_width)).map(move |number| place(half_width, number))
 }
 
 /// What a code stands for: lane and place.

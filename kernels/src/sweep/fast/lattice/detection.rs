@@ -1,6 +1,6 @@
 //! Finding contacts: registers of cells against the same cells at every place of the half mask.
 
-use super::codes::Candidate;
+use super::codes::{Candidate, place, place_count};
 use super::occupancy::Occupancy;
 use crate::GROUP;
 use crate::backend::Registers;
@@ -35,7 +35,7 @@ impl Task<f32> for Search<'_> {
 
 /// Words that the findings of a group take: 12 or 24 places.
 const fn words(half_width: usize) -> usize {
-    (half_width + half_width * (2 * half_width + 1)).div_ceil(PLACES)
+    place_count(half_width).div_ceil(PLACES)
 }
 
 impl Search<'_> {
@@ -104,32 +104,35 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
         // SAFETY: the caller's promise, here and below.
         let (own_x, own_y) = unsafe { (registers.load(x.add(part)), registers.load(y.add(part))) };
         let own_radius = unsafe { registers.load(radii.add(part)) };
-        // The own position as seen from the centres of columns −3 … 3.
-        let from = |column: isize| own_x - registers.splat(edge[0] * column as f32);
-        let columns = [from(-3), from(-2), from(-1), own_x, from(1), from(2), from(3)];
-        let mut place = 0;
-        for row in 0..=H {
-            let from_y = own_y - registers.splat(edge[1] * row as f32);
-            let first = if row == 0 { 1 } else { -(H as isize) };
-            for column in first..=H as isize {
-                let shift = (row * stride) as isize + column + part as isize;
-                let (dx, dy) = unsafe {
-                    (
-                        columns[(column + 3) as usize] - registers.load(x.offset(shift)),
-                        from_y - registers.load(y.offset(shift)),
-                    )
-                };
-                let square = dx * dx + dy * dy;
-                let touch = if VARY {
-                    let reach = own_radius + unsafe { registers.load(radii.offset(shift)) };
-                    square.less_than(reach * reach * limit)
-                } else {
-                    square.less_than(limit)
-                };
-                near[place / PLACES] |= registers.bits(touch) << (GROUP * (place % PLACES) + part);
-                place += 1;
-            }
+        // The own position as seen from the centres of the columns and rows around.
+        let column = |column: isize| own_x - registers.splat(edge[0] * column as f32);
+        let columns = [column(-3), column(-2), column(-1), own_x, column(1), column(2), column(3)];
+        let row = |row: usize| own_y - registers.splat(edge[1] * row as f32);
+        let rows = [own_y, row(1), row(2), row(3)];
+        // Written out: a loop that the compiler leaves one keeps the words in memory, at five times the cost.
+        macro_rules! at_places {
+            ($($number:literal)*) => {$(
+                if $number < const { place_count(H) } {
+                    let [column, row] = const { place(H, $number) };
+                    let shift = row * stride as isize + column + part as isize;
+                    let (dx, dy) = unsafe {
+                        (
+                            columns[(column + 3) as usize] - registers.load(x.offset(shift)),
+                            rows[row as usize] - registers.load(y.offset(shift)),
+                        )
+                    };
+                    let square = dx * dx + dy * dy;
+                    let touch = if VARY {
+                        let reach = own_radius + unsafe { registers.load(radii.offset(shift)) };
+                        square.less_than(reach * reach * limit)
+                    } else {
+                        square.less_than(limit)
+                    };
+                    near[$number / PLACES] |= registers.bits(touch) << (GROUP * ($number % PLACES) + part);
+                }
+            )*};
         }
+        at_places!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23);
         part += R::LANES;
     }
     near
