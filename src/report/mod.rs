@@ -1,5 +1,6 @@
 //! Reports: finished data as tables. Each export is one small file; none of them runs physics.
 
+pub mod crossover;
 pub mod csv;
 pub mod damping;
 pub mod density_cost;

@@ -1,5 +1,6 @@
 //! Studies: one file per question a user asks, each a function from parameters to a dataset.
 
+pub mod crossover;
 pub mod damping;
 pub mod density_cost;
 pub mod efficiency_table;

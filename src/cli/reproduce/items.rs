@@ -7,7 +7,7 @@ use crate::report::pipe_flow::Showing;
 use crate::report::{self, Section};
 use crate::study::efficiency_table::Question;
 use crate::study::{
-    damping, density_cost, efficiency_table, identity, ladder, measured_cost, misprints, pipe_flow,
+    crossover, damping, density_cost, efficiency_table, identity, ladder, measured_cost, misprints, pipe_flow,
 };
 use clap::ValueEnum;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -65,6 +65,7 @@ define_items! {
     (Misprints, "misprints", 0.5, 0.5, "What the misprints of the contact law do"),
     (Cost, "cost", 1.0, 1.0, "BP93, figures 3 and 4: cost over particles and density, by the model"),
     (Measured, "measured", 8.0, 60.0, "The same, measured on this host"),
+    (Crossover, "crossover", 4.0, 150.0, "Lattice, neighbour lists and sectors: which is the fastest at which density, on this host"),
     (Identity, "identity", 3.0, 3.0, "Lattice and neighbour lists: the same to the bit"),
     (PipeSmall, "pipe-small", 3.0, 3.0, "BP93, figures 5 and 6, in two fifths of the pipe"),
     (Pipe, "pipe", 120.0, 120.0, "BP93, figures 5 and 6, in the whole pipe"),
@@ -106,6 +107,10 @@ impl Item {
             Item::Measured => {
                 let data = measured_cost::measured_cost(&measured_effort(effort), progress)?;
                 made(report::measured_cost::section(&data), &data)
+            }
+            Item::Crossover => {
+                let data = crossover::crossover(&crossover_effort(effort), progress)?;
+                made(report::crossover::section(&data), &data)
             }
             Item::Identity => {
                 let data = identity::identity(progress)?;
@@ -155,6 +160,25 @@ fn measured_effort(effort: Effort) -> measured_cost::Effort {
             equilibration: 100,
             element_steps: 1_000_000,
             repeats: 5,
+        },
+    }
+}
+
+fn crossover_effort(effort: Effort) -> crossover::Effort {
+    match effort {
+        Effort::Quick => crossover::Effort {
+            precisions: vec!["f64"],
+            particles: vec![4000],
+            packing_fractions: vec![0.84, 0.3, 0.1],
+            steps: 60,
+            repeats: 2,
+        },
+        Effort::Full => crossover::Effort {
+            precisions: vec!["f64", "mixed", "f32"],
+            particles: vec![10_000, 100_000],
+            packing_fractions: vec![0.84, 0.8, 0.6, 0.3, 0.1, 0.03],
+            steps: 120,
+            repeats: 3,
         },
     }
 }

@@ -86,18 +86,17 @@ impl Grid {
     }
 }
 
-/// Who is in which sector. The discs of a sector are kept in an order that is told with each, so that no sum's order
-/// depends on what went before.
+/// Who is in which sector. The discs of a sector are kept in an order that is told, so that no sum's order depends on
+/// what went before.
 #[derive(Clone, Debug)]
 pub struct Sectors {
     grid: Grid,
     reach: f64,
-    /// Room for discs in each sector.
-    room: usize,
-    members: Vec<u32>,
-    occupants: Vec<u32>,
     /// The sector of each disc.
     sector: Vec<u32>,
+    /// Where in `members` the discs of each sector begin, and the end.
+    starts: Vec<u32>,
+    members: Vec<u32>,
 }
 
 /// The sector of a disc that is in none.
@@ -110,15 +109,8 @@ impl Sectors {
     /// If there are 2²⁹ discs or more.
     pub fn new(grid: Grid, discs: usize, reach: f64) -> Self {
         assert!(discs < 1 << 29, "{discs} discs are too many to number");
-        let (sectors, room) = (grid.counts[0] * grid.counts[1], 4);
-        Sectors {
-            grid,
-            reach,
-            room,
-            members: vec![0; sectors * room],
-            occupants: vec![0; sectors],
-            sector: vec![NOWHERE; discs],
-        }
+        let starts = vec![0; grid.counts[0] * grid.counts[1] + 1];
+        Sectors { grid, reach, sector: vec![NOWHERE; discs], starts, members: vec![] }
     }
 
     /// Which sectors there are.
@@ -136,98 +128,53 @@ impl Sectors {
         self.sector.len()
     }
 
-    fn sector([column, row]: [usize; 2], grid: &Grid) -> usize {
-        row * grid.counts[0] + column
-    }
-
     /// Column and row of a disc; none if it is in no sector.
     pub fn cell(&self, disc: usize) -> Option<[usize; 2]> {
         let (sector, columns) = (self.sector[disc] as usize, self.grid.counts[0]);
         (self.sector[disc] != NOWHERE).then(|| [sector % columns, sector / columns])
     }
 
-    /// The discs of a sector.
-    pub(super) fn members(&self, cell: [usize; 2]) -> &[u32] {
-        let sector = Self::sector(cell, &self.grid);
-        &self.members[sector * self.room..][..self.occupants[sector] as usize]
-    }
-
-    /// Puts a disc into a sector, behind the discs there whose `number` is smaller.
+    /// Puts a disc into a sector, of which it is a member from the next [`arrange`](Self::arrange) on.
     ///
     /// # Panics
-    /// If the disc is in a sector already, or there is no such disc or sector.
-    pub fn enter(&mut self, disc: usize, cell: [usize; 2], number: impl Fn(usize) -> usize) {
-        assert!(self.sector[disc] == NOWHERE, "disc {disc} is in a sector already");
-        assert!(cell[0] < self.grid.counts[0] && cell[1] < self.grid.counts[1], "no sector {cell:?}");
-        let sector = Self::sector(cell, &self.grid);
-        let occupants = self.occupants[sector] as usize;
-        if occupants == self.room {
-            self.make_room();
-        }
-        self.sector[disc] = sector as u32;
-        self.occupants[sector] += 1;
-        let members = &mut self.members[sector * self.room..][..occupants + 1];
-        let own = number(disc);
-        let before = members[..occupants].iter().take_while(|&&member| number(member as usize) < own).count();
-        members.copy_within(before..occupants, before + 1);
-        members[before] = disc as u32;
-    }
-
-    /// Empties all sectors and puts every disc into the one that `cell` says, those of a sector in order of their
-    /// `number`.
-    ///
-    /// # Panics
-    /// If there is no such sector.
-    pub fn refill(&mut self, cell: impl Fn(usize) -> [usize; 2], number: impl Fn(usize) -> usize) {
-        self.occupants.fill(0);
-        for disc in 0..self.sector.len() {
-            let cell = cell(disc);
-            assert!(cell[0] < self.grid.counts[0] && cell[1] < self.grid.counts[1], "no sector {cell:?}");
-            let sector = Self::sector(cell, &self.grid);
-            let occupants = self.occupants[sector] as usize;
-            if occupants == self.room {
-                self.make_room();
-            }
-            self.members[sector * self.room + occupants] = disc as u32;
-            self.occupants[sector] += 1;
-            self.sector[disc] = sector as u32;
-        }
-        for (members, &occupants) in self.members.chunks_exact_mut(self.room).zip(&self.occupants) {
-            if occupants > 1 {
-                members[..occupants as usize].sort_unstable_by_key(|&disc| number(disc as usize));
-            }
-        }
+    /// If there is no such disc or sector.
+    pub fn enter(&mut self, disc: usize, [column, row]: [usize; 2]) {
+        let [columns, rows] = self.grid.counts;
+        assert!(column < columns && row < rows, "no sector in column {column}, row {row}");
+        self.sector[disc] = (row * columns + column) as u32;
     }
 
     /// Takes a disc out of its sector, if it is in one.
     pub fn leave(&mut self, disc: usize) {
-        if self.sector[disc] == NOWHERE {
-            return;
-        }
-        let sector = self.sector[disc] as usize;
         self.sector[disc] = NOWHERE;
-        let occupants = self.occupants[sector] as usize;
-        let members = &mut self.members[sector * self.room..][..occupants];
-        if let Some(at) = members.iter().position(|&member| member as usize == disc) {
-            members.copy_within(at + 1.., at);
-            self.occupants[sector] -= 1;
-        }
     }
 
-    /// Twice the room in every sector.
-    fn make_room(&mut self) {
-        let room = 2 * self.room;
-        let mut members = vec![0; self.occupants.len() * room];
-        for (to, from) in members.chunks_exact_mut(room).zip(self.members.chunks_exact(self.room)) {
-            to[..self.room].copy_from_slice(from);
+    /// Makes everybody a member of the sector he is in, those of a sector in order of their `number`.
+    pub fn arrange(&mut self, number: impl Fn(usize) -> usize) {
+        let Sectors { sector, starts, members, .. } = self;
+        starts.fill(0);
+        let inside = || sector.iter().enumerate().filter(|&(_, &sector)| sector != NOWHERE);
+        inside().for_each(|(_, &sector)| starts[sector as usize] += 1);
+        let mut end = 0;
+        for start in starts.iter_mut() {
+            end += *start;
+            *start = end;
         }
-        (self.room, self.members) = (room, members);
+        members.resize(end as usize, 0);
+        // From the ends down, so that the starts are left.
+        for (disc, &sector) in inside() {
+            let start = &mut starts[sector as usize];
+            *start -= 1;
+            members[*start as usize] = disc as u32;
+        }
+        for ends in starts.windows(2).filter(|ends| ends[1] - ends[0] > 1) {
+            members[ends[0] as usize..ends[1] as usize].sort_unstable_by_key(|&disc| number(disc as usize));
+        }
     }
 
     /// The discs in order of their sectors, row by row.
     pub fn order(&self) -> Vec<u32> {
-        let sectors = self.members.chunks_exact(self.room).zip(&self.occupants);
-        sectors.flat_map(|(members, &occupants)| &members[..occupants as usize]).copied().collect()
+        self.members.clone()
     }
 
     /// Numbers the discs anew: disc `n` is from now on what disc `order[n]` was.
@@ -238,19 +185,21 @@ impl Sectors {
         assert_eq!(order.len(), self.sector.len(), "an order of all discs");
         let mut anew = vec![NOWHERE; order.len()];
         for (disc, &before) in order.iter().enumerate() {
-            assert!(
-                std::mem::replace(&mut anew[before as usize], disc as u32) == NOWHERE,
-                "disc {before} is named twice"
-            );
+            let first = std::mem::replace(&mut anew[before as usize], disc as u32) == NOWHERE;
+            assert!(first, "disc {before} is named twice");
         }
         self.sector = order.iter().map(|&before| self.sector[before as usize]).collect();
-        for (members, &occupants) in self.members.chunks_exact_mut(self.room).zip(&self.occupants) {
-            members[..occupants as usize].iter_mut().for_each(|member| *member = anew[*member as usize]);
-        }
+        self.members.iter_mut().for_each(|member| *member = anew[*member as usize]);
     }
 
-    /// Calls `meet(own, partner, number of the way)` for every pair of a row whose discs are in sectors that meet; the
-    /// pairs of a disc one behind the other, discs without pairs announced by `own` too.
+    /// The members of a sector and those that follow in the row, up to `more` sectors on.
+    #[inline(always)]
+    fn members(&self, sector: usize, more: usize) -> Range<usize> {
+        self.starts[sector] as usize..self.starts[sector + more + 1] as usize
+    }
+
+    /// Calls `own(disc)` for every disc of some sectors of a row, and then `meet(disc, partner, number of the way)` for
+    /// every partner in the sectors ahead.
     #[inline(always)]
     pub(super) fn pairs_of_row(
         &self,
@@ -259,19 +208,39 @@ impl Sectors {
         mut own: impl FnMut(u32),
         mut meet: impl FnMut(u32, u32, usize),
     ) {
+        let [all, rows] = self.grid.counts;
         for column in columns {
-            let members = self.members([column, row]);
-            if members.is_empty() {
+            let sector = row * all + column;
+            let here = self.members(sector, 0);
+            if here.is_empty() {
                 continue;
             }
-            let ahead = AHEAD.map(|ahead| {
-                self.grid.beside([column, row], ahead).map_or(&[][..], |cell| self.members(cell))
+            let rest_of = |at: usize| at + 1..here.end;
+            if column > 0 && column + 1 < all && row + 1 < rows {
+                // Sectors that follow each other in a row are one stretch of members.
+                let (beside, above) = (self.members(sector, 1).end, self.members(sector + all - 1, 2));
+                for at in here.clone() {
+                    let first = self.members[at];
+                    own(first);
+                    for &second in &self.members[at + 1..beside] {
+                        meet(first, second, self.sector[second as usize] as usize - sector);
+                    }
+                    for &second in &self.members[above.clone()] {
+                        meet(first, second, self.sector[second as usize] as usize + 3 - (sector + all));
+                    }
+                }
+                continue;
+            }
+            let ahead = AHEAD.map(|ahead| match self.grid.beside([column, row], ahead) {
+                Some([column, row]) => self.members(row * all + column, 0),
+                None => 0..0,
             });
-            for (at, &first) in members.iter().enumerate() {
+            for at in here.clone() {
+                let first = self.members[at];
                 own(first);
-                members[at + 1..].iter().for_each(|&second| meet(first, second, 0));
+                self.members[rest_of(at)].iter().for_each(|&second| meet(first, second, 0));
                 for (way, there) in ahead.iter().enumerate().skip(1) {
-                    there.iter().for_each(|&second| meet(first, second, way));
+                    self.members[there.clone()].iter().for_each(|&second| meet(first, second, way));
                 }
             }
         }

@@ -160,33 +160,31 @@ impl<S: Precision, P: Precision> Home<S, P> {
                 Ok(())
             }
             Home::Sectors { sectors, .. } | Home::Lists { sectors, .. } => {
-                sectors.enter(disc, cell, |disc| state.number(disc));
+                sectors.enter(disc, cell);
                 Ok(())
             }
         }
     }
 
-    /// Moves all discs, given in their order, into the sectors that lists are made from.
-    pub(super) fn refill(&mut self, moves: &[Move], state: &State<S>) {
-        if let Home::Lists { sectors, .. } = self {
-            sectors.refill(|disc| moves[disc].cell, |disc| state.number(disc));
-        }
-    }
-
     /// What is to be done when discs have changed their cells.
     pub(super) fn settle(&mut self, model: &Model, state: &State<S>) {
-        if let Home::Lattice { occupancy, .. } = self {
-            // Guests whose host has gone have the cell to themselves.
-            for (guest, cell) in occupancy.guests().to_vec() {
-                let guest = guest as usize;
-                if occupancy.disc(cell[0], cell[1]).is_none() {
-                    occupancy.leave(guest);
-                    let entered =
-                        occupancy.enter(guest, cell, state.place(guest), state.radius(model, guest));
-                    debug_assert!(entered.is_ok(), "the cell is empty");
+        match self {
+            Home::Lattice { occupancy, .. } => {
+                // Guests whose host has gone have the cell to themselves.
+                for (guest, cell) in occupancy.guests().to_vec() {
+                    let guest = guest as usize;
+                    if occupancy.disc(cell[0], cell[1]).is_none() {
+                        occupancy.leave(guest);
+                        let radius = state.radius(model, guest);
+                        let entered = occupancy.enter(guest, cell, state.place(guest), radius);
+                        debug_assert!(entered.is_ok(), "the cell is empty");
+                    }
                 }
+                occupancy.repeat_images();
             }
-            occupancy.repeat_images();
+            Home::Sectors { sectors, .. } | Home::Lists { sectors, .. } => {
+                sectors.arrange(|disc| state.number(disc));
+            }
         }
     }
 

@@ -166,21 +166,34 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
         }
         if stale {
             let moves = self.settle_all(0..self.start.len())?;
-            moves.iter().for_each(|to| self.state.put(to.disc, to.place));
-            self.home.refill(&moves, &self.state);
+            self.rehouse(&moves)?;
             self.put_in_order();
         }
         Ok(())
     }
 
-    /// Moves discs into their new cells; of two in one cell none is moved.
+    /// Moves discs into their new cells; if two want one that must be one disc's, none is moved.
     pub(super) fn rehouse(&mut self, moves: &[Move]) -> Result<(), Failure> {
+        if self.home.is_exclusive() {
+            self.refuse_conflicts(moves)?;
+        }
+        moves.iter().for_each(|to| self.home.leave(to.disc));
+        for to in moves {
+            self.state.put(to.disc, to.place);
+            let entered = self.home.enter(to, &self.model, &self.state);
+            debug_assert!(entered.is_ok(), "looked for above");
+        }
+        self.home.settle(&self.model, &self.state);
+        Ok(())
+    }
+
+    /// Finds two discs that want one cell.
+    fn refuse_conflicts(&self, moves: &[Move]) -> Result<(), Failure> {
         let mut targets: Vec<([usize; 2], usize)> = moves.iter().map(|to| (to.cell, to.disc)).collect();
         targets.sort_unstable();
         let mut moving: Vec<usize> = moves.iter().map(|to| to.disc).collect();
         moving.sort_unstable();
-        let same = |pair: &&[([usize; 2], usize)]| self.home.is_exclusive() && pair[0].0 == pair[1].0;
-        let twice = targets.windows(2).find(same).map(|pair| (pair[0].1, pair[1].1));
+        let twice = targets.windows(2).find(|pair| pair[0].0 == pair[1].0).map(|pair| (pair[0].1, pair[1].1));
         let taken = || {
             targets.iter().find_map(|&(cell, disc)| {
                 let there = self.home.owner(cell)?;
@@ -191,13 +204,6 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             let of = |disc: usize| moves.iter().find(|to| to.disc == disc);
             return Err(self.conflict([(first, of(first)), (second, of(second))]));
         }
-        moves.iter().for_each(|to| self.home.leave(to.disc));
-        for to in moves {
-            self.state.put(to.disc, to.place);
-            let entered = self.home.enter(to, &self.model, &self.state);
-            debug_assert!(entered.is_ok(), "looked for above");
-        }
-        self.home.settle(&self.model, &self.state);
         Ok(())
     }
 }
