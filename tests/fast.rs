@@ -11,6 +11,7 @@ use stripmine::observe::{Observation, Scenery};
 use stripmine::particles::{Kind, Particles};
 use stripmine::scene::{Precision, WallMotion};
 use stripmine_kernels::law::granular::Contact;
+use stripmine_kernels::sweep::lattice::LatticeShape;
 use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, advance, arena, fast, gas, grain, simulate};
 
@@ -142,6 +143,48 @@ fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
         assert!(second.particles() == first.particles());
         advance(second.as_mut(), STEPS - 37);
         assert!(bits(second.as_ref()) == scalar, "{search:?}: a run that goes on differs");
+    }
+}
+
+/// Cells so wide that many hold two discs and some three: the few beside the lattice feel the same forces.
+#[test]
+fn conflicts_are_resolved_beside_the_lattice() {
+    for (scheme, edge) in [(Scheme::VelocityVerlet, 0.75), (Scheme::Gear(GearValues::Five), 0.95)] {
+        let mut start = gas(400, 0.8, 9);
+        let sides = start.0.domain().sides;
+        let counts = sides.map(|side| (side / edge) as usize);
+        start.0.shape = LatticeShape::new(counts[0], counts[1], &start.0.mask, [true; 2]).unwrap();
+        start.0.frame.edge = [0, 1].map(|axis| sides[axis] / counts[axis] as f64);
+        start.0.scheme = scheme;
+        let run = |search: Search, set: InstructionSet| {
+            let machine = Machine { execution: Execution::Chained, set };
+            let mut gas = simulate(Precision::F64, &start, Contacts::Fast(search), machine);
+            advance(gas.as_mut(), 300);
+            gas
+        };
+        let resolve = Search::Lattice(OnConflict::Resolve);
+        let (rival, resolved) = (run(Search::Sectors, fast().set), run(resolve, fast().set));
+        let off = differences(&start.0, &rival.particles(), &resolved.particles());
+        assert!(off[0] < 1e-10 && off[1] < 1e-9, "{off:?}");
+        let conflicts = resolved.deep_contacts().shared_cells;
+        assert!(conflicts > 300, "{conflicts} in 300 steps");
+        assert_eq!(rival.deep_contacts().shared_cells, 0);
+        let scalar = run(resolve, InstructionSet::Scalar);
+        assert!(bits(scalar.as_ref()) == bits(resolved.as_ref()));
+        assert_eq!(scalar.deep_contacts(), resolved.deep_contacts());
+        // Who is whose guest is a matter of the state, not of its history.
+        let mut first = simulate(Precision::F64, &start, Contacts::Fast(resolve), fast());
+        advance(first.as_mut(), 111);
+        let mut second = simulate(Precision::F64, &start, Contacts::Fast(resolve), fast());
+        second.restore(111, first.deep_contacts(), first.state()).unwrap();
+        advance(second.as_mut(), 189);
+        assert!(bits(second.as_ref()) == bits(resolved.as_ref()), "a run that goes on differs");
+        assert_eq!(second.deep_contacts(), resolved.deep_contacts());
+        let begin = stripmine::method::lattice_md::start;
+        let (model, particles) = start.clone();
+        let stopped =
+            begin(Precision::F64, model, Contacts::Fast(LATTICE), fast(), WallMotion::Fixed, particles);
+        assert!(matches!(stopped.err(), Some(Failure::Conflict { step: 0, .. })));
     }
 }
 
