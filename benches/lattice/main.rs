@@ -3,6 +3,7 @@
 
 mod forces;
 mod intrinsics;
+mod phases;
 mod scenery;
 mod step;
 
@@ -13,5 +14,5 @@ fn alone(_: &mut Criterion) {
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("the first pool");
 }
 
-criterion_group!(benches, alone, forces::forces, step::step);
+criterion_group!(benches, alone, forces::forces, step::step, phases::phases);
 criterion_main!(benches);

@@ -17,6 +17,7 @@ pub mod misprints;
 pub mod origin;
 pub mod page;
 pub mod pipe_flow;
+pub mod precision;
 pub mod section;
 pub mod table;
 pub mod terminal;

@@ -9,6 +9,7 @@ pub mod ladder;
 pub mod measured_cost;
 pub mod misprints;
 pub mod pipe_flow;
+pub mod precision;
 pub mod statistics;
 pub mod throughput;
 

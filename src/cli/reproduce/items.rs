@@ -7,7 +7,8 @@ use crate::report::pipe_flow::Showing;
 use crate::report::{self, Section};
 use crate::study::efficiency_table::Question;
 use crate::study::{
-    crossover, damping, density_cost, efficiency_table, identity, ladder, measured_cost, misprints, pipe_flow,
+    crossover, damping, density_cost, efficiency_table, identity, ladder, measured_cost, misprints,
+    pipe_flow, precision,
 };
 use clap::ValueEnum;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -67,6 +68,7 @@ define_items! {
     (Measured, "measured", 8.0, 60.0, "The same, measured on this host"),
     (Crossover, "crossover", 4.0, 150.0, "Lattice, neighbour lists and sectors: which is the fastest at which density, on this host"),
     (Identity, "identity", 3.0, 3.0, "Lattice and neighbour lists: the same to the bit"),
+    (Precision, "precision", 60.0, 60.0, "What single and mixed precision cost: forces, energy, trajectories"),
     (PipeSmall, "pipe-small", 3.0, 3.0, "BP93, figures 5 and 6, in two fifths of the pipe"),
     (Pipe, "pipe", 120.0, 120.0, "BP93, figures 5 and 6, in the whole pipe"),
     (PipeThin, "pipe-thin", 30.0, 30.0, "The whole pipe with fewer grains: waves both ways"),
@@ -76,7 +78,8 @@ define_items! {
 impl Item {
     /// Whether the item is made when none is named.
     pub(super) const fn belongs_to(self, effort: Effort) -> bool {
-        matches!(effort, Effort::Full) || !matches!(self, Item::Pipe | Item::PipeThin | Item::Waves)
+        matches!(effort, Effort::Full)
+            || !matches!(self, Item::Precision | Item::Pipe | Item::PipeThin | Item::Waves)
     }
 
     /// Makes the item. `progress` gets the share that is done.
@@ -115,6 +118,10 @@ impl Item {
             Item::Identity => {
                 let data = identity::identity(progress)?;
                 made(report::identity::section(&data), &data)
+            }
+            Item::Precision => {
+                let data = precision::precision(progress)?;
+                made(report::precision::section(&data), &data)
             }
             Item::PipeSmall => {
                 let title = "Density waves in a short pipe (figures 5 and 6)";
