@@ -206,6 +206,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
         discs.for_each(|disc| self.register(Scalar::<S>::default(), disc));
     }
 
+    #[allow(clippy::needless_range_loop, reason = "columns side by side, under one number")]
     #[inline(always)]
     fn register<R: Registers<Lane = S>>(&mut self, registers: R, first: usize) {
         let Pass { motion, arrays, corrected, .. } = *self;

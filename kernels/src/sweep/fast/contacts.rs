@@ -197,6 +197,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Task<P> for Evaluate<'_, 
 }
 
 impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> {
+    #[allow(clippy::needless_range_loop, reason = "columns side by side, under one number")]
     #[inline(always)]
     fn register<R: Registers<Lane = P>>(&self, registers: R, first: usize, notes: &mut Notes) {
         let count = (self.pairs.count() - first).min(R::LANES);

@@ -113,7 +113,7 @@ impl<S: Precision> State<S> {
     }
 
     /// The columns to be moved by a pass, and inverse masses and moments of inertia.
-    pub(super) fn to_advance(&mut self) -> (&mut [Vec<Vec<S>>], [&[S]; 2]) {
+    pub(super) fn for_advance(&mut self) -> (&mut [Vec<Vec<S>>], [&[S]; 2]) {
         (&mut self.columns, [&self.inverse[0], &self.inverse[1]])
     }
 
@@ -233,8 +233,8 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             None => None,
         };
         (0..numbers.len()).for_each(|disc| self.home.leave(disc));
-        for disc in 0..numbers.len() {
-            let cell = [cells[0][disc] as usize, cells[1][disc] as usize];
+        for (disc, (&column, &row)) in cells[0].iter().zip(&cells[1]).enumerate() {
+            let cell = [column as usize, row as usize];
             let to = Move { disc, cell, place: state.place(disc) };
             let entered = self.home.enter(&to, &self.model, &state);
             entered.map_err(|_| "two discs are in one cell".to_owned())?;

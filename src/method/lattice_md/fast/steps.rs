@@ -65,7 +65,7 @@ pub(super) fn advance<S: Precision, P: Precision>(
 ) -> Result<Vec<u32>, ProgramError> {
     let FastMd { model, state, sums, home, start, set, .. } = simulation;
     let freedoms = model.freedoms();
-    let (columns, inverse) = state.to_advance();
+    let (columns, inverse) = state.for_advance();
     let state = columns.iter_mut().map(|row| row.iter_mut().map(Vec::as_mut_slice).collect()).collect();
     let sums = sums.iter_mut().take(freedoms).map(Vec::as_mut_slice).collect();
     let discs = start.grain_count();

@@ -101,8 +101,9 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
     let limit = registers.splat(MARGIN as f32);
     let mut part = 0;
     while part < GROUP {
-        // SAFETY: the caller's promise, here and below.
+        // SAFETY: the caller's promise.
         let (own_x, own_y) = unsafe { (registers.load(x.add(part)), registers.load(y.add(part))) };
+        // SAFETY: as above.
         let own_radius = unsafe { registers.load(radii.add(part)) };
         // The own position as seen from the centres of the columns and rows around.
         let column = |column: isize| own_x - registers.splat(edge[0] * column as f32);
@@ -115,6 +116,7 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
                 if $number < const { place_count(H) } {
                     let [column, row] = const { place(H, $number) };
                     let shift = row * stride as isize + column + part as isize;
+                    // SAFETY: as above.
                     let (dx, dy) = unsafe {
                         (
                             columns[(column + 3) as usize] - registers.load(x.offset(shift)),
@@ -123,6 +125,7 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
                     };
                     let square = dx * dx + dy * dy;
                     let touch = if VARY {
+                        // SAFETY: as above.
                         let reach = own_radius + unsafe { registers.load(radii.offset(shift)) };
                         square.less_than(reach * reach * limit)
                     } else {

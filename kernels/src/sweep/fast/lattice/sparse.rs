@@ -53,11 +53,14 @@ impl<S: Element, P: Precision> Task<f32> for SparseSearch<'_, S, P> {
                 // SAFETY: the cell is in one of the rows, so that its places are before `end`.
                 let mut near = unsafe { occupied.from(position + 1) } & ahead;
                 for row in 1..=h {
+                    // SAFETY: as above.
                     let there = unsafe { occupied.from(position + row * shape.stride() - h) } & around;
                     near |= there << (h + (row - 1) * (2 * h + 1));
                 }
                 let before = found.len();
-                append_bits(found, near, |place| Candidate(cell << Candidate::CODE | place * GROUP as u64));
+                append_bits(found, near, |place| {
+                    Candidate((cell << Candidate::CODE) | (place * GROUP as u64))
+                });
                 let mut kept = before;
                 for listed in before..found.len() {
                     let candidate = found[listed];
