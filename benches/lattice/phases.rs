@@ -11,16 +11,16 @@ use stripmine::run::assemble;
 use stripmine::scene::{Checked, Document};
 
 /// Steps before anything is timed: the start on a lattice has no contacts.
-const EQUILIBRATION: u64 = 400;
+pub const EQUILIBRATION: u64 = 400;
 /// The phases, and how long each is to be timed (ms). The rest of its steps comes on top, so a short phase gets little.
 const PHASES: [(Phase, u64); 3] = [(Phase::CorrectPredict, 300), (Phase::Index, 50), (Phase::Forces, 1000)];
 
-fn advance(gas: &mut dyn Method, steps: u64) {
+pub fn advance(gas: &mut dyn Method, steps: u64) {
     (0..steps).for_each(|_| gas.step().expect("the bench scene runs on"));
 }
 
 /// A gas with friction, velocity Verlet, in the fast execution.
-fn scene(packing_fraction: f64, count: usize, precision: &str) -> Checked {
+pub fn scene(packing_fraction: f64, count: usize, precision: &str) -> Checked {
     let overrides = [
         format!("particles.count={count}"),
         format!("particles.packing_fraction={packing_fraction}"),
