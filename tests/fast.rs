@@ -149,7 +149,7 @@ fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
 /// Cells so wide that many hold two discs and some three: the few beside the lattice feel the same forces.
 #[test]
 fn conflicts_are_resolved_beside_the_lattice() {
-    for (scheme, edge) in [(Scheme::VelocityVerlet, 0.75), (Scheme::Gear(GearValues::Five), 0.95)] {
+    for (scheme, edge) in [(Scheme::VelocityVerlet, 1.0), (Scheme::Gear(GearValues::Five), 1.2)] {
         let mut start = gas(400, 0.8, 9);
         let sides = start.0.domain().sides;
         let counts = sides.map(|side| (side / edge) as usize);
