@@ -21,7 +21,9 @@ a ratio is the median of the rounds' ratios.
 
 import argparse
 import itertools
+import json
 import pathlib
+import platform
 import subprocess
 import sys
 import tempfile
@@ -51,6 +53,20 @@ def arguments():
     return parser.parse_args()
 
 
+def provenance():
+    """Where results come from: the commit of this checkout, the call, the processor."""
+    call = ["git", "-C", str(pathlib.Path(__file__).parent), "describe", "--always", "--dirty", "--abbrev=12"]
+    try:
+        commit = subprocess.run(call, capture_output=True, text=True).stdout.strip() or None
+    except OSError:
+        commit = None
+    listed = pathlib.Path("/proc/cpuinfo")
+    lines = listed.read_text().splitlines() if listed.exists() else []
+    names = [line.split(":")[1].strip() for line in lines if line.startswith("model name")]
+    host = names[0] if names else platform.processor()
+    return {"commit": commit, "command": " ".join(["python3", *sys.argv]), "host": host}
+
+
 def main():
     asked = arguments()
     if not pathlib.Path(asked.stripmine).exists():
@@ -76,6 +92,8 @@ def main():
                 write(results, asked.out)
     if results:
         print(write(results, asked.out))
+    if results and asked.out:
+        (asked.out / "provenance.json").write_text(json.dumps(provenance(), indent=2) + "\n")
     return 0
 
 
