@@ -52,8 +52,8 @@ pub struct Throughput {
     pub execution: String,
     /// Whether there is friction, and with it rotation.
     pub friction: bool,
-    /// Sides of a cell (length).
-    pub cell_edge: [f64; 2],
+    /// Sides of a cell of the lattice (length); none where the method needs no lattice.
+    pub cell_edge: Option<[f64; 2]>,
     /// Threads.
     pub threads: usize,
     /// Instructions.
@@ -133,7 +133,7 @@ pub fn throughput(measurement: Measurement) -> Result<Throughput, MeasurementErr
             (_, execution) => execution.name(),
         },
         friction: scene.law.has_friction(),
-        cell_edge: checked.geometry.frame.edge,
+        cell_edge: scene.method.needs_lattice().then_some(checked.geometry.frame.edge),
         threads: rayon::current_num_threads(),
         instruction_set: scene.method.instruction_set.unwrap_or_else(InstructionSet::best).name(),
         repeats,
