@@ -25,6 +25,18 @@ impl Domain {
         })
     }
 
+    /// A position moved by periods into the box.
+    pub fn inside(&self, position: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| {
+            let from_low = position[axis] - self.origin[axis];
+            if self.periodic[axis] && !(0.0..self.sides[axis]).contains(&from_low) {
+                self.origin[axis] + from_low.rem_euclid(self.sides[axis])
+            } else {
+                position[axis]
+            }
+        })
+    }
+
     /// Whether a position lies inside, or on the rim.
     pub fn contains(&self, position: [f64; 2]) -> bool {
         (0..2).all(|axis| {

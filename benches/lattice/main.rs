@@ -3,7 +3,9 @@
 
 mod forces;
 mod intrinsics;
+mod phases;
 mod scenery;
+mod search;
 mod step;
 
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -13,5 +15,5 @@ fn alone(_: &mut Criterion) {
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("the first pool");
 }
 
-criterion_group!(benches, alone, forces::forces, step::step);
+criterion_group!(benches, alone, forces::forces, step::step, phases::phases, search::search);
 criterion_main!(benches);

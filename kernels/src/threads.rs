@@ -4,6 +4,7 @@
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// What `work` makes of each of the parts, in their order; one part after the other if there is but one thread.
@@ -25,8 +26,16 @@ pub(crate) fn on_threads<T: Send, R: Send>(
     slots.into_iter().filter_map(made).collect()
 }
 
+/// Every part once. A thread begins with a share that is always its own, so that what it worked on before is still in its
+/// cache, and then takes what others have left.
 fn each(parts: usize, work: &(dyn Fn(usize) + Sync)) {
-    (0..parts).into_par_iter().with_max_len(1).for_each(work);
+    let taken: Vec<AtomicBool> = (0..parts).map(|_| AtomicBool::new(false)).collect();
+    let threads = rayon::current_num_threads();
+    (0..threads.min(parts)).into_par_iter().with_max_len(1).for_each(|_| {
+        let first = rayon::current_thread_index().unwrap_or(0) * parts / threads;
+        let own_first = (first..parts).chain(0..first);
+        own_first.filter(|&part| !taken[part].swap(true, Ordering::Relaxed)).for_each(work);
+    });
 }
 
 /// A range in pieces of `length`, the last one perhaps shorter.

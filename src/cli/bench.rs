@@ -48,8 +48,10 @@ pub(super) struct BenchVerb {
 enum What {
     /// BP93's lattice method
     Lattice,
-    /// Its scalar rival
+    /// Neighbour lists: the source's rival of it
     NeighborList,
+    /// Sectors that hold any number of discs
+    Sectors,
 }
 
 impl BenchVerb {
@@ -57,6 +59,7 @@ impl BenchVerb {
         let method = match self.what {
             What::Lattice => "lattice",
             What::NeighborList => "neighbor-list",
+            What::Sectors => "sectors",
         };
         let mut overrides = vec![
             format!("particles.count={}", self.particles),
@@ -68,9 +71,7 @@ impl BenchVerb {
             Some(values) => format!("integrator.values={values}"),
             None => format!("integrator.kind=\"{}\"", self.integrator),
         });
-        if self.what == What::Lattice {
-            overrides.push(format!("method.execution=\"{}\"", self.execution));
-        }
+        overrides.push(format!("method.execution=\"{}\"", self.execution));
         if self.instruction_set != "auto" {
             overrides.push(format!("method.instruction_set=\"{}\"", self.instruction_set));
         }

@@ -74,17 +74,21 @@ fn progress_bar(common: &Common) -> ProgressBar {
 }
 
 fn text(summary: &Summary, folder: &Path) -> String {
-    let Summary { discs: [grains, walls], lattice: [columns, rows], steps, seconds, last, .. } = summary;
-    let mut text = format!(
-        "{grains} grains and {walls} wall discs on {columns}×{rows} cells, occupancy {:.3}\n{steps} steps in {seconds:.2} \
-         s; time {:.6}, temperature {:.4e}, flow {:.4e}, contacts {}, deepest penetration {:.4}\n",
-        summary.occupancy, last.time, last.temperature, last.flow, last.contacts, last.deepest_penetration
-    );
+    let Summary { discs: [grains, walls], lattice, occupancy, steps, seconds, last, .. } = summary;
+    let mut text = format!("{grains} grains and {walls} wall discs");
+    if let (Some([columns, rows]), Some(occupancy)) = (lattice, occupancy) {
+        text.push_str(&format!(" on {columns}×{rows} cells, occupancy {occupancy:.3}"));
+    }
+    text.push_str(&format!(
+        "\n{steps} steps in {seconds:.2} s; time {:.6}, temperature {:.4e}, flow {:.4e}, contacts {}, deepest penetration \
+         {:.4}\n",
+        last.time, last.temperature, last.flow, last.contacts, last.deepest_penetration
+    ));
     for reason in &summary.left_out {
         text.push_str(&format!("left out: {reason}\n"));
     }
-    if summary.work_relative_to_everything < 1.0 {
-        let saved = 100.0 * (1.0 - summary.work_relative_to_everything);
+    if let Some(share) = summary.work_relative_to_everything.filter(|&share| share < 1.0) {
+        let saved = 100.0 * (1.0 - share);
         text.push_str(&format!(
             "saved: {saved:.1} % of a step's operations with friction and different discs\n"
         ));

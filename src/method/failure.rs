@@ -85,6 +85,12 @@ pub enum Failure {
         /// The limit.
         limit: f64,
     },
+    /// Sectors meet themselves across a periodic side.
+    #[error(
+        "a periodic side of the box has no room for three sectors as wide as a contact and the skin reach; take more \
+         discs, a smaller method.skin, or method.kind = \"lattice\""
+    )]
+    NoRoomForSectors,
     /// The machine refused a program.
     #[error(transparent)]
     Machine(#[from] ProgramError),

@@ -28,6 +28,9 @@ pub struct DeepContacts {
     pub deepest: f64,
     /// The step of the deepest.
     pub step: u64,
+    /// Discs in a lattice cell that was another disc's, summed over the steps; more than none only where such conflicts
+    /// are resolved.
+    pub shared_cells: u64,
 }
 
 /// A method that steps particles. It never prints and never writes a file.

@@ -2,6 +2,7 @@
 
 pub mod break_even;
 pub mod calibration;
+pub mod crossover;
 pub mod csv;
 pub mod damping;
 pub mod density_cost;
@@ -19,6 +20,7 @@ pub mod model_validation;
 pub mod origin;
 pub mod page;
 pub mod pipe_flow;
+pub mod precision;
 pub mod section;
 pub mod table;
 pub mod terminal;

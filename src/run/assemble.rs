@@ -1,12 +1,27 @@
 //! From a checked scene to the method that runs it.
 
 use crate::method::lattice_md::{
-    Contacts, Discs, GearValues, ListOptions, Machine, Model, Rebuild, Scheme, Watch, start,
+    Contacts, Discs, GearValues, ListOptions, Machine, Model, OnConflict, Rebuild, Scheme, Search, Watch,
+    start,
 };
 use crate::method::{Failure, Method};
 use crate::scene::{self, Checked, MethodKind};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::law::granular::Disc;
+
+/// Skin of neighbour lists where the scene gives none, in largest radii.
+const SKIN: f64 = 0.3;
+
+/// Skin of the fast lists (length) where the scene gives none: half of the gap between the discs, were they spread evenly,
+/// within bounds. The wider the skin, the longer the lists, and the longer they last.
+fn roomy_skin(checked: &Checked) -> f64 {
+    let Checked { domain, particles, geometry, .. } = checked;
+    let largest = geometry.radii[1];
+    let area = domain.sides[0] * domain.sides[1] / particles.len().max(1) as f64;
+    // Neighbours on a hexagonal lattice are so far apart.
+    let spacing = (area * 2.0 / 3f64.sqrt()).sqrt();
+    (0.5 * (spacing - 2.0 * largest)).clamp(SKIN * largest, largest)
+}
 
 /// What a checked scene models: no more than it needs.
 pub fn model(checked: &Checked) -> Model {
@@ -50,15 +65,23 @@ pub fn model(checked: &Checked) -> Model {
 /// [`Failure`] if the start breaks a precondition, or the processor lacks the instruction set asked for.
 pub fn assemble(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
     let Checked { scene, particles, geometry, .. } = checked;
+    let fast = scene.method.execution == scene::Execution::Fast;
     let contacts = match scene.method.kind {
-        MethodKind::Lattice if scene.method.execution == scene::Execution::Fast => Contacts::Fast,
+        MethodKind::Lattice if fast => Contacts::Fast(Search::Lattice(match scene.method.on_conflict {
+            scene::OnConflict::Stop => OnConflict::Stop,
+            scene::OnConflict::Resolve => OnConflict::Resolve,
+        })),
         MethodKind::Lattice => Contacts::Lattice,
+        MethodKind::Sectors => Contacts::Fast(Search::Sectors),
+        MethodKind::NeighborList { skin, .. } if fast => {
+            Contacts::Fast(Search::Lists { skin: skin.unwrap_or_else(|| roomy_skin(checked)) })
+        }
         MethodKind::NeighborList { rebuild, skin } => Contacts::Lists(ListOptions {
             rebuild: match rebuild {
                 scene::Rebuild::Cells => Rebuild::Cells,
                 scene::Rebuild::AllPairs => Rebuild::AllPairs,
             },
-            skin: skin.unwrap_or(0.3 * geometry.radii[1]),
+            skin: skin.unwrap_or(SKIN * geometry.radii[1]),
         }),
     };
     let machine = Machine {

@@ -116,6 +116,7 @@ impl Recorder {
             disc_steps: count("deep.disc_steps")?,
             deepest: sum("deep.deepest")?,
             step: count("deep.step")?,
+            shared_cells: count("deep.shared_cells")?,
         };
         let mut work = Work { start: sum("work.start")?, gravity: sum("work.gravity")?, seen: vec![] };
         let mut state = Vec::new();
@@ -243,6 +244,7 @@ impl Recorder {
             ("deep.disc_steps".to_owned(), Counter::Count(deep.disc_steps)),
             ("deep.deepest".to_owned(), Counter::Sum(deep.deepest)),
             ("deep.step".to_owned(), Counter::Count(deep.step)),
+            ("deep.shared_cells".to_owned(), Counter::Count(deep.shared_cells)),
             ("work.start".to_owned(), Counter::Sum(self.work.start)),
             ("work.gravity".to_owned(), Counter::Sum(self.work.gravity)),
         ]);

@@ -26,10 +26,10 @@ pub struct Summary {
     pub threads: usize,
     /// Grains, and wall discs.
     pub discs: [usize; 2],
-    /// Columns and rows of the lattice.
-    pub lattice: [usize; 2],
-    /// Grains and wall discs for each cell.
-    pub occupancy: f64,
+    /// Columns and rows of the lattice; none where the method needs none.
+    pub lattice: Option<[usize; 2]>,
+    /// Grains and wall discs for each cell of it.
+    pub occupancy: Option<f64>,
     /// What the scene has no need of, with the reason.
     pub left_out: Vec<String>,
     /// What was warned about.
@@ -44,12 +44,15 @@ pub struct Summary {
     pub phases: BTreeMap<&'static str, f64>,
     /// Discs in contacts deeper than `max_penetration`, summed over the steps.
     pub deep_disc_steps: u64,
+    /// Discs beside the lattice because their cell was another's, summed over the steps.
+    pub resolved_conflicts: u64,
     /// The deepest such contact (fraction of the sum of the radii), 0 if there was none.
     pub deepest_watched: f64,
-    /// What a step executes.
+    /// What a step executes; empty where that depends on the contacts.
     pub ledger: Vec<LedgerRow>,
-    /// Operations times elements of a step, relative to a scene with friction and different discs.
-    pub work_relative_to_everything: f64,
+    /// Operations times elements of a step, relative to a scene with friction and different discs; none where a step is no
+    /// fixed program.
+    pub work_relative_to_everything: Option<f64>,
     /// The last state.
     pub last: Observation,
 }
@@ -73,7 +76,15 @@ impl Summary {
                 scene.law.max_penetration, deep.disc_steps, deep.deepest, deep.step
             ));
         }
+        if deep.shared_cells > 0 {
+            warnings.push(format!(
+                "{} times a disc was in a lattice cell that was another's, and was kept beside the lattice: exact, but \
+                 slower the more there are",
+                deep.shared_cells
+            ));
+        }
         let scenery = Scenery::of(&super::model(checked));
+        let (on_lattice, ledger) = (scene.method.needs_lattice(), ledger(method));
         Summary {
             origin: Origin::here(),
             host: host(),
@@ -81,8 +92,8 @@ impl Summary {
             instruction_set: set.name(),
             threads: rayon::current_num_threads(),
             discs: [grains, particles.len() - grains],
-            lattice: [geometry.shape.columns(), geometry.shape.rows()],
-            occupancy: geometry.occupancy,
+            lattice: on_lattice.then(|| [geometry.shape.columns(), geometry.shape.rows()]),
+            occupancy: on_lattice.then_some(geometry.occupancy),
             left_out: left_out.clone(),
             warnings,
             failure: failure.map(ToString::to_string),
@@ -90,9 +101,10 @@ impl Summary {
             seconds,
             phases: method.timings().named(),
             deep_disc_steps: deep.disc_steps,
+            resolved_conflicts: deep.shared_cells,
             deepest_watched: deep.deepest,
-            ledger: ledger(method),
-            work_relative_to_everything: relative_work(checked),
+            work_relative_to_everything: (!ledger.is_empty()).then(|| relative_work(checked)),
+            ledger,
             last: Observation::of(method.steps(), method.time(), &method.particles(), &scenery),
         }
     }

@@ -6,8 +6,8 @@ use super::key_table::*;
 use super::keys::{Fallback, Key, Selector, Value};
 use super::places::beside;
 use super::{
-    Amount, Domain, Execution, Grains, Inertia, Integrator, Law, Lining, List, Method, MethodKind, Output,
-    Precision, Rebuild, Run, Scene, Scheme, Speed, Start, WallMotion,
+    Amount, Domain, Execution, Grains, Inertia, Integrator, Law, Lining, List, Method, MethodKind,
+    OnConflict, Output, Precision, Rebuild, Run, Scene, Scheme, Speed, Start, WallMotion,
 };
 use stripmine_kernels::law::granular::{Contact, ContactArm};
 use stripmine_kernels::sweep::lattice::Coordinates;
@@ -209,7 +209,12 @@ fn method(from: &Values<'_>) -> Get<Method> {
                 },
                 skin: from.number_if_any(&SKIN),
             },
+            "sectors" => MethodKind::Sectors,
             _ => MethodKind::Lattice,
+        },
+        on_conflict: match from.word(&ON_CONFLICT)?.as_str() {
+            "resolve" => OnConflict::Resolve,
+            _ => OnConflict::Stop,
         },
         cell_edge: from.number_if_any(&CELL_EDGE),
         mask: from.whole_if_any(&MASK).map(|width| width as usize),
@@ -367,7 +372,12 @@ fn start_values(start: &Start, values: &mut Vec<(&'static Key, Value)>) {
 
 fn method_values(method: &Method, values: &mut Vec<(&'static Key, Value)>) {
     match method.kind {
-        MethodKind::Lattice => values.push((&METHOD, word("lattice"))),
+        MethodKind::Lattice => {
+            values.push((&METHOD, word("lattice")));
+            let resolves = method.on_conflict == OnConflict::Resolve;
+            values.push((&ON_CONFLICT, word(if resolves { "resolve" } else { "stop" })));
+        }
+        MethodKind::Sectors => values.push((&METHOD, word("sectors"))),
         MethodKind::NeighborList { rebuild, skin } => {
             values.push((&METHOD, word("neighbor-list")));
             values.push((&REBUILD, word(if rebuild == Rebuild::Cells { "cells" } else { "all-pairs" })));

@@ -29,6 +29,7 @@ const BOX: Use = Some((Selector::Start, &["box"]));
 const LIST: Use = Some((Selector::Start, &["list"]));
 const OSCILLATING: Use = Some((Selector::WallMotion, &["oscillating"]));
 const GEAR: Use = Some((Selector::Integrator, &["gear"]));
+const EXCLUSIVE: Use = Some((Selector::Method, &["lattice"]));
 const LISTS: Use = Some((Selector::Method, &["neighbor-list"]));
 
 macro_rules! define_keys {
@@ -129,12 +130,14 @@ define_keys! {
     STOP_PENETRATION = "law" "stop_penetration", Number(Within(1.0)), "", Is("0.3"), ALWAYS,
         "Penetration that stops the run.";
 
-    METHOD = "method" "kind", Choice(&["lattice", "neighbor-list"]), "", Is("\"lattice\""), ALWAYS,
-        "How contacts are found: on the exclusive lattice of BP93, or by its rival.";
+    METHOD = "method" "kind", Choice(&["lattice", "sectors", "neighbor-list"]), "", Is("\"lattice\""), ALWAYS,
+        "How contacts are found: on the exclusive lattice of BP93, in sectors that hold any number of discs (with execution = \"fast\" only), or by lists of neighbours.";
     CELL_EDGE = "method" "cell_edge", Number(Positive), "length", Otherwise("the fewest cells"), ALWAYS,
         "Side d of a lattice cell; fitted to periodic sides. The source has d = R_max.";
     MASK = "method" "mask", OneOf(&[5, 7]), "", Otherwise("the smallest that serves"), ALWAYS,
         "Width of the neighbourhood in cells: 5×5 or 7×7.";
+    ON_CONFLICT = "method" "on_conflict", Choice(&["stop", "resolve"]), "", Is("\"stop\""), EXCLUSIVE,
+        "What becomes of a disc whose lattice cell is another's: the run stops, or the disc is kept in a list beside the lattice and counted (with execution = \"fast\" only; a cell_edge may then be too large for one disc a cell).";
     COORDINATES = "method" "coordinates", Choice(&["cell-relative", "absolute"]), "", Is("\"cell-relative\""), ALWAYS,
         "What positions on the lattice are measured from.";
     PRECISION = "method" "precision", Choice(&["f64", "f32", "mixed"]), "", Is("\"f64\""), ALWAYS,
@@ -146,7 +149,7 @@ define_keys! {
         "The SIMD instructions; auto takes the widest that the processor has.";
     REBUILD = "method" "rebuild", Choice(&["cells", "all-pairs"]), "", Is("\"cells\""), LISTS,
         "How neighbour lists are made: by cells, or by all pairs as in the source.";
-    SKIN = "method" "skin", Number(Positive), "length", Otherwise("0.3 R_max"), LISTS,
+    SKIN = "method" "skin", Number(Positive), "length", Otherwise("0.3 R_max; with execution = \"fast\" half of the mean gap, from there to R_max"), LISTS,
         "Listed pairs are up to this far from contact.";
 
     INTEGRATOR = "integrator" "kind", Choice(&["gear", "velocity-verlet"]), "", Is("\"gear\""), ALWAYS,

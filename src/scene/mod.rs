@@ -242,6 +242,8 @@ pub struct Method {
     pub cell_edge: Option<f64>,
     /// Width of the mask in cells, 5 or 7; none: the smallest that serves.
     pub mask: Option<usize>,
+    /// What becomes of a disc whose lattice cell is another's.
+    pub on_conflict: OnConflict,
     /// What positions on the lattice are measured from.
     pub coordinates: Coordinates,
     /// Precision of state and forces.
@@ -252,11 +254,34 @@ pub struct Method {
     pub instruction_set: Option<InstructionSet>,
 }
 
+impl Method {
+    /// Whether discs must have a cell of the exclusive lattice to themselves, or be seen through its mask.
+    pub fn needs_lattice(&self) -> bool {
+        match self.kind {
+            MethodKind::Lattice => true,
+            MethodKind::Sectors => false,
+            MethodKind::NeighborList { .. } => self.execution != Execution::Fast,
+        }
+    }
+}
+
+/// What becomes of a disc whose lattice cell is another's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OnConflict {
+    /// The run stops.
+    #[default]
+    Stop,
+    /// It is kept beside the lattice, and counted.
+    Resolve,
+}
+
 /// How contacts are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MethodKind {
     /// On the exclusive lattice.
     Lattice,
+    /// In sectors that hold any number of discs.
+    Sectors,
     /// By neighbour lists.
     NeighborList {
         /// How lists are made.

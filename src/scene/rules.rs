@@ -1,7 +1,7 @@
 //! What keys demand of each other: which are used, which are missing, which exclude each other, which must agree.
 
 use super::document::{Entries, Entry};
-use super::error::Reason;
+use super::error::{Reason, SceneError};
 use super::key_table::*;
 use super::keys::{Fallback, Key, Selector, Use, Value};
 
@@ -118,6 +118,34 @@ fn number(entries: &Entries, key: &Key) -> Option<f64> {
 /// As many as `run.steps` may be.
 const MOST_STEPS: f64 = 1e12;
 
+/// What finds contacts in which way only.
+fn search(entries: &Entries) -> Option<SceneError> {
+    let word = |key: &Key| match entries.given(key).map(|entry| &entry.value) {
+        Some(Value::Word(word)) => Some(word.as_str()),
+        _ => None,
+    };
+    let fast = word(&EXECUTION) == Some("fast");
+    if word(&METHOD) == Some("sectors") && !fast && !entries.is_faulty(&EXECUTION) {
+        let key = if entries.given(&EXECUTION).is_some() { &EXECUTION } else { &METHOD };
+        let message = "sectors have no vector programs: they are searched by the fast execution only";
+        return Some(
+            entries.spot(key).error(Reason::Contradiction, message).expecting("execution = \"fast\""),
+        );
+    }
+    if word(&ON_CONFLICT) == Some("resolve") && !fast && !entries.is_faulty(&EXECUTION) {
+        let message =
+            "the source's programs know one disc a cell: only the fast execution resolves conflicts";
+        let error = entries.spot(&ON_CONFLICT).error(Reason::Contradiction, message);
+        return Some(error.expecting("execution = \"fast\""));
+    }
+    if fast && word(&REBUILD) == Some("all-pairs") {
+        let message = "the fast execution makes its lists by cells";
+        let error = entries.spot(&REBUILD).error(Reason::Contradiction, message);
+        return Some(error.advising("leave it out, or choose execution = \"chained\""));
+    }
+    None
+}
+
 fn agreement(entries: &mut Entries) {
     let mut errors = Vec::new();
     let choice = Selector::Start.choice(entries);
@@ -190,5 +218,6 @@ fn agreement(entries: &mut Entries) {
         }
     };
     ordered(&MAX_PENETRATION, &STOP_PENETRATION, "a run warns before it stops");
+    errors.extend(search(entries));
     entries.errors.append(&mut errors);
 }

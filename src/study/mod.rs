@@ -2,6 +2,7 @@
 
 pub mod break_even;
 pub mod calibration;
+pub mod crossover;
 pub mod damping;
 pub mod density_cost;
 pub mod efficiency_table;
@@ -14,6 +15,7 @@ pub mod model_validation;
 pub mod phase_times;
 pub mod pipe_flow;
 pub mod predicted_step;
+pub mod precision;
 pub mod statistics;
 pub mod throughput;
 pub mod useful_work;

@@ -54,7 +54,7 @@ impl Run {
     pub fn rates(&self) -> Option<&'static str> {
         match self.execution {
             LISTS => Some("lists"),
-            FAST if self.occupancy < stripmine_kernels::sweep::fast::SPARSE => Some("fast, sparse"),
+            FAST if self.occupancy < stripmine_kernels::sweep::fast::lattice::SPARSE => Some("fast, sparse"),
             FAST => Some("fast"),
             _ => None,
         }

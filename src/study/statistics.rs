@@ -33,9 +33,27 @@ impl Spread {
     }
 }
 
+/// Slope of the straight line of least squares through points; 0 through fewer than two.
+pub fn slope(x: &[f64], y: &[f64]) -> f64 {
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let (middle, height) = (mean(x), mean(y));
+    let spread = x.iter().map(|x| (x - middle) * (x - middle)).sum::<f64>();
+    let rise = x.iter().zip(y).map(|(x, y)| (x - middle) * (y - height)).sum::<f64>();
+    if spread > 0.0 { rise / spread } else { 0.0 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_line_has_its_slope() {
+        let x = [1.0, 2.0, 4.0, 8.0];
+        assert!((slope(&x, &x.map(|x| 3.0 - 0.5 * x)) + 0.5).abs() < 1e-15);
+        // By hand: two points off a flat line by the same amount, at the ends, tilt it.
+        assert!((slope(&[0.0, 1.0, 2.0], &[0.0, 0.0, 1.0]) - 0.5).abs() < 1e-15);
+        assert_eq!((slope(&[], &[]), slope(&[1.0], &[2.0])), (0.0, 0.0));
+    }
 
     #[test]
     fn the_error_of_the_mean_needs_two_runs() {

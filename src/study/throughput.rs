@@ -3,7 +3,7 @@
 use crate::method::{Failure, Method};
 use crate::observe::{Observation, Scenery};
 use crate::run::assemble;
-use crate::scene::{Document, MethodKind, Precision, SceneErrors, Scheme};
+use crate::scene::{Document, Execution, MethodKind, Precision, SceneErrors, Scheme};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use stripmine_kernels::InstructionSet;
@@ -52,8 +52,8 @@ pub struct Throughput {
     pub execution: String,
     /// Whether there is friction, and with it rotation.
     pub friction: bool,
-    /// Sides of a cell (length).
-    pub cell_edge: [f64; 2],
+    /// Sides of a cell of the lattice (length); none where the method needs no lattice.
+    pub cell_edge: Option<[f64; 2]>,
     /// Threads.
     pub threads: usize,
     /// Instructions.
@@ -113,6 +113,7 @@ pub fn throughput(measurement: Measurement) -> Result<Throughput, MeasurementErr
     Ok(Throughput {
         what: match scene.method.kind {
             MethodKind::Lattice => "lattice",
+            MethodKind::Sectors => "sectors",
             MethodKind::NeighborList { .. } => "neighbor-list",
         },
         particles,
@@ -127,11 +128,12 @@ pub fn throughput(measurement: Measurement) -> Result<Throughput, MeasurementErr
             Scheme::VelocityVerlet => "velocity-verlet".to_owned(),
         },
         execution: match (scene.method.kind, scene.method.execution) {
+            (_, Execution::Fast) => Execution::Fast.name(),
             (MethodKind::NeighborList { .. }, _) => "scalar".to_owned(),
-            (MethodKind::Lattice, execution) => execution.name(),
+            (_, execution) => execution.name(),
         },
         friction: scene.law.has_friction(),
-        cell_edge: checked.geometry.frame.edge,
+        cell_edge: scene.method.needs_lattice().then_some(checked.geometry.frame.edge),
         threads: rayon::current_num_threads(),
         instruction_set: scene.method.instruction_set.unwrap_or_else(InstructionSet::best).name(),
         repeats,

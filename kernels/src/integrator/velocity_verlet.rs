@@ -91,7 +91,7 @@ impl<S: Element, P: Element, const FREEDOMS: usize> Kick<S, P, FREEDOMS> {
     }
 
     /// The same program, which also counts the discs whose acceleration is no finite number in
-    /// [`NOT_FINITE`](super::gear::NOT_FINITE).
+    /// [`NOT_FINITE`].
     #[must_use]
     pub fn checked(self) -> Self {
         Kick { checked: true, ..self }
@@ -102,6 +102,7 @@ impl<S: Element, P: Element, const FREEDOMS: usize> Kick<S, P, FREEDOMS> {
 unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Text for Kick<S, P, FREEDOMS> {
     type Lane = S;
 
+    #[allow(clippy::needless_range_loop, reason = "several lists side by side, under one number")]
     #[inline(always)]
     fn body<M: Machine<Lane = S>>(&self, m: M) {
         m.section("gather");

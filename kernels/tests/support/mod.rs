@@ -8,7 +8,8 @@ use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
 use stripmine_kernels::law::{Field, Law, Sum};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};
-use stripmine_kernels::sweep::fast::{self, Occupancy, SENTINELS, Sweep};
+use stripmine_kernels::sweep::fast::lattice::{Codes, Lattice, Occupancy};
+use stripmine_kernels::sweep::fast::{self, Finder, SENTINELS, Sweep};
 use stripmine_kernels::sweep::lattice::cells::{CONFLICTS, Check, Clear, Enter, Images, STRAYS};
 use stripmine_kernels::sweep::lattice::forces::{Forces, Join};
 use stripmine_kernels::sweep::lattice::vectors::Spread;
@@ -315,8 +316,10 @@ impl<S: Precision, P: Precision> System<S, P> {
         };
         let mut sums = [0, 1, 2].map(|_| vec![P::default(); self.discs]);
         let [fx, fy, torque] = &mut sums;
-        let mut sweep = Sweep::new(&occupancy, self.frame);
-        let met = sweep.run(law, &occupancy, &discs, [fx, fy, torque], Some(0.1), set)?;
+        let codes = Codes::new(&occupancy, self.frame);
+        let lattice = Lattice { occupancy: &occupancy, codes: &codes };
+        let mut sweep = Sweep::new(Finder::<S, P>::rows(&lattice));
+        let met = sweep.run(law, &lattice, &discs, [fx, fy, torque], Some(0.1), set)?;
         let mut forces = vec![[P::default(); 3]; self.discs];
         for (n, &disc) in order.iter().enumerate() {
             forces[disc as usize] = [0, 1, 2].map(|sum| sums[sum][n]);

@@ -10,8 +10,8 @@ use crate::report::{self, Section};
 use crate::study::calibration::{self, calibrate};
 use crate::study::efficiency_table::Question;
 use crate::study::{
-    break_even, damping, density_cost, efficiency_table, host_ladder, identity, ladder, measured_cost,
-    misprints, model_validation, pipe_flow, useful_work,
+    break_even, crossover, damping, density_cost, efficiency_table, host_ladder, identity, ladder,
+    measured_cost, misprints, model_validation, pipe_flow, precision, useful_work,
 };
 use clap::ValueEnum;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -73,7 +73,9 @@ define_items! {
     (Measured, "measured", 8.0, 60.0, "The same, measured on this host"),
     (Validation, "validation", 10.0, 60.0, "The timing model of this host against wall time"),
     (Atlas, "atlas", 8.0, 60.0, "Who wins where: occupancy, number of particles, method and machine"),
+    (Crossover, "crossover", 4.0, 150.0, "Lattice, neighbour lists and sectors: which is the fastest at which density, on this host"),
     (Identity, "identity", 3.0, 3.0, "Lattice and neighbour lists: the same to the bit"),
+    (Precision, "precision", 60.0, 60.0, "What single and mixed precision cost: forces, energy, trajectories"),
     (PipeSmall, "pipe-small", 3.0, 3.0, "BP93, figures 5 and 6, in two fifths of the pipe"),
     (Pipe, "pipe", 120.0, 120.0, "BP93, figures 5 and 6, in the whole pipe"),
     (PipeThin, "pipe-thin", 30.0, 30.0, "The whole pipe with fewer grains: waves both ways"),
@@ -83,7 +85,8 @@ define_items! {
 impl Item {
     /// Whether the item is made when none is named.
     pub(super) const fn belongs_to(self, effort: Effort) -> bool {
-        matches!(effort, Effort::Full) || !matches!(self, Item::Pipe | Item::PipeThin | Item::Waves)
+        matches!(effort, Effort::Full)
+            || !matches!(self, Item::Precision | Item::Pipe | Item::PipeThin | Item::Waves)
     }
 
     /// Makes the item. `progress` gets the share that is done.
@@ -124,9 +127,17 @@ impl Item {
             }
             Item::Validation => validation(effort, progress),
             Item::Atlas => atlas(effort, progress),
+            Item::Crossover => {
+                let data = crossover::crossover(&crossover_effort(effort), progress)?;
+                made(report::crossover::section(&data), &data)
+            }
             Item::Identity => {
                 let data = identity::identity(progress)?;
                 made(report::identity::section(&data), &data)
+            }
+            Item::Precision => {
+                let data = precision::precision(progress)?;
+                made(report::precision::section(&data), &data)
             }
             Item::PipeSmall => {
                 let title = "Density waves in a short pipe (figures 5 and 6)";
@@ -210,6 +221,25 @@ fn measured_effort(effort: Effort) -> measured_cost::Effort {
             equilibration: 100,
             element_steps: 1_000_000,
             repeats: 5,
+        },
+    }
+}
+
+fn crossover_effort(effort: Effort) -> crossover::Effort {
+    match effort {
+        Effort::Quick => crossover::Effort {
+            precisions: vec!["f64"],
+            particles: vec![4000],
+            packing_fractions: vec![0.84, 0.3, 0.1],
+            steps: 60,
+            repeats: 2,
+        },
+        Effort::Full => crossover::Effort {
+            precisions: vec!["f64", "mixed", "f32"],
+            particles: vec![10_000, 100_000],
+            packing_fractions: vec![0.84, 0.8, 0.6, 0.3, 0.1, 0.03],
+            steps: 120,
+            repeats: 3,
         },
     }
 }

@@ -12,6 +12,7 @@ mod walls;
 mod watch;
 
 pub use arrays::{Arrays, Lengths};
+pub use fast::{OnConflict, Search};
 pub use model::{Discs, GearValues, Model, Scheme, Watch};
 pub use neighbor_list::{ListOptions, Rebuild};
 pub use programs::{Part, StepProgram, execute, ledger, programs, rival_ledger};

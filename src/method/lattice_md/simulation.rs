@@ -1,6 +1,6 @@
 //! A running simulation: one step after the other, every broken precondition found in its step.
 
-use super::fast::FastLattice;
+use super::fast::{FastMd, Search};
 use super::neighbor_list::Rival;
 use super::programs::rival_ledger;
 use super::walls::walls_at;
@@ -22,8 +22,8 @@ use stripmine_kernels::{Execution, InstructionSet};
 pub enum Contacts {
     /// On the lattice: the method of the source.
     Lattice,
-    /// On the lattice, each pair once and the law for contacts only; the machine's execution does not matter.
-    Fast,
+    /// Each pair once and the law for contacts only; the machine's execution does not matter.
+    Fast(Search),
     /// By neighbour lists: its rival.
     Lists(ListOptions),
 }
@@ -49,12 +49,12 @@ pub fn start(
     walls: WallMotion,
     particles: Particles,
 ) -> Result<Box<dyn Method>, Failure> {
-    if contacts == Contacts::Fast {
+    if let Contacts::Fast(search) = contacts {
         let set = machine.set;
         return Ok(match precision {
-            Precision::F64 => Box::new(FastLattice::<f64, f64>::new(model, set, walls, particles)?),
-            Precision::F32 => Box::new(FastLattice::<f32, f32>::new(model, set, walls, particles)?),
-            Precision::Mixed => Box::new(FastLattice::<f64, f32>::new(model, set, walls, particles)?),
+            Precision::F64 => Box::new(FastMd::<f64, f64>::new(model, search, set, walls, particles)?),
+            Precision::F32 => Box::new(FastMd::<f32, f32>::new(model, search, set, walls, particles)?),
+            Precision::Mixed => Box::new(FastMd::<f64, f32>::new(model, search, set, walls, particles)?),
         });
     }
     Ok(match precision {
@@ -92,7 +92,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         particles: Particles,
     ) -> Result<Self, Failure> {
         let rival = match contacts {
-            Contacts::Lattice | Contacts::Fast => None,
+            Contacts::Lattice | Contacts::Fast(_) => None,
             Contacts::Lists(options) => {
                 let largest = particles.radii().map_or(1.0, |[_, largest]| largest);
                 Some(Rival::new(&model, options, largest))

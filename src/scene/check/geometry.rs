@@ -1,10 +1,10 @@
 //! The lattice that serves the discs: at most one centre a cell, and no contact beyond the mask.
 
-use super::super::Start;
 use super::super::error::{Reason, SceneError, Spot};
 use super::super::key_table::*;
 use super::super::keys::Key;
 use super::super::places::Document;
+use super::super::{OnConflict, Start};
 use super::readable;
 use crate::domain::Domain;
 use stripmine_kernels::mask::Mask;
@@ -102,7 +102,14 @@ pub(super) fn fit(
     discs: usize,
 ) -> Result<Geometry, Vec<SceneError>> {
     let scene = &document.scene;
-    let bounds = |half_width| Bounds::new(half_width, radii, scene.law.max_penetration);
+    let bounds = |half_width| {
+        let exclusive = Bounds::new(half_width, radii, scene.law.max_penetration);
+        // Where no disc must have a cell to itself, any cell will do.
+        let shared = scene.method.on_conflict == OnConflict::Resolve && scene.method.cell_edge.is_some();
+        let exclusively = scene.method.needs_lattice() && !shared;
+        let diagonal = if exclusively { exclusive.diagonal } else { f64::INFINITY };
+        Bounds { diagonal, ..exclusive }
+    };
     let tries: Vec<Bounds> = match scene.method.mask {
         Some(7) => vec![bounds(3)],
         Some(_) => vec![bounds(2)],

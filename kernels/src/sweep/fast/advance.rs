@@ -1,6 +1,5 @@
 //! Corrector and next predictor in one pass over the discs.
 
-use super::occupancy::Occupancy;
 use crate::InstructionSet;
 use crate::backend::{Precision, Registers, Scalar};
 use crate::integrator::Scheme;
@@ -24,8 +23,31 @@ pub struct Motion<C> {
     pub inertia: Inertia,
     /// Acceleration of gravity (length/time²).
     pub gravity: [f64; 2],
-    /// Sides of a cell (length).
-    pub edge: [f64; 2],
+}
+
+/// How far a disc may go before somebody must see to it.
+#[derive(Clone, Copy, Debug)]
+pub enum Leash<'a, S> {
+    /// As far as the rim of its cell, of these sides (length).
+    Cell([f64; 2]),
+    /// So far from a place.
+    From {
+        /// The places, an entry a disc or more.
+        places: [&'a [S]; 2],
+        /// How far (length).
+        distance: f64,
+    },
+}
+
+/// Copies of the places for a search in single precision: written beside the state, while it is at hand.
+#[derive(Debug)]
+pub struct Copies<'a> {
+    /// Where in the copies the discs are.
+    pub(super) cells: &'a [u32],
+    /// The copies.
+    pub(super) places: [&'a mut [f32]; 2],
+    /// What lengths are multiplied by.
+    pub(super) unit: f64,
 }
 
 impl<C: Scheme> Motion<C> {
@@ -69,20 +91,27 @@ pub struct Advance<'a, S, P, C> {
 }
 
 impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
-    /// Does it; the discs that have left their cells, or have no finite place, are listed in order.
+    /// Does it; the discs that strain at the leash, or have no finite place, are listed in order.
     ///
     /// # Errors
     /// [`ProgramError::NoSuchInstructionSet`]; nothing was executed then.
     ///
     /// # Panics
     /// If a column is shorter than said, or a disc that moves is in no cell.
-    pub fn run(mut self, occupancy: &mut Occupancy, set: InstructionSet) -> Result<Vec<u32>, ProgramError> {
+    pub fn run(
+        mut self,
+        leash: Leash<'_, S>,
+        copies: Option<Copies<'_>>,
+        set: InstructionSet,
+    ) -> Result<Vec<u32>, ProgramError> {
         let Advance { motion, discs, corrected, inverse, .. } = self;
         let freedoms = self.state.len();
         assert!((2..=3).contains(&freedoms) && self.sums.len() == freedoms, "2 or 3 degrees of freedom");
         let vary = motion.inertia == Inertia::Varying;
         assert!(!vary || inverse[..freedoms - 1].iter().all(|column| column.len() >= discs));
-        assert!(discs <= occupancy.discs());
+        if let Leash::From { places, .. } = leash {
+            assert!(places.iter().all(|place| place.len() >= discs), "a place for every disc that moves");
+        }
         let mut columns = [[std::ptr::null_mut(); 6]; 3];
         for (to, from) in columns.iter_mut().zip(&mut self.state) {
             assert!(from.len() == C::CARRIED && from.iter().all(|column| column.len() >= discs));
@@ -93,17 +122,22 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             assert!(from.len() >= discs);
             *to = from.as_mut_ptr();
         }
-        let (cells, places, unit) = occupancy.to_settle();
-        let lattice = places[0].len();
-        let settles = lattice > 0;
+        let settles = copies.is_some();
+        let mut none = [[]; 2];
+        let Copies { cells, places, unit } = copies.unwrap_or_else(|| {
+            let [x, y] = &mut none;
+            Copies { cells: &[], places: [x, y], unit: 1.0 }
+        });
+        let most = places[0].len().min(places[1].len());
         assert!(
-            !settles || cells[..discs].iter().all(|&cell| (cell as usize) < lattice),
+            !settles || cells[..discs].iter().all(|&cell| (cell as usize) < most),
             "a disc is in no cell"
         );
         let arrays = Arrays {
             columns,
             sums,
             inverse: inverse.map(<[S]>::as_ptr),
+            leash,
             cells: cells.as_ptr(),
             settles,
             places: places.map(<[f32]>::as_mut_ptr),
@@ -129,10 +163,11 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
 }
 
 /// Pointers to what a pass works on.
-struct Arrays<S, P> {
+struct Arrays<'a, S, P> {
     columns: [[*mut S; 6]; 3],
     sums: [*mut P; 3],
     inverse: [*const S; 2],
+    leash: Leash<'a, S>,
     cells: *const u32,
     /// Whether places on the lattice are kept.
     settles: bool,
@@ -140,12 +175,12 @@ struct Arrays<S, P> {
 }
 
 // SAFETY: passes over ranges that do not overlap touch different discs, and these are in different cells.
-unsafe impl<S: Send, P: Send> Sync for Arrays<S, P> {}
+unsafe impl<S: Send + Sync, P: Send> Sync for Arrays<'_, S, P> {}
 
 /// The pass over some discs.
 struct Pass<'a, S, P, C, const FREEDOMS: usize> {
     motion: &'a Motion<C>,
-    arrays: &'a Arrays<S, P>,
+    arrays: &'a Arrays<'a, S, P>,
     range: Range<usize>,
     corrected: bool,
     unit: f64,
@@ -171,6 +206,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
         discs.for_each(|disc| self.register(Scalar::<S>::default(), disc));
     }
 
+    #[allow(clippy::needless_range_loop, reason = "columns side by side, under one number")]
     #[inline(always)]
     fn register<R: Registers<Lane = S>>(&mut self, registers: R, first: usize) {
         let Pass { motion, arrays, corrected, .. } = *self;
@@ -205,8 +241,19 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 place[freedom] = row[0];
             }
         }
-        let half = |axis: usize| uniform(0.5 * motion.edge[axis]);
-        let stays = place[0].abs().less_equal(half(0)).and(place[1].abs().less_equal(half(1)));
+        let stays = match arrays.leash {
+            Leash::Cell(edge) => {
+                let [x, y] = edge.map(|edge| uniform(0.5 * edge));
+                place[0].abs().less_equal(x).and(place[1].abs().less_equal(y))
+            }
+            Leash::From { places: [x, y], distance } => {
+                // SAFETY: as above.
+                let (x, y) =
+                    unsafe { (registers.load(x.as_ptr().add(first)), registers.load(y.as_ptr().add(first))) };
+                let (dx, dy) = (place[0] - x, place[1] - y);
+                (dx * dx + dy * dy).less_equal(uniform(distance * distance))
+            }
+        };
         let moved = registers.bits(stays.not());
         if moved != 0 {
             let lanes = (0..R::LANES).filter(|lane| moved >> lane & 1 == 1);
@@ -220,12 +267,11 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             let mut along = [S::default(); 16];
             // SAFETY: LANES <= 16.
             unsafe { registers.store(along.as_mut_ptr(), place[axis] * unit) };
-            for lane in 0..R::LANES {
+            // First all, then one by one: so they are converted at once.
+            let along = along.map(|along| along.to_f64() as f32);
+            for (lane, &along) in along.iter().enumerate().take(R::LANES) {
                 // SAFETY: the cells are ones of the lattice, each of one disc only.
-                unsafe {
-                    let cell = *arrays.cells.add(first + lane) as usize;
-                    *arrays.places[axis].add(cell) = along[lane].to_f64() as f32;
-                }
+                unsafe { *arrays.places[axis].add(*arrays.cells.add(first + lane) as usize) = along };
             }
         }
     }

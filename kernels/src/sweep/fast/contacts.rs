@@ -1,13 +1,11 @@
 //! The law for the contacts found, gathered into registers.
 
 use super::SENTINELS;
-use super::detection::{Candidate, codes};
-use super::occupancy::Occupancy;
+use super::finder::Pairs;
 use crate::backend::{Precision, Registers};
 use crate::isa::{Element, Vector};
 use crate::law::{Env, Field, Law, Sum};
 use crate::program::{GROUP, Task};
-use crate::sweep::lattice::Frame;
 use std::cell::Cell;
 use std::mem::MaybeUninit;
 
@@ -46,44 +44,6 @@ impl<'a, S: Element> Discs<'a, S> {
     }
 }
 
-/// What candidates' codes stand for.
-#[derive(Clone, Debug)]
-pub(super) struct Codes<P> {
-    /// From the group's first cell to the own cell and to the partner's.
-    cells: Vec<[i32; 2]>,
-    /// From the centre of the own cell to that of the partner's (length).
-    ways: [Vec<P>; 2],
-}
-
-impl<P: Precision> Codes<P> {
-    pub(super) fn new(occupancy: &Occupancy, frame: Frame) -> Self {
-        let stride = occupancy.shape().stride() as isize;
-        let all = || codes(occupancy.half_width());
-        Codes {
-            cells: all()
-                .map(|(lane, [column, row])| [lane as i32, (lane as isize + row * stride + column) as i32])
-                .collect(),
-            ways: [0, 1].map(|axis| {
-                all().map(|(_, place)| P::from_f64(place[axis] as f64 * frame.edge[axis])).collect()
-            }),
-        }
-    }
-}
-
-impl<P: Precision> Codes<P> {
-    /// The two discs of a candidate and the way between their cells.
-    #[inline(always)]
-    pub(super) fn pair(&self, candidate: Candidate, index: &[u32]) -> (Pair, [P; 2]) {
-        let (base, code) = (candidate.base(), candidate.code());
-        // SAFETY: searches make codes below the tables' length, of cells of the padded lattice.
-        unsafe {
-            let cells = *self.cells.get_unchecked(code);
-            let discs = cells.map(|cell| *index.get_unchecked(base.wrapping_add_signed(cell as isize)));
-            (discs, [*self.ways[0].get_unchecked(code), *self.ways[1].get_unchecked(code)])
-        }
-    }
-}
-
 /// Where the sums go; of these pointers' elements no other thread touches any that this one does.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SumColumns<P>(pub(super) [*mut P; 3]);
@@ -94,7 +54,7 @@ unsafe impl<P: Send> Send for SumColumns<P> {}
 unsafe impl<P: Send> Sync for SumColumns<P> {}
 
 /// Two discs.
-type Pair = [u32; 2];
+pub(super) type Pair = [u32; 2];
 
 /// What came up besides the sums.
 #[derive(Clone, Debug, Default)]
@@ -105,14 +65,12 @@ pub(super) struct Notes {
     pub(super) not_finite: Vec<Pair>,
 }
 
-/// Evaluates the law for candidates.
-pub(super) struct Evaluate<'a, S, P, L> {
+/// Evaluates the law for pairs.
+pub(super) struct Evaluate<'a, S, P, L, Q> {
     pub(super) law: &'a L,
-    pub(super) index: &'a [u32],
+    pub(super) pairs: &'a Q,
     pub(super) sentinel: u32,
-    pub(super) codes: &'a Codes<P>,
     pub(super) discs: &'a Discs<'a, S>,
-    pub(super) candidates: &'a [Candidate],
     pub(super) sums: SumColumns<P>,
     pub(super) watched: Option<f64>,
     pub(super) notes: &'a mut Notes,
@@ -224,22 +182,25 @@ impl<R: Registers, S: Element> Env<2> for &Gathered<'_, R, S> {
     fn section(self, _: &'static str) {}
 }
 
-impl<S: Element, P: Precision, L: Law<2>> Task<P> for Evaluate<'_, S, P, L> {
+impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Task<P> for Evaluate<'_, S, P, L, Q> {
     #[inline(always)]
     fn on<R: Registers<Lane = P>>(self, registers: R) {
         const { assert!(R::LANES <= GROUP) }
         let mut notes = std::mem::take(self.notes);
-        for pairs in self.candidates.chunks(R::LANES) {
-            self.register::<R>(registers, pairs, &mut notes);
+        let mut first = 0;
+        while first < self.pairs.count() {
+            self.register::<R>(registers, first, &mut notes);
+            first += R::LANES;
         }
         *self.notes = notes;
     }
 }
 
-impl<S: Element, P: Precision, L: Law<2>> Evaluate<'_, S, P, L> {
+impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> {
+    #[allow(clippy::needless_range_loop, reason = "columns side by side, under one number")]
     #[inline(always)]
-    fn register<R: Registers<Lane = P>>(&self, registers: R, pairs: &[Candidate], notes: &mut Notes) {
-        let count = pairs.len();
+    fn register<R: Registers<Lane = P>>(&self, registers: R, first: usize, notes: &mut Notes) {
+        let count = (self.pairs.count() - first).min(R::LANES);
         let mut own = [self.sentinel; GROUP];
         let mut partner = [self.sentinel + 1; GROUP];
         let mut ways = [[P::default(); GROUP]; 2];
@@ -248,8 +209,7 @@ impl<S: Element, P: Precision, L: Law<2>> Evaluate<'_, S, P, L> {
             if lane == count {
                 break;
             }
-            ([own[lane], partner[lane]], [ways[0][lane], ways[1][lane]]) =
-                self.codes.pair(pairs[lane], self.index);
+            ([own[lane], partner[lane]], [ways[0][lane], ways[1][lane]]) = self.pairs.pair(first + lane);
         }
         let zero = || Cell::new(registers.splat(P::default()));
         // SAFETY: LANES <= GROUP.

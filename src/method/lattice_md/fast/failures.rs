@@ -1,12 +1,12 @@
 //! Who broke a precondition.
 
-use super::FastLattice;
+use super::FastMd;
 use super::state::Move;
 use crate::method::{Culprit, Failure};
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::sweep::fast::Met;
 
-impl<S: Precision, P: Precision> FastLattice<S, P> {
+impl<S: Precision, P: Precision> FastMd<S, P> {
     fn culprit_at(&self, disc: usize, position: [f64; 2]) -> Culprit {
         let velocity = [0, 1].map(|axis| self.state.row(axis, disc)[1].to_f64() / self.model.dt);
         let number = self.state.number(disc);
@@ -19,7 +19,7 @@ impl<S: Precision, P: Precision> FastLattice<S, P> {
 
     /// A disc that no cell takes: outside the box, or nowhere.
     pub(super) fn stray(&self, Move { disc, cell, place }: Move, count: u64) -> Failure {
-        let frame = self.model.frame;
+        let frame = self.home.grid().frame;
         let centre = [0, 1].map(|axis| frame.origin[axis] + (cell[axis] as f64 + 0.5) * frame.edge[axis]);
         let first = self.culprit_at(disc, [centre[0] + place[0], centre[1] + place[1]]);
         let step = self.steps;
@@ -32,7 +32,7 @@ impl<S: Precision, P: Precision> FastLattice<S, P> {
 
     /// Two discs that want one cell, with where they go if they are moving.
     pub(super) fn conflict(&self, discs: [(usize, Option<&Move>); 2]) -> Failure {
-        let frame = self.model.frame;
+        let frame = self.home.grid().frame;
         let [first, second] = discs.map(|(disc, to)| match to {
             None => self.culprit(disc),
             Some(to) => {

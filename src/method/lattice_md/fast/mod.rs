@@ -1,7 +1,9 @@
 //! The lattice method in its fast execution: the same physics, each pair met once, the law asked about contacts only,
-//! corrector and next predictor in one pass. Equal to the other executions but for rounding.
+//! corrector and next predictor in one pass. Equal to the other executions but for rounding. Beside the lattice stand
+//! its rivals, sectors and Verlet lists: the same state, law and integrator, and another way of finding contacts.
 
 mod failures;
+mod home;
 mod state;
 mod steps;
 
@@ -11,16 +13,18 @@ use super::{Model, Scheme};
 use crate::method::{DeepContacts, Failure, Method, Phase, StateColumn, Timings};
 use crate::particles::Particles;
 use crate::scene::WallMotion;
+use home::Home;
+pub use home::{OnConflict, Search};
 use state::{Move, State};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::Law;
 use stripmine_kernels::ledger::{Ledger, Length};
-use stripmine_kernels::sweep::fast::{Met, Occupancy, Sweep};
+use stripmine_kernels::sweep::fast::Met;
 
 /// A fast simulation with state of precision `S` and forces of precision `P`.
-pub(super) struct FastLattice<S, P> {
+pub(super) struct FastMd<S, P> {
     model: Model,
     set: InstructionSet,
     walls: WallMotion,
@@ -28,8 +32,7 @@ pub(super) struct FastLattice<S, P> {
     state: State<S>,
     /// Force along x, along y, torque.
     sums: [Vec<P>; 3],
-    occupancy: Occupancy,
-    sweep: Sweep<P>,
+    home: Home<S, P>,
     /// Changes of cells since the discs were put in order.
     changes: usize,
     met: u64,
@@ -40,24 +43,24 @@ pub(super) struct FastLattice<S, P> {
     timings: Timings,
 }
 
-impl<S: Precision, P: Precision> FastLattice<S, P> {
+impl<S: Precision, P: Precision> FastMd<S, P> {
     /// Lays out `particles` and finds their first forces.
     ///
     /// # Errors
     /// [`Failure`] if the start breaks a precondition already.
     pub(super) fn new(
         model: Model,
+        search: Search,
         set: InstructionSet,
         walls: WallMotion,
         particles: Particles,
     ) -> Result<Self, Failure> {
-        let occupancy = state::empty_lattice(&model, &particles);
+        let home = Home::new(search, &model, &particles).ok_or(Failure::NoRoomForSectors)?;
         let sums = [0, 1, 2].map(|_| vec![P::default(); particles.len()]);
-        let mut simulation = FastLattice {
-            sweep: Sweep::new(&occupancy, model.frame),
+        let mut simulation = FastMd {
             state: State::new(&model, &particles),
             sums,
-            occupancy,
+            home,
             set,
             walls,
             start: particles,
@@ -80,18 +83,21 @@ impl<S: Precision, P: Precision> FastLattice<S, P> {
         Ok(simulation)
     }
 
-    /// Numbers the discs in the order of their cells, so that neighbours are near in memory. No sum depends on it.
-    fn put_in_order(&mut self) {
+    /// Numbers the discs in the order of their cells, so that neighbours are near in memory, and makes lists anew where
+    /// there are such; gives what each disc was before. No sum depends on the numbers.
+    fn put_in_order(&mut self) -> Vec<u32> {
         let grains = self.start.grain_count();
-        let mut order = self.occupancy.order();
+        let mut order = self.home.order();
         // Grains first, as ever.
         order.sort_by_key(|&disc| disc as usize >= grains);
-        self.occupancy.renumber(&order);
+        self.home.renumber(&order);
         self.state.renumber(&order);
         for sum in &mut self.sums {
             *sum = order.iter().map(|&disc| sum[disc as usize]).collect();
         }
+        self.home.make_lists(&self.state);
         self.changes = 0;
+        order
     }
 
     /// All forces of the positions as they stand.
@@ -124,25 +130,25 @@ impl<S: Precision, P: Precision> FastLattice<S, P> {
 }
 
 /// A sweep with the law of the model.
-struct Sweeping<'a, S, P>(&'a mut FastLattice<S, P>);
+struct Sweeping<'a, S, P>(&'a mut FastMd<S, P>);
 
 impl<S: Precision, P: Precision> WithLaw for Sweeping<'_, S, P> {
     type Output = Result<Met, ProgramError>;
 
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
-        let FastLattice { model, state, sums, occupancy, sweep, set, .. } = self.0;
+        let FastMd { model, state, sums, home, set, .. } = self.0;
         let watched = model.watch.map(|watch| watch.depth());
         let sums = sums.each_mut().map(Vec::as_mut_slice);
-        sweep.run(&law, occupancy, &state.discs(model), sums, watched, *set)
+        home.sweep(&law, &state.discs(model), sums, watched, *set)
     }
 }
 
-impl<S: Precision, P: Precision> Method for FastLattice<S, P> {
+impl<S: Precision, P: Precision> Method for FastMd<S, P> {
     fn step(&mut self) -> Result<(), Failure> {
         let first = self.steps == 0;
         let mut timings = self.timings;
         if self.changes > self.start.grain_count() / 4 {
-            timings.time(Phase::Index, || self.put_in_order());
+            timings.time(Phase::Index, || _ = self.put_in_order());
         }
         let left = timings.time(Phase::CorrectPredict, || steps::advance(self, first))?;
         self.steps += 1;
@@ -150,6 +156,7 @@ impl<S: Precision, P: Precision> Method for FastLattice<S, P> {
         self.timings = timings;
         timings.time(Phase::Index, || self.keep_index(&left))?;
         self.timings = timings;
+        self.deep.shared_cells += self.home.guests() as u64;
         self.meet()
     }
 
@@ -165,12 +172,13 @@ impl<S: Precision, P: Precision> Method for FastLattice<S, P> {
         let mut particles = self.start.clone();
         let (grains, freedoms) = (self.start.grain_count(), self.model.freedoms());
         let (_, wall_velocity) = walls_at(self.walls, self.time());
+        let domain = self.model.domain();
         for disc in 0..particles.len() {
             let rows = [0, 1, 2].map(|freedom| {
                 let row = if freedom < freedoms { self.corrected(freedom, disc) } else { Default::default() };
                 row.map(|q| q.to_f64())
             });
-            let position = self.position(disc, [rows[0][0], rows[1][0]]);
+            let position = domain.inside(self.position(disc, [rows[0][0], rows[1][0]]));
             let particle = &mut particles.all_mut()[self.state.number(disc)];
             if disc < grains {
                 particle.position = position;
@@ -229,7 +237,7 @@ impl<S: Precision, P: Precision> Method for FastLattice<S, P> {
     }
 
     fn lists(&self) -> Option<(usize, u64)> {
-        None
+        self.home.lists().map(|lists| (lists.entries(), lists.made))
     }
 
     fn timings(&self) -> &Timings {

@@ -1,13 +1,13 @@
 //! The discs of a fast simulation: columns in the order of their cells, positions seen from the cells' centres.
 
-use super::{FastLattice, carried};
+use super::{FastMd, carried};
 use crate::method::StateColumn;
 use crate::method::lattice_md::{Discs, Model};
 use crate::particles::{Kind, Particle, Particles};
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::STATE;
 use stripmine_kernels::isa::{Element, Storage};
-use stripmine_kernels::sweep::fast::{self, Occupancy, SENTINELS};
+use stripmine_kernels::sweep::fast::{self, SENTINELS};
 
 /// A disc with the cell it goes to and its place there, seen from the cell's centre (length).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,13 +15,6 @@ pub(super) struct Move {
     pub(super) disc: usize,
     pub(super) cell: [usize; 2],
     pub(super) place: [f64; 2],
-}
-
-/// An empty lattice for the discs of a model.
-pub(super) fn empty_lattice(model: &Model, particles: &Particles) -> Occupancy {
-    let largest = particles.radii().map_or(1.0, |[_, largest]| largest);
-    let vary = particles.radii().is_some_and(|[smallest, largest]| smallest != largest);
-    Occupancy::new(model.shape, model.frame, particles.len(), 2.0 * largest, vary)
 }
 
 /// Columns with an entry a disc, grains first, and two discs behind them that never touch.
@@ -88,6 +81,11 @@ impl<S: Precision> State<S> {
         [self.columns[0][0][disc].to_f64(), self.columns[1][0][disc].to_f64()]
     }
 
+    /// The places of all discs and sentinels.
+    pub(super) fn places(&self) -> [&[S]; 2] {
+        [&self.columns[0][0], &self.columns[1][0]]
+    }
+
     /// Puts a disc at a place.
     pub(super) fn put(&mut self, disc: usize, place: [f64; 2]) {
         (0..2).for_each(|axis| self.columns[axis][0][disc] = S::from_f64(place[axis]));
@@ -115,7 +113,7 @@ impl<S: Precision> State<S> {
     }
 
     /// The columns to be moved by a pass, and inverse masses and moments of inertia.
-    pub(super) fn to_advance(&mut self) -> (&mut [Vec<Vec<S>>], [&[S]; 2]) {
+    pub(super) fn for_advance(&mut self) -> (&mut [Vec<Vec<S>>], [&[S]; 2]) {
         (&mut self.columns, [&self.inverse[0], &self.inverse[1]])
     }
 
@@ -123,7 +121,7 @@ impl<S: Precision> State<S> {
     pub(super) fn discs(&self, model: &Model) -> fast::Discs<'_, S> {
         let omega = if model.friction { self.columns[2][1].as_slice() } else { &[] };
         fast::Discs {
-            place: [&self.columns[0][0], &self.columns[1][0]],
+            place: self.places(),
             velocity: [&self.columns[0][1], &self.columns[1][1], omega],
             per_time: 1.0 / model.dt,
             radius: &self.radius,
@@ -136,9 +134,10 @@ impl<S: Precision> State<S> {
         let derivatives = self.columns.iter_mut().flatten();
         for column in derivatives.chain([&mut self.radius]).chain(&mut self.inverse) {
             if !column.is_empty() {
-                let sentinels = &column[order.len()..];
-                let there = order.iter().map(|&disc| column[disc as usize]);
-                *column = there.chain(sentinels.iter().copied()).collect();
+                let mut anew = Vec::with_capacity(column.len());
+                anew.extend(order.iter().map(|&disc| column[disc as usize]));
+                anew.extend_from_slice(&column[order.len()..]);
+                *column = anew;
             }
         }
         self.numbers = order.iter().map(|&disc| self.numbers[disc as usize]).collect();
@@ -157,12 +156,13 @@ fn to_column<T: Element>(numbers: &[u32], value: impl Fn(usize) -> T) -> StateCo
 
 const SUMS: [&str; 3] = ["Fx", "Fy", "torque"];
 const CELL: [&str; 2] = ["cell.column", "cell.row"];
+const MADE_AT: [&str; 2] = ["listed.x", "listed.y"];
 
-impl<S: Precision, P: Precision> FastLattice<S, P> {
+impl<S: Precision, P: Precision> FastMd<S, P> {
     /// Where a disc is, seen from the origin (length), when it is at `place` in its cell.
     pub(super) fn position(&self, disc: usize, place: [f64; 2]) -> [f64; 2] {
-        let frame = self.model.frame;
-        let cell = self.occupancy.cell(disc).unwrap_or_default();
+        let frame = self.home.grid().frame;
+        let cell = self.home.cell(disc).unwrap_or_default();
         [0, 1].map(|axis| frame.origin[axis] + (cell[axis] as f64 + 0.5) * frame.edge[axis] + place[axis])
     }
 
@@ -179,8 +179,14 @@ impl<S: Precision, P: Precision> FastLattice<S, P> {
             columns.push(((*name).to_owned(), to_column(numbers, |disc| sum[disc])));
         }
         for (axis, name) in CELL.iter().enumerate() {
-            let cell = |disc| self.occupancy.cell(disc).map_or(f64::NAN, |cell| cell[axis] as f64);
+            let cell = |disc| self.home.cell(disc).map_or(f64::NAN, |cell| cell[axis] as f64);
             columns.push(((*name).to_owned(), to_column(numbers, cell)));
+        }
+        if let Some(lists) = self.home.lists() {
+            for (axis, name) in MADE_AT.iter().enumerate() {
+                let made_at = lists.made_at(axis);
+                columns.push(((*name).to_owned(), to_column(numbers, |disc| made_at[disc])));
+            }
         }
         columns
     }
@@ -217,20 +223,35 @@ impl<S: Precision, P: Precision> FastLattice<S, P> {
             *sum = find(name, P::NAME)?.into_iter().map(P::from_f64).collect();
         }
         let cells = [find(CELL[0], f64::NAME)?, find(CELL[1], f64::NAME)?];
-        let counts = [self.model.shape.columns(), self.model.shape.rows()];
+        let counts = self.home.grid().counts;
         let inside = |axis: usize, &cell: &f64| (0.0..counts[axis] as f64).contains(&cell);
         if (0..2).any(|axis| !cells[axis].iter().all(|cell| inside(axis, cell))) {
             return Err("a cell lies outside the lattice".to_owned());
         }
-        let mut occupancy = empty_lattice(&self.model, &self.start);
-        for disc in 0..numbers.len() {
-            let cell = [cells[0][disc] as usize, cells[1][disc] as usize];
-            let (place, radius) = (state.place(disc), state.radius(&self.model, disc));
-            occupancy.enter(disc, cell, place, radius).map_err(|_| "two discs are in one cell".to_owned())?;
+        let made_at = match self.home.lists() {
+            Some(_) => Some([find(MADE_AT[0], S::NAME)?, find(MADE_AT[1], S::NAME)?]),
+            None => None,
+        };
+        (0..numbers.len()).for_each(|disc| self.home.leave(disc));
+        for (disc, (&column, &row)) in cells[0].iter().zip(&cells[1]).enumerate() {
+            let cell = [column as usize, row as usize];
+            let to = Move { disc, cell, place: state.place(disc) };
+            let entered = self.home.enter(&to, &self.model, &state);
+            entered.map_err(|_| "two discs are in one cell".to_owned())?;
         }
-        occupancy.repeat_images();
-        (self.state, self.sums, self.occupancy) = (state, sums, occupancy);
-        self.put_in_order();
+        self.home.settle(&self.model, &state);
+        (self.state, self.sums) = (state, sums);
+        // Lists are made of the places of then.
+        let now: Vec<[f64; 2]> = (0..numbers.len()).map(|disc| self.state.place(disc)).collect();
+        for (disc, axis) in (0..numbers.len()).flat_map(|disc| [(disc, 0), (disc, 1)]) {
+            if let Some(made_at) = &made_at {
+                self.state.columns[axis][0][disc] = S::from_f64(made_at[axis][disc]);
+            }
+        }
+        let order = self.put_in_order();
+        for (disc, before) in order.into_iter().enumerate() {
+            self.state.put(disc, now[before as usize]);
+        }
         Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! From one step to the next: the pass over the discs, and those that change cells.
 
 use super::state::{Move, State};
-use super::{FastLattice, walls_at};
+use super::{FastMd, walls_at};
 use crate::method::lattice_md::{Discs, GearValues, Model, Scheme};
 use crate::method::{Failure, Method};
 use crate::scene::WallMotion;
@@ -10,7 +10,7 @@ use stripmine_kernels::integrator::gear::Gear;
 use stripmine_kernels::integrator::velocity_verlet::VelocityVerlet;
 use stripmine_kernels::integrator::{self};
 use stripmine_kernels::isa::ProgramError;
-use stripmine_kernels::sweep::fast::{Advance, Motion};
+use stripmine_kernels::sweep::fast::{Advance, Grid, Motion};
 
 /// Does something with the motion of a model, whichever scheme that has.
 macro_rules! with_motion {
@@ -37,8 +37,8 @@ macro_rules! with_motion {
 }
 
 fn motion<C: integrator::Scheme>(model: &Model, scheme: C) -> Motion<C> {
-    let Model { dt, gravity, frame, .. } = *model;
-    Motion { scheme, dt, inertia: model.inertia(), gravity, edge: frame.edge }
+    let Model { dt, gravity, .. } = *model;
+    Motion { scheme, dt, inertia: model.inertia(), gravity }
 }
 
 /// One row at the end of the step, from the one that the pass left.
@@ -60,24 +60,25 @@ pub(super) fn corrected<S: Precision>(
 
 /// Corrects the last step, unless the first begins, and predicts the next; gives the discs that left their cells.
 pub(super) fn advance<S: Precision, P: Precision>(
-    simulation: &mut FastLattice<S, P>,
+    simulation: &mut FastMd<S, P>,
     first: bool,
 ) -> Result<Vec<u32>, ProgramError> {
-    let FastLattice { model, state, sums, occupancy, start, set, .. } = simulation;
+    let FastMd { model, state, sums, home, start, set, .. } = simulation;
     let freedoms = model.freedoms();
-    let (columns, inverse) = state.to_advance();
+    let (columns, inverse) = state.for_advance();
     let state = columns.iter_mut().map(|row| row.iter_mut().map(Vec::as_mut_slice).collect()).collect();
     let sums = sums.iter_mut().take(freedoms).map(Vec::as_mut_slice).collect();
     let discs = start.grain_count();
+    let (leash, copies) = home.leash();
     with_motion!(model, |motion| {
-        Advance { motion: &motion, state, sums, inverse, discs, corrected: first }.run(occupancy, *set)
+        Advance { motion: &motion, state, sums, inverse, discs, corrected: first }.run(leash, copies, *set)
     })
 }
 
-impl<S: Precision, P: Precision> FastLattice<S, P> {
+impl<S: Precision, P: Precision> FastMd<S, P> {
     /// The cell of a disc at a position (length), and its place there.
     pub(super) fn locate(&self, disc: usize, position: [f64; 2]) -> Result<Move, Failure> {
-        let frame = self.model.frame;
+        let frame = self.home.grid().frame;
         let place = [0, 1].map(|axis| position[axis] - (frame.origin[axis] + 0.5 * frame.edge[axis]));
         let from = Move { disc, cell: [0, 0], place };
         self.settled(from).ok_or_else(|| self.stray(from, 1))
@@ -87,15 +88,17 @@ impl<S: Precision, P: Precision> FastLattice<S, P> {
     /// cell.
     fn settled(&self, from: Move) -> Option<Move> {
         let Move { cell, place, .. } = from;
-        let shape = &self.model.shape;
-        let counts = [shape.columns(), shape.rows()];
+        let Grid { frame, counts, periodic } = self.home.grid();
         let mut to = from;
         for axis in 0..2 {
-            let (edge, count) = (self.model.frame.edge[axis], counts[axis] as f64);
+            let (edge, count) = (frame.edge[axis], counts[axis] as f64);
+            if place[axis].abs() < 0.5 * edge {
+                continue;
+            }
             let steps = (place[axis] / edge + 0.5).floor();
             let mut there = cell[axis] as f64 + steps;
             to.place[axis] = place[axis] - steps * edge;
-            if shape.periodic()[axis] && (-count..2.0 * count).contains(&there) {
+            if periodic[axis] && (-count..2.0 * count).contains(&there) {
                 there = there.rem_euclid(count);
             } else if there == count && to.place[axis] <= -0.5 * edge {
                 // On the far side: that is the last cell's.
@@ -110,46 +113,90 @@ impl<S: Precision, P: Precision> FastLattice<S, P> {
         Some(to)
     }
 
-    /// Brings the Index up to date after a pass: walls, the discs that left their cells, the halo.
+    /// Brings the cells up to date after a pass: walls, the discs that strained at their leash, the halo, the lists.
     pub(super) fn keep_index(&mut self, left: &[u32]) -> Result<(), Failure> {
-        let mut moves = Vec::with_capacity(left.len());
-        let from = |disc: u32| {
-            let disc = disc as usize;
-            let cell = self.occupancy.cell(disc).unwrap_or_default();
-            Move { disc, cell, place: self.state.place(disc) }
-        };
-        let mut strays = Vec::new();
-        for from in left.iter().map(|&disc| from(disc)) {
+        let grains = self.start.grain_count();
+        let mut walls = Vec::new();
+        if self.walls != WallMotion::Fixed {
+            let (displacement, velocity) = walls_at(self.walls, self.time());
+            self.state.turn_walls(velocity, self.model.dt);
+            for disc in grains..self.start.len() {
+                let at = self.start.all()[self.state.number(disc)].position;
+                walls.push(self.locate(disc, [at[0] + displacement[0], at[1] + displacement[1]])?);
+            }
+        }
+        if self.home.lists().is_some() {
+            return self.keep_lists(left, &walls);
+        }
+        let mut moves = self.settle_all(left.iter().map(|&disc| disc as usize))?;
+        self.changes += moves.len();
+        moves.extend(walls);
+        self.rehouse(&moves)
+    }
+
+    /// Discs in the cells that their places lie in.
+    fn settle_all(&self, discs: impl Iterator<Item = usize>) -> Result<Vec<Move>, Failure> {
+        let (mut moves, mut strays) = (Vec::new(), Vec::new());
+        for disc in discs {
+            let cell = self.home.cell(disc).unwrap_or_default();
+            let from = Move { disc, cell, place: self.state.place(disc) };
             match self.settled(from) {
                 Some(to) => moves.push(to),
                 None => strays.push(from),
             }
         }
-        if let Some(&first) = strays.iter().min_by_key(|from| self.state.number(from.disc)) {
-            return Err(self.stray(first, strays.len() as u64));
+        match strays.iter().min_by_key(|from| self.state.number(from.disc)) {
+            Some(&first) => Err(self.stray(first, strays.len() as u64)),
+            None => Ok(moves),
         }
-        self.changes += moves.len();
-        if self.walls != WallMotion::Fixed {
-            let (displacement, velocity) = walls_at(self.walls, self.time());
-            self.state.turn_walls(velocity, self.model.dt);
-            for disc in self.start.grain_count()..self.start.len() {
-                let at = self.start.all()[self.state.number(disc)].position;
-                moves.push(self.locate(disc, [at[0] + displacement[0], at[1] + displacement[1]])?);
-            }
-        }
-        self.rehouse(&moves)
     }
 
-    /// Moves discs into their new cells; of two in one cell none is moved.
+    /// Moves walls within the cells in which they are listed, and makes the lists anew if a disc has gone too far.
+    fn keep_lists(&mut self, left: &[u32], walls: &[Move]) -> Result<(), Failure> {
+        let edge = self.home.grid().frame.edge;
+        let domain = self.model.domain();
+        let mut stale = !left.is_empty();
+        for to in walls {
+            let (from, cell) = (self.home.cell(to.disc).unwrap_or_default(), to.cell);
+            let centre = |cell: [usize; 2]| [0, 1].map(|axis| cell[axis] as f64 * edge[axis]);
+            let way = domain.way(centre(from), centre(cell));
+            let place = [0, 1].map(|axis| to.place[axis] + way[axis]);
+            self.state.put(to.disc, place);
+            stale |= self.home.lists().is_some_and(|lists| lists.has_strayed(to.disc, place));
+        }
+        if stale {
+            let moves = self.settle_all(0..self.start.len())?;
+            self.rehouse(&moves)?;
+            self.put_in_order();
+        }
+        Ok(())
+    }
+
+    /// Moves discs into their new cells; if two want one that must be one disc's, none is moved.
     pub(super) fn rehouse(&mut self, moves: &[Move]) -> Result<(), Failure> {
+        if self.home.is_exclusive() {
+            self.refuse_conflicts(moves)?;
+        }
+        moves.iter().for_each(|to| self.home.leave(to.disc));
+        for to in moves {
+            self.state.put(to.disc, to.place);
+            let entered = self.home.enter(to, &self.model, &self.state);
+            debug_assert!(entered.is_ok(), "looked for above");
+        }
+        self.home.settle(&self.model, &self.state);
+        Ok(())
+    }
+
+    /// Finds two discs that want one cell.
+    fn refuse_conflicts(&self, moves: &[Move]) -> Result<(), Failure> {
         let mut targets: Vec<([usize; 2], usize)> = moves.iter().map(|to| (to.cell, to.disc)).collect();
         targets.sort_unstable();
         let mut moving: Vec<usize> = moves.iter().map(|to| to.disc).collect();
         moving.sort_unstable();
         let twice = targets.windows(2).find(|pair| pair[0].0 == pair[1].0).map(|pair| (pair[0].1, pair[1].1));
         let taken = || {
-            targets.iter().find_map(|&([column, row], disc)| {
-                let there = self.occupancy.disc(column, row)?;
+            targets.iter().find_map(|&(cell, disc)| {
+                let there = self.home.owner(cell)?;
                 moving.binary_search(&there).is_err().then_some((there, disc))
             })
         };
@@ -157,14 +204,6 @@ impl<S: Precision, P: Precision> FastLattice<S, P> {
             let of = |disc: usize| moves.iter().find(|to| to.disc == disc);
             return Err(self.conflict([(first, of(first)), (second, of(second))]));
         }
-        moves.iter().for_each(|to| self.occupancy.leave(to.disc));
-        for to in moves {
-            self.state.put(to.disc, to.place);
-            let radius = self.state.radius(&self.model, to.disc);
-            let entered = self.occupancy.enter(to.disc, to.cell, to.place, radius);
-            debug_assert!(entered.is_ok(), "looked for above");
-        }
-        self.occupancy.repeat_images();
         Ok(())
     }
 }

@@ -1,8 +1,10 @@
 //! Who is where: the Index, kept up to date by the discs that change cells, and places inside cells.
 
-use super::SENTINELS;
 use super::bits::Bits;
 use crate::GROUP;
+use crate::sweep::fast::SENTINELS;
+use crate::sweep::fast::advance::Copies;
+use crate::sweep::fast::sectors::Grid;
 use crate::sweep::lattice::{Frame, Image, LatticeShape};
 
 /// The cell is another disc's.
@@ -24,6 +26,7 @@ pub const SPARSE: f64 = 0.15;
 #[derive(Clone, Debug)]
 pub struct Occupancy {
     shape: LatticeShape,
+    frame: Frame,
     half_width: usize,
     unit: f64,
     /// From a column and from a row to the next.
@@ -36,6 +39,8 @@ pub struct Occupancy {
     radius: Option<Vec<f32>>,
     occupied: Bits,
     images: Vec<Image>,
+    /// Discs in cells that are another disc's, with these cells.
+    guests: Vec<(u32, [usize; 2])>,
 }
 
 /// The cell of a disc that is in none.
@@ -52,10 +57,11 @@ impl Occupancy {
         let half_width = (shape.stride() - shape.columns()) / 2;
         assert!((2..=3).contains(&half_width), "searches are compiled for masks of 5×5 and 7×7 cells");
         // The last register of the last row may reach beyond the padded lattice.
-        let length = shape.padded() + GROUP;
+        let length = shape.padded() + GROUP + 1;
         let sparse = (discs as f64) < SPARSE * shape.cells() as f64;
         let places = if sparse { 0 } else { length };
         Occupancy {
+            frame,
             half_width,
             unit: 1.0 / reach,
             edge: frame.edge.map(|edge| (edge / reach) as f32),
@@ -67,6 +73,7 @@ impl Occupancy {
             radius: (vary && !sparse).then(|| vec![0.0; length]),
             occupied: Bits::new(&shape, half_width),
             images: shape.images(),
+            guests: vec![],
             shape,
         }
     }
@@ -74,6 +81,12 @@ impl Occupancy {
     /// The lattice.
     pub fn shape(&self) -> &LatticeShape {
         &self.shape
+    }
+
+    /// Its cells.
+    pub fn grid(&self) -> Grid {
+        let counts = [self.shape.columns(), self.shape.rows()];
+        Grid { frame: self.frame, counts, periodic: self.shape.periodic() }
     }
 
     /// How many discs there are.
@@ -84,7 +97,15 @@ impl Occupancy {
     /// Column and row of a disc; none if it is in no cell.
     pub fn cell(&self, disc: usize) -> Option<[usize; 2]> {
         let cell = self.cell[disc];
+        if cell == self.guest_room() {
+            return self.guests.iter().find(|guest| guest.0 as usize == disc).map(|guest| guest.1);
+        }
         (cell != NOWHERE).then(|| self.column_and_row(cell as usize))
+    }
+
+    /// Where the copies of a guest's place are written, and nobody reads them: behind the lattice.
+    fn guest_room(&self) -> u32 {
+        self.index.len() as u32 - 1
     }
 
     /// The disc in a cell of the lattice.
@@ -128,10 +149,32 @@ impl Occupancy {
         Ok(())
     }
 
+    /// Puts a disc as a guest into a cell that is another disc's, behind the guests whose `number` is smaller.
+    ///
+    /// # Panics
+    /// If the disc is in a cell already, or there is no such disc or cell.
+    pub fn enter_as_guest(&mut self, disc: usize, cell: [usize; 2], number: impl Fn(usize) -> usize) {
+        assert!(self.cell[disc] == NOWHERE, "disc {disc} is in a cell already");
+        assert!(cell[0] < self.shape.columns() && cell[1] < self.shape.rows(), "no cell {cell:?}");
+        self.cell[disc] = self.guest_room();
+        let own = number(disc);
+        let before = self.guests.iter().take_while(|guest| number(guest.0 as usize) < own).count();
+        self.guests.insert(before, (disc as u32, cell));
+    }
+
+    /// The discs in cells that are another disc's, with these cells.
+    pub fn guests(&self) -> &[(u32, [usize; 2])] {
+        &self.guests
+    }
+
     /// Takes a disc out of its cell, if it is in one.
     pub fn leave(&mut self, disc: usize) {
         if self.cell[disc] == NOWHERE {
             return;
+        }
+        if self.cell[disc] == self.guest_room() {
+            self.cell[disc] = NOWHERE;
+            return self.guests.retain(|guest| guest.0 as usize != disc);
         }
         let at = self.cell[disc] as usize;
         self.cell[disc] = NOWHERE;
@@ -176,12 +219,13 @@ impl Occupancy {
         }
     }
 
-    /// The discs in order of their cells, row by row.
+    /// The discs in order of their cells, row by row, guests behind all.
     pub fn order(&self) -> Vec<u32> {
         let rows = (0..self.shape.rows() as isize).map(|row| self.shape.position(0, row));
         rows.flat_map(|first| &self.index[first..first + self.shape.columns()])
             .copied()
             .filter(|&disc| (disc as usize) < self.discs)
+            .chain(self.guests.iter().map(|guest| guest.0))
             .collect()
     }
 
@@ -192,15 +236,18 @@ impl Occupancy {
     pub fn renumber(&mut self, order: &[u32]) {
         let old = std::mem::replace(&mut self.cell, vec![NOWHERE; self.discs]);
         assert_eq!(order.len(), self.discs, "an order of all discs");
-        let mut named = vec![false; self.discs];
+        let mut anew = vec![NOWHERE; self.discs];
+        let guest_room = self.guest_room();
         for (disc, &before) in order.iter().enumerate() {
             let before = before as usize;
-            assert!(!std::mem::replace(&mut named[before], true), "disc {before} is named twice");
+            let first = std::mem::replace(&mut anew[before], disc as u32) == NOWHERE;
+            assert!(first, "disc {before} is named twice");
             self.cell[disc] = old[before];
-            if old[before] != NOWHERE {
+            if old[before] != NOWHERE && old[before] != guest_room {
                 self.index[old[before] as usize] = disc as u32;
             }
         }
+        self.guests.iter_mut().for_each(|guest| guest.0 = anew[guest.0 as usize]);
         self.repeat_images();
     }
 
@@ -239,9 +286,9 @@ impl Occupancy {
         &self.occupied
     }
 
-    /// The cells of the discs, the places inside the cells to be written (empty if sparse), and the unit they are in.
-    pub(super) fn to_settle(&mut self) -> (&[u32], [&mut [f32]; 2], f64) {
+    /// What a pass over the discs is to keep up to date; nothing if the lattice is sparse.
+    pub fn copies(&mut self) -> Option<Copies<'_>> {
         let [x, y] = &mut self.place;
-        (&self.cell, [x, y], self.unit)
+        (!self.sparse).then_some(Copies { cells: &self.cell, places: [x, y], unit: self.unit })
     }
 }

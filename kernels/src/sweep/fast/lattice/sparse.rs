@@ -1,12 +1,13 @@
 //! Finding contacts where few cells are occupied: disc by disc, through a bit for every cell.
 
-use super::contacts::Codes;
-use super::detection::{Candidate, Cursor, MARGIN, append_bits};
+use super::codes::{Candidate, Codes};
+use super::detection::append_bits;
 use super::occupancy::Occupancy;
 use crate::GROUP;
 use crate::backend::{Precision, Registers};
 use crate::isa::Element;
 use crate::program::Task;
+use crate::sweep::fast::finder::{Cursor, MARGIN};
 use std::ops::Range;
 
 /// Searches whole rows from `cursor` on, until `full` candidates are found.
@@ -31,7 +32,7 @@ impl<S: Element, P: Precision> Task<f32> for SparseSearch<'_, S, P> {
         let (shape, occupied, index) = (occupancy.shape(), occupancy.occupied(), occupancy.index());
         let h = occupancy.half_width();
         let (ahead, around) = ((1 << h) - 1, (1 << (2 * h + 1)) - 1);
-        let limit = reach * reach * f64::from(MARGIN);
+        let limit = reach * reach * MARGIN;
         let end = (rows.end + h) * shape.stride() + shape.position(0, 0);
         assert!(
             rows.end <= shape.rows() && end < occupied.positions() && end <= index.len() + h * shape.stride()
@@ -52,11 +53,14 @@ impl<S: Element, P: Precision> Task<f32> for SparseSearch<'_, S, P> {
                 // SAFETY: the cell is in one of the rows, so that its places are before `end`.
                 let mut near = unsafe { occupied.from(position + 1) } & ahead;
                 for row in 1..=h {
+                    // SAFETY: as above.
                     let there = unsafe { occupied.from(position + row * shape.stride() - h) } & around;
                     near |= there << (h + (row - 1) * (2 * h + 1));
                 }
                 let before = found.len();
-                append_bits(found, near, |place| Candidate(cell << Candidate::CODE | place * GROUP as u64));
+                append_bits(found, near, |place| {
+                    Candidate((cell << Candidate::CODE) | (place * GROUP as u64))
+                });
                 let mut kept = before;
                 for listed in before..found.len() {
                     let candidate = found[listed];
@@ -73,7 +77,7 @@ impl<S: Element, P: Precision> Task<f32> for SparseSearch<'_, S, P> {
                 }
                 found.truncate(kept);
             }
-            *cursor = Cursor { row: cursor.row + 1, group: 0 };
+            *cursor = Cursor::at(cursor.row + 1);
         }
     }
 }

@@ -1,57 +1,16 @@
 //! Finding contacts: registers of cells against the same cells at every place of the half mask.
 
+use super::codes::{Candidate, place, place_count};
 use super::occupancy::Occupancy;
 use crate::GROUP;
 use crate::backend::Registers;
 use crate::isa::Vector;
 use crate::program::Task;
+use crate::sweep::fast::finder::{Cursor, MARGIN};
 use std::ops::Range;
 
 /// Places of the mask whose findings share a word: 16 cells each.
 const PLACES: usize = 64 / GROUP;
-
-/// Squares of distances may be off by so much in single precision, and pairs beyond contact do no harm.
-pub(super) const MARGIN: f32 = 1.0 + 2e-5;
-
-/// A pair of cells whose discs may touch: the first cell of the group in the high bits, place and lane in the low ones.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Candidate(pub(super) u64);
-
-impl Candidate {
-    /// Bits of a code.
-    pub(super) const CODE: u32 = 9;
-
-    /// Position of the group's first cell.
-    #[inline(always)]
-    pub(super) fn base(self) -> usize {
-        (self.0 >> Self::CODE) as usize
-    }
-
-    /// Place and lane: an index into [`codes`].
-    #[inline(always)]
-    pub(super) fn code(self) -> usize {
-        (self.0 & ((1 << Self::CODE) - 1)) as usize
-    }
-}
-
-/// The places of a half mask in the order of the sweep: columns and rows.
-pub(super) fn places(half_width: usize) -> impl Iterator<Item = [isize; 2]> {
-    let h = half_width as isize;
-    let ahead = (1..=h).map(|column| [column, 0]);
-    ahead.chain((1..=h).flat_map(move |row| (-h..=h).map(move |column| [column, row])))
-}
-
-/// What a code stands for: lane and place.
-pub(super) fn codes(half_width: usize) -> impl Iterator<Item = (usize, [isize; 2])> {
-    places(half_width).flat_map(|place| (0..GROUP).map(move |lane| (lane, place)))
-}
-
-/// Where a search goes on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Cursor {
-    pub(super) row: usize,
-    pub(super) group: usize,
-}
 
 /// Searches groups of cells from `cursor` to the end of the rows, until `full` candidates are found.
 pub(super) struct Search<'a> {
@@ -76,7 +35,7 @@ impl Task<f32> for Search<'_> {
 
 /// Words that the findings of a group take: 12 or 24 places.
 const fn words(half_width: usize) -> usize {
-    (half_width + half_width * (2 * half_width + 1)).div_ceil(PLACES)
+    place_count(half_width).div_ceil(PLACES)
 }
 
 impl Search<'_> {
@@ -94,8 +53,8 @@ impl Search<'_> {
         assert!(end < occupied.positions());
         let (x, y, radii) = (x.as_ptr(), y.as_ptr(), radii.as_ptr());
         while cursor.row < rows.end {
-            while cursor.group < groups {
-                let column = cursor.group * GROUP;
+            while cursor.along < groups {
+                let column = cursor.along * GROUP;
                 let base = shape.position(column as isize, cursor.row as isize);
                 let inside = (1 << GROUP.min(shape.columns() - column)) - 1;
                 // SAFETY: the group begins before `end`.
@@ -119,9 +78,9 @@ impl Search<'_> {
                         list(found, (base as u64) << Candidate::CODE | (word as u64) << 6, near & own);
                     }
                 }
-                cursor.group += 1;
+                cursor.along += 1;
             }
-            *cursor = Cursor { row: cursor.row + 1, group: 0 };
+            *cursor = Cursor::at(cursor.row + 1);
         }
     }
 }
@@ -139,38 +98,44 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
     edge: [f32; 2],
 ) -> [u64; 6] {
     let mut near = [0; 6];
-    let limit = registers.splat(MARGIN);
+    let limit = registers.splat(MARGIN as f32);
     let mut part = 0;
     while part < GROUP {
-        // SAFETY: the caller's promise, here and below.
+        // SAFETY: the caller's promise.
         let (own_x, own_y) = unsafe { (registers.load(x.add(part)), registers.load(y.add(part))) };
+        // SAFETY: as above.
         let own_radius = unsafe { registers.load(radii.add(part)) };
-        // The own position as seen from the centres of columns −3 … 3.
-        let from = |column: isize| own_x - registers.splat(edge[0] * column as f32);
-        let columns = [from(-3), from(-2), from(-1), own_x, from(1), from(2), from(3)];
-        let mut place = 0;
-        for row in 0..=H {
-            let from_y = own_y - registers.splat(edge[1] * row as f32);
-            let first = if row == 0 { 1 } else { -(H as isize) };
-            for column in first..=H as isize {
-                let shift = (row * stride) as isize + column + part as isize;
-                let (dx, dy) = unsafe {
-                    (
-                        columns[(column + 3) as usize] - registers.load(x.offset(shift)),
-                        from_y - registers.load(y.offset(shift)),
-                    )
-                };
-                let square = dx * dx + dy * dy;
-                let touch = if VARY {
-                    let reach = own_radius + unsafe { registers.load(radii.offset(shift)) };
-                    square.less_than(reach * reach * limit)
-                } else {
-                    square.less_than(limit)
-                };
-                near[place / PLACES] |= registers.bits(touch) << (GROUP * (place % PLACES) + part);
-                place += 1;
-            }
+        // The own position as seen from the centres of the columns and rows around.
+        let column = |column: isize| own_x - registers.splat(edge[0] * column as f32);
+        let columns = [column(-3), column(-2), column(-1), own_x, column(1), column(2), column(3)];
+        let row = |row: usize| own_y - registers.splat(edge[1] * row as f32);
+        let rows = [own_y, row(1), row(2), row(3)];
+        // Written out: a loop that the compiler leaves one keeps the words in memory, at five times the cost.
+        macro_rules! at_places {
+            ($($number:literal)*) => {$(
+                if $number < const { place_count(H) } {
+                    let [column, row] = const { place(H, $number) };
+                    let shift = row * stride as isize + column + part as isize;
+                    // SAFETY: as above.
+                    let (dx, dy) = unsafe {
+                        (
+                            columns[(column + 3) as usize] - registers.load(x.offset(shift)),
+                            rows[row as usize] - registers.load(y.offset(shift)),
+                        )
+                    };
+                    let square = dx * dx + dy * dy;
+                    let touch = if VARY {
+                        // SAFETY: as above.
+                        let reach = own_radius + unsafe { registers.load(radii.offset(shift)) };
+                        square.less_than(reach * reach * limit)
+                    } else {
+                        square.less_than(limit)
+                    };
+                    near[$number / PLACES] |= registers.bits(touch) << (GROUP * ($number % PLACES) + part);
+                }
+            )*};
         }
+        at_places!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23);
         part += R::LANES;
     }
     near

@@ -1,0 +1,79 @@
+//! What does finding the contacts cost, before the law is asked: on the lattice, and in sectors?
+//!
+//! Nothing is moved here, but the configurations are of a gas that has moved, and large: nobody predicts their branches.
+//! Throughput is in discs; `cargo bench --bench lattice search`.
+
+use crate::phases::{EQUILIBRATION, advance, scene};
+use criterion::{Criterion, Throughput};
+use std::hint::black_box;
+use std::time::Duration;
+use stripmine::particles::Particles;
+use stripmine::run::{assemble, model};
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::sweep::fast::lattice::{Codes, Lattice, Occupancy};
+use stripmine_kernels::sweep::fast::{Cursor, Finder, Grid, SENTINELS, Sectors};
+
+/// Cells and places in them, in the order of the cells, sentinels behind.
+fn settled(particles: &Particles, grid: &Grid) -> (Vec<[usize; 2]>, [Vec<f64>; 2]) {
+    let mut discs: Vec<([usize; 2], [f64; 2])> = particles
+        .all()
+        .iter()
+        .map(|disc| {
+            let along = [0, 1].map(|axis| disc.position[axis] - grid.frame.origin[axis]);
+            let cell = [0, 1]
+                .map(|axis| ((along[axis] / grid.frame.edge[axis]) as usize).min(grid.counts[axis] - 1));
+            (cell, [0, 1].map(|axis| along[axis] - (cell[axis] as f64 + 0.5) * grid.frame.edge[axis]))
+        })
+        .collect();
+    discs.sort_by_key(|(cell, _)| (cell[1], cell[0]));
+    let place =
+        |axis: usize| discs.iter().map(|disc| disc.1[axis]).chain([0.0; SENTINELS]).collect::<Vec<f64>>();
+    (discs.iter().map(|disc| disc.0).collect(), [place(0), place(1)])
+}
+
+fn all<F: Finder<f64, f64>>(finder: &F, places: [&[f64]; 2], found: &mut F::Found) {
+    let (rows, mut cursor) = (finder.rows().count, Cursor::at(0));
+    while cursor.row() < rows {
+        finder.find(places, 0..rows, &mut cursor, found, InstructionSet::best()).expect("available");
+        black_box(&*found);
+    }
+}
+
+pub fn search(criterion: &mut Criterion) {
+    for packing_fraction in [0.84, 0.3, 0.03] {
+        let scene = scene(packing_fraction, 100_000, "f64");
+        let mut gas = assemble(&scene).expect("a start without conflicts");
+        advance(gas.as_mut(), EQUILIBRATION);
+        let (model, particles) = (model(&scene), gas.particles());
+        let count = particles.len();
+
+        let mut occupancy = Occupancy::new(model.shape, model.frame, count, 1.0, false);
+        let (cells, [x, y]) = settled(&particles, &occupancy.grid());
+        for (disc, &cell) in cells.iter().enumerate() {
+            occupancy.enter(disc, cell, [x[disc], y[disc]], 0.5).expect("one disc a cell");
+        }
+        occupancy.repeat_images();
+        let codes = Codes::<f64>::new(&occupancy, model.frame);
+        let lattice = Lattice { occupancy: &occupancy, codes: &codes };
+
+        let domain = model.domain();
+        let grid = Grid::new(domain.origin, domain.sides, domain.periodic, 1.0, count).expect("a large box");
+        let mut sectors = Sectors::new(grid, count, 1.0);
+        let (in_sectors, [sx, sy]) = settled(&particles, &grid);
+        in_sectors.iter().enumerate().for_each(|(disc, &cell)| sectors.enter(disc, cell));
+        sectors.arrange(|disc| disc);
+
+        let mut group = criterion.benchmark_group(format!("search/{packing_fraction}/100000"));
+        group.throughput(Throughput::Elements(count as u64)).sample_size(10);
+        group.measurement_time(Duration::from_millis(500)).warm_up_time(Duration::from_millis(100));
+        group.bench_function("lattice", |bencher| {
+            let mut found = Default::default();
+            bencher.iter(|| all(&lattice, [&x, &y], &mut found));
+        });
+        group.bench_function("sectors", |bencher| {
+            let mut found = Default::default();
+            bencher.iter(|| all(&sectors, [&sx, &sy], &mut found));
+        });
+        group.finish();
+    }
+}

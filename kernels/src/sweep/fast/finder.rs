@@ -1,0 +1,94 @@
+//! What a sweep asks of whatever finds its pairs.
+
+use super::contacts::Pair;
+use super::sectors::Touches;
+use crate::InstructionSet;
+use crate::backend::Precision;
+use crate::isa::ProgramError;
+use std::ops::Range;
+
+/// How rows are cut into bands that threads may sweep beside each other. A function of nothing but the scene: it comes
+/// into the order of summation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rows {
+    /// How many there are.
+    pub count: usize,
+    /// How many rows ahead the partners of a row may be.
+    pub ahead: usize,
+    /// Fewest rows of a band.
+    pub band: usize,
+}
+
+/// Finds pairs of discs that may touch: every pair that does, once, and others as few as it likes.
+///
+/// # Safety
+/// Pairs are of discs below [`discs`](Self::discs), in the rows said: sweeps read and add unchecked.
+pub unsafe trait Finder<S, P: Precision>: Sync {
+    /// The pairs found, and room for finding them.
+    type Found: Clone + std::fmt::Debug + Default + Send;
+
+    /// How many discs there are; pairs are of these.
+    fn discs(&self) -> usize;
+
+    /// The rows that discs are in.
+    fn rows(&self) -> Rows;
+
+    /// Replaces what was found by what is found from `cursor` on in `rows`: some hundred pairs, or all that are left.
+    /// The cursor moves on, to the end of the rows when nothing is left. Partners are in the rows and those
+    /// [`ahead`](Rows::ahead) of them.
+    ///
+    /// # Errors
+    /// [`ProgramError::NoSuchInstructionSet`].
+    fn find(
+        &self,
+        places: [&[S]; 2],
+        rows: Range<usize>,
+        cursor: &mut Cursor,
+        found: &mut Self::Found,
+        set: InstructionSet,
+    ) -> Result<(), ProgramError>;
+
+    /// Appends the pairs that are found in no row.
+    fn find_beside_rows(&self, _: &mut Touches<P>) {}
+
+    /// What was found.
+    fn pairs<'a>(&'a self, found: &'a Self::Found) -> impl Pairs<P> + 'a;
+}
+
+/// Pairs that are at most asked for their contacts as they stand.
+pub trait Pairs<P> {
+    /// How many.
+    fn count(&self) -> usize;
+
+    /// Two discs, and the way from where the first one's place is seen from to where the second one's is (length).
+    ///
+    /// # Panics
+    /// May, if there are not so many pairs.
+    fn pair(&self, number: usize) -> (Pair, [P; 2]);
+}
+
+/// Pairs that are found before the law is asked about them: they and their discs stay in the nearest cache.
+pub(super) const AT_ONCE: usize = 512;
+
+/// Squares of distances may be off by so much in single precision, and pairs beyond contact do no harm.
+pub(super) const MARGIN: f64 = 1.0 + 2e-5;
+
+/// Where a search goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cursor {
+    pub(super) row: usize,
+    /// How far in the row: in units of the finder's own.
+    pub(super) along: usize,
+}
+
+impl Cursor {
+    /// At the beginning of a row.
+    pub fn at(row: usize) -> Self {
+        Cursor { row, along: 0 }
+    }
+
+    /// The row that is searched.
+    pub fn row(&self) -> usize {
+        self.row
+    }
+}

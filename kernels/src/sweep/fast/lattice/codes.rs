@@ -1,0 +1,88 @@
+//! Candidates: pairs of cells, packed into a word each, and what they stand for.
+
+use super::occupancy::Occupancy;
+use crate::GROUP;
+use crate::backend::Precision;
+use crate::sweep::lattice::Frame;
+
+/// A pair of cells whose discs may touch: the first cell of the group in the high bits, place and lane in the low ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Candidate(pub(super) u64);
+
+impl Candidate {
+    /// Bits of a code.
+    pub(super) const CODE: u32 = 9;
+
+    /// Position of the group's first cell.
+    #[inline(always)]
+    pub(super) fn base(self) -> usize {
+        (self.0 >> Self::CODE) as usize
+    }
+
+    /// Place and lane: an index into [`codes`].
+    #[inline(always)]
+    pub(super) fn code(self) -> usize {
+        (self.0 & ((1 << Self::CODE) - 1)) as usize
+    }
+}
+
+/// How many places a half mask has.
+pub(super) const fn place_count(half_width: usize) -> usize {
+    half_width + half_width * (2 * half_width + 1)
+}
+
+/// A place of a half mask in the order of the sweep: column and row. Those beyond the last are no places.
+pub(super) const fn place(half_width: usize, number: usize) -> [isize; 2] {
+    if number < half_width {
+        return [number as isize + 1, 0];
+    }
+    let (width, behind) = (2 * half_width + 1, number - half_width);
+    [(behind % width) as isize - half_width as isize, (behind / width) as isize + 1]
+}
+
+/// The places of a half mask in their order.
+fn places(half_width: usize) -> impl Iterator<Item = [isize; 2]> {
+    (0..place_count(half_width)).map(move |number| place(half_width, number))
+}
+
+/// What a code stands for: lane and place.
+pub(super) fn codes(half_width: usize) -> impl Iterator<Item = (usize, [isize; 2])> {
+    places(half_width).flat_map(|place| (0..GROUP).map(move |lane| (lane, place)))
+}
+
+/// What candidates' codes stand for.
+#[derive(Clone, Debug)]
+pub struct Codes<P> {
+    /// From the group's first cell to the own cell and to the partner's.
+    cells: Vec<[i32; 2]>,
+    /// From the centre of the own cell to that of the partner's (length).
+    ways: [Vec<P>; 2],
+}
+
+impl<P: Precision> Codes<P> {
+    /// For the lattice of an occupancy.
+    pub fn new(occupancy: &Occupancy, frame: Frame) -> Self {
+        let stride = occupancy.shape().stride() as isize;
+        let all = || codes(occupancy.half_width());
+        Codes {
+            cells: all()
+                .map(|(lane, [column, row])| [lane as i32, (lane as isize + row * stride + column) as i32])
+                .collect(),
+            ways: [0, 1].map(|axis| {
+                all().map(|(_, place)| P::from_f64(place[axis] as f64 * frame.edge[axis])).collect()
+            }),
+        }
+    }
+
+    /// The two discs of a candidate and the way between their cells.
+    #[inline(always)]
+    pub(super) fn pair(&self, candidate: Candidate, index: &[u32]) -> ([u32; 2], [P; 2]) {
+        let (base, code) = (candidate.base(), candidate.code());
+        // SAFETY: searches make codes below the tables' length, of cells of the padded lattice.
+        unsafe {
+            let cells = *self.cells.get_unchecked(code);
+            let discs = cells.map(|cell| *index.get_unchecked(base.wrapping_add_signed(cell as isize)));
+            (discs, [*self.ways[0].get_unchecked(code), *self.ways[1].get_unchecked(code)])
+        }
+    }
+}

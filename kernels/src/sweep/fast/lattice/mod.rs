@@ -1,0 +1,125 @@
+//! Pairs on a lattice with at most one disc a cell: at the places of half the mask.
+
+mod bits;
+mod codes;
+mod detection;
+mod occupancy;
+mod sparse;
+
+pub use codes::Codes;
+pub use occupancy::{Occupancy, SPARSE, Taken};
+
+use super::finder::{AT_ONCE, Cursor, Finder, Pairs, Rows};
+use super::sectors::{Grid, Touches};
+use crate::InstructionSet;
+use crate::backend::Precision;
+use crate::isa::{Element, ProgramError};
+use crate::program::dispatch;
+use codes::Candidate;
+use detection::Search;
+use sparse::SparseSearch;
+use std::ops::Range;
+
+/// Rows of a band, at least.
+const BAND: usize = 32;
+
+/// An occupied lattice, searched cell by cell, or, if it is sparse, disc by disc.
+#[derive(Clone, Copy, Debug)]
+pub struct Lattice<'a, P> {
+    /// Who is where.
+    pub occupancy: &'a Occupancy,
+    /// What pairs of cells are packed into.
+    pub codes: &'a Codes<P>,
+}
+
+/// The pairs found on a lattice.
+#[derive(Clone, Debug, Default)]
+pub struct Candidates {
+    candidates: Vec<Candidate>,
+    cells: Vec<u64>,
+}
+
+// SAFETY: the Index numbers discs, and candidates are pairs of occupied cells, the partner's in the half mask.
+unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
+    type Found = Candidates;
+
+    fn discs(&self) -> usize {
+        self.occupancy.discs()
+    }
+
+    fn rows(&self) -> Rows {
+        Rows { count: self.occupancy.shape().rows(), ahead: self.occupancy.half_width(), band: BAND }
+    }
+
+    fn find(
+        &self,
+        places: [&[S]; 2],
+        rows: Range<usize>,
+        cursor: &mut Cursor,
+        found: &mut Candidates,
+        set: InstructionSet,
+    ) -> Result<(), ProgramError> {
+        let Lattice { occupancy, codes } = *self;
+        let Candidates { candidates: found, cells } = found;
+        found.clear();
+        if occupancy.is_sparse() {
+            let reach = occupancy.reach();
+            dispatch(
+                set,
+                SparseSearch { occupancy, codes, places, reach, rows, cursor, full: AT_ONCE, found, cells },
+            )
+        } else {
+            dispatch(set, Search { occupancy, rows, cursor, full: AT_ONCE, found })
+        }
+    }
+
+    /// Guests with everybody around them, and with each other.
+    fn find_beside_rows(&self, found: &mut Touches<P>) {
+        let occupancy = self.occupancy;
+        let (guests, shape) = (occupancy.guests(), occupancy.shape());
+        let Grid { frame, counts, periodic } = occupancy.grid();
+        let half = occupancy.half_width() as isize;
+        let way = |offset: [isize; 2]| [0, 1].map(|axis| offset[axis] as f64 * frame.edge[axis]);
+        for (at, &(guest, [column, row])) in guests.iter().enumerate() {
+            for offset in (-half..=half).flat_map(|rows| (-half..=half).map(move |columns| [columns, rows])) {
+                let position = shape.position(column as isize + offset[0], row as isize + offset[1]);
+                let there = occupancy.index()[position];
+                if (there as usize) < occupancy.discs() {
+                    found.push([guest, there], way(offset));
+                }
+            }
+            for &(other, cell) in &guests[at + 1..] {
+                let offset = [0, 1].map(|axis| {
+                    let (count, way) =
+                        (counts[axis] as isize, cell[axis] as isize - [column, row][axis] as isize);
+                    if periodic[axis] && way.abs() > half { way - way.signum() * count } else { way }
+                });
+                if offset.iter().all(|way| way.abs() <= half) {
+                    found.push([guest, other], way(offset));
+                }
+            }
+        }
+    }
+
+    fn pairs<'a>(&'a self, found: &'a Candidates) -> impl Pairs<P> + 'a {
+        Packed { codes: self.codes, index: self.occupancy.index(), candidates: &found.candidates }
+    }
+}
+
+/// Candidates and what unpacks them.
+struct Packed<'a, P> {
+    codes: &'a Codes<P>,
+    index: &'a [u32],
+    candidates: &'a [Candidate],
+}
+
+impl<P: Precision> Pairs<P> for Packed<'_, P> {
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.candidates.len()
+    }
+    #[inline(always)]
+    fn pair(&self, number: usize) -> ([u32; 2], [P; 2]) {
+        self.codes.pair(self.candidates[number], self.index)
+    }
+}

@@ -1,0 +1,395 @@
+//! Pairs in sectors: cells as wide as a contact reaches, which hold any number of discs.
+
+use super::SENTINELS;
+use super::finder::{AT_ONCE, Cursor, Finder, MARGIN, Pairs, Rows};
+use crate::InstructionSet;
+use crate::backend::Precision;
+use crate::isa::{Element, ProgramError};
+use crate::sweep::lattice::Frame;
+use std::ops::Range;
+
+/// Rows of a band, at least.
+pub(super) const BAND: usize = 16;
+
+/// The sectors that lie ahead of a sector in the order of a sweep, itself first: columns and rows.
+const AHEAD: [[isize; 2]; 5] = [[0, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
+
+/// Discs for which a sector is wide enough, on the average: fewer make many empty sectors, more make many pairs to try.
+const OCCUPANTS: f64 = 0.7;
+
+/// Which sectors there are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// Where they lie.
+    pub frame: Frame,
+    /// Columns and rows.
+    pub counts: [usize; 2],
+    /// Which sides are periodic.
+    pub periodic: [bool; 2],
+}
+
+impl Grid {
+    /// Sectors at least `reach` wide (length) for `discs` discs in a box of some sides (length). None if a periodic side
+    /// has no room for three: a pair would be met twice.
+    pub fn new(
+        origin: [f64; 2],
+        sides: [f64; 2],
+        periodic: [bool; 2],
+        reach: f64,
+        discs: usize,
+    ) -> Option<Grid> {
+        let room = OCCUPANTS * sides[0] * sides[1] / discs.max(1) as f64;
+        let wide = reach.max(room.sqrt());
+        let mut counts = [1, 1];
+        for axis in 0..2 {
+            let most = (sides[axis] / reach) as usize;
+            let least = if periodic[axis] { 3 } else { 1 };
+            if periodic[axis] && most < least {
+                return None;
+            }
+            counts[axis] = ((sides[axis] / wide) as usize).max(least);
+        }
+        let edge = [sides[0] / counts[0] as f64, sides[1] / counts[1] as f64];
+        Some(Grid { frame: Frame { origin, edge }, counts, periodic })
+    }
+
+    /// The sector that lies at most one column and one row from one.
+    #[inline(always)]
+    fn beside(&self, [column, row]: [usize; 2], [columns, rows]: [isize; 2]) -> Option<[usize; 2]> {
+        let along = |axis: usize, from: usize, by: isize| {
+            let (count, there) = (self.counts[axis] as isize, from as isize + by);
+            // No division: that would cost more than what is done with the sector.
+            let inside = if there < 0 {
+                there + count
+            } else if there >= count {
+                there - count
+            } else {
+                return Some(there as usize);
+            };
+            self.periodic[axis].then_some(inside as usize)
+        };
+        Some([along(0, column, columns)?, along(1, row, rows)?])
+    }
+
+    /// From the centre of a sector to the one that lies so many columns and rows from it (length).
+    fn way(&self, ahead: [isize; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| ahead[axis] as f64 * self.frame.edge[axis])
+    }
+
+    /// The ways to the sectors ahead, in their order.
+    pub(super) fn ways(&self) -> [[f64; 2]; 5] {
+        AHEAD.map(|ahead| self.way(ahead))
+    }
+
+    pub(super) fn rows(&self) -> Rows {
+        Rows { count: self.counts[1], ahead: 1, band: BAND }
+    }
+}
+
+/// Who is in which sector. The discs of a sector are kept in an order that is told, so that no sum's order depends on
+/// what went before.
+#[derive(Clone, Debug)]
+pub struct Sectors {
+    grid: Grid,
+    reach: f64,
+    /// The sector of each disc.
+    sector: Vec<u32>,
+    /// Where in `members` the discs of each sector begin, and the end.
+    starts: Vec<u32>,
+    members: Vec<u32>,
+}
+
+/// The sector of a disc that is in none.
+const NOWHERE: u32 = u32::MAX;
+
+impl Sectors {
+    /// Empty sectors for `discs` discs that touch when their centres are at most `reach` (length) apart.
+    ///
+    /// # Panics
+    /// If there are 2²⁹ discs or more.
+    pub fn new(grid: Grid, discs: usize, reach: f64) -> Self {
+        assert!(discs < 1 << 29, "{discs} discs are too many to number");
+        let starts = vec![0; grid.counts[0] * grid.counts[1] + 1];
+        Sectors { grid, reach, sector: vec![NOWHERE; discs], starts, members: vec![] }
+    }
+
+    /// Which sectors there are.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// How far contacts reach (length).
+    pub(super) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// How many discs there are.
+    pub(super) fn disc_count(&self) -> usize {
+        self.sector.len()
+    }
+
+    /// Column and row of a disc; none if it is in no sector.
+    pub fn cell(&self, disc: usize) -> Option<[usize; 2]> {
+        let (sector, columns) = (self.sector[disc] as usize, self.grid.counts[0]);
+        (self.sector[disc] != NOWHERE).then(|| [sector % columns, sector / columns])
+    }
+
+    /// Puts a disc into a sector, of which it is a member from the next [`arrange`](Self::arrange) on.
+    ///
+    /// # Panics
+    /// If there is no such disc or sector.
+    pub fn enter(&mut self, disc: usize, [column, row]: [usize; 2]) {
+        let [columns, rows] = self.grid.counts;
+        assert!(column < columns && row < rows, "no sector in column {column}, row {row}");
+        self.sector[disc] = (row * columns + column) as u32;
+    }
+
+    /// Takes a disc out of its sector, if it is in one.
+    pub fn leave(&mut self, disc: usize) {
+        self.sector[disc] = NOWHERE;
+    }
+
+    /// Makes everybody a member of the sector he is in, those of a sector in order of their `number`.
+    pub fn arrange(&mut self, number: impl Fn(usize) -> usize) {
+        let Sectors { sector, starts, members, .. } = self;
+        starts.fill(0);
+        let inside = || sector.iter().enumerate().filter(|&(_, &sector)| sector != NOWHERE);
+        inside().for_each(|(_, &sector)| starts[sector as usize] += 1);
+        let mut end = 0;
+        for start in starts.iter_mut() {
+            end += *start;
+            *start = end;
+        }
+        members.resize(end as usize, 0);
+        // From the ends down, so that the starts are left.
+        for (disc, &sector) in inside() {
+            let start = &mut starts[sector as usize];
+            *start -= 1;
+            members[*start as usize] = disc as u32;
+        }
+        for ends in starts.windows(2).filter(|ends| ends[1] - ends[0] > 1) {
+            members[ends[0] as usize..ends[1] as usize].sort_unstable_by_key(|&disc| number(disc as usize));
+        }
+    }
+
+    /// The discs in order of their sectors, row by row.
+    pub fn order(&self) -> Vec<u32> {
+        self.members.clone()
+    }
+
+    /// Numbers the discs anew: disc `n` is from now on what disc `order[n]` was.
+    ///
+    /// # Panics
+    /// If `order` does not name every disc once.
+    pub fn renumber(&mut self, order: &[u32]) {
+        assert_eq!(order.len(), self.sector.len(), "an order of all discs");
+        let mut anew = vec![NOWHERE; order.len()];
+        for (disc, &before) in order.iter().enumerate() {
+            let first = std::mem::replace(&mut anew[before as usize], disc as u32) == NOWHERE;
+            assert!(first, "disc {before} is named twice");
+        }
+        self.sector = order.iter().map(|&before| self.sector[before as usize]).collect();
+        self.members.iter_mut().for_each(|member| *member = anew[*member as usize]);
+    }
+
+    /// The members of a sector and those that follow in the row, up to `more` sectors on.
+    #[inline(always)]
+    fn members(&self, sector: usize, more: usize) -> Range<usize> {
+        self.starts[sector] as usize..self.starts[sector + more + 1] as usize
+    }
+
+    /// Calls `own(disc)` for every disc of some sectors of a row, and then `meet(disc, partner, number of the way)` for
+    /// every partner in the sectors ahead.
+    #[inline(always)]
+    pub(super) fn pairs_of_row(
+        &self,
+        row: usize,
+        columns: Range<usize>,
+        mut own: impl FnMut(u32),
+        mut meet: impl FnMut(u32, u32, usize),
+    ) {
+        let [all, rows] = self.grid.counts;
+        for column in columns {
+            let sector = row * all + column;
+            let here = self.members(sector, 0);
+            if here.is_empty() {
+                continue;
+            }
+            let rest_of = |at: usize| at + 1..here.end;
+            if column > 0 && column + 1 < all && row + 1 < rows {
+                // Sectors that follow each other in a row are one stretch of members.
+                let (beside, above) = (self.members(sector, 1).end, self.members(sector + all - 1, 2));
+                for at in here.clone() {
+                    let first = self.members[at];
+                    own(first);
+                    for &second in &self.members[at + 1..beside] {
+                        meet(first, second, self.sector[second as usize] as usize - sector);
+                    }
+                    for &second in &self.members[above.clone()] {
+                        meet(first, second, self.sector[second as usize] as usize + 3 - (sector + all));
+                    }
+                }
+                continue;
+            }
+            let ahead = AHEAD.map(|ahead| match self.grid.beside([column, row], ahead) {
+                Some([column, row]) => self.members(row * all + column, 0),
+                None => 0..0,
+            });
+            for at in here.clone() {
+                let first = self.members[at];
+                own(first);
+                self.members[rest_of(at)].iter().for_each(|&second| meet(first, second, 0));
+                for (way, there) in ahead.iter().enumerate().skip(1) {
+                    self.members[there.clone()].iter().for_each(|&second| meet(first, second, way));
+                }
+            }
+        }
+    }
+}
+
+/// Two discs that may touch, and the way between where their places are seen from (length).
+#[derive(Clone, Copy, Debug)]
+pub struct Touch<P> {
+    discs: [u32; 2],
+    way: [P; 2],
+}
+
+/// A list of pairs.
+#[derive(Clone, Debug, Default)]
+pub struct Touches<P>(Vec<Touch<P>>);
+
+impl<P: Precision> Touches<P> {
+    /// Appends a pair.
+    pub(super) fn push(&mut self, discs: [u32; 2], way: [f64; 2]) {
+        self.0.push(Touch { discs, way: way.map(P::from_f64) });
+    }
+}
+
+impl<P: Precision> Pairs<P> for &Touches<P> {
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+    #[inline(always)]
+    fn pair(&self, number: usize) -> ([u32; 2], [P; 2]) {
+        let Touch { discs, way } = self.0[number];
+        (discs, way)
+    }
+}
+
+/// Lists the pairs nearer than some distance among those it is told.
+pub(super) struct Near<'a, S, P> {
+    places: [&'a [S]; 2],
+    ways: [[f64; 2]; 5],
+    limit: f64,
+    touches: &'a mut Vec<Touch<P>>,
+}
+
+impl<'a, S: Element, P: Precision> Near<'a, S, P> {
+    /// For `discs` discs that touch at most at a distance `reach` (length).
+    ///
+    /// # Panics
+    /// If there are not so many places.
+    pub(super) fn new(
+        places: [&'a [S]; 2],
+        discs: usize,
+        grid: &Grid,
+        reach: f64,
+        touches: &'a mut Touches<P>,
+    ) -> Self {
+        assert!(places.iter().all(|place| place.len() == discs + SENTINELS), "a place for every disc");
+        touches.0.clear();
+        let limit = reach * reach * MARGIN;
+        Near { places, ways: grid.ways(), limit, touches: &mut touches.0 }
+    }
+
+    pub(super) fn is_full(&self) -> bool {
+        self.touches.len() >= AT_ONCE
+    }
+
+    /// Where a disc is.
+    ///
+    /// # Safety
+    /// It is one of the discs.
+    #[inline(always)]
+    pub(super) unsafe fn at(&self, disc: u32) -> [f64; 2] {
+        // SAFETY: there is a place for every disc, as `new` has made sure.
+        self.places.map(|place| unsafe { place.get_unchecked(disc as usize) }.to_f64())
+    }
+
+    /// Lists a pair if it is near enough.
+    ///
+    /// # Safety
+    /// `second` is one of the discs, and `way` below 5.
+    #[inline(always)]
+    pub(super) unsafe fn meet(&mut self, first: u32, at: [f64; 2], second: u32, way: usize) {
+        // SAFETY: the caller's promise.
+        let (there, way) = unsafe { (self.at(second), *self.ways.get_unchecked(way)) };
+        let (dx, dy) = ((at[0] - there[0]) - way[0], (at[1] - there[1]) - way[1]);
+        let length = self.touches.len();
+        if length == self.touches.capacity() {
+            self.touches.reserve(AT_ONCE);
+        }
+        // Written whether it is near or not: that spares a branch nobody can predict.
+        let touch = Touch { discs: [first, second], way: way.map(P::from_f64) };
+        // SAFETY: there is room for one more.
+        unsafe {
+            self.touches.as_mut_ptr().add(length).write(touch);
+            self.touches.set_len(length + usize::from(dx * dx + dy * dy < self.limit));
+        }
+    }
+}
+
+// SAFETY: members are discs; pairs are of sectors in the row and the next.
+unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
+    type Found = Touches<P>;
+
+    fn discs(&self) -> usize {
+        self.sector.len()
+    }
+
+    fn rows(&self) -> Rows {
+        self.grid.rows()
+    }
+
+    fn find(
+        &self,
+        places: [&[S]; 2],
+        rows: Range<usize>,
+        cursor: &mut Cursor,
+        found: &mut Touches<P>,
+        _: InstructionSet,
+    ) -> Result<(), ProgramError> {
+        let mut near = Near::new(places, self.sector.len(), &self.grid, self.reach, found);
+        while cursor.row < rows.end {
+            while cursor.along < self.grid.counts[0] {
+                if near.is_full() {
+                    return Ok(());
+                }
+                let columns = cursor.along..cursor.along + 1;
+                let (mut last, mut at) = (NOWHERE, [0.0; 2]);
+                self.pairs_of_row(
+                    cursor.row,
+                    columns,
+                    |_| {},
+                    |first, second, way| {
+                        // SAFETY: members are discs, and so many are the ways.
+                        unsafe {
+                            if first != last {
+                                (last, at) = (first, near.at(first));
+                            }
+                            near.meet(first, at, second, way);
+                        }
+                    },
+                );
+                cursor.along += 1;
+            }
+            *cursor = Cursor::at(cursor.row + 1);
+        }
+        Ok(())
+    }
+
+    fn pairs<'a>(&'a self, found: &'a Touches<P>) -> impl Pairs<P> + 'a {
+        found
+    }
+}

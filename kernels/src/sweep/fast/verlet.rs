@@ -1,0 +1,157 @@
+//! Pairs from Verlet lists: of every disc the partners that were near when the lists were made.
+
+use super::finder::{Cursor, Finder, Pairs, Rows};
+use super::sectors::{Grid, Near, Sectors, Touches};
+use crate::InstructionSet;
+use crate::backend::Precision;
+use crate::isa::{Element, ProgramError};
+use crate::threads::{on_threads, pieces};
+use std::ops::Range;
+
+/// Bits of a partner that number the disc; those above number the way.
+const DISC: u32 = 29;
+
+/// Rows of sectors whose lists one thread makes at a time.
+const ROWS: usize = 8;
+
+/// Each pair nearer than contact and skin, once, with the disc that comes first in the order of the sectors.
+///
+/// Places stay those seen from the sectors in which discs were when the lists were made.
+#[derive(Clone, Debug)]
+pub struct VerletList {
+    grid: Grid,
+    reach: f64,
+    discs: usize,
+    /// Where in `own` the discs of each row of sectors begin, and the end.
+    rows: Vec<u32>,
+    own: Vec<u32>,
+    /// Where in `partners` those of each own disc begin, and the end.
+    first: Vec<u32>,
+    partners: Vec<u32>,
+}
+
+/// The lists of some rows.
+#[derive(Default)]
+struct Part {
+    rows: Vec<u32>,
+    own: Vec<u32>,
+    first: Vec<u32>,
+    partners: Vec<u32>,
+}
+
+impl VerletList {
+    /// Lists the pairs of the discs in sectors, at their places there, that are at most `skin` (length) from contact.
+    ///
+    /// # Panics
+    /// If the sectors are not wide enough for that, or there are not as many places as discs and sentinels.
+    pub fn new<S: Element>(sectors: &Sectors, places: [&[S]; 2], skin: f64) -> Self {
+        let (grid, reach) = (*sectors.grid(), sectors.reach());
+        let limit = (reach + skin) * (reach + skin);
+        assert!(
+            grid.frame.edge.iter().all(|&edge| edge * (1.0 + 1e-12) >= reach + skin),
+            "sectors too narrow"
+        );
+        let discs = sectors.disc_count();
+        let at = |disc: u32| places.map(|place| place[disc as usize].to_f64());
+        let ways = grid.ways();
+        let part = |rows: Range<usize>| {
+            let mut part = Part::default();
+            let Part { own, first, partners, .. } = &mut part;
+            let mut starts = Vec::new();
+            for row in rows {
+                starts.push(own.len() as u32);
+                let partners = std::cell::RefCell::new(&mut *partners);
+                sectors.pairs_of_row(
+                    row,
+                    0..grid.counts[0],
+                    |disc| {
+                        own.push(disc);
+                        first.push(partners.borrow().len() as u32);
+                    },
+                    |disc, partner, way| {
+                        let (here, there) = (at(disc), at(partner));
+                        let along = |axis: usize| (here[axis] - there[axis]) - ways[way][axis];
+                        if along(0) * along(0) + along(1) * along(1) < limit {
+                            partners.borrow_mut().push(partner | (way as u32) << DISC);
+                        }
+                    },
+                );
+            }
+            part.rows = starts;
+            part
+        };
+        let mut list = VerletList {
+            grid,
+            reach,
+            discs,
+            rows: Vec::with_capacity(grid.counts[1] + 1),
+            own: Vec::with_capacity(discs),
+            first: Vec::with_capacity(discs + 1),
+            partners: Vec::new(),
+        };
+        for part in on_threads(pieces(0..grid.counts[1], ROWS), part) {
+            let (own, partners) = (list.own.len() as u32, list.partners.len() as u32);
+            list.rows.extend(part.rows.into_iter().map(|row| row + own));
+            list.own.extend(part.own);
+            list.first.extend(part.first.into_iter().map(|first| first + partners));
+            list.partners.extend(part.partners);
+        }
+        list.rows.push(list.own.len() as u32);
+        list.first.push(list.partners.len() as u32);
+        list
+    }
+
+    /// Pairs listed.
+    pub fn entries(&self) -> usize {
+        self.partners.len()
+    }
+}
+
+// SAFETY: the lists are of the sectors' members, which are discs; pairs are of sectors in the row and the next.
+unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
+    type Found = Touches<P>;
+
+    fn discs(&self) -> usize {
+        self.discs
+    }
+
+    fn rows(&self) -> Rows {
+        self.grid.rows()
+    }
+
+    fn find(
+        &self,
+        places: [&[S]; 2],
+        rows: Range<usize>,
+        cursor: &mut Cursor,
+        found: &mut Touches<P>,
+        _: InstructionSet,
+    ) -> Result<(), ProgramError> {
+        let mut near = Near::new(places, self.discs, &self.grid, self.reach, found);
+        while cursor.row < rows.end {
+            let [start, end] = [cursor.row, cursor.row + 1].map(|row| self.rows[row] as usize);
+            while start + cursor.along < end {
+                if near.is_full() {
+                    return Ok(());
+                }
+                let number = start + cursor.along;
+                let disc = self.own[number];
+                let partners = &self.partners[self.first[number] as usize..self.first[number + 1] as usize];
+                // SAFETY: the lists are of discs and ways.
+                let at = unsafe { near.at(disc) };
+                for &partner in partners {
+                    let (second, way) = (partner & ((1 << DISC) - 1), (partner >> DISC) as usize);
+                    // SAFETY: as above.
+                    unsafe { near.meet(disc, at, second, way) };
+                }
+                cursor.along += 1;
+            }
+            *cursor = Cursor::at(cursor.row + 1);
+        }
+        Ok(())
+    }
+
+    fn pairs<'a>(&'a self, found: &'a Touches<P>) -> impl Pairs<P> + 'a {
+        found
+    }
+}

@@ -1,0 +1,140 @@
+//! Errors of the forces on one configuration, over the size of the box.
+
+use super::{Gas, PACKING_FRACTIONS, StudyError, place};
+use crate::observe::contacts;
+use serde::Serialize;
+
+/// A way to compute forces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Way {
+    /// Its name in a legend.
+    pub name: &'static str,
+    /// `method.precision`.
+    pub precision: &'static str,
+    /// `method.execution`.
+    pub execution: &'static str,
+    /// `method.coordinates`.
+    pub coordinates: &'static str,
+}
+
+/// The ways that are held against the fast execution in f64.
+pub const WAYS: [Way; 7] = [
+    Way { name: "mixed, fast", precision: "mixed", execution: "fast", coordinates: "cell-relative" },
+    Way { name: "f32, fast", precision: "f32", execution: "fast", coordinates: "cell-relative" },
+    Way {
+        name: "mixed, faithful, from the cell",
+        precision: "mixed",
+        execution: "chained",
+        coordinates: "cell-relative",
+    },
+    Way {
+        name: "f32, faithful, from the cell",
+        precision: "f32",
+        execution: "chained",
+        coordinates: "cell-relative",
+    },
+    Way {
+        name: "mixed, faithful, absolute",
+        precision: "mixed",
+        execution: "chained",
+        coordinates: "absolute",
+    },
+    Way { name: "f32, faithful, absolute", precision: "f32", execution: "chained", coordinates: "absolute" },
+    Way { name: "f64, faithful, absolute", precision: "f64", execution: "chained", coordinates: "absolute" },
+];
+
+/// Numbers of discs.
+pub const PARTICLES: [usize; 3] = [1000, 10_000, 100_000];
+
+/// Errors on one configuration.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ForceError {
+    /// How the forces were computed.
+    pub way: Way,
+    /// Packing fraction.
+    pub packing_fraction: f64,
+    /// Discs.
+    pub particles: usize,
+    /// The longer side of the box (length).
+    pub side: f64,
+    /// Contacts a disc.
+    pub contacts: f64,
+    /// Root of the mean square error of a disc's force, over that of the forces.
+    pub rms: f64,
+    /// Largest error of a disc's force, over the root of the mean square of the forces.
+    pub largest: f64,
+}
+
+/// Every way on every configuration. `progress` gets the share that is done.
+///
+/// # Errors
+/// [`StudyError`] if a scene breaks.
+pub fn force_errors(progress: impl Fn(f64)) -> Result<Vec<ForceError>, StudyError> {
+    let mut errors = Vec::new();
+    let cases = PACKING_FRACTIONS.len() * PARTICLES.len();
+    for packing_fraction in PACKING_FRACTIONS {
+        for particles in PARTICLES {
+            errors.extend(on_one_configuration(packing_fraction, particles)?);
+            progress(errors.len() as f64 / (cases * WAYS.len()) as f64);
+        }
+    }
+    Ok(errors)
+}
+
+fn on_one_configuration(packing_fraction: f64, count: usize) -> Result<Vec<ForceError>, StudyError> {
+    let overrides = place(count, packing_fraction, 1);
+    let discs = Gas::equilibrated(&overrides)?;
+    let computed = |way: Way| -> Result<Gas, StudyError> {
+        let method =
+            [("precision", way.precision), ("execution", way.execution), ("coordinates", way.coordinates)];
+        let method = method.map(|(key, value)| format!("method.{key}=\"{value}\""));
+        Gas::begin(&[overrides.as_slice(), &method].concat(), Some(&discs))
+    };
+    let reference = computed(Way { precision: "f64", ..WAYS[0] })?;
+    let exact = reference.method.forces();
+    let domain = reference.scenery.domain;
+    let contacts = contacts(&discs, &domain).len() as f64 / discs.len() as f64;
+    let ways = WAYS.into_iter().map(|way| {
+        let [rms, largest] = errors(&exact, &computed(way)?.method.forces());
+        let side = domain.sides[0].max(domain.sides[1]);
+        Ok(ForceError { way, packing_fraction, particles: discs.len(), side, contacts, rms, largest })
+    });
+    ways.collect()
+}
+
+/// Root of the mean square of the errors of forces, and the largest, over that of the exact ones.
+fn errors(exact: &[[f64; 3]], approximate: &[[f64; 3]]) -> [f64; 2] {
+    let square = |[x, y, _]: [f64; 3]| x * x + y * y;
+    let squares = exact.iter().map(|&force| square(force)).sum::<f64>();
+    let of_errors = || exact.iter().zip(approximate).map(|(a, b)| square([a[0] - b[0], a[1] - b[1], 0.0]));
+    let largest = of_errors().fold(0.0, f64::max) * exact.len() as f64;
+    [of_errors().sum::<f64>(), largest].map(|sum| (sum / squares).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_relative_to_the_mean_square_of_the_forces() {
+        let exact = [[3.0, 4.0, 9.0], [0.0, -5.0, 9.0]];
+        let [rms, largest] = errors(&exact, &[[3.0, 4.0, 0.0], [0.3, -5.4, 0.0]]);
+        assert!((largest - 0.1).abs() < 1e-15 && (rms - 0.1 / 2f64.sqrt()).abs() < 1e-15, "{rms} {largest}");
+    }
+
+    /// In fewer digits errors are those of the digits, whatever the box; from the box's corner they grow with it.
+    #[test]
+    fn errors_do_not_depend_on_the_box_but_from_its_corner() {
+        let [small, large] = [400, 6400].map(|count| on_one_configuration(0.84, count).unwrap());
+        let rms = |errors: &[ForceError], name: &str| {
+            errors.iter().find(|error| error.way.name == name).map(|error| error.rms).unwrap()
+        };
+        for name in ["mixed, fast", "f32, fast", "mixed, faithful, from the cell"] {
+            let ratio = rms(&large, name) / rms(&small, name);
+            assert!(rms(&large, name) < 1e-5 && (0.5..2.0).contains(&ratio), "{name}: {ratio}");
+        }
+        let absolute = "mixed, faithful, absolute";
+        assert!(rms(&large, absolute) > 2.0 * rms(&small, absolute));
+        assert!(rms(&large, "f64, faithful, absolute") < 1e-11);
+    }
+}
