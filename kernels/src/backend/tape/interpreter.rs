@@ -4,6 +4,7 @@
 use super::Tape;
 use super::instruction::{Action, File, Instruction, Operand, RegisterName};
 use super::pool;
+use super::register_file::RegisterFile;
 use crate::backend::{IndexLanes, Precision, Registers, Scalar, Strip};
 use crate::isa::{Counter, Element, Machine, Memory, Op, Predicate, ProgramError, Slot, Storage, Vector};
 use crate::program::{InstructionSet, Task, dispatch};
@@ -56,27 +57,17 @@ impl<L: Precision> Task<L> for Passes<'_, L> {
 ///
 /// Cells, because a result may take the place of an operand: every hardware register is read before it is written.
 struct RegisterFiles<R: Registers> {
-    numbers: Vec<Vec<Cell<R::V>>>,
-    predicates: Vec<Vec<Cell<Truth<R>>>>,
-    indices: Vec<Vec<Cell<R::Index>>>,
+    numbers: RegisterFile<R::V>,
+    predicates: RegisterFile<Truth<R>>,
+    indices: RegisterFile<R::Index>,
 }
 
 impl<R: Registers> Default for RegisterFiles<R> {
     fn default() -> Self {
-        RegisterFiles { numbers: vec![], predicates: vec![], indices: vec![] }
-    }
-}
-
-/// At least `count` registers, the first `count` of them of at least `length` entries.
-#[inline(always)]
-fn lengthen<X: Copy>(file: &mut Vec<Vec<Cell<X>>>, count: usize, length: usize, entry: X) {
-    if file.len() < count {
-        file.resize_with(count, Vec::new);
-    }
-    for register in &mut file[..count] {
-        if register.len() < length {
-            // Nothing of the old entries is worth a copy.
-            *register = vec![Cell::new(entry); length];
+        RegisterFiles {
+            numbers: RegisterFile::default(),
+            predicates: RegisterFile::default(),
+            indices: RegisterFile::default(),
         }
     }
 }
@@ -179,9 +170,9 @@ impl<R: Registers> RegisterFiles<R> {
         const { assert!(size_of::<R::V>() == R::LANES * size_of::<R::Lane>()) }
         let zero = hardware.splat(R::Lane::default());
         let [numbers, predicates, indices] = tape.pass_sizes;
-        lengthen(&mut self.numbers, numbers, length, zero);
-        lengthen(&mut self.predicates, predicates, length, zero.less_than(zero));
-        lengthen(&mut self.indices, indices, length, R::Index::none());
+        self.numbers.provide(numbers, length, zero);
+        self.predicates.provide(predicates, length, zero.less_than(zero));
+        self.indices.provide(indices, length, R::Index::none());
     }
 
     /// The program on one strip, instruction by instruction.
@@ -198,7 +189,7 @@ impl<R: Registers> RegisterFiles<R> {
     fn source(&self, operand: &Operand<R::Lane>, span: Span<'_, R>) -> Source<R::Lane> {
         match operand {
             Operand::Register(name) => {
-                Source::Lanes(self.numbers[name.number as usize][..span.length].as_ptr().cast())
+                Source::Lanes(self.numbers.register(name.number)[..span.length].as_ptr().cast())
             }
             Operand::Uniform(value) => Source::Uniform(*value),
             Operand::Memory(from) => {
@@ -211,12 +202,12 @@ impl<R: Registers> RegisterFiles<R> {
 
     #[inline(always)]
     fn predicate(&self, name: RegisterName) -> &[Cell<Truth<R>>] {
-        &self.predicates[name.number as usize]
+        self.predicates.register(name.number)
     }
 
     #[inline(always)]
     fn index(&self, name: RegisterName) -> &[Cell<R::Index>] {
-        &self.indices[name.number as usize]
+        self.indices.register(name.number)
     }
 
     /// One instruction over one strip.
@@ -225,13 +216,13 @@ impl<R: Registers> RegisterFiles<R> {
         match pass.to {
             None => self.effect(pass, span),
             Some(RegisterName { file: File::Number, number }) => {
-                self.number(pass, span, &self.numbers[number as usize]);
+                self.number(pass, span, self.numbers.register(number));
             }
             Some(RegisterName { file: File::Predicate, number }) => {
-                self.truth(pass, span, &self.predicates[number as usize]);
+                self.truth(pass, span, self.predicates.register(number));
             }
             Some(RegisterName { file: File::Index, number }) => {
-                self.indexing(pass, span, &self.indices[number as usize]);
+                self.indexing(pass, span, self.indices.register(number));
             }
         }
     }

@@ -8,6 +8,7 @@ mod listing;
 mod outline;
 mod pool;
 mod recorder;
+mod register_file;
 
 pub use instruction::{Action, File, Instruction, Operand, Reference, RegisterName};
 pub use listing::Listing;

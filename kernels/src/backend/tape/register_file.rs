@@ -1,0 +1,82 @@
+//! Vector registers one behind the other in memory, close together for short strips and long ones alike.
+
+use std::cell::Cell;
+
+/// Bytes of a cache line.
+const LINE: usize = 64;
+/// Lines after which addresses look alike to a first-level cache.
+const ALIKE: usize = 64;
+/// Lines that long registers must be apart at least, addresses taken as such a cache sees them.
+const APART: usize = 9;
+
+/// Registers of entries `X`.
+pub(super) struct RegisterFile<X> {
+    entries: Vec<Cell<X>>,
+    /// Entries from one register to the next.
+    stride: usize,
+}
+
+impl<X> Default for RegisterFile<X> {
+    fn default() -> Self {
+        RegisterFile { entries: vec![], stride: 0 }
+    }
+}
+
+impl<X: Copy> RegisterFile<X> {
+    /// Makes it `count` registers of at least `length` entries. Entries may be left over from any earlier use.
+    #[inline(always)]
+    pub(super) fn provide(&mut self, count: usize, length: usize, entry: X) {
+        let in_line = (LINE / size_of::<X>().max(1)).max(1);
+        self.stride = in_line * lines_apart(length.div_ceil(in_line));
+        let needed = count * self.stride;
+        if self.entries.len() < needed {
+            // Nothing of the old entries is worth a copy.
+            self.entries = vec![Cell::new(entry); needed];
+        }
+    }
+
+    /// A register.
+    ///
+    /// # Panics
+    /// If there are not so many.
+    #[inline(always)]
+    pub(super) fn register(&self, number: u32) -> &[Cell<X>] {
+        let start = self.stride * number as usize;
+        &self.entries[start..start + self.stride]
+    }
+}
+
+/// Lines from one register of so many lines to the next: an odd number, so that registers spread over all of a cache, and
+/// those of long ones so that a pass does not write near what it reads as far as the processor sees.
+fn lines_apart(lines: usize) -> usize {
+    let mut apart = lines | 1;
+    while lines >= ALIKE / 2 && !(APART..=ALIKE - APART).contains(&(apart % ALIKE)) {
+        apart += 2;
+    }
+    apart
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn registers_do_not_overlap_and_spread_over_the_cache() {
+        for lines in 0..1000 {
+            let apart = lines_apart(lines);
+            assert!(apart >= lines && apart % 2 == 1 && apart < lines + 2 * APART + 2, "{lines}: {apart}");
+            assert!(lines < 32 || (9..=55).contains(&(apart % 64)), "{lines}: {apart}");
+        }
+        let mut file: RegisterFile<u64> = RegisterFile::default();
+        for (count, length) in [(3, 1), (2, 100), (5, 7)] {
+            file.provide(count, length, 0);
+            for number in 0..count {
+                file.register(number as u32)[..length].iter().for_each(|entry| entry.set(number as u64));
+            }
+            for number in 0..count {
+                let register = &file.register(number as u32)[..length];
+                assert!(register.iter().all(|entry| entry.get() == number as u64), "{number}");
+            }
+        }
+    }
+}
