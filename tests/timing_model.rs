@@ -91,7 +91,7 @@ fn the_shipped_host_model_is_used_and_said_so_and_bad_host_files_are_refused() {
     let out = stripmine(&["table", "--ladder", "--host"]).success();
     assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("comes with the program"));
     let folder = tempfile::tempdir().unwrap();
-    let path = file(&folder, "format = 2\n");
+    let path = file(&folder, "format = 3\n");
     let out = stripmine(&["table", "--ladder", "--host", &path]).code(3);
     assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("missing field"));
 }

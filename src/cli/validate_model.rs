@@ -17,12 +17,12 @@ pub(super) struct ValidateModel {
     #[arg(long)]
     host: Option<PathBuf>,
     /// Numbers of particles
-    #[arg(long, value_delimiter = ',', default_values_t = [100, 700, 5000, 40_000])]
+    #[arg(long, value_delimiter = ',', default_values_t = [130, 850, 4400, 27_000])]
     particles: Vec<usize>,
     /// Occupancies, on cells as wide as the radius
-    #[arg(long, value_delimiter = ',', default_values_t = [0.05, 0.12, 0.24])]
+    #[arg(long, value_delimiter = ',', default_values_t = [0.045, 0.115, 0.19, 0.235])]
     occupancies: Vec<f64>,
-    /// Rounds over all runs; the best repeat of all rounds counts
+    /// Rounds over all runs
     #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
     /// Repeats of each run in a round

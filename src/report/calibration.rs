@@ -32,7 +32,7 @@ fn operations(model: &HostModel) -> Table {
     let rows = model.lanes.iter().flat_map(|(lane, costs)| {
         costs.passes.iter().map(move |(op, cost)| hockney([lane, op], cost.element, cost.start))
     });
-    let Measured { timer, spread, disagreement, shortest, longest, .. } = model.measured;
+    let Measured { timer, pace, spread, disagreement, shortest, longest, .. } = model.measured;
     let changes = model.lanes.iter().map(|(lane, costs)| {
         let each =
             costs.change.iter().map(|change| format!("{:.1} ns in {} passes", change.ns, change.passes));
@@ -46,8 +46,9 @@ fn operations(model: &HostModel) -> Table {
         notes: vec![
             format!(
                 "Passes over vectors in the first-level cache: t = t0 + n tau. Vectors of {shortest} to {longest} elements; \
-                 timer steps of {timer} ns; the median sample was {:.1} % slower than the best; the best samples of the two \
-                 halves of the measurement differ by {:.1} %.",
+                 timer steps of {timer} ns. Times are told at the pace of a good moment, by a yardstick run beside every \
+                 sample, which took {pace:.2} times as long in the median. Half of the samples then lie within {:.1} % of \
+                 the middle one; the two halves of the measurement differ by {:.1} %.",
                 100.0 * spread,
                 100.0 * disagreement
             ),
@@ -72,9 +73,12 @@ fn loops(model: &HostModel) -> Table {
         notes: vec![format!(
             "Chained execution, in the first-level cache. Loops that are not among these are charged by their classes of \
              operations, which deviate from these by {:.0} % (the median). A loop waits {:.2} times as long as a pass for the \
-             same bytes from beyond.",
+             same bytes from beyond, {:.2} times as long for lines that an index vector leads to; of the shorter of computing \
+             and waiting {:.0} % hide behind the longer.",
             100.0 * model.loops.residual,
-            model.loops.streams
+            model.loops.streams,
+            model.loops.gathers,
+            100.0 * model.loops.overlap
         )],
     }
 }

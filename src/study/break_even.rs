@@ -3,7 +3,7 @@
 
 use super::StudyError;
 use super::density_cost::{ListFigures, grid, list_figures};
-use super::phase_times::{FAST, LISTS, Run, Sampling, phase_times};
+use super::phase_times::{FAST, HALF_MASK, LISTS, Run, Sampling, phase_times};
 use super::predicted_step::{Step, of_precision};
 use super::throughput::MeasurementError;
 use crate::method::Phase;
@@ -160,7 +160,9 @@ pub fn atlas(
     let mut places = vec![];
     for &particles in measured {
         for occupancy in OCCUPANCIES {
-            let costs = WAYS.iter().map(|way| alone.install(|| measure(particles, occupancy, way, repeats)));
+            let pace = host.measured.yardstick;
+            let costs =
+                WAYS.iter().map(|way| alone.install(|| measure(particles, occupancy, way, repeats, pace)));
             places.push(Place { particles, occupancy, costs: costs.collect::<Result<_, _>>()? });
             progress(places.len() as f64 / (measured.len() * OCCUPANCIES.len()) as f64);
         }
@@ -203,12 +205,14 @@ fn predict(
             cells: 0.0,
             candidates: figures.candidates * np,
             contacts: figures.contacts * np,
+            remade: np / figures.steps_a_list,
             relisted: figures.candidates * np / figures.steps_a_list,
         }
     } else {
         // Each pair once; in the lists it is in both.
         let contacts = 0.5 * figures.contacts * np;
-        Amounts { discs: np, cells: lengths.cells as f64, contacts, ..Amounts::default() }
+        let cells = lengths.cells as f64;
+        Amounts { discs: np, cells, candidates: HALF_MASK * np * np / cells, contacts, ..Amounts::default() }
     };
     let method = run.rates().unwrap_or_default();
     let rates = host.rates.get(method).ok_or_else(|| OutOfRange::NotMeasured(format!("method {method}")))?;
@@ -216,18 +220,19 @@ fn predict(
     Ok(phases.sum::<Result<f64, OutOfRange>>()?)
 }
 
-/// Nanoseconds of a step, measured: the sum of the phases.
+/// Nanoseconds of a step, measured: the sum of the phases, at the pace of a reference.
 fn measure(
     particles: usize,
     occupancy: f64,
     way: &(&'static str, Option<Execution>),
     repeats: usize,
+    reference: f64,
 ) -> Result<f64, MeasurementError> {
     let checked = run(particles, occupancy, way).scene(&[])?;
     let equilibration = (100_000 / particles).clamp(3, 30);
     let sampling = Sampling { equilibration, repeats, particle_steps: 5_000, least_steps: 3 };
     let times = phase_times(&checked, &sampling)?;
-    Ok(Phase::ALL.iter().map(|&phase| times.best(phase)).sum())
+    Ok(Phase::ALL.iter().map(|&phase| times.typical(phase, reference).0).sum())
 }
 
 #[cfg(test)]

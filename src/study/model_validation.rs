@@ -1,7 +1,7 @@
 //! How good is the host model? Predicted against measured, on runs that nothing was fitted to: whole steps of moving
 //! discs, phase by phase.
 
-use super::phase_times::{FAST, LISTS, PhaseTimes, Run, Sampling, phase_times};
+use super::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampling, phase_times};
 use super::predicted_step::{Step, of_precision};
 use super::throughput::MeasurementError;
 use crate::method::Phase;
@@ -21,19 +21,20 @@ pub struct Effort {
     pub occupancies: Vec<f64>,
     /// Rounds over all runs: what one of them meets in a busy moment, another does not.
     pub rounds: usize,
-    /// Repeats of a run in a round; the best of all rounds counts.
+    /// Repeats of a run in a round.
     pub repeats: usize,
     /// Particle-steps of a repeat, about.
     pub particle_steps: usize,
 }
 
-/// The executions, by the name that a scene gives them; the last two hang on the data.
-const EXECUTIONS: [(&str, Option<Execution>); 6] = [
+/// The executions, by the name that a scene gives them; the last three hang on the data.
+const EXECUTIONS: [(&str, Option<Execution>); 7] = [
     ("eager", Some(Execution::Eager)),
     ("strip:64", Some(Execution::Strip(64))),
     ("strip:512", Some(Execution::Strip(512))),
     ("chained", Some(Execution::Chained)),
     (FAST, None),
+    (FAST_LISTS, None),
     (LISTS, None),
 ];
 
@@ -75,10 +76,10 @@ pub struct Case {
     pub phase: &'static str,
     /// Nanoseconds predicted.
     pub predicted: f64,
-    /// Nanoseconds of the best repeat.
+    /// Nanoseconds of the repeat that counts, at the pace of the calibration: a low quantile.
     pub measured: f64,
-    /// Nanoseconds of the median repeat.
-    pub median: f64,
+    /// A quarter of the repeats lies below, a quarter above.
+    pub quartiles: [f64; 2],
     /// Nanoseconds by the trivial baseline: operations times elements, at the cost of a sum in the cache; none where
     /// what is executed hangs on the data.
     pub baseline: Option<f64>,
@@ -97,7 +98,7 @@ impl Case {
 
     /// Whether what is executed hangs on the data.
     pub fn hangs_on_data(&self) -> bool {
-        [FAST, LISTS].contains(&self.execution)
+        [FAST, FAST_LISTS, LISTS].contains(&self.execution)
     }
 
     /// All that tells it from the others.
@@ -124,7 +125,7 @@ pub struct Errors {
     pub within: [usize; 4],
     /// The median error of the trivial baseline; none where there is none.
     pub baseline_median: Option<f64>,
-    /// Median of how much slower the median repeat was than the best: what the measurement itself is good for.
+    /// Median of half the range between the quartiles of the repeats: what the measurement itself is good for.
     pub spread: f64,
 }
 
@@ -149,7 +150,10 @@ impl Errors {
             within: [0.05, 0.1, 0.2, 0.3].map(|limit| errors.iter().filter(|&&error| error <= limit).count()),
             baseline_median: Some(quantile(&sorted(&Case::baseline_error), 0.5))
                 .filter(|median| median.is_finite()),
-            spread: quantile(&sorted(&|case| Some(case.median / case.measured - 1.0)), 0.5),
+            spread: quantile(
+                &sorted(&|case| Some(0.5 * (case.quartiles[1] - case.quartiles[0]) / case.measured)),
+                0.5,
+            ),
         }
     }
 }
@@ -163,6 +167,8 @@ pub struct ModelValidation {
     pub instruction_set: String,
     /// Whether it is the model that comes with the program, of another machine perhaps.
     pub shipped: bool,
+    /// How many times slower than in the good moments of the calibration the host was in the median.
+    pub pace: f64,
     /// Every case.
     pub cases: Vec<Case>,
     /// The errors of all, of every execution and of every phase.
@@ -222,9 +228,16 @@ pub fn model_validation(
         host: host.title.clone(),
         instruction_set: host.instruction_set.clone(),
         shipped,
+        pace: median_pace(host, times.iter().flatten()),
         errors: errors(&cases),
         cases,
     })
+}
+
+fn median_pace<'a>(host: &HostModel, times: impl Iterator<Item = &'a PhaseTimes>) -> f64 {
+    let mut paces: Vec<f64> = times.flat_map(|times| times.paces(host.measured.yardstick)).collect();
+    paces.sort_by(f64::total_cmp);
+    paces.get(paces.len() / 2).copied().unwrap_or(1.0)
 }
 
 /// Every run, in order.
@@ -288,13 +301,12 @@ impl Scene {
     }
 
     fn measure(&self, effort: &Effort) -> Result<PhaseTimes, MeasurementError> {
-        let lists = self.run.execution == LISTS;
         let sampling = Sampling {
             equilibration: (effort.particle_steps / self.run.particles).clamp(5, 50),
             repeats: effort.repeats,
             particle_steps: effort.particle_steps,
             // Lists are made anew every few steps only.
-            least_steps: if lists { 6 } else { 2 },
+            least_steps: if self.run.has_lists() { 6 } else { 2 },
         };
         phase_times(&self.checked, &sampling)
     }
@@ -310,16 +322,19 @@ impl Scene {
             }
         };
         let Run { particles, occupancy, precision, execution } = self.run;
-        let cases = Phase::ALL.iter().zip(predicted).map(|(&phase, (predicted, baseline))| Case {
-            particles,
-            occupancy,
-            precision,
-            execution,
-            phase: phase.name(),
-            predicted,
-            measured: times.best(phase),
-            median: times.median(phase),
-            baseline,
+        let cases = Phase::ALL.iter().zip(predicted).map(|(&phase, (predicted, baseline))| {
+            let (measured, quartiles) = times.typical(phase, host.measured.yardstick);
+            Case {
+                particles,
+                occupancy,
+                precision,
+                execution,
+                phase: phase.name(),
+                predicted,
+                measured,
+                quartiles,
+                baseline,
+            }
         });
         // Not every execution has every phase.
         Ok(cases.filter(|case| case.measured > 0.0).collect())
@@ -346,7 +361,7 @@ mod tests {
             phase: "forces",
             predicted,
             measured: 100.0,
-            median: 101.0,
+            quartiles: [99.0, 101.0],
             baseline: (execution != LISTS).then_some(50.0),
         }
     }

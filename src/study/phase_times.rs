@@ -1,5 +1,6 @@
 //! How long is each phase of a step, and how much was there to do? Runs of the bench scene, timed phase by phase.
 
+use super::pace::{COUNTS, Timed, at_pace, quantile, reading};
 use super::throughput::MeasurementError;
 use crate::method::lattice_md::Lengths;
 use crate::method::{Failure, Method, Phase};
@@ -18,7 +19,7 @@ pub struct Run {
     pub occupancy: f64,
     /// Precision of state and forces, as a scene names it.
     pub precision: &'static str,
-    /// The execution, as a scene names it; [`LISTS`] for the rival.
+    /// The execution, as a scene names it; [`LISTS`] for the rival, [`FAST_LISTS`] for its fast execution.
     pub execution: &'static str,
 }
 
@@ -26,6 +27,11 @@ pub struct Run {
 pub const LISTS: &str = "lists";
 /// The name of the fast execution.
 pub const FAST: &str = "fast";
+/// The name of the lists in the fast execution.
+pub const FAST_LISTS: &str = "fast lists";
+
+/// Places of half a mask of 5×5 cells.
+pub(super) const HALF_MASK: f64 = 12.0;
 
 impl Run {
     /// The scene, with further overrides.
@@ -38,9 +44,12 @@ impl Run {
             format!("particles.packing_fraction={}", PI * self.occupancy),
             format!("method.precision=\"{}\"", self.precision),
         ];
-        if self.execution == LISTS {
+        if self.has_lists() {
             overrides.push("method.kind=\"neighbor-list\"".to_owned());
-        } else {
+        }
+        if self.execution == FAST_LISTS {
+            overrides.push("method.execution=\"fast\"".to_owned());
+        } else if self.execution != LISTS {
             // As the source has it; the largest cell that the geometry allows would need fewer.
             overrides.push("method.cell_edge=0.5".to_owned());
             overrides.push(format!("method.execution=\"{}\"", self.execution));
@@ -54,10 +63,16 @@ impl Run {
     pub fn rates(&self) -> Option<&'static str> {
         match self.execution {
             LISTS => Some("lists"),
+            FAST_LISTS => Some("fast lists"),
             FAST if self.occupancy < stripmine_kernels::sweep::fast::lattice::SPARSE => Some("fast, sparse"),
             FAST => Some("fast"),
             _ => None,
         }
+    }
+
+    /// Whether it has neighbour lists.
+    pub fn has_lists(&self) -> bool {
+        [LISTS, FAST_LISTS].contains(&self.execution)
     }
 
     /// All that tells it from the others.
@@ -72,46 +87,63 @@ impl Run {
 pub struct PhaseTimes {
     /// What there was to do in a step, on average.
     pub amounts: Amounts,
-    /// Nanoseconds a step of every phase, repeat by repeat.
-    pub repeats: Vec<[f64; Phase::ALL.len()]>,
-    /// Whether lists were made anew now and then, so that repeats differ in what they had to do.
-    pub by_bursts: bool,
+    /// Nanoseconds a step of every phase, repeat by repeat; without the making of lists.
+    repeats: [Vec<Timed>; Phase::ALL.len()],
+    /// Nanoseconds of each making of lists.
+    makings: Vec<Timed>,
+    /// Makings a step.
+    made: f64,
 }
 
 impl PhaseTimes {
     /// Of so many discs, nothing measured yet.
     pub fn none(discs: usize) -> PhaseTimes {
-        let amounts = Amounts { discs: discs as f64, ..Amounts::default() };
-        PhaseTimes { amounts, repeats: vec![], by_bursts: false }
+        PhaseTimes {
+            amounts: Amounts { discs: discs as f64, ..Amounts::default() },
+            repeats: Default::default(),
+            makings: vec![],
+            made: 0.0,
+        }
     }
 
     /// The same run measured once more, at another time.
     #[must_use]
     pub fn joined(mut self, more: PhaseTimes) -> PhaseTimes {
-        let (a, b) = (self.repeats.len() as f64, more.repeats.len() as f64);
-        let means = self.amounts.values().into_iter().zip(more.amounts.values());
-        let mut mean = means.map(|(x, y)| (a * x + b * y) / (a + b));
-        let mut next = || mean.next().unwrap_or(0.0);
-        self.amounts =
-            Amounts { discs: next(), cells: next(), candidates: next(), contacts: next(), relisted: next() };
-        self.repeats.extend(more.repeats);
+        let [a, b] = [&self, &more].map(|times| times.repeats[Phase::Forces as usize].len() as f64);
+        let mean = |x: f64, y: f64| (a * x + b * y) / (a + b);
+        self.amounts = self.amounts.with(&more.amounts, mean);
+        self.made = mean(self.made, more.made);
+        self.makings.extend(more.makings);
+        for (repeats, more) in self.repeats.iter_mut().zip(more.repeats) {
+            repeats.extend(more);
+        }
         self
     }
 
-    /// Nanoseconds of a phase: the best repeat, or, where repeats differ in what they had to do, their mean.
-    pub fn best(&self, phase: Phase) -> f64 {
-        let samples = self.repeats.iter().map(|repeat| repeat[phase as usize]);
-        if self.by_bursts && phase == Phase::Index {
-            return samples.sum::<f64>() / self.repeats.len().max(1) as f64;
-        }
-        samples.fold(f64::INFINITY, f64::min)
+    /// Nanoseconds of a phase a step at the pace of a reference, and the quartiles of the repeats: makings of lists are as
+    /// often as they were.
+    pub fn typical(&self, phase: Phase, reference: f64) -> (f64, [f64; 2]) {
+        let paced = at_pace(&self.repeats[phase as usize], reference);
+        let making =
+            if phase == Phase::Index { self.made * self.making(reference).unwrap_or(0.0) } else { 0.0 };
+        let of = |share: f64| making + quantile(&paced, share).unwrap_or(0.0);
+        (of(COUNTS), [of(0.25), of(0.75)])
     }
 
-    /// Nanoseconds of the median repeat.
-    pub fn median(&self, phase: Phase) -> f64 {
-        let mut samples: Vec<f64> = self.repeats.iter().map(|repeat| repeat[phase as usize]).collect();
-        samples.sort_by(f64::total_cmp);
-        samples.get(samples.len() / 2).copied().unwrap_or(f64::NAN)
+    /// Nanoseconds of a phase without the making of lists.
+    pub fn quiet(&self, phase: Phase, reference: f64) -> f64 {
+        quantile(&at_pace(&self.repeats[phase as usize], reference), COUNTS).unwrap_or(0.0)
+    }
+
+    /// Nanoseconds of a making of lists; none if there was none.
+    pub fn making(&self, reference: f64) -> Option<f64> {
+        quantile(&at_pace(&self.makings, reference), COUNTS)
+    }
+
+    /// How much slower than where the reference was taken the host was in each repeat.
+    pub fn paces(&self, reference: f64) -> impl Iterator<Item = f64> {
+        let repeats = self.repeats[Phase::Forces as usize].iter();
+        repeats.map(move |repeat| repeat.pace(reference))
     }
 }
 
@@ -136,39 +168,77 @@ pub fn phase_times(checked: &Checked, sampling: &Sampling) -> Result<PhaseTimes,
     let mut method = assemble(checked)?;
     let model = model(checked);
     let discs = checked.particles.grain_count();
-    let cells = Lengths::new(&model, discs, checked.particles.len()).cells;
-    let steps = (sampling.particle_steps / discs).clamp(sampling.least_steps, 2000);
-    let mut repeats = vec![];
-    (0..sampling.equilibration).try_for_each(|_| method.step())?;
-    let rebuilds = |method: &dyn Method| method.lists().map_or(0, |(_, rebuilds)| rebuilds);
-    let before = rebuilds(method.as_ref());
-    let [mut candidates, mut contacts] = [0, 0];
-    for _ in 0..sampling.repeats {
-        method.reset_timings();
-        for _ in 0..steps {
-            method.step().map_err(|failure: Failure| failure)?;
-            candidates += method.length(Length::Candidates);
-            contacts += method.length(Length::Pairs);
-        }
-        let mut each = [0.0; Phase::ALL.len()];
-        for &phase in Phase::ALL {
-            each[phase as usize] = 1e9 * method.timings().seconds(phase) / steps as f64;
-        }
-        repeats.push(each);
-    }
-    let all = (sampling.repeats * steps) as f64;
     let lists = method.lists().is_some();
-    let candidates = candidates as f64 / all;
-    let made = (rebuilds(method.as_ref()) - before) as f64 / all;
-    Ok(PhaseTimes {
-        amounts: Amounts {
-            discs: discs as f64,
-            cells: if lists { 0.0 } else { cells as f64 },
-            candidates,
-            contacts: contacts as f64 / all,
-            relisted: made * candidates,
-        },
-        repeats,
-        by_bursts: lists,
-    })
+    let cells = if lists { 0 } else { Lengths::new(&model, discs, checked.particles.len()).cells };
+    let steps = (sampling.particle_steps / discs).clamp(sampling.least_steps, 2000);
+    let mut times = PhaseTimes::none(discs);
+    let mut before = reading();
+    let made = |method: &dyn Method| method.lists().map_or(0, |(_, made)| made);
+    let (mut all, mut made_in_all, mut found) = (0, 0, Found::default());
+    for repeat in 0..=sampling.repeats {
+        method.reset_timings();
+        let mut makings = vec![];
+        // The first is to warm up: only what it takes to make lists counts, for that is rare.
+        let count = if repeat == 0 { sampling.equilibration } else { steps };
+        for _ in 0..count {
+            let (seconds, earlier) = (method.timings().seconds(Phase::Index), made(method.as_ref()));
+            method.step().map_err(|failure: Failure| failure)?;
+            if made(method.as_ref()) > earlier {
+                makings.push(method.timings().seconds(Phase::Index) - seconds);
+            }
+            if repeat > 0 {
+                found.look(method.as_ref());
+            }
+        }
+        let after = reading();
+        let around = [before, after];
+        before = after;
+        all += count;
+        made_in_all += makings.len();
+        let making: f64 = makings.iter().sum();
+        times.makings.extend(makings.iter().map(|seconds| Timed { ns: 1e9 * seconds, around }));
+        for &phase in Phase::ALL {
+            let seconds = method.timings().seconds(phase);
+            let (seconds, of) = match phase {
+                Phase::Index => (seconds - making, count - makings.len()),
+                _ => (seconds, count),
+            };
+            if repeat > 0 && of > 0 {
+                times.repeats[phase as usize].push(Timed { ns: 1e9 * seconds / of as f64, around });
+            }
+        }
+    }
+    times.made = made_in_all as f64 / all.max(1) as f64;
+    let discs = discs as f64;
+    let near = HALF_MASK * discs * discs / cells.max(1) as f64;
+    let candidates = if lists { found.mean(found.candidates) } else { near };
+    times.amounts = Amounts {
+        discs,
+        cells: cells as f64,
+        candidates,
+        contacts: found.mean(found.contacts),
+        remade: times.made * discs,
+        relisted: if lists { times.made * candidates } else { 0.0 },
+    };
+    Ok(times)
+}
+
+/// What some steps met.
+#[derive(Default)]
+struct Found {
+    steps: u64,
+    candidates: u64,
+    contacts: u64,
+}
+
+impl Found {
+    fn look(&mut self, method: &dyn Method) {
+        self.steps += 1;
+        self.candidates += method.lists().map_or(0, |(entries, _)| entries as u64);
+        self.contacts += method.length(Length::Pairs);
+    }
+
+    fn mean(&self, sum: u64) -> f64 {
+        sum as f64 / self.steps.max(1) as f64
+    }
 }

@@ -184,7 +184,7 @@ fn validation(effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, F
             let host = calibrate(origin::host(), best, calibration::Effort::default(), |share| {
                 progress(0.5 * share)
             })?;
-            (host, false, vec![100, 700, 5000, 20_000], vec![0.05, 0.24])
+            (host, false, vec![130, 850, 4400, 17_000], vec![0.045, 0.235])
         }
     };
     let runs =

@@ -4,7 +4,7 @@ use super::HostModel;
 use crate::model::machine_file::Position;
 
 /// The version of the file format that this program reads.
-pub const FORMAT: u32 = 2;
+pub const FORMAT: u32 = 3;
 
 /// Why a host file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -101,7 +101,10 @@ impl HostModel {
             ("run", self.run),
             ("clock", self.clock),
             ("loops.streams", self.loops.streams),
+            ("loops.gathers", self.loops.gathers),
+            ("loops.overlap", self.loops.overlap),
             ("measured.spread", self.measured.spread),
+            ("measured.yardstick", self.measured.yardstick),
         ];
         let rest = rest.map(|(entry, value)| (entry.to_owned(), value));
         let levels = levels.map(|value| ("levels".to_owned(), value));
@@ -146,8 +149,8 @@ mod tests {
             ("operand = ", "operand = -", "`operand` is -"),
             ("operand = ", "operands = ", "unknown field `operands`"),
             ("overlap", "overlapp", "unknown field `overlapp`"),
-            ("format = 2", "format = 7", "`format` is 7"),
-            ("format = 2\n", "", "missing field `format`"),
+            ("format = 3", "format = 7", "`format` is 7"),
+            ("format = 3\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
             assert!(said.contains(expected) && said.contains("line "), "{said}");

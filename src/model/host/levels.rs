@@ -40,6 +40,22 @@ pub fn from_afar(levels: &[Level], distance: f64, cost: impl Fn(&Level) -> f64) 
     nearest + farther.sum::<f64>()
 }
 
+/// Nanoseconds of waiting for memory.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wait {
+    /// For vectors met element by element.
+    pub streamed: f64,
+    /// For those met through an index vector.
+    pub indexed: f64,
+}
+
+impl Wait {
+    /// Both.
+    pub fn sum(self) -> f64 {
+        self.streamed + self.indexed
+    }
+}
+
 /// The arrays around a program: how long each is, and how much is touched between its last use and this one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surroundings {
@@ -114,9 +130,10 @@ impl Surroundings {
         }
     }
 
-    /// Nanoseconds that a pass over `n` elements waits for what it touches.
-    pub fn wait(&self, levels: &[Level], touches: &[Touch], n: f64) -> f64 {
-        let each = touches.iter().map(|touch| {
+    /// How long a pass over `n` elements waits for what it touches.
+    pub fn wait(&self, levels: &[Level], touches: &[Touch], n: f64) -> Wait {
+        let mut wait = Wait::default();
+        for touch in touches {
             let there = match touch.vector {
                 Vector::Array(array, element) => self.arrays.get(&(array, element)).copied(),
                 Vector::Register(_) => None,
@@ -131,12 +148,14 @@ impl Surroundings {
                 let alone = (gap - 1.0).clamp(0.0, 1.0);
                 let streams = from_afar(levels, distance, |level| level.fetch * LINE);
                 let lines = from_afar(levels, distance, |level| level.line);
-                return n * gap.min(1.0) * (alone * lines + (1.0 - alone) * streams);
+                wait.indexed += n * gap.min(1.0) * (alone * lines + (1.0 - alone) * streams);
+                continue;
             }
             let written = f64::from(u8::from(touch.written));
-            touch.bytes * n * from_afar(levels, distance, |level| level.fetch + written * level.write_back)
-        });
-        each.sum()
+            let byte = from_afar(levels, distance, |level| level.fetch + written * level.write_back);
+            wait.streamed += touch.bytes * n * byte;
+        }
+        wait
     }
 }
 

@@ -9,7 +9,7 @@ mod rates;
 mod reuse;
 
 pub use file::{BadEntry, FORMAT, HostFileError, default_model};
-pub use levels::{LINE, Level, Surroundings, beyond, from_afar};
+pub use levels::{LINE, Level, Surroundings, Wait, beyond, from_afar};
 pub use loops::{LoopCost, LoopCosts, class_counts};
 pub use rates::{Amounts, RatePoint, Rates};
 pub use reuse::{Since, Touch, Vector, element_bytes, touches};
@@ -74,9 +74,14 @@ pub struct Change {
 pub struct Measured {
     /// Smallest step of the timer seen (ns).
     pub timer: f64,
-    /// Median, over all points, of how much slower the median sample was than the best.
+    /// Nanoseconds that a yardstick took in a good moment, a fixed piece of arithmetic run beside every sample: all times
+    /// of this file are told at this pace.
+    pub yardstick: f64,
+    /// How many times as long as then it took in the median.
+    pub pace: f64,
+    /// Median, over all points, of half the range of the middle half of the samples, as a share, once told at one pace.
     pub spread: f64,
-    /// Median, over all points, of how far the best samples of the two halves of the measurement differ.
+    /// Median, over all points, of how far the two halves of the measurement differ.
     pub disagreement: f64,
     /// Shortest vectors.
     pub shortest: usize,
@@ -149,6 +154,11 @@ pub enum OutOfRange {
     /// An execution, precision or program that was not measured.
     #[error("{0} was not calibrated")]
     NotMeasured(String),
+}
+
+/// Nanoseconds of computing so long and waiting so long for memory, where a share of the shorter hides behind the longer.
+pub fn overlapped(share: f64, compute: f64, wait: f64) -> f64 {
+    compute.max(wait) + (1.0 - share) * compute.min(wait)
 }
 
 /// Kinds of passes that are charged as another one, which works in the same way.
@@ -264,17 +274,12 @@ impl HostModel {
         around: &Surroundings,
     ) -> Result<f64, OutOfRange> {
         let cost = lane.cost(pass)?;
-        let wait = around.wait(&self.levels, touches, n as f64);
+        let wait = around.wait(&self.levels, touches, n as f64).sum();
         let wait = if wait > 0.0 { wait + self.operand * n as f64 } else { 0.0 };
         // What is left of a strip beyond whole hardware registers goes element by element, in passes of its own.
         let rest = n % lane.lanes.max(1);
         let starts = if rest == 0 || n < lane.lanes { 1.0 } else { 2.0 };
-        Ok(starts * cost.start.value + self.overlapped(n as f64 * cost.element.value, wait))
-    }
-
-    /// Nanoseconds of computing so long and waiting so long for memory.
-    pub fn overlapped(&self, compute: f64, wait: f64) -> f64 {
-        compute.max(wait) + (1.0 - self.overlap) * compute.min(wait)
+        Ok(starts * cost.start.value + overlapped(self.overlap, n as f64 * cost.element.value, wait))
     }
 
     fn chained(&self, outlines: &Outlines, n: usize, around: &Surroundings) -> Result<f64, OutOfRange> {
@@ -288,8 +293,9 @@ impl HostModel {
             }
         }
         once.retain(|touch| touch.since == Since::Before);
-        let wait = self.loops.streams * around.wait(&self.levels, &once, n as f64);
-        Ok(cost.start.value + self.overlapped(n as f64 * cost.element.value, wait))
+        let wait = around.wait(&self.levels, &once, n as f64);
+        let wait = self.loops.streams * wait.streamed + self.loops.gathers * wait.indexed;
+        Ok(cost.start.value + overlapped(self.loops.overlap, n as f64 * cost.element.value, wait))
     }
 }
 

@@ -12,21 +12,36 @@ pub struct Amounts {
     pub discs: f64,
     /// Cells of the lattice; none for lists.
     pub cells: f64,
-    /// Entries of lists; none on the lattice.
+    /// Entries of lists; on the lattice the occupied cells in half the mask, as if discs lay at random.
     pub candidates: f64,
     /// Pairs that the law is asked about.
     pub contacts: f64,
-    /// Entries of lists that are made anew, on average.
+    /// Discs whose lists are made anew, on average.
+    pub remade: f64,
+    /// Entries of the lists that are made anew, on average.
     pub relisted: f64,
 }
 
 impl Amounts {
     /// The names of the units, in the order of [`Amounts::values`].
-    pub const NAMES: [&'static str; 5] = ["disc", "cell", "candidate", "contact", "relisted"];
+    pub const NAMES: [&'static str; 6] = ["disc", "cell", "candidate", "contact", "remade", "relisted"];
 
     /// The amounts by unit.
-    pub fn values(&self) -> [f64; 5] {
-        [self.discs, self.cells, self.candidates, self.contacts, self.relisted]
+    pub fn values(&self) -> [f64; 6] {
+        [self.discs, self.cells, self.candidates, self.contacts, self.remade, self.relisted]
+    }
+
+    /// Each amount with that of another.
+    #[must_use]
+    pub fn with(&self, other: &Amounts, mean: impl Fn(f64, f64) -> f64) -> Amounts {
+        Amounts {
+            discs: mean(self.discs, other.discs),
+            cells: mean(self.cells, other.cells),
+            candidates: mean(self.candidates, other.candidates),
+            contacts: mean(self.contacts, other.contacts),
+            remade: mean(self.remade, other.remade),
+            relisted: mean(self.relisted, other.relisted),
+        }
     }
 }
 

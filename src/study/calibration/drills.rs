@@ -17,10 +17,11 @@ pub(super) const ROUNDS: [usize; 2] = [36, 8];
 /// How far the operand of [`Kind::Shifted`] lies: no whole number of registers.
 const SHIFT: usize = 5;
 
-/// The index vector of [`Kind::Sparse`].
-const SPARSE_INDEX: Slot<u32> = Slot::new(Array::Interior);
-/// Elements of the array that it leads through, for each of its own, on average.
-pub(super) const GAP: usize = 32;
+/// The index vectors of [`Kind::Sparse`].
+const SPARSE_INDEX: [Slot<u32>; GAPS.len()] =
+    [Slot::new(Array::Interior), Slot::new(Array::ImageX), Slot::new(Array::ImageY)];
+/// Elements of the array that they lead through, for each of their own, on average.
+pub(super) const GAPS: [usize; 3] = [6, 12, 32];
 /// Most elements of a sparse gather.
 pub(super) const LONGEST_SPARSE: usize = 131_072;
 /// Passes after which the mixture begins again, as a law does at every place of the mask.
@@ -38,12 +39,13 @@ pub(super) enum Kind {
     /// A difference of a register and an array met at a shift.
     Shifted,
     /// Numbers gathered from a wide array, hardly two of them from one line, as discs lie in a sparse lattice.
-    Sparse,
+    /// The number says which of [`GAPS`].
+    Sparse(usize),
 }
 
 impl Kind {
     /// Every kind.
-    pub(super) const ALL: [Kind; 31] = [
+    pub(super) const ALL: [Kind; 33] = [
         Kind::Plain(Op::Add),
         Kind::Plain(Op::Subtract),
         Kind::Plain(Op::Multiply),
@@ -74,7 +76,9 @@ impl Kind {
         Kind::Convert(Op::Gather),
         Kind::Plain(Op::Load),
         Kind::Shifted,
-        Kind::Sparse,
+        Kind::Sparse(0),
+        Kind::Sparse(1),
+        Kind::Sparse(2),
     ];
 
     /// Those by which the levels of memory are told apart: operands in place, from afar, written over, stored.
@@ -88,7 +92,7 @@ impl Kind {
             Kind::Index(op) => format!("{}.index", op.mnemonic()),
             Kind::Convert(op) => format!("{}.convert", op.mnemonic()),
             Kind::Shifted => "shifted".to_owned(),
-            Kind::Sparse => "sparse".to_owned(),
+            Kind::Sparse(gap) => format!("sparse.{}", GAPS[gap]),
         }
     }
 }
@@ -110,7 +114,7 @@ struct Registers<M: Machine> {
     numbers: [M::V; WIDTH],
     predicates: [M::P; FEW],
     indices: [M::I; FEW],
-    sparse: M::I,
+    sparse: [M::I; GAPS.len()],
     one: M::V,
 }
 
@@ -125,7 +129,7 @@ impl<M: Machine> Registers<M> {
             // None of them holds, as hardly any lane that is counted does.
             predicates: [0, 1, 2, 3].map(|i| numbers[i + 1].less_than(numbers[i])),
             indices: [index(), index(), index(), index()],
-            sparse: m.load_index(SPARSE_INDEX),
+            sparse: SPARSE_INDEX.map(|slot| m.load_index(slot)),
             numbers,
         }
     }
@@ -170,7 +174,9 @@ impl<M: Machine> Registers<M> {
             Kind::Convert(Op::Load) => v[i] = m.load(converted),
             Kind::Convert(Op::Store) => m.store(Slot::<O>::new(Array::DiscY), v[i]),
             Kind::Convert(_) => v[i] = m.gather(converted, index[few], v[next]),
-            Kind::Sparse => v[i] = m.gather(Slot::<M::Lane>::new(Array::Radius), *sparse, v[next]),
+            Kind::Sparse(gap) => {
+                v[i] = m.gather(Slot::<M::Lane>::new(Array::Radius), sparse[gap], v[next]);
+            }
             Kind::Shifted => v[i] = v[i] - m.load_shifted(Slot::<M::Lane>::new(Array::X), SHIFT as isize),
         }
     }
@@ -188,7 +194,9 @@ impl<M: Machine> Registers<M> {
             m.count(Counter(0), predicate);
             m.store_index(Slot::new(Array::DiscCell), index);
         }
-        m.store_index(Slot::new(Array::DiscCell), sparse);
+        for sparse in sparse {
+            m.store_index(Slot::new(Array::DiscCell), sparse);
+        }
         m.store(Slot::<M::Lane>::new(Array::Omega), sum);
     }
 }
@@ -273,7 +281,7 @@ pub(super) struct Arrays<L, O> {
     others: [Vec<O>; 2],
     index: Vec<u32>,
     through: Vec<u32>,
-    sparse: Vec<u32>,
+    sparse: [Vec<u32>; GAPS.len()],
     wide: Vec<L>,
     written_index: [Vec<u32>; 2],
 }
@@ -286,16 +294,18 @@ impl<L: Element, O: Element> Arrays<L, O> {
         let near_one = |step: f64| (0..n).map(|i| L::from_f64(1.0 + step * (i % 97) as f64)).collect();
         // As discs lie in cells at a usual occupancy: every fourth element, in order.
         let index: Vec<u32> = (0..n).map(|i| ((4 * i) % n) as u32 + 1).collect();
-        let wide = GAP * LONGEST_SPARSE.min(n);
-        let mut at = 0;
-        let mut state = 1_u32;
-        let sparse = (0..n).map(|_| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            at = (at + 1 + (state >> 8) as usize % (2 * GAP - 1)) % wide;
-            at as u32 + 1
+        let wide = GAPS[GAPS.len() - 1] * LONGEST_SPARSE.min(n);
+        let sparse = GAPS.map(|gap| {
+            let (mut at, mut state) = (0, 1_u32);
+            let ahead = (0..n).map(|_| {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                at = (at + 1 + (state >> 8) as usize % (2 * gap - 1)) % wide;
+                at as u32 + 1
+            });
+            ahead.collect()
         });
         Arrays {
-            sparse: sparse.collect(),
+            sparse,
             wide: vec![L::from_f64(1.0); wide],
             read: [near_one(1e-7), near_one(2e-7)],
             written: vec![vec![L::from_f64(1.0); n]; STORED.len() + 2],
@@ -308,7 +318,12 @@ impl<L: Element, O: Element> Arrays<L, O> {
 
     /// How many arrays there are.
     pub(super) fn count(&self) -> usize {
-        self.read.len() + self.written.len() + self.others.len() + 4 + self.written_index.len()
+        self.read.len()
+            + self.written.len()
+            + self.others.len()
+            + 3
+            + self.sparse.len()
+            + self.written_index.len()
     }
 
     /// The arrays bound to their slots.
@@ -322,7 +337,9 @@ impl<L: Element, O: Element> Arrays<L, O> {
         memory.bind_write(Slot::new(Array::DiscY), to);
         memory.bind_read(Slot::new(Array::Index), &self.index);
         memory.bind_read(Slot::new(Array::HaloSource), &self.through);
-        memory.bind_read(SPARSE_INDEX, &self.sparse);
+        for (slot, sparse) in SPARSE_INDEX.into_iter().zip(&self.sparse) {
+            memory.bind_read(slot, sparse);
+        }
         memory.bind_read(Slot::new(Array::Radius), &self.wide);
         for (array, column) in [Array::DiscCell, Array::HaloCell].into_iter().zip(&mut self.written_index) {
             memory.bind_write(Slot::new(array), column);

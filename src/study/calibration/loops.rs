@@ -1,8 +1,8 @@
 //! Compiled loops: the programs of a step on vectors in the first-level cache, and their classes of operations.
 
 use super::fit;
-use super::passes::estimate;
-use super::timing::Samples;
+use super::passes::{OVERLAPS, estimate};
+use super::timing::{PacedClock, Samples};
 use crate::method::lattice_md::{Arrays, Lengths, StepProgram, programs};
 use crate::model::host::{HostModel, LoopCost, LoopCosts, Surroundings, class_counts};
 use crate::run::model;
@@ -11,7 +11,7 @@ use crate::study::throughput::MeasurementError;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::backend::tape::Outlines;
+use stripmine_kernels::backend::tape::{Outlines, Place};
 use stripmine_kernels::isa::{Memory, OpClass};
 use stripmine_kernels::{Execution, InstructionSet};
 
@@ -22,7 +22,7 @@ const SHORTEST: f64 = 40_000.0;
 /// The drill scene: discs at rest that do not touch, as no validation runs them.
 const DRILL: Run = Run { particles: 240, occupancy: 0.13, precision: "f64", execution: "chained" };
 /// NP of the larger drill scenes, whose arrays lie in the levels beyond the first.
-const LARGE: [usize; 2] = [1800, 9000];
+const LARGE: [usize; 3] = [1800, 9000, 30_000];
 /// What the drill scenes leave out, one after the other.
 const MODELS: [&[&str]; 2] = [
     &["particles.temperature=0", "particles.seed=7"],
@@ -102,7 +102,7 @@ impl Loops {
     }
 
     /// One more sample of every loop.
-    pub(super) fn sweep(&mut self, set: InstructionSet) {
+    pub(super) fn sweep(&mut self, clock: &mut PacedClock, set: InstructionSet) {
         for step in &mut self.steps {
             let memory = self.arrays[step.memory].memory();
             let programs = step.programs.iter().zip(&step.ranges).zip(&mut step.samples).zip(&mut step.whole);
@@ -113,13 +113,21 @@ impl Loops {
                     debug_assert!(outcome.is_ok(), "{outcome:?}");
                 };
                 // In the order of the step, so that every disc has its cell before it is asked for.
-                whole.take_once(|| run(range.len()));
+                whole.take_once(clock, || run(range.len()));
                 // Of large scenes only this: what is near is learned from the small ones.
                 let near = if step.large { &mut [] } else { samples.as_mut_slice() };
                 for (samples, n) in near.iter_mut().zip(ELEMENTS) {
-                    samples.take(SHORTEST, || run(n.min(range.len())));
+                    samples.take(clock, SHORTEST, || run(n.min(range.len())));
                 }
             }
+        }
+    }
+
+    /// Tells all samples at the pace of a reference.
+    pub(super) fn settle(&mut self, reference: f64) {
+        for step in &mut self.steps {
+            let samples = step.samples.iter_mut().flatten().chain(&mut step.whole);
+            samples.for_each(|samples| samples.settle(reference));
         }
     }
 
@@ -171,36 +179,77 @@ impl Loops {
             let named = names.iter().zip(costs).filter(|(_, cost)| *cost > 0.0);
             classes.insert(lane, named.map(|(name, cost)| ((*name).to_owned(), cost)).collect());
         }
-        LoopCosts { classes, residual: fit::median(residuals.into_iter()), streams: 1.0, seen }
+        LoopCosts {
+            classes,
+            residual: fit::median(residuals.into_iter()),
+            streams: 1.0,
+            gathers: 1.0,
+            overlap: 0.5,
+            seen,
+        }
     }
 
-    /// How many times as long as a pass a loop waits for the same bytes, given all else of the host: it has many streams at
-    /// once. That which suits the large drill scenes best.
-    pub(super) fn streams(&self, host: &HostModel) -> f64 {
-        let error = |streams: f64| {
+    /// How loops wait for memory, given all else of the host: what suits the large drill scenes best. Loops without index
+    /// vectors say how streams are waited for, and then those with them what the lines cost that these lead to.
+    pub(super) fn fit_waits(&self, host: &mut HostModel) {
+        let large: Vec<Whole> = self.steps.iter().filter(|step| step.large).flat_map(Step::whole).collect();
+        let (through, plain): (Vec<&Whole>, Vec<&Whole>) = large.iter().partition(|whole| whole.gathers());
+        let candidates = || (-8..=16).map(|quarter| 2f64.powf(f64::from(quarter) / 4.0));
+        let best = |host: &HostModel, wholes: &[&Whole], tried: &mut dyn Iterator<Item = LoopCosts>| {
             let mut host = host.clone();
-            host.loops.streams = streams;
-            let errors = self.steps.iter().filter(|step| step.large).flat_map(|step| {
-                let outlines: Vec<Outlines> =
-                    step.programs.iter().map(|step| step.program.outlines()).collect();
-                let cycle: Vec<(&Outlines, usize)> = outlines
-                    .iter()
-                    .zip(&step.ranges)
-                    .map(|(outlines, range)| (outlines, range.len()))
-                    .collect();
-                let around = Surroundings::of_cycle(&cycle);
-                let errors =
-                    cycle.iter().zip(&around).zip(&step.whole).map(|(((outlines, n), around), whole)| {
-                        let predicted = host.program(outlines, *n, Execution::Chained, around);
-                        predicted.map_or(f64::NAN, |ns| (ns / whole.best()).ln().abs())
-                    });
-                errors.collect::<Vec<_>>()
+            let errors = tried.map(|loops| {
+                host.loops = loops;
+                (deviation(&host, wholes), host.loops.clone())
             });
-            let errors: Vec<f64> = errors.filter(|error| error.is_finite()).collect();
-            errors.iter().sum::<f64>() / errors.len().max(1) as f64
+            errors.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, loops)| loops)
         };
-        let candidates = (-8..=16).map(|quarter| 2f64.powf(f64::from(quarter) / 4.0));
-        let errors = candidates.map(|streams| (error(streams), streams));
-        errors.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(1.0, |(_, streams)| streams)
+        let loops = host.loops.clone();
+        let mut streams = candidates().flat_map(|streams| {
+            let loops = &loops;
+            OVERLAPS.map(|overlap| LoopCosts { streams, overlap, ..loops.clone() })
+        });
+        host.loops = best(host, &plain, &mut streams).unwrap_or(loops);
+        let loops = host.loops.clone();
+        let mut gathers = candidates().map(|gathers| LoopCosts { gathers, ..loops.clone() });
+        host.loops = best(host, &through, &mut gathers).unwrap_or_else(|| loops.clone());
     }
+}
+
+/// The loop of a large drill scene over whole vectors, and what it took.
+struct Whole {
+    outlines: Outlines,
+    n: usize,
+    around: Surroundings,
+    ns: f64,
+}
+
+impl Whole {
+    /// Whether it meets arrays through index vectors.
+    fn gathers(&self) -> bool {
+        let mut reads = self.outlines.passes.iter().flat_map(|pass| &pass.reads);
+        reads.any(|place| matches!(place, Place::Indexed(_)))
+    }
+}
+
+impl Step {
+    fn whole(&self) -> Vec<Whole> {
+        let outlines: Vec<Outlines> = self.programs.iter().map(|step| step.program.outlines()).collect();
+        let lengths = self.ranges.iter().map(ExactSizeIterator::len);
+        let cycle: Vec<(&Outlines, usize)> = outlines.iter().zip(lengths).collect();
+        let around = Surroundings::of_cycle(&cycle);
+        let lengths = cycle.iter().map(|(_, n)| *n).collect::<Vec<_>>();
+        let each = outlines.into_iter().zip(lengths).zip(around).zip(&self.whole);
+        each.map(|(((outlines, n), around), whole)| Whole { outlines, n, around, ns: whole.typical() })
+            .collect()
+    }
+}
+
+/// The mean deviation of a host's predictions from what loops took.
+fn deviation(host: &HostModel, wholes: &[&Whole]) -> f64 {
+    let errors = wholes.iter().map(|Whole { outlines, n, around, ns }| {
+        host.program(outlines, *n, Execution::Chained, around)
+            .map_or(f64::NAN, |predicted| (predicted / ns).ln().abs())
+    });
+    let errors: Vec<f64> = errors.filter(|error| error.is_finite()).collect();
+    errors.iter().sum::<f64>() / errors.len().max(1) as f64
 }

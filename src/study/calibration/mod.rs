@@ -17,7 +17,7 @@ use passes::{Lane, Levels, SHORT, fit_levels};
 use scenes::Scenes;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::isa::ProgramError;
-use timing::{Samples, timer_resolution};
+use timing::{PacedClock, Samples, timer_resolution};
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug)]
@@ -32,9 +32,9 @@ impl Default for Effort {
     }
 }
 
-/// More than this between the median sample and the best, and the machine was too busy to be measured.
-pub const TOO_NOISY: f64 = 0.25;
-/// More than this between the best samples of the measurement's halves, and it was too busy as well.
+/// More than this half range of samples told at one pace, and the machine was too busy to be measured.
+pub const TOO_NOISY: f64 = 0.1;
+/// More than this between the measurement's halves, and it was too busy as well.
 pub const TOO_DIFFERENT: f64 = 0.05;
 
 /// Why there is no calibration.
@@ -51,7 +51,7 @@ pub enum CalibrationError {
 /// Share of the time that the drill scenes take.
 const SCENES: f64 = 0.5;
 /// How often they are run.
-const PARTS: usize = 3;
+const PARTS: usize = 2;
 
 /// Measures this host, called `title`, on one thread, and fits its model. `progress` gets the share that is done.
 ///
@@ -77,25 +77,31 @@ fn measured(
     let mut lanes = [Lane::new::<f64, f32>(set)?, Lane::new::<f32, f64>(set)?];
     let mut arrays = (Arrays::<f64, f32>::new(LONGEST), Arrays::<f32, f64>::new(LONGEST));
     let mut loops = Loops::new()?;
+    let mut paced = PacedClock::new();
     let [mut binding, mut clock] = [Samples::default(), Samples::default()];
     let mut scenes = Scenes::new()?;
     for sweep in 0..effort.sweeps {
-        // The scenes at the beginning, in the middle and at the end.
+        // The scenes at the beginning and at the end.
         if let Some(part) = (0..PARTS).find(|part| sweep == part * (effort.sweeps - 1) / (PARTS - 1).max(1)) {
             let done = (sweep as f64 / effort.sweeps as f64, part as f64 / PARTS as f64);
             let from = (1.0 - SCENES) * done.0 + SCENES * done.1;
             scenes.sweep(|share| progress(from + SCENES * share / PARTS as f64))?;
+            paced.look();
         }
         let mut timings = Timings::default();
-        clock.take(20_000.0, || timings.time(Phase::Predict, || ()));
-        binding.take(20_000.0, || _ = std::hint::black_box(arrays.0.memory()));
+        clock.take(&mut paced, 20_000.0, || timings.time(Phase::Predict, || ()));
+        binding.take(&mut paced, 20_000.0, || _ = std::hint::black_box(arrays.0.memory()));
         let memories = [arrays.0.memory(), arrays.1.memory()];
         for (lane, memory) in lanes.iter_mut().zip(&memories) {
-            lane.sweep(memory, set, sweep);
+            lane.sweep(&mut paced, memory, set, sweep);
         }
-        loops.sweep(set);
+        loops.sweep(&mut paced, set);
     }
+    let yardstick = paced.reference();
+    loops.settle(yardstick);
+    [&mut binding, &mut clock].into_iter().for_each(|samples| samples.settle(yardstick));
     for lane in &mut lanes {
+        lane.settle(yardstick);
         lane.fit();
     }
     let Levels { operand, overlap, levels, residual } = fit_levels(&lanes);
@@ -106,6 +112,8 @@ fn measured(
         instruction_set: set.name().to_owned(),
         measured: Measured {
             timer,
+            yardstick,
+            pace: paced.pace(),
             spread: fit::median(samples().map(Samples::spread)),
             disagreement: fit::median(samples().map(Samples::disagreement)),
             shortest: SHORT[0],
@@ -114,15 +122,15 @@ fn measured(
         },
         operand,
         overlap,
-        bind: binding.best() / arrays.0.count() as f64,
+        bind: binding.typical() / arrays.0.count() as f64,
         run: fit::median(lanes.iter().map(Lane::run)),
         // Half of the two looks at the clock lies between them.
-        clock: 0.5 * clock.best(),
+        clock: 0.5 * clock.typical(),
         levels,
         loops: loops.costs(),
         lanes: lanes.into_iter().map(|lane| (lane.name.to_owned(), lane.costs)).collect(),
-        rates: scenes.rates(),
+        rates: scenes.rates(yardstick),
     };
-    model.loops.streams = loops.streams(&model);
+    loops.fit_waits(&mut model);
     Ok(model)
 }

@@ -1,9 +1,11 @@
 //! Passes of the interpreter: what each kind takes in the first-level cache, and what waiting for the levels beyond adds.
 
-use super::drills::{GAP, Kind, LONGEST, LONGEST_SPARSE, ROUNDS, drill, mixture};
+use super::drills::{GAPS, Kind, LONGEST, LONGEST_SPARSE, ROUNDS, drill, mixture};
 use super::fit::{self, median};
-use super::timing::Samples;
-use crate::model::host::{Change, Estimate, LaneCosts, Level, PassCost, Surroundings, Touch, touches};
+use super::timing::{PacedClock, Samples};
+use crate::model::host::{
+    Change, Estimate, LaneCosts, Level, PassCost, Surroundings, Touch, overlapped, touches,
+};
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::backend::tape::{Outline, register_shape};
 use stripmine_kernels::isa::{Array, Memory, Op, ProgramError};
@@ -13,7 +15,7 @@ use stripmine_kernels::{Execution, InstructionSet, Runnable};
 pub(super) const SHORT: [usize; 6] = [8, 16, 32, 64, 128, 256];
 /// Vectors that do not.
 const LONG: [usize; 13] =
-    [512, 1024, 2048, 4096, 8192, 16_384, 32_768, 65_536, 131_072, 262_144, 524_288, 1_300_000, LONGEST];
+    [520, 1080, 2200, 4400, 9000, 17_000, 34_000, 68_000, 130_000, 270_000, 540_000, 1_300_000, LONGEST];
 /// Longest vectors that both precisions are drilled on: beyond, bytes are bytes.
 const BOTH: usize = 300_000;
 /// Passes of the mixtures.
@@ -39,7 +41,7 @@ impl Point {
     /// Whether the long drill took as much more than the short one as it must at least, and the halves of the measurement
     /// agree: of the longest vectors there are few samples, and all of them may have met a busy moment.
     fn is_settled(&self) -> bool {
-        let longer = self.samples[0].best() > 1.15 * self.samples[1].best();
+        let longer = self.samples[0].typical() > 1.15 * self.samples[1].typical();
         longer && self.samples.iter().all(|samples| samples.disagreement() < 0.25)
     }
 }
@@ -71,7 +73,7 @@ impl Lane {
         for (at, kind) in Kind::ALL.iter().enumerate() {
             let wide = L::BYTES == 8;
             let long = LONG.iter().filter(|&&n| match kind {
-                Kind::Sparse => wide && n <= LONGEST_SPARSE,
+                Kind::Sparse(_) => wide && n <= LONGEST_SPARSE,
                 kind => Kind::MOVING.contains(kind) && (wide || n <= BOTH),
             });
             let lengths = SHORT.iter().chain(long);
@@ -90,7 +92,13 @@ impl Lane {
     }
 
     /// The sweep of this number: one more sample of every point, of long vectors only in some sweeps.
-    pub(super) fn sweep(&mut self, memory: &Memory<'_>, set: InstructionSet, number: usize) {
+    pub(super) fn sweep(
+        &mut self,
+        clock: &mut PacedClock,
+        memory: &Memory<'_>,
+        set: InstructionSet,
+        number: usize,
+    ) {
         let run = |program: &dyn Runnable, n: usize| {
             let outcome = program.run(memory, 0..n, Execution::Eager, set);
             debug_assert!(outcome.is_ok(), "{outcome:?}");
@@ -98,12 +106,19 @@ impl Lane {
         let takes_turn = |point: &&mut Point| number.is_multiple_of(turn(point.n));
         for point in self.points.iter_mut().filter(takes_turn) {
             for (samples, program) in point.samples.iter_mut().zip(&self.programs[point.kind]) {
-                samples.take(SHORTEST, || run(program.as_ref(), point.n));
+                samples.take(clock, SHORTEST, || run(program.as_ref(), point.n));
             }
         }
         for (at, n, samples) in &mut self.mixed {
-            samples.take(SHORTEST, || run(self.mixtures[*at].as_ref(), *n));
+            samples.take(clock, SHORTEST, || run(self.mixtures[*at].as_ref(), *n));
         }
+    }
+
+    /// Tells all samples at the pace of a reference.
+    pub(super) fn settle(&mut self, reference: f64) {
+        let mixed = self.mixed.iter_mut().map(|(_, _, samples)| samples);
+        let points = self.points.iter_mut().flat_map(|point| &mut point.samples);
+        points.chain(mixed).for_each(|samples| samples.settle(reference));
     }
 
     /// All samples.
@@ -120,14 +135,15 @@ impl Lane {
     /// Start and slope of every kind, and what a change of kind costs.
     pub(super) fn fit(&mut self) {
         for (at, kind) in Kind::ALL.iter().enumerate() {
-            let mut cost = self.short_line(at, Samples::best);
-            let halves = [0, 1].map(|half| self.short_line(at, |samples| samples.best_of_half(half)));
+            let mut cost = self.short_line(at, Samples::typical);
+            let halves = [0, 1].map(|half| self.short_line(at, |samples| samples.of_half(half)));
             let widen = |of: fn(&PassCost) -> f64| (of(&halves[0]) - of(&halves[1])).abs();
             cost.element.interval += widen(|cost| cost.element.value);
             cost.start.interval += widen(|cost| cost.start.value);
-            self.costs.passes.insert(kind.name(), cost);
+            if !matches!(kind, Kind::Sparse(_)) {
+                self.costs.passes.insert(kind.name(), cost);
+            }
         }
-        self.costs.passes.remove(&Kind::Sparse.name());
         let shifted = self.costs.passes.remove(&Kind::Shifted.name()).unwrap_or_default();
         let plain = self.costs.passes.get("sub").copied().unwrap_or_default();
         self.costs.array_operand = (shifted.element.value - plain.element.value).max(0.0);
@@ -145,7 +161,7 @@ impl Lane {
     fn change(&self, at: usize, passes: usize) -> Change {
         let of_mixture = self.mixed.iter().filter(|(mixture, ..)| *mixture == at);
         let each = of_mixture.map(|(_, n, samples)| {
-            (samples.best() - self.in_cache(self.mixtures[at].as_ref(), *n)) / passes as f64
+            (samples.typical() - self.in_cache(self.mixtures[at].as_ref(), *n)) / passes as f64
         });
         Change { passes, ns: median(each).max(0.0) }
     }
@@ -154,7 +170,7 @@ impl Lane {
     pub(super) fn run(&self) -> f64 {
         let shortest = self.points.iter().filter(|point| point.n == SHORT[0]);
         median(shortest.map(|point| {
-            point.samples[1].best() - self.in_cache(self.programs[point.kind][1].as_ref(), point.n)
+            point.samples[1].typical() - self.in_cache(self.programs[point.kind][1].as_ref(), point.n)
         }))
         .max(0.0)
     }
@@ -166,7 +182,7 @@ impl Lane {
             let outlines = self.programs[point.kind][0].outlines();
             let kind = match Kind::ALL[point.kind] {
                 Kind::Shifted => "sub".to_owned(),
-                Kind::Sparse => Kind::Plain(Op::Gather).name(),
+                Kind::Sparse(_) => Kind::Plain(Op::Gather).name(),
                 kind => kind.name(),
             };
             let alike: Vec<usize> =
@@ -176,8 +192,10 @@ impl Lane {
             let touched = touches(&outlines, self.costs.register_bytes).swap_remove(middle);
             let cost = self.costs.cost(&outlines.passes[middle]).ok()?;
             let mut around = Surroundings::of_cycle(&[(&outlines, point.n)]).pop()?;
-            around.widen(Array::Radius, (GAP * point.n) as f64);
-            Some(LongPass { n: point.n as f64, cost, touched, around, ns: point.each(Samples::best) })
+            if let Kind::Sparse(gap) = Kind::ALL[point.kind] {
+                around.widen(Array::Radius, (GAPS[gap] * point.n) as f64);
+            }
+            Some(LongPass { n: point.n as f64, cost, touched, around, ns: point.each(Samples::typical) })
         })
     }
 }
@@ -207,8 +225,8 @@ impl LongPass {
                 let level = |capacity, fetch, write_back| Level { capacity, fetch, write_back, ..NOWHERE };
                 [level(Some(capacity), 0.0, 0.0), level(None, fetch, write_back)]
             };
-            features[1 + 2 * level] = self.around.wait(&step(1.0, 0.0), &self.touched, self.n) / self.n;
-            features[2 + 2 * level] = self.around.wait(&step(0.0, 1.0), &self.touched, self.n) / self.n;
+            features[1 + 2 * level] = self.around.wait(&step(1.0, 0.0), &self.touched, self.n).sum() / self.n;
+            features[2 + 2 * level] = self.around.wait(&step(0.0, 1.0), &self.touched, self.n).sum() / self.n;
         }
         // Where everything is near there is nothing to wait for.
         features[0] = if features[1] > 0.0 { 1.0 } else { 0.0 };
@@ -223,6 +241,9 @@ pub(super) struct Levels {
     pub(super) levels: Vec<Level>,
     pub(super) residual: f64,
 }
+
+/// Shares of the shorter of computing and waiting that may hide behind the longer.
+pub(super) const OVERLAPS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// Capacities of the three cache levels that are tried (bytes): what the system says, of the last level, which others
 /// share, also parts; where it says nothing, what processors have.
@@ -264,7 +285,7 @@ pub(super) fn fit_levels(lanes: &[Lane]) -> Levels {
     let mut best: Option<(f64, [f64; 3], f64, [f64; UNKNOWN])> = None;
     for capacities in candidates() {
         let features: Vec<[f64; UNKNOWN]> = passes.iter().map(|pass| pass.features(capacities)).collect();
-        for overlap in [0.0, 0.25, 0.5, 0.75, 1.0] {
+        for overlap in OVERLAPS {
             let costs = fit_costs(&passes, &features, overlap);
             let error = deviation(&passes, &features, overlap, &costs);
             if best.is_none_or(|(least, ..)| error < least) {
@@ -284,7 +305,8 @@ pub(super) fn fit_levels(lanes: &[Lane]) -> Levels {
         Level { name: name.to_owned(), capacity, fetch, write_back, line: 0.0 }
     });
     let mut levels = Levels { operand, overlap, levels: levels.collect(), residual };
-    let sparse: Vec<LongPass> = lanes.iter().flat_map(|lane| lane.long_passes(&[Kind::Sparse])).collect();
+    let kinds: [Kind; GAPS.len()] = std::array::from_fn(Kind::Sparse);
+    let sparse: Vec<LongPass> = lanes.iter().flat_map(|lane| lane.long_passes(&kinds)).collect();
     levels.fit_lines(&sparse);
     levels
 }
@@ -297,11 +319,11 @@ impl Levels {
             let lines = |capacity: f64| {
                 let level = |capacity, line| Level { capacity, line, ..NOWHERE };
                 let step = [level(Some(capacity), 0.0), level(None, 1.0)];
-                pass.around.wait(&step, &pass.touched, pass.n) / pass.ns
+                pass.around.wait(&step, &pass.touched, pass.n).indexed / pass.ns
             };
             let features: [f64; 3] =
                 std::array::from_fn(|at| capacities.get(at).map_or(0.0, |&capacity| lines(capacity)));
-            let streams = pass.around.wait(&self.levels, &pass.touched, pass.n);
+            let streams = pass.around.wait(&self.levels, &pass.touched, pass.n).sum();
             let compute = pass.cost.start.value + pass.n * pass.cost.element.value;
             let rest = (1.0 - self.overlap) * compute + streams;
             // Where computing is the longer, waiting shows by what does not hide.
@@ -314,11 +336,6 @@ impl Levels {
             level.line = line;
         }
     }
-}
-
-/// Nanoseconds an element of computing and of waiting.
-fn joined(overlap: f64, compute: f64, wait: f64) -> f64 {
-    compute.max(wait) + (1.0 - overlap) * compute.min(wait)
 }
 
 fn waits(features: &[f64; UNKNOWN], costs: &[f64; UNKNOWN]) -> f64 {
@@ -340,8 +357,9 @@ fn fit_costs(passes: &[LongPass], features: &[[f64; UNKNOWN]], overlap: f64) -> 
             } else {
                 (1.0 - overlap, (value - compute).max(0.0))
             };
-            let far = costs
-                .map_or(0.0, |costs| (joined(overlap, compute, waits(features, &costs)) / value - 1.0).abs());
+            let far = costs.map_or(0.0, |costs| {
+                (overlapped(overlap, compute, waits(features, &costs)) / value - 1.0).abs()
+            });
             let scale = (0.05 / (0.05 + far)).sqrt() * pass.n / pass.ns;
             (weight > 0.0 && features[1] > 0.0)
                 .then(|| (features.map(|feature| weight * feature * scale), rest * scale))
@@ -353,7 +371,7 @@ fn fit_costs(passes: &[LongPass], features: &[[f64; UNKNOWN]], overlap: f64) -> 
 
 fn deviation(passes: &[LongPass], features: &[[f64; UNKNOWN]], overlap: f64, costs: &[f64; UNKNOWN]) -> f64 {
     let errors = passes.iter().zip(features).map(|(pass, features)| {
-        let each = joined(overlap, pass.cost.element.value, waits(features, costs));
+        let each = overlapped(overlap, pass.cost.element.value, waits(features, costs));
         ((pass.cost.start.value + pass.n * each) / pass.ns).ln().abs()
     });
     median(errors)
@@ -361,7 +379,7 @@ fn deviation(passes: &[LongPass], features: &[[f64; UNKNOWN]], overlap: f64, cos
 
 /// A number with the difference of two halves as its interval.
 pub(super) fn estimate(of: impl Fn(&dyn Fn(&Samples) -> f64) -> f64) -> Estimate {
-    let value = of(&Samples::best);
-    let halves = [0, 1].map(|half| of(&|samples: &Samples| samples.best_of_half(half)));
+    let value = of(&Samples::typical);
+    let halves = [0, 1].map(|half| of(&|samples: &Samples| samples.of_half(half)));
     Estimate { value, interval: (halves[0] - halves[1]).abs() + 0.01 * value }
 }

@@ -4,20 +4,21 @@ use super::fit;
 use crate::method::Phase;
 use crate::model::host::{Amounts, RatePoint, Rates};
 use crate::scene::Checked;
-use crate::study::phase_times::{FAST, LISTS, PhaseTimes, Run, Sampling, phase_times};
+use crate::study::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampling, phase_times};
 use crate::study::throughput::MeasurementError;
 use std::collections::BTreeMap;
 
 /// NP of the drill scenes.
-pub(super) const PARTICLES: [usize; 5] = [60, 400, 3000, 15_000, 60_000];
-/// ρ of the drill scenes; the first two are sparse.
-const OCCUPANCIES: [f64; 5] = [0.03, 0.09, 0.16, 0.21, 0.26];
+pub(super) const PARTICLES: [usize; 5] = [60, 400, 3000, 12_000, 32_000];
+/// ρ of the drill scenes; the first three are sparse.
+const OCCUPANCIES: [f64; 6] = [0.03, 0.07, 0.12, 0.17, 0.21, 0.26];
 const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
 
-/// Steps before the clock starts, and those that are timed: fewer of many discs.
-fn sampling(particles: usize) -> Sampling {
-    let equilibration = (200_000 / particles).clamp(4, 30);
-    Sampling { equilibration, repeats: 3, particle_steps: 15_000, least_steps: 4 }
+/// Steps before the clock starts, and those that are timed: fewer of many discs, but enough for lists to be made anew.
+fn sampling(run: &Run) -> Sampling {
+    let discs = if run.has_lists() { 250_000 } else { 100_000 };
+    let equilibration = (discs / run.particles).clamp(3, 60);
+    Sampling { equilibration, repeats: 3, particle_steps: 10_000, least_steps: 2 }
 }
 
 /// Every drill scene, and what was measured of it.
@@ -30,7 +31,7 @@ impl Scenes {
         for particles in PARTICLES {
             for occupancy in OCCUPANCIES {
                 for precision in PRECISIONS {
-                    for execution in [FAST, LISTS] {
+                    for execution in [FAST, FAST_LISTS, LISTS] {
                         let run = Run { particles, occupancy, precision, execution };
                         scenes.push((run, run.scene(&["particles.seed=11"])?, None));
                     }
@@ -44,7 +45,7 @@ impl Scenes {
     pub(super) fn sweep(&mut self, progress: impl Fn(f64)) -> Result<(), MeasurementError> {
         let all = self.0.len() as f64;
         for (at, (run, checked, times)) in self.0.iter_mut().enumerate() {
-            let more = phase_times(checked, &sampling(run.particles))?;
+            let more = phase_times(checked, &sampling(run))?;
             *times = Some(match times.take() {
                 Some(before) => before.joined(more),
                 None => more,
@@ -54,18 +55,18 @@ impl Scenes {
         Ok(())
     }
 
-    /// The rates of the methods.
-    pub(super) fn rates(&self) -> BTreeMap<String, Rates> {
+    /// The rates of the methods, at the pace of a reference.
+    pub(super) fn rates(&self, reference: f64) -> BTreeMap<String, Rates> {
         let measured = self.0.iter().filter_map(|(run, _, times)| Some((*run, times.as_ref()?)));
-        rates(&measured.collect::<Vec<_>>())
+        rates(&measured.collect::<Vec<_>>(), reference)
     }
 }
 
-fn rates(measured: &[(Run, &PhaseTimes)]) -> BTreeMap<String, Rates> {
+fn rates(measured: &[(Run, &PhaseTimes)], reference: f64) -> BTreeMap<String, Rates> {
     let mut methods: BTreeMap<String, Rates> = BTreeMap::new();
     for particles in PARTICLES {
         for precision in PRECISIONS {
-            for method in ["fast", "fast, sparse", "lists"] {
+            for method in ["fast", "fast, sparse", "fast lists", "lists"] {
                 let alike: Vec<&PhaseTimes> = measured
                     .iter()
                     .filter(|(run, _)| {
@@ -78,11 +79,17 @@ fn rates(measured: &[(Run, &PhaseTimes)]) -> BTreeMap<String, Rates> {
                 let phases =
                     methods.entry(method.to_owned()).or_default().0.entry(precision.to_owned()).or_default();
                 for &phase in Phase::ALL {
-                    if alike.iter().all(|times| times.best(phase) == 0.0) {
+                    if alike.iter().all(|times| times.quiet(phase, reference) == 0.0) {
                         continue;
                     }
                     let points: &mut Vec<RatePoint> = phases.entry(phase.name().to_owned()).or_default();
-                    points.push(point(&alike, phase));
+                    let mut point = point(&alike, phase, reference);
+                    // Of many discs few steps are run, and no lists may have been made: as of fewer discs, then.
+                    if let Some(before) = points.last().filter(|_| !point.makes_lists()) {
+                        let made = before.ns.iter().filter(|(unit, _)| MAKING.contains(&unit.as_str()));
+                        point.ns.extend(made.map(|(unit, ns)| (unit.clone(), *ns)));
+                    }
+                    points.push(point);
                 }
             }
         }
@@ -90,27 +97,48 @@ fn rates(measured: &[(Run, &PhaseTimes)]) -> BTreeMap<String, Rates> {
     methods
 }
 
+/// The units of making lists.
+const MAKING: [&str; 2] = ["remade", "relisted"];
+
+impl RatePoint {
+    fn makes_lists(&self) -> bool {
+        MAKING.iter().any(|&unit| self.ns.contains_key(unit))
+    }
+}
+
 /// What each unit takes in a phase.
-fn point(alike: &[&PhaseTimes], phase: Phase) -> RatePoint {
-    let rows = alike.iter().map(|times| {
-        let ns = times.best(phase).max(1.0);
-        (charged(phase, &times.amounts).values().map(|amount| amount / ns), 1.0)
-    });
-    let ns = fit::non_negative(&rows.collect::<Vec<_>>());
-    let named = Amounts::NAMES.iter().zip(ns).filter(|(_, ns)| *ns > 0.0);
+fn point(alike: &[&PhaseTimes], phase: Phase, reference: f64) -> RatePoint {
+    let quiet = alike.iter().map(|times| (charged(phase, &times.amounts), times.quiet(phase, reference)));
+    let mut ns = per_unit(quiet);
+    if phase == Phase::Index {
+        let makings = alike.iter().filter_map(|times| {
+            let Amounts { discs, candidates, .. } = times.amounts;
+            let amounts = Amounts { remade: discs, relisted: candidates, ..Amounts::default() };
+            Some((amounts, times.making(reference)?))
+        });
+        ns.extend(per_unit(makings));
+    }
     RatePoint {
         discs: alike.iter().map(|times| times.amounts.discs as usize).max().unwrap_or(0),
-        ns: named.map(|(name, ns)| ((*name).to_owned(), ns)).collect(),
+        ns: ns.into_iter().map(|(name, ns)| (name.to_owned(), ns)).collect(),
     }
+}
+
+/// Nanoseconds of each unit that costs some, from amounts and the nanoseconds that they took.
+fn per_unit(measured: impl Iterator<Item = (Amounts, f64)>) -> Vec<(&'static str, f64)> {
+    let rows = measured.filter(|(_, ns)| *ns > 0.0);
+    let rows: Vec<_> = rows.map(|(amounts, ns)| (amounts.values().map(|amount| amount / ns), 1.0)).collect();
+    let ns = fit::non_negative(&rows);
+    Amounts::NAMES.into_iter().zip(ns).filter(|(_, ns)| *ns > 0.0).collect()
 }
 
 /// The units that a phase can depend on: others would only fit the noise.
 fn charged(phase: Phase, amounts: &Amounts) -> Amounts {
-    let Amounts { discs, cells, candidates, contacts, relisted } = *amounts;
+    let Amounts { discs, cells, candidates, contacts, .. } = *amounts;
     let none = Amounts { discs, ..Amounts::default() };
     match phase {
         Phase::Forces => Amounts { cells, candidates, contacts, ..none },
-        Phase::Index => Amounts { cells, relisted, ..none },
+        Phase::Index => Amounts { cells, ..none },
         Phase::Predict | Phase::CorrectPredict | Phase::Correct => none,
     }
 }

@@ -1,6 +1,7 @@
 //! Timing: many short samples of every point, taken in turns over the whole measurement, so that a busy moment of the
-//! machine meets each of them alike and none of them always.
+//! machine meets each of them alike and none of them always; a reading of the yardstick between any two of them.
 
+use crate::study::pace::{COUNTS, Timed, at_pace, quantile, reading};
 use std::time::Instant;
 
 /// The smallest step of the clock that was seen (ns).
@@ -17,60 +18,112 @@ pub(super) fn timer_resolution() -> f64 {
     (0..200).map(step).fold(f64::INFINITY, f64::min)
 }
 
+/// A clock that reads the yardstick between samples.
+pub(super) struct PacedClock {
+    readings: Vec<f64>,
+}
+
+impl PacedClock {
+    /// With one reading.
+    pub(super) fn new() -> PacedClock {
+        PacedClock { readings: vec![reading()] }
+    }
+
+    /// Times some work.
+    fn time(&mut self, work: impl FnOnce() -> f64) -> Timed {
+        let before = self.readings.last().copied().unwrap_or_default();
+        let ns = work();
+        self.look();
+        Timed { ns, around: [before, self.readings.last().copied().unwrap_or_default()] }
+    }
+
+    /// A reading of its own: something else was done since the last sample.
+    pub(super) fn look(&mut self) {
+        self.readings.push(reading());
+    }
+
+    /// What the yardstick took in a good moment (ns): nine of ten readings are slower.
+    pub(super) fn reference(&self) -> f64 {
+        self.quantile(0.1)
+    }
+
+    /// How many times as long it took in the median.
+    pub(super) fn pace(&self) -> f64 {
+        self.quantile(0.5) / self.reference()
+    }
+
+    fn quantile(&self, share: f64) -> f64 {
+        let mut rising = self.readings.clone();
+        rising.sort_by(f64::total_cmp);
+        quantile(&rising, share).unwrap_or(f64::NAN)
+    }
+}
+
 /// The samples of one point.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Samples {
     /// Runs of a sample: as many as the timer needs. Known after the first.
     runs: usize,
     /// Nanoseconds of a run, sample by sample.
-    each: Vec<f64>,
+    each: Vec<Timed>,
+    /// The same at one pace, rising, once it is known: all, those of even and those of odd number.
+    paced: [Vec<f64>; 3],
 }
 
 impl Samples {
     /// Takes one more sample, at least `shortest` nanoseconds long.
-    pub(super) fn take(&mut self, shortest: f64, mut work: impl FnMut()) {
-        let mut clock = |times: usize| {
+    pub(super) fn take(&mut self, clock: &mut PacedClock, shortest: f64, mut work: impl FnMut()) {
+        let mut time = |times: usize| {
             let start = Instant::now();
             (0..times).for_each(|_| work());
             start.elapsed().as_nanos() as f64
         };
-        // Something else was in the caches before.
-        let warm = clock(1);
-        if self.runs == 0 {
-            let once = clock(1).min(warm).max(1.0);
-            self.runs = ((shortest / once).ceil() as usize).clamp(1, 1 << 20);
-        }
-        self.each.push(clock(self.runs) / self.runs as f64);
+        let runs = &mut self.runs;
+        self.each.push(clock.time(|| {
+            // Something else was in the caches before.
+            let warm = time(1);
+            if *runs == 0 {
+                let once = time(1).min(warm).max(1.0);
+                *runs = ((shortest / once).ceil() as usize).clamp(1, 1 << 20);
+            }
+            time(*runs) / *runs as f64
+        }));
     }
 
     /// Times one run as it comes, with whatever the caches hold.
-    pub(super) fn take_once(&mut self, work: impl FnOnce()) {
-        let start = Instant::now();
-        work();
-        self.each.push(start.elapsed().as_nanos() as f64);
+    pub(super) fn take_once(&mut self, clock: &mut PacedClock, work: impl FnOnce()) {
+        self.each.push(clock.time(|| {
+            let start = Instant::now();
+            work();
+            start.elapsed().as_nanos() as f64
+        }));
     }
 
-    /// The best sample; infinite before there is one.
-    pub(super) fn best(&self) -> f64 {
-        self.each.iter().copied().fold(f64::INFINITY, f64::min)
+    /// Tells the samples at the pace of a reference.
+    pub(super) fn settle(&mut self, reference: f64) {
+        let half = |half: usize| -> Vec<Timed> { self.each.iter().skip(half).step_by(2).copied().collect() };
+        self.paced = [self.each.clone(), half(0), half(1)].map(|samples| at_pace(&samples, reference));
     }
 
-    /// The best sample of every second one, from the first or from the second on.
-    pub(super) fn best_of_half(&self, half: usize) -> f64 {
-        let best = self.each.iter().skip(half).step_by(2).copied().fold(f64::INFINITY, f64::min);
-        if best.is_finite() { best } else { self.best() }
+    /// The sample that counts, at one pace; infinite before there is one.
+    pub(super) fn typical(&self) -> f64 {
+        quantile(&self.paced[0], COUNTS).unwrap_or(f64::INFINITY)
     }
 
-    /// How much slower than the best the median one was, as a share.
+    /// The same of every second sample, from the first or from the second on.
+    pub(super) fn of_half(&self, half: usize) -> f64 {
+        quantile(&self.paced[1 + half], COUNTS).unwrap_or_else(|| self.typical())
+    }
+
+    /// Half the range between the quartiles, as a share of the sample that counts.
     pub(super) fn spread(&self) -> f64 {
-        let mut sorted = self.each.clone();
-        sorted.sort_by(f64::total_cmp);
-        sorted.get(sorted.len() / 2).map_or(0.0, |median| median / self.best() - 1.0)
+        let quarter = |share: f64| quantile(&self.paced[0], share).unwrap_or(f64::NAN);
+        0.5 * (quarter(0.75) - quarter(0.25)) / self.typical()
     }
 
-    /// How far the best samples of the two halves differ, as a share.
+    /// How far the two halves differ, as a share.
     pub(super) fn disagreement(&self) -> f64 {
-        let [a, b] = [self.best_of_half(0), self.best_of_half(1)];
+        let [a, b] = [self.of_half(0), self.of_half(1)];
         (a - b).abs() / a.min(b)
     }
 }
@@ -80,17 +133,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_best_sample_counts_and_halves_are_told_apart() {
-        let samples = Samples { runs: 1, each: vec![3.0, 2.0, 4.0, 2.5, 3.0] };
-        assert_eq!((samples.best(), samples.best_of_half(0), samples.best_of_half(1)), (2.0, 3.0, 2.0));
-        assert_eq!((samples.spread(), samples.disagreement()), (0.5, 0.5));
-        assert!(Samples::default().best().is_infinite());
+    fn a_low_sample_counts_and_halves_are_told_apart() {
+        let timed = |ns| Timed { ns, around: [1.0; 2] };
+        let each = [3.0, 2.0, 4.0, 6.0, 5.0].map(timed).to_vec();
+        let mut samples = Samples { each, ..Samples::default() };
+        assert!(samples.typical().is_infinite());
+        samples.settle(1.0);
+        assert_eq!((samples.typical(), samples.of_half(0), samples.of_half(1)), (3.0, 4.0, 2.0));
+        assert_eq!((samples.spread(), samples.disagreement()), (1.0 / 3.0, 1.0));
     }
 
     #[test]
     fn a_sample_is_as_long_as_the_timer_needs() {
-        let mut samples = Samples::default();
-        samples.take(20_000.0, || drop(std::hint::black_box(vec![0_u8; 64])));
-        assert!(samples.runs > 10 && samples.best() > 0.0);
+        let (mut samples, mut clock) = (Samples::default(), PacedClock::new());
+        samples.take(&mut clock, 20_000.0, || drop(std::hint::black_box(vec![0_u8; 64])));
+        samples.settle(clock.reference());
+        assert!(samples.runs > 10 && samples.typical() > 0.0);
+        assert!(clock.pace() >= 1.0);
     }
 }
