@@ -21,6 +21,7 @@ pub mod precision;
 pub mod section;
 pub mod table;
 pub mod terminal;
+pub mod threads;
 
 pub use section::{Section, Verdict};
 pub use table::{Cell, Table};

@@ -11,6 +11,7 @@ pub mod misprints;
 pub mod pipe_flow;
 pub mod precision;
 pub mod statistics;
+pub mod threads;
 pub mod throughput;
 
 use crate::particles::Particles;
