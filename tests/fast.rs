@@ -9,7 +9,7 @@ use stripmine::method::lattice_md::{
 use stripmine::method::{Failure, Method, StateColumn};
 use stripmine::observe::{Observation, Scenery};
 use stripmine::particles::{Kind, Particles};
-use stripmine::scene::{Precision, WallMotion};
+use stripmine::scene::{Document, Precision, WallMotion};
 use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::sweep::lattice::LatticeShape;
 use stripmine_kernels::{Execution, InstructionSet};
@@ -186,6 +186,65 @@ fn conflicts_are_resolved_beside_the_lattice() {
             begin(Precision::F64, model, Contacts::Fast(LATTICE), fast(), WallMotion::Fixed, particles);
         assert!(matches!(stopped.err(), Some(Failure::Conflict { step: 0, .. })));
     }
+}
+
+/// All pairs of elastic discs, by the book.
+fn naive_forces(model: &Model, discs: &Particles) -> Vec<[f64; 2]> {
+    let mut forces = vec![[0.0; 2]; discs.len()];
+    for (i, a) in discs.all().iter().enumerate() {
+        for (j, b) in discs.all().iter().enumerate().skip(i + 1) {
+            let way = model.domain().way(a.position, b.position);
+            let distance = way[0].hypot(way[1]);
+            let depth = (a.radius + b.radius - distance).max(0.0);
+            for axis in 0..2 {
+                let force = model.contact.stiffness * depth.powf(1.5) * way[axis] / distance;
+                forces[i][axis] -= force;
+                forces[j][axis] += force;
+            }
+        }
+    }
+    forces
+}
+
+/// Sizes that no lattice holds, against velocity Verlet by the book.
+#[test]
+fn wide_sizes_are_for_sectors_and_lists() {
+    const STEPS: u64 = 1000;
+    let load = |overrides: &[&str]| {
+        let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
+        Document::load("wide-sizes", &overrides).and_then(Document::check)
+    };
+    let few = ["domain.sides=[20, 18]", "particles.packing_fraction=0.3"];
+    let checked = load(&few).unwrap_or_else(|errors| panic!("{errors}"));
+    let (model, dt) = (stripmine::run::model(&checked), 0.002);
+    let mut expected = checked.particles.clone();
+    let radii = expected.radii().unwrap();
+    assert!(radii[1] / radii[0] > 5.0, "{radii:?}");
+    let mut forces = naive_forces(&model, &expected);
+    for _ in 0..STEPS {
+        let kick = |discs: &mut Particles, forces: &[[f64; 2]]| {
+            for (disc, force) in discs.all_mut().iter_mut().zip(forces) {
+                (0..2).for_each(|axis| disc.velocity[axis] += 0.5 * dt * force[axis] / disc.mass);
+            }
+        };
+        kick(&mut expected, &forces);
+        for disc in expected.all_mut() {
+            (0..2).for_each(|axis| disc.position[axis] += dt * disc.velocity[axis]);
+        }
+        forces = naive_forces(&model, &expected);
+        kick(&mut expected, &forces);
+    }
+    let moved = differences(&model, &checked.particles, &expected);
+    assert!(moved[0] > 0.5 && moved[1] > 0.1, "the discs must have moved and met: {moved:?}");
+    for kind in ["sectors", "neighbor-list"] {
+        let checked = load(&[&few[..], &[&format!("method.kind={kind}")]].concat()).unwrap();
+        let mut method = stripmine::run::assemble(&checked).unwrap();
+        advance(method.as_mut(), STEPS);
+        let off = differences(&model, &expected, &method.particles());
+        assert!(off[0] < 1e-9 && off[1] < 1e-8, "{kind}: {off:?}");
+    }
+    let refused = load(&["method.kind=lattice"]).unwrap_err().to_string();
+    assert!(refused.contains("or let method.kind = \"sectors\""), "{refused}");
 }
 
 #[test]

@@ -51,3 +51,4 @@ pub mod sweep;
 mod threads;
 
 pub use program::{Execution, GROUP, InstructionSet, Program, Runnable};
+pub use threads::keep_awake;

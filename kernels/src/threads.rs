@@ -4,8 +4,8 @@
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What `work` makes of each of the parts, in their order; one part after the other if there is but one thread.
 pub(crate) fn on_threads<T: Send, R: Send>(
@@ -17,8 +17,8 @@ pub(crate) fn on_threads<T: Send, R: Send>(
     }
     let slots: Vec<Mutex<(Option<T>, Option<R>)>> =
         parts.into_iter().map(|part| Mutex::new((Some(part), None))).collect();
-    each(slots.len(), &|number| {
-        let mut slot = slots[number].lock().unwrap_or_else(PoisonError::into_inner);
+    each(1, slots.len(), &|_, number| {
+        let mut slot = locked(&slots[number]);
         slot.1 = slot.0.take().map(&work);
     });
     let made =
@@ -26,20 +26,134 @@ pub(crate) fn on_threads<T: Send, R: Send>(
     slots.into_iter().filter_map(made).collect()
 }
 
-/// Every part once. A thread begins with a share that is always its own, so that what it worked on before is still in its
-/// cache, and then takes what others have left.
-fn each(parts: usize, work: &(dyn Fn(usize) + Sync)) {
-    let taken: Vec<AtomicBool> = (0..parts).map(|_| AtomicBool::new(false)).collect();
+/// Does `work` on every part once in each of the stages: a stage begins when the one before is done with all parts.
+///
+/// # Errors
+/// Of those of `work`, one. The other parts of that stage are worked on all the same, and what comes after it as well if
+/// there are more threads than one.
+pub(crate) fn in_stages<T: Send, E: Send>(
+    parts: &mut [T],
+    stages: usize,
+    work: impl Fn(&mut T, usize) -> Result<(), E> + Sync,
+) -> Result<(), E> {
+    if rayon::current_num_threads() == 1 {
+        return (0..stages).try_for_each(|stage| parts.iter_mut().try_for_each(|part| work(part, stage)));
+    }
+    let slots: Vec<Mutex<&mut T>> = parts.iter_mut().map(Mutex::new).collect();
+    let failure = Mutex::new(None);
+    each(stages, slots.len(), &|stage, number| {
+        if let Err(cause) = work(&mut locked(&slots[number]), stage) {
+            locked(&failure).get_or_insert(cause);
+        }
+    });
+    failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+}
+
+fn locked<T>(slot: &Mutex<T>) -> MutexGuard<'_, T> {
+    slot.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Every part once in every stage. A thread begins with a share that is always its own, so that what it worked on before
+/// is still in its cache, and then takes what others have left.
+///
+/// Who finds nothing left waits, awake, for those who are at their last parts: who falls asleep has to be woken for the
+/// next stage, or for the next call, and that takes longer. All that is waited for is being worked on, so that nobody
+/// waits for somebody who waits.
+fn each(stages: usize, parts: usize, work: &(dyn Fn(usize, usize) + Sync)) {
+    let taken: Vec<AtomicBool> = (0..stages * parts).map(|_| AtomicBool::new(false)).collect();
+    let done: Vec<AtomicUsize> = (0..stages).map(|_| AtomicUsize::new(0)).collect();
     let threads = rayon::current_num_threads();
     (0..threads.min(parts)).into_par_iter().with_max_len(1).for_each(|_| {
         let first = rayon::current_thread_index().unwrap_or(0) * parts / threads;
-        let own_first = (first..parts).chain(0..first);
-        own_first.filter(|&part| !taken[part].swap(true, Ordering::Relaxed)).for_each(work);
+        for (stage, done) in done.iter().enumerate() {
+            let own_first = (first..parts).chain(0..first);
+            own_first.filter(|&part| !taken[stage * parts + part].swap(true, Ordering::Relaxed)).for_each(
+                |part| {
+                    let _done = Done(done);
+                    work(stage, part);
+                },
+            );
+            wait_for(|| done.load(Ordering::Acquire) == parts);
+        }
     });
+}
+
+/// Counts when it goes, even if that is because of a panic.
+struct Done<'a>(&'a AtomicUsize);
+
+impl Drop for Done<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_add(1, Ordering::Release);
+    }
+}
+
+/// Stays awake until something holds.
+fn wait_for(holds: impl Fn() -> bool) {
+    while !holds() {
+        std::thread::yield_now();
+    }
+}
+
+/// What `work` gives, done by one thread while the others wait for the next parts, awake: to be woken would take them
+/// longer than `work` takes.
+pub fn keep_awake<R>(work: impl FnOnce() -> R) -> R {
+    let others = rayon::current_num_threads() - 1;
+    let done = AtomicUsize::new(0);
+    rayon::in_place_scope(|scope| {
+        (0..others).for_each(|_| scope.spawn(|_| wait_for(|| done.load(Ordering::Acquire) > 0)));
+        let _done = Done(&done);
+        work()
+    })
 }
 
 /// A range in pieces of `length`, the last one perhaps shorter.
 pub(crate) fn pieces(range: Range<usize>, length: usize) -> impl Iterator<Item = Range<usize>> {
     let end = range.end;
     range.step_by(length).map(move |start| start..(start + length).min(end))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn on<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
+    }
+
+    #[test]
+    fn a_stage_begins_when_the_one_before_is_done() {
+        for threads in [1, 2, 3, 8] {
+            let counts: [AtomicUsize; 3] = Default::default();
+            let mut parts = vec![0_usize; 37];
+            let stages = |part: &mut usize, stage: usize| {
+                assert_eq!(*part, stage);
+                assert!(stage == 0 || counts[stage - 1].load(Ordering::SeqCst) == 37);
+                *part += 1;
+                counts[stage].fetch_add(1, Ordering::SeqCst);
+                Ok::<(), ()>(())
+            };
+            on(threads, || in_stages(&mut parts, 3, stages)).unwrap();
+            assert!(parts.iter().all(|&part| part == 3));
+        }
+    }
+
+    #[test]
+    fn failures_and_results_come_back_in_their_order() {
+        for threads in [1, 4] {
+            let odd = |part: &mut usize, _: usize| if *part == 5 { Err("five") } else { Ok(()) };
+            let mut parts: Vec<usize> = (0..9).collect();
+            assert_eq!(on(threads, || in_stages(&mut parts, 2, odd)), Err("five"));
+            let squares = on(threads, || on_threads(0..100, |n: usize| n * n));
+            assert!(squares.iter().enumerate().all(|(n, &square)| square == n * n));
+            assert_eq!(on(threads, || keep_awake(|| 7)), 7);
+        }
+    }
+
+    #[test]
+    fn a_panic_leaves_nobody_waiting() {
+        let broken = || on(3, || on_threads(0..20, |n: usize| assert!(n != 11, "eleven")));
+        assert!(std::panic::catch_unwind(broken).is_err());
+        let broken = || on(3, || keep_awake(|| panic!("on purpose")));
+        assert!(std::panic::catch_unwind(broken).is_err());
+    }
 }

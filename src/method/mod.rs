@@ -34,7 +34,7 @@ pub struct DeepContacts {
 }
 
 /// A method that steps particles. It never prints and never writes a file.
-pub trait Method {
+pub trait Method: Send {
     /// Advances by one time step.
     ///
     /// # Errors

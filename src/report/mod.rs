@@ -24,6 +24,7 @@ pub mod precision;
 pub mod section;
 pub mod table;
 pub mod terminal;
+pub mod threads;
 pub mod useful_work;
 
 pub use section::{Section, Verdict};

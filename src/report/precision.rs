@@ -78,6 +78,9 @@ fn above_zero(x: &[f64], y: &[f64]) -> Vec<Point> {
     x.iter().zip(y).filter(|(_, y)| **y > 0.0).map(|(&x, &y)| Point::at(x, y)).collect()
 }
 
+/// How much farther right the next series of the same boxes is drawn.
+const BESIDE: f64 = 1.06;
+
 fn force_figure(errors: &[ForceError]) -> Figure {
     let dense: Vec<&ForceError> = errors
         .iter()
@@ -85,16 +88,14 @@ fn force_figure(errors: &[ForceError]) -> Figure {
         .collect();
     let mut series: Vec<Series> = Vec::new();
     for error in dense {
-        let point = Point::at(error.side, error.rms);
-        match series.iter_mut().find(|series| series.name == error.way.name) {
-            Some(series) => series.points.push(point),
-            None => series.push(Series {
-                name: error.way.name.into(),
-                style: Style::Joined,
-                hue: series.len(),
-                points: vec![point],
-            }),
+        let known = series.iter().position(|series| series.name == error.way.name);
+        let at = known.unwrap_or(series.len());
+        if known.is_none() {
+            let name = error.way.name.into();
+            series.push(Series { name, style: Style::Joined, hue: at, points: vec![] });
         }
+        // Equally good ones stand beside each other, not on each other.
+        series[at].points.push(Point::at(error.side * BESIDE.powi(at as i32), error.rms));
     }
     Figure {
         name: "force_error".into(),
@@ -102,8 +103,8 @@ fn force_figure(errors: &[ForceError]) -> Figure {
         caption: format!(
             "Packing fraction {}. Root of the mean square error over that of the forces; held against the fast execution in \
              f64. The fast execution keeps positions from the cell's centre; the faithful one keeps them from the box's \
-             corner, in the precision of its state, and takes the difference with the cell in f64. What lies on one \
-             line is equally good.",
+             corner, in the precision of its state, and takes the difference with the cell in f64. Marks of one box stand \
+             beside each other; its side is that of the leftmost.",
             PACKING_FRACTIONS[0]
         ),
         picture: Picture::Chart(Chart {

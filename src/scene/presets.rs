@@ -17,7 +17,16 @@ macro_rules! define_presets {
     };
 }
 
-define_presets!["pipe", "pipe-small", "pipe-as-printed", "dense-gas", "two-discs", "shaken-box", "bench"];
+define_presets![
+    "pipe",
+    "pipe-small",
+    "pipe-as-printed",
+    "dense-gas",
+    "two-discs",
+    "shaken-box",
+    "wide-sizes",
+    "bench"
+];
 
 impl Preset {
     /// What it shows: the first line of its text.

@@ -1,6 +1,6 @@
 //! At which density does the lattice overtake neighbour lists and sectors? Fast executions of whole steps, on this host.
 
-use super::throughput::{Measurement, MeasurementError, Throughput, throughput};
+use super::throughput::{MeasurementError, Running};
 use crate::scene::Document;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -83,22 +83,48 @@ pub fn crossover(effort: &Effort, progress: impl Fn(f64) + Sync) -> Result<Cross
     }
     let mut samples = Vec::new();
     for (done, &case) in cases.iter().enumerate() {
-        // The methods of a case one after the other, so that a busy moment of the machine meets them alike.
-        for (number, method) in METHODS.into_iter().enumerate() {
-            samples.push(alone.install(|| sample(method, case, effort))?);
-            progress((done * METHODS.len() + number + 1) as f64 / (cases.len() * METHODS.len()) as f64);
-        }
+        samples.extend(alone.install(|| case_samples(case, effort))?);
+        progress((done + 1) as f64 / cases.len() as f64);
     }
     let groups = effort.precisions.iter().flat_map(|&p| effort.particles.iter().map(move |&n| (p, n)));
     let crossings = groups.filter_map(|(precision, particles)| crossing(precision, particles, &samples));
     Ok(Crossover { instruction_set: InstructionSet::best().name(), crossings: crossings.collect(), samples })
 }
 
-fn sample(
-    method: &'static str,
-    (precision, particles, packing_fraction): (&'static str, usize, f64),
+/// All methods on one case, repeat by repeat in turns, so that a busy moment of the machine meets them alike.
+fn case_samples(
+    case @ (precision, particles, packing_fraction): (&'static str, usize, f64),
     effort: &Effort,
-) -> Result<Sample, MeasurementError> {
+) -> Result<Vec<Sample>, MeasurementError> {
+    let mut running =
+        METHODS.iter().map(|method| begin(method, case, effort)).collect::<Result<Vec<_>, _>>()?;
+    for _ in 0..effort.repeats {
+        running.iter_mut().try_for_each(Running::repeat)?;
+    }
+    let samples = METHODS.into_iter().zip(running).map(|(method, running)| {
+        let measured = running.measured();
+        let discs = measured.particles as f64;
+        let work = discs * measured.steps as f64;
+        let phases = measured.phases.into_iter();
+        Sample {
+            method,
+            precision,
+            particles,
+            packing_fraction,
+            rate: work / measured.cpu_seconds,
+            median: measured.particle_steps_per_second_median,
+            phases: phases.map(|(phase, seconds)| (phase, 1e9 * seconds / work)).collect(),
+            contacts: measured.contacts as f64 / discs,
+        }
+    });
+    Ok(samples.collect())
+}
+
+fn begin(
+    method: &str,
+    (precision, particles, packing_fraction): (&str, usize, f64),
+    effort: &Effort,
+) -> Result<Running, MeasurementError> {
     let overrides = [
         format!("particles.count={particles}"),
         format!("particles.packing_fraction={packing_fraction}"),
@@ -107,31 +133,7 @@ fn sample(
         "method.execution=\"fast\"".to_owned(),
         "integrator.kind=\"velocity-verlet\"".to_owned(),
     ];
-    let Throughput {
-        particles: discs,
-        steps,
-        cpu_seconds,
-        phases,
-        contacts,
-        particle_steps_per_second_median,
-        ..
-    } = throughput(Measurement {
-        document: Document::load("bench", &overrides)?,
-        equilibration: 200,
-        steps: effort.steps,
-        repeats: effort.repeats,
-    })?;
-    let work = discs as f64 * steps as f64;
-    Ok(Sample {
-        method,
-        precision,
-        particles,
-        packing_fraction,
-        rate: work / cpu_seconds,
-        median: particle_steps_per_second_median,
-        phases: phases.into_iter().map(|(phase, seconds)| (phase, 1e9 * seconds / work)).collect(),
-        contacts: contacts as f64 / discs as f64,
-    })
+    Running::begin(Document::load("bench", &overrides)?, 200, effort.steps)
 }
 
 /// Rate of the lattice over that of its best rival, at each packing fraction, falling.

@@ -18,6 +18,7 @@ pub mod pipe_flow;
 pub mod precision;
 pub mod predicted_step;
 pub mod statistics;
+pub mod threads;
 pub mod throughput;
 pub mod useful_work;
 

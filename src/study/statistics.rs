@@ -33,6 +33,13 @@ impl Spread {
     }
 }
 
+/// The middle one, the upper of two; not a number if there is none.
+pub fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
 /// Slope of the straight line of least squares through points; 0 through fewer than two.
 pub fn slope(x: &[f64], y: &[f64]) -> f64 {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;

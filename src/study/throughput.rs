@@ -1,9 +1,9 @@
 //! How fast is a method? Whole steps of moving particles, timed.
 
-use crate::method::{Failure, Method};
+use crate::method::{Failure, Method, Timings};
 use crate::observe::{Observation, Scenery};
 use crate::run::assemble;
-use crate::scene::{Document, Execution, MethodKind, Precision, SceneErrors, Scheme};
+use crate::scene::{Checked, Document, Execution, MethodKind, Precision, SceneErrors, Scheme};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use stripmine_kernels::InstructionSet;
@@ -88,70 +88,111 @@ pub struct Throughput {
 /// [`MeasurementError`] if the scene is bad or breaks while running.
 pub fn throughput(measurement: Measurement) -> Result<Throughput, MeasurementError> {
     let Measurement { document, equilibration, steps, repeats } = measurement;
-    let checked = document.check()?;
-    let mut method = assemble(&checked)?;
-    let scenery = Scenery::of(&crate::run::model(&checked));
-    let observe =
-        |method: &dyn Method| Observation::of(method.steps(), method.time(), &method.particles(), &scenery);
-    advance(method.as_mut(), equilibration)?;
-    let before = observe(method.as_ref()).temperature;
-    let mut samples = Vec::new();
-    for _ in 0..repeats {
-        method.reset_timings();
-        let (wall, cpu) = (std::time::Instant::now(), cpu_time::ProcessTime::now());
-        advance(method.as_mut(), steps)?;
-        samples.push((wall.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64(), *method.timings()));
-    }
-    samples.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let after = observe(method.as_ref());
-    let scene = &checked.scene;
-    let particles = checked.particles.grain_count();
-    let discs: f64 =
-        checked.particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius.powi(2)).sum();
-    let work = particles as f64 * steps as f64;
-    let (seconds, cpu_seconds, timings) = samples[0];
-    Ok(Throughput {
-        what: match scene.method.kind {
-            MethodKind::Lattice => "lattice",
-            MethodKind::Sectors => "sectors",
-            MethodKind::NeighborList { .. } => "neighbor-list",
-        },
-        particles,
-        packing_fraction: discs / (checked.domain.sides[0] * checked.domain.sides[1]),
-        precision: match scene.method.precision {
-            Precision::F64 => "f64",
-            Precision::F32 => "f32",
-            Precision::Mixed => "mixed",
-        },
-        integrator: match scene.integrator.scheme {
-            Scheme::Gear { values } => format!("gear{values}"),
-            Scheme::VelocityVerlet => "velocity-verlet".to_owned(),
-        },
-        execution: match (scene.method.kind, scene.method.execution) {
-            (_, Execution::Fast) => Execution::Fast.name(),
-            (MethodKind::NeighborList { .. }, _) => "scalar".to_owned(),
-            (_, execution) => execution.name(),
-        },
-        friction: scene.law.has_friction(),
-        cell_edge: scene.method.needs_lattice().then_some(checked.geometry.frame.edge),
-        threads: rayon::current_num_threads(),
-        instruction_set: scene.method.instruction_set.unwrap_or_else(InstructionSet::best).name(),
-        repeats,
-        steps,
-        seconds,
-        cpu_seconds,
-        peak_memory_bytes: peak_memory(),
-        temperature: [before, after.temperature],
-        checksum: super::checksum(&method.particles()),
-        particle_steps_per_second: work / seconds,
-        particle_steps_per_second_median: work / samples[samples.len() / 2].0,
-        phases: timings.named(),
-        contacts: after.contacts,
-    })
+    let mut running = Running::begin(document, equilibration, steps)?;
+    (0..repeats).try_for_each(|_| running.repeat())?;
+    Ok(running.measured())
 }
 
-fn advance(method: &mut dyn Method, steps: u64) -> Result<(), Failure> {
-    (0..steps).try_for_each(|_| method.step())
+/// A scene that runs, and is timed for some steps again and again.
+pub struct Running {
+    checked: Checked,
+    method: Box<dyn Method>,
+    scenery: Scenery,
+    steps: u64,
+    temperature: f64,
+    samples: Vec<(f64, f64, Timings)>,
+}
+
+impl Running {
+    /// Lets the scene run for `equilibration` steps. Repeats have `steps`.
+    ///
+    /// # Errors
+    /// [`MeasurementError`] if the scene is bad or breaks while running.
+    pub fn begin(document: Document, equilibration: u64, steps: u64) -> Result<Self, MeasurementError> {
+        let checked = document.check()?;
+        let method = assemble(&checked)?;
+        let scenery = Scenery::of(&crate::run::model(&checked));
+        let mut running = Running { checked, method, scenery, steps, temperature: 0.0, samples: vec![] };
+        running.advance(equilibration)?;
+        running.temperature = running.observation().temperature;
+        Ok(running)
+    }
+
+    /// Times the steps of a repeat.
+    ///
+    /// # Errors
+    /// [`MeasurementError::Physics`] if the scene breaks.
+    pub fn repeat(&mut self) -> Result<(), MeasurementError> {
+        self.method.reset_timings();
+        let (wall, cpu) = (std::time::Instant::now(), cpu_time::ProcessTime::now());
+        self.advance(self.steps)?;
+        let sample = (wall.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64(), *self.method.timings());
+        self.samples.push(sample);
+        Ok(())
+    }
+
+    fn advance(&mut self, steps: u64) -> Result<(), Failure> {
+        (0..steps).try_for_each(|_| self.method.step())
+    }
+
+    fn observation(&self) -> Observation {
+        let Running { method, scenery, .. } = self;
+        Observation::of(method.steps(), method.time(), &method.particles(), scenery)
+    }
+
+    /// What came out.
+    ///
+    /// # Panics
+    /// If there was no repeat.
+    pub fn measured(mut self) -> Throughput {
+        self.samples.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let after = self.observation();
+        let Running { checked, method, steps, temperature: before, samples, .. } = self;
+        let scene = &checked.scene;
+        let particles = checked.particles.grain_count();
+        let discs: f64 =
+            checked.particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius.powi(2)).sum();
+        let work = particles as f64 * steps as f64;
+        let (seconds, cpu_seconds, timings) = samples[0];
+        Throughput {
+            what: match scene.method.kind {
+                MethodKind::Lattice => "lattice",
+                MethodKind::Sectors => "sectors",
+                MethodKind::NeighborList { .. } => "neighbor-list",
+            },
+            particles,
+            packing_fraction: discs / (checked.domain.sides[0] * checked.domain.sides[1]),
+            precision: match scene.method.precision {
+                Precision::F64 => "f64",
+                Precision::F32 => "f32",
+                Precision::Mixed => "mixed",
+            },
+            integrator: match scene.integrator.scheme {
+                Scheme::Gear { values } => format!("gear{values}"),
+                Scheme::VelocityVerlet => "velocity-verlet".to_owned(),
+            },
+            execution: match (scene.method.kind, scene.method.execution) {
+                (_, Execution::Fast) => Execution::Fast.name(),
+                (MethodKind::NeighborList { .. }, _) => "scalar".to_owned(),
+                (_, execution) => execution.name(),
+            },
+            friction: scene.law.has_friction(),
+            cell_edge: scene.method.needs_lattice().then_some(checked.geometry.frame.edge),
+            threads: rayon::current_num_threads(),
+            instruction_set: scene.method.instruction_set.unwrap_or_else(InstructionSet::best).name(),
+            repeats: samples.len(),
+            steps,
+            seconds,
+            cpu_seconds,
+            peak_memory_bytes: peak_memory(),
+            temperature: [before, after.temperature],
+            checksum: super::checksum(&method.particles()),
+            particle_steps_per_second: work / seconds,
+            particle_steps_per_second_median: work / samples[samples.len() / 2].0,
+            phases: timings.named(),
+            contacts: after.contacts,
+        }
+    }
 }
 
 /// The most memory this process ever held, where the system tells (Linux: `VmHWM`).

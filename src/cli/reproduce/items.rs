@@ -11,7 +11,7 @@ use crate::study::calibration::{self, calibrate};
 use crate::study::efficiency_table::Question;
 use crate::study::{
     break_even, crossover, damping, density_cost, efficiency_table, host_ladder, identity, ladder,
-    measured_cost, misprints, model_validation, pipe_flow, precision, useful_work,
+    measured_cost, misprints, model_validation, pipe_flow, precision, threads, useful_work,
 };
 use clap::ValueEnum;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -74,6 +74,7 @@ define_items! {
     (Validation, "validation", 10.0, 60.0, "The timing model of this host against wall time"),
     (Atlas, "atlas", 8.0, 60.0, "Who wins where: occupancy, number of particles, method and machine"),
     (Crossover, "crossover", 4.0, 150.0, "Lattice, neighbour lists and sectors: which is the fastest at which density, on this host"),
+    (Threads, "threads", 3.0, 60.0, "What more threads give, and what the machine has to give"),
     (Identity, "identity", 3.0, 3.0, "Lattice and neighbour lists: the same to the bit"),
     (Precision, "precision", 60.0, 60.0, "What single and mixed precision cost: forces, energy, trajectories"),
     (PipeSmall, "pipe-small", 3.0, 3.0, "BP93, figures 5 and 6, in two fifths of the pipe"),
@@ -130,6 +131,11 @@ impl Item {
             Item::Crossover => {
                 let data = crossover::crossover(&crossover_effort(effort), progress)?;
                 made(report::crossover::section(&data), &data)
+            }
+            Item::Threads => {
+                let cores = std::thread::available_parallelism().map_or(1, usize::from);
+                let data = threads::threads(cores, &threads_effort(effort), progress)?;
+                made(report::threads::section(&data), &data)
             }
             Item::Identity => {
                 let data = identity::identity(progress)?;
@@ -240,6 +246,23 @@ fn crossover_effort(effort: Effort) -> crossover::Effort {
             packing_fractions: vec![0.84, 0.8, 0.6, 0.3, 0.1, 0.03],
             steps: 120,
             repeats: 3,
+        },
+    }
+}
+
+fn threads_effort(effort: Effort) -> threads::Effort {
+    match effort {
+        Effort::Quick => threads::Effort {
+            particles: vec![20_000],
+            packing_fractions: vec![0.84],
+            rounds: 3,
+            particle_steps: 1_000_000,
+        },
+        Effort::Full => threads::Effort {
+            particles: vec![10_000, 100_000, 1_000_000],
+            packing_fractions: vec![0.84, 0.3],
+            rounds: 7,
+            particle_steps: 10_000_000,
         },
     }
 }

@@ -267,14 +267,14 @@ fn ratio_error(document: &Document, radii: [f64; 2]) -> SceneError {
             format!("{said}; at law.max_penetration = {penetration} a 5×5 mask allows {five:.4}"),
         ),
     };
+    let instead = "let method.kind = \"sectors\" or \"neighbor-list\" find the contacts";
     let help = if scene.method.mask == Some(5) && ratio <= seven {
         format!("use mask = 7, which allows {seven:.4}")
     } else if ratio <= limit(3.0) / (1.0 - penetration) {
-        format!("bring the radii closer together, or lower law.max_penetration below {:.4}", {
-            1.0 - ratio * std::f64::consts::SQRT_2 / 3.0
-        })
+        let allowed = 1.0 - ratio * std::f64::consts::SQRT_2 / 3.0;
+        format!("bring the radii closer together, lower law.max_penetration below {allowed:.4}, or {instead}")
     } else {
-        "bring the radii closer together".to_owned()
+        format!("bring the radii closer together, or {instead}")
     };
     error.expecting(format!("a ratio of at most {seven:.4}")).advising(help)
 }

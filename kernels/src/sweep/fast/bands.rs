@@ -9,7 +9,7 @@ use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};
 use crate::law::{Law, Sum};
 use crate::program::dispatch;
-use crate::threads::on_threads;
+use crate::threads::in_stages;
 use std::ops::Range;
 
 /// Rows that one thread sweeps, and what it keeps for that.
@@ -94,14 +94,12 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         };
         let overlap = self.rows.ahead;
         let inner = |rows: &Range<usize>| rows.start..rows.end.saturating_sub(overlap).max(rows.start);
-        let each = |band: &mut Band<F>, last: bool| {
+        // First all inner rows, then all last ones.
+        in_stages(&mut self.bands, 2, |band, stage| {
             let inner = inner(&band.rows);
-            let rows = if last { inner.end..band.rows.end } else { inner };
+            let rows = if stage == 0 { inner } else { inner.end..band.rows.end };
             sweep(band, rows)
-        };
-        for last in [false, true] {
-            on_threads(&mut self.bands, |band| each(band, last)).into_iter().collect::<Result<(), _>>()?;
-        }
+        })?;
         let mut beside = Touches::default();
         finder.find_beside_rows(&mut beside);
         let pairs = &beside;

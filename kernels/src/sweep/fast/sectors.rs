@@ -303,8 +303,26 @@ impl<'a, S: Element, P: Precision> Near<'a, S, P> {
         Near { places, ways: grid.ways(), limit, touches: &mut touches.0 }
     }
 
-    pub(super) fn is_full(&self) -> bool {
-        self.touches.len() >= AT_ONCE
+    /// Goes on through rows, piece by piece of so many in each, until enough is listed.
+    #[inline(always)]
+    pub(super) fn search(
+        &mut self,
+        rows: Range<usize>,
+        cursor: &mut Cursor,
+        pieces: impl Fn(usize) -> usize,
+        piece: impl Fn(&mut Self, usize, usize),
+    ) {
+        while cursor.row < rows.end {
+            let there = pieces(cursor.row);
+            while cursor.along < there {
+                if self.touches.len() >= AT_ONCE {
+                    return;
+                }
+                piece(self, cursor.row, cursor.along);
+                cursor.along += 1;
+            }
+            *cursor = Cursor::at(cursor.row + 1);
+        }
     }
 
     /// Where a disc is.
@@ -361,16 +379,15 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
         _: InstructionSet,
     ) -> Result<(), ProgramError> {
         let mut near = Near::new(places, self.sector.len(), &self.grid, self.reach, found);
-        while cursor.row < rows.end {
-            while cursor.along < self.grid.counts[0] {
-                if near.is_full() {
-                    return Ok(());
-                }
-                let columns = cursor.along..cursor.along + 1;
+        near.search(
+            rows,
+            cursor,
+            |_| self.grid.counts[0],
+            |near, row, column| {
                 let (mut last, mut at) = (NOWHERE, [0.0; 2]);
                 self.pairs_of_row(
-                    cursor.row,
-                    columns,
+                    row,
+                    column..column + 1,
                     |_| {},
                     |first, second, way| {
                         // SAFETY: members are discs, and so many are the ways.
@@ -382,10 +399,8 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
                         }
                     },
                 );
-                cursor.along += 1;
-            }
-            *cursor = Cursor::at(cursor.row + 1);
-        }
+            },
+        );
         Ok(())
     }
 

@@ -128,13 +128,13 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
         _: InstructionSet,
     ) -> Result<(), ProgramError> {
         let mut near = Near::new(places, self.discs, &self.grid, self.reach, found);
-        while cursor.row < rows.end {
-            let [start, end] = [cursor.row, cursor.row + 1].map(|row| self.rows[row] as usize);
-            while start + cursor.along < end {
-                if near.is_full() {
-                    return Ok(());
-                }
-                let number = start + cursor.along;
+        let discs_of = |row: usize| self.rows[row] as usize..self.rows[row + 1] as usize;
+        near.search(
+            rows,
+            cursor,
+            |row| discs_of(row).len(),
+            |near, row, along| {
+                let number = discs_of(row).start + along;
                 let disc = self.own[number];
                 let partners = &self.partners[self.first[number] as usize..self.first[number + 1] as usize];
                 // SAFETY: the lists are of discs and ways.
@@ -144,10 +144,8 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
                     // SAFETY: as above.
                     unsafe { near.meet(disc, at, second, way) };
                 }
-                cursor.along += 1;
-            }
-            *cursor = Cursor::at(cursor.row + 1);
-        }
+            },
+        );
         Ok(())
     }
 

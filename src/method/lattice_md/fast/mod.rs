@@ -19,6 +19,7 @@ use state::{Move, State};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::keep_awake;
 use stripmine_kernels::law::Law;
 use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_kernels::sweep::fast::Met;
@@ -154,7 +155,7 @@ impl<S: Precision, P: Precision> Method for FastMd<S, P> {
         self.steps += 1;
         self.awaits_forces = true;
         self.timings = timings;
-        timings.time(Phase::Index, || self.keep_index(&left))?;
+        timings.time(Phase::Index, || keep_awake(|| self.keep_index(&left)))?;
         self.timings = timings;
         self.deep.shared_cells += self.home.guests() as u64;
         self.meet()

@@ -21,7 +21,7 @@ use sparse::SparseSearch;
 use std::ops::Range;
 
 /// Rows of a band, at least.
-const BAND: usize = 32;
+const BAND: usize = 16;
 
 /// An occupied lattice, searched cell by cell, or, if it is sparse, disc by disc.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,7 @@ use crate::GROUP;
 use crate::sweep::fast::SENTINELS;
 use crate::sweep::fast::advance::Copies;
 use crate::sweep::fast::sectors::Grid;
-use crate::sweep::lattice::{Frame, Image, LatticeShape};
+use crate::sweep::lattice::{Frame, LatticeShape};
 
 /// The cell is another disc's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -38,7 +38,10 @@ pub struct Occupancy {
     place: [Vec<f32>; 2],
     radius: Option<Vec<f32>>,
     occupied: Bits,
-    images: Vec<Image>,
+    /// Cells of the halo, each with the one it is an image of.
+    images: Vec<[u32; 2]>,
+    /// Discs that are in no cell.
+    homeless: usize,
     /// Discs in cells that are another disc's, with these cells.
     guests: Vec<(u32, [usize; 2])>,
 }
@@ -72,7 +75,12 @@ impl Occupancy {
             place: [vec![FAR; places], vec![0.0; places]],
             radius: (vary && !sparse).then(|| vec![0.0; length]),
             occupied: Bits::new(&shape, half_width),
-            images: shape.images(),
+            images: shape
+                .images()
+                .iter()
+                .map(|image| [image.cell, image.source].map(|at| at as u32))
+                .collect(),
+            homeless: discs,
             guests: vec![],
             shape,
         }
@@ -140,6 +148,7 @@ impl Occupancy {
             return Err(Taken(self.index[at] as usize));
         }
         self.cell[disc] = at as u32;
+        self.homeless -= 1;
         self.index[at] = disc as u32;
         if let Some(radii) = &mut self.radius {
             radii[at] = (radius * self.unit) as f32;
@@ -157,6 +166,7 @@ impl Occupancy {
         assert!(self.cell[disc] == NOWHERE, "disc {disc} is in a cell already");
         assert!(cell[0] < self.shape.columns() && cell[1] < self.shape.rows(), "no cell {cell:?}");
         self.cell[disc] = self.guest_room();
+        self.homeless -= 1;
         let own = number(disc);
         let before = self.guests.iter().take_while(|guest| number(guest.0 as usize) < own).count();
         self.guests.insert(before, (disc as u32, cell));
@@ -172,6 +182,7 @@ impl Occupancy {
         if self.cell[disc] == NOWHERE {
             return;
         }
+        self.homeless += 1;
         if self.cell[disc] == self.guest_room() {
             self.cell[disc] = NOWHERE;
             return self.guests.retain(|guest| guest.0 as usize != disc);
@@ -206,16 +217,20 @@ impl Occupancy {
 
     /// Repeats the cells at periodic sides in the halo.
     pub fn repeat_images(&mut self) {
-        for image in &self.images {
-            let disc = self.index[image.source];
-            self.index[image.cell] = disc;
-            self.occupied.set(image.cell, (disc as usize) < self.discs);
-        }
-        for place in self.place.iter_mut().filter(|place| !place.is_empty()) {
-            self.images.iter().for_each(|image| place[image.cell] = place[image.source]);
-        }
-        if let Some(radii) = &mut self.radius {
-            self.images.iter().for_each(|image| radii[image.cell] = radii[image.source]);
+        for &[cell, source] in &self.images {
+            let [cell, source] = [cell, source].map(|at| at as usize);
+            let disc = self.index[source];
+            // Places change with every step, who is there hardly ever.
+            if self.index[cell] != disc {
+                self.index[cell] = disc;
+                self.occupied.set(cell, (disc as usize) < self.discs);
+            }
+            if !self.sparse {
+                self.place.iter_mut().for_each(|place| place[cell] = place[source]);
+            }
+            if let Some(radii) = &mut self.radius {
+                radii[cell] = radii[source];
+            }
         }
     }
 
@@ -287,7 +302,11 @@ impl Occupancy {
     }
 
     /// What a pass over the discs is to keep up to date; nothing if the lattice is sparse.
+    ///
+    /// # Panics
+    /// If a disc is in no cell.
     pub fn copies(&mut self) -> Option<Copies<'_>> {
+        assert!(self.homeless == 0, "{} discs are in no cell", self.homeless);
         let [x, y] = &mut self.place;
         (!self.sparse).then_some(Copies { cells: &self.cell, places: [x, y], unit: self.unit })
     }

@@ -1,0 +1,146 @@
+//! Sectors and Verlet lists against all pairs: every pair in reach found once, and the way to it the nearest one.
+
+use proptest::prelude::*;
+use std::collections::BTreeMap;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::sweep::fast::{Cursor, Finder, Grid, Pairs, SENTINELS, Sectors, VerletList};
+
+/// Discs in a box: where they are, the sectors they are in, and their places there.
+struct Scattered {
+    positions: Vec<[f64; 2]>,
+    sectors: Sectors,
+    places: [Vec<f64>; 2],
+}
+
+const ORIGIN: [f64; 2] = [-3.0, 7.0];
+
+fn scattered(
+    sides: [f64; 2],
+    periodic: [bool; 2],
+    reach: f64,
+    skin: f64,
+    discs: usize,
+    seed: u64,
+) -> Scattered {
+    let grid = Grid::new(ORIGIN, sides, periodic, reach + skin, discs).unwrap();
+    let mut sectors = Sectors::new(grid, discs, reach);
+    let mut random = Stream::new(seed, Purpose::Test, 0);
+    let mut places = [vec![], vec![]];
+    let mut positions = vec![];
+    for disc in 0..discs {
+        let along = sides.map(|side| side * random.uniform());
+        let cell = [0, 1].map(|axis| (along[axis] / grid.frame.edge[axis]) as usize);
+        sectors.enter(disc, cell);
+        for axis in 0..2 {
+            places[axis].push(along[axis] - (cell[axis] as f64 + 0.5) * grid.frame.edge[axis]);
+        }
+        positions.push([0, 1].map(|axis| ORIGIN[axis] + along[axis]));
+    }
+    sectors.arrange(|disc| discs - disc);
+    for (place, sentinels) in places.iter_mut().zip([[0.0, 1e3], [0.0; SENTINELS]]) {
+        place.extend(sentinels);
+    }
+    Scattered { positions, sectors, places }
+}
+
+/// Pairs, the smaller number first, with the displacement from the first disc to the second.
+type Found = BTreeMap<[u32; 2], [f64; 2]>;
+
+/// What a finder finds, band by band.
+fn found<F: Finder<f64, f64>>(finder: &F, places: &[Vec<f64>; 2]) -> Found {
+    let (rows, mut all) = (finder.rows().count, Found::new());
+    for band in [0..rows / 2, rows / 2..rows] {
+        let (mut cursor, mut list) = (Cursor::at(band.start), F::Found::default());
+        while cursor.row() < band.end {
+            let columns = [places[0].as_slice(), places[1].as_slice()];
+            finder.find(columns, band.clone(), &mut cursor, &mut list, InstructionSet::best()).unwrap();
+            let pairs = finder.pairs(&list);
+            for number in 0..pairs.count() {
+                let ([a, b], way) = pairs.pair(number);
+                let to = [0, 1].map(|axis| places[axis][b as usize] - places[axis][a as usize] + way[axis]);
+                let (pair, to) = if a < b { ([a, b], to) } else { ([b, a], to.map(|along| -along)) };
+                assert!(all.insert(pair, to).is_none(), "{pair:?} found twice");
+            }
+        }
+    }
+    all
+}
+
+/// All pairs nearer than `reach`, the nearest image on periodic sides.
+fn naive(positions: &[[f64; 2]], sides: [f64; 2], periodic: [bool; 2], reach: f64) -> Found {
+    let mut pairs = Found::new();
+    for (a, from) in positions.iter().enumerate() {
+        for (b, to) in positions.iter().enumerate().skip(a + 1) {
+            let way = [0, 1].map(|axis| {
+                let along = to[axis] - from[axis];
+                if periodic[axis] { along - sides[axis] * (along / sides[axis]).round() } else { along }
+            });
+            if way[0].hypot(way[1]) < reach {
+                pairs.insert([a as u32, b as u32], way);
+            }
+        }
+    }
+    pairs
+}
+
+fn assert_same(found: &Found, expected: &Found, reach: f64) {
+    for (pair, way) in expected {
+        let there = found.get(pair).unwrap_or_else(|| panic!("{pair:?} not found"));
+        assert!((0..2).all(|axis| (there[axis] - way[axis]).abs() < 1e-9), "{pair:?}: {there:?} for {way:?}");
+    }
+    for (pair, [x, y]) in found {
+        assert!(x.hypot(*y) < 1.001 * reach, "{pair:?} is far: {x}, {y}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn every_pair_in_reach_is_found_once(
+        sides in [3.4..30.0, 3.4..30.0],
+        periodic: [bool; 2],
+        reach in 0.3..1.0,
+        skin in 0.01..0.13,
+        discs in 0usize..400,
+        seed: u64,
+    ) {
+        let Scattered { positions, sectors, places } = scattered(sides, periodic, reach, skin, discs, seed);
+        let expected = naive(&positions, sides, periodic, reach);
+        assert_same(&found(&sectors, &places), &expected, reach);
+        let mut list = VerletList::new(&sectors, [&places[0][..], &places[1][..]], skin);
+        assert_same(&found(&list, &places), &expected, reach);
+        prop_assert!(list.entries() >= expected.len());
+        // Everybody goes as far as the skin allows: the list is still good.
+        let (mut places, mut positions) = (places, positions);
+        let mut random = Stream::new(seed, Purpose::Test, 1);
+        for (disc, position) in positions.iter_mut().enumerate() {
+            let angle = std::f64::consts::TAU * random.uniform();
+            for (axis, along) in [angle.cos(), angle.sin()].into_iter().enumerate() {
+                places[axis][disc] += 0.499 * skin * along;
+                position[axis] += 0.499 * skin * along;
+            }
+        }
+        assert_same(&found(&list, &places), &naive(&positions, sides, periodic, reach), reach);
+        // Numbered anew, lists made anew: the same pairs by their new numbers.
+        let Scattered { mut sectors, places, .. } = scattered(sides, periodic, reach, skin, discs, seed);
+        let order = sectors.order();
+        sectors.renumber(&order);
+        let sorted = places.each_ref().map(|place| {
+            let there = order.iter().map(|&disc| place[disc as usize]);
+            there.chain(place[discs..].iter().copied()).collect::<Vec<f64>>()
+        });
+        list = VerletList::new(&sectors, [&sorted[0][..], &sorted[1][..]], skin);
+        let back = |found: Found| -> Vec<[u32; 2]> {
+            let mut pairs: Vec<_> = found.into_keys().map(|pair| pair.map(|disc| order[disc as usize])).collect();
+            pairs.iter_mut().for_each(|pair| pair.sort_unstable());
+            pairs.sort_unstable();
+            pairs
+        };
+        let expected: Vec<[u32; 2]> = expected.into_keys().collect();
+        for found in [back(found(&sectors, &sorted)), back(found(&list, &sorted))] {
+            prop_assert!(expected.iter().all(|pair| found.binary_search(pair).is_ok()));
+        }
+    }
+}
