@@ -136,10 +136,11 @@ fn levels(model: &HostModel) -> Table {
         ]),
         rows: rows.collect(),
         notes: vec![format!(
-            "A pass whose operands come from beyond the first level waits {:.3} ns an element besides; of the shorter of \
-             computing and waiting {:.0} % hide behind the longer. The fitted passes deviate by {:.0} % (the median).",
+            "A pass whose operands come from beyond the first level waits {:.3} ns an element besides; a pass of a program takes {:.2} \
+             times as long to begin as one of a drill. The passes and \
+             programs that this was fitted to deviate by {:.0} % (the median).",
             model.operand,
-            100.0 * model.overlap,
+            model.begin,
             100.0 * model.measured.residual
         )],
     }

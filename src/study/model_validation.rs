@@ -80,6 +80,9 @@ pub struct Case {
     pub measured: f64,
     /// A quarter of the repeats lies below, a quarter above.
     pub quartiles: [f64; 2],
+    /// The same by the rounds of even number alone and by those of odd number; none of one round. Every round lays the run
+    /// out anew, in other pages of memory.
+    pub halves: Option<[f64; 2]>,
     /// Nanoseconds by the trivial baseline: operations times elements, at the cost of a sum in the cache; none where
     /// what is executed hangs on the data.
     pub baseline: Option<f64>,
@@ -94,6 +97,11 @@ impl Case {
     /// The same of the baseline.
     pub fn baseline_error(&self) -> Option<f64> {
         Some((self.baseline? / self.measured - 1.0).abs())
+    }
+
+    /// How far the two halves of the measurement differ, as a share: no prediction can be shown to be better than that.
+    pub fn repeat_error(&self) -> Option<f64> {
+        self.halves.map(|[even, odd]| (even / odd - 1.0).abs())
     }
 
     /// Whether what is executed hangs on the data.
@@ -125,8 +133,9 @@ pub struct Errors {
     pub within: [usize; 4],
     /// The median error of the trivial baseline; none where there is none.
     pub baseline_median: Option<f64>,
-    /// Median of half the range between the quartiles of the repeats: what the measurement itself is good for.
-    pub spread: f64,
+    /// How far the measurement differs from its own repetition: in the median, and what nine of ten stay below; none of one
+    /// round.
+    pub repeated: Option<[f64; 2]>,
 }
 
 impl Errors {
@@ -150,10 +159,8 @@ impl Errors {
             within: [0.05, 0.1, 0.2, 0.3].map(|limit| errors.iter().filter(|&&error| error <= limit).count()),
             baseline_median: Some(quantile(&sorted(&Case::baseline_error), 0.5))
                 .filter(|median| median.is_finite()),
-            spread: quantile(
-                &sorted(&|case| Some(0.5 * (case.quartiles[1] - case.quartiles[0]) / case.measured)),
-                0.5,
-            ),
+            repeated: Some([0.5, 0.9].map(|share| quantile(&sorted(&Case::repeat_error), share)))
+                .filter(|shares| shares[0].is_finite()),
         }
     }
 }
@@ -207,10 +214,12 @@ pub fn model_validation(
         scenes.push(Scene::new(host, run)?);
     }
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(MeasurementError::Threads)?;
-    let mut times: Vec<Option<PhaseTimes>> = scenes.iter().map(|_| None).collect();
+    // Rounds of even and of odd number apart.
+    let mut times: Vec<[Option<PhaseTimes>; 2]> = scenes.iter().map(|_| [None, None]).collect();
     for round in 0..effort.rounds {
         for (at, (scene, times)) in scenes.iter().zip(&mut times).enumerate() {
             let more = alone.install(|| scene.measure(effort))?;
+            let times = &mut times[round % 2];
             *times = Some(match times.take() {
                 Some(before) => before.joined(more),
                 None => more,
@@ -219,16 +228,14 @@ pub fn model_validation(
         }
     }
     let mut cases = vec![];
-    for (scene, times) in scenes.iter().zip(&times) {
-        if let Some(times) = times {
-            cases.extend(scene.cases(host, times)?);
-        }
+    for (scene, halves) in scenes.iter().zip(&times) {
+        cases.extend(scene.cases(host, halves)?);
     }
     Ok(ModelValidation {
         host: host.title.clone(),
         instruction_set: host.instruction_set.clone(),
         shipped,
-        pace: median_pace(host, times.iter().flatten()),
+        pace: median_pace(host, times.iter().flatten().flatten()),
         errors: errors(&cases),
         cases,
     })
@@ -311,11 +318,23 @@ impl Scene {
         phase_times(&self.checked, &sampling)
     }
 
-    fn cases(&self, host: &HostModel, times: &PhaseTimes) -> Result<Vec<Case>, ValidationError> {
+    fn cases(
+        &self,
+        host: &HostModel,
+        halves: &[Option<PhaseTimes>; 2],
+    ) -> Result<Vec<Case>, ValidationError> {
+        let reference = host.measured.yardstick;
+        let Some(times) = halves.iter().flatten().cloned().reduce(PhaseTimes::joined) else {
+            return Ok(vec![]);
+        };
+        let of_halves = |phase: Phase| match halves {
+            [Some(even), Some(odd)] => Some([even, odd].map(|half| half.typical(phase, reference).0)),
+            _ => None,
+        };
         let predicted: Vec<(f64, Option<f64>)> = match &self.predicted {
             Some(phases) => phases.iter().map(|&[ns, baseline]| (ns, Some(baseline))).collect(),
             None => {
-                let phases = rated(host, &self.run, times);
+                let phases = rated(host, &self.run, &times);
                 let phases =
                     phases.map_err(|cause| ValidationError::OutOfRange { case: self.run.name(), cause })?;
                 phases.into_iter().map(|ns| (ns, None)).collect()
@@ -323,7 +342,7 @@ impl Scene {
         };
         let Run { particles, occupancy, precision, execution } = self.run;
         let cases = Phase::ALL.iter().zip(predicted).map(|(&phase, (predicted, baseline))| {
-            let (measured, quartiles) = times.typical(phase, host.measured.yardstick);
+            let (measured, quartiles) = times.typical(phase, reference);
             Case {
                 particles,
                 occupancy,
@@ -333,6 +352,7 @@ impl Scene {
                 predicted,
                 measured,
                 quartiles,
+                halves: of_halves(phase),
                 baseline,
             }
         });
@@ -362,6 +382,7 @@ mod tests {
             predicted,
             measured: 100.0,
             quartiles: [99.0, 101.0],
+            halves: Some([102.0, 100.0]),
             baseline: (execution != LISTS).then_some(50.0),
         }
     }
@@ -375,6 +396,7 @@ mod tests {
         assert_eq!((programs.cases, programs.within), (3, [1, 2, 2, 2]));
         assert!((programs.median - 0.08).abs() < 1e-9 && (programs.worst - 0.4).abs() < 1e-9);
         assert_eq!(programs.baseline_median, Some(0.5));
+        assert!((programs.repeated.unwrap()[0] - 0.02).abs() < 1e-9);
         assert_eq!(of(OF_DATA).baseline_median, None);
     }
 }

@@ -19,7 +19,6 @@ pub fn of_precision(model: &Model, precision: Precision) -> Vec<StepProgram> {
 /// The programs of a step as the model sees them.
 pub struct Step {
     programs: Vec<(Part, Outlines, usize)>,
-    around: Vec<Surroundings>,
     arrays: usize,
 }
 
@@ -31,10 +30,10 @@ impl Step {
             .map(|step| (step.part, step.program.outlines(), lengths.range(step.length).len()))
             .collect();
         let cycle: Vec<(&Outlines, usize)> = programs.iter().map(|(_, outlines, n)| (outlines, *n)).collect();
-        let around = Surroundings::of_cycle(&cycle);
+        let around = Surroundings::of_cycle(&cycle, 0.0);
         let arrays =
             around.iter().flat_map(Surroundings::arrays).collect::<std::collections::BTreeSet<_>>().len();
-        Step { programs, around, arrays }
+        Step { programs, arrays }
     }
 
     /// Nanoseconds of a phase, and the baseline's.
@@ -58,7 +57,10 @@ impl Step {
         // Every part binds the arrays of the step anew.
         let mut sum = parts.len() as f64 * (host.clock + self.arrays as f64 * host.bind);
         let mut baseline = 0.0;
-        for ((part, outlines, n), around) in self.programs.iter().zip(&self.around) {
+        let cycle: Vec<(&Outlines, usize)> =
+            self.programs.iter().map(|(_, outlines, n)| (outlines, *n)).collect();
+        let around = host.surroundings(&cycle, execution)?;
+        for ((part, outlines, n), around) in self.programs.iter().zip(&around) {
             if parts.contains(part) {
                 sum += host.program(outlines, *n, execution, around)?;
                 baseline += host.baseline(outlines, *n, execution);

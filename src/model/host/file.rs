@@ -4,7 +4,7 @@ use super::HostModel;
 use crate::model::machine_file::Position;
 
 /// The version of the file format that this program reads.
-pub const FORMAT: u32 = 3;
+pub const FORMAT: u32 = 4;
 
 /// Why a host file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -96,7 +96,7 @@ impl HostModel {
         });
         let rest = [
             ("operand", self.operand),
-            ("overlap", self.overlap),
+            ("begin", self.begin),
             ("bind", self.bind),
             ("run", self.run),
             ("clock", self.clock),

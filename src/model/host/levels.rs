@@ -59,6 +59,8 @@ impl Wait {
 /// The arrays around a program: how long each is, and how much is touched between its last use and this one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surroundings {
+    /// Elements of the program's vectors, strips or not.
+    whole: f64,
     arrays: BTreeMap<(Array, &'static str), Neighbourhood>,
 }
 
@@ -72,8 +74,9 @@ struct Neighbourhood {
 }
 
 impl Surroundings {
-    /// Of each of some programs, run one after the other over vectors of these lengths again and again.
-    pub fn of_cycle(programs: &[(&Outlines, usize)]) -> Vec<Surroundings> {
+    /// Of each of some programs, run one after the other over vectors of these lengths again and again, each of which
+    /// touches so many bytes of registers besides.
+    pub fn of_cycle(programs: &[(&Outlines, usize)], registers: f64) -> Vec<Surroundings> {
         let mut extents: BTreeMap<(Array, &'static str), [f64; 2]> = BTreeMap::new();
         let uses: Vec<Vec<(Array, &'static str)>> = programs
             .iter()
@@ -93,24 +96,32 @@ impl Surroundings {
             })
             .collect();
         // What is met element by element somewhere is as long as there; an index vector says nothing about it.
-        let extent = |name: &(Array, &'static str)| match extents.get(name) {
-            Some(&[_, directly]) if directly > 0.0 => directly,
-            Some(&[through, _]) => through,
-            None => 0.0,
+        let extent = |name: &Option<(Array, &'static str)>| match name.map(|name| extents.get(&name)) {
+            Some(Some(&[_, directly])) if directly > 0.0 => directly,
+            Some(Some(&[through, _])) => through,
+            Some(None) => 0.0,
+            None => registers,
         };
-        let mut stack: Vec<(Array, &'static str)> = vec![];
-        let mut around = vec![Surroundings::default(); programs.len()];
+        // Arrays in the order in which they were last used; the registers, which all programs share, have no name.
+        let mut stack: Vec<Option<(Array, &'static str)>> = vec![];
+        let mut around: Vec<Surroundings> = programs
+            .iter()
+            .map(|(_, n)| Surroundings { whole: *n as f64, ..Surroundings::default() })
+            .collect();
         // Twice: in the first round everything is new.
         for (used, surroundings) in uses.iter().zip(0..).chain(uses.iter().zip(0..)) {
-            for name in used {
-                let at = stack.iter().rposition(|known| known == name);
+            for name in used.iter().copied().map(Some).chain([None]) {
+                let at = stack.iter().rposition(|known| *known == name);
                 let behind = &stack[at.unwrap_or(0)..];
                 let distance: f64 = behind.iter().map(extent).sum();
                 if let Some(at) = at {
                     stack.remove(at);
                 }
-                stack.push(*name);
-                around[surroundings].arrays.insert(*name, Neighbourhood { extent: extent(name), distance });
+                stack.push(name);
+                if let Some(named) = name {
+                    let there = Neighbourhood { extent: extent(&name), distance };
+                    around[surroundings].arrays.insert(named, there);
+                }
             }
         }
         around
@@ -119,15 +130,6 @@ impl Surroundings {
     /// The arrays.
     pub fn arrays(&self) -> impl Iterator<Item = (Array, &'static str)> {
         self.arrays.keys().copied()
-    }
-
-    /// Says how many elements an array has, where no program that is known meets all of them.
-    pub fn widen(&mut self, array: Array, elements: f64) {
-        for ((name, element), there) in &mut self.arrays {
-            if *name == array {
-                there.extent = elements * element_bytes(element);
-            }
-        }
     }
 
     /// How long a pass over `n` elements waits for what it touches.
@@ -143,12 +145,9 @@ impl Surroundings {
                 Since::Before => there.map_or(0.0, |array| array.distance),
             };
             if let Some(array) = there.filter(|_| touch.indexed) {
-                // Where every line is met they come in a stream; where the next one is far, each is waited for.
-                let gap = array.extent / LINE / n;
-                let alone = (gap - 1.0).clamp(0.0, 1.0);
-                let streams = from_afar(levels, distance, |level| level.fetch * LINE);
-                let lines = from_afar(levels, distance, |level| level.line);
-                wait.indexed += n * gap.min(1.0) * (alone * lines + (1.0 - alone) * streams);
+                // As many lines as there are, at most one an element.
+                let lines = (array.extent / LINE / self.whole.max(n)).min(1.0);
+                wait.indexed += n * lines * from_afar(levels, distance, |level| level.line);
                 continue;
             }
             let written = f64::from(u8::from(touch.written));
@@ -193,11 +192,14 @@ mod tests {
             Outlines { lane: "f64", instructions: vec![], passes: vec![pass], registers: [0; 3] }
         };
         let [x, y] = [read(Array::X), read(Array::Y)];
-        let around = Surroundings::of_cycle(&[(&x, 10), (&y, 100), (&y, 100)]);
+        let around = Surroundings::of_cycle(&[(&x, 10), (&y, 100), (&y, 100)], 0.0);
         let distance = |at: usize, array| around[at].arrays[&(array, "f64")].distance;
         assert_eq!(
             [distance(0, Array::X), distance(1, Array::Y), distance(2, Array::Y)],
             [880.0, 880.0, 800.0]
         );
+        // Each program goes over the registers: they lie between.
+        let around = Surroundings::of_cycle(&[(&x, 10), (&y, 100)], 1000.0);
+        assert_eq!(around[0].arrays[&(Array::X, "f64")].distance, 1880.0);
     }
 }

@@ -1,4 +1,4 @@
-//! Today's hosts: what a pass of the interpreter takes, `t = t0 + n max(tau, e0 + sum of e_level)`, with the level of each
+//! Today's hosts: what a pass of the interpreter takes, `t = t0 + n (tau + e0 + sum of e_level)`, with the level of each
 //! operand found by reuse distance on the passes that are executed; what compiled loops take; and what a unit of the work
 //! takes whose amount hangs on the data.
 
@@ -105,8 +105,9 @@ pub struct HostModel {
     pub measured: Measured,
     /// Nanoseconds an element of a pass whose operands come from memory, besides what their bytes take: e0.
     pub operand: f64,
-    /// Of the shorter of computing and waiting for memory, the share that hides behind the longer.
-    pub overlap: f64,
+    /// How long a pass of a program takes to begin, as a share of what it takes in a drill of nothing but that pass: the
+    /// processor looks ahead from one to the next.
+    pub begin: f64,
     /// Nanoseconds to bind an array to a program's memory.
     pub bind: f64,
     /// Nanoseconds of a run of an interpreted program besides its passes.
@@ -254,7 +255,7 @@ impl HostModel {
             }
             let mut each = 0.0;
             for (pass, touches) in outlines.passes.iter().zip(&touched) {
-                each += change + self.pass(lane, pass, touches, length, around)?;
+                each += self.begin * change + self.pass(lane, pass, touches, length, around)?;
             }
             sum += strips as f64 * each;
         }
@@ -276,10 +277,28 @@ impl HostModel {
         let cost = lane.cost(pass)?;
         let wait = around.wait(&self.levels, touches, n as f64).sum();
         let wait = if wait > 0.0 { wait + self.operand * n as f64 } else { 0.0 };
-        // What is left of a strip beyond whole hardware registers goes element by element, in passes of its own.
-        let rest = n % lane.lanes.max(1);
-        let starts = if rest == 0 || n < lane.lanes { 1.0 } else { 2.0 };
-        Ok(starts * cost.start.value + overlapped(self.overlap, n as f64 * cost.element.value, wait))
+        Ok(self.begin * lane.starts(n) * cost.start.value + n as f64 * cost.element.value + wait)
+    }
+
+    /// What each of some programs finds around it that are run one after the other, over vectors of these lengths.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] for lanes that were not measured.
+    pub fn surroundings(
+        &self,
+        programs: &[(&Outlines, usize)],
+        execution: Execution,
+    ) -> Result<Vec<Surroundings>, OutOfRange> {
+        let mut registers = 0.0_f64;
+        for (outlines, n) in programs {
+            let length = match execution {
+                Execution::Eager => *n,
+                Execution::Strip(strip) => strip.min(*n),
+                Execution::Chained | Execution::Block(_) => 0,
+            };
+            registers = registers.max(self.lane(outlines.lane)?.register_extent(outlines, length));
+        }
+        Ok(Surroundings::of_cycle(programs, registers))
     }
 
     fn chained(&self, outlines: &Outlines, n: usize, around: &Surroundings) -> Result<f64, OutOfRange> {
@@ -300,6 +319,18 @@ impl HostModel {
 }
 
 impl LaneCosts {
+    /// How often a pass over `n` elements begins: what is left of it beyond whole hardware registers goes element by element,
+    /// in a pass of its own.
+    pub fn starts(&self, n: usize) -> f64 {
+        if n < self.lanes || n.is_multiple_of(self.lanes.max(1)) { 1.0 } else { 2.0 }
+    }
+
+    /// Bytes of all registers of a program over vectors or strips of `n` elements.
+    pub fn register_extent(&self, outlines: &Outlines, n: usize) -> f64 {
+        let files = outlines.registers.iter().zip(self.register_bytes);
+        files.map(|(&count, bytes)| count as f64 * bytes * n as f64).sum()
+    }
+
     /// What a pass takes in the first-level cache.
     ///
     /// # Errors

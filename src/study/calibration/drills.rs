@@ -17,13 +17,6 @@ pub(super) const ROUNDS: [usize; 2] = [36, 8];
 /// How far the operand of [`Kind::Shifted`] lies: no whole number of registers.
 const SHIFT: usize = 5;
 
-/// The index vectors of [`Kind::Sparse`].
-const SPARSE_INDEX: [Slot<u32>; GAPS.len()] =
-    [Slot::new(Array::Interior), Slot::new(Array::ImageX), Slot::new(Array::ImageY)];
-/// Elements of the array that they lead through, for each of their own, on average.
-pub(super) const GAPS: [usize; 3] = [6, 12, 32];
-/// Most elements of a sparse gather.
-pub(super) const LONGEST_SPARSE: usize = 131_072;
 /// Passes after which the mixture begins again, as a law does at every place of the mask.
 const PERIOD: usize = 61;
 
@@ -38,14 +31,11 @@ pub(super) enum Kind {
     Convert(Op),
     /// A difference of a register and an array met at a shift.
     Shifted,
-    /// Numbers gathered from a wide array, hardly two of them from one line, as discs lie in a sparse lattice.
-    /// The number says which of [`GAPS`].
-    Sparse(usize),
 }
 
 impl Kind {
     /// Every kind.
-    pub(super) const ALL: [Kind; 33] = [
+    pub(super) const ALL: [Kind; 30] = [
         Kind::Plain(Op::Add),
         Kind::Plain(Op::Subtract),
         Kind::Plain(Op::Multiply),
@@ -76,14 +66,12 @@ impl Kind {
         Kind::Convert(Op::Gather),
         Kind::Plain(Op::Load),
         Kind::Shifted,
-        Kind::Sparse(0),
-        Kind::Sparse(1),
-        Kind::Sparse(2),
     ];
 
-    /// Those by which the levels of memory are told apart: operands in place, from afar, written over, stored.
-    pub(super) const MOVING: [Kind; 4] =
-        [Kind::Plain(Op::Add), Kind::Plain(Op::Absolute), Kind::Plain(Op::Store), Kind::Shifted];
+    /// Whether it is one of those by which the levels of memory are told apart: operands in place, from afar, written over, stored.
+    pub(super) fn moves(self) -> bool {
+        matches!(self, Kind::Plain(Op::Add | Op::Absolute | Op::Store) | Kind::Shifted)
+    }
 
     /// The name of the pass, as outlines give it.
     pub(super) fn name(self) -> String {
@@ -92,7 +80,6 @@ impl Kind {
             Kind::Index(op) => format!("{}.index", op.mnemonic()),
             Kind::Convert(op) => format!("{}.convert", op.mnemonic()),
             Kind::Shifted => "shifted".to_owned(),
-            Kind::Sparse(gap) => format!("sparse.{}", GAPS[gap]),
         }
     }
 }
@@ -114,7 +101,6 @@ struct Registers<M: Machine> {
     numbers: [M::V; WIDTH],
     predicates: [M::P; FEW],
     indices: [M::I; FEW],
-    sparse: [M::I; GAPS.len()],
     one: M::V,
 }
 
@@ -129,7 +115,6 @@ impl<M: Machine> Registers<M> {
             // None of them holds, as hardly any lane that is counted does.
             predicates: [0, 1, 2, 3].map(|i| numbers[i + 1].less_than(numbers[i])),
             indices: [index(), index(), index(), index()],
-            sparse: SPARSE_INDEX.map(|slot| m.load_index(slot)),
             numbers,
         }
     }
@@ -137,7 +122,7 @@ impl<M: Machine> Registers<M> {
     /// One execution.
     #[inline(always)]
     fn round<O: Element>(&mut self, m: M, kind: Kind, round: usize) {
-        let Registers { numbers: v, predicates: p, indices: index, sparse, one } = self;
+        let Registers { numbers: v, predicates: p, indices: index, one } = self;
         let (i, next, few, other) = (round % WIDTH, (round + 1) % WIDTH, round % FEW, (round + 1) % FEW);
         let own = Slot::<M::Lane>::new(Array::Y);
         let converted = Slot::<O>::new(Array::DiscX);
@@ -174,9 +159,6 @@ impl<M: Machine> Registers<M> {
             Kind::Convert(Op::Load) => v[i] = m.load(converted),
             Kind::Convert(Op::Store) => m.store(Slot::<O>::new(Array::DiscY), v[i]),
             Kind::Convert(_) => v[i] = m.gather(converted, index[few], v[next]),
-            Kind::Sparse(gap) => {
-                v[i] = m.gather(Slot::<M::Lane>::new(Array::Radius), sparse[gap], v[next]);
-            }
             Kind::Shifted => v[i] = v[i] - m.load_shifted(Slot::<M::Lane>::new(Array::X), SHIFT as isize),
         }
     }
@@ -185,7 +167,7 @@ impl<M: Machine> Registers<M> {
     #[inline(always)]
     fn end(self, m: M) {
         m.store(Slot::<M::Lane>::new(Array::Vy), m.uniform(1.0));
-        let Registers { numbers, predicates, indices, sparse, one } = self;
+        let Registers { numbers, predicates, indices, one } = self;
         let mut sum = one;
         for number in numbers {
             sum = sum + number;
@@ -193,9 +175,6 @@ impl<M: Machine> Registers<M> {
         for (predicate, index) in predicates.into_iter().zip(indices) {
             m.count(Counter(0), predicate);
             m.store_index(Slot::new(Array::DiscCell), index);
-        }
-        for sparse in sparse {
-            m.store_index(Slot::new(Array::DiscCell), sparse);
         }
         m.store(Slot::<M::Lane>::new(Array::Omega), sum);
     }
@@ -271,6 +250,10 @@ pub(super) fn mixture<L: Precision, O: Precision>(passes: usize) -> Box<dyn Runn
     Box::new(Program::new(Mixture::<L, O> { passes, precisions: PhantomData }))
 }
 
+/// Elements that an array of the drills begins after where its memory does, times its number: large arrays lie at page
+/// borders, and all their beginnings would fall upon the same few lines of a cache.
+const APART: usize = 104;
+
 /// Most elements of a vector in a calibration.
 pub(super) const LONGEST: usize = 4_000_000;
 
@@ -281,8 +264,6 @@ pub(super) struct Arrays<L, O> {
     others: [Vec<O>; 2],
     index: Vec<u32>,
     through: Vec<u32>,
-    sparse: [Vec<u32>; GAPS.len()],
-    wide: Vec<L>,
     written_index: [Vec<u32>; 2],
 }
 
@@ -291,25 +272,14 @@ impl<L: Element, O: Element> Arrays<L, O> {
     pub(super) fn new(n: usize) -> Self {
         let n = n + SHIFT;
         // Near 1, so that no chain of products, quotients or roots leaves the normal numbers.
-        let near_one = |step: f64| (0..n).map(|i| L::from_f64(1.0 + step * (i % 97) as f64)).collect();
+        let near_one =
+            |step: f64| (0..n + APART).map(|i| L::from_f64(1.0 + step * (i % 97) as f64)).collect();
         // As discs lie in cells at a usual occupancy: every fourth element, in order.
         let index: Vec<u32> = (0..n).map(|i| ((4 * i) % n) as u32 + 1).collect();
-        let wide = GAPS[GAPS.len() - 1] * LONGEST_SPARSE.min(n);
-        let sparse = GAPS.map(|gap| {
-            let (mut at, mut state) = (0, 1_u32);
-            let ahead = (0..n).map(|_| {
-                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                at = (at + 1 + (state >> 8) as usize % (2 * gap - 1)) % wide;
-                at as u32 + 1
-            });
-            ahead.collect()
-        });
         Arrays {
-            sparse,
-            wide: vec![L::from_f64(1.0); wide],
             read: [near_one(1e-7), near_one(2e-7)],
-            written: vec![vec![L::from_f64(1.0); n]; STORED.len() + 2],
-            others: [vec![O::from_f64(1.0); n], vec![O::from_f64(1.0); n]],
+            written: (0..STORED.len() + 2).map(|at| vec![L::from_f64(1.0); n + (at + 2) * APART]).collect(),
+            others: [12, 13].map(|at| vec![O::from_f64(1.0); n + at * APART]),
             through: index.clone(),
             written_index: [vec![1; n], vec![1; n]],
             index,
@@ -318,34 +288,26 @@ impl<L: Element, O: Element> Arrays<L, O> {
 
     /// How many arrays there are.
     pub(super) fn count(&self) -> usize {
-        self.read.len()
-            + self.written.len()
-            + self.others.len()
-            + 3
-            + self.sparse.len()
-            + self.written_index.len()
+        self.read.len() + self.written.len() + self.others.len() + 2 + self.written_index.len()
     }
 
     /// The arrays bound to their slots.
     pub(super) fn memory(&mut self) -> Memory<'_> {
         let mut memory = Memory::new();
-        for (array, column) in [Array::X, Array::Y].into_iter().zip(&self.read) {
-            memory.bind_read(Slot::new(array), column);
+        for (at, (array, column)) in [Array::X, Array::Y].into_iter().zip(&self.read).enumerate() {
+            memory.bind_read(Slot::new(array), &column[at * APART..]);
         }
         let [from, to] = &mut self.others;
-        memory.bind_read(Slot::new(Array::DiscX), from);
-        memory.bind_write(Slot::new(Array::DiscY), to);
+        memory.bind_read(Slot::new(Array::DiscX), &from[12 * APART..]);
+        memory.bind_write(Slot::new(Array::DiscY), &mut to[13 * APART..]);
         memory.bind_read(Slot::new(Array::Index), &self.index);
         memory.bind_read(Slot::new(Array::HaloSource), &self.through);
-        for (slot, sparse) in SPARSE_INDEX.into_iter().zip(&self.sparse) {
-            memory.bind_read(slot, sparse);
-        }
-        memory.bind_read(Slot::new(Array::Radius), &self.wide);
         for (array, column) in [Array::DiscCell, Array::HaloCell].into_iter().zip(&mut self.written_index) {
             memory.bind_write(Slot::new(array), column);
         }
-        for (&array, column) in STORED.iter().chain(&[Array::Vy, Array::Omega]).zip(&mut self.written) {
-            memory.bind_write(Slot::new(array), column);
+        let written = STORED.iter().chain(&[Array::Vy, Array::Omega]).zip(&mut self.written);
+        for (at, (&array, column)) in written.enumerate() {
+            memory.bind_write(Slot::new(array), &mut column[(at + 2) * APART..]);
         }
         memory
     }

@@ -1,9 +1,10 @@
 //! Compiled loops: the programs of a step on vectors in the first-level cache, and their classes of operations.
 
 use super::fit;
-use super::passes::{OVERLAPS, estimate};
+use super::levels::Charged;
+use super::passes::{Lane, estimate};
 use super::timing::{PacedClock, Samples};
-use crate::method::lattice_md::{Arrays, Lengths, StepProgram, programs};
+use crate::method::lattice_md::{Arrays, Lengths, Part, StepProgram, programs};
 use crate::model::host::{HostModel, LoopCost, LoopCosts, Surroundings, class_counts};
 use crate::run::model;
 use crate::study::phase_times::Run;
@@ -21,13 +22,21 @@ const ELEMENTS: [usize; 2] = [48, 192];
 const SHORTEST: f64 = 40_000.0;
 /// The drill scene: discs at rest that do not touch, as no validation runs them.
 const DRILL: Run = Run { particles: 240, occupancy: 0.13, precision: "f64", execution: "chained" };
-/// NP of the larger drill scenes, whose arrays lie in the levels beyond the first.
-const LARGE: [usize; 3] = [1800, 9000, 30_000];
+/// NP and ρ of the larger drill scenes, whose arrays lie in the levels beyond the first.
+const LARGE: [(usize, f64); 5] = [(1800, 0.13), (5000, 0.06), (9000, 0.13), (15_000, 0.22), (30_000, 0.13)];
 /// What the drill scenes leave out, one after the other.
 const MODELS: [&[&str]; 2] = [
     &["particles.temperature=0", "particles.seed=7"],
     &["particles.temperature=0", "particles.seed=7", "law.friction=0", "law.shear_damping=0"],
 ];
+
+/// Shares of the shorter of computing and waiting that may hide behind the longer.
+const OVERLAPS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+/// How the interpreter runs the large drill scenes: in one strip, and in strips that no validation has.
+const INTERPRETED: [Execution; 2] = [Execution::Eager, Execution::Strip(160)];
+/// The interpreter is slow: of the largest scene and of every sweep but one of so many there are no samples of it.
+const LARGEST: usize = 20_000;
+const RARELY: usize = 2;
 
 /// Operations of each class of an element, and the nanoseconds it took.
 type Counted = (BTreeMap<&'static str, f64>, f64);
@@ -42,6 +51,8 @@ struct Step {
     samples: Vec<[Samples; 2]>,
     /// Whole vectors, one program after the other as in a step.
     whole: Vec<Samples>,
+    /// The same by the interpreter.
+    interpreted: [Vec<Samples>; INTERPRETED.len()],
 }
 
 /// Arrays of either precision.
@@ -65,12 +76,11 @@ impl Loops {
     /// Lays out the drill scenes.
     pub(super) fn new() -> Result<Loops, MeasurementError> {
         let mut loops = Loops { steps: vec![], arrays: vec![] };
-        let large = LARGE.iter().map(|&particles| (particles, MODELS[0]));
-        for (particles, overrides) in
-            MODELS.map(|overrides| (DRILL.particles, overrides)).into_iter().chain(large)
-        {
+        let large = LARGE.iter().map(|&place| (place, MODELS[0]));
+        let small = MODELS.map(|overrides| ((DRILL.particles, DRILL.occupancy), overrides));
+        for ((particles, occupancy), overrides) in small.into_iter().chain(large) {
             for precision in ["f64", "f32", "mixed"] {
-                let run = Run { particles, precision, ..DRILL };
+                let run = Run { particles, occupancy, precision, ..DRILL };
                 match precision {
                     "f64" => loops.lay_out::<f64, f64>(&run, overrides)?,
                     "f32" => loops.lay_out::<f32, f32>(&run, overrides)?,
@@ -92,19 +102,46 @@ impl Loops {
         let programs = programs::<S, P>(&model);
         let ranges = programs.iter().map(|step| lengths.range(step.length)).collect();
         let samples = programs.iter().map(|_| Default::default()).collect();
-        let whole = programs.iter().map(|_| Samples::default()).collect();
+        let whole: Vec<Samples> = programs.iter().map(|_| Samples::default()).collect();
+        let interpreted = INTERPRETED.map(|_| whole.clone());
         let friction = if model.friction { "" } else { ", frictionless" };
         let large = run.particles != DRILL.particles;
         let name = format!("{}{friction}", run.precision);
-        self.steps.push(Step { name, programs, ranges, memory: self.arrays.len(), large, samples, whole });
+        self.steps.push(Step {
+            name,
+            programs,
+            ranges,
+            memory: self.arrays.len(),
+            large,
+            samples,
+            whole,
+            interpreted,
+        });
         self.arrays.push(Box::new(Arrays::<S, P>::new(&model, &checked.particles)));
         Ok(())
     }
 
     /// One more sample of every loop.
-    pub(super) fn sweep(&mut self, clock: &mut PacedClock, set: InstructionSet) {
+    pub(super) fn sweep(&mut self, clock: &mut PacedClock, set: InstructionSet, number: usize) {
         for step in &mut self.steps {
             let memory = self.arrays[step.memory].memory();
+            let run = |program: &StepProgram, range: &Range<usize>, execution: Execution| {
+                let outcome = program.program.run(&memory, range.clone(), execution, set);
+                debug_assert!(outcome.is_ok(), "{outcome:?}");
+            };
+            if step.large && step.discs() < LARGEST && number.is_multiple_of(RARELY) {
+                for (execution, samples) in INTERPRETED.into_iter().zip(&mut step.interpreted) {
+                    let programs = || step.programs.iter().zip(&step.ranges);
+                    programs().for_each(|(program, range)| run(program, range, execution));
+                    for ((program, range), samples) in programs().zip(samples) {
+                        samples.take_once(clock, || run(program, range, execution));
+                    }
+                }
+            }
+            // Other scenes were in the caches; a step finds there what the step before has left.
+            for (program, range) in step.programs.iter().zip(&step.ranges) {
+                run(program, range, Execution::Chained);
+            }
             let programs = step.programs.iter().zip(&step.ranges).zip(&mut step.samples).zip(&mut step.whole);
             for (((program, range), samples), whole) in programs {
                 let run = |n: usize| {
@@ -126,7 +163,8 @@ impl Loops {
     /// Tells all samples at the pace of a reference.
     pub(super) fn settle(&mut self, reference: f64) {
         for step in &mut self.steps {
-            let samples = step.samples.iter_mut().flatten().chain(&mut step.whole);
+            let near = step.samples.iter_mut().flatten().chain(&mut step.whole);
+            let samples = near.chain(step.interpreted.iter_mut().flatten());
             samples.for_each(|samples| samples.settle(reference));
         }
     }
@@ -189,6 +227,12 @@ impl Loops {
         }
     }
 
+    /// The programs of the large drill scenes as the interpreter ran them.
+    pub(super) fn charged<'a>(&'a self, lanes: &'a [Lane]) -> impl Iterator<Item = Charged> + 'a {
+        let large = self.steps.iter().filter(|step| step.large && step.discs() < LARGEST);
+        large.flat_map(|step| step.charged(lanes))
+    }
+
     /// How loops wait for memory, given all else of the host: what suits the large drill scenes best. Loops without index
     /// vectors say how streams are waited for, and then those with them what the lines cost that these lead to.
     pub(super) fn fit_waits(&self, host: &mut HostModel) {
@@ -232,11 +276,39 @@ impl Whole {
 }
 
 impl Step {
+    /// Discs: the longest vectors that programs of discs have.
+    fn discs(&self) -> usize {
+        let of_discs = self.programs.iter().zip(&self.ranges).find(|(step, _)| step.part == Part::Predictor);
+        of_discs.map_or(0, |(_, range)| range.len())
+    }
+
+    fn charged(&self, lanes: &[Lane]) -> Vec<Charged> {
+        let outlines: Vec<Outlines> = self.programs.iter().map(|step| step.program.outlines()).collect();
+        let lane = |outlines: &Outlines| lanes.iter().find(|lane| lane.name == outlines.lane);
+        let lengths = self.ranges.iter().map(ExactSizeIterator::len);
+        let cycle: Vec<(&Outlines, usize)> = outlines.iter().zip(lengths).collect();
+        let mut all = vec![];
+        for (execution, samples) in INTERPRETED.into_iter().zip(&self.interpreted) {
+            let strip = |n: usize| if let Execution::Strip(strip) = execution { strip.min(n) } else { n };
+            let registers = cycle
+                .iter()
+                .filter_map(|(outlines, n)| Some(lane(outlines)?.costs.register_extent(outlines, strip(*n))));
+            let around = Surroundings::of_cycle(&cycle, registers.fold(0.0, f64::max));
+            let programs = cycle.iter().zip(around).zip(samples);
+            all.extend(programs.filter_map(|((&(outlines, n), around), samples)| {
+                let ns = samples.typical();
+                let usable = ns.is_finite() && n > 0;
+                usable.then(|| lane(outlines)?.charged(outlines, n, strip(n), around, ns)).flatten()
+            }));
+        }
+        all
+    }
+
     fn whole(&self) -> Vec<Whole> {
         let outlines: Vec<Outlines> = self.programs.iter().map(|step| step.program.outlines()).collect();
         let lengths = self.ranges.iter().map(ExactSizeIterator::len);
         let cycle: Vec<(&Outlines, usize)> = outlines.iter().zip(lengths).collect();
-        let around = Surroundings::of_cycle(&cycle);
+        let around = Surroundings::of_cycle(&cycle, 0.0);
         let lengths = cycle.iter().map(|(_, n)| *n).collect::<Vec<_>>();
         let each = outlines.into_iter().zip(lengths).zip(around).zip(&self.whole);
         each.map(|(((outlines, n), around), whole)| Whole { outlines, n, around, ns: whole.typical() })

@@ -3,6 +3,7 @@
 
 mod drills;
 mod fit;
+mod levels;
 mod loops;
 mod passes;
 mod scenes;
@@ -12,8 +13,9 @@ use super::throughput::MeasurementError;
 use crate::method::{Phase, Timings};
 use crate::model::host::{FORMAT, HostModel, Measured};
 use drills::{Arrays, LONGEST};
+use levels::{Charged, Levels, fit_levels};
 use loops::Loops;
-use passes::{Lane, Levels, SHORT, fit_levels};
+use passes::{Lane, SHORT};
 use scenes::Scenes;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::isa::ProgramError;
@@ -95,7 +97,7 @@ fn measured(
         for (lane, memory) in lanes.iter_mut().zip(&memories) {
             lane.sweep(&mut paced, memory, set, sweep);
         }
-        loops.sweep(&mut paced, set);
+        loops.sweep(&mut paced, set, sweep);
     }
     let yardstick = paced.reference();
     loops.settle(yardstick);
@@ -104,7 +106,9 @@ fn measured(
         lane.settle(yardstick);
         lane.fit();
     }
-    let Levels { operand, overlap, levels, residual } = fit_levels(&lanes);
+    let charged: Vec<Charged> =
+        lanes.iter().flat_map(Lane::long_passes).chain(loops.charged(&lanes)).collect();
+    let Levels { operand, levels, begin, residual } = fit_levels(&charged);
     let samples = || lanes.iter().flat_map(Lane::samples).chain(loops.samples());
     let mut model = HostModel {
         format: FORMAT,
@@ -121,7 +125,7 @@ fn measured(
             residual,
         },
         operand,
-        overlap,
+        begin,
         bind: binding.typical() / arrays.0.count() as f64,
         run: fit::median(lanes.iter().map(Lane::run)),
         // Half of the two looks at the clock lies between them.

@@ -1,14 +1,13 @@
-//! Passes of the interpreter: what each kind takes in the first-level cache, and what waiting for the levels beyond adds.
+//! Passes of the interpreter: what each kind takes in the first-level cache, and how long it takes beyond.
 
-use super::drills::{GAPS, Kind, LONGEST, LONGEST_SPARSE, ROUNDS, drill, mixture};
+use super::drills::{Kind, LONGEST, ROUNDS, drill, mixture};
 use super::fit::{self, median};
+use super::levels::{Charged, Waiting};
 use super::timing::{PacedClock, Samples};
-use crate::model::host::{
-    Change, Estimate, LaneCosts, Level, PassCost, Surroundings, Touch, overlapped, touches,
-};
+use crate::model::host::{Change, Estimate, LaneCosts, PassCost, Surroundings, touches};
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::backend::tape::{Outline, register_shape};
-use stripmine_kernels::isa::{Array, Memory, Op, ProgramError};
+use stripmine_kernels::backend::tape::{Outline, Outlines, register_shape};
+use stripmine_kernels::isa::{Memory, ProgramError};
 use stripmine_kernels::{Execution, InstructionSet, Runnable};
 
 /// Vectors that stay in the first-level cache.
@@ -72,10 +71,7 @@ impl Lane {
         let mut points = vec![];
         for (at, kind) in Kind::ALL.iter().enumerate() {
             let wide = L::BYTES == 8;
-            let long = LONG.iter().filter(|&&n| match kind {
-                Kind::Sparse(_) => wide && n <= LONGEST_SPARSE,
-                kind => Kind::MOVING.contains(kind) && (wide || n <= BOTH),
-            });
+            let long = LONG.iter().filter(|&&n| kind.moves() && (wide || n <= BOTH));
             let lengths = SHORT.iter().chain(long);
             points.extend(lengths.map(|&n| Point { kind: at, n, samples: Default::default() }));
         }
@@ -140,9 +136,7 @@ impl Lane {
             let widen = |of: fn(&PassCost) -> f64| (of(&halves[0]) - of(&halves[1])).abs();
             cost.element.interval += widen(|cost| cost.element.value);
             cost.start.interval += widen(|cost| cost.start.value);
-            if !matches!(kind, Kind::Sparse(_)) {
-                self.costs.passes.insert(kind.name(), cost);
-            }
+            self.costs.passes.insert(kind.name(), cost);
         }
         let shifted = self.costs.passes.remove(&Kind::Shifted.name()).unwrap_or_default();
         let plain = self.costs.passes.get("sub").copied().unwrap_or_default();
@@ -175,14 +169,13 @@ impl Lane {
         .max(0.0)
     }
 
-    /// The passes of some kinds over vectors beyond the first-level cache.
-    fn long_passes(&self, kinds: &[Kind]) -> impl Iterator<Item = LongPass> {
-        let points = self.points.iter().filter(|point| kinds.contains(&Kind::ALL[point.kind]));
+    /// The passes that move vectors and lines, over vectors beyond the first-level cache.
+    pub(super) fn long_passes(&self) -> impl Iterator<Item = Charged> {
+        let points = self.points.iter().filter(|point| Kind::ALL[point.kind].moves());
         points.filter(|point| !SHORT.contains(&point.n) && point.is_settled()).filter_map(|point| {
             let outlines = self.programs[point.kind][0].outlines();
             let kind = match Kind::ALL[point.kind] {
                 Kind::Shifted => "sub".to_owned(),
-                Kind::Sparse(_) => Kind::Plain(Op::Gather).name(),
                 kind => kind.name(),
             };
             let alike: Vec<usize> =
@@ -191,190 +184,45 @@ impl Lane {
             let middle = *alike.get(alike.len() / 2)?;
             let touched = touches(&outlines, self.costs.register_bytes).swap_remove(middle);
             let cost = self.costs.cost(&outlines.passes[middle]).ok()?;
-            let mut around = Surroundings::of_cycle(&[(&outlines, point.n)]).pop()?;
-            if let Kind::Sparse(gap) = Kind::ALL[point.kind] {
-                around.widen(Array::Radius, (GAPS[gap] * point.n) as f64);
-            }
-            Some(LongPass { n: point.n as f64, cost, touched, around, ns: point.each(Samples::typical) })
+            let around = Surroundings::of_cycle(&[(&outlines, point.n)], 0.0).pop()?;
+            let n = point.n as f64;
+            Some(Charged {
+                computing: n * cost.element.value,
+                starts: cost.start.value,
+                passes: vec![Waiting { times: 1.0, n, touched }],
+                around,
+                ns: point.each(Samples::typical),
+            })
         })
     }
-}
 
-/// A measured pass, as the levels see it.
-struct LongPass {
-    n: f64,
-    cost: PassCost,
-    touched: Vec<Touch>,
-    around: Surroundings,
-    ns: f64,
-}
-
-/// A level that costs nothing.
-const NOWHERE: Level = Level { name: String::new(), capacity: None, fetch: 0.0, write_back: 0.0, line: 0.0 };
-
-/// What is fitted: e0, and what each level beyond the first adds to a byte fetched and to a byte that must go back.
-const UNKNOWN: usize = 7;
-
-impl LongPass {
-    /// What is paid for: no level is cheaper than a nearer one, so every level adds to those before it.
-    fn features(&self, capacities: [f64; 3]) -> [f64; UNKNOWN] {
-        let mut features = [0.0; UNKNOWN];
-        for (level, capacity) in capacities.into_iter().enumerate() {
-            // A level that costs 1 a byte beyond its capacity, and none before.
-            let step = |fetch, write_back| {
-                let level = |capacity, fetch, write_back| Level { capacity, fetch, write_back, ..NOWHERE };
-                [level(Some(capacity), 0.0, 0.0), level(None, fetch, write_back)]
-            };
-            features[1 + 2 * level] = self.around.wait(&step(1.0, 0.0), &self.touched, self.n).sum() / self.n;
-            features[2 + 2 * level] = self.around.wait(&step(0.0, 1.0), &self.touched, self.n).sum() / self.n;
-        }
-        // Where everything is near there is nothing to wait for.
-        features[0] = if features[1] > 0.0 { 1.0 } else { 0.0 };
-        features
-    }
-}
-
-/// The levels that suit the long passes best.
-pub(super) struct Levels {
-    pub(super) operand: f64,
-    pub(super) overlap: f64,
-    pub(super) levels: Vec<Level>,
-    pub(super) residual: f64,
-}
-
-/// Shares of the shorter of computing and waiting that may hide behind the longer.
-pub(super) const OVERLAPS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-
-/// Capacities of the three cache levels that are tried (bytes): what the system says, of the last level, which others
-/// share, also parts; where it says nothing, what processors have.
-fn candidates() -> Vec<[f64; 3]> {
-    const KIB: f64 = 1024.0;
-    let known: Vec<f64> = (1..=3).filter_map(cache_size).collect();
-    if let [l1, l2, l3] = *known.as_slice() {
-        return [0.125, 0.25, 0.5, 1.0].map(|share| [l1, l2, share * l3]).to_vec();
-    }
-    let mut all = vec![];
-    for l1 in [32.0, 48.0, 64.0, 128.0] {
-        for l2 in [256.0, 512.0, 1024.0, 2048.0, 4096.0] {
-            for l3 in [4.0, 8.0, 16.0, 32.0] {
-                all.push([l1 * KIB, l2 * KIB, l3 * KIB * KIB]);
+    /// A program over vectors of `n` elements, in strips, as the levels see it.
+    pub(super) fn charged(
+        &self,
+        outlines: &Outlines,
+        n: usize,
+        strip: usize,
+        around: Surroundings,
+        ns: f64,
+    ) -> Option<Charged> {
+        let all = touches(outlines, self.costs.register_bytes);
+        let change = self.costs.change(outlines.passes.len());
+        let mut charged = Charged { computing: self.run(), starts: 0.0, passes: vec![], around, ns };
+        for (strips, length) in [(n / strip, strip), (1, n % strip)] {
+            if strips == 0 || length == 0 {
+                continue;
+            }
+            for (pass, touched) in outlines.passes.iter().zip(&all) {
+                let cost = self.costs.cost(pass).ok()?;
+                let starts = self.costs.starts(length);
+                charged.computing += strips as f64 * length as f64 * cost.element.value;
+                charged.starts += strips as f64 * (change + starts * cost.start.value);
+                let touched = touched.clone();
+                charged.passes.push(Waiting { times: strips as f64, n: length as f64, touched });
             }
         }
+        Some(charged)
     }
-    all
-}
-
-/// Bytes of this processor's data cache of a level, where the system says it.
-fn cache_size(level: usize) -> Option<f64> {
-    let read = |index: usize, what: &str| {
-        let path = format!("/sys/devices/system/cpu/cpu0/cache/index{index}/{what}");
-        Some(std::fs::read_to_string(path).ok()?.trim().to_owned())
-    };
-    let of_level = |index: &usize| {
-        read(*index, "level") == Some(level.to_string())
-            && read(*index, "type").as_deref() != Some("Instruction")
-    };
-    let size = read((0..8).find(of_level)?, "size")?;
-    let kib: f64 = size.strip_suffix('K')?.parse().ok()?;
-    Some(1024.0 * kib)
-}
-
-/// Capacities and costs of the levels, and how much of the waiting hides behind computing.
-pub(super) fn fit_levels(lanes: &[Lane]) -> Levels {
-    let passes: Vec<LongPass> = lanes.iter().flat_map(|lane| lane.long_passes(&Kind::MOVING)).collect();
-    let mut best: Option<(f64, [f64; 3], f64, [f64; UNKNOWN])> = None;
-    for capacities in candidates() {
-        let features: Vec<[f64; UNKNOWN]> = passes.iter().map(|pass| pass.features(capacities)).collect();
-        for overlap in OVERLAPS {
-            let costs = fit_costs(&passes, &features, overlap);
-            let error = deviation(&passes, &features, overlap, &costs);
-            if best.is_none_or(|(least, ..)| error < least) {
-                best = Some((error, capacities, overlap, costs));
-            }
-        }
-    }
-    let (residual, capacities, overlap, [operand, bytes @ ..]) = best.unwrap_or_default();
-    let names = ["first-level cache", "second-level cache", "third-level cache", "memory"];
-    let capacities = capacities.into_iter().map(Some).chain([None]);
-    let [mut fetch, mut write_back] = [0.0; 2];
-    let levels = names.into_iter().zip(capacities).enumerate().map(|(at, (name, capacity))| {
-        if at > 0 {
-            fetch += bytes[2 * at - 2];
-            write_back += bytes[2 * at - 1];
-        }
-        Level { name: name.to_owned(), capacity, fetch, write_back, line: 0.0 }
-    });
-    let mut levels = Levels { operand, overlap, levels: levels.collect(), residual };
-    let kinds: [Kind; GAPS.len()] = std::array::from_fn(Kind::Sparse);
-    let sparse: Vec<LongPass> = lanes.iter().flat_map(|lane| lane.long_passes(&kinds)).collect();
-    levels.fit_lines(&sparse);
-    levels
-}
-
-impl Levels {
-    /// What a line costs that is met through an index vector, from each level, given what all else costs.
-    fn fit_lines(&mut self, passes: &[LongPass]) {
-        let capacities: Vec<f64> = self.levels.iter().filter_map(|level| level.capacity).collect();
-        let rows = passes.iter().map(|pass| {
-            let lines = |capacity: f64| {
-                let level = |capacity, line| Level { capacity, line, ..NOWHERE };
-                let step = [level(Some(capacity), 0.0), level(None, 1.0)];
-                pass.around.wait(&step, &pass.touched, pass.n).indexed / pass.ns
-            };
-            let features: [f64; 3] =
-                std::array::from_fn(|at| capacities.get(at).map_or(0.0, |&capacity| lines(capacity)));
-            let streams = pass.around.wait(&self.levels, &pass.touched, pass.n).sum();
-            let compute = pass.cost.start.value + pass.n * pass.cost.element.value;
-            let rest = (1.0 - self.overlap) * compute + streams;
-            // Where computing is the longer, waiting shows by what does not hide.
-            (features, ((pass.ns - rest) / pass.ns).max(0.0))
-        });
-        let lines = fit::non_negative(&rows.collect::<Vec<_>>());
-        let mut line = 0.0;
-        for (level, more) in self.levels.iter_mut().skip(1).zip(lines) {
-            line += more;
-            level.line = line;
-        }
-    }
-}
-
-fn waits(features: &[f64; UNKNOWN], costs: &[f64; UNKNOWN]) -> f64 {
-    features.iter().zip(costs).map(|(feature, cost)| feature * cost).sum()
-}
-
-/// The costs that suit the passes, weighted alike in their relative error; some rounds, in which points far from the fit
-/// weigh less and less, so that a busy moment does not count for more than it is.
-fn fit_costs(passes: &[LongPass], features: &[[f64; UNKNOWN]], overlap: f64) -> [f64; UNKNOWN] {
-    let mut costs: Option<[f64; UNKNOWN]> = None;
-    for _ in 0..6 {
-        let rows = passes.iter().zip(features).filter_map(|(pass, features)| {
-            let value = (pass.ns - pass.cost.start.value) / pass.n;
-            let compute = pass.cost.element.value;
-            // Which of computing and waiting is the longer shows in what both take together.
-            let waits_longer = value > (2.0 - overlap) * compute;
-            let (weight, rest) = if waits_longer {
-                (1.0, value - (1.0 - overlap) * compute)
-            } else {
-                (1.0 - overlap, (value - compute).max(0.0))
-            };
-            let far = costs.map_or(0.0, |costs| {
-                (overlapped(overlap, compute, waits(features, &costs)) / value - 1.0).abs()
-            });
-            let scale = (0.05 / (0.05 + far)).sqrt() * pass.n / pass.ns;
-            (weight > 0.0 && features[1] > 0.0)
-                .then(|| (features.map(|feature| weight * feature * scale), rest * scale))
-        });
-        costs = Some(fit::non_negative(&rows.collect::<Vec<_>>()));
-    }
-    costs.unwrap_or_default()
-}
-
-fn deviation(passes: &[LongPass], features: &[[f64; UNKNOWN]], overlap: f64, costs: &[f64; UNKNOWN]) -> f64 {
-    let errors = passes.iter().zip(features).map(|(pass, features)| {
-        let each = overlapped(overlap, pass.cost.element.value, waits(features, costs));
-        ((pass.cost.start.value + pass.n * each) / pass.ns).ln().abs()
-    });
-    median(errors)
 }
 
 /// A number with the difference of two halves as its interval.
