@@ -2,6 +2,7 @@
 
 use super::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use super::{Cell, Section, Table, Verdict};
+use crate::method::Phase;
 use crate::study::model_validation::{Case, Errors, ModelValidation, OF_DATA, PROGRAMS};
 
 /// How many of the worst cases are named.
@@ -29,7 +30,11 @@ pub fn section(data: &ModelValidation) -> Section {
             .join(" "),
         verdict: if reached { Verdict::Reproduced } else { Verdict::Partly },
         again: "stripmine calibrate --out host.toml, then stripmine validate-model --host host.toml".into(),
-        figures: vec![over_predicted(data), histogram(data)],
+        figures: executions(data)
+            .into_iter()
+            .map(|execution| over_predicted(data, execution))
+            .chain([histogram(data)])
+            .collect(),
         tables: tables(data),
         excerpt: None,
         film: None,
@@ -178,24 +183,28 @@ fn executions(data: &ModelValidation) -> Vec<&'static str> {
     names
 }
 
-fn over_predicted(data: &ModelValidation) -> Figure {
-    let series = executions(data).into_iter().enumerate().map(|(hue, name)| {
-        let cases = data.cases.iter().filter(|case| case.execution == name && case.measured > 0.0);
+/// One execution, phase by phase.
+fn over_predicted(data: &ModelValidation, execution: &str) -> Figure {
+    let series = Phase::ALL.iter().enumerate().map(|(hue, phase)| {
+        let cases = data
+            .cases
+            .iter()
+            .filter(|case| case.execution == execution && case.phase == phase.name() && case.measured > 0.0);
         let points = cases.map(|case| {
             let ratio = case.measured / case.predicted;
             let spread = Some(case.quartiles.map(|quartile| quartile / case.predicted));
             Point { x: 1e-3 * case.predicted, y: ratio, spread }
         });
-        Series { name: name.into(), style: Style::Points, hue, points: points.collect() }
+        Series { name: phase.name().into(), style: Style::Points, hue, points: points.collect() }
     });
     Figure {
-        name: "measured_over_predicted".into(),
-        title: "Measured over predicted".into(),
+        name: format!("measured_over_predicted_{}", execution.replace([':', ' '], "_")),
+        title: format!("Measured over predicted, {execution}"),
         caption: "Each point is a phase of a step of one run; the lower quartile of the repeats, bars up to the upper one. 1 is right.".into(),
         picture: Picture::Chart(Chart {
             x: Axis::logarithmic("predicted time", Some("µs")),
             y: Axis::logarithmic("measured over predicted", None),
-            series: series.collect(),
+            series: series.filter(|series| !series.points.is_empty()).collect(),
             bands: vec![],
         }),
     }

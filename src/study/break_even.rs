@@ -3,7 +3,7 @@
 
 use super::StudyError;
 use super::density_cost::{ListFigures, grid, list_figures};
-use super::phase_times::{FAST, HALF_MASK, LISTS, Run, Sampling, phase_times};
+use super::phase_times::{FAST, FAST_LISTS, HALF_MASK, LISTS, Run, Sampling, phase_times};
 use super::predicted_step::{Step, of_precision};
 use super::throughput::MeasurementError;
 use crate::method::Phase;
@@ -20,11 +20,12 @@ pub const OCCUPANCIES: [f64; 7] = [0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.25];
 pub const PARTICLES: [usize; 6] = [100, 300, 1000, 3000, 10_000, 30_000];
 
 /// Ways of a host, as scenes name them.
-const WAYS: [(&str, Option<Execution>); 5] = [
+const WAYS: [(&str, Option<Execution>); 6] = [
     ("eager", Some(Execution::Eager)),
     ("strip:512", Some(Execution::Strip(512))),
     ("chained", Some(Execution::Chained)),
     (FAST, None),
+    (FAST_LISTS, None),
     (LISTS, None),
 ];
 
@@ -72,6 +73,8 @@ pub struct Atlas {
     /// What lists hold at each density, measured in a run of about a thousand discs: what the models take for the number of
     /// candidates and contacts everywhere.
     pub lists: Vec<ListFigures>,
+    /// The same of the fast lists, whose skin is another: a step of that run.
+    pub fast_lists: Vec<Amounts>,
     /// The sheets.
     pub sheets: Vec<Sheet>,
 }
@@ -122,6 +125,11 @@ pub fn atlas(
     progress: impl Fn(f64) + Sync,
 ) -> Result<Atlas, AtlasError> {
     let lists: Vec<ListFigures> = OCCUPANCIES.map(list_figures).into_iter().collect::<Result<_, _>>()?;
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(MeasurementError::Threads)?;
+    let fast_lists: Vec<Amounts> = OCCUPANCIES
+        .iter()
+        .map(|&occupancy| alone.install(|| fast_list_amounts(occupancy)))
+        .collect::<Result<_, _>>()?;
     let mut sheets = vec![];
     for machine in machines {
         let places = grid(machine, &lists, &PARTICLES)?.into_iter();
@@ -142,10 +150,10 @@ pub fn atlas(
     let methods: Vec<String> = WAYS.iter().map(|(name, _)| (*name).to_owned()).collect();
     let mut predicted = vec![];
     for particles in PARTICLES {
-        for figures in &lists {
+        for figures in lists.iter().zip(&fast_lists) {
             let costs = WAYS.iter().map(|way| predict(host, particles, figures, way));
             let costs = costs.collect::<Result<_, AtlasError>>()?;
-            predicted.push(Place { particles, occupancy: figures.occupancy, costs });
+            predicted.push(Place { particles, occupancy: figures.0.occupancy, costs });
         }
     }
     sheets.push(Sheet {
@@ -156,7 +164,6 @@ pub fn atlas(
         methods: methods.clone(),
         places: predicted,
     });
-    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(MeasurementError::Threads)?;
     let mut places = vec![];
     for &particles in measured {
         for occupancy in OCCUPANCIES {
@@ -175,18 +182,25 @@ pub fn atlas(
         methods,
         places,
     });
-    Ok(Atlas { lists, sheets })
+    Ok(Atlas { lists, fast_lists, sheets })
 }
 
 fn run(particles: usize, occupancy: f64, (name, _): &(&'static str, Option<Execution>)) -> Run {
     Run { particles, occupancy, precision: "f64", execution: name }
 }
 
+/// What fast lists have to do in a step, in a run of about a thousand discs.
+fn fast_list_amounts(occupancy: f64) -> Result<Amounts, MeasurementError> {
+    let checked = run(1000, occupancy, &(FAST_LISTS, None)).scene(&[])?;
+    let sampling = Sampling { equilibration: 200, repeats: 2, particle_steps: 300_000, least_steps: 100 };
+    Ok(phase_times(&checked, &sampling)?.amounts)
+}
+
 /// Nanoseconds of a step by the model; candidates and contacts as in the run of about a thousand discs.
 fn predict(
     host: &HostModel,
     particles: usize,
-    figures: &ListFigures,
+    (figures, fast_lists): (&ListFigures, &Amounts),
     way: &(&'static str, Option<Execution>),
 ) -> Result<f64, AtlasError> {
     let run = run(particles, figures.occupancy, way);
@@ -208,6 +222,8 @@ fn predict(
             remade: np / figures.steps_a_list,
             relisted: figures.candidates * np / figures.steps_a_list,
         }
+    } else if run.execution == FAST_LISTS {
+        fast_lists.with(&Amounts::default(), |amount, _| amount * np / fast_lists.discs)
     } else {
         // Each pair once; in the lists it is in both.
         let contacts = 0.5 * figures.contacts * np;
@@ -260,7 +276,7 @@ mod tests {
     fn a_model_is_right_if_what_it_names_is_hardly_slower_than_the_winner() {
         for (measured, right) in [([10.0, 9.5], 1), ([10.0, 5.0], 0)] {
             let sheets = vec![sheet(false, [1.0, 2.0]), sheet(true, measured)];
-            assert_eq!(Atlas { lists: vec![], sheets }.agreement(), (right, 1));
+            assert_eq!(Atlas { lists: vec![], fast_lists: vec![], sheets }.agreement(), (right, 1));
         }
     }
 }
