@@ -146,11 +146,11 @@ mod tests {
             HostModel::parse("bad.toml", &text.replacen(old, new, 1)).unwrap_err().to_string()
         };
         for (old, new, expected) in [
-            ("operand = ", "operand = -", "`operand` is -"),
-            ("operand = ", "operands = ", "unknown field `operands`"),
+            ("run = ", "run = -", "`run` is -"),
+            ("run = ", "runs = ", "unknown field `runs`"),
             ("overlap", "overlapp", "unknown field `overlapp`"),
-            ("format = 3", "format = 7", "`format` is 7"),
-            ("format = 3\n", "", "missing field `format`"),
+            ("format = 4", "format = 7", "`format` is 7"),
+            ("format = 4\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
             assert!(said.contains(expected) && said.contains("line "), "{said}");

@@ -136,7 +136,8 @@ pub(super) fn fit_levels(charged: &[Charged]) -> Levels {
     let mut best: Option<(f64, [f64; BEYOND], Costs)> = None;
     for capacities in candidates() {
         let features: Vec<Costs> = charged.iter().map(|each| each.features(capacities)).collect();
-        let costs = fit_costs(charged, &features);
+        let mut costs = fit_costs(charged, &features);
+        fit_lines(charged, &features, &mut costs);
         let error = median(charged.iter().zip(&features).map(|(each, of)| each.deviation(of, &costs)));
         if best.is_none_or(|(least, ..)| error < least) {
             best = Some((error, capacities, costs));
@@ -157,6 +158,21 @@ pub(super) fn fit_levels(charged: &[Charged]) -> Levels {
     Levels { operand, levels: levels.collect(), begin: steps[BEGIN - 1], residual }
 }
 
+/// What lines cost that index vectors lead to, given all else: by what has such vectors alone, and all of that, for among
+/// everything it is too little to be heard.
+fn fit_lines(charged: &[Charged], features: &[Costs], costs: &mut Costs) {
+    const FIRST: usize = 1 + 2 * BEYOND;
+    let lines = &mut costs[FIRST..FIRST + LINES];
+    lines.fill(0.0);
+    let rows = charged.iter().zip(features).filter_map(|(each, features)| {
+        let own: [f64; LINES] = std::array::from_fn(|level| features[FIRST + level] / each.ns);
+        let rest = (each.ns - each.computing - product(features, costs)) / each.ns;
+        own.iter().any(|&own| own > 0.0).then_some((own, rest))
+    });
+    let fitted = fit::non_negative(&rows.collect::<Vec<_>>());
+    costs[FIRST..FIRST + LINES].copy_from_slice(&fitted);
+}
+
 /// The costs that suit best, everything weighted alike in its relative error; some rounds, in which what is far from the fit
 /// weighs less and less, so that a busy moment does not count for more than it is.
 fn fit_costs(charged: &[Charged], features: &[Costs]) -> Costs {
@@ -170,4 +186,55 @@ fn fit_costs(charged: &[Charged], features: &[Costs]) -> Costs {
         costs = Some(fit::non_negative(&rows.collect::<Vec<_>>()));
     }
     costs.unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::host::{Since, Vector};
+    use stripmine_kernels::backend::tape::{File, RegisterName};
+
+    const KIB: f64 = 1024.0;
+
+    /// A pass over a register that was touched so many bytes ago, beside one that is near.
+    fn charged(distance: f64, written: bool, wait: f64) -> Charged {
+        let n = 1000.0;
+        let register = |number, distance, written| Touch {
+            vector: Vector::Register(RegisterName { file: File::Number, number }),
+            bytes: 8.0,
+            since: Since::Here(distance / n),
+            written,
+            indexed: false,
+        };
+        let touched = vec![register(0, distance, written), register(1, 64.0, false)];
+        let passes = vec![Waiting { times: 3.0, n, touched }];
+        let computing = 200.0;
+        Charged {
+            computing,
+            starts: 0.0,
+            passes,
+            around: Surroundings::default(),
+            ns: computing + 3.0 * n * 8.0 * wait,
+        }
+    }
+
+    #[test]
+    fn costs_that_went_in_come_out() {
+        let capacities = [32.0 * KIB, 512.0 * KIB, 8192.0 * KIB];
+        let all = [
+            charged(1.0 * KIB, true, 0.0),
+            charged(200.0 * KIB, false, 0.01),
+            charged(200.0 * KIB, true, 0.015),
+            charged(3000.0 * KIB, false, 0.03),
+            charged(3000.0 * KIB, true, 0.045),
+            charged(90_000.0 * KIB, false, 0.1),
+            charged(90_000.0 * KIB, true, 0.145),
+        ];
+        let features: Vec<Costs> = all.iter().map(|each| each.features(capacities)).collect();
+        let costs = fit_costs(&all, &features);
+        for (each, features) in all.iter().zip(&features) {
+            assert!(each.deviation(features, &costs) < 0.02, "{costs:?}");
+        }
+        assert!(costs.iter().all(|cost| *cost >= 0.0));
+    }
 }

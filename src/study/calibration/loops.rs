@@ -4,8 +4,9 @@ use super::fit;
 use super::levels::Charged;
 use super::passes::{Lane, estimate};
 use super::timing::{PacedClock, Samples};
-use crate::method::lattice_md::{Arrays, Lengths, Part, StepProgram, programs};
+use crate::method::lattice_md::{Arrays, Lengths, Model, Part, StepProgram, programs};
 use crate::model::host::{HostModel, LoopCost, LoopCosts, Surroundings, class_counts};
+use crate::particles::Particles;
 use crate::run::model;
 use crate::study::phase_times::Run;
 use crate::study::throughput::MeasurementError;
@@ -55,14 +56,31 @@ struct Step {
     interpreted: [Vec<Samples>; INTERPRETED.len()],
 }
 
-/// Arrays of either precision.
-trait Bound {
-    fn memory(&mut self) -> Memory<'_>;
+/// Arrays of either precision, and what they are made from.
+struct Laid<S, P> {
+    model: Model,
+    particles: Particles,
+    arrays: Arrays<S, P>,
+    /// Takes up room, so that arrays made anew lie elsewhere.
+    between: Vec<u8>,
 }
 
-impl<S: Precision, P: Precision> Bound for Arrays<S, P> {
+trait Bound {
+    fn memory(&mut self) -> Memory<'_>;
+    /// Makes the arrays anew, at other places: how their beginnings fall upon the lines of a cache is a matter of luck, and
+    /// makes a loop half as fast again or not.
+    fn anew(&mut self, number: usize);
+}
+
+impl<S: Precision, P: Precision> Bound for Laid<S, P> {
     fn memory(&mut self) -> Memory<'_> {
-        Arrays::memory(self).0
+        self.arrays.memory().0
+    }
+
+    fn anew(&mut self, number: usize) {
+        // Some lines more or less, up to a page.
+        self.between = vec![0; 1 + number * 832 % 4096];
+        self.arrays = Arrays::new(&self.model, &self.particles);
     }
 }
 
@@ -117,13 +135,18 @@ impl Loops {
             whole,
             interpreted,
         });
-        self.arrays.push(Box::new(Arrays::<S, P>::new(&model, &checked.particles)));
+        let arrays = Arrays::<S, P>::new(&model, &checked.particles);
+        let particles = checked.particles;
+        self.arrays.push(Box::new(Laid { model, particles, arrays, between: vec![] }));
         Ok(())
     }
 
     /// One more sample of every loop.
     pub(super) fn sweep(&mut self, clock: &mut PacedClock, set: InstructionSet, number: usize) {
         for step in &mut self.steps {
+            if !step.large {
+                self.arrays[step.memory].anew(number);
+            }
             let memory = self.arrays[step.memory].memory();
             let run = |program: &StepProgram, range: &Range<usize>, execution: Execution| {
                 let outcome = program.program.run(&memory, range.clone(), execution, set);

@@ -62,34 +62,30 @@ impl Scenes {
     }
 }
 
+/// What there was to do in a run, and the nanoseconds that it took.
+type Done = (Amounts, f64);
+
 fn rates(measured: &[(Run, &PhaseTimes)], reference: f64) -> BTreeMap<String, Rates> {
     let mut methods: BTreeMap<String, Rates> = BTreeMap::new();
-    for particles in PARTICLES {
+    for method in ["fast", "fast, sparse", "fast lists", "lists"] {
+        let rates = methods.entry(method.to_owned()).or_default();
         for precision in PRECISIONS {
-            for method in ["fast", "fast, sparse", "fast lists", "lists"] {
-                let alike: Vec<&PhaseTimes> = measured
-                    .iter()
-                    .filter(|(run, _)| {
+            let alike: Vec<Vec<&PhaseTimes>> = PARTICLES
+                .iter()
+                .map(|&particles| {
+                    let alike = measured.iter().filter(|(run, _)| {
                         run.particles == particles
                             && run.precision == precision
                             && run.rates() == Some(method)
-                    })
-                    .map(|(_, times)| *times)
-                    .collect();
-                let phases =
-                    methods.entry(method.to_owned()).or_default().0.entry(precision.to_owned()).or_default();
-                for &phase in Phase::ALL {
-                    if alike.iter().all(|times| times.quiet(phase, reference) == 0.0) {
-                        continue;
-                    }
-                    let points: &mut Vec<RatePoint> = phases.entry(phase.name().to_owned()).or_default();
-                    let mut point = point(&alike, phase, reference);
-                    // Of many discs few steps are run, and no lists may have been made: as of fewer discs, then.
-                    if let Some(before) = points.last().filter(|_| !point.makes_lists()) {
-                        let made = before.ns.iter().filter(|(unit, _)| MAKING.contains(&unit.as_str()));
-                        point.ns.extend(made.map(|(unit, ns)| (unit.clone(), *ns)));
-                    }
-                    points.push(point);
+                    });
+                    alike.map(|(_, times)| *times).collect()
+                })
+                .collect();
+            let phases = rates.0.entry(precision.to_owned()).or_default();
+            for &phase in Phase::ALL {
+                let points = points(&alike, phase, reference);
+                if points.iter().any(|point| !point.ns.is_empty()) {
+                    phases.insert(phase.name().to_owned(), points);
                 }
             }
         }
@@ -97,39 +93,56 @@ fn rates(measured: &[(Run, &PhaseTimes)], reference: f64) -> BTreeMap<String, Ra
     methods
 }
 
-/// The units of making lists.
-const MAKING: [&str; 2] = ["remade", "relisted"];
-
-impl RatePoint {
-    fn makes_lists(&self) -> bool {
-        MAKING.iter().any(|&unit| self.ns.contains_key(unit))
-    }
-}
-
-/// What each unit takes in a phase.
-fn point(alike: &[&PhaseTimes], phase: Phase, reference: f64) -> RatePoint {
-    let quiet = alike.iter().map(|times| (charged(phase, &times.amounts), times.quiet(phase, reference)));
-    let mut ns = per_unit(quiet);
-    if phase == Phase::Index {
-        let makings = alike.iter().filter_map(|times| {
-            let Amounts { discs, candidates, .. } = times.amounts;
-            let amounts = Amounts { remade: discs, relisted: candidates, ..Amounts::default() };
-            Some((amounts, times.making(reference)?))
-        });
-        ns.extend(per_unit(makings));
-    }
-    RatePoint {
+/// What each unit takes in a phase, number of discs by number of discs.
+fn points(alike: &[Vec<&PhaseTimes>], phase: Phase, reference: f64) -> Vec<RatePoint> {
+    let quiet = |times: &PhaseTimes| Some((charged(phase, &times.amounts), times.quiet(phase, reference)));
+    let making = |times: &PhaseTimes| {
+        let Amounts { discs, candidates, .. } = times.amounts;
+        let amounts = Amounts { remade: discs, relisted: candidates, ..Amounts::default() };
+        (phase == Phase::Index).then(|| Some((amounts, times.making(reference)?))).flatten()
+    };
+    let of = |done: &dyn Fn(&PhaseTimes) -> Option<Done>| -> Vec<Vec<(&'static str, f64)>> {
+        let all: Vec<Vec<Done>> = alike
+            .iter()
+            .map(|alike| alike.iter().filter_map(|times| done(times)).filter(|done| done.1 > 0.0).collect())
+            .collect();
+        per_unit(&all)
+    };
+    let points = alike.iter().zip(of(&quiet)).zip(of(&making)).map(|((alike, quiet), making)| RatePoint {
         discs: alike.iter().map(|times| times.amounts.discs as usize).max().unwrap_or(0),
-        ns: ns.into_iter().map(|(name, ns)| (name.to_owned(), ns)).collect(),
-    }
+        ns: quiet.into_iter().chain(making).map(|(name, ns)| (name.to_owned(), ns)).collect(),
+    });
+    points.collect()
 }
 
-/// Nanoseconds of each unit that costs some, from amounts and the nanoseconds that they took.
-fn per_unit(measured: impl Iterator<Item = (Amounts, f64)>) -> Vec<(&'static str, f64)> {
-    let rows = measured.filter(|(_, ns)| *ns > 0.0);
-    let rows: Vec<_> = rows.map(|(amounts, ns)| (amounts.values().map(|amount| amount / ns), 1.0)).collect();
-    let ns = fit::non_negative(&rows);
-    Amounts::NAMES.into_iter().zip(ns).filter(|(_, ns)| *ns > 0.0).collect()
+/// Nanoseconds of each unit that costs some, from what was done with so many discs and so many.
+///
+/// How the units stand to each other is fitted to all of them together: of many discs alone there are too few steps with too
+/// few contacts to tell. How much slower everything is with more discs, which lie farther away, is each number's own.
+fn per_unit(done: &[Vec<Done>]) -> Vec<Vec<(&'static str, f64)>> {
+    let rows: Vec<_> = done
+        .iter()
+        .flatten()
+        .map(|(amounts, ns)| (amounts.values().map(|amount| amount / ns), 1.0))
+        .collect();
+    let units = fit::non_negative(&rows);
+    let mut slower = 1.0;
+    let points = done.iter().map(|done| {
+        let ratios: Vec<f64> = done
+            .iter()
+            .map(|(amounts, ns)| {
+                ns / amounts.values().iter().zip(units).map(|(amount, unit)| amount * unit).sum::<f64>()
+            })
+            .filter(|ratio| ratio.is_finite())
+            .collect();
+        // Of many discs few steps are run, and no lists may have been made: as of fewer discs, then.
+        if !ratios.is_empty() {
+            slower = fit::median(ratios.into_iter());
+        }
+        let each = Amounts::NAMES.into_iter().zip(units).filter(|(_, unit)| *unit > 0.0);
+        each.map(|(name, unit)| (name, slower * unit)).collect()
+    });
+    points.collect()
 }
 
 /// The units that a phase can depend on: others would only fit the noise.
@@ -140,5 +153,32 @@ fn charged(phase: Phase, amounts: &Amounts) -> Amounts {
         Phase::Forces => Amounts { cells, candidates, contacts, ..none },
         Phase::Index => Amounts { cells, ..none },
         Phase::Predict | Phase::CorrectPredict | Phase::Correct => none,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_are_told_apart_by_all_and_slower_by_each_number_of_discs() {
+        let done = |discs: f64, contacts: f64, slower: f64| {
+            let amounts = Amounts { discs, contacts, ..Amounts::default() };
+            (amounts, slower * (2.0 * discs + 5.0 * contacts))
+        };
+        // Of a thousand discs there is one run alone, of ten thousand none.
+        let all =
+            [vec![done(100.0, 10.0, 1.0), done(100.0, 70.0, 1.0)], vec![done(1000.0, 1.0, 1.2)], vec![]];
+        let points = per_unit(&all);
+        for (point, slower) in points.iter().zip([1.0, 1.2, 1.2]) {
+            let sum = |discs: f64, contacts: f64| {
+                let amounts = Amounts { discs, contacts, ..Amounts::default() };
+                let named: BTreeMap<&str, f64> = point.iter().copied().collect();
+                let each = Amounts::NAMES.iter().zip(amounts.values());
+                each.map(|(name, amount)| named.get(name).copied().unwrap_or(0.0) * amount).sum::<f64>()
+            };
+            let expected = slower * (2.0 * 1000.0 + 5.0 * 700.0);
+            assert!((sum(1000.0, 700.0) / expected - 1.0).abs() < 0.12, "{point:?}");
+        }
     }
 }
