@@ -3,9 +3,10 @@
 //! Parts are called through a pointer, so that the pool's machinery is compiled once and not for every kind of work.
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
+use std::cell::RefCell;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// What `work` makes of each of the parts, in their order; one part after the other if there is but one thread.
 pub(crate) fn on_threads<T: Send, R: Send>(
@@ -60,6 +61,7 @@ fn locked<T>(slot: &Mutex<T>) -> MutexGuard<'_, T> {
 /// next stage, or for the next call, and that takes longer. All that is waited for is being worked on, so that nobody
 /// waits for somebody who waits.
 fn each(stages: usize, parts: usize, work: &(dyn Fn(usize, usize) + Sync)) {
+    release();
     let taken: Vec<AtomicBool> = (0..stages * parts).map(|_| AtomicBool::new(false)).collect();
     let done: Vec<AtomicUsize> = (0..stages).map(|_| AtomicUsize::new(0)).collect();
     let threads = rayon::current_num_threads();
@@ -94,14 +96,45 @@ fn wait_for(holds: impl Fn() -> bool) {
     }
 }
 
+thread_local! {
+    /// Set when those that this thread keeps awake may go.
+    static KEPT: RefCell<Option<Arc<AtomicBool>>> = const { RefCell::new(None) };
+}
+
+/// Lets those go that this thread keeps awake: it needs them, or is done.
+fn release() {
+    if let Some(kept) = KEPT.take() {
+        kept.store(true, Ordering::Release);
+    }
+}
+
+/// Releases when it goes, even if that is because of a panic.
+struct Release;
+
+impl Drop for Release {
+    fn drop(&mut self) {
+        release();
+    }
+}
+
 /// What `work` gives, done by one thread while the others wait for the next parts, awake: to be woken would take them
-/// longer than `work` takes.
+/// longer than `work` takes. Once `work` has parts for them itself, they wait no longer; else somebody who waited for his
+/// parts to be taken, and kept others awake meanwhile, could wait for somebody who does the same.
 pub fn keep_awake<R>(work: impl FnOnce() -> R) -> R {
     let others = rayon::current_num_threads() - 1;
-    let done = AtomicUsize::new(0);
+    if others == 0 {
+        return work();
+    }
+    let kept = Arc::new(AtomicBool::new(false));
     rayon::in_place_scope(|scope| {
-        (0..others).for_each(|_| scope.spawn(|_| wait_for(|| done.load(Ordering::Acquire) > 0)));
-        let _done = Done(&done);
+        for _ in 0..others {
+            let kept = Arc::clone(&kept);
+            scope.spawn(move |_| wait_for(|| kept.load(Ordering::Acquire)));
+        }
+        // Whoever was kept awake already waits for this one now.
+        release();
+        KEPT.set(Some(kept));
+        let _release = Release;
         work()
     })
 }
@@ -146,6 +179,30 @@ mod tests {
             let squares = on(threads, || on_threads(0..100, |n: usize| n * n));
             assert!(squares.iter().enumerate().all(|(n, &square)| square == n * n));
             assert_eq!(on(threads, || keep_awake(|| 7)), 7);
+        }
+    }
+
+    #[test]
+    fn two_who_keep_the_same_threads_awake_do_not_wait_for_each_other() {
+        let others = rayon::current_num_threads().max(2);
+        let both = Arc::new(std::sync::Barrier::new(others));
+        let (sender, finished) = std::sync::mpsc::channel();
+        for _ in 0..others {
+            let (both, sender) = (Arc::clone(&both), sender.clone());
+            // None of the pool's own threads, which all are kept awake once everybody has come here and some time has
+            // passed; then everybody has parts for them, as when lists are made anew.
+            std::thread::spawn(move || {
+                let parts = || {
+                    both.wait();
+                    std::thread::sleep(std::time::Duration::from_millis(50));
+                    on_threads(0..4, |n: usize| n)
+                };
+                sender.send(keep_awake(parts)).unwrap();
+            });
+        }
+        let patience = std::time::Duration::from_secs(60);
+        for _ in 0..others {
+            assert_eq!(finished.recv_timeout(patience), Ok(vec![0, 1, 2, 3]), "they wait for each other");
         }
     }
 
