@@ -46,8 +46,8 @@ fn operations(model: &HostModel) -> Table {
         notes: vec![
             format!(
                 "Passes over vectors in the first-level cache: t = t0 + n tau. Vectors of {shortest} to {longest} elements; \
-                 timer steps of {timer} ns. Times are told at the pace of a good moment, by a yardstick run beside every \
-                 sample, which took {pace:.2} times as long in the median. Half of the samples then lie within {:.1} % of \
+                 timer steps of {timer} ns. Times are told at the median pace, by a yardstick run beside every sample, which \
+                 took {pace:.2} times as long then as in good moments. Half of the samples then lie within {:.1} % of \
                  the middle one; the two halves of the measurement differ by {:.1} %.",
                 100.0 * spread,
                 100.0 * disagreement
@@ -73,11 +73,9 @@ fn loops(model: &HostModel) -> Table {
         notes: vec![format!(
             "Chained execution, in the first-level cache. Loops that are not among these are charged by their classes of \
              operations, which deviate from these by {:.0} % (the median). A loop waits {:.2} times as long as a pass for the \
-             same bytes from beyond, {:.2} times as long for lines that an index vector leads to; of the shorter of computing \
-             and waiting {:.0} % hide behind the longer.",
+             same bytes from beyond; of the shorter of computing and waiting {:.0} % hide behind the longer.",
             100.0 * model.loops.residual,
             model.loops.streams,
-            model.loops.gathers,
             100.0 * model.loops.overlap
         )],
     }
@@ -120,6 +118,7 @@ fn levels(model: &HostModel) -> Table {
             Cell::Number(level.fetch, 5),
             Cell::Number(level.write_back, 5),
             Cell::Number(level.line, 2),
+            Cell::Number(level.loop_line, 2),
             Cell::Number(8.0 * level.fetch, 3),
         ]
     });
@@ -132,6 +131,7 @@ fn levels(model: &HostModel) -> Table {
             "ns a byte fetched",
             "ns a byte written back",
             "ns a line through an index",
+            "ns the same in a loop",
             "ns an operand of 8 bytes",
         ]),
         rows: rows.collect(),

@@ -73,7 +73,7 @@ fn said(errors: &Errors) -> String {
 fn pace(data: &ModelValidation) -> String {
     format!(
         "All times are told at the pace of the calibration: by a yardstick run beside every repeat, the host was {:.2} times \
-         as slow as in the calibration's good moments in the median.",
+         as slow as then in the median.",
         data.pace
     )
 }

@@ -174,7 +174,7 @@ pub struct ModelValidation {
     pub instruction_set: String,
     /// Whether it is the model that comes with the program, of another machine perhaps.
     pub shipped: bool,
-    /// How many times slower than in the good moments of the calibration the host was in the median.
+    /// How many times slower than at the pace of the calibration the host was in the median.
     pub pace: f64,
     /// Every case.
     pub cases: Vec<Case>,

@@ -16,6 +16,10 @@ static PLACES: [u8; 3000] = places();
 const PASSES: usize = 2;
 /// How far the two readings around a steady sample may differ, as a share.
 const UNSTEADY: f64 = 0.1;
+/// How far the pace of a sample may be from the reference, as a share, where there are samples enough.
+const NEAR: f64 = 0.1;
+/// So many samples are enough.
+const FEW: usize = 4;
 
 const fn places() -> [u8; 3000] {
     let mut places = [0; 3000];
@@ -73,10 +77,15 @@ impl Timed {
     }
 }
 
-/// The times at the pace of a reference, rising; of unsteady samples only where all are.
+/// The times at the pace of a reference, rising: of samples taken near that pace if there are some, else of those nearest to
+/// it, for not everything is slowed down alike; of unsteady samples only where all are.
 pub fn at_pace(samples: &[Timed], reference: f64) -> Vec<f64> {
     let steady: Vec<&Timed> = samples.iter().filter(|sample| sample.is_steady()).collect();
-    let usable = if steady.is_empty() { samples.iter().collect() } else { steady };
+    let mut usable = if steady.is_empty() { samples.iter().collect() } else { steady };
+    let away = |sample: &Timed| sample.pace(reference).ln().abs();
+    usable.sort_by(|a, b| away(a).total_cmp(&away(b)));
+    let near = usable.iter().take_while(|sample| away(sample) <= NEAR).count();
+    usable.truncate(near.max(FEW));
     let mut paced: Vec<f64> = usable.into_iter().map(|sample| sample.ns / sample.pace(reference)).collect();
     paced.sort_by(f64::total_cmp);
     paced
@@ -105,6 +114,15 @@ mod tests {
         let samples = [timed(100.0, 10.0, 10.0), timed(170.0, 17.0, 17.0), timed(126.0, 12.0, 13.2)];
         let paced = at_pace(&samples, 10.0);
         assert!(paced.iter().all(|ns| (ns - 100.0).abs() < 1e-9), "{paced:?}");
+    }
+
+    #[test]
+    fn where_there_are_enough_only_samples_near_the_reference_count() {
+        let near = [timed(100.0, 10.0, 10.0); FEW];
+        let slow = [timed(300.0, 20.0, 20.0); 9];
+        assert_eq!(at_pace(&[&slow[..], &near[..]].concat(), 10.0), [100.0; FEW]);
+        let fewer = at_pace(&[&slow[..], &near[1..]].concat(), 10.0);
+        assert_eq!(fewer, [100.0, 100.0, 100.0, 150.0]);
     }
 
     #[test]

@@ -30,7 +30,7 @@ impl Step {
             .map(|step| (step.part, step.program.outlines(), lengths.range(step.length).len()))
             .collect();
         let cycle: Vec<(&Outlines, usize)> = programs.iter().map(|(_, outlines, n)| (outlines, *n)).collect();
-        let around = Surroundings::of_cycle(&cycle, 0.0);
+        let around = Surroundings::of_cycle(&cycle, Execution::Eager, 0.0);
         let arrays =
             around.iter().flat_map(Surroundings::arrays).collect::<std::collections::BTreeSet<_>>().len();
         Step { programs, arrays }

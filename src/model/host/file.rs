@@ -4,7 +4,7 @@ use super::HostModel;
 use crate::model::machine_file::Position;
 
 /// The version of the file format that this program reads.
-pub const FORMAT: u32 = 4;
+pub const FORMAT: u32 = 5;
 
 /// Why a host file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -85,7 +85,8 @@ impl HostModel {
             });
             passes.chain([(format!("lanes.{lane}.array_operand"), costs.array_operand)])
         });
-        let levels = self.levels.iter().flat_map(|level| [level.fetch, level.write_back, level.line]);
+        let levels =
+            self.levels.iter().flat_map(|level| [level.fetch, level.write_back, level.line, level.loop_line]);
         let loops = self.loops.seen.iter().flat_map(|(name, seen)| {
             [("element", seen.element.value), ("start", seen.start.value)]
                 .map(|(what, value)| (format!("loops.seen.{name}.{what}.value"), value))
@@ -101,7 +102,6 @@ impl HostModel {
             ("run", self.run),
             ("clock", self.clock),
             ("loops.streams", self.loops.streams),
-            ("loops.gathers", self.loops.gathers),
             ("loops.overlap", self.loops.overlap),
             ("measured.spread", self.measured.spread),
             ("measured.yardstick", self.measured.yardstick),
@@ -149,8 +149,8 @@ mod tests {
             ("run = ", "run = -", "`run` is -"),
             ("run = ", "runs = ", "unknown field `runs`"),
             ("overlap", "overlapp", "unknown field `overlapp`"),
-            ("format = 4", "format = 7", "`format` is 7"),
-            ("format = 4\n", "", "missing field `format`"),
+            ("format = 5", "format = 7", "`format` is 7"),
+            ("format = 5\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
             assert!(said.contains(expected) && said.contains("line "), "{said}");

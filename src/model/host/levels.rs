@@ -3,6 +3,7 @@
 use super::reuse::{Since, Touch, Vector, element_bytes};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::{Outlines, Place};
 use stripmine_kernels::isa::Array;
 
@@ -18,8 +19,11 @@ pub struct Level {
     pub fetch: f64,
     /// Nanoseconds a byte besides where the vector is written: it must go back.
     pub write_back: f64,
-    /// Nanoseconds a line that is met through an index vector, where no stream can be foreseen.
+    /// Nanoseconds a line that a pass meets through an index vector and that nothing announces: the line before it was not
+    /// met.
     pub line: f64,
+    /// The same in a compiled loop, which has more to do meanwhile, and more that waits.
+    pub loop_line: f64,
 }
 
 /// Bytes of a line, the least that moves between levels.
@@ -40,12 +44,32 @@ pub fn from_afar(levels: &[Level], distance: f64, cost: impl Fn(&Level) -> f64) 
     nearest + farther.sum::<f64>()
 }
 
+/// Lines that an element meets through an index vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Lines {
+    /// After the line before them: they come as a stream does.
+    foreseen: f64,
+    /// After one that was passed over.
+    unforeseen: f64,
+}
+
+impl Lines {
+    /// Of elements that fall upon lines at random, so many a line: Poisson's law says how many lines are met at all, and of
+    /// how many the line before is not. Where they come `in_order`, all are foreseen.
+    fn met(elements: f64, in_order: bool) -> Lines {
+        let passed_over = (-elements).exp();
+        let met = (1.0 - passed_over) / elements;
+        let unforeseen = if in_order { 0.0 } else { met * passed_over };
+        Lines { foreseen: met - unforeseen, unforeseen }
+    }
+}
+
 /// Nanoseconds of waiting for memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wait {
-    /// For vectors met element by element.
+    /// For vectors met element by element, and for lines of others that follow those before.
     pub streamed: f64,
-    /// For those met through an index vector.
+    /// For lines met through an index vector that nothing announces.
     pub indexed: f64,
 }
 
@@ -76,7 +100,14 @@ struct Neighbourhood {
 impl Surroundings {
     /// Of each of some programs, run one after the other over vectors of these lengths again and again, each of which
     /// touches so many bytes of registers besides.
-    pub fn of_cycle(programs: &[(&Outlines, usize)], registers: f64) -> Vec<Surroundings> {
+    ///
+    /// Eager execution goes over one array after the other; every other one over all of a program's at once, so that what
+    /// it has touched last are the ends of all of them.
+    pub fn of_cycle(
+        programs: &[(&Outlines, usize)],
+        execution: Execution,
+        registers: f64,
+    ) -> Vec<Surroundings> {
         let mut extents: BTreeMap<(Array, &'static str), [f64; 2]> = BTreeMap::new();
         let uses: Vec<Vec<(Array, &'static str)>> = programs
             .iter()
@@ -102,22 +133,27 @@ impl Surroundings {
             Some(None) => 0.0,
             None => registers,
         };
-        // Arrays in the order in which they were last used; the registers, which all programs share, have no name.
-        let mut stack: Vec<Option<(Array, &'static str)>> = vec![];
+        // Arrays in the order in which they were last used, and in which turn; the registers, which all programs share, have
+        // no name.
+        let mut stack: Vec<(usize, Option<(Array, &'static str)>)> = vec![];
+        let mut turn = 0;
         let mut around: Vec<Surroundings> = programs
             .iter()
             .map(|(_, n)| Surroundings { whole: *n as f64, ..Surroundings::default() })
             .collect();
         // Twice: in the first round everything is new.
         for (used, surroundings) in uses.iter().zip(0..).chain(uses.iter().zip(0..)) {
+            turn += 1;
             for name in used.iter().copied().map(Some).chain([None]) {
-                let at = stack.iter().rposition(|known| *known == name);
-                let behind = &stack[at.unwrap_or(0)..];
-                let distance: f64 = behind.iter().map(extent).sum();
+                turn += usize::from(execution == Execution::Eager);
+                let at = stack.iter().rposition(|(_, known)| *known == name);
+                let since = at.map_or(0, |at| stack[at].0);
+                let behind = stack.iter().filter(|(turn, _)| *turn >= since);
+                let distance: f64 = behind.map(|(_, name)| extent(name)).sum();
                 if let Some(at) = at {
                     stack.remove(at);
                 }
-                stack.push(name);
+                stack.push((turn, name));
                 if let Some(named) = name {
                     let there = Neighbourhood { extent: extent(&name), distance };
                     around[surroundings].arrays.insert(named, there);
@@ -132,8 +168,8 @@ impl Surroundings {
         self.arrays.keys().copied()
     }
 
-    /// How long a pass over `n` elements waits for what it touches.
-    pub fn wait(&self, levels: &[Level], touches: &[Touch], n: f64) -> Wait {
+    /// How long a pass over `n` elements waits for what it touches, where lines cost what `line` says.
+    pub fn wait(&self, levels: &[Level], touches: &[Touch], n: f64, line: impl Fn(&Level) -> f64) -> Wait {
         let mut wait = Wait::default();
         for touch in touches {
             let there = match touch.vector {
@@ -145,9 +181,10 @@ impl Surroundings {
                 Since::Before => there.map_or(0.0, |array| array.distance),
             };
             if let Some(array) = there.filter(|_| touch.indexed) {
-                // As many lines as there are, at most one an element.
-                let lines = (array.extent / LINE / self.whole.max(n)).min(1.0);
-                wait.indexed += n * lines * from_afar(levels, distance, |level| level.line);
+                let Lines { foreseen, unforeseen } =
+                    Lines::met(self.whole.max(n) / (array.extent / LINE), touch.in_order());
+                wait.indexed += n * unforeseen * from_afar(levels, distance, &line);
+                wait.streamed += n * foreseen * LINE * from_afar(levels, distance, |level| level.fetch);
                 continue;
             }
             let written = f64::from(u8::from(touch.written));
@@ -171,6 +208,7 @@ mod tests {
             fetch,
             write_back,
             line: 0.0,
+            loop_line: 0.0,
         };
         vec![level("near", Some(1024.0), 0.0, 0.0), level("far", None, 0.5, 0.25)]
     }
@@ -185,6 +223,16 @@ mod tests {
     }
 
     #[test]
+    fn lines_are_foreseen_where_none_is_passed_over() {
+        // Every element its own line, far from the others; many on every line; and lines in order.
+        let [rare, dense, ordered] =
+            [(0.01, false), (10.0, false), (0.01, true)].map(|(elements, order)| Lines::met(elements, order));
+        assert!(rare.unforeseen > 0.98 && rare.foreseen < 0.01, "{rare:?}");
+        assert!(dense.unforeseen < 1e-5 && (dense.foreseen - 0.1).abs() < 1e-4, "{dense:?}");
+        assert_eq!((ordered.unforeseen, ordered.foreseen), (0.0, rare.foreseen + rare.unforeseen));
+    }
+
+    #[test]
     fn an_array_is_as_far_as_all_that_is_touched_in_a_cycle() {
         let read = |array| {
             let from = Place::Memory(Reference { array, element: "f64", shift: 0 });
@@ -192,14 +240,20 @@ mod tests {
             Outlines { lane: "f64", instructions: vec![], passes: vec![pass], registers: [0; 3] }
         };
         let [x, y] = [read(Array::X), read(Array::Y)];
-        let around = Surroundings::of_cycle(&[(&x, 10), (&y, 100), (&y, 100)], 0.0);
+        let around = Surroundings::of_cycle(&[(&x, 10), (&y, 100), (&y, 100)], Execution::Eager, 0.0);
         let distance = |at: usize, array| around[at].arrays[&(array, "f64")].distance;
         assert_eq!(
             [distance(0, Array::X), distance(1, Array::Y), distance(2, Array::Y)],
             [880.0, 880.0, 800.0]
         );
+        // One after the other what comes last is near; all at once, their ends are.
+        let both = Outlines { passes: [x.passes.clone(), y.passes.clone()].concat(), ..read(Array::X) };
+        for (execution, near) in [(Execution::Eager, 80.0), (Execution::Chained, 160.0)] {
+            let around = Surroundings::of_cycle(&[(&both, 10), (&y, 10)], execution, 0.0);
+            assert_eq!(around[1].arrays[&(Array::Y, "f64")].distance, near);
+        }
         // Each program goes over the registers: they lie between.
-        let around = Surroundings::of_cycle(&[(&x, 10), (&y, 100)], 1000.0);
+        let around = Surroundings::of_cycle(&[(&x, 10), (&y, 100)], Execution::Eager, 1000.0);
         assert_eq!(around[0].arrays[&(Array::X, "f64")].distance, 1880.0);
     }
 }

@@ -30,9 +30,7 @@ pub struct LoopCosts {
     pub residual: f64,
     /// How many times as long as a pass of the interpreter a loop waits for the same bytes: it has many streams at once.
     pub streams: f64,
-    /// The same of the lines that an index vector leads to.
-    pub gathers: f64,
-    /// Of the shorter of computing and waiting for memory, the share that hides behind the longer.
+    /// Of the shorter of computing and waiting for streams, the share that hides behind the longer.
     pub overlap: f64,
     /// Loops by the signature of their instructions.
     pub seen: BTreeMap<String, LoopCost>,

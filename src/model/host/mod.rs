@@ -12,7 +12,7 @@ pub use file::{BadEntry, FORMAT, HostFileError, default_model};
 pub use levels::{LINE, Level, Surroundings, Wait, beyond, from_afar};
 pub use loops::{LoopCost, LoopCosts, class_counts};
 pub use rates::{Amounts, RatePoint, Rates};
-pub use reuse::{Since, Touch, Vector, element_bytes, touches};
+pub use reuse::{Since, Touch, Vector, element_bytes, touched_arrays, touches};
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -74,10 +74,10 @@ pub struct Change {
 pub struct Measured {
     /// Smallest step of the timer seen (ns).
     pub timer: f64,
-    /// Nanoseconds that a yardstick took in a good moment, a fixed piece of arithmetic run beside every sample: all times
-    /// of this file are told at this pace.
+    /// Nanoseconds that a yardstick took in the median, a fixed piece of arithmetic run beside every sample: all times of
+    /// this file are told at this pace.
     pub yardstick: f64,
-    /// How many times as long as then it took in the median.
+    /// How many times as long it took then as in a good moment, when it was quicker in one of ten samples only.
     pub pace: f64,
     /// Median, over all points, of half the range of the middle half of the samples, as a share, once told at one pace.
     pub spread: f64,
@@ -178,10 +178,9 @@ impl HostModel {
     #[must_use]
     pub fn in_cache(&self) -> HostModel {
         let mut model = HostModel { operand: 0.0, bind: 0.0, run: 0.0, clock: 0.0, ..self.clone() };
-        model
-            .levels
-            .iter_mut()
-            .for_each(|level| (level.fetch, level.write_back, level.line) = (0.0, 0.0, 0.0));
+        model.levels.iter_mut().for_each(|level| {
+            (level.fetch, level.write_back, level.line, level.loop_line) = (0.0, 0.0, 0.0, 0.0)
+        });
         model
     }
 
@@ -275,7 +274,7 @@ impl HostModel {
         around: &Surroundings,
     ) -> Result<f64, OutOfRange> {
         let cost = lane.cost(pass)?;
-        let wait = around.wait(&self.levels, touches, n as f64).sum();
+        let wait = around.wait(&self.levels, touches, n as f64, |level| level.line).sum();
         let wait = if wait > 0.0 { wait + self.operand * n as f64 } else { 0.0 };
         Ok(self.begin * lane.starts(n) * cost.start.value + n as f64 * cost.element.value + wait)
     }
@@ -298,23 +297,16 @@ impl HostModel {
             };
             registers = registers.max(self.lane(outlines.lane)?.register_extent(outlines, length));
         }
-        Ok(Surroundings::of_cycle(programs, registers))
+        Ok(Surroundings::of_cycle(programs, execution, registers))
     }
 
     fn chained(&self, outlines: &Outlines, n: usize, around: &Surroundings) -> Result<f64, OutOfRange> {
         let cost = self.loops.of(outlines)?;
-        // One pass over all arrays, each of which is touched once.
-        let mut once: Vec<Touch> = vec![];
-        for touch in touches(outlines, [0.0; 3]).into_iter().flatten() {
-            match once.iter_mut().find(|known| known.vector == touch.vector) {
-                Some(known) => known.written |= touch.written,
-                None => once.push(touch),
-            }
-        }
-        once.retain(|touch| touch.since == Since::Before);
-        let wait = around.wait(&self.levels, &once, n as f64);
-        let wait = self.loops.streams * wait.streamed + self.loops.gathers * wait.indexed;
-        Ok(cost.start.value + overlapped(self.loops.overlap, n as f64 * cost.element.value, wait))
+        let wait = around.wait(&self.levels, &touched_arrays(outlines), n as f64, |level| level.loop_line);
+        let streamed = self.loops.streams * wait.streamed;
+        let computing = n as f64 * cost.element.value;
+        // Nothing hides what nobody foresees.
+        Ok(cost.start.value + overlapped(self.loops.overlap, computing, streamed) + wait.indexed)
     }
 }
 

@@ -48,6 +48,12 @@ fn vector(place: &Place, register_bytes: [f64; 3]) -> (Vector, f64) {
 }
 
 impl Touch {
+    /// Whether what an index vector leads to comes in order: only the images of the rim ask for entries of another index
+    /// vector, and they go round it cell by cell.
+    pub fn in_order(&self) -> bool {
+        matches!(self.vector, Vector::Array(_, "u32"))
+    }
+
     /// Bytes an element that go through the caches: whole lines where an index vector leads.
     fn moved(&self) -> f64 {
         if self.indexed { LINE } else { self.bytes }
@@ -101,6 +107,19 @@ pub fn touches(outlines: &Outlines, register_bytes: [f64; 3]) -> Vec<Vec<Touch>>
         touched.push((touch.vector, touch.moved()));
     }
     passes
+}
+
+/// The arrays that a program touches, each once: what a loop does that goes over all of them together.
+pub fn touched_arrays(outlines: &Outlines) -> Vec<Touch> {
+    let mut once: Vec<Touch> = vec![];
+    for touch in touches(outlines, [0.0; 3]).into_iter().flatten() {
+        match once.iter_mut().find(|known| known.vector == touch.vector) {
+            Some(known) => known.written |= touch.written,
+            None => once.push(touch),
+        }
+    }
+    once.retain(|touch| touch.since == Since::Before);
+    once
 }
 
 /// Bytes of an element type by its name.

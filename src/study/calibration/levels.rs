@@ -1,7 +1,8 @@
-//! What waiting for the levels of memory adds: fitted to passes over long vectors and to whole programs of drill scenes.
+//! What waiting for the levels of memory adds: fitted to passes over long vectors, and to whole programs of drill scenes as
+//! the interpreter and as compiled loops run them.
 
 use super::fit::{self, median};
-use crate::model::host::{LINE, Level, Surroundings, Touch};
+use crate::model::host::{Level, Surroundings, Touch, overlapped};
 
 /// Something measured, as the levels see it.
 pub(super) struct Charged {
@@ -34,24 +35,27 @@ pub(super) struct Levels {
     pub(super) levels: Vec<Level>,
     /// How long a pass of a program takes to begin, as a share of what it takes in a drill of nothing but that pass.
     pub(super) begin: f64,
-    /// Median deviation of the fit.
+    /// How many times as long as a pass a loop waits for the same bytes.
+    pub(super) streams: f64,
+    /// Of the shorter of computing and waiting in a loop, the share that hides behind the longer.
+    pub(super) overlap: f64,
+    /// Median deviation of the fit to passes.
     pub(super) residual: f64,
 }
 
 /// A level that costs nothing.
-const NOWHERE: Level = Level { name: String::new(), capacity: None, fetch: 0.0, write_back: 0.0, line: 0.0 };
+const NOWHERE: Level =
+    Level { name: String::new(), capacity: None, fetch: 0.0, write_back: 0.0, line: 0.0, loop_line: 0.0 };
 
 /// Levels beyond the first.
 const BEYOND: usize = 3;
-/// What is fitted: e0, and what each level beyond the first adds to a byte fetched, to a byte that must go back, and to a
-/// line that an index vector leads to. Lines from memory are as much more than those from the last cache as their bytes:
-/// no drill scene has gathers from there that could say.
-/// And the share of a drilled pass's beginning.
-const UNKNOWN: usize = 3 * BEYOND + 1;
+/// What is fitted: e0; what each level beyond the first adds to a byte fetched, to a byte that must go back, and to a line
+/// that an index vector leads to unforeseen; and the share of a drilled pass's beginning.
+const UNKNOWN: usize = 3 * BEYOND + 2;
+/// Where the lines begin.
+const LINES: usize = 1 + 2 * BEYOND;
 /// Where that share is.
-const BEGIN: usize = 3 * BEYOND;
-/// Levels beyond the first whose lines are fitted.
-const LINES: usize = BEYOND - 1;
+const BEGIN: usize = 1 + 3 * BEYOND;
 type Costs = [f64; UNKNOWN];
 
 impl Charged {
@@ -65,18 +69,14 @@ impl Charged {
                 let wait = |fetch, write_back, line| {
                     let there = Level { fetch, write_back, line, ..NOWHERE };
                     let levels = [Level { capacity: Some(capacity), ..NOWHERE }, there];
-                    times * self.around.wait(&levels, touched, *n).sum()
+                    times * self.around.wait(&levels, touched, *n, |level| level.line).sum()
                 };
-                let fetched = wait(1.0, 0.0, 0.0);
-                features[1 + level] += fetched;
-                features[1 + BEYOND + level] += wait(0.0, 1.0, 0.0);
-                let lines = wait(0.0, 0.0, 1.0);
-                match level {
-                    0..LINES => features[1 + 2 * BEYOND + level] += lines,
-                    _ => features[1 + level] += LINE * lines,
+                let own = [wait(1.0, 0.0, 0.0), wait(0.0, 1.0, 0.0), wait(0.0, 0.0, 1.0)];
+                for (kind, own) in own.into_iter().enumerate() {
+                    features[1 + kind * BEYOND + level] += own;
                 }
                 // Where everything is near there is nothing to wait for.
-                if level == 0 && fetched + lines > 0.0 {
+                if level == 0 && own.iter().any(|&own| own > 0.0) {
                     features[0] += times * n;
                 }
             }
@@ -95,7 +95,7 @@ fn product(features: &Costs, costs: &Costs) -> f64 {
 }
 
 /// Capacities of the three cache levels that are tried (bytes): what the system says, or parts of it, for whoever shares
-/// the core or the last level takes his; where it says nothing, what processors have.
+/// the core or the last level takes theirs; where it says nothing, what processors have.
 fn candidates() -> Vec<[f64; BEYOND]> {
     const KIB: f64 = 1024.0;
     let known: Vec<f64> = (1..=BEYOND).filter_map(cache_size).collect();
@@ -103,7 +103,7 @@ fn candidates() -> Vec<[f64; BEYOND]> {
     if let [l1, l2, l3] = *known.as_slice() {
         for near in [0.5, 1.0] {
             for middle in [0.5, 1.0] {
-                all.extend([0.125, 0.25, 0.5, 1.0].map(|share| [near * l1, middle * l2, share * l3]));
+                all.extend(SHARES.map(|share| [near * l1, middle * l2, share * l3]));
             }
         }
         return all;
@@ -115,6 +115,9 @@ fn candidates() -> Vec<[f64; BEYOND]> {
     }
     all
 }
+
+/// Parts of the last level that are tried: many cores share it.
+const SHARES: [f64; 5] = [0.0625, 0.125, 0.25, 0.5, 1.0];
 
 /// Bytes of this processor's data cache of a level, where the system says it.
 fn cache_size(level: usize) -> Option<f64> {
@@ -131,46 +134,122 @@ fn cache_size(level: usize) -> Option<f64> {
     Some(1024.0 * kib)
 }
 
-/// Capacities and costs of the levels.
-pub(super) fn fit_levels(charged: &[Charged]) -> Levels {
-    let mut best: Option<(f64, [f64; BEYOND], Costs)> = None;
+/// Capacities and costs of the levels: those that suit passes and loops best together. Streams are foreseen and hardly tell
+/// one level from the next; lines that nothing announces do, and loops wait for these most.
+pub(super) fn fit_levels(passes: &[Charged], loops: &[Charged]) -> Levels {
+    let mut best: Option<(f64, Levels)> = None;
     for capacities in candidates() {
-        let features: Vec<Costs> = charged.iter().map(|each| each.features(capacities)).collect();
-        let mut costs = fit_costs(charged, &features);
-        fit_lines(charged, &features, &mut costs);
-        let error = median(charged.iter().zip(&features).map(|(each, of)| each.deviation(of, &costs)));
-        if best.is_none_or(|(least, ..)| error < least) {
-            best = Some((error, capacities, costs));
+        let features = |all: &[Charged]| all.iter().map(|each| each.features(capacities)).collect::<Vec<_>>();
+        let of_passes = features(passes);
+        let mut costs = fit_costs(passes, &of_passes);
+        fit_lines(passes, &of_passes, &mut costs);
+        let errors = || passes.iter().zip(&of_passes).map(|(each, of)| each.deviation(of, &costs));
+        let loops = fit_loops(loops, &features(loops), &costs);
+        let error = mean(errors()) + loops.error;
+        if best.as_ref().is_none_or(|(least, _)| error < *least) {
+            best = Some((error, levels(capacities, &costs, &loops, median(errors()))));
         }
     }
-    let (residual, capacities, [operand, steps @ ..]) = best.unwrap_or_default();
+    best.map(|(_, levels)| levels)
+        .unwrap_or_else(|| levels([0.0; BEYOND], &[0.0; UNKNOWN], &Loops::NONE, 0.0))
+}
+
+/// The levels of these costs.
+fn levels(capacities: [f64; BEYOND], costs: &Costs, loops: &Loops, residual: f64) -> Levels {
     let names = ["first-level cache", "second-level cache", "third-level cache", "memory"];
     let capacities = capacities.into_iter().map(Some).chain([None]);
-    let [mut fetch, mut write_back, mut line] = [0.0; 3];
-    let levels = names.into_iter().zip(capacities).enumerate().map(|(at, (name, capacity))| {
-        if at > 0 {
-            fetch += steps[at - 1];
-            write_back += steps[BEYOND + at - 1];
-            line += if at <= LINES { steps[2 * BEYOND + at - 1] } else { LINE * steps[at - 1] };
-        }
-        Level { name: name.to_owned(), capacity, fetch, write_back, line }
+    let upto = |steps: &[f64], level: usize| steps[..level].iter().fold(0.0, |sum, step| sum + step);
+    let levels = names.into_iter().zip(capacities).enumerate().map(|(at, (name, capacity))| Level {
+        name: name.to_owned(),
+        capacity,
+        fetch: upto(&costs[1..], at),
+        write_back: upto(&costs[1 + BEYOND..], at),
+        line: upto(&costs[LINES..], at),
+        loop_line: upto(&loops.lines, at),
     });
-    Levels { operand, levels: levels.collect(), begin: steps[BEGIN - 1], residual }
+    let Loops { streams, overlap, .. } = *loops;
+    Levels { operand: costs[0], levels: levels.collect(), begin: costs[BEGIN], streams, overlap, residual }
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let finite: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+    finite.iter().sum::<f64>() / finite.len().max(1) as f64
 }
 
 /// What lines cost that index vectors lead to, given all else: by what has such vectors alone, and all of that, for among
 /// everything it is too little to be heard.
 fn fit_lines(charged: &[Charged], features: &[Costs], costs: &mut Costs) {
-    const FIRST: usize = 1 + 2 * BEYOND;
-    let lines = &mut costs[FIRST..FIRST + LINES];
-    lines.fill(0.0);
+    costs[LINES..BEGIN].fill(0.0);
+    let rest = |each: &Charged, features: &Costs| each.ns - each.computing - product(features, costs);
+    let lines = steps_of_lines(charged, features, rest);
+    costs[LINES..BEGIN].copy_from_slice(&lines);
+}
+
+/// What each level adds to a line, by the time that is left of everything else.
+fn steps_of_lines(
+    charged: &[Charged],
+    features: &[Costs],
+    rest: impl Fn(&Charged, &Costs) -> f64,
+) -> [f64; BEYOND] {
     let rows = charged.iter().zip(features).filter_map(|(each, features)| {
-        let own: [f64; LINES] = std::array::from_fn(|level| features[FIRST + level] / each.ns);
-        let rest = (each.ns - each.computing - product(features, costs)) / each.ns;
-        own.iter().any(|&own| own > 0.0).then_some((own, rest))
+        let own: [f64; BEYOND] = std::array::from_fn(|level| features[LINES + level] / each.ns);
+        own.iter().any(|&own| own > 0.0).then(|| (own, rest(each, features) / each.ns))
     });
-    let fitted = fit::non_negative(&rows.collect::<Vec<_>>());
-    costs[FIRST..FIRST + LINES].copy_from_slice(&fitted);
+    fit::non_negative(&rows.collect::<Vec<_>>())
+}
+
+/// How loops wait.
+struct Loops {
+    streams: f64,
+    overlap: f64,
+    /// What each level beyond the first adds to a line.
+    lines: [f64; BEYOND],
+    /// Mean deviation.
+    error: f64,
+}
+
+/// Shares of the shorter of computing and waiting that may hide behind the longer.
+const OVERLAPS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+/// Nanoseconds of a line that would be felt if lines took so long, as a share: loops below go over streams alone.
+const FELT: f64 = 0.01;
+
+impl Loops {
+    const NONE: Loops = Loops { streams: 1.0, overlap: 0.5, lines: [0.0; BEYOND], error: f64::INFINITY };
+
+    /// Nanoseconds of a loop, its lines left out.
+    fn streaming(&self, each: &Charged, features: &Costs, costs: &Costs) -> f64 {
+        let streamed: f64 = (1..LINES).map(|at| features[at] * costs[at]).sum();
+        each.starts + overlapped(self.overlap, each.computing, self.streams * streamed)
+    }
+
+    /// Nanoseconds of all of it.
+    fn all(&self, each: &Charged, features: &Costs, costs: &Costs) -> f64 {
+        let lines = features[LINES..].iter().zip(self.lines).map(|(feature, line)| feature * line);
+        self.streaming(each, features, costs) + lines.sum::<f64>()
+    }
+}
+
+/// How loops wait, given what passes do: those that hardly meet lines through index vectors say how streams are waited for,
+/// and then the others what lines cost.
+fn fit_loops(charged: &[Charged], features: &[Costs], costs: &Costs) -> Loops {
+    let streams = (-8..=16).map(|quarter| 2_f64.powf(f64::from(quarter) / 4.0));
+    let tried = streams
+        .flat_map(|streams| OVERLAPS.map(|overlap| Loops { streams, overlap, ..Loops::NONE }))
+        .map(|loops| {
+            let plain = charged.iter().zip(features).filter(|(each, features)| {
+                features[LINES..BEGIN].iter().all(|&lines| lines < FELT * each.ns)
+            });
+            let error = mean(
+                plain.map(|(each, features)| (loops.streaming(each, features, costs) / each.ns).ln().abs()),
+            );
+            Loops { error, ..loops }
+        });
+    let mut best = tried.min_by(|a, b| a.error.total_cmp(&b.error)).unwrap_or(Loops::NONE);
+    best.lines =
+        steps_of_lines(charged, features, |each, features| each.ns - best.streaming(each, features, costs));
+    best.error =
+        mean(charged.iter().zip(features).map(|(each, of)| (best.all(each, of, costs) / each.ns).ln().abs()));
+    best
 }
 
 /// The costs that suit best, everything weighted alike in its relative error; some rounds, in which what is far from the fit

@@ -1,11 +1,11 @@
 //! Compiled loops: the programs of a step on vectors in the first-level cache, and their classes of operations.
 
 use super::fit;
-use super::levels::Charged;
+use super::levels::{Charged, Waiting};
 use super::passes::{Lane, estimate};
 use super::timing::{PacedClock, Samples};
 use crate::method::lattice_md::{Arrays, Lengths, Model, Part, StepProgram, programs};
-use crate::model::host::{HostModel, LoopCost, LoopCosts, Surroundings, class_counts};
+use crate::model::host::{LoopCost, LoopCosts, PassCost, Surroundings, class_counts, touched_arrays};
 use crate::particles::Particles;
 use crate::run::model;
 use crate::study::phase_times::Run;
@@ -13,7 +13,7 @@ use crate::study::throughput::MeasurementError;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::backend::tape::{Outlines, Place};
+use stripmine_kernels::backend::tape::Outlines;
 use stripmine_kernels::isa::{Memory, OpClass};
 use stripmine_kernels::{Execution, InstructionSet};
 
@@ -24,17 +24,16 @@ const SHORTEST: f64 = 40_000.0;
 /// The drill scene: discs at rest that do not touch, as no validation runs them.
 const DRILL: Run = Run { particles: 240, occupancy: 0.13, precision: "f64", execution: "chained" };
 /// NP and ρ of the larger drill scenes, whose arrays lie in the levels beyond the first.
-const LARGE: [(usize, f64); 5] = [(1800, 0.13), (5000, 0.06), (9000, 0.13), (15_000, 0.22), (30_000, 0.13)];
+const LARGE: [(usize, f64); 7] =
+    [(700, 0.06), (1800, 0.13), (5000, 0.06), (9000, 0.13), (15_000, 0.22), (21_000, 0.07), (30_000, 0.13)];
 /// What the drill scenes leave out, one after the other.
 const MODELS: [&[&str]; 2] = [
     &["particles.temperature=0", "particles.seed=7"],
     &["particles.temperature=0", "particles.seed=7", "law.friction=0", "law.shear_damping=0"],
 ];
 
-/// Shares of the shorter of computing and waiting that may hide behind the longer.
-const OVERLAPS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// How the interpreter runs the large drill scenes: in one strip, and in strips that no validation has.
-const INTERPRETED: [Execution; 2] = [Execution::Eager, Execution::Strip(160)];
+const INTERPRETED: [Execution; 3] = [Execution::Eager, Execution::Strip(48), Execution::Strip(160)];
 /// The interpreter is slow: of the largest scene and of every sweep but one of so many there are no samples of it.
 const LARGEST: usize = 20_000;
 const RARELY: usize = 2;
@@ -240,14 +239,7 @@ impl Loops {
             let named = names.iter().zip(costs).filter(|(_, cost)| *cost > 0.0);
             classes.insert(lane, named.map(|(name, cost)| ((*name).to_owned(), cost)).collect());
         }
-        LoopCosts {
-            classes,
-            residual: fit::median(residuals.into_iter()),
-            streams: 1.0,
-            gathers: 1.0,
-            overlap: 0.5,
-            seen,
-        }
+        LoopCosts { classes, residual: fit::median(residuals.into_iter()), streams: 1.0, overlap: 0.5, seen }
     }
 
     /// The programs of the large drill scenes as the interpreter ran them.
@@ -256,45 +248,10 @@ impl Loops {
         large.flat_map(|step| step.charged(lanes))
     }
 
-    /// How loops wait for memory, given all else of the host: what suits the large drill scenes best. Loops without index
-    /// vectors say how streams are waited for, and then those with them what the lines cost that these lead to.
-    pub(super) fn fit_waits(&self, host: &mut HostModel) {
-        let large: Vec<Whole> = self.steps.iter().filter(|step| step.large).flat_map(Step::whole).collect();
-        let (through, plain): (Vec<&Whole>, Vec<&Whole>) = large.iter().partition(|whole| whole.gathers());
-        let candidates = || (-8..=16).map(|quarter| 2f64.powf(f64::from(quarter) / 4.0));
-        let best = |host: &HostModel, wholes: &[&Whole], tried: &mut dyn Iterator<Item = LoopCosts>| {
-            let mut host = host.clone();
-            let errors = tried.map(|loops| {
-                host.loops = loops;
-                (deviation(&host, wholes), host.loops.clone())
-            });
-            errors.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, loops)| loops)
-        };
-        let loops = host.loops.clone();
-        let mut streams = candidates().flat_map(|streams| {
-            let loops = &loops;
-            OVERLAPS.map(|overlap| LoopCosts { streams, overlap, ..loops.clone() })
-        });
-        host.loops = best(host, &plain, &mut streams).unwrap_or(loops);
-        let loops = host.loops.clone();
-        let mut gathers = candidates().map(|gathers| LoopCosts { gathers, ..loops.clone() });
-        host.loops = best(host, &through, &mut gathers).unwrap_or_else(|| loops.clone());
-    }
-}
-
-/// The loop of a large drill scene over whole vectors, and what it took.
-struct Whole {
-    outlines: Outlines,
-    n: usize,
-    around: Surroundings,
-    ns: f64,
-}
-
-impl Whole {
-    /// Whether it meets arrays through index vectors.
-    fn gathers(&self) -> bool {
-        let mut reads = self.outlines.passes.iter().flat_map(|pass| &pass.reads);
-        reads.any(|place| matches!(place, Place::Indexed(_)))
+    /// The same as compiled loops, whose costs in the first-level cache are known.
+    pub(super) fn charged_loops(&self, costs: &LoopCosts) -> Vec<Charged> {
+        let large = self.steps.iter().filter(|step| step.large);
+        large.flat_map(|step| step.charged_loops(costs)).collect()
     }
 }
 
@@ -316,7 +273,7 @@ impl Step {
             let registers = cycle
                 .iter()
                 .filter_map(|(outlines, n)| Some(lane(outlines)?.costs.register_extent(outlines, strip(*n))));
-            let around = Surroundings::of_cycle(&cycle, registers.fold(0.0, f64::max));
+            let around = Surroundings::of_cycle(&cycle, execution, registers.fold(0.0, f64::max));
             let programs = cycle.iter().zip(around).zip(samples);
             all.extend(programs.filter_map(|((&(outlines, n), around), samples)| {
                 let ns = samples.typical();
@@ -327,24 +284,19 @@ impl Step {
         all
     }
 
-    fn whole(&self) -> Vec<Whole> {
+    fn charged_loops(&self, costs: &LoopCosts) -> Vec<Charged> {
         let outlines: Vec<Outlines> = self.programs.iter().map(|step| step.program.outlines()).collect();
         let lengths = self.ranges.iter().map(ExactSizeIterator::len);
         let cycle: Vec<(&Outlines, usize)> = outlines.iter().zip(lengths).collect();
-        let around = Surroundings::of_cycle(&cycle, 0.0);
-        let lengths = cycle.iter().map(|(_, n)| *n).collect::<Vec<_>>();
-        let each = outlines.into_iter().zip(lengths).zip(around).zip(&self.whole);
-        each.map(|(((outlines, n), around), whole)| Whole { outlines, n, around, ns: whole.typical() })
-            .collect()
+        let around = Surroundings::of_cycle(&cycle, Execution::Chained, 0.0);
+        let each = cycle.iter().zip(around).zip(&self.whole);
+        let charged = each.filter_map(|((&(outlines, n), around), samples)| {
+            let (PassCost { element, start }, ns) = (costs.of(outlines).ok()?, samples.typical());
+            let n = n as f64;
+            let passes = vec![Waiting { times: 1.0, n, touched: touched_arrays(outlines) }];
+            let charged = Charged { computing: n * element.value, starts: start.value, passes, around, ns };
+            (ns.is_finite() && n > 0.0).then_some(charged)
+        });
+        charged.collect()
     }
-}
-
-/// The mean deviation of a host's predictions from what loops took.
-fn deviation(host: &HostModel, wholes: &[&Whole]) -> f64 {
-    let errors = wholes.iter().map(|Whole { outlines, n, around, ns }| {
-        host.program(outlines, *n, Execution::Chained, around)
-            .map_or(f64::NAN, |predicted| (predicted / ns).ln().abs())
-    });
-    let errors: Vec<f64> = errors.filter(|error| error.is_finite()).collect();
-    errors.iter().sum::<f64>() / errors.len().max(1) as f64
 }

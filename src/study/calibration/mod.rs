@@ -11,7 +11,7 @@ mod timing;
 
 use super::throughput::MeasurementError;
 use crate::method::{Phase, Timings};
-use crate::model::host::{FORMAT, HostModel, Measured};
+use crate::model::host::{FORMAT, HostModel, LoopCosts, Measured};
 use drills::{Arrays, LONGEST};
 use levels::{Charged, Levels, fit_levels};
 use loops::Loops;
@@ -108,9 +108,11 @@ fn measured(
     }
     let charged: Vec<Charged> =
         lanes.iter().flat_map(Lane::long_passes).chain(loops.charged(&lanes)).collect();
-    let Levels { operand, levels, begin, residual } = fit_levels(&charged);
+    let costs = loops.costs();
+    let Levels { operand, levels, begin, streams, overlap, residual } =
+        fit_levels(&charged, &loops.charged_loops(&costs));
     let samples = || lanes.iter().flat_map(Lane::samples).chain(loops.samples());
-    let mut model = HostModel {
+    Ok(HostModel {
         format: FORMAT,
         title,
         instruction_set: set.name().to_owned(),
@@ -131,10 +133,8 @@ fn measured(
         // Half of the two looks at the clock lies between them.
         clock: 0.5 * clock.typical(),
         levels,
-        loops: loops.costs(),
+        loops: LoopCosts { streams, overlap, ..costs },
         lanes: lanes.into_iter().map(|lane| (lane.name.to_owned(), lane.costs)).collect(),
         rates: scenes.rates(yardstick),
-    };
-    loops.fit_waits(&mut model);
-    Ok(model)
+    })
 }

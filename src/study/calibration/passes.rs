@@ -184,7 +184,7 @@ impl Lane {
             let middle = *alike.get(alike.len() / 2)?;
             let touched = touches(&outlines, self.costs.register_bytes).swap_remove(middle);
             let cost = self.costs.cost(&outlines.passes[middle]).ok()?;
-            let around = Surroundings::of_cycle(&[(&outlines, point.n)], 0.0).pop()?;
+            let around = Surroundings::of_cycle(&[(&outlines, point.n)], Execution::Eager, 0.0).pop()?;
             let n = point.n as f64;
             Some(Charged {
                 computing: n * cost.element.value,
