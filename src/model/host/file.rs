@@ -85,8 +85,9 @@ impl HostModel {
             });
             passes.chain([(format!("lanes.{lane}.array_operand"), costs.array_operand)])
         });
-        let levels =
-            self.levels.iter().flat_map(|level| [level.fetch, level.write_back, level.line, level.loop_line]);
+        let levels = self.levels.iter().flat_map(|level| {
+            [level.fetch, level.fetch_array, level.write_back, level.line, level.loop_line]
+        });
         let loops = self.loops.seen.iter().flat_map(|(name, seen)| {
             [("element", seen.element.value), ("start", seen.start.value)]
                 .map(|(what, value)| (format!("loops.seen.{name}.{what}.value"), value))

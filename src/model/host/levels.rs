@@ -17,6 +17,8 @@ pub struct Level {
     pub capacity: Option<f64>,
     /// Nanoseconds a byte of a vector that is read or written comes from there; none is cheaper than a nearer one.
     pub fetch: f64,
+    /// The same of an array that other programs have used since, and that begins anew: nothing has announced it.
+    pub fetch_array: f64,
     /// Nanoseconds a byte besides where the vector is written: it must go back.
     pub write_back: f64,
     /// Nanoseconds a line that a pass meets through an index vector and that nothing announces: the line before it was not
@@ -24,6 +26,19 @@ pub struct Level {
     pub line: f64,
     /// The same in a compiled loop, which has more to do meanwhile, and more that waits.
     pub loop_line: f64,
+}
+
+impl Level {
+    /// Costs nothing, and ends nowhere.
+    pub const FREE: Level = Level {
+        name: String::new(),
+        capacity: None,
+        fetch: 0.0,
+        fetch_array: 0.0,
+        write_back: 0.0,
+        line: 0.0,
+        loop_line: 0.0,
+    };
 }
 
 /// Bytes of a line, the least that moves between levels.
@@ -180,15 +195,19 @@ impl Surroundings {
                 Since::Here(distance) => distance * n,
                 Since::Before => there.map_or(0.0, |array| array.distance),
             };
+            let fetch = |level: &Level| match touch.since {
+                Since::Here(_) => level.fetch,
+                Since::Before => level.fetch_array,
+            };
             if let Some(array) = there.filter(|_| touch.indexed) {
                 let Lines { foreseen, unforeseen } =
                     Lines::met(self.whole.max(n) / (array.extent / LINE), touch.in_order());
                 wait.indexed += n * unforeseen * from_afar(levels, distance, &line);
-                wait.streamed += n * foreseen * LINE * from_afar(levels, distance, |level| level.fetch);
+                wait.streamed += n * foreseen * LINE * from_afar(levels, distance, fetch);
                 continue;
             }
             let written = f64::from(u8::from(touch.written));
-            let byte = from_afar(levels, distance, |level| level.fetch + written * level.write_back);
+            let byte = from_afar(levels, distance, |level| fetch(level) + written * level.write_back);
             wait.streamed += touch.bytes * n * byte;
         }
         wait
@@ -206,9 +225,9 @@ mod tests {
             name: name.to_owned(),
             capacity,
             fetch,
+            fetch_array: fetch,
             write_back,
-            line: 0.0,
-            loop_line: 0.0,
+            ..Level::FREE
         };
         vec![level("near", Some(1024.0), 0.0, 0.0), level("far", None, 0.5, 0.25)]
     }

@@ -178,9 +178,9 @@ impl HostModel {
     #[must_use]
     pub fn in_cache(&self) -> HostModel {
         let mut model = HostModel { operand: 0.0, bind: 0.0, run: 0.0, clock: 0.0, ..self.clone() };
-        model.levels.iter_mut().for_each(|level| {
-            (level.fetch, level.write_back, level.line, level.loop_line) = (0.0, 0.0, 0.0, 0.0)
-        });
+        for level in &mut model.levels {
+            *level = Level { name: level.name.clone(), capacity: level.capacity, ..Level::FREE };
+        }
         model
     }
 

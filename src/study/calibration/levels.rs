@@ -43,19 +43,19 @@ pub(super) struct Levels {
     pub(super) residual: f64,
 }
 
-/// A level that costs nothing.
-const NOWHERE: Level =
-    Level { name: String::new(), capacity: None, fetch: 0.0, write_back: 0.0, line: 0.0, loop_line: 0.0 };
-
 /// Levels beyond the first.
 const BEYOND: usize = 3;
-/// What is fitted: e0; what each level beyond the first adds to a byte fetched, to a byte that must go back, and to a line
-/// that an index vector leads to unforeseen; and the share of a drilled pass's beginning.
-const UNKNOWN: usize = 3 * BEYOND + 2;
+/// What is fitted: e0; what each level beyond the first adds to a byte fetched, to one of an array from before, to a byte
+/// that must go back, and to a line that an index vector leads to unforeseen; and the share of a drilled pass's beginning.
+const UNKNOWN: usize = 4 * BEYOND + 2;
+/// Where the arrays begin.
+const ARRAYS: usize = 1 + BEYOND;
+/// Where what goes back begins.
+const BACK: usize = 1 + 2 * BEYOND;
 /// Where the lines begin.
-const LINES: usize = 1 + 2 * BEYOND;
+const LINES: usize = 1 + 3 * BEYOND;
 /// Where that share is.
-const BEGIN: usize = 1 + 3 * BEYOND;
+const BEGIN: usize = 1 + 4 * BEYOND;
 type Costs = [f64; UNKNOWN];
 
 impl Charged {
@@ -66,12 +66,16 @@ impl Charged {
         for Waiting { times, n, touched } in &self.passes {
             for (level, capacity) in capacities.into_iter().enumerate() {
                 // A level that costs 1 beyond its capacity, and none before.
-                let wait = |fetch, write_back, line| {
-                    let there = Level { fetch, write_back, line, ..NOWHERE };
-                    let levels = [Level { capacity: Some(capacity), ..NOWHERE }, there];
+                let wait = |there: Level| {
+                    let levels = [Level { capacity: Some(capacity), ..Level::FREE }, there];
                     times * self.around.wait(&levels, touched, *n, |level| level.line).sum()
                 };
-                let own = [wait(1.0, 0.0, 0.0), wait(0.0, 1.0, 0.0), wait(0.0, 0.0, 1.0)];
+                let own = [
+                    wait(Level { fetch: 1.0, ..Level::FREE }),
+                    wait(Level { fetch_array: 1.0, ..Level::FREE }),
+                    wait(Level { write_back: 1.0, ..Level::FREE }),
+                    wait(Level { line: 1.0, ..Level::FREE }),
+                ];
                 for (kind, own) in own.into_iter().enumerate() {
                     features[1 + kind * BEYOND + level] += own;
                 }
@@ -163,7 +167,8 @@ fn levels(capacities: [f64; BEYOND], costs: &Costs, loops: &Loops, residual: f64
         name: name.to_owned(),
         capacity,
         fetch: upto(&costs[1..], at),
-        write_back: upto(&costs[1 + BEYOND..], at),
+        fetch_array: upto(&costs[ARRAYS..], at),
+        write_back: upto(&costs[BACK..], at),
         line: upto(&costs[LINES..], at),
         loop_line: upto(&loops.lines, at),
     });
@@ -315,5 +320,32 @@ mod tests {
             assert!(each.deviation(features, &costs) < 0.02, "{costs:?}");
         }
         assert!(costs.iter().all(|cost| *cost >= 0.0));
+    }
+
+    #[test]
+    fn streams_and_lines_of_loops_come_out() {
+        let capacities = [32.0 * KIB, 512.0 * KIB, 8192.0 * KIB];
+        let mut costs = [0.0; UNKNOWN];
+        costs[1..ARRAYS].copy_from_slice(&[0.001, 0.002, 0.01]);
+        // As they are: twice the wait of passes, half of the shorter hidden, lines of 4 ns and from memory of 20.
+        let truth = Loops { streams: 2.0, overlap: 0.5, lines: [0.0, 4.0, 16.0], error: 0.0 };
+        let features = |distance: f64, lines: [f64; BEYOND]| {
+            let mut features = charged(distance, false, 0.0).features(capacities);
+            features[LINES..BEGIN].copy_from_slice(&lines);
+            features
+        };
+        let none = [0.0; BEYOND];
+        let all = [(200.0, none), (3000.0, none), (90_000.0, none), (3000.0, [900.0, 900.0, 0.0])];
+        let lines = [(200.0, [5000.0, 0.0, 0.0]), (90_000.0, [2000.0; BEYOND])];
+        let features: Vec<Costs> =
+            all.into_iter().chain(lines).map(|(kib, lines)| features(kib * KIB, lines)).collect();
+        let measured = |features: &Costs| {
+            let each = charged(0.0, false, 0.0);
+            Charged { ns: truth.all(&each, features, &costs), ..each }
+        };
+        let charged: Vec<Charged> = features.iter().map(measured).collect();
+        let found = fit_loops(&charged, &features, &costs);
+        assert!((found.streams, found.overlap) == (2.0, 0.5) && found.error < 1e-6, "{}", found.error);
+        assert!((found.lines[1] - 4.0).abs() < 1e-3 && (found.lines[2] - 16.0).abs() < 1e-3);
     }
 }

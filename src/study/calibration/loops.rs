@@ -24,19 +24,29 @@ const SHORTEST: f64 = 40_000.0;
 /// The drill scene: discs at rest that do not touch, as no validation runs them.
 const DRILL: Run = Run { particles: 240, occupancy: 0.13, precision: "f64", execution: "chained" };
 /// NP and ρ of the larger drill scenes, whose arrays lie in the levels beyond the first.
-const LARGE: [(usize, f64); 7] =
-    [(700, 0.06), (1800, 0.13), (5000, 0.06), (9000, 0.13), (15_000, 0.22), (21_000, 0.07), (30_000, 0.13)];
+const LARGE: [(usize, f64); 8] = [
+    (150, 0.06),
+    (700, 0.06),
+    (1800, 0.13),
+    (5000, 0.06),
+    (9000, 0.13),
+    (15_000, 0.22),
+    (21_000, 0.07),
+    (30_000, 0.13),
+];
 /// What the drill scenes leave out, one after the other.
 const MODELS: [&[&str]; 2] = [
     &["particles.temperature=0", "particles.seed=7"],
     &["particles.temperature=0", "particles.seed=7", "law.friction=0", "law.shear_damping=0"],
 ];
 
-/// How the interpreter runs the large drill scenes: in one strip, and in strips that no validation has.
-const INTERPRETED: [Execution; 3] = [Execution::Eager, Execution::Strip(48), Execution::Strip(160)];
-/// The interpreter is slow: of the largest scene and of every sweep but one of so many there are no samples of it.
+/// How the interpreter runs the large drill scenes: in one strip, and in strips whose registers lie in the first and in the
+/// second level; no validation has them.
+const INTERPRETED: [Execution; 4] =
+    [Execution::Eager, Execution::Strip(48), Execution::Strip(192), Execution::Strip(800)];
+/// The interpreter is slow: of the largest scenes and of every sweep but one of so many there are no samples of it.
 const LARGEST: usize = 20_000;
-const RARELY: usize = 2;
+const RARELY: usize = 3;
 
 /// Operations of each class of an element, and the nanoseconds it took.
 type Counted = (BTreeMap<&'static str, f64>, f64);
