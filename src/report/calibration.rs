@@ -46,7 +46,7 @@ fn operations(model: &HostModel) -> Table {
         notes: vec![
             format!(
                 "Passes over vectors in the first-level cache: t = t0 + n tau. Vectors of {shortest} to {longest} elements; \
-                 timer steps of {timer} ns. Times are told at the median pace, by a yardstick run beside every sample, which \
+                 timer steps of {timer} ns. Times are told at the most frequent pace, by a yardstick run beside every sample, which \
                  took {pace:.2} times as long then as in good moments. Half of the samples then lie within {:.1} % of \
                  the middle one; the two halves of the measurement differ by {:.1} %.",
                 100.0 * spread,

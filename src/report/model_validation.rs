@@ -3,7 +3,9 @@
 use super::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use super::{Cell, Section, Table, Verdict};
 use crate::method::Phase;
-use crate::study::model_validation::{Case, Errors, ModelValidation, OF_DATA, PROGRAMS};
+use crate::study::model_validation::{
+    Case, Errors, ModelValidation, OF_DATA, OF_DATA_AT_PACE, PROGRAMS, PROGRAMS_AT_PACE,
+};
 
 /// How many of the worst cases are named.
 const NAMED: usize = 12;
@@ -21,7 +23,7 @@ pub fn section(data: &ModelValidation) -> Section {
         says: "BP93 predicts times and checks none of them. Aim: on runs that nothing was fitted to, a median error of at \
                most 5 %, 90 % of the cases within 15 %, the worst 30 %; where the work hangs on the data, a median of 10 %."
             .into(),
-        came_out: [programs, of_data]
+        came_out: [programs, of_data, group(PROGRAMS_AT_PACE), group(OF_DATA_AT_PACE)]
             .into_iter()
             .flatten()
             .map(said)

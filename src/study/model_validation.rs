@@ -43,6 +43,11 @@ pub const PROGRAMS: &str = "eager, strip-mined and chained";
 /// The group of all executions whose work hangs on the data.
 pub const OF_DATA: &str = "fast and lists";
 
+/// Those among the first that were measured at the pace of the calibration: the model alone, without what is said of paces.
+pub const PROGRAMS_AT_PACE: &str = "eager, strip-mined and chained, measured at the calibration's pace";
+/// Those among the second.
+pub const OF_DATA_AT_PACE: &str = "fast and lists, measured at the calibration's pace";
+
 const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
 
 /// Why there is no validation.
@@ -83,6 +88,8 @@ pub struct Case {
     /// The same by the rounds of even number alone and by those of odd number; none of one round. Every round lays the run
     /// out anew, in other pages of memory.
     pub halves: Option<[f64; 2]>,
+    /// Whether it was measured at the pace of the calibration, and not only told at it.
+    pub at_pace: bool,
     /// Nanoseconds by the trivial baseline: operations times elements, at the cost of a sum in the cache; none where
     /// what is executed hangs on the data.
     pub baseline: Option<f64>,
@@ -271,6 +278,8 @@ fn errors(cases: &[Case]) -> Vec<Errors> {
     };
     group(PROGRAMS, &|case| !case.hangs_on_data());
     group(OF_DATA, &Case::hangs_on_data);
+    group(PROGRAMS_AT_PACE, &|case| !case.hangs_on_data() && case.at_pace);
+    group(OF_DATA_AT_PACE, &|case| case.hangs_on_data() && case.at_pace);
     EXECUTIONS.iter().for_each(|(name, _)| group(name, &|case| case.execution == *name));
     let straight = |case: &Case| !case.hangs_on_data();
     Phase::ALL.iter().for_each(|phase| {
@@ -353,6 +362,7 @@ impl Scene {
                 measured,
                 quartiles,
                 halves: of_halves(phase),
+                at_pace: times.was_at_pace(phase, reference),
                 baseline,
             }
         });
@@ -383,6 +393,7 @@ mod tests {
             measured: 100.0,
             quartiles: [99.0, 101.0],
             halves: Some([102.0, 100.0]),
+            at_pace: execution == "eager",
             baseline: (execution != LISTS).then_some(50.0),
         }
     }
@@ -398,5 +409,6 @@ mod tests {
         assert_eq!(programs.baseline_median, Some(0.5));
         assert!((programs.repeated.unwrap()[0] - 0.02).abs() < 1e-9);
         assert_eq!(of(OF_DATA).baseline_median, None);
+        assert_eq!((of(PROGRAMS_AT_PACE).cases, of(PROGRAMS_AT_PACE).within), (2, [1, 2, 2, 2]));
     }
 }

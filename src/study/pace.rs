@@ -77,18 +77,31 @@ impl Timed {
     }
 }
 
-/// The times at the pace of a reference, rising: of samples taken near that pace if there are some, else of those nearest to
-/// it, for not everything is slowed down alike; of unsteady samples only where all are.
-pub fn at_pace(samples: &[Timed], reference: f64) -> Vec<f64> {
+/// The samples taken near the pace of a reference if there are some, else those nearest to it, for not everything is slowed
+/// down alike; unsteady samples only where all are.
+fn nearest(samples: &[Timed], reference: f64) -> Vec<&Timed> {
     let steady: Vec<&Timed> = samples.iter().filter(|sample| sample.is_steady()).collect();
     let mut usable = if steady.is_empty() { samples.iter().collect() } else { steady };
     let away = |sample: &Timed| sample.pace(reference).ln().abs();
     usable.sort_by(|a, b| away(a).total_cmp(&away(b)));
     let near = usable.iter().take_while(|sample| away(sample) <= NEAR).count();
     usable.truncate(near.max(FEW));
-    let mut paced: Vec<f64> = usable.into_iter().map(|sample| sample.ns / sample.pace(reference)).collect();
+    usable
+}
+
+/// The times at the pace of a reference, rising, of the samples nearest to it.
+pub fn at_pace(samples: &[Timed], reference: f64) -> Vec<f64> {
+    let nearest = nearest(samples, reference).into_iter();
+    let mut paced: Vec<f64> = nearest.map(|sample| sample.ns / sample.pace(reference)).collect();
     paced.sort_by(f64::total_cmp);
     paced
+}
+
+/// Whether there are samples enough near the pace of a reference, so that times need not be told at another pace than they
+/// were taken at.
+pub fn was_at_pace(samples: &[Timed], reference: f64) -> bool {
+    let nearest = nearest(samples, reference);
+    nearest.len() >= FEW && nearest.iter().all(|sample| sample.pace(reference).ln().abs() <= NEAR)
 }
 
 /// The value below which a share of rising values lies; none of none.
@@ -123,6 +136,7 @@ mod tests {
         assert_eq!(at_pace(&[&slow[..], &near[..]].concat(), 10.0), [100.0; FEW]);
         let fewer = at_pace(&[&slow[..], &near[1..]].concat(), 10.0);
         assert_eq!(fewer, [100.0, 100.0, 100.0, 150.0]);
+        assert!(was_at_pace(&near, 10.0) && !was_at_pace(&near[1..], 10.0) && !was_at_pace(&slow, 10.0));
     }
 
     #[test]

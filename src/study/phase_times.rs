@@ -1,6 +1,6 @@
 //! How long is each phase of a step, and how much was there to do? Runs of the bench scene, timed phase by phase.
 
-use super::pace::{COUNTS, Timed, at_pace, quantile, reading};
+use super::pace::{COUNTS, Timed, at_pace, quantile, reading, was_at_pace};
 use super::throughput::MeasurementError;
 use crate::method::lattice_md::Lengths;
 use crate::method::{Failure, Method, Phase};
@@ -128,6 +128,11 @@ impl PhaseTimes {
             if phase == Phase::Index { self.made * self.making(reference).unwrap_or(0.0) } else { 0.0 };
         let of = |share: f64| making + quantile(&paced, share).unwrap_or(0.0);
         (of(COUNTS), [of(0.25), of(0.75)])
+    }
+
+    /// Whether enough repeats of a phase were at the pace of a reference.
+    pub fn was_at_pace(&self, phase: Phase, reference: f64) -> bool {
+        was_at_pace(&self.repeats[phase as usize], reference)
     }
 
     /// Nanoseconds of a phase without the making of lists.

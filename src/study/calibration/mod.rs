@@ -38,6 +38,8 @@ impl Default for Effort {
 pub const TOO_NOISY: f64 = 0.1;
 /// More than this between the measurement's halves, and it was too busy as well.
 pub const TOO_DIFFERENT: f64 = 0.05;
+/// More than this share slower most of the time than in good moments, and somebody else was at work beside it.
+pub const TOO_SLOW: f64 = 0.15;
 
 /// Why there is no calibration.
 #[derive(Debug, thiserror::Error)]

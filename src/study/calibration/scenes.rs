@@ -121,18 +121,23 @@ fn points(alike: &[Vec<&PhaseTimes>], phase: Phase, reference: f64) -> Vec<RateP
 /// few contacts to tell. How much slower everything is with more discs, which lie farther away, is each number's own.
 fn per_unit(done: &[Vec<Done>]) -> Vec<Vec<(&'static str, f64)>> {
     let mut slower = vec![1.0; done.len()];
-    let mut units = [0.0; Amounts::NAMES.len()];
-    for _ in 0..ROUNDS {
-        let rows = done.iter().zip(&slower).flat_map(|(done, slower)| {
-            done.iter().map(move |(amounts, ns)| (amounts.values().map(|amount| slower * amount / ns), 1.0))
+    let mut units: Units = [0.0; Amounts::NAMES.len()];
+    for round in 0..ROUNDS {
+        let known = (round > 0).then_some(units);
+        let rows = done.iter().zip(&slower).flat_map(|(done, &slower)| {
+            done.iter().map(move |(amounts, ns)| {
+                // As a share of what is expected, or of the amounts before anything is: as a share of its own time, one that
+                // is much too short would draw all to it.
+                let expected = slower * sum(amounts, &known.unwrap_or([1.0; Amounts::NAMES.len()]));
+                let weight = known.map_or(1.0, |_| trust(expected / ns)) / expected.max(f64::MIN_POSITIVE);
+                (amounts.values().map(|amount| weight * slower * amount), weight * ns)
+            })
         });
         units = fit::non_negative(&rows.collect::<Vec<_>>());
         // Of many discs few steps are run, and no lists may have been made: as of fewer discs, then.
         let mut last = 1.0;
         for (done, slower) in done.iter().zip(&mut slower) {
-            let ratios = done.iter().map(|(amounts, ns)| {
-                ns / amounts.values().iter().zip(units).map(|(amount, unit)| amount * unit).sum::<f64>()
-            });
+            let ratios = done.iter().map(|(amounts, ns)| ns / sum(amounts, &units));
             let ratios: Vec<f64> = ratios.filter(|ratio| ratio.is_finite()).collect();
             if !ratios.is_empty() {
                 last = fit::median(ratios.into_iter());
@@ -145,6 +150,19 @@ fn per_unit(done: &[Vec<Done>]) -> Vec<Vec<(&'static str, f64)>> {
         each.map(|(name, unit)| (name, slower * unit)).collect()
     };
     slower.into_iter().map(point).collect()
+}
+
+type Units = [f64; Amounts::NAMES.len()];
+
+fn sum(amounts: &Amounts, units: &Units) -> f64 {
+    amounts.values().iter().zip(units).map(|(amount, unit)| amount * unit).sum()
+}
+
+/// How much a run counts that is predicted so many times as long as it took: what is far from the fit was a bad moment, and
+/// above all what took too little time must not draw everything down.
+fn trust(ratio: f64) -> f64 {
+    let far = ratio.max(f64::MIN_POSITIVE).ln().abs();
+    0.1 / (0.1 + far)
 }
 
 /// Rounds in which the units and how much slower each number of discs is are fitted, one given the other.
@@ -184,6 +202,24 @@ mod tests {
             };
             let expected = slower * (2.0 * 1000.0 + 5.0 * 700.0);
             assert!((sum(1000.0, 700.0) / expected - 1.0).abs() < 0.02, "{point:?}");
+        }
+    }
+
+    #[test]
+    fn one_run_that_took_no_time_does_not_count() {
+        let done = |remade: f64, relisted: f64, bad: f64| {
+            let amounts = Amounts { remade, relisted, ..Amounts::default() };
+            (amounts, bad * (120.0 * remade + 5.0 * relisted))
+        };
+        let alike =
+            |discs: f64| [0.2, 0.7, 1.1, 1.5, 2.0].map(|share| done(discs, share * discs, 1.0)).to_vec();
+        let mut all = vec![alike(100.0), alike(1000.0), alike(5000.0)];
+        all[0].push(done(100.0, 3.0, 0.02));
+        for point in per_unit(&all) {
+            let named: BTreeMap<&str, f64> = point.into_iter().collect();
+            let [remade, relisted] =
+                ["remade", "relisted"].map(|name| named.get(name).copied().unwrap_or(0.0));
+            assert!((remade / 120.0 - 1.0).abs() < 0.05 && (relisted / 5.0 - 1.0).abs() < 0.2, "{named:?}");
         }
     }
 }
