@@ -71,8 +71,8 @@ define_items! {
     (Cost, "cost", 1.0, 1.0, "BP93, figures 3 and 4: cost over particles and density, by the model"),
     (UsefulWork, "useful-work", 1.0, 1.0, "Operations that act on real contacts, over the density"),
     (Measured, "measured", 8.0, 60.0, "The same, measured on this host"),
-    (Validation, "validation", 10.0, 60.0, "The timing model of this host against wall time"),
-    (Atlas, "atlas", 8.0, 60.0, "Who wins where: occupancy, number of particles, method and machine"),
+    (Validation, "validation", 4.0, 150.0, "The timing model of this host against wall time"),
+    (Atlas, "atlas", 5.0, 110.0, "Who wins where: occupancy, number of particles, method and machine"),
     (Crossover, "crossover", 4.0, 150.0, "Lattice, neighbour lists and sectors: which is the fastest at which density, on this host"),
     (Threads, "threads", 3.0, 60.0, "What more threads give, and what the machine has to give"),
     (Identity, "identity", 3.0, 3.0, "Lattice and neighbour lists: the same to the bit"),
@@ -205,7 +205,7 @@ fn atlas(effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, Failur
     let machines = [machine::preset("paper")?, machine::preset("cray-y-mp-el")?];
     let host = default_model()?;
     let (measured, repeats): (&[usize], usize) = match effort {
-        Effort::Quick => (&[100, 1000], 2),
+        Effort::Quick => (&[300], 2),
         Effort::Full => (&[100, 300, 1000, 3000, 10_000], 5),
     };
     let data = break_even::atlas(&machines, &host, measured, repeats, progress)?;
