@@ -126,17 +126,16 @@ pub fn keep_awake<R>(work: impl FnOnce() -> R) -> R {
         return work();
     }
     let kept = Arc::new(AtomicBool::new(false));
-    rayon::in_place_scope(|scope| {
-        for _ in 0..others {
-            let kept = Arc::clone(&kept);
-            scope.spawn(move |_| wait_for(|| kept.load(Ordering::Acquire)));
-        }
-        // Whoever was kept awake already waits for this one now.
-        release();
-        KEPT.set(Some(kept));
-        let _release = Release;
-        work()
-    })
+    for _ in 0..others {
+        let kept = Arc::clone(&kept);
+        // Nobody waits for these: on a busy machine one may begin only when all is over, and finds that it may go.
+        rayon::spawn(move || wait_for(|| kept.load(Ordering::Acquire)));
+    }
+    // Whoever was kept awake already waits for this one now.
+    release();
+    KEPT.set(Some(kept));
+    let _release = Release;
+    work()
 }
 
 /// A range in pieces of `length`, the last one perhaps shorter.
