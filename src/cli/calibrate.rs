@@ -57,7 +57,7 @@ impl CalibrateVerb {
 }
 
 /// What shows that the machine was too busy, if it was.
-fn noise(measured: &Measured) -> Option<String> {
+pub(super) fn noise(measured: &Measured) -> Option<String> {
     let Measured { spread, disagreement, pace, .. } = *measured;
     (spread > TOO_NOISY || disagreement > TOO_DIFFERENT || pace > 1.0 + TOO_SLOW).then(|| {
         format!(

@@ -153,10 +153,14 @@ impl Failure {
             Failure::HostFile(_) => 3,
             Failure::HostLadder(LadderError::Question(_)) => 2,
             Failure::HostLadder(LadderError::OutOfRange(_)) | Failure::TooNoisy(_) => 4,
-            Failure::Calibration(CalibrationError::Program(_)) => 5,
+            Failure::Calibration(CalibrationError::Program(_))
+            | Failure::Validation(ValidationError::Calibration(CalibrationError::Program(_))) => 5,
             Failure::Validation(ValidationError::OutOfRange { .. })
             | Failure::Atlas(AtlasError::OutOfRange(_)) => 4,
-            Failure::Validation(ValidationError::Measurement(error))
+            Failure::Validation(
+                ValidationError::Measurement(error)
+                | ValidationError::Calibration(CalibrationError::Measurement(error)),
+            )
             | Failure::Calibration(CalibrationError::Measurement(error))
             | Failure::Atlas(AtlasError::Measurement(error))
             | Failure::Measurement(error) => match error {

@@ -1,14 +1,19 @@
 //! `stripmine validate-model`: the host model against wall time.
 
+use super::calibrate::noise;
 use super::reproduce::{Folder, Made};
 use super::{Common, Failure, print, print_json};
 use crate::model::host::{HostModel, default_model};
 use crate::report;
-use crate::report::origin::Provenance;
-use crate::study::model_validation::{Effort, model_validation};
+use crate::report::origin::{self, Provenance};
+use crate::study::calibration;
+use crate::study::model_validation::{
+    Calibrated, Effort, ModelValidation, calibrated_in_turns, model_validation,
+};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use stripmine_kernels::InstructionSet;
 
 /// Predicts runs that nothing was fitted to, measures them, and says how far off each prediction was
 #[derive(Args)]
@@ -16,6 +21,14 @@ pub(super) struct ValidateModel {
     /// Host file of `calibrate`; without one, the model that comes with the program
     #[arg(long)]
     host: Option<PathBuf>,
+    /// Calibrate in turns with the runs, so that both meet the same moments of a busy machine; the host file lies in the
+    /// folder of the result
+    #[arg(long, conflicts_with = "host")]
+    calibrate: bool,
+    /// Sweeps of that calibration
+    #[arg(long, requires = "calibrate", default_value_t = 2 * calibration::Effort::default().sweeps as u16,
+          value_parser = clap::value_parser!(u16).range(1..=200))]
+    sweeps: u16,
     /// Numbers of particles
     #[arg(long, value_delimiter = ',', default_values_t = [130, 850, 4400, 27_000])]
     particles: Vec<usize>,
@@ -51,7 +64,6 @@ pub(super) fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostMo
 
 impl ValidateModel {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
-        let (model, shipped) = host_model(self.host.as_deref(), common)?;
         let effort = Effort {
             particles: self.particles.clone(),
             occupancies: self.occupancies.clone(),
@@ -59,13 +71,13 @@ impl ValidateModel {
             repeats: self.repeats.into(),
             particle_steps: 10_000,
         };
-        let bar = super::progress(common, "validate-model");
         let start = Instant::now();
-        let data =
-            model_validation(&model, shipped, &effort, |share| bar.set_position((1e3 * share) as u64))?;
-        bar.finish_and_clear();
+        let (data, model) = self.validated(&effort, common)?;
         if let Some(out) = &self.out {
-            let made = Made::new(report::model_validation::section(&data), &data)?;
+            let mut made = Made::new(report::model_validation::section(&data), &data)?;
+            if let Some(model) = model {
+                made = made.with_file("host.toml", model.to_toml());
+            }
             let provenance =
                 Provenance::here("stripmine validate-model".to_owned(), start.elapsed().as_secs_f64());
             let folder = Folder::new(out).write(&made, &provenance)?;
@@ -79,5 +91,30 @@ impl ValidateModel {
         let tables = report::model_validation::tables(&data);
         let drawn: Vec<String> = tables.iter().take(2).map(report::terminal::render).collect();
         print(&drawn.join("\n"))
+    }
+
+    /// What came out, and the model if it was calibrated here.
+    fn validated(
+        &self,
+        effort: &Effort,
+        common: &Common,
+    ) -> Result<(ModelValidation, Option<HostModel>), Failure> {
+        let bar = super::progress(common, "validate-model");
+        let progress = |share: f64| bar.set_position((1e3 * share) as u64);
+        if self.calibrate {
+            let sweeps = calibration::Effort { sweeps: self.sweeps.into() };
+            let (model, data) =
+                calibrated_in_turns(origin::host(), InstructionSet::best(), sweeps, effort, progress)?;
+            bar.finish_and_clear();
+            if let Some(noise) = noise(&model.measured) {
+                eprintln!("warning: {noise}: the machine is busy");
+            }
+            return Ok((data, Some(model)));
+        }
+        let (model, shipped) = host_model(self.host.as_deref(), common)?;
+        let calibrated = if shipped { Calibrated::Shipped } else { Calibrated::Before };
+        let data = model_validation(&model, calibrated, effort, progress)?;
+        bar.finish_and_clear();
+        Ok((data, None))
     }
 }

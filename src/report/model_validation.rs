@@ -4,7 +4,7 @@ use super::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use super::{Cell, Section, Table, Verdict};
 use crate::method::Phase;
 use crate::study::model_validation::{
-    Case, Errors, ModelValidation, OF_DATA, OF_DATA_AT_PACE, PROGRAMS, PROGRAMS_AT_PACE,
+    Calibrated, Case, Errors, ModelValidation, OF_DATA, OF_DATA_AT_PACE, PROGRAMS, PROGRAMS_AT_PACE,
 };
 
 /// How many of the worst cases are named.
@@ -31,7 +31,13 @@ pub fn section(data: &ModelValidation) -> Section {
             .collect::<Vec<_>>()
             .join(" "),
         verdict: if reached { Verdict::Reproduced } else { Verdict::Partly },
-        again: "stripmine calibrate --out host.toml, then stripmine validate-model --host host.toml".into(),
+        again: match data.calibrated {
+            Calibrated::InTurns => "stripmine validate-model --calibrate --out reports".into(),
+            Calibrated::Shipped => "stripmine validate-model --out reports".into(),
+            Calibrated::Before => {
+                "stripmine calibrate --out host.toml, then stripmine validate-model --host host.toml --out reports".into()
+            }
+        },
         figures: executions(data)
             .into_iter()
             .map(|execution| over_predicted(data, execution))
@@ -112,12 +118,16 @@ fn errors(data: &ModelValidation) -> Table {
         pace(data),
         "Fast and lists: predicted from the numbers of candidates and contacts that the run itself had.".to_owned(),
     ];
-    if data.shipped {
-        notes.push(
-            "This is the model that comes with the program, not one of this host: calibrate first."
-                .to_owned(),
-        );
-    }
+    notes.push(match data.calibrated {
+        Calibrated::Shipped => {
+            "This is the model that comes with the program, not one of this host: calibrate first.".to_owned()
+        }
+        Calibrated::Before => "The model was calibrated at another time.".to_owned(),
+        Calibrated::InTurns => {
+            "The model was calibrated in turns with the runs, on other texts, lengths and densities."
+                .to_owned()
+        }
+    });
     Table {
         name: "errors".into(),
         title: "Errors of the predictions".into(),

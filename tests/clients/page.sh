@@ -1,25 +1,23 @@
 #!/usr/bin/env bash
 # Opens the page of a reproduction in a browser without a window and uses it as a reader would.
 #
-#   tests/clients/page.sh PAGE.html [PICTURES_FOLDER]
+#   tests/clients/page.sh PAGE.html [ENVIRONMENT_FOLDER [PICTURES_FOLDER]]
 #
-# Needs Python 3, Chromium, and a network for the package that drives it; skipped where one of them cannot be had.
+# Needs Python 3, Chromium, and, for the first time, a network for the package that drives it; skipped where one of them
+# cannot be had. The package goes into a virtual environment: in ENVIRONMENT_FOLDER, to be used again, or else in a
+# temporary folder.
 set -euo pipefail
 
-if [[ $# -lt 1 || $# -gt 2 || ! -f $1 ]]; then
-    echo "usage: $0 PAGE.html [PICTURES_FOLDER]" >&2
+if [[ $# -lt 1 || $# -gt 3 || ! -f $1 ]]; then
+    echo "usage: $0 PAGE.html [ENVIRONMENT_FOLDER [PICTURES_FOLDER]]" >&2
     exit 2
 fi
 here=$(cd "$(dirname "$0")" && pwd)
-python=${PYTHON:-python3}
-if ! command -v "$python" >/dev/null; then
-    echo "SKIPPED (no $python)"
+if ! command -v "${PYTHON:-python3}" >/dev/null; then
+    echo "SKIPPED (no ${PYTHON:-python3})"
     exit 0
 fi
-environment=$(mktemp -d)
-trap 'rm -rf "$environment"' EXIT
-if "$python" -m venv "$environment" >&2; then
-    python=$environment/bin/python
-    "$python" -m pip install --quiet --disable-pip-version-check playwright >&2 || echo "pip cannot install playwright" >&2
-fi
-"$python" "$here/page.py" "$@"
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+python=$("$here/environment.sh" "${2:-$scratch}" "$here/page.packages")
+"$python" "$here/page.py" "$1" "${@:3}"

@@ -7,11 +7,12 @@ use crate::model::machine;
 use crate::report::origin;
 use crate::report::pipe_flow::Showing;
 use crate::report::{self, Section};
-use crate::study::calibration::{self, calibrate};
+use crate::study::calibration;
 use crate::study::efficiency_table::Question;
+use crate::study::model_validation::{self, Calibrated, calibrated_in_turns, model_validation};
 use crate::study::{
     break_even, crossover, damping, density_cost, efficiency_table, host_ladder, identity, ladder,
-    measured_cost, misprints, model_validation, pipe_flow, precision, threads, useful_work,
+    measured_cost, misprints, pipe_flow, precision, threads, useful_work,
 };
 use clap::ValueEnum;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -175,29 +176,42 @@ impl Made {
         let data = serde_json::to_value(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
         Ok(Made { section, data, files: vec![] })
     }
+
+    /// With one more file.
+    #[must_use]
+    pub(in crate::cli) fn with_file(mut self, name: &str, text: String) -> Made {
+        self.files.push((name.to_owned(), text));
+        self
+    }
 }
 
 fn made(section: Section, data: &impl Serialize) -> Result<Made, Failure> {
     Made::new(section, data)
 }
 
-/// The shipped host model on few cases, or, in full, a fresh calibration on more of them.
+/// The shipped host model on few cases, or, in full, a fresh calibration in turns with more of them.
 fn validation(effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, Failure> {
-    let (host, shipped, particles, occupancies) = match effort {
-        Effort::Quick => (default_model()?, true, vec![100, 2000], vec![0.2]),
-        Effort::Full => {
-            let best = InstructionSet::best();
-            let host = calibrate(origin::host(), best, calibration::Effort::default(), |share| {
-                progress(0.5 * share)
-            })?;
-            (host, false, vec![130, 850, 4400, 17_000], vec![0.045, 0.235])
-        }
+    let runs = |particles, occupancies, rounds| model_validation::Effort {
+        particles,
+        occupancies,
+        rounds,
+        repeats: 4,
+        particle_steps: 10_000,
     };
-    let runs =
-        model_validation::Effort { particles, occupancies, rounds: 2, repeats: 4, particle_steps: 10_000 };
-    let data =
-        model_validation::model_validation(&host, shipped, &runs, |share| progress(0.5 + 0.5 * share))?;
-    made(report::model_validation::section(&data), &data)
+    match effort {
+        Effort::Quick => {
+            let (host, runs) = (default_model()?, runs(vec![100, 2000], vec![0.2], 2));
+            let data = model_validation(&host, Calibrated::Shipped, &runs, progress)?;
+            made(report::model_validation::section(&data), &data)
+        }
+        Effort::Full => {
+            let (sweeps, best) = (calibration::Effort::default(), InstructionSet::best());
+            let runs = runs(vec![130, 850, 4400, 17_000], vec![0.045, 0.235], 4);
+            let (host, data) = calibrated_in_turns(origin::host(), best, sweeps, &runs, progress)?;
+            made(report::model_validation::section(&data), &data)
+                .map(|made| made.with_file("host.toml", host.to_toml()))
+        }
+    }
 }
 
 /// The machine of the source, the CRAY of the application, and this host, by the model that comes with the program.

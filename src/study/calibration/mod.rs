@@ -11,7 +11,7 @@ mod timing;
 
 use super::throughput::MeasurementError;
 use crate::method::{Phase, Timings};
-use crate::model::host::{FORMAT, HostModel, LoopCosts, Measured};
+use crate::model::host::{FORMAT, HostModel, LoopCosts, Measured, OutOfRange};
 use drills::{Arrays, LONGEST};
 use levels::{Charged, Levels, fit_levels};
 use loops::Loops;
@@ -52,10 +52,8 @@ pub enum CalibrationError {
     Measurement(#[from] MeasurementError),
 }
 
-/// Share of the time that the drill scenes take.
-const SCENES: f64 = 0.5;
-/// How often they are run.
-const PARTS: usize = 2;
+/// The drill scenes are run at the first of so many sweeps, and take as long as these do.
+const SCENES_EVERY: usize = 20;
 
 /// Measures this host, called `title`, on one thread, and fits its model. `progress` gets the share that is done.
 ///
@@ -68,75 +66,155 @@ pub fn calibrate(
     progress: impl Fn(f64) + Sync,
 ) -> Result<HostModel, CalibrationError> {
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(MeasurementError::Threads)?;
-    alone.install(|| measured(title, set, effort, &progress))
+    alone.install(|| {
+        let mut calibration = Calibration::new(title, set, effort)?;
+        calibration.measure(1.0, &progress)?;
+        Ok(calibration.model())
+    })
 }
 
-fn measured(
+/// A calibration under way: it can be done bit by bit, in turns with something else.
+pub(super) struct Calibration {
     title: String,
     set: InstructionSet,
     effort: Effort,
-    progress: &(dyn Fn(f64) + Sync),
-) -> Result<HostModel, CalibrationError> {
-    let timer = timer_resolution();
-    let mut lanes = [Lane::new::<f64, f32>(set)?, Lane::new::<f32, f64>(set)?];
-    let mut arrays = (Arrays::<f64, f32>::new(LONGEST), Arrays::<f32, f64>::new(LONGEST));
-    let mut loops = Loops::new()?;
-    let mut paced = PacedClock::new();
-    let [mut binding, mut clock] = [Samples::default(), Samples::default()];
-    let mut scenes = Scenes::new()?;
-    for sweep in 0..effort.sweeps {
-        // The scenes at the beginning and at the end.
-        if let Some(part) = (0..PARTS).find(|part| sweep == part * (effort.sweeps - 1) / (PARTS - 1).max(1)) {
-            let done = (sweep as f64 / effort.sweeps as f64, part as f64 / PARTS as f64);
-            let from = (1.0 - SCENES) * done.0 + SCENES * done.1;
-            scenes.sweep(|share| progress(from + SCENES * share / PARTS as f64))?;
-            paced.look();
+    /// Sweeps done.
+    sweeps: usize,
+    timer: f64,
+    paced: PacedClock,
+    lanes: [Lane; 2],
+    arrays: (Arrays<f64, f32>, Arrays<f32, f64>),
+    loops: Loops,
+    scenes: Scenes,
+    binding: Samples,
+    clock: Samples,
+}
+
+impl Calibration {
+    /// Of this host, called `title`: nothing measured yet.
+    pub(super) fn new(title: String, set: InstructionSet, effort: Effort) -> Result<Self, CalibrationError> {
+        Ok(Calibration {
+            title,
+            set,
+            effort,
+            sweeps: 0,
+            timer: timer_resolution(),
+            paced: PacedClock::new(),
+            lanes: [Lane::new::<f64, f32>(set)?, Lane::new::<f32, f64>(set)?],
+            arrays: (Arrays::new(LONGEST), Arrays::new(LONGEST)),
+            loops: Loops::new()?,
+            scenes: Scenes::new()?,
+            binding: Samples::default(),
+            clock: Samples::default(),
+        })
+    }
+
+    /// Whether runs of so many discs lie within what is measured.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] where they do not.
+    pub(super) fn reaches(discs: usize) -> Result<(), OutOfRange> {
+        let [fewest, most] = [0, scenes::PARTICLES.len() - 1].map(|at| scenes::PARTICLES[at]);
+        if discs < fewest || discs > most {
+            return Err(OutOfRange::Discs { discs, fewest, most });
         }
+        Ok(())
+    }
+
+    /// Measures on until a share of everything is done, on the thread that calls. `progress` gets the share that is done.
+    pub(super) fn measure(
+        &mut self,
+        share: f64,
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Result<(), CalibrationError> {
+        let upto = (share * self.effort.sweeps as f64).round() as usize;
+        self.paced.look();
+        while self.sweeps < upto {
+            let parts = self.sweeps.div_ceil(SCENES_EVERY);
+            if self.sweeps.is_multiple_of(SCENES_EVERY) {
+                let before = self.done(parts);
+                let part = self.done(parts + 1) - before;
+                self.scenes.sweep(|share| progress(before + part * share))?;
+                self.paced.look();
+            }
+            self.sweep();
+            progress(self.done(self.sweeps.div_ceil(SCENES_EVERY)));
+        }
+        Ok(())
+    }
+
+    /// The share that is done, after so many runs of the drill scenes.
+    fn done(&self, scenes: usize) -> f64 {
+        let all = self.effort.sweeps + SCENES_EVERY * self.effort.sweeps.div_ceil(SCENES_EVERY);
+        (self.sweeps + SCENES_EVERY * scenes) as f64 / all as f64
+    }
+
+    /// One sample of every point.
+    fn sweep(&mut self) {
+        let Calibration { set, sweeps, paced, lanes, arrays, loops, binding, clock, .. } = self;
         let mut timings = Timings::default();
-        clock.take(&mut paced, 20_000.0, || timings.time(Phase::Predict, || ()));
-        binding.take(&mut paced, 20_000.0, || _ = std::hint::black_box(arrays.0.memory()));
+        clock.take(paced, 20_000.0, || timings.time(Phase::Predict, || ()));
+        binding.take(paced, 20_000.0, || _ = std::hint::black_box(arrays.0.memory()));
         let memories = [arrays.0.memory(), arrays.1.memory()];
         for (lane, memory) in lanes.iter_mut().zip(&memories) {
-            lane.sweep(&mut paced, memory, set, sweep);
+            lane.sweep(paced, memory, *set, *sweeps);
         }
-        loops.sweep(&mut paced, set, sweep);
+        loops.sweep(paced, *set, *sweeps);
+        *sweeps += 1;
     }
-    let yardstick = paced.reference();
-    loops.settle(yardstick);
-    [&mut binding, &mut clock].into_iter().for_each(|samples| samples.settle(yardstick));
-    for lane in &mut lanes {
-        lane.settle(yardstick);
-        lane.fit();
-    }
-    let charged: Vec<Charged> =
-        lanes.iter().flat_map(Lane::long_passes).chain(loops.charged(&lanes)).collect();
-    let costs = loops.costs();
-    let Levels { operand, levels, begin, streams, overlap, residual } =
-        fit_levels(&charged, &loops.charged_loops(&costs));
-    let samples = || lanes.iter().flat_map(Lane::samples).chain(loops.samples());
-    Ok(HostModel {
-        format: FORMAT,
-        title,
-        instruction_set: set.name().to_owned(),
-        measured: Measured {
+
+    /// The model fitted to what was measured.
+    pub(super) fn model(self) -> HostModel {
+        let Calibration {
+            title,
+            set,
             timer,
-            yardstick,
-            pace: paced.pace(),
-            spread: fit::median(samples().map(Samples::spread)),
-            disagreement: fit::median(samples().map(Samples::disagreement)),
-            shortest: SHORT[0],
-            longest: LONGEST,
-            residual,
-        },
-        operand,
-        begin,
-        bind: binding.typical() / arrays.0.count() as f64,
-        run: fit::median(lanes.iter().map(Lane::run)),
-        // Half of the two looks at the clock lies between them.
-        clock: 0.5 * clock.typical(),
-        levels,
-        loops: LoopCosts { streams, overlap, ..costs },
-        lanes: lanes.into_iter().map(|lane| (lane.name.to_owned(), lane.costs)).collect(),
-        rates: scenes.rates(yardstick),
-    })
+            paced,
+            mut lanes,
+            arrays,
+            mut loops,
+            scenes,
+            mut binding,
+            mut clock,
+            ..
+        } = self;
+        let yardstick = paced.reference();
+        loops.settle(yardstick);
+        [&mut binding, &mut clock].into_iter().for_each(|samples| samples.settle(yardstick));
+        for lane in &mut lanes {
+            lane.settle(yardstick);
+            lane.fit();
+        }
+        let charged: Vec<Charged> =
+            lanes.iter().flat_map(Lane::long_passes).chain(loops.charged(&lanes)).collect();
+        let costs = loops.costs();
+        let Levels { operand, levels, begin, streams, overlap, residual } =
+            fit_levels(&charged, &loops.charged_loops(&costs));
+        let samples = || lanes.iter().flat_map(Lane::samples).chain(loops.samples());
+        HostModel {
+            format: FORMAT,
+            title,
+            instruction_set: set.name().to_owned(),
+            measured: Measured {
+                timer,
+                yardstick,
+                pace: paced.pace(),
+                spread: fit::median(samples().map(Samples::spread)),
+                disagreement: fit::median(samples().map(Samples::disagreement)),
+                shortest: SHORT[0],
+                longest: LONGEST,
+                residual,
+            },
+            operand,
+            begin,
+            bind: binding.typical() / arrays.0.count() as f64,
+            run: fit::median(lanes.iter().map(Lane::run)),
+            // Half of the two looks at the clock lies between them.
+            clock: 0.5 * clock.typical(),
+            levels,
+            loops: LoopCosts { streams, overlap, ..costs },
+            lanes: lanes.into_iter().map(|lane| (lane.name.to_owned(), lane.costs)).collect(),
+            rates: scenes.rates(yardstick),
+        }
+    }
 }

@@ -1,0 +1,236 @@
+//! How good is the host model? Predicted against measured, on runs that nothing was fitted to: whole steps of moving
+//! discs, phase by phase.
+
+mod errors;
+mod scene;
+
+pub use errors::{Case, Errors, OF_DATA, OF_DATA_AT_PACE, PROGRAMS, PROGRAMS_AT_PACE};
+
+use super::calibration::{self, Calibration, CalibrationError};
+use super::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run};
+use super::throughput::MeasurementError;
+use crate::model::host::{HostModel, OutOfRange};
+use rayon::ThreadPool;
+use scene::{Scene, rated};
+use serde::Serialize;
+use stripmine_kernels::{Execution, InstructionSet};
+
+/// What is run.
+#[derive(Clone, Debug)]
+pub struct Effort {
+    /// NP.
+    pub particles: Vec<usize>,
+    /// ρ on cells as wide as the radius.
+    pub occupancies: Vec<f64>,
+    /// Rounds over all runs: what one of them meets in a busy moment, another does not.
+    pub rounds: usize,
+    /// Repeats of a run in a round.
+    pub repeats: usize,
+    /// Particle-steps of a repeat, about.
+    pub particle_steps: usize,
+}
+
+/// The executions, by the name that a scene gives them; the last three hang on the data.
+const EXECUTIONS: [(&str, Option<Execution>); 7] = [
+    ("eager", Some(Execution::Eager)),
+    ("strip:64", Some(Execution::Strip(64))),
+    ("strip:512", Some(Execution::Strip(512))),
+    ("chained", Some(Execution::Chained)),
+    (FAST, None),
+    (FAST_LISTS, None),
+    (LISTS, None),
+];
+
+const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
+
+/// Where the model comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Calibrated {
+    /// With the program, of another machine perhaps.
+    Shipped,
+    /// From a calibration at another time.
+    Before,
+    /// From a calibration in turns with the runs.
+    InTurns,
+}
+
+/// Why there is no validation.
+#[derive(Debug, thiserror::Error)]
+pub enum ValidationError {
+    /// A calibration broke.
+    #[error(transparent)]
+    Calibration(#[from] CalibrationError),
+    /// A run broke.
+    #[error(transparent)]
+    Measurement(#[from] MeasurementError),
+    /// A case that the model does not reach.
+    #[error("{case}: {cause}")]
+    OutOfRange {
+        /// The case.
+        case: String,
+        /// Why.
+        cause: OutOfRange,
+    },
+}
+
+/// The dataset.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelValidation {
+    /// The host model: of which processor.
+    pub host: String,
+    /// Its instructions.
+    pub instruction_set: String,
+    /// Where it comes from.
+    pub calibrated: Calibrated,
+    /// How many times slower than at the pace of the calibration the host was in the median.
+    pub pace: f64,
+    /// Every case.
+    pub cases: Vec<Case>,
+    /// The errors of all, of every execution and of every phase.
+    pub errors: Vec<Errors>,
+}
+
+impl ModelValidation {
+    /// The cases from the worst on.
+    pub fn worst(&self) -> Vec<&Case> {
+        let mut cases: Vec<&Case> = self.cases.iter().collect();
+        cases.sort_by(|a, b| b.error().total_cmp(&a.error()));
+        cases
+    }
+}
+
+/// Predicts by a model and measures, on one thread. `progress` gets the share that is done.
+///
+/// # Errors
+/// [`ValidationError`] if a scene breaks or lies outside what was calibrated; the latter before anything is run.
+pub fn model_validation(
+    host: &HostModel,
+    calibrated: Calibrated,
+    effort: &Effort,
+    progress: impl Fn(f64) + Sync,
+) -> Result<ModelValidation, ValidationError> {
+    // Before discs are placed: large scenes take their time.
+    for run in runs(effort) {
+        let out = |cause| ValidationError::OutOfRange { case: run.name(), cause };
+        host.admits(run.particles).map_err(out)?;
+        if run.rates().is_some() {
+            rated(host, &run, &PhaseTimes::none(run.particles)).map_err(out)?;
+        }
+    }
+    let mut measured = Measured::new(effort)?;
+    for scene in &measured.scenes {
+        scene.predicted(host)?;
+    }
+    alone()?.install(|| {
+        for round in 0..effort.rounds {
+            measured.round(&|share| progress((round as f64 + share) / effort.rounds as f64))?;
+        }
+        measured.against(host, calibrated)
+    })
+}
+
+/// The same with a calibration of this host, called `title`, in turns with the runs, so that both meet the same moments of
+/// it: a host that others share has more than one pace. Nothing that is validated is calibrated on. With the model.
+///
+/// # Errors
+/// As [`model_validation`]; and [`ValidationError::Calibration`] if the processor lacks the instruction set.
+pub fn calibrated_in_turns(
+    title: String,
+    set: InstructionSet,
+    sweeps: calibration::Effort,
+    effort: &Effort,
+    progress: impl Fn(f64) + Sync,
+) -> Result<(HostModel, ModelValidation), ValidationError> {
+    for run in runs(effort) {
+        let out = |cause| ValidationError::OutOfRange { case: run.name(), cause };
+        Calibration::reaches(run.particles).map_err(out)?;
+    }
+    let mut measured = Measured::new(effort)?;
+    alone()?.install(|| {
+        let mut calibration = Calibration::new(title, set, sweeps)?;
+        let rounds = effort.rounds as f64;
+        for round in 0..effort.rounds {
+            let (before, upto) = (round as f64 / rounds, (round + 1) as f64 / rounds);
+            calibration.measure(upto, &|all| progress(0.5 * (before + all)))?;
+            measured.round(&|share| progress(0.5 * (upto + before + share / rounds)))?;
+        }
+        let host = calibration.model();
+        let data = measured.against(&host, Calibrated::InTurns)?;
+        Ok((host, data))
+    })
+}
+
+/// Everything is measured on one thread.
+fn alone() -> Result<ThreadPool, MeasurementError> {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(MeasurementError::Threads)
+}
+
+/// All runs, and what was measured of them.
+struct Measured {
+    effort: Effort,
+    scenes: Vec<Scene>,
+    /// Rounds of even and of odd number apart.
+    times: Vec<[Option<PhaseTimes>; 2]>,
+    rounds: usize,
+}
+
+impl Measured {
+    /// Nothing yet.
+    fn new(effort: &Effort) -> Result<Measured, MeasurementError> {
+        let scenes = runs(effort).map(Scene::new).collect::<Result<Vec<_>, _>>()?;
+        let times = scenes.iter().map(|_| [None, None]).collect();
+        Ok(Measured { effort: effort.clone(), scenes, times, rounds: 0 })
+    }
+
+    /// Runs everything once more. `progress` gets the share that is done.
+    fn round(&mut self, progress: &dyn Fn(f64)) -> Result<(), MeasurementError> {
+        let all = self.scenes.len() as f64;
+        for (at, (scene, times)) in self.scenes.iter().zip(&mut self.times).enumerate() {
+            let more = scene.measure(&self.effort)?;
+            let times = &mut times[self.rounds % 2];
+            *times = Some(match times.take() {
+                Some(before) => before.joined(more),
+                None => more,
+            });
+            progress((at + 1) as f64 / all);
+        }
+        self.rounds += 1;
+        Ok(())
+    }
+
+    /// Beside what a model predicts.
+    fn against(&self, host: &HostModel, calibrated: Calibrated) -> Result<ModelValidation, ValidationError> {
+        let mut cases = vec![];
+        for (scene, halves) in self.scenes.iter().zip(&self.times) {
+            cases.extend(scene.cases(host, halves)?);
+        }
+        Ok(ModelValidation {
+            host: host.title.clone(),
+            instruction_set: host.instruction_set.clone(),
+            calibrated,
+            pace: median_pace(host, self.times.iter().flatten().flatten()),
+            errors: errors::errors(&cases),
+            cases,
+        })
+    }
+}
+
+fn median_pace<'a>(host: &HostModel, times: impl Iterator<Item = &'a PhaseTimes>) -> f64 {
+    let mut paces: Vec<f64> = times.flat_map(|times| times.paces(host.measured.yardstick)).collect();
+    paces.sort_by(f64::total_cmp);
+    paces.get(paces.len() / 2).copied().unwrap_or(1.0)
+}
+
+/// Every run, in order.
+fn runs(effort: &Effort) -> impl Iterator<Item = Run> {
+    let places = effort
+        .particles
+        .iter()
+        .flat_map(|&particles| effort.occupancies.iter().map(move |&occupancy| (particles, occupancy)));
+    places.flat_map(|(particles, occupancy)| {
+        PRECISIONS.into_iter().flat_map(move |precision| {
+            EXECUTIONS.map(|(execution, _)| Run { particles, occupancy, precision, execution })
+        })
+    })
+}

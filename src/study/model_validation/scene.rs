@@ -1,0 +1,105 @@
+//! A run to be measured, and what is predicted of it.
+
+use super::{Case, EXECUTIONS, Effort, ValidationError};
+use crate::method::Phase;
+use crate::method::lattice_md::Lengths;
+use crate::model::host::{HostModel, OutOfRange};
+use crate::run::model;
+use crate::scene::Checked;
+use crate::study::phase_times::{PhaseTimes, Run, Sampling, phase_times};
+use crate::study::predicted_step::{Step, of_precision};
+use crate::study::throughput::MeasurementError;
+use stripmine_kernels::Execution;
+
+/// A run, ready. What it does if that does not hang on the data: else the run must first say how much there was to do.
+pub(super) struct Scene {
+    run: Run,
+    checked: Checked,
+    step: Option<(Step, Execution)>,
+}
+
+impl Scene {
+    /// Of a run.
+    pub(super) fn new(run: Run) -> Result<Scene, MeasurementError> {
+        let checked = run.scene(&[])?;
+        let named = EXECUTIONS.iter().find(|(name, _)| *name == run.execution);
+        let step = named.and_then(|(_, execution)| *execution).map(|execution| {
+            let model = model(&checked);
+            let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
+            (Step::new(&of_precision(&model, checked.scene.method.precision), &lengths), execution)
+        });
+        Ok(Scene { run, checked, step })
+    }
+
+    /// Nanoseconds of every phase, and the baseline's; none if they hang on the data.
+    pub(super) fn predicted(&self, host: &HostModel) -> Result<Option<Vec<[f64; 2]>>, ValidationError> {
+        let Some((step, execution)) = &self.step else { return Ok(None) };
+        let phases = Phase::ALL.iter().map(|&phase| step.phase(host, phase, *execution));
+        phases.collect::<Result<_, _>>().map(Some).map_err(|cause| self.out(cause))
+    }
+
+    fn out(&self, cause: OutOfRange) -> ValidationError {
+        ValidationError::OutOfRange { case: self.run.name(), cause }
+    }
+
+    /// Runs it once more.
+    pub(super) fn measure(&self, effort: &Effort) -> Result<PhaseTimes, MeasurementError> {
+        let sampling = Sampling {
+            equilibration: (effort.particle_steps / self.run.particles).clamp(5, 50),
+            repeats: effort.repeats,
+            particle_steps: effort.particle_steps,
+            // Lists are made anew every few steps only.
+            least_steps: if self.run.has_lists() { 6 } else { 2 },
+        };
+        phase_times(&self.checked, &sampling)
+    }
+
+    /// Every phase that it has, predicted and as it was measured in the rounds of even and of odd number.
+    pub(super) fn cases(
+        &self,
+        host: &HostModel,
+        halves: &[Option<PhaseTimes>; 2],
+    ) -> Result<Vec<Case>, ValidationError> {
+        let reference = host.measured.yardstick;
+        let Some(times) = halves.iter().flatten().cloned().reduce(PhaseTimes::joined) else {
+            return Ok(vec![]);
+        };
+        let of_halves = |phase: Phase| match halves {
+            [Some(even), Some(odd)] => Some([even, odd].map(|half| half.typical(phase, reference).0)),
+            _ => None,
+        };
+        let predicted: Vec<(f64, Option<f64>)> = match self.predicted(host)? {
+            Some(phases) => phases.into_iter().map(|[ns, baseline]| (ns, Some(baseline))).collect(),
+            None => {
+                let phases = rated(host, &self.run, &times).map_err(|cause| self.out(cause))?;
+                phases.into_iter().map(|ns| (ns, None)).collect()
+            }
+        };
+        let Run { particles, occupancy, precision, execution } = self.run;
+        let cases = Phase::ALL.iter().zip(predicted).map(|(&phase, (predicted, baseline))| {
+            let (measured, quartiles) = times.typical(phase, reference);
+            Case {
+                particles,
+                occupancy,
+                precision,
+                execution,
+                phase: phase.name(),
+                predicted,
+                measured,
+                quartiles,
+                halves: of_halves(phase),
+                at_pace: times.was_at_pace(phase, reference),
+                baseline,
+            }
+        });
+        // Not every execution has every phase.
+        Ok(cases.filter(|case| case.measured > 0.0).collect())
+    }
+}
+
+/// Nanoseconds of every phase of a run whose cost hangs on the data.
+pub(super) fn rated(host: &HostModel, run: &Run, times: &PhaseTimes) -> Result<Vec<f64>, OutOfRange> {
+    let method = run.rates().unwrap_or_default();
+    let rates = host.rates.get(method).ok_or_else(|| OutOfRange::NotMeasured(format!("method {method}")))?;
+    Phase::ALL.iter().map(|phase| rates.phase(run.precision, phase.name(), &times.amounts)).collect()
+}
