@@ -1,11 +1,11 @@
 //! A host model as a reader wants it.
 
 use super::{Cell, Table};
-use crate::model::host::{Amounts, Estimate, HostModel, Measured};
+use crate::model::host::{Amounts, Estimate, HostModel, Measured, Transfer};
 
 /// The tables of a host model.
 pub fn tables(model: &HostModel) -> Vec<Table> {
-    vec![operations(model), loops(model), levels(model), rates(model)]
+    vec![operations(model), programs(model), levels(model), rates(model)]
 }
 
 fn with(estimate: Estimate, decimals: usize) -> [Cell; 2] {
@@ -60,22 +60,27 @@ fn operations(model: &HostModel) -> Table {
     }
 }
 
-fn loops(model: &HostModel) -> Table {
-    let rows = model.loops.seen.iter().map(|(signature, seen)| {
+fn programs(model: &HostModel) -> Table {
+    let interpreted = model.lanes.values().flat_map(|lane| &lane.seen).map(|seen| ("in strips", seen));
+    let loops = model.loops.seen.iter().map(|seen| ("chained", seen));
+    let rows = interpreted.chain(loops).map(|(execution, (signature, seen))| {
         let lane = signature.split('-').next().unwrap_or_default();
-        hockney([lane, &seen.what], seen.element, seen.start)
+        let mut row = hockney([lane, &seen.what], seen.element, seen.start);
+        row.insert(0, Cell::Text(execution.to_owned()));
+        row
     });
     Table {
-        name: "loops".into(),
-        title: "Compiled loops".into(),
-        columns: headings(&[&["lanes", "loop"], TIMES.as_slice()].concat()),
+        name: "programs".into(),
+        title: "Programs".into(),
+        columns: headings(&[&["execution", "lanes", "program"], TIMES.as_slice()].concat()),
         rows: rows.collect(),
         notes: vec![format!(
-            "Chained execution, in the first-level cache. Loops that are not among these are charged by their classes of \
-             operations, which deviate from these by {:.0} % (the median). A loop waits {:.2} times as long as a pass for the \
-             same bytes from beyond; of the shorter of computing and waiting {:.0} % hide behind the longer.",
+            "In the first-level cache; t0 of a strip, or of a chained loop. What is not among these is charged pass by pass, a \
+             pass taking {:.2} times as long to begin as in a drill of nothing but itself, or, chained, by classes of operations, \
+             which deviate from these by {:.0} % (the median). Of the shorter of computing and waiting for streams {:.0} % \
+             hide behind the longer in a chained loop.",
+            model.begin,
             100.0 * model.loops.residual,
-            model.loops.streams,
             100.0 * model.loops.overlap
         )],
     }
@@ -111,17 +116,19 @@ fn rates(model: &HostModel) -> Table {
 }
 
 fn levels(model: &HostModel) -> Table {
-    let rows = model.levels.iter().map(|level| {
-        vec![
-            Cell::Text(level.name.clone()),
-            level.capacity.map_or(Cell::Nothing, |bytes| Cell::Number(bytes / 1024.0, 0)),
-            Cell::Number(level.fetch, 5),
-            Cell::Number(level.fetch_array, 5),
-            Cell::Number(level.write_back, 5),
-            Cell::Number(level.line, 2),
-            Cell::Number(level.loop_line, 2),
-            Cell::Number(8.0 * level.fetch, 3),
-        ]
+    let rows = model.levels.iter().flat_map(|level| {
+        [("passes", level.passes), ("chained loops", level.loops)].map(|(what, transfer)| {
+            let Transfer { fetch, fetch_array, write_back, line } = transfer;
+            vec![
+                Cell::Text(level.name.clone()),
+                level.capacity.map_or(Cell::Nothing, |bytes| Cell::Number(bytes / 1024.0, 0)),
+                Cell::Text(what.to_owned()),
+                Cell::Number(fetch, 5),
+                Cell::Number(fetch_array, 5),
+                Cell::Number(write_back, 5),
+                Cell::Number(line, 2),
+            ]
+        })
     });
     Table {
         name: "levels".into(),
@@ -129,20 +136,17 @@ fn levels(model: &HostModel) -> Table {
         columns: headings(&[
             "level",
             "up to a reuse distance of (KiB)",
+            "for",
             "ns a byte fetched",
             "ns a byte of an array fetched",
             "ns a byte written back",
             "ns a line through an index",
-            "ns the same in a loop",
-            "ns an operand of 8 bytes",
         ]),
         rows: rows.collect(),
         notes: vec![format!(
-            "A pass whose operands come from beyond the first level waits {:.3} ns an element besides; a pass of a program takes {:.2} \
-             times as long to begin as one of a drill. The passes and \
+            "A pass whose operands come from beyond the first level waits {:.3} ns an element besides. The passes and \
              programs that this was fitted to deviate by {:.0} % (the median).",
             model.operand,
-            model.begin,
             100.0 * model.measured.residual
         )],
     }

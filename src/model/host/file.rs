@@ -1,10 +1,10 @@
 //! Host files: what `calibrate` writes, as TOML.
 
-use super::HostModel;
+use super::{HostModel, Transfer};
 use crate::model::machine_file::Position;
 
 /// The version of the file format that this program reads.
-pub const FORMAT: u32 = 5;
+pub const FORMAT: u32 = 6;
 
 /// Why a host file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -86,11 +86,17 @@ impl HostModel {
             passes.chain([(format!("lanes.{lane}.array_operand"), costs.array_operand)])
         });
         let levels = self.levels.iter().flat_map(|level| {
-            [level.fetch, level.fetch_array, level.write_back, level.line, level.loop_line]
+            [level.passes, level.loops].into_iter().flat_map(
+                |Transfer { fetch, fetch_array, write_back, line }| [fetch, fetch_array, write_back, line],
+            )
         });
-        let loops = self.loops.seen.iter().flat_map(|(name, seen)| {
-            [("element", seen.element.value), ("start", seen.start.value)]
-                .map(|(what, value)| (format!("loops.seen.{name}.{what}.value"), value))
+        let lists = self.lanes.iter().map(|(lane, costs)| (format!("lanes.{lane}"), &costs.seen));
+        let seen = lists.chain([("loops".to_owned(), &self.loops.seen)]).flat_map(|(of, seen)| {
+            let all = seen.iter().map(move |(name, seen)| (format!("{of}.seen.{name}"), seen));
+            all.flat_map(|(name, seen)| {
+                [("element", seen.element.value), ("start", seen.start.value)]
+                    .map(|(what, value)| (format!("{name}.{what}.value"), value))
+            })
         });
         let rates = self.rates.iter().flat_map(|(method, rates)| {
             let points = rates.0.values().flat_map(|phases| phases.values()).flatten();
@@ -102,14 +108,13 @@ impl HostModel {
             ("bind", self.bind),
             ("run", self.run),
             ("clock", self.clock),
-            ("loops.streams", self.loops.streams),
             ("loops.overlap", self.loops.overlap),
             ("measured.spread", self.measured.spread),
             ("measured.yardstick", self.measured.yardstick),
         ];
         let rest = rest.map(|(entry, value)| (entry.to_owned(), value));
         let levels = levels.map(|value| ("levels".to_owned(), value));
-        for (entry, value) in rest.into_iter().chain(levels).chain(lanes).chain(loops).chain(rates) {
+        for (entry, value) in rest.into_iter().chain(levels).chain(lanes).chain(seen).chain(rates) {
             if !(value.is_finite() && value >= 0.0) {
                 defects.push((entry, format!("is {value}, but must be finite and not negative")));
             }

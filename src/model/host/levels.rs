@@ -8,37 +8,31 @@ use stripmine_kernels::backend::tape::{Outlines, Place};
 use stripmine_kernels::isa::Array;
 
 /// A level of memory.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Level {
     /// Its name.
     pub name: String,
     /// Up to which reuse distance it serves (bytes); none for the last.
     pub capacity: Option<f64>,
-    /// Nanoseconds a byte of a vector that is read or written comes from there; none is cheaper than a nearer one.
+    /// What it costs passes of the interpreter.
+    pub passes: Transfer,
+    /// What it costs compiled loops, which have many streams at once, and more to do meanwhile.
+    pub loops: Transfer,
+}
+
+/// What it takes to bring something from a level; none is cheaper than a nearer one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Transfer {
+    /// Nanoseconds a byte of a vector that is read or written comes from there.
     pub fetch: f64,
     /// The same of an array that other programs have used since, and that begins anew: nothing has announced it.
     pub fetch_array: f64,
     /// Nanoseconds a byte besides where the vector is written: it must go back.
     pub write_back: f64,
-    /// Nanoseconds a line that a pass meets through an index vector and that nothing announces: the line before it was not
-    /// met.
+    /// Nanoseconds a line that is met through an index vector and that nothing announces: the line before it was not met.
     pub line: f64,
-    /// The same in a compiled loop, which has more to do meanwhile, and more that waits.
-    pub loop_line: f64,
-}
-
-impl Level {
-    /// Costs nothing, and ends nowhere.
-    pub const FREE: Level = Level {
-        name: String::new(),
-        capacity: None,
-        fetch: 0.0,
-        fetch_array: 0.0,
-        write_back: 0.0,
-        line: 0.0,
-        loop_line: 0.0,
-    };
 }
 
 /// Bytes of a line, the least that moves between levels.
@@ -183,8 +177,8 @@ impl Surroundings {
         self.arrays.keys().copied()
     }
 
-    /// How long a pass over `n` elements waits for what it touches, where lines cost what `line` says.
-    pub fn wait(&self, levels: &[Level], touches: &[Touch], n: f64, line: impl Fn(&Level) -> f64) -> Wait {
+    /// How long a pass over `n` elements waits for what it touches, where levels cost what `of` says.
+    pub fn wait(&self, levels: &[Level], touches: &[Touch], n: f64, of: impl Fn(&Level) -> Transfer) -> Wait {
         let mut wait = Wait::default();
         for touch in touches {
             let there = match touch.vector {
@@ -196,18 +190,18 @@ impl Surroundings {
                 Since::Before => there.map_or(0.0, |array| array.distance),
             };
             let fetch = |level: &Level| match touch.since {
-                Since::Here(_) => level.fetch,
-                Since::Before => level.fetch_array,
+                Since::Here(_) => of(level).fetch,
+                Since::Before => of(level).fetch_array,
             };
             if let Some(array) = there.filter(|_| touch.indexed) {
                 let Lines { foreseen, unforeseen } =
                     Lines::met(self.whole.max(n) / (array.extent / LINE), touch.in_order());
-                wait.indexed += n * unforeseen * from_afar(levels, distance, &line);
+                wait.indexed += n * unforeseen * from_afar(levels, distance, |level| of(level).line);
                 wait.streamed += n * foreseen * LINE * from_afar(levels, distance, fetch);
                 continue;
             }
             let written = f64::from(u8::from(touch.written));
-            let byte = from_afar(levels, distance, |level| fetch(level) + written * level.write_back);
+            let byte = from_afar(levels, distance, |level| fetch(level) + written * of(level).write_back);
             wait.streamed += touch.bytes * n * byte;
         }
         wait
@@ -224,10 +218,8 @@ mod tests {
         let level = |name: &str, capacity, fetch, write_back| Level {
             name: name.to_owned(),
             capacity,
-            fetch,
-            fetch_array: fetch,
-            write_back,
-            ..Level::FREE
+            passes: Transfer { fetch, fetch_array: fetch, write_back, ..Transfer::default() },
+            ..Level::default()
         };
         vec![level("near", Some(1024.0), 0.0, 0.0), level("far", None, 0.5, 0.25)]
     }
@@ -235,7 +227,10 @@ mod tests {
     #[test]
     fn bytes_cost_more_from_afar_and_more_where_they_go_back() {
         let cost = |distance, written| {
-            from_afar(&levels(), distance, |level| level.fetch + if written { level.write_back } else { 0.0 })
+            from_afar(&levels(), distance, |level| {
+                let Transfer { fetch, write_back, .. } = level.passes;
+                fetch + if written { write_back } else { 0.0 }
+            })
         };
         assert_eq!([cost(64.0, true), cost(1e6, false), cost(1e6, true)], [0.0, 0.5, 0.75]);
         assert_eq!(cost(1024.0, false), 0.25);

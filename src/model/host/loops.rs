@@ -8,15 +8,15 @@ use std::collections::BTreeMap;
 use stripmine_kernels::backend::tape::Outlines;
 use stripmine_kernels::isa::OpClass;
 
-/// A loop in the first-level cache.
+/// A program as a calibration has seen it in the first-level cache.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct LoopCost {
+pub struct ProgramCost {
     /// What it does.
     pub what: String,
     /// Nanoseconds an element.
     pub element: Estimate,
-    /// Nanoseconds of a run besides.
+    /// Nanoseconds besides: of a run, or of a strip of the interpreter.
     pub start: Estimate,
 }
 
@@ -28,12 +28,10 @@ pub struct LoopCosts {
     pub classes: BTreeMap<String, BTreeMap<String, f64>>,
     /// Median deviation of the classes' sums from the loops they were fitted to.
     pub residual: f64,
-    /// How many times as long as a pass of the interpreter a loop waits for the same bytes: it has many streams at once.
-    pub streams: f64,
     /// Of the shorter of computing and waiting for streams, the share that hides behind the longer.
     pub overlap: f64,
     /// Loops by the signature of their instructions.
-    pub seen: BTreeMap<String, LoopCost>,
+    pub seen: BTreeMap<String, ProgramCost>,
 }
 
 impl LoopCosts {
@@ -42,7 +40,7 @@ impl LoopCosts {
     /// # Errors
     /// [`OutOfRange::NotMeasured`] where not even its lanes were.
     pub fn of(&self, outlines: &Outlines) -> Result<PassCost, OutOfRange> {
-        if let Some(LoopCost { element, start, .. }) = self.seen.get(&outlines.signature()) {
+        if let Some(ProgramCost { element, start, .. }) = self.seen.get(&outlines.signature()) {
             return Ok(PassCost { element: *element, start: *start });
         }
         self.by_classes(outlines)

@@ -9,8 +9,8 @@ mod rates;
 mod reuse;
 
 pub use file::{BadEntry, FORMAT, HostFileError, default_model};
-pub use levels::{LINE, Level, Surroundings, Wait, beyond, from_afar};
-pub use loops::{LoopCost, LoopCosts, class_counts};
+pub use levels::{LINE, Level, Surroundings, Transfer, Wait, beyond, from_afar};
+pub use loops::{LoopCosts, ProgramCost, class_counts};
 pub use rates::{Amounts, RatePoint, Rates};
 pub use reuse::{Since, Touch, Vector, element_bytes, touched_arrays, touches};
 
@@ -56,6 +56,9 @@ pub struct LaneCosts {
     pub change: Vec<Change>,
     /// A pass, by the name of its kind.
     pub passes: BTreeMap<String, PassCost>,
+    /// All passes of a program over a strip, by the signature of its instructions: how passes that follow each other get on
+    /// is not in their kinds. Others are charged pass by pass.
+    pub seen: BTreeMap<String, ProgramCost>,
 }
 
 /// What it takes that the next pass is of another kind.
@@ -174,12 +177,20 @@ fn measured_as(kind: &str) -> &str {
 }
 
 impl HostModel {
-    /// The same host with every operand in the first-level cache, and programs started and arrays bound for nothing.
+    /// The same host with every program of the interpreter charged pass by pass, as those are that were not seen.
+    #[must_use]
+    pub fn pass_by_pass(&self) -> HostModel {
+        let mut model = self.clone();
+        model.lanes.values_mut().for_each(|lane| lane.seen.clear());
+        model
+    }
+
+    /// The same host pass by pass with every operand in the first-level cache, and programs started and arrays bound for nothing.
     #[must_use]
     pub fn in_cache(&self) -> HostModel {
-        let mut model = HostModel { operand: 0.0, bind: 0.0, run: 0.0, clock: 0.0, ..self.clone() };
+        let mut model = HostModel { operand: 0.0, bind: 0.0, run: 0.0, clock: 0.0, ..self.pass_by_pass() };
         for level in &mut model.levels {
-            *level = Level { name: level.name.clone(), capacity: level.capacity, ..Level::FREE };
+            *level = Level { name: level.name.clone(), capacity: level.capacity, ..Level::default() };
         }
         model
     }
@@ -246,37 +257,22 @@ impl HostModel {
     ) -> Result<f64, OutOfRange> {
         let lane = self.lane(outlines.lane)?;
         let touched = touches(outlines, lane.register_bytes);
-        let change = lane.change(outlines.passes.len());
         let mut sum = self.run;
         for (strips, length) in [(n / strip, strip), (1, n % strip)] {
             if strips == 0 || length == 0 {
                 continue;
             }
-            let mut each = 0.0;
-            for (pass, touches) in outlines.passes.iter().zip(&touched) {
-                each += self.begin * change + self.pass(lane, pass, touches, length, around)?;
-            }
+            let waits = touched.iter().map(|touches| self.wait(touches, length, around));
+            let each = lane.near(outlines, length, self.begin)? + waits.sum::<f64>();
             sum += strips as f64 * each;
         }
         Ok(sum)
     }
 
-    /// Nanoseconds of a pass over `n` elements.
-    ///
-    /// # Errors
-    /// [`OutOfRange`] where its kind was not measured.
-    pub fn pass(
-        &self,
-        lane: &LaneCosts,
-        pass: &Outline,
-        touches: &[Touch],
-        n: usize,
-        around: &Surroundings,
-    ) -> Result<f64, OutOfRange> {
-        let cost = lane.cost(pass)?;
-        let wait = around.wait(&self.levels, touches, n as f64, |level| level.line).sum();
-        let wait = if wait > 0.0 { wait + self.operand * n as f64 } else { 0.0 };
-        Ok(self.begin * lane.starts(n) * cost.start.value + n as f64 * cost.element.value + wait)
+    /// Nanoseconds that a pass over `n` elements waits for what it touches.
+    fn wait(&self, touches: &[Touch], n: usize, around: &Surroundings) -> f64 {
+        let wait = around.wait(&self.levels, touches, n as f64, |level| level.passes).sum();
+        if wait > 0.0 { wait + self.operand * n as f64 } else { 0.0 }
     }
 
     /// What each of some programs finds around it that are run one after the other, over vectors of these lengths.
@@ -302,11 +298,10 @@ impl HostModel {
 
     fn chained(&self, outlines: &Outlines, n: usize, around: &Surroundings) -> Result<f64, OutOfRange> {
         let cost = self.loops.of(outlines)?;
-        let wait = around.wait(&self.levels, &touched_arrays(outlines), n as f64, |level| level.loop_line);
-        let streamed = self.loops.streams * wait.streamed;
+        let wait = around.wait(&self.levels, &touched_arrays(outlines), n as f64, |level| level.loops);
         let computing = n as f64 * cost.element.value;
         // Nothing hides what nobody foresees.
-        Ok(cost.start.value + overlapped(self.loops.overlap, computing, streamed) + wait.indexed)
+        Ok(cost.start.value + overlapped(self.loops.overlap, computing, wait.streamed) + wait.indexed)
     }
 }
 
@@ -315,6 +310,24 @@ impl LaneCosts {
     /// in a pass of its own.
     pub fn starts(&self, n: usize) -> f64 {
         if n < self.lanes || n.is_multiple_of(self.lanes.max(1)) { 1.0 } else { 2.0 }
+    }
+
+    /// Nanoseconds of all passes of a program over a strip of `n` elements in the first-level cache, where a pass that was not
+    /// seen among others takes `begin` times as long to begin as in a drill.
+    ///
+    /// # Errors
+    /// [`OutOfRange::NotMeasured`] where a kind of pass was not measured.
+    pub fn near(&self, outlines: &Outlines, n: usize, begin: f64) -> Result<f64, OutOfRange> {
+        let at = |start: f64, element: f64| self.starts(n) * start + n as f64 * element;
+        if let Some(seen) = self.seen.get(&outlines.signature()) {
+            return Ok(at(seen.start.value, seen.element.value));
+        }
+        let change = begin * self.change(outlines.passes.len());
+        let each = |pass| {
+            let PassCost { element, start } = self.cost(pass)?;
+            Ok(change + at(begin * start.value, element.value))
+        };
+        outlines.passes.iter().map(each).sum()
     }
 
     /// Bytes of all registers of a program over vectors or strips of `n` elements.

@@ -2,14 +2,14 @@
 //! the interpreter and as compiled loops run them.
 
 use super::fit::{self, median};
-use crate::model::host::{Level, Surroundings, Touch, overlapped};
+use crate::model::host::{Level, Surroundings, Touch, Transfer, overlapped};
 
 /// Something measured, as the levels see it.
 pub(super) struct Charged {
-    /// Nanoseconds it takes in the first-level cache, without the beginnings of its passes.
+    /// Nanoseconds it takes in the first-level cache.
     pub(super) computing: f64,
-    /// Nanoseconds of these beginnings, each as long as in a drill.
-    pub(super) starts: f64,
+    /// Nanoseconds before it begins, during which nothing comes.
+    pub(super) start: f64,
     /// Its passes.
     pub(super) passes: Vec<Waiting>,
     /// What lies around it.
@@ -33,10 +33,6 @@ pub(super) struct Levels {
     /// Nanoseconds an element of a pass with operands from beyond the first level, e0.
     pub(super) operand: f64,
     pub(super) levels: Vec<Level>,
-    /// How long a pass of a program takes to begin, as a share of what it takes in a drill of nothing but that pass.
-    pub(super) begin: f64,
-    /// How many times as long as a pass a loop waits for the same bytes.
-    pub(super) streams: f64,
     /// Of the shorter of computing and waiting in a loop, the share that hides behind the longer.
     pub(super) overlap: f64,
     /// Median deviation of the fit to passes.
@@ -46,35 +42,33 @@ pub(super) struct Levels {
 /// Levels beyond the first.
 const BEYOND: usize = 3;
 /// What is fitted: e0; what each level beyond the first adds to a byte fetched, to one of an array from before, to a byte
-/// that must go back, and to a line that an index vector leads to unforeseen; and the share of a drilled pass's beginning.
-const UNKNOWN: usize = 4 * BEYOND + 2;
+/// that must go back, and to a line that an index vector leads to unforeseen.
+const UNKNOWN: usize = 4 * BEYOND + 1;
 /// Where the arrays begin.
 const ARRAYS: usize = 1 + BEYOND;
 /// Where what goes back begins.
 const BACK: usize = 1 + 2 * BEYOND;
 /// Where the lines begin.
 const LINES: usize = 1 + 3 * BEYOND;
-/// Where that share is.
-const BEGIN: usize = 1 + 4 * BEYOND;
 type Costs = [f64; UNKNOWN];
 
 impl Charged {
     /// What is paid for: no level is cheaper than a nearer one, so every level adds to those before it.
     fn features(&self, capacities: [f64; BEYOND]) -> Costs {
         let mut features = [0.0; UNKNOWN];
-        features[BEGIN] = self.starts;
         for Waiting { times, n, touched } in &self.passes {
             for (level, capacity) in capacities.into_iter().enumerate() {
                 // A level that costs 1 beyond its capacity, and none before.
-                let wait = |there: Level| {
-                    let levels = [Level { capacity: Some(capacity), ..Level::FREE }, there];
-                    times * self.around.wait(&levels, touched, *n, |level| level.line).sum()
+                let near = Level { capacity: Some(capacity), ..Level::default() };
+                let wait = |passes: Transfer| {
+                    let levels = [near.clone(), Level { passes, ..Level::default() }];
+                    times * self.around.wait(&levels, touched, *n, |level| level.passes).sum()
                 };
                 let own = [
-                    wait(Level { fetch: 1.0, ..Level::FREE }),
-                    wait(Level { fetch_array: 1.0, ..Level::FREE }),
-                    wait(Level { write_back: 1.0, ..Level::FREE }),
-                    wait(Level { line: 1.0, ..Level::FREE }),
+                    wait(Transfer { fetch: 1.0, ..Transfer::default() }),
+                    wait(Transfer { fetch_array: 1.0, ..Transfer::default() }),
+                    wait(Transfer { write_back: 1.0, ..Transfer::default() }),
+                    wait(Transfer { line: 1.0, ..Transfer::default() }),
                 ];
                 for (kind, own) in own.into_iter().enumerate() {
                     features[1 + kind * BEYOND + level] += own;
@@ -88,14 +82,36 @@ impl Charged {
         features
     }
 
-    /// How far off some costs are, as the logarithm of a ratio.
-    fn deviation(&self, features: &Costs, costs: &Costs) -> f64 {
-        ((self.computing + product(features, costs)) / self.ns).ln().abs()
+    /// Nanoseconds by some costs: of passes, which wait before they compute.
+    fn waiting(&self, features: &Costs, costs: &Costs) -> f64 {
+        self.start + self.computing + product(features, costs)
+    }
+
+    /// The same of loops, where a share of the shorter of computing and waiting for streams hides behind the longer, and
+    /// nothing hides lines that nobody foresees.
+    fn overlapping(&self, features: &Costs, costs: &Costs, overlap: f64) -> f64 {
+        let lines = product(&features[LINES..], &costs[LINES..]);
+        self.start + overlapped(overlap, self.computing, streamed(features, costs)) + lines
+    }
+
+    /// How far off some nanoseconds are, as the logarithm of a ratio.
+    fn deviation(&self, ns: f64) -> f64 {
+        (ns / self.ns).ln().abs()
+    }
+
+    /// How much it counts by its share in what it took, where it is so far off: what is far from the fit weighs less, so that
+    /// a busy moment does not count for more than it is.
+    fn scale(&self, far: f64) -> f64 {
+        (0.05 / (0.05 + far)).sqrt() / self.ns
     }
 }
 
-fn product(features: &Costs, costs: &Costs) -> f64 {
+fn product(features: &[f64], costs: &[f64]) -> f64 {
     features.iter().zip(costs).map(|(feature, cost)| feature * cost).sum()
+}
+
+fn streamed(features: &Costs, costs: &Costs) -> f64 {
+    product(&features[1..LINES], &costs[1..LINES])
 }
 
 /// Capacities of the three cache levels that are tried (bytes): what the system says, or parts of it, for whoever shares
@@ -145,9 +161,10 @@ pub(super) fn fit_levels(passes: &[Charged], loops: &[Charged]) -> Levels {
     for capacities in candidates() {
         let features = |all: &[Charged]| all.iter().map(|each| each.features(capacities)).collect::<Vec<_>>();
         let of_passes = features(passes);
-        let mut costs = fit_costs(passes, &of_passes);
+        let mut costs = fit_passes(passes, &of_passes);
         fit_lines(passes, &of_passes, &mut costs);
-        let errors = || passes.iter().zip(&of_passes).map(|(each, of)| each.deviation(of, &costs));
+        let errors =
+            || passes.iter().zip(&of_passes).map(|(each, of)| each.deviation(each.waiting(of, &costs)));
         let loops = fit_loops(loops, &features(loops), &costs);
         let error = mean(errors()) + loops.error;
         if best.as_ref().is_none_or(|(least, _)| error < *least) {
@@ -162,18 +179,17 @@ pub(super) fn fit_levels(passes: &[Charged], loops: &[Charged]) -> Levels {
 fn levels(capacities: [f64; BEYOND], costs: &Costs, loops: &Loops, residual: f64) -> Levels {
     let names = ["first-level cache", "second-level cache", "third-level cache", "memory"];
     let capacities = capacities.into_iter().map(Some).chain([None]);
-    let upto = |steps: &[f64], level: usize| steps[..level].iter().fold(0.0, |sum, step| sum + step);
+    let transfer = |costs: &Costs, level: usize| {
+        let upto = |steps: usize| costs[steps..steps + level].iter().fold(0.0, |sum, step| sum + step);
+        Transfer { fetch: upto(1), fetch_array: upto(ARRAYS), write_back: upto(BACK), line: upto(LINES) }
+    };
     let levels = names.into_iter().zip(capacities).enumerate().map(|(at, (name, capacity))| Level {
         name: name.to_owned(),
         capacity,
-        fetch: upto(&costs[1..], at),
-        fetch_array: upto(&costs[ARRAYS..], at),
-        write_back: upto(&costs[BACK..], at),
-        line: upto(&costs[LINES..], at),
-        loop_line: upto(&loops.lines, at),
+        passes: transfer(costs, at),
+        loops: transfer(&loops.costs, at),
     });
-    let Loops { streams, overlap, .. } = *loops;
-    Levels { operand: costs[0], levels: levels.collect(), begin: costs[BEGIN], streams, overlap, residual }
+    Levels { operand: costs[0], levels: levels.collect(), overlap: loops.overlap, residual }
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
@@ -181,95 +197,76 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     finite.iter().sum::<f64>() / finite.len().max(1) as f64
 }
 
-/// What lines cost that index vectors lead to, given all else: by what has such vectors alone, and all of that, for among
-/// everything it is too little to be heard.
-fn fit_lines(charged: &[Charged], features: &[Costs], costs: &mut Costs) {
-    costs[LINES..BEGIN].fill(0.0);
-    let rest = |each: &Charged, features: &Costs| each.ns - each.computing - product(features, costs);
-    let lines = steps_of_lines(charged, features, rest);
-    costs[LINES..BEGIN].copy_from_slice(&lines);
+/// Rounds in which what is far from the fit weighs less and less.
+const ROUNDS: usize = 6;
+
+/// The costs of passes that suit best, everything weighted alike in its relative error.
+fn fit_passes(charged: &[Charged], features: &[Costs]) -> Costs {
+    let mut costs: Option<Costs> = None;
+    for _ in 0..ROUNDS {
+        let rows = charged.iter().zip(features).map(|(each, features)| {
+            let far = costs.map_or(0.0, |costs| each.deviation(each.waiting(features, &costs)));
+            let scale = each.scale(far);
+            let rest = (each.ns - each.start - each.computing).max(0.0);
+            (features.map(|feature| feature * scale), rest * scale)
+        });
+        costs = Some(fit::non_negative(&rows.collect::<Vec<_>>()));
+    }
+    costs.unwrap_or_default()
 }
 
-/// What each level adds to a line, by the time that is left of everything else.
-fn steps_of_lines(
-    charged: &[Charged],
-    features: &[Costs],
-    rest: impl Fn(&Charged, &Costs) -> f64,
-) -> [f64; BEYOND] {
+/// What lines cost passes that index vectors lead to, given all else: by what has such vectors alone, and all of that, for
+/// among everything it is too little to be heard.
+fn fit_lines(charged: &[Charged], features: &[Costs], costs: &mut Costs) {
+    costs[LINES..].fill(0.0);
     let rows = charged.iter().zip(features).filter_map(|(each, features)| {
         let own: [f64; BEYOND] = std::array::from_fn(|level| features[LINES + level] / each.ns);
-        own.iter().any(|&own| own > 0.0).then(|| (own, rest(each, features) / each.ns))
+        let rest = || (each.ns - each.waiting(features, costs)) / each.ns;
+        own.iter().any(|&own| own > 0.0).then(|| (own, rest()))
     });
-    fit::non_negative(&rows.collect::<Vec<_>>())
+    let lines: [f64; BEYOND] = fit::non_negative(&rows.collect::<Vec<_>>());
+    costs[LINES..].copy_from_slice(&lines);
 }
 
 /// How loops wait.
 struct Loops {
-    streams: f64,
     overlap: f64,
-    /// What each level beyond the first adds to a line.
-    lines: [f64; BEYOND],
+    costs: Costs,
     /// Mean deviation.
     error: f64,
 }
 
 /// Shares of the shorter of computing and waiting that may hide behind the longer.
 const OVERLAPS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-/// Nanoseconds of a line that would be felt if lines took so long, as a share: loops below go over streams alone.
-const FELT: f64 = 0.01;
 
 impl Loops {
-    const NONE: Loops = Loops { streams: 1.0, overlap: 0.5, lines: [0.0; BEYOND], error: f64::INFINITY };
-
-    /// Nanoseconds of a loop, its lines left out.
-    fn streaming(&self, each: &Charged, features: &Costs, costs: &Costs) -> f64 {
-        let streamed: f64 = (1..LINES).map(|at| features[at] * costs[at]).sum();
-        each.starts + overlapped(self.overlap, each.computing, self.streams * streamed)
-    }
-
-    /// Nanoseconds of all of it.
-    fn all(&self, each: &Charged, features: &Costs, costs: &Costs) -> f64 {
-        let lines = features[LINES..].iter().zip(self.lines).map(|(feature, line)| feature * line);
-        self.streaming(each, features, costs) + lines.sum::<f64>()
-    }
+    const NONE: Loops = Loops { overlap: 0.5, costs: [0.0; UNKNOWN], error: f64::INFINITY };
 }
 
-/// How loops wait, given what passes do: those that hardly meet lines through index vectors say how streams are waited for,
-/// and then the others what lines cost.
-fn fit_loops(charged: &[Charged], features: &[Costs], costs: &Costs) -> Loops {
-    let streams = (-8..=16).map(|quarter| 2_f64.powf(f64::from(quarter) / 4.0));
-    let tried = streams
-        .flat_map(|streams| OVERLAPS.map(|overlap| Loops { streams, overlap, ..Loops::NONE }))
-        .map(|loops| {
-            let plain = charged.iter().zip(features).filter(|(each, features)| {
-                features[LINES..BEGIN].iter().all(|&lines| lines < FELT * each.ns)
+/// How loops wait: beginning with what passes do, for which of computing and waiting is the shorter must be known first.
+fn fit_loops(charged: &[Charged], features: &[Costs], passes: &Costs) -> Loops {
+    let fitted = |overlap: f64| {
+        let mut costs = *passes;
+        for round in 0..ROUNDS {
+            let rows = charged.iter().zip(features).map(|(each, features)| {
+                let far = each.deviation(each.overlapping(features, &costs, overlap));
+                let scale = each.scale(if round == 0 { 0.0 } else { far });
+                let (computing, streams) = match each.computing >= streamed(features, &costs) {
+                    true => (each.computing, 1.0 - overlap),
+                    false => ((1.0 - overlap) * each.computing, 1.0),
+                };
+                let mut row = features.map(|feature| feature * scale);
+                row[0] = 0.0;
+                row[1..LINES].iter_mut().for_each(|feature| *feature *= streams);
+                (row, (each.ns - each.start - computing).max(0.0) * scale)
             });
-            let error = mean(
-                plain.map(|(each, features)| (loops.streaming(each, features, costs) / each.ns).ln().abs()),
-            );
-            Loops { error, ..loops }
-        });
-    let mut best = tried.min_by(|a, b| a.error.total_cmp(&b.error)).unwrap_or(Loops::NONE);
-    best.lines =
-        steps_of_lines(charged, features, |each, features| each.ns - best.streaming(each, features, costs));
-    best.error =
-        mean(charged.iter().zip(features).map(|(each, of)| (best.all(each, of, costs) / each.ns).ln().abs()));
-    best
-}
-
-/// The costs that suit best, everything weighted alike in its relative error; some rounds, in which what is far from the fit
-/// weighs less and less, so that a busy moment does not count for more than it is.
-fn fit_costs(charged: &[Charged], features: &[Costs]) -> Costs {
-    let mut costs: Option<Costs> = None;
-    for _ in 0..6 {
-        let rows = charged.iter().zip(features).map(|(each, features)| {
-            let far = costs.map_or(0.0, |costs| each.deviation(features, &costs));
-            let scale = (0.05 / (0.05 + far)).sqrt() / each.ns;
-            (features.map(|feature| feature * scale), (each.ns - each.computing).max(0.0) * scale)
-        });
-        costs = Some(fit::non_negative(&rows.collect::<Vec<_>>()));
-    }
-    costs.unwrap_or_default()
+            costs = fit::non_negative(&rows.collect::<Vec<_>>());
+        }
+        let of_all = charged.iter().zip(features);
+        let error = mean(of_all.map(|(each, of)| each.deviation(each.overlapping(of, &costs, overlap))));
+        Loops { overlap, costs, error }
+    };
+    OVERLAPS.map(fitted).into_iter().min_by(|a, b| a.error.total_cmp(&b.error)).unwrap_or(Loops::NONE)
 }
 
 #[cfg(test)]
@@ -295,7 +292,7 @@ mod tests {
         let computing = 200.0;
         Charged {
             computing,
-            starts: 0.0,
+            start: 0.0,
             passes,
             around: Surroundings::default(),
             ns: computing + 3.0 * n * 8.0 * wait,
@@ -315,9 +312,9 @@ mod tests {
             charged(90_000.0 * KIB, true, 0.145),
         ];
         let features: Vec<Costs> = all.iter().map(|each| each.features(capacities)).collect();
-        let costs = fit_costs(&all, &features);
+        let costs = fit_passes(&all, &features);
         for (each, features) in all.iter().zip(&features) {
-            assert!(each.deviation(features, &costs) < 0.02, "{costs:?}");
+            assert!(each.deviation(each.waiting(features, &costs)) < 0.02, "{costs:?}");
         }
         assert!(costs.iter().all(|cost| *cost >= 0.0));
     }
@@ -325,13 +322,14 @@ mod tests {
     #[test]
     fn streams_and_lines_of_loops_come_out() {
         let capacities = [32.0 * KIB, 512.0 * KIB, 8192.0 * KIB];
-        let mut costs = [0.0; UNKNOWN];
-        costs[1..ARRAYS].copy_from_slice(&[0.001, 0.002, 0.01]);
-        // As they are: twice the wait of passes, half of the shorter hidden, lines of 4 ns and from memory of 20.
-        let truth = Loops { streams: 2.0, overlap: 0.5, lines: [0.0, 4.0, 16.0], error: 0.0 };
+        // As passes are, and as loops are: twice the wait, half of the shorter hidden, lines of 4 ns and from memory of 20.
+        let [mut passes, mut truth] = [[0.0; UNKNOWN]; 2];
+        passes[1..ARRAYS].copy_from_slice(&[0.001, 0.002, 0.01]);
+        truth[1..ARRAYS].copy_from_slice(&[0.002, 0.004, 0.02]);
+        truth[LINES..].copy_from_slice(&[0.0, 4.0, 16.0]);
         let features = |distance: f64, lines: [f64; BEYOND]| {
             let mut features = charged(distance, false, 0.0).features(capacities);
-            features[LINES..BEGIN].copy_from_slice(&lines);
+            features[LINES..].copy_from_slice(&lines);
             features
         };
         let none = [0.0; BEYOND];
@@ -341,11 +339,13 @@ mod tests {
             all.into_iter().chain(lines).map(|(kib, lines)| features(kib * KIB, lines)).collect();
         let measured = |features: &Costs| {
             let each = charged(0.0, false, 0.0);
-            Charged { ns: truth.all(&each, features, &costs), ..each }
+            Charged { ns: each.overlapping(features, &truth, 0.5), ..each }
         };
         let charged: Vec<Charged> = features.iter().map(measured).collect();
-        let found = fit_loops(&charged, &features, &costs);
-        assert!((found.streams, found.overlap) == (2.0, 0.5) && found.error < 1e-6, "{}", found.error);
-        assert!((found.lines[1] - 4.0).abs() < 1e-3 && (found.lines[2] - 16.0).abs() < 1e-3);
+        let found = fit_loops(&charged, &features, &passes);
+        assert!(found.overlap == 0.5 && found.error < 1e-6, "{}: {}", found.overlap, found.error);
+        assert!(
+            found.costs.iter().zip(truth).all(|(found, truth)| (found - truth).abs() < 1e-3 * truth + 1e-6)
+        );
     }
 }

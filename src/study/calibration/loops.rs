@@ -5,7 +5,7 @@ use super::levels::{Charged, Waiting};
 use super::passes::{Lane, estimate};
 use super::timing::{PacedClock, Samples};
 use crate::method::lattice_md::{Arrays, Lengths, Model, Part, StepProgram, programs};
-use crate::model::host::{LoopCost, LoopCosts, PassCost, Surroundings, class_counts, touched_arrays};
+use crate::model::host::{LoopCosts, PassCost, ProgramCost, Surroundings, class_counts, touched_arrays};
 use crate::particles::Particles;
 use crate::run::model;
 use crate::study::phase_times::Run;
@@ -19,6 +19,10 @@ use stripmine_kernels::{Execution, InstructionSet};
 
 /// Elements of the short and of the longer runs of a loop: whole registers, and in the first-level cache.
 const ELEMENTS: [usize; 2] = [48, 192];
+/// Elements that the interpreter goes over, in strips of two lengths: whole registers, and arrays and registers together in the
+/// first-level cache.
+const STRIPPED: usize = 96;
+const STRIPS: [usize; 2] = [16, 32];
 /// Least nanoseconds of a sample.
 const SHORTEST: f64 = 40_000.0;
 /// The drill scene: discs at rest that do not touch, as no validation runs them.
@@ -44,6 +48,10 @@ const MODELS: [&[&str]; 2] = [
 /// second level; no validation has them.
 const INTERPRETED: [Execution; 4] =
     [Execution::Eager, Execution::Strip(48), Execution::Strip(192), Execution::Strip(800)];
+/// Disc-steps of a sample of the interpreter and of loops, about, and steps at most.
+const INTERPRETED_DISCS: usize = 4000;
+const LOOP_DISCS: usize = 20_000;
+const MOST: usize = 20;
 /// The interpreter is slow: of the largest scenes and of every sweep but one of so many there are no samples of it.
 const LARGEST: usize = 20_000;
 const RARELY: usize = 3;
@@ -59,6 +67,8 @@ struct Step {
     memory: usize,
     large: bool,
     samples: Vec<[Samples; 2]>,
+    /// The interpreter in short strips.
+    strips: Vec<[Samples; 2]>,
     /// Whole vectors, one program after the other as in a step.
     whole: Vec<Samples>,
     /// The same by the interpreter.
@@ -128,7 +138,7 @@ impl Loops {
         let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
         let programs = programs::<S, P>(&model);
         let ranges = programs.iter().map(|step| lengths.range(step.length)).collect();
-        let samples = programs.iter().map(|_| Default::default()).collect();
+        let samples: Vec<[Samples; 2]> = programs.iter().map(|_| Default::default()).collect();
         let whole: Vec<Samples> = programs.iter().map(|_| Samples::default()).collect();
         let interpreted = INTERPRETED.map(|_| whole.clone());
         let friction = if model.friction { "" } else { ", frictionless" };
@@ -140,6 +150,7 @@ impl Loops {
             ranges,
             memory: self.arrays.len(),
             large,
+            strips: samples.clone(),
             samples,
             whole,
             interpreted,
@@ -157,36 +168,33 @@ impl Loops {
                 self.arrays[step.memory].anew(number);
             }
             let memory = self.arrays[step.memory].memory();
-            let run = |program: &StepProgram, range: &Range<usize>, execution: Execution| {
-                let outcome = program.program.run(&memory, range.clone(), execution, set);
+            let run = |at: usize, n: usize, execution: Execution| {
+                let start = step.ranges[at].start;
+                let outcome = step.programs[at].program.run(&memory, start..start + n, execution, set);
                 debug_assert!(outcome.is_ok(), "{outcome:?}");
             };
-            if step.large && step.discs() < LARGEST && number.is_multiple_of(RARELY) {
+            let all = |at: usize| step.ranges[at].len();
+            let discs = step.discs();
+            if step.large && discs < LARGEST && number.is_multiple_of(RARELY) {
                 for (execution, samples) in INTERPRETED.into_iter().zip(&mut step.interpreted) {
-                    let programs = || step.programs.iter().zip(&step.ranges);
-                    programs().for_each(|(program, range)| run(program, range, execution));
-                    for ((program, range), samples) in programs().zip(samples) {
-                        samples.take_once(clock, || run(program, range, execution));
-                    }
+                    let times = (INTERPRETED_DISCS / discs).clamp(1, MOST);
+                    Samples::take_in_turns(samples, clock, times, |at| run(at, all(at), execution));
                 }
             }
-            // Other scenes were in the caches; a step finds there what the step before has left.
-            for (program, range) in step.programs.iter().zip(&step.ranges) {
-                run(program, range, Execution::Chained);
+            let times = (LOOP_DISCS / discs).clamp(1, MOST);
+            Samples::take_in_turns(&mut step.whole, clock, times, |at| run(at, all(at), Execution::Chained));
+            if step.large {
+                // What is near is learned from the small ones.
+                continue;
             }
-            let programs = step.programs.iter().zip(&step.ranges).zip(&mut step.samples).zip(&mut step.whole);
-            for (((program, range), samples), whole) in programs {
-                let run = |n: usize| {
-                    let outcome =
-                        program.program.run(&memory, range.start..range.start + n, Execution::Chained, set);
-                    debug_assert!(outcome.is_ok(), "{outcome:?}");
-                };
-                // In the order of the step, so that every disc has its cell before it is asked for.
-                whole.take_once(clock, || run(range.len()));
-                // Of large scenes only this: what is near is learned from the small ones.
-                let near = if step.large { &mut [] } else { samples.as_mut_slice() };
-                for (samples, n) in near.iter_mut().zip(ELEMENTS) {
-                    samples.take(clock, SHORTEST, || run(n.min(range.len())));
+            for (at, samples) in step.samples.iter_mut().enumerate() {
+                for (samples, n) in samples.iter_mut().zip(ELEMENTS) {
+                    samples.take(clock, SHORTEST, || run(at, n.min(all(at)), Execution::Chained));
+                }
+            }
+            for (at, samples) in step.strips.iter_mut().enumerate() {
+                for (samples, strip) in samples.iter_mut().zip(STRIPS) {
+                    samples.take(clock, SHORTEST, || run(at, STRIPPED.min(all(at)), Execution::Strip(strip)));
                 }
             }
         }
@@ -195,7 +203,7 @@ impl Loops {
     /// Tells all samples at the pace of a reference.
     pub(super) fn settle(&mut self, reference: f64) {
         for step in &mut self.steps {
-            let near = step.samples.iter_mut().flatten().chain(&mut step.whole);
+            let near = step.samples.iter_mut().chain(&mut step.strips).flatten().chain(&mut step.whole);
             let samples = near.chain(step.interpreted.iter_mut().flatten());
             samples.for_each(|samples| samples.settle(reference));
         }
@@ -203,7 +211,34 @@ impl Loops {
 
     /// All samples.
     pub(super) fn samples(&self) -> impl Iterator<Item = &Samples> {
-        self.steps.iter().filter(|step| !step.large).flat_map(|step| step.samples.iter().flatten())
+        self.steps
+            .iter()
+            .filter(|step| !step.large)
+            .flat_map(|step| step.samples.iter().chain(&step.strips).flatten())
+    }
+
+    /// What the programs take in the interpreter, where a run takes so long besides: into the costs of their lanes. With how
+    /// many times as long as in drills of nothing but themselves their passes take to begin.
+    pub(super) fn see(&self, lanes: &mut [Lane], run: f64) -> f64 {
+        let mut begins = vec![];
+        for step in self.steps.iter().filter(|step| !step.large) {
+            for (program, samples) in step.programs.iter().zip(&step.strips) {
+                let [short, long] = STRIPS.map(|strip| (STRIPPED / strip) as f64);
+                let start = |of: &dyn Fn(&Samples) -> f64| {
+                    ((of(&samples[0]) - of(&samples[1])) / (short - long)).max(0.0)
+                };
+                let element = |of: &dyn Fn(&Samples) -> f64| {
+                    ((of(&samples[1]) - run - long * start(of)) / STRIPPED as f64).max(1e-4)
+                };
+                let outlines = program.program.outlines();
+                let Some(lane) = lanes.iter_mut().find(|lane| lane.name == outlines.lane) else { continue };
+                let what = format!("{}, {}", program.part.name(), step.name);
+                let cost = ProgramCost { what, element: estimate(element), start: estimate(start) };
+                begins.extend(lane.begin(&outlines, cost.start.value));
+                lane.costs.seen.entry(outlines.signature()).or_insert(cost);
+            }
+        }
+        fit::median(begins.into_iter())
     }
 
     /// The costs.
@@ -224,7 +259,7 @@ impl Loops {
                     .entry(outlines.lane.to_owned())
                     .or_default()
                     .push((class_counts(&outlines), element.value));
-                seen.entry(outlines.signature()).or_insert(LoopCost { what, element, start });
+                seen.entry(outlines.signature()).or_insert(ProgramCost { what, element, start });
             }
         }
         let mut classes = BTreeMap::new();
@@ -249,13 +284,13 @@ impl Loops {
             let named = names.iter().zip(costs).filter(|(_, cost)| *cost > 0.0);
             classes.insert(lane, named.map(|(name, cost)| ((*name).to_owned(), cost)).collect());
         }
-        LoopCosts { classes, residual: fit::median(residuals.into_iter()), streams: 1.0, overlap: 0.5, seen }
+        LoopCosts { classes, residual: fit::median(residuals.into_iter()), overlap: 0.5, seen }
     }
 
     /// The programs of the large drill scenes as the interpreter ran them.
-    pub(super) fn charged<'a>(&'a self, lanes: &'a [Lane]) -> impl Iterator<Item = Charged> + 'a {
+    pub(super) fn charged<'a>(&'a self, lanes: &'a [Lane], begin: f64) -> impl Iterator<Item = Charged> + 'a {
         let large = self.steps.iter().filter(|step| step.large && step.discs() < LARGEST);
-        large.flat_map(|step| step.charged(lanes))
+        large.flat_map(move |step| step.charged(lanes, begin))
     }
 
     /// The same as compiled loops, whose costs in the first-level cache are known.
@@ -269,10 +304,10 @@ impl Step {
     /// Discs: the longest vectors that programs of discs have.
     fn discs(&self) -> usize {
         let of_discs = self.programs.iter().zip(&self.ranges).find(|(step, _)| step.part == Part::Predictor);
-        of_discs.map_or(0, |(_, range)| range.len())
+        of_discs.map_or(1, |(_, range)| range.len())
     }
 
-    fn charged(&self, lanes: &[Lane]) -> Vec<Charged> {
+    fn charged(&self, lanes: &[Lane], begin: f64) -> Vec<Charged> {
         let outlines: Vec<Outlines> = self.programs.iter().map(|step| step.program.outlines()).collect();
         let lane = |outlines: &Outlines| lanes.iter().find(|lane| lane.name == outlines.lane);
         let lengths = self.ranges.iter().map(ExactSizeIterator::len);
@@ -288,7 +323,7 @@ impl Step {
             all.extend(programs.filter_map(|((&(outlines, n), around), samples)| {
                 let ns = samples.typical();
                 let usable = ns.is_finite() && n > 0;
-                usable.then(|| lane(outlines)?.charged(outlines, n, strip(n), around, ns)).flatten()
+                usable.then(|| lane(outlines)?.charged(outlines, (n, strip(n)), begin, around, ns)).flatten()
             }));
         }
         all
@@ -304,7 +339,7 @@ impl Step {
             let (PassCost { element, start }, ns) = (costs.of(outlines).ok()?, samples.typical());
             let n = n as f64;
             let passes = vec![Waiting { times: 1.0, n, touched: touched_arrays(outlines) }];
-            let charged = Charged { computing: n * element.value, starts: start.value, passes, around, ns };
+            let charged = Charged { computing: n * element.value, start: start.value, passes, around, ns };
             (ns.is_finite() && n > 0.0).then_some(charged)
         });
         charged.collect()

@@ -185,10 +185,12 @@ impl Calibration {
             lane.settle(yardstick);
             lane.fit();
         }
-        let charged: Vec<Charged> =
-            lanes.iter().flat_map(Lane::long_passes).chain(loops.charged(&lanes)).collect();
+        let run = fit::median(lanes.iter().map(Lane::run));
+        let begin = loops.see(&mut lanes, run);
+        let long = lanes.iter().flat_map(|lane| lane.long_passes(begin));
+        let charged: Vec<Charged> = long.chain(loops.charged(&lanes, begin)).collect();
         let costs = loops.costs();
-        let Levels { operand, levels, begin, streams, overlap, residual } =
+        let Levels { operand, levels, overlap, residual } =
             fit_levels(&charged, &loops.charged_loops(&costs));
         let samples = || lanes.iter().flat_map(Lane::samples).chain(loops.samples());
         HostModel {
@@ -208,11 +210,11 @@ impl Calibration {
             operand,
             begin,
             bind: binding.typical() / arrays.0.count() as f64,
-            run: fit::median(lanes.iter().map(Lane::run)),
+            run,
             // Half of the two looks at the clock lies between them.
             clock: 0.5 * clock.typical(),
             levels,
-            loops: LoopCosts { streams, overlap, ..costs },
+            loops: LoopCosts { overlap, ..costs },
             lanes: lanes.into_iter().map(|lane| (lane.name.to_owned(), lane.costs)).collect(),
             rates: scenes.rates(yardstick),
         }

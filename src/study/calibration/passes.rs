@@ -170,9 +170,10 @@ impl Lane {
     }
 
     /// The passes that move vectors and lines, over vectors beyond the first-level cache.
-    pub(super) fn long_passes(&self) -> impl Iterator<Item = Charged> {
+    /// A pass among others takes `begin` times as long to begin as in a drill.
+    pub(super) fn long_passes(&self, begin: f64) -> impl Iterator<Item = Charged> {
         let points = self.points.iter().filter(|point| Kind::ALL[point.kind].moves());
-        points.filter(|point| !SHORT.contains(&point.n) && point.is_settled()).filter_map(|point| {
+        points.filter(|point| !SHORT.contains(&point.n) && point.is_settled()).filter_map(move |point| {
             let outlines = self.programs[point.kind][0].outlines();
             let kind = match Kind::ALL[point.kind] {
                 Kind::Shifted => "sub".to_owned(),
@@ -188,7 +189,7 @@ impl Lane {
             let n = point.n as f64;
             Some(Charged {
                 computing: n * cost.element.value,
-                starts: cost.start.value,
+                start: begin * cost.start.value,
                 passes: vec![Waiting { times: 1.0, n, touched }],
                 around,
                 ns: point.each(Samples::typical),
@@ -200,28 +201,35 @@ impl Lane {
     pub(super) fn charged(
         &self,
         outlines: &Outlines,
-        n: usize,
-        strip: usize,
+        (n, strip): (usize, usize),
+        begin: f64,
         around: Surroundings,
         ns: f64,
     ) -> Option<Charged> {
         let all = touches(outlines, self.costs.register_bytes);
-        let change = self.costs.change(outlines.passes.len());
-        let mut charged = Charged { computing: self.run(), starts: 0.0, passes: vec![], around, ns };
+        let mut charged = Charged { computing: 0.0, start: self.run(), passes: vec![], around, ns };
         for (strips, length) in [(n / strip, strip), (1, n % strip)] {
             if strips == 0 || length == 0 {
                 continue;
             }
-            for (pass, touched) in outlines.passes.iter().zip(&all) {
-                let cost = self.costs.cost(pass).ok()?;
-                let starts = self.costs.starts(length);
-                charged.computing += strips as f64 * length as f64 * cost.element.value;
-                charged.starts += strips as f64 * (change + starts * cost.start.value);
-                let touched = touched.clone();
-                charged.passes.push(Waiting { times: strips as f64, n: length as f64, touched });
-            }
+            charged.computing += strips as f64 * self.costs.near(outlines, length, begin).ok()?;
+            let waiting = |touched: &Vec<_>| Waiting {
+                times: strips as f64,
+                n: length as f64,
+                touched: touched.clone(),
+            };
+            charged.passes.extend(all.iter().map(waiting));
         }
         Some(charged)
+    }
+
+    /// How many times as long as in drills of nothing but themselves the passes of a program take to begin that took `start`
+    /// to begin together; none where one of them was not drilled.
+    pub(super) fn begin(&self, outlines: &Outlines, start: f64) -> Option<f64> {
+        let change = self.costs.change(outlines.passes.len());
+        let drilled =
+            outlines.passes.iter().map(|pass| Some(change + self.costs.cost(pass).ok()?.start.value));
+        Some(start / drilled.sum::<Option<f64>>()?)
     }
 }
 

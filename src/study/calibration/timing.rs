@@ -29,12 +29,12 @@ impl PacedClock {
         PacedClock { readings: vec![reading()] }
     }
 
-    /// Times some work.
-    fn time(&mut self, work: impl FnOnce() -> f64) -> Timed {
+    /// The readings before and after some work, and what it says.
+    fn around<T>(&mut self, work: impl FnOnce() -> T) -> (T, [f64; 2]) {
         let before = self.readings.last().copied().unwrap_or_default();
-        let ns = work();
+        let said = work();
         self.look();
-        Timed { ns, around: [before, self.readings.last().copied().unwrap_or_default()] }
+        (said, [before, self.readings.last().copied().unwrap_or_default()])
     }
 
     /// A reading of its own: something else was done since the last sample.
@@ -89,7 +89,7 @@ impl Samples {
             start.elapsed().as_nanos() as f64
         };
         let runs = &mut self.runs;
-        self.each.push(clock.time(|| {
+        let (ns, around) = clock.around(|| {
             // Something else was in the caches before.
             let warm = time(1);
             if *runs == 0 {
@@ -97,16 +97,32 @@ impl Samples {
                 *runs = ((shortest / once).ceil() as usize).clamp(1, 1 << 20);
             }
             time(*runs) / *runs as f64
-        }));
+        });
+        self.each.push(Timed { ns, around });
     }
 
-    /// Times one run as it comes, with whatever the caches hold.
-    pub(super) fn take_once(&mut self, clock: &mut PacedClock, work: impl FnOnce()) {
-        self.each.push(clock.time(|| {
-            let start = Instant::now();
-            work();
-            start.elapsed().as_nanos() as f64
-        }));
+    /// Takes one more sample of each of some works that are done one after the other, so many times in a row, as the parts
+    /// of a step are: each finds what the others have left. Done once before, for something else was in the caches.
+    pub(super) fn take_in_turns(
+        all: &mut [Samples],
+        clock: &mut PacedClock,
+        times: usize,
+        mut work: impl FnMut(usize),
+    ) {
+        (0..all.len()).for_each(&mut work);
+        let mut ns = vec![0.0; all.len()];
+        let ((), around) = clock.around(|| {
+            for _ in 0..times {
+                for (at, ns) in ns.iter_mut().enumerate() {
+                    let start = Instant::now();
+                    work(at);
+                    *ns += start.elapsed().as_nanos() as f64;
+                }
+            }
+        });
+        for (samples, ns) in all.iter_mut().zip(ns) {
+            samples.each.push(Timed { ns: ns / times as f64, around });
+        }
     }
 
     /// Tells the samples at the pace of a reference.
@@ -172,5 +188,14 @@ mod tests {
         samples.settle(clock.reference());
         assert!(samples.runs > 10 && samples.typical() > 0.0);
         assert!(clock.pace() > 0.0);
+    }
+
+    #[test]
+    fn works_in_turns_are_done_once_before_and_timed_each_by_itself() {
+        let (mut all, mut clock) = (vec![Samples::default(); 2], PacedClock::new());
+        let mut order = vec![];
+        Samples::take_in_turns(&mut all, &mut clock, 2, |at| order.push(at));
+        assert_eq!(order, [0, 1, 0, 1, 0, 1]);
+        assert!(all.iter().all(|samples| samples.each.len() == 1));
     }
 }
