@@ -155,8 +155,8 @@ mod tests {
             ("run = ", "run = -", "`run` is -"),
             ("run = ", "runs = ", "unknown field `runs`"),
             ("overlap", "overlapp", "unknown field `overlapp`"),
-            ("format = 5", "format = 7", "`format` is 7"),
-            ("format = 5\n", "", "missing field `format`"),
+            ("format = 6", "format = 7", "`format` is 7"),
+            ("format = 6\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
             assert!(said.contains(expected) && said.contains("line "), "{said}");

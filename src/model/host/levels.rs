@@ -80,10 +80,12 @@ pub struct Wait {
     pub streamed: f64,
     /// For lines met through an index vector that nothing announces.
     pub indexed: f64,
+    /// Whether anything came from beyond the first level: 0 to 1.
+    pub far: f64,
 }
 
 impl Wait {
-    /// Both.
+    /// For both.
     pub fn sum(self) -> f64 {
         self.streamed + self.indexed
     }
@@ -189,6 +191,8 @@ impl Surroundings {
                 Since::Here(distance) => distance * n,
                 Since::Before => there.map_or(0.0, |array| array.distance),
             };
+            let nearest = levels.first().and_then(|level| level.capacity);
+            wait.far = nearest.map_or(0.0, |capacity| beyond(distance, capacity)).max(wait.far);
             let fetch = |level: &Level| match touch.since {
                 Since::Here(_) => of(level).fetch,
                 Since::Before => of(level).fetch_array,

@@ -1,6 +1,6 @@
 //! Today's hosts: what a pass of the interpreter takes, `t = t0 + n (tau + e0 + sum of e_level)`, with the level of each
-//! operand found by reuse distance on the passes that are executed; what compiled loops take; and what a unit of the work
-//! takes whose amount hangs on the data.
+//! operand found by reuse distance on the passes that are executed, and t0 and tau of a program's passes together where a
+//! calibration has seen it; what compiled loops take; and what a unit of the work takes whose amount hangs on the data.
 
 mod file;
 mod levels;
@@ -106,7 +106,8 @@ pub struct HostModel {
     pub instruction_set: String,
     /// How it was measured.
     pub measured: Measured,
-    /// Nanoseconds an element of a pass whose operands come from memory, besides what their bytes take: e0.
+    /// Nanoseconds an element of a pass any of whose operands come from beyond the first level, besides what their bytes
+    /// take: e0.
     pub operand: f64,
     /// How long a pass of a program takes to begin, as a share of what it takes in a drill of nothing but that pass: the
     /// processor looks ahead from one to the next.
@@ -271,8 +272,8 @@ impl HostModel {
 
     /// Nanoseconds that a pass over `n` elements waits for what it touches.
     fn wait(&self, touches: &[Touch], n: usize, around: &Surroundings) -> f64 {
-        let wait = around.wait(&self.levels, touches, n as f64, |level| level.passes).sum();
-        if wait > 0.0 { wait + self.operand * n as f64 } else { 0.0 }
+        let wait = around.wait(&self.levels, touches, n as f64, |level| level.passes);
+        wait.sum() + wait.far * self.operand * n as f64
     }
 
     /// What each of some programs finds around it that are run one after the other, over vectors of these lengths.
@@ -371,4 +372,28 @@ pub(super) fn interpolated(points: &[(f64, f64)], at: f64) -> f64 {
         }
     }
     points.last().map_or(0.0, |&(_, value)| value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stripmine_kernels::backend::tape::Place;
+
+    #[test]
+    fn a_program_is_charged_as_it_was_seen_and_else_pass_by_pass() {
+        let sum = Outline { op: Op::Add, converts: false, reads: Vec::<Place>::new(), writes: None };
+        let outlines =
+            Outlines { lane: "f64", instructions: vec![], passes: vec![sum.clone(), sum], registers: [0; 3] };
+        let of = |value: f64| Estimate { value, interval: 0.0 };
+        let pass = PassCost { element: of(0.5), start: of(10.0) };
+        let mut lane = LaneCosts { lanes: 4, ..LaneCosts::default() };
+        lane.passes.insert(outlines.passes[0].kind(), pass);
+        lane.change.push(Change { passes: 1, ns: 2.0 });
+        // Passes begin twice where elements are left over.
+        assert_eq!(lane.near(&outlines, 8, 0.5).unwrap(), 2.0 * (0.5 * (2.0 + 10.0) + 8.0 * 0.5));
+        assert_eq!(lane.near(&outlines, 9, 0.5).unwrap(), 2.0 * (0.5 * (2.0 + 20.0) + 9.0 * 0.5));
+        let seen = ProgramCost { what: "two sums".to_owned(), element: of(0.75), start: of(7.0) };
+        lane.seen.insert(outlines.signature(), seen);
+        assert_eq!(lane.near(&outlines, 8, 0.5).unwrap(), 7.0 + 8.0 * 0.75);
+    }
 }

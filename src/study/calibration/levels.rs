@@ -16,6 +16,8 @@ pub(super) struct Charged {
     pub(super) around: Surroundings,
     /// Nanoseconds it took.
     pub(super) ns: f64,
+    /// How much it counts.
+    pub(super) weight: f64,
 }
 
 /// A pass that is made some times.
@@ -62,7 +64,7 @@ impl Charged {
                 let near = Level { capacity: Some(capacity), ..Level::default() };
                 let wait = |passes: Transfer| {
                     let levels = [near.clone(), Level { passes, ..Level::default() }];
-                    times * self.around.wait(&levels, touched, *n, |level| level.passes).sum()
+                    self.around.wait(&levels, touched, *n, |level| level.passes)
                 };
                 let own = [
                     wait(Transfer { fetch: 1.0, ..Transfer::default() }),
@@ -71,11 +73,10 @@ impl Charged {
                     wait(Transfer { line: 1.0, ..Transfer::default() }),
                 ];
                 for (kind, own) in own.into_iter().enumerate() {
-                    features[1 + kind * BEYOND + level] += own;
+                    features[1 + kind * BEYOND + level] += times * own.sum();
                 }
-                // Where everything is near there is nothing to wait for.
-                if level == 0 && own.iter().any(|&own| own > 0.0) {
-                    features[0] += times * n;
+                if level == 0 {
+                    features[0] += times * n * own[0].far;
                 }
             }
         }
@@ -102,7 +103,7 @@ impl Charged {
     /// How much it counts by its share in what it took, where it is so far off: what is far from the fit weighs less, so that
     /// a busy moment does not count for more than it is.
     fn scale(&self, far: f64) -> f64 {
-        (0.05 / (0.05 + far)).sqrt() / self.ns
+        (self.weight * 0.05 / (0.05 + far)).sqrt() / self.ns
     }
 }
 
@@ -166,7 +167,7 @@ pub(super) fn fit_levels(passes: &[Charged], loops: &[Charged]) -> Levels {
         let errors =
             || passes.iter().zip(&of_passes).map(|(each, of)| each.deviation(each.waiting(of, &costs)));
         let loops = fit_loops(loops, &features(loops), &costs);
-        let error = mean(errors()) + loops.error;
+        let error = mean(passes, errors()) + loops.error;
         if best.as_ref().is_none_or(|(least, _)| error < *least) {
             best = Some((error, levels(capacities, &costs, &loops, median(errors()))));
         }
@@ -192,9 +193,16 @@ fn levels(capacities: [f64; BEYOND], costs: &Costs, loops: &Loops, residual: f64
     Levels { operand: costs[0], levels: levels.collect(), overlap: loops.overlap, residual }
 }
 
-fn mean(values: impl Iterator<Item = f64>) -> f64 {
-    let finite: Vec<f64> = values.filter(|value| value.is_finite()).collect();
-    finite.iter().sum::<f64>() / finite.len().max(1) as f64
+/// The mean of some deviations, each counted for as much as what it is of.
+fn mean(of: &[Charged], deviations: impl Iterator<Item = f64>) -> f64 {
+    let finite: Vec<(f64, f64)> = of
+        .iter()
+        .map(|each| each.weight)
+        .zip(deviations)
+        .filter(|(_, deviation)| deviation.is_finite())
+        .collect();
+    let weights: f64 = finite.iter().map(|(weight, _)| weight).sum();
+    finite.iter().map(|(weight, deviation)| weight * deviation).sum::<f64>() / weights.max(f64::MIN_POSITIVE)
 }
 
 /// Rounds in which what is far from the fit weighs less and less.
@@ -263,7 +271,8 @@ fn fit_loops(charged: &[Charged], features: &[Costs], passes: &Costs) -> Loops {
             costs = fit::non_negative(&rows.collect::<Vec<_>>());
         }
         let of_all = charged.iter().zip(features);
-        let error = mean(of_all.map(|(each, of)| each.deviation(each.overlapping(of, &costs, overlap))));
+        let error =
+            mean(charged, of_all.map(|(each, of)| each.deviation(each.overlapping(of, &costs, overlap))));
         Loops { overlap, costs, error }
     };
     OVERLAPS.map(fitted).into_iter().min_by(|a, b| a.error.total_cmp(&b.error)).unwrap_or(Loops::NONE)
@@ -296,6 +305,7 @@ mod tests {
             passes,
             around: Surroundings::default(),
             ns: computing + 3.0 * n * 8.0 * wait,
+            weight: 1.0,
         }
     }
 

@@ -339,7 +339,8 @@ impl Step {
             let (PassCost { element, start }, ns) = (costs.of(outlines).ok()?, samples.typical());
             let n = n as f64;
             let passes = vec![Waiting { times: 1.0, n, touched: touched_arrays(outlines) }];
-            let charged = Charged { computing: n * element.value, start: start.value, passes, around, ns };
+            let charged =
+                Charged { computing: n * element.value, start: start.value, passes, around, ns, weight: 1.0 };
             (ns.is_finite() && n > 0.0).then_some(charged)
         });
         charged.collect()

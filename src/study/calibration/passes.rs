@@ -24,6 +24,10 @@ const MIXED_LENGTHS: [usize; 2] = [16, 64];
 /// Least nanoseconds of a sample.
 const SHORTEST: f64 = 60_000.0;
 
+/// How much a drilled pass counts beside a whole program where levels are fitted: programs are what will be predicted, where
+/// passes of many kinds wait in turns.
+const DRILLED: f64 = 0.2;
+
 /// A kind over vectors of `n` elements: long and short drill.
 struct Point {
     kind: usize,
@@ -193,6 +197,7 @@ impl Lane {
                 passes: vec![Waiting { times: 1.0, n, touched }],
                 around,
                 ns: point.each(Samples::typical),
+                weight: DRILLED,
             })
         })
     }
@@ -207,7 +212,8 @@ impl Lane {
         ns: f64,
     ) -> Option<Charged> {
         let all = touches(outlines, self.costs.register_bytes);
-        let mut charged = Charged { computing: 0.0, start: self.run(), passes: vec![], around, ns };
+        let mut charged =
+            Charged { computing: 0.0, start: self.run(), passes: vec![], around, ns, weight: 1.0 };
         for (strips, length) in [(n / strip, strip), (1, n % strip)] {
             if strips == 0 || length == 0 {
                 continue;
