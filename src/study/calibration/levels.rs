@@ -345,13 +345,15 @@ mod tests {
         let none = [0.0; BEYOND];
         let all = [(200.0, none), (3000.0, none), (90_000.0, none), (3000.0, [900.0, 900.0, 0.0])];
         let lines = [(200.0, [5000.0, 0.0, 0.0]), (90_000.0, [2000.0; BEYOND])];
+        // Each with little and with much to compute, or one could not tell what hides behind what.
         let features: Vec<Costs> =
-            all.into_iter().chain(lines).map(|(kib, lines)| features(kib * KIB, lines)).collect();
-        let measured = |features: &Costs| {
-            let each = charged(0.0, false, 0.0);
+            all.into_iter().chain(lines).flat_map(|(kib, lines)| [features(kib * KIB, lines); 2]).collect();
+        let measured = |(features, computing): (&Costs, &f64)| {
+            let each = Charged { computing: *computing, ..charged(0.0, false, 0.0) };
             Charged { ns: each.overlapping(features, &truth, 0.5), ..each }
         };
-        let charged: Vec<Charged> = features.iter().map(measured).collect();
+        let charged: Vec<Charged> =
+            features.iter().zip([200.0, 2000.0].iter().cycle()).map(measured).collect();
         let found = fit_loops(&charged, &features, &passes);
         assert!(found.overlap == 0.5 && found.error < 1e-6, "{}: {}", found.overlap, found.error);
         assert!(
