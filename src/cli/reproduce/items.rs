@@ -206,7 +206,7 @@ fn validation(effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, F
         }
         Effort::Full => {
             let (sweeps, best) = (calibration::Effort::default(), InstructionSet::best());
-            let runs = runs(vec![130, 850, 4400, 17_000], vec![0.045, 0.235], 4);
+            let runs = runs(vec![130, 850, 4400, 17_000], vec![0.045, 0.235], 2);
             let (host, data) = calibrated_in_turns(origin::host(), best, sweeps, &runs, progress)?;
             made(report::model_validation::section(&data), &data)
                 .map(|made| made.with_file("host.toml", host.to_toml()))
