@@ -14,12 +14,14 @@ static NUMBERS: [f64; 256] = [1.0; 256];
 static PLACES: [u8; 3000] = places();
 /// Passes over the places in a reading: some ten microseconds.
 const PASSES: usize = 2;
-/// How far the two readings around a steady sample may differ, as a share.
-const UNSTEADY: f64 = 0.1;
-/// How far the pace of a sample may be from the reference, as a share, where there are samples enough.
+/// How far the pace of a sample may be from a reference, as a share, so that it was taken at that pace.
 const NEAR: f64 = 0.1;
-/// So many samples are enough.
+/// So many such samples are enough.
 const FEW: usize = 4;
+/// How far the paces of two samples are apart at least that tell how a time follows the pace, as a logarithm.
+const APART: f64 = 0.1;
+/// So many pairs of samples say beforehand that it goes with the pace itself: a few samples tell little.
+const BEFOREHAND: usize = 8;
 
 const fn places() -> [u8; 3000] {
     let mut places = [0; 3000];
@@ -70,38 +72,38 @@ impl Timed {
     pub fn pace(&self, reference: f64) -> f64 {
         0.5 * (self.around[0] + self.around[1]) / reference
     }
-
-    fn is_steady(&self) -> bool {
-        let [before, after] = self.around;
-        (before - after).abs() <= UNSTEADY * before.min(after)
-    }
 }
 
-/// The samples taken near the pace of a reference if there are some, else those nearest to it, for not everything is slowed
-/// down alike; unsteady samples only where all are.
-fn nearest(samples: &[Timed], reference: f64) -> Vec<&Timed> {
-    let steady: Vec<&Timed> = samples.iter().filter(|sample| sample.is_steady()).collect();
-    let mut usable = if steady.is_empty() { samples.iter().collect() } else { steady };
-    let away = |sample: &Timed| sample.pace(reference).ln().abs();
-    usable.sort_by(|a, b| away(a).total_cmp(&away(b)));
-    let near = usable.iter().take_while(|sample| away(sample) <= NEAR).count();
-    usable.truncate(near.max(FEW));
-    usable
+/// With which power of the pace the times of some work go: the median over pairs of samples (Theil and Sen's). A neighbour
+/// on the same core slows down what keeps the core busy by more than the yardstick, and what waits for memory by less; and
+/// what takes longer than the pace lasts follows two readings hardly at all.
+fn power(samples: &[Timed]) -> f64 {
+    let points: Vec<[f64; 2]> = samples
+        .iter()
+        .filter(|sample| sample.ns > 0.0)
+        .map(|sample| [sample.pace(1.0).ln(), sample.ns.ln()])
+        .collect();
+    let pairs = points.iter().enumerate().flat_map(|(at, a)| points[..at].iter().map(move |b| (a, b)));
+    let apart = pairs.filter(|(a, b)| (a[0] - b[0]).abs() > APART);
+    let mut slopes: Vec<f64> = apart.map(|(a, b)| (a[1] - b[1]) / (a[0] - b[0])).collect();
+    slopes.extend([1.0; BEFOREHAND]);
+    let middle = slopes.len() / 2;
+    *slopes.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// The times at the pace of a reference, rising, of the samples nearest to it.
+/// The times at the pace of a reference, rising.
 pub fn at_pace(samples: &[Timed], reference: f64) -> Vec<f64> {
-    let nearest = nearest(samples, reference).into_iter();
-    let mut paced: Vec<f64> = nearest.map(|sample| sample.ns / sample.pace(reference)).collect();
-    paced.sort_by(f64::total_cmp);
-    paced
+    let power = power(samples);
+    let mut told: Vec<f64> =
+        samples.iter().map(|sample| sample.ns / sample.pace(reference).powf(power)).collect();
+    told.sort_by(f64::total_cmp);
+    told
 }
 
 /// Whether there are samples enough near the pace of a reference, so that times need not be told at another pace than they
 /// were taken at.
 pub fn was_at_pace(samples: &[Timed], reference: f64) -> bool {
-    let nearest = nearest(samples, reference);
-    nearest.len() >= FEW && nearest.iter().all(|sample| sample.pace(reference).ln().abs() <= NEAR)
+    samples.iter().filter(|sample| sample.pace(reference).ln().abs() <= NEAR).count() >= FEW
 }
 
 /// The value below which a share of rising values lies; none of none.
@@ -125,25 +127,35 @@ mod tests {
     #[test]
     fn a_slow_moment_is_told_at_the_pace_of_the_reference() {
         let samples = [timed(100.0, 10.0, 10.0), timed(170.0, 17.0, 17.0), timed(126.0, 12.0, 13.2)];
-        let paced = at_pace(&samples, 10.0);
-        assert!(paced.iter().all(|ns| (ns - 100.0).abs() < 1e-9), "{paced:?}");
+        let told = at_pace(&samples, 10.0);
+        assert!(told.iter().all(|ns| (ns - 100.0).abs() < 1e-9), "{told:?}");
     }
 
     #[test]
-    fn where_there_are_enough_only_samples_near_the_reference_count() {
+    fn how_times_follow_the_pace_is_their_own() {
+        for power in [0.3, 1.8] {
+            let each = |i: i32| {
+                let pace = 1.0 + 0.05 * f64::from(i % 10);
+                timed(100.0 * pace.powf(power), 10.0 * pace, 10.0 * pace)
+            };
+            let mut samples: Vec<Timed> = (0..40).map(each).collect();
+            // One that was interrupted says nothing of the others.
+            samples.push(timed(9000.0, 15.0, 15.0));
+            let told = at_pace(&samples, 12.0);
+            let expected = 100.0 * 1.2_f64.powf(power);
+            assert!(told[..40].iter().all(|ns| (ns / expected - 1.0).abs() < 0.02), "{power}: {told:?}");
+        }
+        // Two samples are believed less than what is known beforehand.
+        let two = [timed(100.0, 10.0, 10.0), timed(100.0, 20.0, 20.0)];
+        assert_eq!(at_pace(&two, 10.0), [50.0, 100.0]);
+    }
+
+    #[test]
+    fn a_few_samples_near_the_reference_are_enough() {
         let near = [timed(100.0, 10.0, 10.0); FEW];
         let slow = [timed(300.0, 20.0, 20.0); 9];
-        assert_eq!(at_pace(&[&slow[..], &near[..]].concat(), 10.0), [100.0; FEW]);
-        let fewer = at_pace(&[&slow[..], &near[1..]].concat(), 10.0);
-        assert_eq!(fewer, [100.0, 100.0, 100.0, 150.0]);
-        assert!(was_at_pace(&near, 10.0) && !was_at_pace(&near[1..], 10.0) && !was_at_pace(&slow, 10.0));
-    }
-
-    #[test]
-    fn unsteady_samples_count_only_where_there_are_no_others() {
-        let (steady, unsteady) = (timed(100.0, 10.0, 10.0), timed(100.0, 10.0, 20.0));
-        assert_eq!(at_pace(&[unsteady, steady], 10.0), [100.0]);
-        assert_eq!(at_pace(&[unsteady], 10.0).len(), 1);
+        assert!(was_at_pace(&near, 10.0) && was_at_pace(&[&slow[..], &near[..]].concat(), 10.0));
+        assert!(!was_at_pace(&near[1..], 10.0) && !was_at_pace(&slow, 10.0));
     }
 
     #[test]

@@ -8,6 +8,7 @@ use crate::model::host::Amounts;
 use crate::run::{assemble, model};
 use crate::scene::{Checked, Document};
 use std::f64::consts::PI;
+use std::time::Instant;
 use stripmine_kernels::ledger::Length;
 
 /// A run of the bench scene.
@@ -87,8 +88,8 @@ impl Run {
 pub struct PhaseTimes {
     /// What there was to do in a step, on average.
     pub amounts: Amounts,
-    /// Nanoseconds a step of every phase, repeat by repeat; without the making of lists.
-    repeats: [Vec<Timed>; Phase::ALL.len()],
+    /// Nanoseconds a step of every phase, sample by sample; without the making of lists.
+    samples: [Vec<Timed>; Phase::ALL.len()],
     /// Nanoseconds of each making of lists.
     makings: Vec<Timed>,
     /// Makings a step.
@@ -100,7 +101,7 @@ impl PhaseTimes {
     pub fn none(discs: usize) -> PhaseTimes {
         PhaseTimes {
             amounts: Amounts { discs: discs as f64, ..Amounts::default() },
-            repeats: Default::default(),
+            samples: Default::default(),
             makings: vec![],
             made: 0.0,
         }
@@ -109,35 +110,35 @@ impl PhaseTimes {
     /// The same run measured once more, at another time.
     #[must_use]
     pub fn joined(mut self, more: PhaseTimes) -> PhaseTimes {
-        let [a, b] = [&self, &more].map(|times| times.repeats[Phase::Forces as usize].len() as f64);
+        let [a, b] = [&self, &more].map(|times| times.samples[Phase::Forces as usize].len() as f64);
         let mean = |x: f64, y: f64| (a * x + b * y) / (a + b);
         self.amounts = self.amounts.with(&more.amounts, mean);
         self.made = mean(self.made, more.made);
         self.makings.extend(more.makings);
-        for (repeats, more) in self.repeats.iter_mut().zip(more.repeats) {
-            repeats.extend(more);
+        for (samples, more) in self.samples.iter_mut().zip(more.samples) {
+            samples.extend(more);
         }
         self
     }
 
-    /// Nanoseconds of a phase a step at the pace of a reference, and the quartiles of the repeats: makings of lists are as
+    /// Nanoseconds of a phase a step at the pace of a reference, and the quartiles of the samples: makings of lists are as
     /// often as they were.
     pub fn typical(&self, phase: Phase, reference: f64) -> (f64, [f64; 2]) {
-        let paced = at_pace(&self.repeats[phase as usize], reference);
+        let paced = at_pace(&self.samples[phase as usize], reference);
         let making =
             if phase == Phase::Index { self.made * self.making(reference).unwrap_or(0.0) } else { 0.0 };
         let of = |share: f64| making + quantile(&paced, share).unwrap_or(0.0);
         (of(COUNTS), [of(0.25), of(0.75)])
     }
 
-    /// Whether enough repeats of a phase were at the pace of a reference.
+    /// Whether enough samples of a phase were at the pace of a reference.
     pub fn was_at_pace(&self, phase: Phase, reference: f64) -> bool {
-        was_at_pace(&self.repeats[phase as usize], reference)
+        was_at_pace(&self.samples[phase as usize], reference)
     }
 
     /// Nanoseconds of a phase without the making of lists.
     pub fn quiet(&self, phase: Phase, reference: f64) -> f64 {
-        quantile(&at_pace(&self.repeats[phase as usize], reference), COUNTS).unwrap_or(0.0)
+        quantile(&at_pace(&self.samples[phase as usize], reference), COUNTS).unwrap_or(0.0)
     }
 
     /// Nanoseconds of a making of lists; none if there was none.
@@ -145,19 +146,25 @@ impl PhaseTimes {
         quantile(&at_pace(&self.makings, reference), COUNTS)
     }
 
-    /// How much slower than where the reference was taken the host was in each repeat.
+    /// How much slower than where the reference was taken the host was in each sample.
     pub fn paces(&self, reference: f64) -> impl Iterator<Item = f64> {
-        let repeats = self.repeats[Phase::Forces as usize].iter();
-        repeats.map(move |repeat| repeat.pace(reference))
+        let samples = self.samples[Phase::Forces as usize].iter();
+        samples.map(move |sample| sample.pace(reference))
     }
 }
+
+/// Least nanoseconds of a sample: a shared host changes its pace within milliseconds, and a sample that lasts longer than the
+/// pace says nothing of it.
+const SHORTEST: f64 = 200_000.0;
+/// Samples that a repeat is taken in, at most.
+const FINEST: usize = 8;
 
 /// How much of a run is timed.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampling {
     /// Steps before the clock starts.
     pub equilibration: usize,
-    /// Repeats.
+    /// Repeats, each taken in several samples.
     pub repeats: usize,
     /// Particle-steps of a repeat, about.
     pub particle_steps: usize,
@@ -180,21 +187,25 @@ pub fn phase_times(checked: &Checked, sampling: &Sampling) -> Result<PhaseTimes,
     let mut before = reading();
     let made = |method: &dyn Method| method.lists().map_or(0, |(_, made)| made);
     let (mut all, mut made_in_all, mut found) = (0, 0, Found::default());
-    for repeat in 0..=sampling.repeats {
+    // The first sample is to warm up: only what it takes to make lists counts, for that is rare. It says how many steps one
+    // of the others has.
+    let (mut count, mut left, mut warm) = (sampling.equilibration, steps * sampling.repeats, false);
+    let mut group = 1;
+    loop {
         method.reset_timings();
         let mut makings = vec![];
-        // The first is to warm up: only what it takes to make lists counts, for that is rare.
-        let count = if repeat == 0 { sampling.equilibration } else { steps };
+        let start = Instant::now();
         for _ in 0..count {
             let (seconds, earlier) = (method.timings().seconds(Phase::Index), made(method.as_ref()));
             method.step().map_err(|failure: Failure| failure)?;
             if made(method.as_ref()) > earlier {
                 makings.push(method.timings().seconds(Phase::Index) - seconds);
             }
-            if repeat > 0 {
+            if warm {
                 found.look(method.as_ref());
             }
         }
+        let step = start.elapsed().as_nanos() as f64 / count.max(1) as f64;
         let after = reading();
         let around = [before, after];
         before = after;
@@ -208,10 +219,20 @@ pub fn phase_times(checked: &Checked, sampling: &Sampling) -> Result<PhaseTimes,
                 Phase::Index => (seconds - making, count - makings.len()),
                 _ => (seconds, count),
             };
-            if repeat > 0 && of > 0 {
-                times.repeats[phase as usize].push(Timed { ns: 1e9 * seconds / of as f64, around });
+            if warm && of > 0 {
+                times.samples[phase as usize].push(Timed { ns: 1e9 * seconds / of as f64, around });
             }
         }
+        if warm {
+            left -= count;
+        } else {
+            warm = true;
+            group = ((SHORTEST / step).ceil() as usize).max(steps.div_ceil(FINEST));
+        }
+        if left == 0 {
+            break;
+        }
+        count = group.min(left);
     }
     times.made = made_in_all as f64 / all.max(1) as f64;
     let discs = discs as f64;

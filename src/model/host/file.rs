@@ -4,7 +4,7 @@ use super::{HostModel, Transfer};
 use crate::model::machine_file::Position;
 
 /// The version of the file format that this program reads.
-pub const FORMAT: u32 = 6;
+pub const FORMAT: u32 = 7;
 
 /// Why a host file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -94,8 +94,13 @@ impl HostModel {
         let seen = lists.chain([("loops".to_owned(), &self.loops.seen)]).flat_map(|(of, seen)| {
             let all = seen.iter().map(move |(name, seen)| (format!("{of}.seen.{name}"), seen));
             all.flat_map(|(name, seen)| {
-                [("element", seen.element.value), ("start", seen.start.value)]
-                    .map(|(what, value)| (format!("{name}.{what}.value"), value))
+                [
+                    ("element.value", seen.element.value),
+                    ("start.value", seen.start.value),
+                    ("factors.computing", seen.factors.computing),
+                    ("factors.waiting", seen.factors.waiting),
+                ]
+                .map(|(what, value)| (format!("{name}.{what}"), value))
             })
         });
         let rates = self.rates.iter().flat_map(|(method, rates)| {
@@ -155,8 +160,8 @@ mod tests {
             ("run = ", "run = -", "`run` is -"),
             ("run = ", "runs = ", "unknown field `runs`"),
             ("overlap", "overlapp", "unknown field `overlapp`"),
-            ("format = 6", "format = 7", "`format` is 7"),
-            ("format = 6\n", "", "missing field `format`"),
+            ("format = 7", "format = 8", "`format` is 8"),
+            ("format = 7\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
             assert!(said.contains(expected) && said.contains("line "), "{said}");

@@ -80,7 +80,7 @@ pub struct Wait {
     pub streamed: f64,
     /// For lines met through an index vector that nothing announces.
     pub indexed: f64,
-    /// Whether anything came from beyond the first level: 0 to 1.
+    /// Whether anything came from beyond the nearest level: 0 to 1.
     pub far: f64,
 }
 

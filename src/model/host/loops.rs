@@ -18,6 +18,32 @@ pub struct ProgramCost {
     pub element: Estimate,
     /// Nanoseconds besides: of a run, or of a strip of the interpreter.
     pub start: Estimate,
+    /// How it differs beyond the first-level cache.
+    pub factors: Factors,
+}
+
+/// How a program differs from what is said of all.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Factors {
+    /// How many times as long it computes on whole vectors as on short ones.
+    pub computing: f64,
+    /// How many times as long it waits as the levels say.
+    pub waiting: f64,
+}
+
+impl Default for Factors {
+    fn default() -> Factors {
+        Factors { computing: 1.0, waiting: 1.0 }
+    }
+}
+
+impl Factors {
+    /// Nanoseconds of computing, and of waiting for streams and for lines, as this program takes them.
+    #[must_use]
+    pub fn scaled(self, [computing, streams, lines]: [f64; 3]) -> [f64; 3] {
+        [self.computing * computing, self.waiting * streams, self.waiting * lines]
+    }
 }
 
 /// All that is known of loops.
@@ -35,15 +61,16 @@ pub struct LoopCosts {
 }
 
 impl LoopCosts {
-    /// The cost of a program's loop: as it was seen, or by its classes.
+    /// The cost of a program's loop and how it differs: as it was seen, or by its classes.
     ///
     /// # Errors
     /// [`OutOfRange::NotMeasured`] where not even its lanes were.
-    pub fn of(&self, outlines: &Outlines) -> Result<PassCost, OutOfRange> {
-        if let Some(ProgramCost { element, start, .. }) = self.seen.get(&outlines.signature()) {
-            return Ok(PassCost { element: *element, start: *start });
+    pub fn of(&self, outlines: &Outlines) -> Result<(PassCost, Factors), OutOfRange> {
+        if let Some(ProgramCost { element, start, factors, .. }) = self.seen.get(&outlines.signature()) {
+            return Ok((PassCost { element: *element, start: *start }, *factors));
         }
         self.by_classes(outlines)
+            .map(|cost| (cost, Factors::default()))
             .ok_or_else(|| OutOfRange::NotMeasured(format!("chained execution of {} lanes", outlines.lane)))
     }
 
@@ -64,6 +91,12 @@ impl LoopCosts {
         let classes = self.classes.get(lane);
         classes.and_then(|classes| classes.get(OpClass::Add.name())).copied().unwrap_or(0.0)
     }
+}
+
+/// Nanoseconds of computing, and of waiting for streams and for lines, where this share of the shorter of the first two hides
+/// behind the longer.
+pub fn overlapped(share: f64, [computing, streams, lines]: [f64; 3]) -> f64 {
+    computing.max(streams) + (1.0 - share) * computing.min(streams) + lines
 }
 
 /// Operations of each class of an element.

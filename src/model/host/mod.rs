@@ -10,7 +10,7 @@ mod reuse;
 
 pub use file::{BadEntry, FORMAT, HostFileError, default_model};
 pub use levels::{LINE, Level, Surroundings, Transfer, Wait, beyond, from_afar};
-pub use loops::{LoopCosts, ProgramCost, class_counts};
+pub use loops::{Factors, LoopCosts, ProgramCost, class_counts, overlapped};
 pub use rates::{Amounts, RatePoint, Rates};
 pub use reuse::{Since, Touch, Vector, element_bytes, touched_arrays, touches};
 
@@ -106,7 +106,7 @@ pub struct HostModel {
     pub instruction_set: String,
     /// How it was measured.
     pub measured: Measured,
-    /// Nanoseconds an element of a pass any of whose operands come from beyond the first level, besides what their bytes
+    /// Nanoseconds an element of a pass any of whose operands come from beyond the nearest level, besides what their bytes
     /// take: e0.
     pub operand: f64,
     /// How long a pass of a program takes to begin, as a share of what it takes in a drill of nothing but that pass: the
@@ -159,11 +159,6 @@ pub enum OutOfRange {
     /// An execution, precision or program that was not measured.
     #[error("{0} was not calibrated")]
     NotMeasured(String),
-}
-
-/// Nanoseconds of computing so long and waiting so long for memory, where a share of the shorter hides behind the longer.
-pub fn overlapped(share: f64, compute: f64, wait: f64) -> f64 {
-    compute.max(wait) + (1.0 - share) * compute.min(wait)
 }
 
 /// Kinds of passes that are charged as another one, which works in the same way.
@@ -263,9 +258,10 @@ impl HostModel {
             if strips == 0 || length == 0 {
                 continue;
             }
-            let waits = touched.iter().map(|touches| self.wait(touches, length, around));
-            let each = lane.near(outlines, length, self.begin)? + waits.sum::<f64>();
-            sum += strips as f64 * each;
+            let near = lane.near(outlines, length, self.begin)?;
+            let wait = touched.iter().map(|touches| self.wait(touches, length, around)).sum();
+            let parts = lane.factors(outlines).scaled([near, wait, 0.0]);
+            sum += strips as f64 * parts.iter().sum::<f64>();
         }
         Ok(sum)
     }
@@ -298,11 +294,10 @@ impl HostModel {
     }
 
     fn chained(&self, outlines: &Outlines, n: usize, around: &Surroundings) -> Result<f64, OutOfRange> {
-        let cost = self.loops.of(outlines)?;
+        let (cost, factors) = self.loops.of(outlines)?;
         let wait = around.wait(&self.levels, &touched_arrays(outlines), n as f64, |level| level.loops);
-        let computing = n as f64 * cost.element.value;
-        // Nothing hides what nobody foresees.
-        Ok(cost.start.value + overlapped(self.loops.overlap, computing, wait.streamed) + wait.indexed)
+        let parts = factors.scaled([n as f64 * cost.element.value, wait.streamed, wait.indexed]);
+        Ok(cost.start.value + overlapped(self.loops.overlap, parts))
     }
 }
 
@@ -329,6 +324,11 @@ impl LaneCosts {
             Ok(change + at(begin * start.value, element.value))
         };
         outlines.passes.iter().map(each).sum()
+    }
+
+    /// How a program differs from what its passes and the levels say.
+    pub fn factors(&self, outlines: &Outlines) -> Factors {
+        self.seen.get(&outlines.signature()).map(|seen| seen.factors).unwrap_or_default()
     }
 
     /// Bytes of all registers of a program over vectors or strips of `n` elements.
@@ -392,7 +392,12 @@ mod tests {
         // Passes begin twice where elements are left over.
         assert_eq!(lane.near(&outlines, 8, 0.5).unwrap(), 2.0 * (0.5 * (2.0 + 10.0) + 8.0 * 0.5));
         assert_eq!(lane.near(&outlines, 9, 0.5).unwrap(), 2.0 * (0.5 * (2.0 + 20.0) + 9.0 * 0.5));
-        let seen = ProgramCost { what: "two sums".to_owned(), element: of(0.75), start: of(7.0) };
+        let seen = ProgramCost {
+            what: "two sums".to_owned(),
+            element: of(0.75),
+            start: of(7.0),
+            factors: Factors::default(),
+        };
         lane.seen.insert(outlines.signature(), seen);
         assert_eq!(lane.near(&outlines, 8, 0.5).unwrap(), 7.0 + 8.0 * 0.75);
     }

@@ -1,8 +1,10 @@
 //! What waiting for the levels of memory adds: fitted to passes over long vectors, and to whole programs of drill scenes as
 //! the interpreter and as compiled loops run them.
 
+use super::factors::fit_factors;
 use super::fit::{self, median};
-use crate::model::host::{Level, Surroundings, Touch, Transfer, overlapped};
+use crate::model::host::{Factors, Level, Surroundings, Touch, Transfer, overlapped};
+use std::collections::BTreeMap;
 
 /// Something measured, as the levels see it.
 pub(super) struct Charged {
@@ -18,6 +20,8 @@ pub(super) struct Charged {
     pub(super) ns: f64,
     /// How much it counts.
     pub(super) weight: f64,
+    /// The signature of a program; none of drills.
+    pub(super) program: Option<String>,
 }
 
 /// A pass that is made some times.
@@ -32,18 +36,20 @@ pub(super) struct Waiting {
 
 /// The levels that suit best.
 pub(super) struct Levels {
-    /// Nanoseconds an element of a pass with operands from beyond the first level, e0.
+    /// Nanoseconds an element of a pass with operands from beyond the nearest level, e0.
     pub(super) operand: f64,
     pub(super) levels: Vec<Level>,
     /// Of the shorter of computing and waiting in a loop, the share that hides behind the longer.
     pub(super) overlap: f64,
+    /// How programs differ, by their signatures: in the interpreter, and as loops.
+    pub(super) factors: [BTreeMap<String, Factors>; 2],
     /// Median deviation of the fit to passes.
     pub(super) residual: f64,
 }
 
-/// Levels beyond the first.
-const BEYOND: usize = 3;
-/// What is fitted: e0; what each level beyond the first adds to a byte fetched, to one of an array from before, to a byte
+/// Levels beyond the nearest.
+const BEYOND: usize = 4;
+/// What is fitted: e0; what each level beyond the nearest adds to a byte fetched, to one of an array from before, to a byte
 /// that must go back, and to a line that an index vector leads to unforeseen.
 const UNKNOWN: usize = 4 * BEYOND + 1;
 /// Where the arrays begin.
@@ -52,11 +58,11 @@ const ARRAYS: usize = 1 + BEYOND;
 const BACK: usize = 1 + 2 * BEYOND;
 /// Where the lines begin.
 const LINES: usize = 1 + 3 * BEYOND;
-type Costs = [f64; UNKNOWN];
+pub(super) type Costs = [f64; UNKNOWN];
 
 impl Charged {
     /// What is paid for: no level is cheaper than a nearer one, so every level adds to those before it.
-    fn features(&self, capacities: [f64; BEYOND]) -> Costs {
+    fn point(&self, capacities: [f64; BEYOND]) -> Point {
         let mut features = [0.0; UNKNOWN];
         for Waiting { times, n, touched } in &self.passes {
             for (level, capacity) in capacities.into_iter().enumerate() {
@@ -80,23 +86,56 @@ impl Charged {
                 }
             }
         }
-        features
+        let Charged { computing, start, ns, weight, .. } = *self;
+        Point { computing, start, ns, weight, features, program: self.program.clone() }
+    }
+}
+
+/// The same where the levels have certain capacities.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Point {
+    pub(super) computing: f64,
+    pub(super) start: f64,
+    pub(super) ns: f64,
+    pub(super) weight: f64,
+    pub(super) features: Costs,
+    pub(super) program: Option<String>,
+}
+
+impl Point {
+    /// Nanoseconds of computing, and of waiting for streams and for lines, by the costs of passes.
+    fn parts_of_passes(&self, costs: &Costs) -> [f64; 3] {
+        [self.computing, product(&self.features, costs), 0.0]
+    }
+
+    /// The same by the costs of loops.
+    fn parts_of_loops(&self, costs: &Costs) -> [f64; 3] {
+        let lines = product(&self.features[LINES..], &costs[LINES..]);
+        [self.computing, streamed(&self.features, costs), lines]
     }
 
     /// Nanoseconds by some costs: of passes, which wait before they compute.
-    fn waiting(&self, features: &Costs, costs: &Costs) -> f64 {
-        self.start + self.computing + product(features, costs)
+    fn waiting(&self, costs: &Costs) -> f64 {
+        in_turns(self.start, self.parts_of_passes(costs))
     }
 
-    /// The same of loops, where a share of the shorter of computing and waiting for streams hides behind the longer, and
-    /// nothing hides lines that nobody foresees.
-    fn overlapping(&self, features: &Costs, costs: &Costs, overlap: f64) -> f64 {
-        let lines = product(&features[LINES..], &costs[LINES..]);
-        self.start + overlapped(overlap, self.computing, streamed(features, costs)) + lines
+    /// The same of loops, which wait while they compute.
+    fn overlapping(&self, costs: &Costs, overlap: f64) -> f64 {
+        self.start + overlapped(overlap, self.parts_of_loops(costs))
+    }
+
+    /// The point of a program that differs so.
+    fn with(&self, factors: &BTreeMap<String, Factors>) -> Point {
+        let own = self.program.as_ref().and_then(|program| factors.get(program)).copied().unwrap_or_default();
+        Point {
+            computing: own.computing * self.computing,
+            features: self.features.map(|feature| own.waiting * feature),
+            ..self.clone()
+        }
     }
 
     /// How far off some nanoseconds are, as the logarithm of a ratio.
-    fn deviation(&self, ns: f64) -> f64 {
+    pub(super) fn deviation(&self, ns: f64) -> f64 {
         (ns / self.ns).ln().abs()
     }
 
@@ -107,6 +146,11 @@ impl Charged {
     }
 }
 
+/// Nanoseconds of one thing after the other.
+fn in_turns(start: f64, parts: [f64; 3]) -> f64 {
+    start + parts.iter().sum::<f64>()
+}
+
 fn product(features: &[f64], costs: &[f64]) -> f64 {
     features.iter().zip(costs).map(|(feature, cost)| feature * cost).sum()
 }
@@ -115,27 +159,31 @@ fn streamed(features: &Costs, costs: &Costs) -> f64 {
     product(&features[1..LINES], &costs[1..LINES])
 }
 
-/// Capacities of the three cache levels that are tried (bytes): what the system says, or parts of it, for whoever shares
-/// the core or the last level takes theirs; where it says nothing, what processors have.
+/// Capacities that are tried (bytes): of the store buffer, which hands on what was written last before it is in any cache;
+/// and of the three levels of cache what the system says, or parts of it, for whoever shares the core or the last level takes
+/// theirs; where it says nothing, what processors have.
 fn candidates() -> Vec<[f64; BEYOND]> {
     const KIB: f64 = 1024.0;
-    let known: Vec<f64> = (1..=BEYOND).filter_map(cache_size).collect();
+    let known: Vec<f64> = (1..BEYOND).filter_map(cache_size).collect();
     let mut all = vec![];
     if let [l1, l2, l3] = *known.as_slice() {
-        for near in [0.5, 1.0] {
-            for middle in [0.5, 1.0] {
-                all.extend(SHARES.map(|share| [near * l1, middle * l2, share * l3]));
+        for buffer in BUFFERS {
+            for (near, middle) in [(0.5, 0.5), (0.5, 1.0), (1.0, 0.5), (1.0, 1.0)] {
+                all.extend(SHARES.map(|share| [buffer, near * l1, middle * l2, share * l3]));
             }
         }
         return all;
     }
     for l1 in [32.0, 48.0, 64.0, 128.0] {
         for l2 in [256.0, 512.0, 1024.0, 2048.0, 4096.0] {
-            all.extend([4.0, 8.0, 16.0, 32.0].map(|l3| [l1 * KIB, l2 * KIB, l3 * KIB * KIB]));
+            all.extend([4.0, 8.0, 16.0, 32.0].map(|l3| [BUFFERS[1], l1 * KIB, l2 * KIB, l3 * KIB * KIB]));
         }
     }
     all
 }
+
+/// Bytes of the store buffer that are tried: some dozens of entries, each as wide as a register.
+const BUFFERS: [f64; 3] = [1024.0, 2048.0, 4096.0];
 
 /// Parts of the last level that are tried: many cores share it.
 const SHARES: [f64; 5] = [0.0625, 0.125, 0.25, 0.5, 1.0];
@@ -158,46 +206,84 @@ fn cache_size(level: usize) -> Option<f64> {
 /// Capacities and costs of the levels: those that suit passes and loops best together. Streams are foreseen and hardly tell
 /// one level from the next; lines that nothing announces do, and loops wait for these most.
 pub(super) fn fit_levels(passes: &[Charged], loops: &[Charged]) -> Levels {
-    let mut best: Option<(f64, Levels)> = None;
+    let mut best = Fitted { error: f64::INFINITY, ..Fitted::default() };
     for capacities in candidates() {
-        let features = |all: &[Charged]| all.iter().map(|each| each.features(capacities)).collect::<Vec<_>>();
-        let of_passes = features(passes);
-        let mut costs = fit_passes(passes, &of_passes);
-        fit_lines(passes, &of_passes, &mut costs);
-        let errors =
-            || passes.iter().zip(&of_passes).map(|(each, of)| each.deviation(each.waiting(of, &costs)));
-        let loops = fit_loops(loops, &features(loops), &costs);
-        let error = mean(passes, errors()) + loops.error;
-        if best.as_ref().is_none_or(|(least, _)| error < *least) {
-            best = Some((error, levels(capacities, &costs, &loops, median(errors()))));
+        let points = |all: &[Charged]| all.iter().map(|each| each.point(capacities)).collect::<Vec<_>>();
+        let [passes, loops] = [passes, loops].map(points);
+        // What the levels cost all programs alike; how each differs from that; and the levels again, given this.
+        let factors = Fitted::of(capacities, &passes, &loops).factors(&passes, &loops);
+        let with = |all: &[Point], factors| all.iter().map(|point| point.with(factors)).collect::<Vec<_>>();
+        let [passes, loops] = [with(&passes, &factors[0]), with(&loops, &factors[1])];
+        let fitted = Fitted { factors, ..Fitted::of(capacities, &passes, &loops) };
+        if fitted.error < best.error {
+            best = fitted;
         }
     }
-    best.map(|(_, levels)| levels)
-        .unwrap_or_else(|| levels([0.0; BEYOND], &[0.0; UNKNOWN], &Loops::NONE, 0.0))
+    best.levels()
 }
 
-/// The levels of these costs.
-fn levels(capacities: [f64; BEYOND], costs: &Costs, loops: &Loops, residual: f64) -> Levels {
-    let names = ["first-level cache", "second-level cache", "third-level cache", "memory"];
-    let capacities = capacities.into_iter().map(Some).chain([None]);
-    let transfer = |costs: &Costs, level: usize| {
-        let upto = |steps: usize| costs[steps..steps + level].iter().fold(0.0, |sum, step| sum + step);
-        Transfer { fetch: upto(1), fetch_array: upto(ARRAYS), write_back: upto(BACK), line: upto(LINES) }
-    };
-    let levels = names.into_iter().zip(capacities).enumerate().map(|(at, (name, capacity))| Level {
-        name: name.to_owned(),
-        capacity,
-        passes: transfer(costs, at),
-        loops: transfer(&loops.costs, at),
-    });
-    Levels { operand: costs[0], levels: levels.collect(), overlap: loops.overlap, residual }
+/// Levels of certain capacities.
+#[derive(Default)]
+struct Fitted {
+    capacities: [f64; BEYOND],
+    costs: Costs,
+    loops: Loops,
+    /// Of programs in the interpreter, and as loops.
+    factors: [BTreeMap<String, Factors>; 2],
+    residual: f64,
+    /// Mean deviation of passes and loops together.
+    error: f64,
+}
+
+impl Fitted {
+    fn of(capacities: [f64; BEYOND], passes: &[Point], loops: &[Point]) -> Fitted {
+        let mut costs = fit_passes(passes);
+        fit_lines(passes, &mut costs);
+        let loops = fit_loops(loops, &costs);
+        let deviations = || passes.iter().map(|point| point.deviation(point.waiting(&costs)));
+        let error = mean(passes, deviations()) + loops.error;
+        Fitted { capacities, costs, residual: median(deviations()), error, loops, ..Fitted::default() }
+    }
+
+    fn factors(&self, passes: &[Point], loops: &[Point]) -> [BTreeMap<String, Factors>; 2] {
+        let Fitted { costs, loops: Loops { costs: of_loops, overlap, .. }, .. } = self;
+        let in_passes = passes.iter().map(|point| (point, point.parts_of_passes(costs)));
+        let in_loops = loops.iter().map(|point| (point, point.parts_of_loops(of_loops)));
+        [
+            fit_factors(in_passes, in_turns),
+            fit_factors(in_loops, |start, parts| start + overlapped(*overlap, parts)),
+        ]
+    }
+
+    fn levels(self) -> Levels {
+        let names =
+            ["store buffer", "first-level cache", "second-level cache", "third-level cache", "memory"];
+        let capacities = self.capacities.into_iter().map(Some).chain([None]);
+        let transfer = |costs: &Costs, level: usize| {
+            let upto = |steps: usize| costs[steps..steps + level].iter().fold(0.0, |sum, step| sum + step);
+            Transfer { fetch: upto(1), fetch_array: upto(ARRAYS), write_back: upto(BACK), line: upto(LINES) }
+        };
+        let levels = names.into_iter().zip(capacities).enumerate().map(|(at, (name, capacity))| Level {
+            name: name.to_owned(),
+            capacity,
+            passes: transfer(&self.costs, at),
+            loops: transfer(&self.loops.costs, at),
+        });
+        Levels {
+            operand: self.costs[0],
+            levels: levels.collect(),
+            overlap: self.loops.overlap,
+            factors: self.factors,
+            residual: self.residual,
+        }
+    }
 }
 
 /// The mean of some deviations, each counted for as much as what it is of.
-fn mean(of: &[Charged], deviations: impl Iterator<Item = f64>) -> f64 {
+fn mean(of: &[Point], deviations: impl Iterator<Item = f64>) -> f64 {
     let finite: Vec<(f64, f64)> = of
         .iter()
-        .map(|each| each.weight)
+        .map(|point| point.weight)
         .zip(deviations)
         .filter(|(_, deviation)| deviation.is_finite())
         .collect();
@@ -209,14 +295,14 @@ fn mean(of: &[Charged], deviations: impl Iterator<Item = f64>) -> f64 {
 const ROUNDS: usize = 6;
 
 /// The costs of passes that suit best, everything weighted alike in its relative error.
-fn fit_passes(charged: &[Charged], features: &[Costs]) -> Costs {
+fn fit_passes(points: &[Point]) -> Costs {
     let mut costs: Option<Costs> = None;
     for _ in 0..ROUNDS {
-        let rows = charged.iter().zip(features).map(|(each, features)| {
-            let far = costs.map_or(0.0, |costs| each.deviation(each.waiting(features, &costs)));
-            let scale = each.scale(far);
-            let rest = (each.ns - each.start - each.computing).max(0.0);
-            (features.map(|feature| feature * scale), rest * scale)
+        let rows = points.iter().map(|point| {
+            let far = costs.map_or(0.0, |costs| point.deviation(point.waiting(&costs)));
+            let scale = point.scale(far);
+            let rest = (point.ns - point.start - point.computing).max(0.0);
+            (point.features.map(|feature| feature * scale), rest * scale)
         });
         costs = Some(fit::non_negative(&rows.collect::<Vec<_>>()));
     }
@@ -225,11 +311,11 @@ fn fit_passes(charged: &[Charged], features: &[Costs]) -> Costs {
 
 /// What lines cost passes that index vectors lead to, given all else: by what has such vectors alone, and all of that, for
 /// among everything it is too little to be heard.
-fn fit_lines(charged: &[Charged], features: &[Costs], costs: &mut Costs) {
+fn fit_lines(points: &[Point], costs: &mut Costs) {
     costs[LINES..].fill(0.0);
-    let rows = charged.iter().zip(features).filter_map(|(each, features)| {
-        let own: [f64; BEYOND] = std::array::from_fn(|level| features[LINES + level] / each.ns);
-        let rest = || (each.ns - each.waiting(features, costs)) / each.ns;
+    let rows = points.iter().filter_map(|point| {
+        let own: [f64; BEYOND] = std::array::from_fn(|level| point.features[LINES + level] / point.ns);
+        let rest = || (point.ns - point.waiting(costs)) / point.ns;
         own.iter().any(|&own| own > 0.0).then(|| (own, rest()))
     });
     let lines: [f64; BEYOND] = fit::non_negative(&rows.collect::<Vec<_>>());
@@ -237,6 +323,7 @@ fn fit_lines(charged: &[Charged], features: &[Costs], costs: &mut Costs) {
 }
 
 /// How loops wait.
+#[derive(Default)]
 struct Loops {
     overlap: f64,
     costs: Costs,
@@ -247,35 +334,30 @@ struct Loops {
 /// Shares of the shorter of computing and waiting that may hide behind the longer.
 const OVERLAPS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-impl Loops {
-    const NONE: Loops = Loops { overlap: 0.5, costs: [0.0; UNKNOWN], error: f64::INFINITY };
-}
-
 /// How loops wait: beginning with what passes do, for which of computing and waiting is the shorter must be known first.
-fn fit_loops(charged: &[Charged], features: &[Costs], passes: &Costs) -> Loops {
+fn fit_loops(points: &[Point], passes: &Costs) -> Loops {
     let fitted = |overlap: f64| {
         let mut costs = *passes;
         for round in 0..ROUNDS {
-            let rows = charged.iter().zip(features).map(|(each, features)| {
-                let far = each.deviation(each.overlapping(features, &costs, overlap));
-                let scale = each.scale(if round == 0 { 0.0 } else { far });
-                let (computing, streams) = match each.computing >= streamed(features, &costs) {
-                    true => (each.computing, 1.0 - overlap),
-                    false => ((1.0 - overlap) * each.computing, 1.0),
+            let rows = points.iter().map(|point| {
+                let far = point.deviation(point.overlapping(&costs, overlap));
+                let scale = point.scale(if round == 0 { 0.0 } else { far });
+                let (computing, streams) = match point.computing >= streamed(&point.features, &costs) {
+                    true => (point.computing, 1.0 - overlap),
+                    false => ((1.0 - overlap) * point.computing, 1.0),
                 };
-                let mut row = features.map(|feature| feature * scale);
+                let mut row = point.features.map(|feature| feature * scale);
                 row[0] = 0.0;
                 row[1..LINES].iter_mut().for_each(|feature| *feature *= streams);
-                (row, (each.ns - each.start - computing).max(0.0) * scale)
+                (row, (point.ns - point.start - computing).max(0.0) * scale)
             });
             costs = fit::non_negative(&rows.collect::<Vec<_>>());
         }
-        let of_all = charged.iter().zip(features);
         let error =
-            mean(charged, of_all.map(|(each, of)| each.deviation(each.overlapping(of, &costs, overlap))));
+            mean(points, points.iter().map(|point| point.deviation(point.overlapping(&costs, overlap))));
         Loops { overlap, costs, error }
     };
-    OVERLAPS.map(fitted).into_iter().min_by(|a, b| a.error.total_cmp(&b.error)).unwrap_or(Loops::NONE)
+    OVERLAPS.map(fitted).into_iter().min_by(|a, b| a.error.total_cmp(&b.error)).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -306,12 +388,13 @@ mod tests {
             around: Surroundings::default(),
             ns: computing + 3.0 * n * 8.0 * wait,
             weight: 1.0,
+            program: None,
         }
     }
 
     #[test]
     fn costs_that_went_in_come_out() {
-        let capacities = [32.0 * KIB, 512.0 * KIB, 8192.0 * KIB];
+        let capacities = [2.0 * KIB, 32.0 * KIB, 512.0 * KIB, 8192.0 * KIB];
         let all = [
             charged(1.0 * KIB, true, 0.0),
             charged(200.0 * KIB, false, 0.01),
@@ -321,40 +404,39 @@ mod tests {
             charged(90_000.0 * KIB, false, 0.1),
             charged(90_000.0 * KIB, true, 0.145),
         ];
-        let features: Vec<Costs> = all.iter().map(|each| each.features(capacities)).collect();
-        let costs = fit_passes(&all, &features);
-        for (each, features) in all.iter().zip(&features) {
-            assert!(each.deviation(each.waiting(features, &costs)) < 0.02, "{costs:?}");
+        let points = all.map(|each| each.point(capacities));
+        let costs = fit_passes(&points);
+        for point in &points {
+            assert!(point.deviation(point.waiting(&costs)) < 0.02, "{costs:?}");
         }
         assert!(costs.iter().all(|cost| *cost >= 0.0));
     }
 
     #[test]
     fn streams_and_lines_of_loops_come_out() {
-        let capacities = [32.0 * KIB, 512.0 * KIB, 8192.0 * KIB];
+        let capacities = [2.0 * KIB, 32.0 * KIB, 512.0 * KIB, 8192.0 * KIB];
         // As passes are, and as loops are: twice the wait, half of the shorter hidden, lines of 4 ns and from memory of 20.
         let [mut passes, mut truth] = [[0.0; UNKNOWN]; 2];
-        passes[1..ARRAYS].copy_from_slice(&[0.001, 0.002, 0.01]);
-        truth[1..ARRAYS].copy_from_slice(&[0.002, 0.004, 0.02]);
-        truth[LINES..].copy_from_slice(&[0.0, 4.0, 16.0]);
+        passes[1..ARRAYS].copy_from_slice(&[0.0, 0.001, 0.002, 0.01]);
+        truth[1..ARRAYS].copy_from_slice(&[0.0, 0.002, 0.004, 0.02]);
+        truth[LINES..].copy_from_slice(&[0.0, 0.0, 4.0, 16.0]);
         let features = |distance: f64, lines: [f64; BEYOND]| {
-            let mut features = charged(distance, false, 0.0).features(capacities);
+            let mut features = charged(distance, false, 0.0).point(capacities).features;
             features[LINES..].copy_from_slice(&lines);
             features
         };
         let none = [0.0; BEYOND];
-        let all = [(200.0, none), (3000.0, none), (90_000.0, none), (3000.0, [900.0, 900.0, 0.0])];
-        let lines = [(200.0, [5000.0, 0.0, 0.0]), (90_000.0, [2000.0; BEYOND])];
+        let all = [(200.0, none), (3000.0, none), (90_000.0, none), (3000.0, [900.0, 900.0, 900.0, 0.0])];
+        let lines = [(200.0, [5000.0, 5000.0, 0.0, 0.0]), (90_000.0, [2000.0; BEYOND])];
         // Each with little and with much to compute, or one could not tell what hides behind what.
         let features: Vec<Costs> =
             all.into_iter().chain(lines).flat_map(|(kib, lines)| [features(kib * KIB, lines); 2]).collect();
-        let measured = |(features, computing): (&Costs, &f64)| {
-            let each = Charged { computing: *computing, ..charged(0.0, false, 0.0) };
-            Charged { ns: each.overlapping(features, &truth, 0.5), ..each }
+        let measured = |(&features, &computing): (&Costs, &f64)| {
+            let point = Point { computing, features, weight: 1.0, ..Point::default() };
+            Point { ns: point.overlapping(&truth, 0.5), ..point }
         };
-        let charged: Vec<Charged> =
-            features.iter().zip([200.0, 2000.0].iter().cycle()).map(measured).collect();
-        let found = fit_loops(&charged, &features, &passes);
+        let points: Vec<Point> = features.iter().zip([200.0, 2000.0].iter().cycle()).map(measured).collect();
+        let found = fit_loops(&points, &passes);
         assert!(found.overlap == 0.5 && found.error < 1e-6, "{}: {}", found.overlap, found.error);
         assert!(
             found.costs.iter().zip(truth).all(|(found, truth)| (found - truth).abs() < 1e-3 * truth + 1e-6)

@@ -5,7 +5,9 @@ use super::levels::{Charged, Waiting};
 use super::passes::{Lane, estimate};
 use super::timing::{PacedClock, Samples};
 use crate::method::lattice_md::{Arrays, Lengths, Model, Part, StepProgram, programs};
-use crate::model::host::{LoopCosts, PassCost, ProgramCost, Surroundings, class_counts, touched_arrays};
+use crate::model::host::{
+    Factors, LoopCosts, PassCost, ProgramCost, Surroundings, class_counts, touched_arrays,
+};
 use crate::particles::Particles;
 use crate::run::model;
 use crate::study::phase_times::Run;
@@ -19,10 +21,10 @@ use stripmine_kernels::{Execution, InstructionSet};
 
 /// Elements of the short and of the longer runs of a loop: whole registers, and in the first-level cache.
 const ELEMENTS: [usize; 2] = [48, 192];
-/// Elements that the interpreter goes over, in strips of two lengths: whole registers, and arrays and registers together in the
-/// first-level cache.
-const STRIPPED: usize = 96;
-const STRIPS: [usize; 2] = [16, 32];
+/// Hardware registers of elements that the interpreter goes over, in strips of two lengths: far enough apart to tell what an
+/// element takes from what a pass takes to begin, and short enough that arrays and registers lie in the first-level cache.
+const STRIPPED: usize = 24;
+const STRIPS: [usize; 2] = [2, 8];
 /// Least nanoseconds of a sample.
 const SHORTEST: f64 = 40_000.0;
 /// The drill scene: discs at rest that do not touch, as no validation runs them.
@@ -49,12 +51,12 @@ const MODELS: [&[&str]; 2] = [
 const INTERPRETED: [Execution; 4] =
     [Execution::Eager, Execution::Strip(48), Execution::Strip(192), Execution::Strip(800)];
 /// Disc-steps of a sample of the interpreter and of loops, about, and steps at most.
-const INTERPRETED_DISCS: usize = 4000;
-const LOOP_DISCS: usize = 20_000;
-const MOST: usize = 20;
+const INTERPRETED_DISCS: usize = 2000;
+const LOOP_DISCS: usize = 10_000;
+const MOST: usize = 8;
 /// The interpreter is slow: of the largest scenes and of every sweep but one of so many there are no samples of it.
 const LARGEST: usize = 20_000;
-const RARELY: usize = 3;
+const RARELY: usize = 2;
 
 /// Operations of each class of an element, and the nanoseconds it took.
 type Counted = (BTreeMap<&'static str, f64>, f64);
@@ -161,8 +163,14 @@ impl Loops {
         Ok(())
     }
 
-    /// One more sample of every loop.
-    pub(super) fn sweep(&mut self, clock: &mut PacedClock, set: InstructionSet, number: usize) {
+    /// One more sample of every loop; `lanes` says how many elements of a type are in a hardware register.
+    pub(super) fn sweep(
+        &mut self,
+        clock: &mut PacedClock,
+        set: InstructionSet,
+        lanes: &dyn Fn(&str) -> usize,
+        number: usize,
+    ) {
         for step in &mut self.steps {
             if !step.large {
                 self.arrays[step.memory].anew(number);
@@ -193,8 +201,10 @@ impl Loops {
                 }
             }
             for (at, samples) in step.strips.iter_mut().enumerate() {
+                let lanes = lanes(step.programs[at].program.outlines().lane);
                 for (samples, strip) in samples.iter_mut().zip(STRIPS) {
-                    samples.take(clock, SHORTEST, || run(at, STRIPPED.min(all(at)), Execution::Strip(strip)));
+                    let strip = Execution::Strip(strip * lanes);
+                    samples.take(clock, SHORTEST, || run(at, (STRIPPED * lanes).min(all(at)), strip));
                 }
             }
         }
@@ -223,17 +233,19 @@ impl Loops {
         let mut begins = vec![];
         for step in self.steps.iter().filter(|step| !step.large) {
             for (program, samples) in step.programs.iter().zip(&step.strips) {
+                let outlines = program.program.outlines();
+                let Some(lane) = lanes.iter_mut().find(|lane| lane.name == outlines.lane) else { continue };
+                let elements = (STRIPPED * lane.costs.lanes) as f64;
                 let [short, long] = STRIPS.map(|strip| (STRIPPED / strip) as f64);
                 let start = |of: &dyn Fn(&Samples) -> f64| {
                     ((of(&samples[0]) - of(&samples[1])) / (short - long)).max(0.0)
                 };
                 let element = |of: &dyn Fn(&Samples) -> f64| {
-                    ((of(&samples[1]) - run - long * start(of)) / STRIPPED as f64).max(1e-4)
+                    ((of(&samples[1]) - run - long * start(of)) / elements).max(1e-4)
                 };
-                let outlines = program.program.outlines();
-                let Some(lane) = lanes.iter_mut().find(|lane| lane.name == outlines.lane) else { continue };
                 let what = format!("{}, {}", program.part.name(), step.name);
-                let cost = ProgramCost { what, element: estimate(element), start: estimate(start) };
+                let (element, start, factors) = (estimate(element), estimate(start), Factors::default());
+                let cost = ProgramCost { what, element, start, factors };
                 begins.extend(lane.begin(&outlines, cost.start.value));
                 lane.costs.seen.entry(outlines.signature()).or_insert(cost);
             }
@@ -255,11 +267,12 @@ impl Loops {
                 });
                 let outlines = program.program.outlines();
                 let what = format!("{}, {}", program.part.name(), step.name);
+                let factors = Factors::default();
                 of_lane
                     .entry(outlines.lane.to_owned())
                     .or_default()
                     .push((class_counts(&outlines), element.value));
-                seen.entry(outlines.signature()).or_insert(ProgramCost { what, element, start });
+                seen.entry(outlines.signature()).or_insert(ProgramCost { what, element, start, factors });
             }
         }
         let mut classes = BTreeMap::new();
@@ -287,16 +300,21 @@ impl Loops {
         LoopCosts { classes, residual: fit::median(residuals.into_iter()), overlap: 0.5, seen }
     }
 
-    /// The programs of the large drill scenes as the interpreter ran them.
-    pub(super) fn charged<'a>(&'a self, lanes: &'a [Lane], begin: f64) -> impl Iterator<Item = Charged> + 'a {
+    /// The programs of the large drill scenes as the interpreter ran them; `look` is what looking at the clock takes.
+    pub(super) fn charged<'a>(
+        &'a self,
+        lanes: &'a [Lane],
+        begin: f64,
+        look: f64,
+    ) -> impl Iterator<Item = Charged> + 'a {
         let large = self.steps.iter().filter(|step| step.large && step.discs() < LARGEST);
-        large.flat_map(move |step| step.charged(lanes, begin))
+        large.flat_map(move |step| step.charged(lanes, begin, look))
     }
 
     /// The same as compiled loops, whose costs in the first-level cache are known.
-    pub(super) fn charged_loops(&self, costs: &LoopCosts) -> Vec<Charged> {
+    pub(super) fn charged_loops(&self, costs: &LoopCosts, look: f64) -> Vec<Charged> {
         let large = self.steps.iter().filter(|step| step.large);
-        large.flat_map(|step| step.charged_loops(costs)).collect()
+        large.flat_map(|step| step.charged_loops(costs, look)).collect()
     }
 }
 
@@ -307,7 +325,7 @@ impl Step {
         of_discs.map_or(1, |(_, range)| range.len())
     }
 
-    fn charged(&self, lanes: &[Lane], begin: f64) -> Vec<Charged> {
+    fn charged(&self, lanes: &[Lane], begin: f64, look: f64) -> Vec<Charged> {
         let outlines: Vec<Outlines> = self.programs.iter().map(|step| step.program.outlines()).collect();
         let lane = |outlines: &Outlines| lanes.iter().find(|lane| lane.name == outlines.lane);
         let lengths = self.ranges.iter().map(ExactSizeIterator::len);
@@ -321,27 +339,27 @@ impl Step {
             let around = Surroundings::of_cycle(&cycle, execution, registers.fold(0.0, f64::max));
             let programs = cycle.iter().zip(around).zip(samples);
             all.extend(programs.filter_map(|((&(outlines, n), around), samples)| {
-                let ns = samples.typical();
-                let usable = ns.is_finite() && n > 0;
+                let ns = samples.typical() - look;
+                let usable = ns.is_finite() && ns > 0.0 && n > 0;
                 usable.then(|| lane(outlines)?.charged(outlines, (n, strip(n)), begin, around, ns)).flatten()
             }));
         }
         all
     }
 
-    fn charged_loops(&self, costs: &LoopCosts) -> Vec<Charged> {
+    fn charged_loops(&self, costs: &LoopCosts, look: f64) -> Vec<Charged> {
         let outlines: Vec<Outlines> = self.programs.iter().map(|step| step.program.outlines()).collect();
         let lengths = self.ranges.iter().map(ExactSizeIterator::len);
         let cycle: Vec<(&Outlines, usize)> = outlines.iter().zip(lengths).collect();
         let around = Surroundings::of_cycle(&cycle, Execution::Chained, 0.0);
         let each = cycle.iter().zip(around).zip(&self.whole);
         let charged = each.filter_map(|((&(outlines, n), around), samples)| {
-            let (PassCost { element, start }, ns) = (costs.of(outlines).ok()?, samples.typical());
+            let ((PassCost { element, start }, _), ns) = (costs.of(outlines).ok()?, samples.typical() - look);
             let n = n as f64;
             let passes = vec![Waiting { times: 1.0, n, touched: touched_arrays(outlines) }];
-            let charged =
-                Charged { computing: n * element.value, start: start.value, passes, around, ns, weight: 1.0 };
-            (ns.is_finite() && n > 0.0).then_some(charged)
+            let (computing, start, program) = (n * element.value, start.value, Some(outlines.signature()));
+            let charged = Charged { computing, start, passes, around, ns, weight: 1.0, program };
+            (ns.is_finite() && ns > 0.0 && n > 0.0).then_some(charged)
         });
         charged.collect()
     }

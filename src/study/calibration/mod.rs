@@ -2,6 +2,7 @@
 //! as the method's, timed over vectors of 8 to 4 million elements, and a host model fitted to the times.
 
 mod drills;
+mod factors;
 mod fit;
 mod levels;
 mod loops;
@@ -159,7 +160,9 @@ impl Calibration {
         for (lane, memory) in lanes.iter_mut().zip(&memories) {
             lane.sweep(paced, memory, *set, *sweeps);
         }
-        loops.sweep(paced, *set, *sweeps);
+        let in_register =
+            |name: &str| lanes.iter().find(|lane| lane.name == name).map_or(1, |lane| lane.costs.lanes);
+        loops.sweep(paced, *set, &in_register, *sweeps);
         *sweeps += 1;
     }
 
@@ -185,13 +188,24 @@ impl Calibration {
             lane.settle(yardstick);
             lane.fit();
         }
+        // Half of the two looks at the clock lies between them.
+        let look = 0.5 * clock.typical();
         let run = fit::median(lanes.iter().map(Lane::run));
         let begin = loops.see(&mut lanes, run);
         let long = lanes.iter().flat_map(|lane| lane.long_passes(begin));
-        let charged: Vec<Charged> = long.chain(loops.charged(&lanes, begin)).collect();
-        let costs = loops.costs();
-        let Levels { operand, levels, overlap, residual } =
-            fit_levels(&charged, &loops.charged_loops(&costs));
+        let charged: Vec<Charged> = long.chain(loops.charged(&lanes, begin, look)).collect();
+        let mut costs = loops.costs();
+        let Levels { operand, levels, overlap, factors: [in_passes, in_loops], residual } =
+            fit_levels(&charged, &loops.charged_loops(&costs, look));
+        for (found, seen) in lanes
+            .iter_mut()
+            .map(|lane| (&in_passes, &mut lane.costs.seen))
+            .chain([(&in_loops, &mut costs.seen)])
+        {
+            for (program, cost) in seen {
+                cost.factors = found.get(program).copied().unwrap_or_default();
+            }
+        }
         let samples = || lanes.iter().flat_map(Lane::samples).chain(loops.samples());
         HostModel {
             format: FORMAT,
@@ -211,8 +225,7 @@ impl Calibration {
             begin,
             bind: binding.typical() / arrays.0.count() as f64,
             run,
-            // Half of the two looks at the clock lies between them.
-            clock: 0.5 * clock.typical(),
+            clock: look,
             levels,
             loops: LoopCosts { overlap, ..costs },
             lanes: lanes.into_iter().map(|lane| (lane.name.to_owned(), lane.costs)).collect(),

@@ -198,6 +198,7 @@ impl Lane {
                 around,
                 ns: point.each(Samples::typical),
                 weight: DRILLED,
+                program: None,
             })
         })
     }
@@ -212,8 +213,9 @@ impl Lane {
         ns: f64,
     ) -> Option<Charged> {
         let all = touches(outlines, self.costs.register_bytes);
+        let program = Some(outlines.signature());
         let mut charged =
-            Charged { computing: 0.0, start: self.run(), passes: vec![], around, ns, weight: 1.0 };
+            Charged { computing: 0.0, start: self.run(), passes: vec![], around, ns, weight: 1.0, program };
         for (strips, length) in [(n / strip, strip), (1, n % strip)] {
             if strips == 0 || length == 0 {
                 continue;

@@ -42,14 +42,10 @@ impl PacedClock {
         self.readings.push(reading());
     }
 
-    /// What the yardstick took most often (ns): the middle of the narrowest range with a third of the readings. A host that
-    /// is shared has two paces, one for when a neighbour computes and one for when he does not; not everything is slowed
-    /// down alike, so that times are best told at the pace that most of them were taken at, and not between the two.
+    /// What the yardstick took in the middle (ns): how times follow the pace is known best where there are samples on both
+    /// sides.
     pub(super) fn reference(&self) -> f64 {
-        let rising = self.rising();
-        let third = rising.len().div_ceil(3);
-        let narrowest = rising.windows(third).min_by(|a, b| width(a).total_cmp(&width(b)));
-        narrowest.and_then(|range| quantile(range, 0.5)).unwrap_or(f64::NAN)
+        quantile(&self.rising(), 0.5).unwrap_or(f64::NAN)
     }
 
     /// How many times as long that is as in a good moment: nine of ten readings are slower.
@@ -62,11 +58,6 @@ impl PacedClock {
         rising.sort_by(f64::total_cmp);
         rising
     }
-}
-
-/// The ratio of the last to the first of some rising values.
-fn width(rising: &[f64]) -> f64 {
-    rising.last().zip(rising.first()).map_or(f64::INFINITY, |(last, first)| last / first)
 }
 
 /// The samples of one point.
@@ -170,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn of_two_paces_the_more_frequent_is_the_reference() {
+    fn the_middle_reading_is_the_reference() {
         let readings = |slow: usize| {
             let slow = (0..slow).map(|i| 150.0 + i as f64 / 10.0);
             (0..40).map(|i| 100.0 + f64::from(i) / 10.0).chain(slow).collect()
