@@ -26,20 +26,20 @@ pub(super) struct ValidateModel {
     #[arg(long, conflicts_with = "host")]
     calibrate: bool,
     /// Sweeps of that calibration
-    #[arg(long, requires = "calibrate", default_value_t = 2 * calibration::Effort::default().sweeps as u16,
+    #[arg(long, requires = "calibrate", default_value_t = 90,
           value_parser = clap::value_parser!(u16).range(1..=200))]
     sweeps: u16,
     /// Numbers of particles
-    #[arg(long, value_delimiter = ',', default_values_t = [130, 850, 4400, 27_000])]
+    #[arg(long, value_delimiter = ',', default_values_t = [110, 1200, 6300, 24_000])]
     particles: Vec<usize>,
     /// Occupancies, on cells as wide as the radius
-    #[arg(long, value_delimiter = ',', default_values_t = [0.045, 0.115, 0.19, 0.235])]
+    #[arg(long, value_delimiter = ',', default_values_t = [0.05, 0.1, 0.15, 0.24])]
     occupancies: Vec<f64>,
     /// Rounds over all runs
-    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
     /// Repeats of each run in a round
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
     /// Folder for the result as data, tables and figures
     #[arg(long)]

@@ -54,9 +54,11 @@ const INTERPRETED: [Execution; 4] =
 const INTERPRETED_DISCS: usize = 2000;
 const LOOP_DISCS: usize = 10_000;
 const MOST: usize = 8;
-/// The interpreter is slow: of the largest scenes and of every sweep but one of so many there are no samples of it.
-const LARGEST: usize = 20_000;
+/// The interpreter is slow: it is sampled in one sweep of so many, over the largest scenes, whose registers lie in memory,
+/// in one strip only and more rarely still.
 const RARELY: usize = 2;
+const LARGEST: usize = 20_000;
+const MORE_RARELY: usize = 10;
 
 /// Operations of each class of an element, and the nanoseconds it took.
 type Counted = (BTreeMap<&'static str, f64>, f64);
@@ -183,8 +185,11 @@ impl Loops {
             };
             let all = |at: usize| step.ranges[at].len();
             let discs = step.discs();
-            if step.large && discs < LARGEST && number.is_multiple_of(RARELY) {
-                for (execution, samples) in INTERPRETED.into_iter().zip(&mut step.interpreted) {
+            let (rarely, executions) =
+                if discs < LARGEST { (RARELY, INTERPRETED.len()) } else { (MORE_RARELY, 1) };
+            if step.large && number.is_multiple_of(rarely) {
+                let interpreted = INTERPRETED.into_iter().zip(&mut step.interpreted);
+                for (execution, samples) in interpreted.take(executions) {
                     let times = (INTERPRETED_DISCS / discs).clamp(1, MOST);
                     Samples::take_in_turns(samples, clock, times, |at| run(at, all(at), execution));
                 }
@@ -307,7 +312,7 @@ impl Loops {
         begin: f64,
         look: f64,
     ) -> impl Iterator<Item = Charged> + 'a {
-        let large = self.steps.iter().filter(|step| step.large && step.discs() < LARGEST);
+        let large = self.steps.iter().filter(|step| step.large);
         large.flat_map(move |step| step.charged(lanes, begin, look))
     }
 
