@@ -1,7 +1,7 @@
 //! A host model as a reader wants it.
 
 use super::{Cell, Table};
-use crate::model::host::{Amounts, Estimate, HostModel, Measured, Transfer};
+use crate::model::host::{Amounts, Estimate, Factors, HostModel, Measured, Transfer};
 
 /// The tables of a host model.
 pub fn tables(model: &HostModel) -> Vec<Table> {
@@ -46,8 +46,8 @@ fn operations(model: &HostModel) -> Table {
         notes: vec![
             format!(
                 "Passes over vectors in the first-level cache: t = t0 + n tau. Vectors of {shortest} to {longest} elements; \
-                 timer steps of {timer} ns. Times are told at the most frequent pace, by a yardstick run beside every sample, which \
-                 took {pace:.2} times as long then as in good moments. Half of the samples then lie within {:.1} % of \
+                 timer steps of {timer} ns. Times are told at the middle pace of the host, by how each follows a yardstick run \
+                 beside every sample, which took {pace:.2} times as long then as in good moments. Half of the samples then lie within {:.1} % of \
                  the middle one; the two halves of the measurement differ by {:.1} %.",
                 100.0 * spread,
                 100.0 * disagreement
@@ -67,15 +67,20 @@ fn programs(model: &HostModel) -> Table {
         let lane = signature.split('-').next().unwrap_or_default();
         let mut row = hockney([lane, &seen.what], seen.element, seen.start);
         row.insert(0, Cell::Text(execution.to_owned()));
+        let Factors { computing, waiting } = seen.factors;
+        row.extend([computing, waiting].map(|factor| Cell::Number(factor, 2)));
         row
     });
     Table {
         name: "programs".into(),
         title: "Programs".into(),
-        columns: headings(&[&["execution", "lanes", "program"], TIMES.as_slice()].concat()),
+        columns: headings(
+            &[&["execution", "lanes", "program"], TIMES.as_slice(), &["computing", "waiting"]].concat(),
+        ),
         rows: rows.collect(),
         notes: vec![format!(
-            "In the first-level cache; t0 of a strip, or of a chained loop. What is not among these is charged pass by pass, a \
+            "In the first-level cache; t0 of a strip, or of a chained loop. On whole vectors a program \
+             computes and waits for memory so many times as long as this and the levels say. What is not among these is charged pass by pass, a \
              pass taking {:.2} times as long to begin as in a drill of nothing but itself, or, chained, by classes of operations, \
              which deviate from these by {:.0} % (the median). Of the shorter of computing and waiting for streams {:.0} % \
              hide behind the longer in a chained loop.",
@@ -144,7 +149,7 @@ fn levels(model: &HostModel) -> Table {
         ]),
         rows: rows.collect(),
         notes: vec![format!(
-            "A pass whose operands come from beyond the first level waits {:.3} ns an element besides. The passes and \
+            "A pass whose operands come from beyond the nearest level waits {:.3} ns an element besides. The passes and \
              programs that this was fitted to deviate by {:.0} % (the median).",
             model.operand,
             100.0 * model.measured.residual

@@ -77,7 +77,7 @@ pub struct Change {
 pub struct Measured {
     /// Smallest step of the timer seen (ns).
     pub timer: f64,
-    /// Nanoseconds that a yardstick took most often, a fixed piece of arithmetic run beside every sample: all times of this
+    /// Nanoseconds that a yardstick took in the middle, a fixed piece of arithmetic run beside every sample: all times of this
     /// file are told at this pace.
     pub yardstick: f64,
     /// How many times as long it took then as in a good moment, when it was quicker in one of ten samples only.
