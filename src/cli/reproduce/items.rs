@@ -205,7 +205,7 @@ fn validation(effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, F
             made(report::model_validation::section(&data), &data)
         }
         Effort::Full => {
-            let (sweeps, best) = (calibration::Effort { sweeps: 30 }, InstructionSet::best());
+            let (sweeps, best) = (calibration::Effort { sweeps: 24 }, InstructionSet::best());
             let runs = runs(vec![110, 1200, 6300], vec![0.05, 0.24], 3);
             let (host, data) = calibrated_in_turns(origin::host(), best, sweeps, &runs, progress)?;
             made(report::model_validation::section(&data), &data)
