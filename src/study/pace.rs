@@ -21,7 +21,9 @@ const FEW: usize = 4;
 /// How far the paces of two samples are apart at least that tell how a time follows the pace, as a logarithm.
 const APART: f64 = 0.1;
 /// So many pairs of samples say beforehand that it goes with the pace itself: a few samples tell little.
-const BEFOREHAND: usize = 8;
+const BEFOREHAND: usize = 50;
+/// The highest power of the pace that is believed: what a neighbour slows down most goes with its square.
+const HIGHEST: f64 = 2.5;
 
 const fn places() -> [u8; 3000] {
     let mut places = [0; 3000];
@@ -88,7 +90,7 @@ fn power(samples: &[Timed]) -> f64 {
     let mut slopes: Vec<f64> = apart.map(|(a, b)| (a[1] - b[1]) / (a[0] - b[0])).collect();
     slopes.extend([1.0; BEFOREHAND]);
     let middle = slopes.len() / 2;
-    *slopes.select_nth_unstable_by(middle, f64::total_cmp).1
+    slopes.select_nth_unstable_by(middle, f64::total_cmp).1.clamp(0.0, HIGHEST)
 }
 
 /// The times at the pace of a reference, rising.
@@ -145,9 +147,12 @@ mod tests {
             let expected = 100.0 * 1.2_f64.powf(power);
             assert!(told[..40].iter().all(|ns| (ns / expected - 1.0).abs() < 0.02), "{power}: {told:?}");
         }
-        // Two samples are believed less than what is known beforehand.
-        let two = [timed(100.0, 10.0, 10.0), timed(100.0, 20.0, 20.0)];
-        assert_eq!(at_pace(&two, 10.0), [50.0, 100.0]);
+        // A few samples are believed less than what is known beforehand, and what cannot be is not believed of any.
+        let few = [timed(100.0, 10.0, 10.0), timed(100.0, 20.0, 20.0), timed(100.0, 40.0, 40.0)];
+        assert_eq!(at_pace(&few, 10.0), [25.0, 50.0, 100.0]);
+        let wild: Vec<Timed> =
+            (0..40).map(|at| timed(f64::from(1 << (at % 10)), 10.0 + f64::from(at % 10), 10.0)).collect();
+        assert_eq!(power(&wild), HIGHEST);
     }
 
     #[test]
