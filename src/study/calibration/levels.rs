@@ -426,8 +426,13 @@ mod tests {
             features
         };
         let none = [0.0; BEYOND];
-        let all = [(200.0, none), (3000.0, none), (90_000.0, none), (3000.0, [900.0, 900.0, 900.0, 0.0])];
-        let lines = [(200.0, [5000.0, 5000.0, 0.0, 0.0]), (90_000.0, [2000.0; BEYOND])];
+        let all = [(10.0, none), (200.0, none), (3000.0, none), (90_000.0, none)];
+        let lines = [
+            (10.0, [5000.0, 0.0, 0.0, 0.0]),
+            (200.0, [5000.0, 5000.0, 0.0, 0.0]),
+            (3000.0, [900.0, 900.0, 900.0, 0.0]),
+            (90_000.0, [2000.0; BEYOND]),
+        ];
         // Each with little and with much to compute, or one could not tell what hides behind what.
         let features: Vec<Costs> =
             all.into_iter().chain(lines).flat_map(|(kib, lines)| [features(kib * KIB, lines); 2]).collect();
