@@ -17,8 +17,8 @@ import sys
 from pathlib import Path
 
 WIDTHS = {"wide": 1200, "narrow": 500}
-# Dots of a canvas that differ from the paper's white: fewer are an empty picture.
-FEWEST_DOTS = 300
+# Coloured dots of a canvas: an empty picture has none, and measured marks may cover each other all but one.
+FEWEST_DOTS = 50
 # Marks and fillings have colours; axes, grid and texts are grey.
 COLOURED = """canvas => {
     const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
