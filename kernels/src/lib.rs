@@ -47,6 +47,7 @@ pub mod ledger;
 pub mod mask;
 pub mod noise;
 mod program;
+pub mod rests;
 pub mod sweep;
 mod threads;
 

@@ -3,6 +3,7 @@
 use crate::backend::tape::Outlines;
 use crate::backend::{Block, Precision, Pulp, Registers, Scalar, Strip, Tape, Wide};
 use crate::isa::{Footprint, Memory, OpCounts, ProgramError, Text};
+use crate::rests::{self, Rest};
 use crate::threads::{on_threads, pieces};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
@@ -164,9 +165,27 @@ where
             Execution::Eager => self.tape.interpret(memory, range.clone(), range.len(), set),
             Execution::Strip(length) => self.tape.interpret(memory, range, length, set),
             Execution::Block(_) | Execution::Chained => {
-                dispatch(set, Compiled { text: &self.text, memory, range, execution })
+                let loops = |range| dispatch(set, Compiled { text: &self.text, memory, range, execution });
+                if rests::heard() { self.in_spans(range, loops) } else { loops(range) }
             }
         }
+    }
+
+    /// Compiled loops over one span after the other, with a rest after each: whole groups and registers, so that they do what
+    /// one loop over everything does.
+    fn in_spans(
+        &self,
+        range: Range<usize>,
+        loops: impl Fn(Range<usize>) -> Result<(), ProgramError>,
+    ) -> Result<(), ProgramError> {
+        // A compiled loop takes about a quarter of what passes take.
+        let elements = 4 * rests::SPAN / self.tape.instructions().len().max(1);
+        for start in range.clone().step_by(elements.next_multiple_of(GROUP)) {
+            let end = range.end.min(start + elements.next_multiple_of(GROUP));
+            loops(start..end)?;
+            rests::rest(Rest::Within);
+        }
+        Ok(())
     }
 }
 

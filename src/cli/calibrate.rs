@@ -4,7 +4,7 @@ use super::{Common, Failure, print, print_json};
 use crate::model::host::Measured;
 use crate::report;
 use crate::report::origin::host;
-use crate::study::calibration::{Effort, TOO_DIFFERENT, TOO_NOISY, TOO_SLOW, calibrate};
+use crate::study::calibration::{Effort, TOO_DIFFERENT, TOO_NOISY, TOO_RARE, calibrate};
 use clap::Args;
 use std::path::PathBuf;
 use stripmine_kernels::InstructionSet;
@@ -58,13 +58,14 @@ impl CalibrateVerb {
 
 /// What shows that the machine was too busy, if it was.
 pub(super) fn noise(measured: &Measured) -> Option<String> {
-    let Measured { spread, disagreement, pace, .. } = *measured;
-    (spread > TOO_NOISY || disagreement > TOO_DIFFERENT || pace > 1.0 + TOO_SLOW).then(|| {
+    let Measured { spread, disagreement, pace, quiet, .. } = *measured;
+    (spread > TOO_NOISY || disagreement > TOO_DIFFERENT || quiet < TOO_RARE).then(|| {
         format!(
             "half of the samples lie within {:.0} % of the median one, the two halves of the measurement differ by {:.1} %, \
-             and the machine was mostly {pace:.2} times as slow as in good moments",
+             and {:.0} % of the points were measured in quiet moments: mostly the machine was {pace:.2} times as slow",
             100.0 * spread,
-            100.0 * disagreement
+            100.0 * disagreement,
+            100.0 * quiet
         )
     })
 }
@@ -75,19 +76,20 @@ mod tests {
 
     #[test]
     fn a_busy_machine_is_told_from_a_quiet_one() {
-        let measured = |spread, disagreement, pace| Measured {
+        let measured = |spread, disagreement, quiet| Measured {
             timer: 20.0,
             yardstick: 3000.0,
-            pace,
+            pace: 1.3,
+            quiet,
             spread,
             disagreement,
             shortest: 8,
             longest: 100,
             residual: 0.0,
         };
-        assert_eq!(noise(&measured(0.05, 0.01, 1.0)), None);
-        assert!(noise(&measured(2.0 * TOO_NOISY, 0.01, 1.0)).unwrap().contains("within 20 %"));
-        assert!(noise(&measured(0.05, 2.0 * TOO_DIFFERENT, 1.0)).unwrap().contains("differ by 10.0 %"));
-        assert!(noise(&measured(0.05, 0.01, 1.0 + 2.0 * TOO_SLOW)).unwrap().contains("1.30 times as slow"));
+        assert_eq!(noise(&measured(0.05, 0.01, 0.9)), None);
+        assert!(noise(&measured(2.0 * TOO_NOISY, 0.01, 0.9)).unwrap().contains("within 20 %"));
+        assert!(noise(&measured(0.05, 2.0 * TOO_DIFFERENT, 0.9)).unwrap().contains("differ by 10.0 %"));
+        assert!(noise(&measured(0.05, 0.01, 0.5 * TOO_RARE)).unwrap().contains("25 % of the points"));
     }
 }

@@ -1,6 +1,7 @@
 //! Where the time of a step goes.
 
 use serde::Serialize;
+use stripmine_kernels::rests::{Rest, rest};
 
 macro_rules! define_phases {
     ($(($variant:ident, $name:literal, $doc:literal)),* $(,)?) => {
@@ -37,11 +38,14 @@ pub struct Timings {
 }
 
 impl Timings {
-    /// Runs `work` and adds what it took.
+    /// Runs `work` and adds what it took. Whoever listens hears of its beginning and its end, by the phase's place in
+    /// [`Phase::ALL`].
     pub fn time<R>(&mut self, phase: Phase, work: impl FnOnce() -> R) -> R {
+        rest(Rest::Begins(phase as usize));
         let start = std::time::Instant::now();
         let result = work();
         self.seconds[phase as usize] += start.elapsed().as_secs_f64();
+        rest(Rest::Ends(phase as usize));
         result
     }
 

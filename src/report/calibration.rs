@@ -32,7 +32,7 @@ fn operations(model: &HostModel) -> Table {
     let rows = model.lanes.iter().flat_map(|(lane, costs)| {
         costs.passes.iter().map(move |(op, cost)| hockney([lane, op], cost.element, cost.start))
     });
-    let Measured { timer, pace, spread, disagreement, shortest, longest, .. } = model.measured;
+    let Measured { timer, pace, quiet, spread, disagreement, shortest, longest, .. } = model.measured;
     let changes = model.lanes.iter().map(|(lane, costs)| {
         let each =
             costs.change.iter().map(|change| format!("{:.1} ns in {} passes", change.ns, change.passes));
@@ -46,9 +46,10 @@ fn operations(model: &HostModel) -> Table {
         notes: vec![
             format!(
                 "Passes over vectors in the first-level cache: t = t0 + n tau. Vectors of {shortest} to {longest} elements; \
-                 timer steps of {timer} ns. Times are told at the middle pace of the host, by how each follows a yardstick run \
-                 beside every sample, which took {pace:.2} times as long then as in good moments. Half of the samples then lie within {:.1} % of \
-                 the middle one; the two halves of the measurement differ by {:.1} %.",
+                 timer steps of {timer} ns. Times are those of quiet moments, when nobody else is on the core: a yardstick run beside every sample \
+                 says when; mostly it took {pace:.2} times as long. {:.0} % of the points were measured then, the others told by how each follows \
+                 the yardstick. Half of the samples lie within {:.1} % of the middle one; the two halves of the measurement differ by {:.1} %.",
+                100.0 * quiet,
                 100.0 * spread,
                 100.0 * disagreement
             ),

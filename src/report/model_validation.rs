@@ -4,7 +4,7 @@ use super::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use super::{Cell, Section, Table, Verdict};
 use crate::method::Phase;
 use crate::study::model_validation::{
-    Calibrated, Case, Errors, ModelValidation, OF_DATA, OF_DATA_AT_PACE, PROGRAMS, PROGRAMS_AT_PACE,
+    Calibrated, Case, Errors, ModelValidation, OF_DATA, OF_DATA_QUIET, PROGRAMS, PROGRAMS_QUIET,
 };
 
 /// How many of the worst cases are named.
@@ -23,7 +23,7 @@ pub fn section(data: &ModelValidation) -> Section {
         says: "BP93 predicts times and checks none of them. Aim: on runs that nothing was fitted to, a median error of at \
                most 5 %, 90 % of the cases within 15 %, the worst 30 %; where the work hangs on the data, a median of 10 %."
             .into(),
-        came_out: [programs, of_data, group(PROGRAMS_AT_PACE), group(OF_DATA_AT_PACE)]
+        came_out: [programs, of_data, group(PROGRAMS_QUIET), group(OF_DATA_QUIET)]
             .into_iter()
             .flatten()
             .map(said)
@@ -80,8 +80,8 @@ fn said(errors: &Errors) -> String {
 
 fn pace(data: &ModelValidation) -> String {
     format!(
-        "All times are told at the pace of the calibration: by a yardstick run beside every repeat, the host was {:.2} times \
-         as slow as then in the median.",
+        "All times are those of quiet moments, when nobody else is on the core: a yardstick run beside every sample says when. It \
+         then took {:.2} times as long as in the calibration's quiet moments.",
         data.pace
     )
 }
@@ -111,7 +111,7 @@ fn errors(data: &ModelValidation) -> Table {
     });
     let mut notes = vec![
         format!("Host model: {}, {}.", data.host, data.instruction_set),
-        "Measured: the lower quartile of the repeats; repeated: how far the rounds of even number and those of \
+        "Measured: the lower quartile of the samples, of long phases piece by piece; repeated: how far the rounds of even number and those of \
          odd number lie apart, each laid out in memory anew. Baseline: operations times elements, at the cost of a sum in the \
          cache."
             .to_owned(),

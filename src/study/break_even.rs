@@ -3,7 +3,8 @@
 
 use super::StudyError;
 use super::density_cost::{ListFigures, grid, list_figures};
-use super::phase_times::{FAST, FAST_LISTS, HALF_MASK, LISTS, Run, Sampling, phase_times};
+use super::pace::Pace;
+use super::phase_times::{FAST, FAST_LISTS, HALF_MASK, LISTS, PhaseTimes, Run, Sampling, phase_times};
 use super::predicted_step::{Step, of_precision};
 use super::throughput::MeasurementError;
 use crate::method::Phase;
@@ -164,16 +165,26 @@ pub fn atlas(
         methods: methods.clone(),
         places: predicted,
     });
-    let mut places = vec![];
+    let mut pace = Pace::default();
+    let mut times = vec![];
     for &particles in measured {
         for occupancy in OCCUPANCIES {
-            let pace = host.measured.yardstick;
-            let costs =
-                WAYS.iter().map(|way| alone.install(|| measure(particles, occupancy, way, repeats, pace)));
-            places.push(Place { particles, occupancy, costs: costs.collect::<Result<_, _>>()? });
-            progress(places.len() as f64 / (measured.len() * OCCUPANCIES.len()) as f64);
+            let each = WAYS
+                .iter()
+                .map(|way| alone.install(|| measure(particles, occupancy, way, repeats, &mut pace)));
+            times.push((particles, occupancy, each.collect::<Result<Vec<_>, _>>()?));
+            progress(times.len() as f64 / (measured.len() * OCCUPANCIES.len()) as f64);
         }
     }
+    // When it was quiet is known once all is measured.
+    let reference = pace.reference();
+    let step = |times: &PhaseTimes| Phase::ALL.iter().map(|&phase| times.typical(phase, reference).0).sum();
+    let place = |(particles, occupancy, ways): (usize, f64, Vec<PhaseTimes>)| Place {
+        particles,
+        occupancy,
+        costs: ways.iter().map(step).collect(),
+    };
+    let places = times.into_iter().map(place).collect();
     sheets.push(Sheet {
         name: "atlas_measured".to_owned(),
         title: "this host, measured".to_owned(),
@@ -193,7 +204,7 @@ fn run(particles: usize, occupancy: f64, (name, _): &(&'static str, Option<Execu
 fn fast_list_amounts(occupancy: f64) -> Result<Amounts, MeasurementError> {
     let checked = run(1000, occupancy, &(FAST_LISTS, None)).scene(&[])?;
     let sampling = Sampling { equilibration: 200, repeats: 2, particle_steps: 300_000, least_steps: 100 };
-    Ok(phase_times(&checked, &sampling)?.amounts)
+    Ok(phase_times(&checked, &sampling, &mut Pace::default())?.amounts)
 }
 
 /// Nanoseconds of a step by the model; candidates and contacts as in the run of about a thousand discs.
@@ -236,19 +247,18 @@ fn predict(
     Ok(phases.sum::<Result<f64, OutOfRange>>()?)
 }
 
-/// Nanoseconds of a step, measured: the sum of the phases, at the pace of a reference.
+/// The times of a step, measured.
 fn measure(
     particles: usize,
     occupancy: f64,
     way: &(&'static str, Option<Execution>),
     repeats: usize,
-    reference: f64,
-) -> Result<f64, MeasurementError> {
+    pace: &mut Pace,
+) -> Result<PhaseTimes, MeasurementError> {
     let checked = run(particles, occupancy, way).scene(&[])?;
     let equilibration = (100_000 / particles).clamp(3, 30);
     let sampling = Sampling { equilibration, repeats, particle_steps: 5_000, least_steps: 3 };
-    let times = phase_times(&checked, &sampling)?;
-    Ok(Phase::ALL.iter().map(|&phase| times.typical(phase, reference).0).sum())
+    phase_times(&checked, &sampling, pace)
 }
 
 #[cfg(test)]

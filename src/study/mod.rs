@@ -14,6 +14,7 @@ pub mod misprints;
 pub mod model_validation;
 pub mod pace;
 pub mod phase_times;
+pub mod pieces;
 pub mod pipe_flow;
 pub mod precision;
 pub mod predicted_step;

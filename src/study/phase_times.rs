@@ -1,6 +1,7 @@
 //! How long is each phase of a step, and how much was there to do? Runs of the bench scene, timed phase by phase.
 
-use super::pace::{COUNTS, Timed, at_pace, quantile, reading, was_at_pace};
+use super::pace::{Pace, Timed};
+use super::pieces::{COUNTS, Pieces};
 use super::throughput::MeasurementError;
 use crate::method::lattice_md::Lengths;
 use crate::method::{Failure, Method, Phase};
@@ -88,10 +89,10 @@ impl Run {
 pub struct PhaseTimes {
     /// What there was to do in a step, on average.
     pub amounts: Amounts,
-    /// Nanoseconds a step of every phase, sample by sample; without the making of lists.
-    samples: [Vec<Timed>; Phase::ALL.len()],
+    /// Nanoseconds a step of every phase; without the making of lists.
+    samples: [Pieces; Phase::ALL.len()],
     /// Nanoseconds of each making of lists.
-    makings: Vec<Timed>,
+    makings: Pieces,
     /// Makings a step.
     made: f64,
 }
@@ -102,7 +103,7 @@ impl PhaseTimes {
         PhaseTimes {
             amounts: Amounts { discs: discs as f64, ..Amounts::default() },
             samples: Default::default(),
-            makings: vec![],
+            makings: Pieces::default(),
             made: 0.0,
         }
     }
@@ -110,61 +111,63 @@ impl PhaseTimes {
     /// The same run measured once more, at another time.
     #[must_use]
     pub fn joined(mut self, more: PhaseTimes) -> PhaseTimes {
-        let [a, b] = [&self, &more].map(|times| times.samples[Phase::Forces as usize].len() as f64);
+        let [a, b] = [&self, &more].map(|times| times.samples[Phase::Forces as usize].runs() as f64);
         let mean = |x: f64, y: f64| (a * x + b * y) / (a + b);
         self.amounts = self.amounts.with(&more.amounts, mean);
         self.made = mean(self.made, more.made);
-        self.makings.extend(more.makings);
-        for (samples, more) in self.samples.iter_mut().zip(more.samples) {
-            samples.extend(more);
+        self.makings.join(&more.makings);
+        for (samples, more) in self.samples.iter_mut().zip(&more.samples) {
+            samples.join(more);
         }
         self
     }
 
-    /// Nanoseconds of a phase a step at the pace of a reference, and the quartiles of the samples: makings of lists are as
-    /// often as they were.
+    /// Nanoseconds of a phase a step in quiet moments, and the quartiles of the samples: makings of lists are as often as they
+    /// were. `reference` is what the yardstick takes then.
     pub fn typical(&self, phase: Phase, reference: f64) -> (f64, [f64; 2]) {
-        let paced = at_pace(&self.samples[phase as usize], reference);
         let making =
             if phase == Phase::Index { self.made * self.making(reference).unwrap_or(0.0) } else { 0.0 };
-        let of = |share: f64| making + quantile(&paced, share).unwrap_or(0.0);
-        (of(COUNTS), [of(0.25), of(0.75)])
+        let of = self.samples[phase as usize].quantiles(reference, [COUNTS, 0.25, 0.75]).unwrap_or_default();
+        let [typical, low, high] = of.map(|ns| making + ns);
+        (typical, [low, high])
     }
 
-    /// Whether enough samples of a phase were at the pace of a reference.
-    pub fn was_at_pace(&self, phase: Phase, reference: f64) -> bool {
-        was_at_pace(&self.samples[phase as usize], reference)
-    }
-
-    /// Nanoseconds of a phase without the making of lists.
+    /// The share of a phase's time that was measured in quiet moments, and not only told at their pace.
     pub fn quiet(&self, phase: Phase, reference: f64) -> f64 {
-        quantile(&at_pace(&self.samples[phase as usize], reference), COUNTS).unwrap_or(0.0)
+        self.samples[phase as usize].quiet(reference)
+    }
+
+    /// Whether every phase was measured in quiet moments.
+    pub fn is_quiet(&self, reference: f64) -> bool {
+        let there =
+            self.samples.iter().filter(|samples| samples.typical(reference).is_some_and(|ns| ns > 0.0));
+        there.map(|samples| samples.quiet(reference)).all(|share| share >= QUIET)
+    }
+
+    /// Nanoseconds of a phase in quiet moments, without the making of lists.
+    pub fn upkeep(&self, phase: Phase, reference: f64) -> f64 {
+        self.samples[phase as usize].typical(reference).unwrap_or(0.0)
     }
 
     /// Nanoseconds of a making of lists; none if there was none.
     pub fn making(&self, reference: f64) -> Option<f64> {
-        quantile(&at_pace(&self.makings, reference), COUNTS)
-    }
-
-    /// How much slower than where the reference was taken the host was in each sample.
-    pub fn paces(&self, reference: f64) -> impl Iterator<Item = f64> {
-        let samples = self.samples[Phase::Forces as usize].iter();
-        samples.map(move |sample| sample.pace(reference))
+        self.makings.typical(reference)
     }
 }
 
-/// Least nanoseconds of a sample: a shared host changes its pace within milliseconds, and a sample that lasts longer than the
-/// pace says nothing of it.
-const SHORTEST: f64 = 200_000.0;
-/// Samples that a repeat is taken in, at most.
-const FINEST: usize = 8;
+/// Such a share of the time at least was then measured in quiet moments.
+pub const QUIET: f64 = 0.9;
+
+/// Nanoseconds of a sample of several steps, about: quiet moments last no longer. Longer steps are timed one by one, from rest
+/// to rest.
+const SHORT: f64 = 100_000.0;
 
 /// How much of a run is timed.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampling {
     /// Steps before the clock starts.
     pub equilibration: usize,
-    /// Repeats, each taken in several samples.
+    /// Repeats, all of them taken in short samples.
     pub repeats: usize,
     /// Particle-steps of a repeat, about.
     pub particle_steps: usize,
@@ -176,65 +179,57 @@ pub struct Sampling {
 ///
 /// # Errors
 /// [`MeasurementError`] if it breaks.
-pub fn phase_times(checked: &Checked, sampling: &Sampling) -> Result<PhaseTimes, MeasurementError> {
+pub fn phase_times(
+    checked: &Checked,
+    sampling: &Sampling,
+    pace: &mut Pace,
+) -> Result<PhaseTimes, MeasurementError> {
     let mut method = assemble(checked)?;
     let model = model(checked);
     let discs = checked.particles.grain_count();
     let lists = method.lists().is_some();
     let cells = if lists { 0 } else { Lengths::new(&model, discs, checked.particles.len()).cells };
-    let steps = (sampling.particle_steps / discs).clamp(sampling.least_steps, 2000);
+    let steps = sampling.repeats * (sampling.particle_steps / discs).clamp(sampling.least_steps, 2000);
     let mut times = PhaseTimes::none(discs);
-    let mut before = reading();
-    let made = |method: &dyn Method| method.lists().map_or(0, |(_, made)| made);
-    let (mut all, mut made_in_all, mut found) = (0, 0, Found::default());
-    // The first sample is to warm up: only what it takes to make lists counts, for that is rare. It says how many steps one
-    // of the others has.
-    let (mut count, mut left, mut warm) = (sampling.equilibration, steps * sampling.repeats, false);
-    let mut group = 1;
-    loop {
-        method.reset_timings();
-        let mut makings = vec![];
-        let start = Instant::now();
-        for _ in 0..count {
-            let (seconds, earlier) = (method.timings().seconds(Phase::Index), made(method.as_ref()));
-            method.step().map_err(|failure: Failure| failure)?;
-            if made(method.as_ref()) > earlier {
-                makings.push(method.timings().seconds(Phase::Index) - seconds);
+    let mut found = Found::default();
+    // Before anything is timed: only what it takes to make lists counts, for that is rare.
+    let start = Instant::now();
+    let ran = Ran::some(method.as_mut(), sampling.equilibration, &mut Found::default())?;
+    let step = start.elapsed().as_nanos() as f64 / sampling.equilibration.max(1) as f64;
+    let group = ((SHORT / step).floor() as usize).min(steps);
+    let mut all = sampling.equilibration;
+    let mut made = ran.makings.len();
+    if group > 1 {
+        let (mut left, mut quiet) = (steps, 0);
+        while left > 0 {
+            let count = group.min(left);
+            if pace.wait(quiet, SHORT) {
+                made += Ran::some(method.as_mut(), 1, &mut found)?.makings.len();
+                all += 1;
             }
-            if warm {
-                found.look(method.as_ref());
-            }
-        }
-        let step = start.elapsed().as_nanos() as f64 / count.max(1) as f64;
-        let after = reading();
-        let around = [before, after];
-        before = after;
-        all += count;
-        made_in_all += makings.len();
-        let making: f64 = makings.iter().sum();
-        times.makings.extend(makings.iter().map(|seconds| Timed { ns: 1e9 * seconds, around }));
-        for &phase in Phase::ALL {
-            let seconds = method.timings().seconds(phase);
-            let (seconds, of) = match phase {
-                Phase::Index => (seconds - making, count - makings.len()),
-                _ => (seconds, count),
-            };
-            if warm && of > 0 {
-                times.samples[phase as usize].push(Timed { ns: 1e9 * seconds / of as f64, around });
-            }
-        }
-        if warm {
+            let (ran, around) = pace.around(&mut quiet, || Ran::some(method.as_mut(), count, &mut found));
+            let ran = ran?;
+            times.take_group(method.as_ref(), count, &ran, around);
             left -= count;
-        } else {
-            warm = true;
-            group = ((SHORTEST / step).ceil() as usize).max(steps.div_ceil(FINEST));
+            all += count;
+            made += ran.makings.len();
         }
-        if left == 0 {
-            break;
+    } else {
+        let mut quiet = 0;
+        for _ in 0..steps {
+            if pace.wait(quiet, step) {
+                made += Ran::some(method.as_mut(), 1, &mut found)?.makings.len();
+                all += 1;
+            }
+            let (ran, pieces) =
+                pace.from_rest_to_rest(&mut quiet, || Ran::some(method.as_mut(), 1, &mut found));
+            let made_anew = !ran?.makings.is_empty();
+            times.take_step(&pieces, made_anew);
+            made += usize::from(made_anew);
         }
-        count = group.min(left);
+        all += steps;
     }
-    times.made = made_in_all as f64 / all.max(1) as f64;
+    times.made = made as f64 / all.max(1) as f64;
     let discs = discs as f64;
     let near = HALF_MASK * discs * discs / cells.max(1) as f64;
     let candidates = if lists { found.mean(found.candidates) } else { near };
@@ -249,7 +244,62 @@ pub fn phase_times(checked: &Checked, sampling: &Sampling) -> Result<PhaseTimes,
     Ok(times)
 }
 
-/// What some steps met.
+/// Steps that were run.
+struct Ran {
+    /// Seconds of each making of lists, with the upkeep of its step.
+    makings: Vec<f64>,
+}
+
+impl Ran {
+    /// So many more, each of which is looked at.
+    fn some(method: &mut dyn Method, count: usize, found: &mut Found) -> Result<Ran, Failure> {
+        let made = |method: &dyn Method| method.lists().map_or(0, |(_, made)| made);
+        let mut makings = vec![];
+        method.reset_timings();
+        for _ in 0..count {
+            let (seconds, earlier) = (method.timings().seconds(Phase::Index), made(method));
+            method.step()?;
+            found.look(method);
+            if made(method) > earlier {
+                makings.push(method.timings().seconds(Phase::Index) - seconds);
+            }
+        }
+        Ok(Ran { makings })
+    }
+}
+
+impl PhaseTimes {
+    /// The times of a group of steps, with the readings around them.
+    fn take_group(&mut self, method: &dyn Method, count: usize, ran: &Ran, around: [f64; 2]) {
+        for &seconds in &ran.makings {
+            self.makings.push(&[Timed { ns: 1e9 * seconds, around }]);
+        }
+        for &phase in Phase::ALL {
+            let seconds = method.timings().seconds(phase);
+            let (seconds, of) = match phase {
+                Phase::Index => (seconds - ran.makings.iter().sum::<f64>(), count - ran.makings.len()),
+                _ => (seconds, count),
+            };
+            if of > 0 {
+                self.samples[phase as usize].push(&[Timed { ns: 1e9 * seconds / of as f64, around }]);
+            }
+        }
+    }
+
+    /// The times of one step from rest to rest, in which lists may have been made anew.
+    fn take_step(&mut self, pieces: &[(usize, Timed)], made_anew: bool) {
+        for &phase in Phase::ALL {
+            let own = pieces.iter().filter(|(number, _)| *number == phase as usize);
+            let own: Vec<Timed> = own.map(|(_, timed)| *timed).collect();
+            match phase {
+                Phase::Index if made_anew => self.makings.push(&own),
+                _ => self.samples[phase as usize].push(&own),
+            }
+        }
+    }
+}
+
+/// What steps met that were looked at.
 #[derive(Default)]
 struct Found {
     steps: u64,

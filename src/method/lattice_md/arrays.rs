@@ -5,7 +5,7 @@ use crate::particles::{Kind, Particle, Particles};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::STATE;
-use stripmine_kernels::isa::{Array, Memory, Slot};
+use stripmine_kernels::isa::{Array, Memory, OnLines, Slot};
 use stripmine_kernels::ledger::Length;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
@@ -57,15 +57,20 @@ impl Lengths {
 pub struct Arrays<S, P> {
     lengths: Lengths,
     /// Columns in state precision, each for one array of the machine.
-    state: Vec<(Array, Vec<S>)>,
+    state: Vec<(Array, OnLines<S>)>,
     /// Columns in force precision that programs write.
-    lattice: Vec<(Array, Vec<P>)>,
+    lattice: Vec<(Array, OnLines<P>)>,
     /// Columns in force precision that stay as they are.
-    constant: Vec<(Array, Vec<P>)>,
-    cell: Vec<u32>,
-    index: Vec<u32>,
-    halo_cell: Vec<u32>,
-    halo_source: Vec<u32>,
+    constant: Vec<(Array, OnLines<P>)>,
+    cell: OnLines<u32>,
+    index: OnLines<u32>,
+    halo_cell: OnLines<u32>,
+    halo_source: OnLines<u32>,
+}
+
+/// An array's elements, at lines of its own.
+fn laid_out<X: Copy>(array: Array, values: impl IntoIterator<Item = X>) -> OnLines<X> {
+    OnLines::new(array as usize, values)
 }
 
 impl<S: Precision, P: Precision> Arrays<S, P> {
@@ -73,8 +78,9 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
     pub fn new(model: &Model, particles: &Particles) -> Self {
         let lengths = Lengths::new(model, particles.grain_count(), particles.len());
         let (discs, padded) = (lengths.discs, lengths.padded);
-        let convert = |values: Vec<f64>| -> Vec<S> { values.into_iter().map(S::from_f64).collect() };
-        let on_lattice = |values: Vec<f64>| -> Vec<P> { values.into_iter().map(P::from_f64).collect() };
+        let convert = |array, values: Vec<f64>| (array, laid_out(array, values.into_iter().map(S::from_f64)));
+        let on_lattice =
+            |array, values: Vec<f64>| (array, laid_out(array, values.into_iter().map(P::from_f64)));
 
         let mut state = Vec::new();
         for (freedom, row) in STATE.iter().enumerate().take(model.freedoms()) {
@@ -86,11 +92,11 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
                     (1, _) => disc.omega * model.dt,
                     _ => 0.0,
                 });
-                state.push((array, convert(column.collect())));
+                state.push(convert(array, column.collect()));
             }
         }
 
-        let mut constant = vec![(Array::FarX, model.shape.far(model.frame))];
+        let mut constant = vec![(Array::FarX, laid_out(Array::FarX, model.shape.far(model.frame)))];
         if model.discs == Discs::Varying {
             let of_grains = |inverse: fn(&Particle, f64) -> f64| -> Vec<f64> {
                 let value = |disc: &Particle| match disc.kind {
@@ -100,24 +106,22 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
                 particles.all().iter().map(value).collect()
             };
             let inverse_mass = of_grains(|disc, _| 1.0 / disc.mass);
-            state.push((Array::DiscInverseMass, convert(inverse_mass.clone())));
+            state.push(convert(Array::DiscInverseMass, inverse_mass.clone()));
             if model.friction {
                 let inertia =
                     of_grains(|disc, factor| 1.0 / (factor * disc.mass * disc.radius * disc.radius));
-                state.push((Array::DiscInverseInertia, convert(inertia)));
+                state.push(convert(Array::DiscInverseInertia, inertia));
             }
-            constant.push((Array::DiscInverseMass, on_lattice(inverse_mass)));
-            constant.push((
-                Array::DiscRadius,
-                on_lattice(particles.all().iter().map(|disc| disc.radius).collect()),
-            ));
+            constant.push(on_lattice(Array::DiscInverseMass, inverse_mass));
+            let radii = particles.all().iter().map(|disc| disc.radius).collect();
+            constant.push(on_lattice(Array::DiscRadius, radii));
         }
         let images = model.shape.images();
         if model.coordinates == Coordinates::Absolute {
             for (axis, array) in [Array::ImageX, Array::ImageY].into_iter().enumerate() {
                 let cells = [model.shape.columns(), model.shape.rows()][axis];
                 let period = cells as f64 * model.frame.edge[axis];
-                let mut shift = vec![P::from_f64(0.0); padded];
+                let mut shift = OnLines::filled(array as usize, P::from_f64(0.0), padded);
                 for image in &images {
                     shift[image.cell] = P::from_f64(f64::from(image.periods[axis]) * period);
                 }
@@ -125,9 +129,10 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
             }
         }
 
-        let mut lattice: Vec<(Array, Vec<P>)> = Vec::new();
+        let mut lattice: Vec<(Array, OnLines<P>)> = Vec::new();
         let mut columns = |arrays: &[Array], length| {
-            lattice.extend(arrays.iter().map(|&array| (array, vec![P::from_f64(0.0); length])));
+            let zeros = |array| OnLines::filled(array as usize, P::from_f64(0.0), length);
+            lattice.extend(arrays.iter().map(|&array| (array, zeros(array))));
         };
         columns(&[Array::DiscX, Array::DiscY, Array::DiscVx, Array::DiscVy], discs);
         columns(&[Array::X, Array::Y, Array::Vx, Array::Vy, Array::Fx, Array::Fy], padded);
@@ -140,13 +145,14 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
         }
         if model.watch.is_some() {
             columns(&[Array::Deepest], padded);
-            constant.push((Array::Interior, model.shape.interior()));
+            constant.push((Array::Interior, laid_out(Array::Interior, model.shape.interior())));
         }
         // The predictor hands on the grains' velocities; a wall's stay until the wall is moved.
         let velocity = |disc: &Particle| [disc.velocity[0], disc.velocity[1], disc.omega];
         for (component, array) in [Array::DiscVx, Array::DiscVy, Array::DiscOmega].into_iter().enumerate() {
             if let Some((_, column)) = lattice.iter_mut().find(|(name, _)| *name == array) {
-                *column = particles.all().iter().map(|disc| P::from_f64(velocity(disc)[component])).collect();
+                let own = particles.all().iter().map(|disc| P::from_f64(velocity(disc)[component]));
+                *column = laid_out(array, own);
             }
         }
 
@@ -154,10 +160,10 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
             state,
             lattice,
             constant,
-            cell: vec![0; discs],
-            index: vec![0; padded],
-            halo_cell: images.iter().map(|image| image.cell as u32 + 1).collect(),
-            halo_source: images.iter().map(|image| image.source as u32 + 1).collect(),
+            cell: OnLines::filled(Array::DiscCell as usize, 0, discs),
+            index: OnLines::filled(Array::Index as usize, 0, padded),
+            halo_cell: laid_out(Array::HaloCell, images.iter().map(|image| image.cell as u32 + 1)),
+            halo_source: laid_out(Array::HaloSource, images.iter().map(|image| image.source as u32 + 1)),
             lengths,
         }
     }
@@ -189,27 +195,27 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
 
     /// A column in state precision.
     pub fn state(&self, array: Array) -> Option<&[S]> {
-        self.state.iter().find(|(name, _)| *name == array).map(|(_, column)| column.as_slice())
+        self.state.iter().find(|(name, _)| *name == array).map(|(_, column)| &**column)
     }
 
     /// A column in state precision, to be changed.
     pub fn state_mut(&mut self, array: Array) -> Option<&mut [S]> {
-        self.state.iter_mut().find(|(name, _)| *name == array).map(|(_, column)| column.as_mut_slice())
+        self.state.iter_mut().find(|(name, _)| *name == array).map(|(_, column)| &mut **column)
     }
 
     /// All columns in state precision.
     pub fn states(&self) -> impl Iterator<Item = (Array, &[S])> {
-        self.state.iter().map(|(array, column)| (*array, column.as_slice()))
+        self.state.iter().map(|(array, column)| (*array, &**column))
     }
 
     /// A column in force precision, to be changed.
     pub fn lattice_mut(&mut self, array: Array) -> Option<&mut [P]> {
-        self.lattice.iter_mut().find(|(name, _)| *name == array).map(|(_, column)| column.as_mut_slice())
+        self.lattice.iter_mut().find(|(name, _)| *name == array).map(|(_, column)| &mut **column)
     }
 
     /// A column in force precision that stays as it is.
     pub fn constant(&self, array: Array) -> Option<&[P]> {
-        self.constant.iter().find(|(name, _)| *name == array).map(|(_, column)| column.as_slice())
+        self.constant.iter().find(|(name, _)| *name == array).map(|(_, column)| &**column)
     }
 
     /// The cell of every disc, numbered from 1; 0 is none.
@@ -224,6 +230,6 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
 
     /// A column in force precision.
     pub fn lattice(&self, array: Array) -> Option<&[P]> {
-        self.lattice.iter().find(|(name, _)| *name == array).map(|(_, column)| column.as_slice())
+        self.lattice.iter().find(|(name, _)| *name == array).map(|(_, column)| &**column)
     }
 }

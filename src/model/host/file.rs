@@ -4,7 +4,7 @@ use super::{HostModel, Transfer};
 use crate::model::machine_file::Position;
 
 /// The version of the file format that this program reads.
-pub const FORMAT: u32 = 7;
+pub const FORMAT: u32 = 8;
 
 /// Why a host file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -116,6 +116,7 @@ impl HostModel {
             ("loops.overlap", self.loops.overlap),
             ("measured.spread", self.measured.spread),
             ("measured.yardstick", self.measured.yardstick),
+            ("measured.quiet", self.measured.quiet),
         ];
         let rest = rest.map(|(entry, value)| (entry.to_owned(), value));
         let levels = levels.map(|value| ("levels".to_owned(), value));
@@ -160,8 +161,8 @@ mod tests {
             ("run = ", "run = -", "`run` is -"),
             ("run = ", "runs = ", "unknown field `runs`"),
             ("overlap", "overlapp", "unknown field `overlapp`"),
-            ("format = 7", "format = 8", "`format` is 8"),
-            ("format = 7\n", "", "missing field `format`"),
+            ("format = 8", "format = 9", "`format` is 9"),
+            ("format = 8\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
             assert!(said.contains(expected) && said.contains("line "), "{said}");

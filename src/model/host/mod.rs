@@ -77,12 +77,15 @@ pub struct Change {
 pub struct Measured {
     /// Smallest step of the timer seen (ns).
     pub timer: f64,
-    /// Nanoseconds that a yardstick took in the middle, a fixed piece of arithmetic run beside every sample: all times of this
-    /// file are told at this pace.
+    /// Nanoseconds that a yardstick took in quiet moments, a fixed piece of work run beside every sample: all times of this file
+    /// are told at this pace.
     pub yardstick: f64,
-    /// How many times as long it took then as in a good moment, when it was quicker in one of ten samples only.
+    /// How many times as long it took most of the time.
     pub pace: f64,
-    /// Median, over all points, of half the range of the middle half of the samples, as a share, once told at one pace.
+    /// The share of the points that were measured in quiet moments; what others would take then was found from how they
+    /// follow the yardstick.
+    pub quiet: f64,
+    /// Median, over all points, of half the range of the middle half of those samples, as a share.
     pub spread: f64,
     /// Median, over all points, of how far the two halves of the measurement differ.
     pub disagreement: f64,

@@ -5,7 +5,9 @@
 
 use std::marker::PhantomData;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::isa::{Array, Counter, Element, Machine, Memory, Op, Predicate, Slot, Text, Vector};
+use stripmine_kernels::isa::{
+    Array, Counter, Element, Machine, Memory, OnLines, Op, Predicate, Slot, Text, Vector,
+};
 use stripmine_kernels::{Program, Runnable};
 
 /// Registers that a drill works on at once.
@@ -84,8 +86,8 @@ impl Kind {
     }
 }
 
-/// Where stores go.
-const STORED: [Array; WIDTH] = [
+/// Where stores go, and where the ends of a drill do.
+const WRITTEN: [Array; WIDTH + 2] = [
     Array::Fx,
     Array::Fy,
     Array::Torque,
@@ -94,7 +96,13 @@ const STORED: [Array; WIDTH] = [
     Array::PartnerFy,
     Array::PartnerTorque,
     Array::Vx,
+    Array::Vy,
+    Array::Omega,
 ];
+/// What is read and written in the other precision.
+const OTHERS: [Array; 2] = [Array::DiscX, Array::DiscY];
+/// Where index vectors go.
+const WRITTEN_INDEX: [Array; 2] = [Array::DiscCell, Array::HaloCell];
 
 /// The registers of a drill.
 struct Registers<M: Machine> {
@@ -146,7 +154,7 @@ impl<M: Machine> Registers<M> {
                 Op::Numbers => v[i] = m.numbers(),
                 Op::ToIndex => index[few] = m.to_index(v[i]),
                 Op::FromIndex => v[i] = m.index_numbers(index[few]),
-                Op::Store => m.store(Slot::<M::Lane>::new(STORED[i]), v[i]),
+                Op::Store => m.store(Slot::<M::Lane>::new(WRITTEN[i]), v[i]),
                 Op::Gather => v[i] = m.gather(own, index[few], v[next]),
                 // An array that is stored below while its old contents are still needed: no operand of its readers.
                 Op::Load => v[i] = m.load(Slot::<M::Lane>::new(Array::Vy)),
@@ -250,21 +258,17 @@ pub(super) fn mixture<L: Precision, O: Precision>(passes: usize) -> Box<dyn Runn
     Box::new(Program::new(Mixture::<L, O> { passes, precisions: PhantomData }))
 }
 
-/// Elements that an array of the drills begins after where its memory does, times its number: large arrays lie at page
-/// borders, and all their beginnings would fall upon the same few lines of a cache.
-const APART: usize = 104;
-
 /// Most elements of a vector in a calibration.
 pub(super) const LONGEST: usize = 4_000_000;
 
 /// The arrays of the drills.
 pub(super) struct Arrays<L, O> {
-    read: [Vec<L>; 2],
-    written: Vec<Vec<L>>,
-    others: [Vec<O>; 2],
-    index: Vec<u32>,
-    through: Vec<u32>,
-    written_index: [Vec<u32>; 2],
+    read: [OnLines<L>; 2],
+    written: Vec<OnLines<L>>,
+    others: [OnLines<O>; 2],
+    index: OnLines<u32>,
+    through: OnLines<u32>,
+    written_index: [OnLines<u32>; 2],
 }
 
 impl<L: Element, O: Element> Arrays<L, O> {
@@ -272,17 +276,19 @@ impl<L: Element, O: Element> Arrays<L, O> {
     pub(super) fn new(n: usize) -> Self {
         let n = n + SHIFT;
         // Near 1, so that no chain of products, quotients or roots leaves the normal numbers.
-        let near_one =
-            |step: f64| (0..n + APART).map(|i| L::from_f64(1.0 + step * (i % 97) as f64)).collect();
+        let near_one = |array, step: f64| {
+            OnLines::new(array as usize, (0..n).map(|i| L::from_f64(1.0 + step * (i % 97) as f64)))
+        };
         // As discs lie in cells at a usual occupancy: every fourth element, in order.
-        let index: Vec<u32> = (0..n).map(|i| ((4 * i) % n) as u32 + 1).collect();
+        let index = |array| OnLines::new(array as usize, (0..n).map(|i| ((4 * i) % n) as u32 + 1));
+        let ones = |array: Array| OnLines::filled(array as usize, L::from_f64(1.0), n);
         Arrays {
-            read: [near_one(1e-7), near_one(2e-7)],
-            written: (0..STORED.len() + 2).map(|at| vec![L::from_f64(1.0); n + (at + 2) * APART]).collect(),
-            others: [12, 13].map(|at| vec![O::from_f64(1.0); n + at * APART]),
-            through: index.clone(),
-            written_index: [vec![1; n], vec![1; n]],
-            index,
+            read: [near_one(Array::X, 1e-7), near_one(Array::Y, 2e-7)],
+            written: WRITTEN.map(ones).into_iter().collect(),
+            others: OTHERS.map(|array| OnLines::filled(array as usize, O::from_f64(1.0), n)),
+            index: index(Array::Index),
+            through: index(Array::HaloSource),
+            written_index: WRITTEN_INDEX.map(|array| OnLines::filled(array as usize, 1, n)),
         }
     }
 
@@ -294,20 +300,19 @@ impl<L: Element, O: Element> Arrays<L, O> {
     /// The arrays bound to their slots.
     pub(super) fn memory(&mut self) -> Memory<'_> {
         let mut memory = Memory::new();
-        for (at, (array, column)) in [Array::X, Array::Y].into_iter().zip(&self.read).enumerate() {
-            memory.bind_read(Slot::new(array), &column[at * APART..]);
+        for (array, column) in [Array::X, Array::Y].into_iter().zip(&self.read) {
+            memory.bind_read(Slot::new(array), column);
         }
         let [from, to] = &mut self.others;
-        memory.bind_read(Slot::new(Array::DiscX), &from[12 * APART..]);
-        memory.bind_write(Slot::new(Array::DiscY), &mut to[13 * APART..]);
+        memory.bind_read(Slot::new(OTHERS[0]), from);
+        memory.bind_write(Slot::new(OTHERS[1]), to);
         memory.bind_read(Slot::new(Array::Index), &self.index);
         memory.bind_read(Slot::new(Array::HaloSource), &self.through);
-        for (array, column) in [Array::DiscCell, Array::HaloCell].into_iter().zip(&mut self.written_index) {
+        for (array, column) in WRITTEN_INDEX.into_iter().zip(&mut self.written_index) {
             memory.bind_write(Slot::new(array), column);
         }
-        let written = STORED.iter().chain(&[Array::Vy, Array::Omega]).zip(&mut self.written);
-        for (at, (&array, column)) in written.enumerate() {
-            memory.bind_write(Slot::new(array), &mut column[(at + 2) * APART..]);
+        for (array, column) in WRITTEN.into_iter().zip(&mut self.written) {
+            memory.bind_write(Slot::new(array), column);
         }
         memory
     }

@@ -21,6 +21,14 @@ pub(super) fn line(points: &[(f64, f64)]) -> PassCost {
     }
 }
 
+/// Half the 95 % interval of a number by how its estimates from parts of the samples differ.
+pub(super) fn half_interval<const N: usize>(parts: [f64; N]) -> f64 {
+    let n = N as f64;
+    let mean = parts.iter().sum::<f64>() / n;
+    let variance = parts.iter().map(|part| (part - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    student(N - 1) * (variance / n).sqrt()
+}
+
 /// Student's factor of a two-sided 95 % interval.
 fn student(freedom: usize) -> f64 {
     const TABLE: [f64; 10] = [12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26, 2.23];
@@ -80,6 +88,13 @@ mod tests {
         assert!((exact.element.value - 0.25).abs() < 1e-9 && (exact.start.value - 5.0).abs() < 1e-9);
         let [low, high] = [0.01, 0.05].map(|noise| line(&points(noise)).element.interval);
         assert!(high > 3.0 * low && low > exact.element.interval);
+    }
+
+    #[test]
+    fn an_interval_is_students() {
+        // s = 2, n = 4: 3.18 · 2 / √4.
+        let parts = [8.0, 8.0, 12.0, 12.0].map(|part: f64| 10.0 + (part - 10.0) * 0.75_f64.sqrt());
+        assert!((half_interval(parts) - 3.18).abs() < 1e-9, "{}", half_interval(parts));
     }
 
     #[test]

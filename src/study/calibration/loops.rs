@@ -3,13 +3,13 @@
 use super::fit;
 use super::levels::{Charged, Waiting};
 use super::passes::{Lane, estimate};
-use super::timing::{PacedClock, Samples};
-use crate::method::lattice_md::{Arrays, Lengths, Model, Part, StepProgram, programs};
+use super::timing::Samples;
+use crate::method::lattice_md::{Arrays, Lengths, Part, StepProgram, programs};
 use crate::model::host::{
     Factors, LoopCosts, PassCost, ProgramCost, Surroundings, class_counts, touched_arrays,
 };
-use crate::particles::Particles;
 use crate::run::model;
+use crate::study::pace::Pace;
 use crate::study::phase_times::Run;
 use crate::study::throughput::MeasurementError;
 use std::collections::BTreeMap;
@@ -20,10 +20,10 @@ use stripmine_kernels::isa::{Memory, OpClass};
 use stripmine_kernels::{Execution, InstructionSet};
 
 /// Elements of the short and of the longer runs of a loop: whole registers, and in the first-level cache.
-const ELEMENTS: [usize; 2] = [48, 192];
+const ELEMENTS: [usize; 2] = [32, 96];
 /// Hardware registers of elements that the interpreter goes over, in strips of two lengths: far enough apart to tell what an
 /// element takes from what a pass takes to begin, and short enough that arrays and registers lie in the first-level cache.
-const STRIPPED: usize = 24;
+const STRIPPED: usize = 16;
 const STRIPS: [usize; 2] = [2, 8];
 /// Least nanoseconds of a sample.
 const SHORTEST: f64 = 40_000.0;
@@ -79,31 +79,14 @@ struct Step {
     interpreted: [Vec<Samples>; INTERPRETED.len()],
 }
 
-/// Arrays of either precision, and what they are made from.
-struct Laid<S, P> {
-    model: Model,
-    particles: Particles,
-    arrays: Arrays<S, P>,
-    /// Takes up room, so that arrays made anew lie elsewhere.
-    between: Vec<u8>,
-}
-
+/// Arrays of either precision.
 trait Bound {
     fn memory(&mut self) -> Memory<'_>;
-    /// Makes the arrays anew, at other places: how their beginnings fall upon the lines of a cache is a matter of luck, and
-    /// makes a loop half as fast again or not.
-    fn anew(&mut self, number: usize);
 }
 
-impl<S: Precision, P: Precision> Bound for Laid<S, P> {
+impl<S: Precision, P: Precision> Bound for Arrays<S, P> {
     fn memory(&mut self) -> Memory<'_> {
-        self.arrays.memory().0
-    }
-
-    fn anew(&mut self, number: usize) {
-        // Some lines more or less, up to a page.
-        self.between = vec![0; 1 + number * 832 % 4096];
-        self.arrays = Arrays::new(&self.model, &self.particles);
+        self.memory().0
     }
 }
 
@@ -159,24 +142,19 @@ impl Loops {
             whole,
             interpreted,
         });
-        let arrays = Arrays::<S, P>::new(&model, &checked.particles);
-        let particles = checked.particles;
-        self.arrays.push(Box::new(Laid { model, particles, arrays, between: vec![] }));
+        self.arrays.push(Box::new(Arrays::<S, P>::new(&model, &checked.particles)));
         Ok(())
     }
 
     /// One more sample of every loop; `lanes` says how many elements of a type are in a hardware register.
     pub(super) fn sweep(
         &mut self,
-        clock: &mut PacedClock,
+        pace: &mut Pace,
         set: InstructionSet,
         lanes: &dyn Fn(&str) -> usize,
         number: usize,
     ) {
         for step in &mut self.steps {
-            if !step.large {
-                self.arrays[step.memory].anew(number);
-            }
             let memory = self.arrays[step.memory].memory();
             let run = |at: usize, n: usize, execution: Execution| {
                 let start = step.ranges[at].start;
@@ -191,25 +169,25 @@ impl Loops {
                 let interpreted = INTERPRETED.into_iter().zip(&mut step.interpreted);
                 for (execution, samples) in interpreted.take(executions) {
                     let times = (INTERPRETED_DISCS / discs).clamp(1, MOST);
-                    Samples::take_in_turns(samples, clock, times, |at| run(at, all(at), execution));
+                    Samples::take_in_turns(samples, pace, times, |at| run(at, all(at), execution));
                 }
             }
             let times = (LOOP_DISCS / discs).clamp(1, MOST);
-            Samples::take_in_turns(&mut step.whole, clock, times, |at| run(at, all(at), Execution::Chained));
+            Samples::take_in_turns(&mut step.whole, pace, times, |at| run(at, all(at), Execution::Chained));
             if step.large {
                 // What is near is learned from the small ones.
                 continue;
             }
             for (at, samples) in step.samples.iter_mut().enumerate() {
                 for (samples, n) in samples.iter_mut().zip(ELEMENTS) {
-                    samples.take(clock, SHORTEST, || run(at, n.min(all(at)), Execution::Chained));
+                    samples.take(pace, SHORTEST, || run(at, n.min(all(at)), Execution::Chained));
                 }
             }
             for (at, samples) in step.strips.iter_mut().enumerate() {
                 let lanes = lanes(step.programs[at].program.outlines().lane);
                 for (samples, strip) in samples.iter_mut().zip(STRIPS) {
                     let strip = Execution::Strip(strip * lanes);
-                    samples.take(clock, SHORTEST, || run(at, (STRIPPED * lanes).min(all(at)), strip));
+                    samples.take(pace, SHORTEST, || run(at, (STRIPPED * lanes).min(all(at)), strip));
                 }
             }
         }

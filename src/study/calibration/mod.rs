@@ -10,17 +10,18 @@ mod passes;
 mod scenes;
 mod timing;
 
+use super::pace::Pace;
 use super::throughput::MeasurementError;
 use crate::method::{Phase, Timings};
 use crate::model::host::{FORMAT, HostModel, LoopCosts, Measured, OutOfRange};
 use drills::{Arrays, LONGEST};
 use levels::{Charged, Levels, fit_levels};
 use loops::Loops;
-use passes::{Lane, SHORT};
+use passes::{Lane, SHORTEST_VECTOR};
 use scenes::Scenes;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::isa::ProgramError;
-use timing::{PacedClock, Samples, timer_resolution};
+use timing::{Samples, timer_resolution};
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug)]
@@ -39,8 +40,8 @@ impl Default for Effort {
 pub const TOO_NOISY: f64 = 0.1;
 /// More than this between the measurement's halves, and it was too busy as well.
 pub const TOO_DIFFERENT: f64 = 0.05;
-/// More than this share slower most of the time than in good moments, and somebody else was at work beside it.
-pub const TOO_SLOW: f64 = 0.15;
+/// Less than this share of the points measured in quiet moments, and somebody else was at work beside it all the time.
+pub const TOO_RARE: f64 = 0.5;
 
 /// Why there is no calibration.
 #[derive(Debug, thiserror::Error)]
@@ -82,7 +83,7 @@ pub(super) struct Calibration {
     /// Sweeps done.
     sweeps: usize,
     timer: f64,
-    paced: PacedClock,
+    pace: Pace,
     lanes: [Lane; 2],
     arrays: (Arrays<f64, f32>, Arrays<f32, f64>),
     loops: Loops,
@@ -100,7 +101,7 @@ impl Calibration {
             effort,
             sweeps: 0,
             timer: timer_resolution(),
-            paced: PacedClock::new(),
+            pace: Pace::default(),
             lanes: [Lane::new::<f64, f32>(set)?, Lane::new::<f32, f64>(set)?],
             arrays: (Arrays::new(LONGEST), Arrays::new(LONGEST)),
             loops: Loops::new()?,
@@ -129,14 +130,12 @@ impl Calibration {
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<(), CalibrationError> {
         let upto = (share * self.effort.sweeps as f64).round() as usize;
-        self.paced.look();
         while self.sweeps < upto {
             let parts = self.sweeps.div_ceil(SCENES_EVERY);
             if self.sweeps.is_multiple_of(SCENES_EVERY) {
                 let before = self.done(parts);
                 let part = self.done(parts + 1) - before;
-                self.scenes.sweep(|share| progress(before + part * share))?;
-                self.paced.look();
+                self.scenes.sweep(&mut self.pace, |share| progress(before + part * share))?;
             }
             self.sweep();
             progress(self.done(self.sweeps.div_ceil(SCENES_EVERY)));
@@ -152,17 +151,17 @@ impl Calibration {
 
     /// One sample of every point.
     fn sweep(&mut self) {
-        let Calibration { set, sweeps, paced, lanes, arrays, loops, binding, clock, .. } = self;
+        let Calibration { set, sweeps, pace, lanes, arrays, loops, binding, clock, .. } = self;
         let mut timings = Timings::default();
-        clock.take(paced, 20_000.0, || timings.time(Phase::Predict, || ()));
-        binding.take(paced, 20_000.0, || _ = std::hint::black_box(arrays.0.memory()));
+        clock.take(pace, 20_000.0, || timings.time(Phase::Predict, || ()));
+        binding.take(pace, 20_000.0, || _ = std::hint::black_box(arrays.0.memory()));
         let memories = [arrays.0.memory(), arrays.1.memory()];
         for (lane, memory) in lanes.iter_mut().zip(&memories) {
-            lane.sweep(paced, memory, *set, *sweeps);
+            lane.sweep(pace, memory, *set, *sweeps);
         }
         let in_register =
             |name: &str| lanes.iter().find(|lane| lane.name == name).map_or(1, |lane| lane.costs.lanes);
-        loops.sweep(paced, *set, &in_register, *sweeps);
+        loops.sweep(pace, *set, &in_register, *sweeps);
         *sweeps += 1;
     }
 
@@ -172,7 +171,7 @@ impl Calibration {
             title,
             set,
             timer,
-            paced,
+            pace,
             mut lanes,
             arrays,
             mut loops,
@@ -181,7 +180,7 @@ impl Calibration {
             mut clock,
             ..
         } = self;
-        let yardstick = paced.reference();
+        let yardstick = pace.reference();
         loops.settle(yardstick);
         [&mut binding, &mut clock].into_iter().for_each(|samples| samples.settle(yardstick));
         for lane in &mut lanes {
@@ -214,10 +213,11 @@ impl Calibration {
             measured: Measured {
                 timer,
                 yardstick,
-                pace: paced.pace(),
+                pace: pace.mostly(),
                 spread: fit::median(samples().map(Samples::spread)),
                 disagreement: fit::median(samples().map(Samples::disagreement)),
-                shortest: SHORT[0],
+                quiet: samples().map(Samples::quiet).sum::<f64>() / samples().count() as f64,
+                shortest: SHORTEST_VECTOR,
                 longest: LONGEST,
                 residual,
             },

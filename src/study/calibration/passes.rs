@@ -3,15 +3,18 @@
 use super::drills::{Kind, LONGEST, ROUNDS, drill, mixture};
 use super::fit::{self, median};
 use super::levels::{Charged, Waiting};
-use super::timing::{PacedClock, Samples};
+use super::timing::{PARTS, Samples};
 use crate::model::host::{Change, Estimate, LaneCosts, PassCost, Surroundings, touches};
+use crate::study::pace::Pace;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::backend::tape::{Outline, Outlines, register_shape};
 use stripmine_kernels::isa::{Memory, ProgramError};
 use stripmine_kernels::{Execution, InstructionSet, Runnable};
 
-/// Vectors that stay in the first-level cache.
-pub(super) const SHORT: [usize; 6] = [8, 16, 32, 64, 128, 256];
+/// Shortest vectors: what is left of hardware registers goes element by element.
+pub(super) const SHORTEST_VECTOR: usize = 8;
+/// Vectors that stay in the first-level cache, in hardware registers.
+const SHORT: [usize; 6] = [1, 2, 4, 8, 16, 32];
 /// Vectors that do not.
 const LONG: [usize; 13] =
     [520, 1080, 2200, 4400, 9000, 17_000, 34_000, 68_000, 130_000, 270_000, 540_000, 1_300_000, LONGEST];
@@ -72,14 +75,14 @@ pub(super) struct Lane {
 impl Lane {
     /// Nothing measured yet; conversions are from and to `O`.
     pub(super) fn new<L: Precision, O: Precision>(set: InstructionSet) -> Result<Lane, ProgramError> {
+        let (register_bytes, lanes) = register_shape::<L>(set)?;
         let mut points = vec![];
         for (at, kind) in Kind::ALL.iter().enumerate() {
             let wide = L::BYTES == 8;
             let long = LONG.iter().filter(|&&n| kind.moves() && (wide || n <= BOTH));
-            let lengths = SHORT.iter().chain(long);
-            points.extend(lengths.map(|&n| Point { kind: at, n, samples: Default::default() }));
+            let lengths = SHORT.map(|registers| registers * lanes).into_iter().chain(long.copied());
+            points.extend(lengths.map(|n| Point { kind: at, n, samples: Default::default() }));
         }
-        let (register_bytes, lanes) = register_shape::<L>(set)?;
         let lengths = (0..MIXED.len()).flat_map(|at| MIXED_LENGTHS.map(|n| (at, n, Samples::default())));
         Ok(Lane {
             name: L::NAME,
@@ -92,13 +95,7 @@ impl Lane {
     }
 
     /// The sweep of this number: one more sample of every point, of long vectors only in some sweeps.
-    pub(super) fn sweep(
-        &mut self,
-        clock: &mut PacedClock,
-        memory: &Memory<'_>,
-        set: InstructionSet,
-        number: usize,
-    ) {
+    pub(super) fn sweep(&mut self, pace: &mut Pace, memory: &Memory<'_>, set: InstructionSet, number: usize) {
         let run = |program: &dyn Runnable, n: usize| {
             let outcome = program.run(memory, 0..n, Execution::Eager, set);
             debug_assert!(outcome.is_ok(), "{outcome:?}");
@@ -106,11 +103,11 @@ impl Lane {
         let takes_turn = |point: &&mut Point| number.is_multiple_of(turn(point.n));
         for point in self.points.iter_mut().filter(takes_turn) {
             for (samples, program) in point.samples.iter_mut().zip(&self.programs[point.kind]) {
-                samples.take(clock, SHORTEST, || run(program.as_ref(), point.n));
+                samples.take(pace, SHORTEST, || run(program.as_ref(), point.n));
             }
         }
         for (at, n, samples) in &mut self.mixed {
-            samples.take(clock, SHORTEST, || run(self.mixtures[*at].as_ref(), *n));
+            samples.take(pace, SHORTEST, || run(self.mixtures[*at].as_ref(), *n));
         }
     }
 
@@ -127,8 +124,12 @@ impl Lane {
         self.points.iter().flat_map(|point| &point.samples).chain(mixed)
     }
 
+    fn is_short(&self, point: &Point) -> bool {
+        point.n <= SHORT[SHORT.len() - 1] * self.costs.lanes
+    }
+
     fn short_line(&self, kind: usize, of: impl Fn(&Samples) -> f64) -> PassCost {
-        let points = self.points.iter().filter(|point| point.kind == kind && SHORT.contains(&point.n));
+        let points = self.points.iter().filter(|point| point.kind == kind && self.is_short(point));
         fit::line(&points.map(|point| (point.n as f64, point.each(&of))).collect::<Vec<_>>())
     }
 
@@ -136,10 +137,10 @@ impl Lane {
     pub(super) fn fit(&mut self) {
         for (at, kind) in Kind::ALL.iter().enumerate() {
             let mut cost = self.short_line(at, Samples::typical);
-            let halves = [0, 1].map(|half| self.short_line(at, |samples| samples.of_half(half)));
-            let widen = |of: fn(&PassCost) -> f64| (of(&halves[0]) - of(&halves[1])).abs();
-            cost.element.interval += widen(|cost| cost.element.value);
-            cost.start.interval += widen(|cost| cost.start.value);
+            let parts: [PassCost; PARTS] =
+                std::array::from_fn(|part| self.short_line(at, |samples| samples.of_part(part)));
+            cost.element.interval += fit::half_interval(parts.map(|part| part.element.value));
+            cost.start.interval += fit::half_interval(parts.map(|part| part.start.value));
             self.costs.passes.insert(kind.name(), cost);
         }
         let shifted = self.costs.passes.remove(&Kind::Shifted.name()).unwrap_or_default();
@@ -166,7 +167,7 @@ impl Lane {
 
     /// Nanoseconds of a run besides its passes.
     pub(super) fn run(&self) -> f64 {
-        let shortest = self.points.iter().filter(|point| point.n == SHORT[0]);
+        let shortest = self.points.iter().filter(|point| point.n == SHORT[0] * self.costs.lanes);
         median(shortest.map(|point| {
             point.samples[1].typical() - self.in_cache(self.programs[point.kind][1].as_ref(), point.n)
         }))
@@ -177,7 +178,7 @@ impl Lane {
     /// A pass among others takes `begin` times as long to begin as in a drill.
     pub(super) fn long_passes(&self, begin: f64) -> impl Iterator<Item = Charged> {
         let points = self.points.iter().filter(|point| Kind::ALL[point.kind].moves());
-        points.filter(|point| !SHORT.contains(&point.n) && point.is_settled()).filter_map(move |point| {
+        points.filter(|point| !self.is_short(point) && point.is_settled()).filter_map(move |point| {
             let outlines = self.programs[point.kind][0].outlines();
             let kind = match Kind::ALL[point.kind] {
                 Kind::Shifted => "sub".to_owned(),
@@ -241,9 +242,9 @@ impl Lane {
     }
 }
 
-/// A number with the difference of two halves as its interval.
+/// A number, and how sure it is by parts of the samples; a hundredth besides, for what all of them share.
 pub(super) fn estimate(of: impl Fn(&dyn Fn(&Samples) -> f64) -> f64) -> Estimate {
     let value = of(&Samples::typical);
-    let halves = [0, 1].map(|half| of(&|samples: &Samples| samples.of_half(half)));
-    Estimate { value, interval: (halves[0] - halves[1]).abs() + 0.01 * value }
+    let parts: [f64; PARTS] = std::array::from_fn(|part| of(&|samples: &Samples| samples.of_part(part)));
+    Estimate { value, interval: fit::half_interval(parts) + 0.01 * value }
 }

@@ -4,6 +4,7 @@ use super::fit;
 use crate::method::Phase;
 use crate::model::host::{Amounts, RatePoint, Rates};
 use crate::scene::Checked;
+use crate::study::pace::Pace;
 use crate::study::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampling, phase_times};
 use crate::study::throughput::MeasurementError;
 use std::collections::BTreeMap;
@@ -42,10 +43,10 @@ impl Scenes {
     }
 
     /// Runs every scene once more. `progress` gets the share that is done.
-    pub(super) fn sweep(&mut self, progress: impl Fn(f64)) -> Result<(), MeasurementError> {
+    pub(super) fn sweep(&mut self, pace: &mut Pace, progress: impl Fn(f64)) -> Result<(), MeasurementError> {
         let all = self.0.len() as f64;
         for (at, (run, checked, times)) in self.0.iter_mut().enumerate() {
-            let more = phase_times(checked, &sampling(run))?;
+            let more = phase_times(checked, &sampling(run), pace)?;
             *times = Some(match times.take() {
                 Some(before) => before.joined(more),
                 None => more,
@@ -95,7 +96,7 @@ fn rates(measured: &[(Run, &PhaseTimes)], reference: f64) -> BTreeMap<String, Ra
 
 /// What each unit takes in a phase, number of discs by number of discs.
 fn points(alike: &[Vec<&PhaseTimes>], phase: Phase, reference: f64) -> Vec<RatePoint> {
-    let quiet = |times: &PhaseTimes| Some((charged(phase, &times.amounts), times.quiet(phase, reference)));
+    let upkeep = |times: &PhaseTimes| Some((charged(phase, &times.amounts), times.upkeep(phase, reference)));
     let making = |times: &PhaseTimes| {
         let Amounts { discs, candidates, .. } = times.amounts;
         let amounts = Amounts { remade: discs, relisted: candidates, ..Amounts::default() };
@@ -108,9 +109,9 @@ fn points(alike: &[Vec<&PhaseTimes>], phase: Phase, reference: f64) -> Vec<RateP
             .collect();
         per_unit(&all)
     };
-    let points = alike.iter().zip(of(&quiet)).zip(of(&making)).map(|((alike, quiet), making)| RatePoint {
+    let points = alike.iter().zip(of(&upkeep)).zip(of(&making)).map(|((alike, upkeep), making)| RatePoint {
         discs: alike.iter().map(|times| times.amounts.discs as usize).max().unwrap_or(0),
-        ns: quiet.into_iter().chain(making).map(|(name, ns)| (name.to_owned(), ns)).collect(),
+        ns: upkeep.into_iter().chain(making).map(|(name, ns)| (name.to_owned(), ns)).collect(),
     });
     points.collect()
 }

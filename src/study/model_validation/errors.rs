@@ -2,7 +2,7 @@
 
 use super::{EXECUTIONS, PRECISIONS};
 use crate::method::Phase;
-use crate::study::phase_times::{FAST, FAST_LISTS, LISTS};
+use crate::study::phase_times::{FAST, FAST_LISTS, LISTS, QUIET};
 use serde::Serialize;
 
 /// The group of all executions of programs.
@@ -10,10 +10,10 @@ pub const PROGRAMS: &str = "eager, strip-mined and chained";
 /// The group of all executions whose work hangs on the data.
 pub const OF_DATA: &str = "fast and lists";
 
-/// Those among the first that were measured at the pace of the calibration: the model alone, without what is said of paces.
-pub const PROGRAMS_AT_PACE: &str = "eager, strip-mined and chained, measured at the calibration's pace";
+/// Those among the first that were measured in quiet moments: the model alone, without what is said of paces.
+pub const PROGRAMS_QUIET: &str = "eager, strip-mined and chained, measured in quiet moments";
 /// Those among the second.
-pub const OF_DATA_AT_PACE: &str = "fast and lists, measured at the calibration's pace";
+pub const OF_DATA_QUIET: &str = "fast and lists, measured in quiet moments";
 
 /// A phase of a step of one run.
 #[derive(Clone, Debug, Serialize)]
@@ -30,15 +30,15 @@ pub struct Case {
     pub phase: &'static str,
     /// Nanoseconds predicted.
     pub predicted: f64,
-    /// Nanoseconds of the repeat that counts, at the pace of the calibration: a low quantile.
+    /// Nanoseconds in quiet moments: of every piece a low quantile of the samples.
     pub measured: f64,
-    /// A quarter of the repeats lies below, a quarter above.
+    /// A quarter of the samples of every piece lies below, a quarter above.
     pub quartiles: [f64; 2],
     /// The same by the rounds of even number alone and by those of odd number; none of one round. Every round lays the run
     /// out anew, in other pages of memory.
     pub halves: Option<[f64; 2]>,
-    /// Whether it was measured at the pace of the calibration, and not only told at it.
-    pub at_pace: bool,
+    /// The share that was measured in quiet moments, and not only told at their pace.
+    pub quiet: f64,
     /// Nanoseconds by the trivial baseline: operations times elements, at the cost of a sum in the cache; none where
     /// what is executed hangs on the data.
     pub baseline: Option<f64>,
@@ -132,8 +132,8 @@ pub(super) fn errors(cases: &[Case]) -> Vec<Errors> {
     };
     group(PROGRAMS, &|case| !case.hangs_on_data());
     group(OF_DATA, &Case::hangs_on_data);
-    group(PROGRAMS_AT_PACE, &|case| !case.hangs_on_data() && case.at_pace);
-    group(OF_DATA_AT_PACE, &|case| case.hangs_on_data() && case.at_pace);
+    group(PROGRAMS_QUIET, &|case| !case.hangs_on_data() && case.quiet >= QUIET);
+    group(OF_DATA_QUIET, &|case| case.hangs_on_data() && case.quiet >= QUIET);
     EXECUTIONS.iter().for_each(|(name, _)| group(name, &|case| case.execution == *name));
     let straight = |case: &Case| !case.hangs_on_data();
     Phase::ALL.iter().for_each(|phase| {
@@ -162,7 +162,7 @@ mod tests {
             measured: 100.0,
             quartiles: [99.0, 101.0],
             halves: Some([102.0, 100.0]),
-            at_pace: execution == "eager",
+            quiet: if execution == "eager" { 1.0 } else { 0.5 },
             baseline: (execution != LISTS).then_some(50.0),
         }
     }
@@ -178,6 +178,6 @@ mod tests {
         assert_eq!(programs.baseline_median, Some(0.5));
         assert!((programs.repeated.unwrap()[0] - 0.02).abs() < 1e-9);
         assert_eq!(of(OF_DATA).baseline_median, None);
-        assert_eq!((of(PROGRAMS_AT_PACE).cases, of(PROGRAMS_AT_PACE).within), (2, [1, 2, 2, 2]));
+        assert_eq!((of(PROGRAMS_QUIET).cases, of(PROGRAMS_QUIET).within), (2, [1, 2, 2, 2]));
     }
 }

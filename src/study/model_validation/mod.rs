@@ -4,9 +4,10 @@
 mod errors;
 mod scene;
 
-pub use errors::{Case, Errors, OF_DATA, OF_DATA_AT_PACE, PROGRAMS, PROGRAMS_AT_PACE};
+pub use errors::{Case, Errors, OF_DATA, OF_DATA_QUIET, PROGRAMS, PROGRAMS_QUIET};
 
 use super::calibration::{self, Calibration, CalibrationError};
+use super::pace::Pace;
 use super::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run};
 use super::throughput::MeasurementError;
 use crate::model::host::{HostModel, OutOfRange};
@@ -83,7 +84,7 @@ pub struct ModelValidation {
     pub instruction_set: String,
     /// Where it comes from.
     pub calibrated: Calibrated,
-    /// How many times slower than at the pace of the calibration the host was in the median.
+    /// How many times as long as in the calibration's quiet moments the yardstick took in those of the runs.
     pub pace: f64,
     /// Every case.
     pub cases: Vec<Case>,
@@ -166,6 +167,9 @@ fn alone() -> Result<ThreadPool, MeasurementError> {
     rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(MeasurementError::Threads)
 }
 
+/// Rounds that every run is part of, two in each half.
+const LAYOUTS: usize = 4;
+
 /// All runs, and what was measured of them.
 struct Measured {
     effort: Effort,
@@ -173,6 +177,7 @@ struct Measured {
     /// Rounds of even and of odd number apart.
     times: Vec<[Option<PhaseTimes>; 2]>,
     rounds: usize,
+    pace: Pace,
 }
 
 impl Measured {
@@ -180,15 +185,20 @@ impl Measured {
     fn new(effort: &Effort) -> Result<Measured, MeasurementError> {
         let scenes = runs(effort).map(Scene::new).collect::<Result<Vec<_>, _>>()?;
         let times = scenes.iter().map(|_| [None, None]).collect();
-        Ok(Measured { effort: effort.clone(), scenes, times, rounds: 0 })
+        Ok(Measured { effort: effort.clone(), scenes, times, rounds: 0, pace: Pace::default() })
     }
 
     /// Runs everything once more. `progress` gets the share that is done.
     fn round(&mut self, progress: &dyn Fn(f64)) -> Result<(), MeasurementError> {
         let all = self.scenes.len() as f64;
         for (at, (scene, times)) in self.scenes.iter().zip(&mut self.times).enumerate() {
-            let more = scene.measure(&self.effort)?;
             let times = &mut times[self.rounds % 2];
+            // Laid out anew at least twice; and again where it was never quiet.
+            let enough = |times: &PhaseTimes| self.rounds >= LAYOUTS && times.is_quiet(self.pace.reference());
+            if times.as_ref().is_some_and(enough) {
+                continue;
+            }
+            let more = scene.measure(&self.effort, &mut self.pace)?;
             *times = Some(match times.take() {
                 Some(before) => before.joined(more),
                 None => more,
@@ -201,25 +211,20 @@ impl Measured {
 
     /// Beside what a model predicts.
     fn against(&self, host: &HostModel, calibrated: Calibrated) -> Result<ModelValidation, ValidationError> {
+        let reference = self.pace.reference();
         let mut cases = vec![];
         for (scene, halves) in self.scenes.iter().zip(&self.times) {
-            cases.extend(scene.cases(host, halves)?);
+            cases.extend(scene.cases(host, halves, reference)?);
         }
         Ok(ModelValidation {
             host: host.title.clone(),
             instruction_set: host.instruction_set.clone(),
             calibrated,
-            pace: median_pace(host, self.times.iter().flatten().flatten()),
+            pace: reference / host.measured.yardstick,
             errors: errors::errors(&cases),
             cases,
         })
     }
-}
-
-fn median_pace<'a>(host: &HostModel, times: impl Iterator<Item = &'a PhaseTimes>) -> f64 {
-    let mut paces: Vec<f64> = times.flat_map(|times| times.paces(host.measured.yardstick)).collect();
-    paces.sort_by(f64::total_cmp);
-    paces.get(paces.len() / 2).copied().unwrap_or(1.0)
 }
 
 /// Every run, in order.

@@ -6,6 +6,7 @@ use crate::method::lattice_md::Lengths;
 use crate::model::host::{HostModel, OutOfRange};
 use crate::run::model;
 use crate::scene::Checked;
+use crate::study::pace::Pace;
 use crate::study::phase_times::{PhaseTimes, Run, Sampling, phase_times};
 use crate::study::predicted_step::{Step, of_precision};
 use crate::study::throughput::MeasurementError;
@@ -43,7 +44,7 @@ impl Scene {
     }
 
     /// Runs it once more.
-    pub(super) fn measure(&self, effort: &Effort) -> Result<PhaseTimes, MeasurementError> {
+    pub(super) fn measure(&self, effort: &Effort, pace: &mut Pace) -> Result<PhaseTimes, MeasurementError> {
         let sampling = Sampling {
             equilibration: (effort.particle_steps / self.run.particles).clamp(5, 50),
             repeats: effort.repeats,
@@ -51,16 +52,17 @@ impl Scene {
             // Lists are made anew every few steps only.
             least_steps: if self.run.has_lists() { 6 } else { 2 },
         };
-        phase_times(&self.checked, &sampling)
+        phase_times(&self.checked, &sampling, pace)
     }
 
-    /// Every phase that it has, predicted and as it was measured in the rounds of even and of odd number.
+    /// Every phase that it has, predicted and as it was measured in the rounds of even and of odd number; `reference` is what
+    /// the yardstick takes in quiet moments (ns).
     pub(super) fn cases(
         &self,
         host: &HostModel,
         halves: &[Option<PhaseTimes>; 2],
+        reference: f64,
     ) -> Result<Vec<Case>, ValidationError> {
-        let reference = host.measured.yardstick;
         let Some(times) = halves.iter().flatten().cloned().reduce(PhaseTimes::joined) else {
             return Ok(vec![]);
         };
@@ -88,7 +90,7 @@ impl Scene {
                 measured,
                 quartiles,
                 halves: of_halves(phase),
-                at_pace: times.was_at_pace(phase, reference),
+                quiet: times.quiet(phase, reference),
                 baseline,
             }
         });

@@ -1,24 +1,23 @@
 //! Vector registers one behind the other in memory, close together for short strips and long ones alike.
 
+use crate::isa::on_lines::{self, LINE, OnLines};
 use std::cell::Cell;
 
-/// Bytes of a cache line.
-const LINE: usize = 64;
 /// Lines after which addresses look alike to a first-level cache.
-const ALIKE: usize = 64;
+const ALIKE: usize = on_lines::ALIKE / LINE;
 /// Lines that long registers must be apart at least, addresses taken as such a cache sees them.
 const APART: usize = 9;
 
 /// Registers of entries `X`.
 pub(super) struct RegisterFile<X> {
-    entries: Vec<Cell<X>>,
+    entries: OnLines<Cell<X>>,
     /// Entries from one register to the next.
     stride: usize,
 }
 
 impl<X> Default for RegisterFile<X> {
     fn default() -> Self {
-        RegisterFile { entries: vec![], stride: 0 }
+        RegisterFile { entries: OnLines::default(), stride: 0 }
     }
 }
 
@@ -31,7 +30,7 @@ impl<X: Copy> RegisterFile<X> {
         let needed = count * self.stride;
         if self.entries.len() < needed {
             // Nothing of the old entries is worth a copy.
-            self.entries = vec![Cell::new(entry); needed];
+            self.entries = OnLines::filled(0, Cell::new(entry), needed);
         }
     }
 
