@@ -68,7 +68,7 @@ fn programs(model: &HostModel) -> Table {
         let lane = signature.split('-').next().unwrap_or_default();
         let mut row = hockney([lane, &seen.what], seen.element, seen.start);
         row.insert(0, Cell::Text(execution.to_owned()));
-        let Factors { computing, waiting } = seen.factors;
+        let Factors { computing, waiting, .. } = seen.factors;
         row.extend([computing, waiting].map(|factor| Cell::Number(factor, 2)));
         row
     });

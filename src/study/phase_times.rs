@@ -192,44 +192,51 @@ pub fn phase_times(
     let steps = sampling.repeats * (sampling.particle_steps / discs).clamp(sampling.least_steps, 2000);
     let mut times = PhaseTimes::none(discs);
     let mut found = Found::default();
-    // Before anything is timed: only what it takes to make lists counts, for that is rare.
     let start = Instant::now();
-    let ran = Ran::some(method.as_mut(), sampling.equilibration, &mut Found::default())?;
+    let mut all = 0;
+    let mut made = 0;
+    // Steps of which only the makings of lists count, for these are rare.
+    let mut unnoticed = |times: &mut PhaseTimes, method: &mut dyn Method, pace: &mut Pace, count: usize| {
+        let (ran, around) = pace.around(&mut 0, || Ran::some(method, count, &mut Found::default()));
+        let ran = ran?;
+        times.take_makings(&ran, around);
+        all += count;
+        made += ran.makings.len();
+        Ok::<(), Failure>(())
+    };
+    unnoticed(&mut times, method.as_mut(), pace, sampling.equilibration)?;
     let step = start.elapsed().as_nanos() as f64 / sampling.equilibration.max(1) as f64;
     let group = ((SHORT / step).floor() as usize).min(steps);
-    let mut all = sampling.equilibration;
-    let mut made = ran.makings.len();
+    let (mut steps_timed, mut made_timed) = (0, 0);
     if group > 1 {
         let (mut left, mut quiet) = (steps, 0);
         while left > 0 {
             let count = group.min(left);
             if pace.wait(quiet, SHORT) {
-                made += Ran::some(method.as_mut(), 1, &mut found)?.makings.len();
-                all += 1;
+                unnoticed(&mut times, method.as_mut(), pace, 1)?;
             }
             let (ran, around) = pace.around(&mut quiet, || Ran::some(method.as_mut(), count, &mut found));
             let ran = ran?;
             times.take_group(method.as_ref(), count, &ran, around);
             left -= count;
-            all += count;
-            made += ran.makings.len();
+            steps_timed += count;
+            made_timed += ran.makings.len();
         }
     } else {
         let mut quiet = 0;
         for _ in 0..steps {
             if pace.wait(quiet, step) {
-                made += Ran::some(method.as_mut(), 1, &mut found)?.makings.len();
-                all += 1;
+                unnoticed(&mut times, method.as_mut(), pace, 1)?;
             }
             let (ran, pieces) =
                 pace.from_rest_to_rest(&mut quiet, || Ran::some(method.as_mut(), 1, &mut found));
             let made_anew = !ran?.makings.is_empty();
             times.take_step(&pieces, made_anew);
-            made += usize::from(made_anew);
+            made_timed += usize::from(made_anew);
         }
-        all += steps;
+        steps_timed = steps;
     }
-    times.made = made as f64 / all.max(1) as f64;
+    times.made = (made + made_timed) as f64 / (all + steps_timed).max(1) as f64;
     let discs = discs as f64;
     let near = HALF_MASK * discs * discs / cells.max(1) as f64;
     let candidates = if lists { found.mean(found.candidates) } else { near };
@@ -271,9 +278,7 @@ impl Ran {
 impl PhaseTimes {
     /// The times of a group of steps, with the readings around them.
     fn take_group(&mut self, method: &dyn Method, count: usize, ran: &Ran, around: [f64; 2]) {
-        for &seconds in &ran.makings {
-            self.makings.push(&[Timed { ns: 1e9 * seconds, around }]);
-        }
+        self.take_makings(ran, around);
         for &phase in Phase::ALL {
             let seconds = method.timings().seconds(phase);
             let (seconds, of) = match phase {
@@ -283,6 +288,12 @@ impl PhaseTimes {
             if of > 0 {
                 self.samples[phase as usize].push(&[Timed { ns: 1e9 * seconds / of as f64, around }]);
             }
+        }
+    }
+
+    fn take_makings(&mut self, ran: &Ran, around: [f64; 2]) {
+        for &seconds in &ran.makings {
+            self.makings.push(&[Timed { ns: 1e9 * seconds, around }]);
         }
     }
 

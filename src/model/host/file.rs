@@ -99,6 +99,7 @@ impl HostModel {
                     ("start.value", seen.start.value),
                     ("factors.computing", seen.factors.computing),
                     ("factors.waiting", seen.factors.waiting),
+                    ("factors.beyond", seen.factors.beyond.iter().sum()),
                 ]
                 .map(|(what, value)| (format!("{name}.{what}"), value))
             })

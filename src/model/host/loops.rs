@@ -2,7 +2,7 @@
 //! from the operations it counts, so loops that a calibration has seen are charged what they took on short vectors; others
 //! by their classes of operations, fitted to those that were seen.
 
-use super::{Estimate, OutOfRange, PassCost};
+use super::{Estimate, Level, OutOfRange, PassCost, Transfer};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::backend::tape::Outlines;
@@ -30,15 +30,29 @@ pub struct Factors {
     pub computing: f64,
     /// How many times as long it waits as the levels say.
     pub waiting: f64,
+    /// Nanoseconds that a byte from beyond each level takes it besides: in the interpreter, where passes wait that others do
+    /// not meet.
+    pub beyond: [f64; 4],
 }
 
 impl Default for Factors {
     fn default() -> Factors {
-        Factors { computing: 1.0, waiting: 1.0 }
+        Factors { computing: 1.0, waiting: 1.0, beyond: [0.0; 4] }
     }
 }
 
 impl Factors {
+    /// The levels as they cost this program besides.
+    pub fn levels(&self, levels: &[Level]) -> Vec<Level> {
+        let mut fetch = 0.0;
+        let each = |(at, level): (usize, &Level)| {
+            fetch += at.checked_sub(1).and_then(|before| self.beyond.get(before)).copied().unwrap_or(0.0);
+            let passes = Transfer { fetch, fetch_array: fetch, ..Transfer::default() };
+            Level { capacity: level.capacity, passes, ..Level::default() }
+        };
+        levels.iter().enumerate().map(each).collect()
+    }
+
     /// Nanoseconds of computing, and of waiting for streams and for lines, as this program takes them.
     #[must_use]
     pub fn scaled(self, [computing, streams, lines]: [f64; 3]) -> [f64; 3] {

@@ -256,6 +256,8 @@ impl HostModel {
     ) -> Result<f64, OutOfRange> {
         let lane = self.lane(outlines.lane)?;
         let touched = touches(outlines, lane.register_bytes);
+        let factors = lane.factors(outlines);
+        let own = factors.levels(&self.levels);
         let mut sum = self.run;
         for (strips, length) in [(n / strip, strip), (1, n % strip)] {
             if strips == 0 || length == 0 {
@@ -263,8 +265,12 @@ impl HostModel {
             }
             let near = lane.near(outlines, length, self.begin)?;
             let wait = touched.iter().map(|touches| self.wait(touches, length, around)).sum();
-            let parts = lane.factors(outlines).scaled([near, wait, 0.0]);
-            sum += strips as f64 * parts.iter().sum::<f64>();
+            let besides: f64 = touched
+                .iter()
+                .map(|touches| around.wait(&own, touches, length as f64, |level| level.passes).sum())
+                .sum();
+            let parts = factors.scaled([near, wait, 0.0]);
+            sum += strips as f64 * (parts.iter().sum::<f64>() + besides);
         }
         Ok(sum)
     }

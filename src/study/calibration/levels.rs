@@ -1,7 +1,7 @@
 //! What waiting for the levels of memory adds: fitted to passes over long vectors, and to whole programs of drill scenes as
 //! the interpreter and as compiled loops run them.
 
-use super::factors::fit_factors;
+use super::factors::{fit_costs, fit_factors};
 use super::fit::{self, median};
 use crate::model::host::{Factors, Level, Surroundings, Touch, Transfer, overlapped};
 use std::collections::BTreeMap;
@@ -48,7 +48,7 @@ pub(super) struct Levels {
 }
 
 /// Levels beyond the nearest.
-const BEYOND: usize = 4;
+pub(super) const BEYOND: usize = 4;
 /// What is fitted: e0; what each level beyond the nearest adds to a byte fetched, to one of an array from before, to a byte
 /// that must go back, and to a line that an index vector leads to unforeseen.
 const UNKNOWN: usize = 4 * BEYOND + 1;
@@ -127,11 +127,17 @@ impl Point {
     /// The point of a program that differs so.
     fn with(&self, factors: &BTreeMap<String, Factors>) -> Point {
         let own = self.program.as_ref().and_then(|program| factors.get(program)).copied().unwrap_or_default();
+        let besides: f64 = self.bytes().iter().zip(own.beyond).map(|(bytes, cost)| bytes * cost).sum();
         Point {
-            computing: own.computing * self.computing,
+            computing: own.computing * self.computing + besides,
             features: self.features.map(|feature| own.waiting * feature),
             ..self.clone()
         }
+    }
+
+    /// Bytes from beyond each level, of registers and arrays.
+    pub(super) fn bytes(&self) -> [f64; BEYOND] {
+        std::array::from_fn(|level| self.features[1 + level] + self.features[ARRAYS + level])
     }
 
     /// How far off some nanoseconds are, as the logarithm of a ratio.
@@ -141,7 +147,7 @@ impl Point {
 
     /// How much it counts by its share in what it took, where it is so far off: what is far from the fit weighs less, so that
     /// a busy moment does not count for more than it is.
-    fn scale(&self, far: f64) -> f64 {
+    pub(super) fn scale(&self, far: f64) -> f64 {
         (self.weight * 0.05 / (0.05 + far)).sqrt() / self.ns
     }
 }
@@ -249,10 +255,7 @@ impl Fitted {
         let Fitted { costs, loops: Loops { costs: of_loops, overlap, .. }, .. } = self;
         let in_passes = passes.iter().map(|point| (point, point.parts_of_passes(costs)));
         let in_loops = loops.iter().map(|point| (point, point.parts_of_loops(of_loops)));
-        [
-            fit_factors(in_passes, in_turns),
-            fit_factors(in_loops, |start, parts| start + overlapped(*overlap, parts)),
-        ]
+        [fit_costs(in_passes), fit_factors(in_loops, |start, parts| start + overlapped(*overlap, parts))]
     }
 
     fn levels(self) -> Levels {

@@ -30,8 +30,11 @@ const SHORTEST: f64 = 40_000.0;
 /// The drill scene: discs at rest that do not touch, as no validation runs them.
 const DRILL: Run = Run { particles: 240, occupancy: 0.13, precision: "f64", execution: "chained" };
 /// NP and ρ of the larger drill scenes, whose arrays lie in the levels beyond the first.
-const LARGE: [(usize, f64); 8] = [
+const LARGE: [(usize, f64); 11] = [
+    (70, 0.12),
     (150, 0.06),
+    (320, 0.16),
+    (480, 0.09),
     (700, 0.06),
     (1800, 0.13),
     (5000, 0.06),

@@ -55,7 +55,9 @@ pub enum CalibrationError {
 }
 
 /// The drill scenes are run at the first of so many sweeps, and take as long as these do.
-const SCENES_EVERY: usize = 20;
+const SCENES_EVERY: usize = 8;
+/// Every scene is run so many times, and again where it was never quiet.
+const LAYOUTS: usize = 2;
 
 /// Measures this host, called `title`, on one thread, and fits its model. `progress` gets the share that is done.
 ///
@@ -135,7 +137,9 @@ impl Calibration {
             if self.sweeps.is_multiple_of(SCENES_EVERY) {
                 let before = self.done(parts);
                 let part = self.done(parts + 1) - before;
-                self.scenes.sweep(&mut self.pace, |share| progress(before + part * share))?;
+                self.scenes.sweep(self.sweeps >= LAYOUTS * SCENES_EVERY, &mut self.pace, |share| {
+                    progress(before + part * share)
+                })?;
             }
             self.sweep();
             progress(self.done(self.sweeps.div_ceil(SCENES_EVERY)));

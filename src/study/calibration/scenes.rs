@@ -42,10 +42,19 @@ impl Scenes {
         Ok(Scenes(scenes))
     }
 
-    /// Runs every scene once more. `progress` gets the share that is done.
-    pub(super) fn sweep(&mut self, pace: &mut Pace, progress: impl Fn(f64)) -> Result<(), MeasurementError> {
+    /// Runs every scene once more; `again` those only that were not measured in quiet moments. `progress` gets the share that is done.
+    pub(super) fn sweep(
+        &mut self,
+        again: bool,
+        pace: &mut Pace,
+        progress: impl Fn(f64),
+    ) -> Result<(), MeasurementError> {
         let all = self.0.len() as f64;
         for (at, (run, checked, times)) in self.0.iter_mut().enumerate() {
+            let enough = |times: &PhaseTimes| again && times.is_quiet(pace.reference());
+            if times.as_ref().is_some_and(enough) {
+                continue;
+            }
             let more = phase_times(checked, &sampling(run), pace)?;
             *times = Some(match times.take() {
                 Some(before) => before.joined(more),
