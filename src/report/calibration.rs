@@ -124,7 +124,7 @@ fn rates(model: &HostModel) -> Table {
 fn levels(model: &HostModel) -> Table {
     let rows = model.levels.iter().flat_map(|level| {
         [("passes", level.passes), ("chained loops", level.loops)].map(|(what, transfer)| {
-            let Transfer { fetch, fetch_array, write_back, line } = transfer;
+            let Transfer { fetch, fetch_array, write_back, first, line } = transfer;
             vec![
                 Cell::Text(level.name.clone()),
                 level.capacity.map_or(Cell::Nothing, |bytes| Cell::Number(bytes / 1024.0, 0)),
@@ -132,6 +132,7 @@ fn levels(model: &HostModel) -> Table {
                 Cell::Number(fetch, 5),
                 Cell::Number(fetch_array, 5),
                 Cell::Number(write_back, 5),
+                Cell::Number(first, 2),
                 Cell::Number(line, 2),
             ]
         })
@@ -146,6 +147,7 @@ fn levels(model: &HostModel) -> Table {
             "ns a byte fetched",
             "ns a byte of an array fetched",
             "ns a byte written back",
+            "ns the first of an array",
             "ns a line through an index",
         ]),
         rows: rows.collect(),

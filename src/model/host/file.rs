@@ -87,7 +87,9 @@ impl HostModel {
         });
         let levels = self.levels.iter().flat_map(|level| {
             [level.passes, level.loops].into_iter().flat_map(
-                |Transfer { fetch, fetch_array, write_back, line }| [fetch, fetch_array, write_back, line],
+                |Transfer { fetch, fetch_array, write_back, first, line }| {
+                    [fetch, fetch_array, write_back, first, line]
+                },
             )
         });
         let lists = self.lanes.iter().map(|(lane, costs)| (format!("lanes.{lane}"), &costs.seen));

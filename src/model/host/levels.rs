@@ -31,6 +31,8 @@ pub struct Transfer {
     pub fetch_array: f64,
     /// Nanoseconds a byte besides where the vector is written: it must go back.
     pub write_back: f64,
+    /// Nanoseconds until a pass over an array has the first of it.
+    pub first: f64,
     /// Nanoseconds a line that is met through an index vector and that nothing announces: the line before it was not met.
     pub line: f64,
 }
@@ -197,6 +199,9 @@ impl Surroundings {
                 Since::Here(_) => of(level).fetch,
                 Since::Before => of(level).fetch_array,
             };
+            if touch.since == Since::Before {
+                wait.streamed += from_afar(levels, distance, |level| of(level).first);
+            }
             if let Some(array) = there.filter(|_| touch.indexed) {
                 let Lines { foreseen, unforeseen } =
                     Lines::met(self.whole.max(n) / (array.extent / LINE), touch.in_order());

@@ -50,14 +50,16 @@ pub(super) struct Levels {
 /// Levels beyond the nearest.
 pub(super) const BEYOND: usize = 4;
 /// What is fitted: e0; what each level beyond the nearest adds to a byte fetched, to one of an array from before, to a byte
-/// that must go back, and to a line that an index vector leads to unforeseen.
-const UNKNOWN: usize = 4 * BEYOND + 1;
+/// that must go back, to the first one of a pass, and to a line that an index vector leads to unforeseen.
+const UNKNOWN: usize = 5 * BEYOND + 1;
 /// Where the arrays begin.
 const ARRAYS: usize = 1 + BEYOND;
 /// Where what goes back begins.
 const BACK: usize = 1 + 2 * BEYOND;
+/// Where the first bytes of a pass begin.
+const FIRST: usize = 1 + 3 * BEYOND;
 /// Where the lines begin.
-const LINES: usize = 1 + 3 * BEYOND;
+const LINES: usize = 1 + 4 * BEYOND;
 pub(super) type Costs = [f64; UNKNOWN];
 
 impl Charged {
@@ -76,6 +78,7 @@ impl Charged {
                     wait(Transfer { fetch: 1.0, ..Transfer::default() }),
                     wait(Transfer { fetch_array: 1.0, ..Transfer::default() }),
                     wait(Transfer { write_back: 1.0, ..Transfer::default() }),
+                    wait(Transfer { first: 1.0, ..Transfer::default() }),
                     wait(Transfer { line: 1.0, ..Transfer::default() }),
                 ];
                 for (kind, own) in own.into_iter().enumerate() {
@@ -174,7 +177,9 @@ fn candidates() -> Vec<[f64; BEYOND]> {
     let mut all = vec![];
     if let [l1, l2, l3] = *known.as_slice() {
         for buffer in BUFFERS {
-            for (near, middle) in [(0.5, 0.5), (0.5, 1.0), (1.0, 0.5), (1.0, 1.0)] {
+            for (near, middle) in
+                [0.5, 1.0].into_iter().flat_map(|near| [0.5, 1.0, 1.5].map(|middle| (near, middle)))
+            {
                 all.extend(SHARES.map(|share| [buffer, near * l1, middle * l2, share * l3]));
             }
         }
@@ -264,7 +269,13 @@ impl Fitted {
         let capacities = self.capacities.into_iter().map(Some).chain([None]);
         let transfer = |costs: &Costs, level: usize| {
             let upto = |steps: usize| costs[steps..steps + level].iter().fold(0.0, |sum, step| sum + step);
-            Transfer { fetch: upto(1), fetch_array: upto(ARRAYS), write_back: upto(BACK), line: upto(LINES) }
+            Transfer {
+                fetch: upto(1),
+                fetch_array: upto(ARRAYS),
+                write_back: upto(BACK),
+                first: upto(FIRST),
+                line: upto(LINES),
+            }
         };
         let levels = names.into_iter().zip(capacities).enumerate().map(|(at, (name, capacity))| Level {
             name: name.to_owned(),
