@@ -122,7 +122,6 @@ mod tests {
             let memory = Memory::new().read(X, &x).write(FX, &mut sums);
             let outcome = program.run(&memory, 0..n, execution, InstructionSet::best());
             assert_eq!(outcome, Ok(()));
-            drop(memory);
             sums
         };
         for execution in [Execution::Eager, Execution::Strip(64), Execution::Chained] {

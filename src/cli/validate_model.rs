@@ -26,17 +26,17 @@ pub(super) struct ValidateModel {
     #[arg(long, conflicts_with = "host")]
     calibrate: bool,
     /// Sweeps of that calibration
-    #[arg(long, requires = "calibrate", default_value_t = 90,
+    #[arg(long, requires = "calibrate", default_value_t = 40,
           value_parser = clap::value_parser!(u16).range(1..=200))]
     sweeps: u16,
     /// Numbers of particles
-    #[arg(long, value_delimiter = ',', default_values_t = [110, 1200, 6300, 24_000])]
+    #[arg(long, value_delimiter = ',', default_values_t = [180, 1050, 5600, 26_000])]
     particles: Vec<usize>,
     /// Occupancies, on cells as wide as the radius
-    #[arg(long, value_delimiter = ',', default_values_t = [0.05, 0.1, 0.15, 0.24])]
+    #[arg(long, value_delimiter = ',', default_values_t = [0.055, 0.095, 0.145, 0.225])]
     occupancies: Vec<f64>,
     /// Rounds over all runs
-    #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
     /// Repeats of each run in a round
     #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..))]
