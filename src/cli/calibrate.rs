@@ -9,7 +9,7 @@ use clap::Args;
 use std::path::PathBuf;
 use stripmine_kernels::InstructionSet;
 
-/// Measures this host's operations and caches, and writes a host file for validate-model; about a minute
+/// Measures this host's operations and caches, and writes a host file for validate-model; one to two minutes
 #[derive(Args)]
 pub(super) struct CalibrateVerb {
     /// The host file

@@ -32,7 +32,7 @@ pub struct Effort {
 
 impl Default for Effort {
     fn default() -> Self {
-        Effort { sweeps: 40 }
+        Effort { sweeps: 20 }
     }
 }
 
