@@ -1,6 +1,7 @@
 //! What waiting for the levels of memory adds: fitted to passes over long vectors, and to whole programs of drill scenes as
 //! the interpreter and as compiled loops run them.
 
+use super::capacities::candidates;
 use super::factors::{fit_costs, fit_factors};
 use super::fit::{self, median};
 use crate::model::host::{Factors, Level, Surroundings, Touch, Transfer, overlapped};
@@ -166,52 +167,6 @@ fn product(features: &[f64], costs: &[f64]) -> f64 {
 
 fn streamed(features: &Costs, costs: &Costs) -> f64 {
     product(&features[1..LINES], &costs[1..LINES])
-}
-
-/// Capacities that are tried (bytes): of the store buffer, which hands on what was written last before it is in any cache;
-/// and of the three levels of cache what the system says, or parts of it, for whoever shares the core or the last level takes
-/// theirs; where it says nothing, what processors have.
-fn candidates() -> Vec<[f64; BEYOND]> {
-    const KIB: f64 = 1024.0;
-    let known: Vec<f64> = (1..BEYOND).filter_map(cache_size).collect();
-    let mut all = vec![];
-    if let [l1, l2, l3] = *known.as_slice() {
-        for buffer in BUFFERS {
-            for (near, middle) in
-                [0.5, 1.0].into_iter().flat_map(|near| [0.5, 1.0, 1.5].map(|middle| (near, middle)))
-            {
-                all.extend(SHARES.map(|share| [buffer, near * l1, middle * l2, share * l3]));
-            }
-        }
-        return all;
-    }
-    for l1 in [32.0, 48.0, 64.0, 128.0] {
-        for l2 in [256.0, 512.0, 1024.0, 2048.0, 4096.0] {
-            all.extend([4.0, 8.0, 16.0, 32.0].map(|l3| [BUFFERS[1], l1 * KIB, l2 * KIB, l3 * KIB * KIB]));
-        }
-    }
-    all
-}
-
-/// Bytes of the store buffer that are tried: some dozens of entries, each as wide as a register.
-const BUFFERS: [f64; 3] = [1024.0, 2048.0, 4096.0];
-
-/// Parts of the last level that are tried: many cores share it.
-const SHARES: [f64; 5] = [0.0625, 0.125, 0.25, 0.5, 1.0];
-
-/// Bytes of this processor's data cache of a level, where the system says it.
-fn cache_size(level: usize) -> Option<f64> {
-    let read = |index: usize, what: &str| {
-        let path = format!("/sys/devices/system/cpu/cpu0/cache/index{index}/{what}");
-        Some(std::fs::read_to_string(path).ok()?.trim().to_owned())
-    };
-    let of_level = |index: &usize| {
-        read(*index, "level") == Some(level.to_string())
-            && read(*index, "type").as_deref() != Some("Instruction")
-    };
-    let size = read((0..8).find(of_level)?, "size")?;
-    let kib: f64 = size.strip_suffix('K')?.parse().ok()?;
-    Some(1024.0 * kib)
 }
 
 /// Capacities and costs of the levels: those that suit passes and loops best together. Streams are foreseen and hardly tell

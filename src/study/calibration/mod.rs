@@ -1,6 +1,7 @@
 //! How long do this host's operations take? Small programs run through the same interpreter and the same compiled code
 //! as the method's, timed over vectors of 8 to 4 million elements, and a host model fitted to the times.
 
+mod capacities;
 mod drills;
 mod factors;
 mod fit;
