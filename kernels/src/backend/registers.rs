@@ -1,6 +1,6 @@
 //! The machine made of registers: one body of every instruction over any register file.
 
-use crate::isa::{Counter, Element, Machine, Memory, Slot, Storage, Vector, same};
+use crate::isa::{Column, Counter, Element, Machine, Memory, Slot, Storage, Vector, same};
 use std::mem::MaybeUninit;
 
 /// The most lanes any register file has: bounds the buffers of lane-by-lane instructions.
@@ -70,7 +70,9 @@ pub(crate) struct Strip<'m, R> {
     base: usize,
 }
 
-/// Lanes spilled to memory, for instructions that no portable SIMD offers.
+/// Lanes spilled to memory, for instructions that no portable SIMD offers: at a line of its own, or it would be
+/// a matter of where the stack happens to be whether a wide register lies across two.
+#[repr(align(64))]
 struct Spill<T>(MaybeUninit<[T; MAX_LANES]>);
 
 impl<T: Copy> Spill<T> {
@@ -89,6 +91,31 @@ impl<'m, R: Registers> Strip<'m, R> {
     pub(crate) fn new(registers: R, memory: &'m Memory<'m>, base: usize) -> Self {
         const { assert!(R::LANES <= MAX_LANES) }
         Strip { registers, memory, base }
+    }
+
+    /// Elements of a column through an index vector. The column comes by value: were it looked up in the memory lane by lane,
+    /// a processor that tells addresses apart by their last 12 bits only would wait for the spill's stores each time that
+    /// the one happens to lie some pages from the other, and a gather take twice as long.
+    #[inline(always)]
+    pub(crate) fn gather_from<T: Element>(self, column: Column<T>, index: R::Index, elsewhere: R::V) -> R::V {
+        let mut spill = Spill::new();
+        // SAFETY: the spill has room for MAX_LANES >= LANES elements.
+        unsafe { self.registers.store(spill.start(), elsewhere) };
+        if column.len() == 0 {
+            // Nothing to read for "none" below; any other number is as wrong here as there.
+            (0..R::LANES).filter(|&lane| index.lane(lane) != 0).for_each(|_| _ = column.read(0));
+            return elsewhere;
+        }
+        for lane in 0..R::LANES {
+            let number = index.lane(lane);
+            // Entry 1 is read for "none" and thrown away: a branch here would be mispredicted at every other cell.
+            let element = column.read(number.saturating_sub(1) as usize);
+            // SAFETY: written by the store above.
+            let to = unsafe { &mut *spill.start().add(lane) };
+            *to = if number == 0 { *to } else { R::Lane::from_f64(element.to_f64()) };
+        }
+        // SAFETY: all LANES elements were written.
+        unsafe { self.registers.load(spill.start()) }
     }
 
     /// Builds a vector lane by lane.
@@ -207,30 +234,12 @@ impl<R: Registers> Machine for Strip<'_, R> {
 
     #[inline(always)]
     fn gather<T: Element>(self, slot: Slot<T>, index: R::Index, elsewhere: R::V) -> R::V {
-        let column = self.memory.column(slot);
-        let mut spill = Spill::new();
-        // SAFETY: the spill has room for MAX_LANES >= LANES elements.
-        unsafe { self.registers.store(spill.start(), elsewhere) };
-        if column.len() == 0 {
-            // Nothing to read for "none" below; any other number is as wrong here as there.
-            (0..R::LANES).filter(|&lane| index.lane(lane) != 0).for_each(|_| _ = column.read(0));
-            return elsewhere;
-        }
-        for lane in 0..R::LANES {
-            let number = index.lane(lane);
-            // Entry 1 is read for "none" and thrown away: a branch here would be mispredicted at every other cell.
-            let element = column.read(number.saturating_sub(1) as usize);
-            // SAFETY: written by the store above.
-            let to = unsafe { &mut *spill.start().add(lane) };
-            *to = if number == 0 { *to } else { R::Lane::from_f64(element.to_f64()) };
-        }
-        // SAFETY: all LANES elements were written.
-        unsafe { self.registers.load(spill.start()) }
+        self.gather_from(*self.memory.column(slot), index, elsewhere)
     }
 
     #[inline(always)]
     fn gather_index(self, slot: Slot<u32>, index: R::Index) -> R::Index {
-        let column = self.memory.column(slot);
+        let column = *self.memory.column(slot);
         let mut gathered = R::Index::none();
         for lane in 0..R::LANES {
             let number = index.lane(lane);

@@ -286,12 +286,16 @@ impl<R: Registers> RegisterFiles<R> {
                 let (index, elsewhere) = (self.index(*index), self.source(elsewhere, span));
                 match from.element {
                     f64::NAME => {
-                        let slot = Slot::<f64>::new(from.array);
-                        span.unary(to, elsewhere, |i, other| span.at(i).gather(slot, index[i].get(), other));
+                        let column = *span.memory.column(Slot::<f64>::new(from.array));
+                        span.unary(to, elsewhere, |i, other| {
+                            span.at(i).gather_from(column, index[i].get(), other)
+                        });
                     }
                     _ => {
-                        let slot = Slot::<f32>::new(from.array);
-                        span.unary(to, elsewhere, |i, other| span.at(i).gather(slot, index[i].get(), other));
+                        let column = *span.memory.column(Slot::<f32>::new(from.array));
+                        span.unary(to, elsewhere, |i, other| {
+                            span.at(i).gather_from(column, index[i].get(), other)
+                        });
                     }
                 }
             }
