@@ -26,20 +26,20 @@ pub(super) struct ValidateModel {
     #[arg(long, conflicts_with = "host")]
     calibrate: bool,
     /// Sweeps of that calibration
-    #[arg(long, requires = "calibrate", default_value_t = 40,
+    #[arg(long, requires = "calibrate", default_value_t = 30,
           value_parser = clap::value_parser!(u16).range(1..=200))]
     sweeps: u16,
     /// Numbers of particles
-    #[arg(long, value_delimiter = ',', default_values_t = [180, 1050, 5600, 26_000])]
+    #[arg(long, value_delimiter = ',', default_values_t = [280, 1450, 5000, 21_500])]
     particles: Vec<usize>,
     /// Occupancies, on cells as wide as the radius
-    #[arg(long, value_delimiter = ',', default_values_t = [0.055, 0.095, 0.145, 0.225])]
+    #[arg(long, value_delimiter = ',', default_values_t = [0.064, 0.108, 0.145, 0.195])]
     occupancies: Vec<f64>,
     /// Rounds over all runs
-    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
     /// Repeats of each run in a round
-    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
     /// Folder for the result as data, tables and figures
     #[arg(long)]

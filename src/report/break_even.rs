@@ -53,7 +53,7 @@ fn figure(sheet: &Sheet) -> Figure {
     let narrow =
         sheet.places.iter().filter(|place| place.winner().is_some_and(|(_, lead)| lead < DRAW)).count();
     let estimated = if sheet.measured {
-        "Moving discs, one thread, double precision; the sum of the lower quartiles of all phases."
+        "Moving discs, one thread, double precision; the sum over all phases of what the lowest tenth of the samples take."
     } else {
         "Candidates and contacts a disc as measured in a run of about a thousand discs of the same density."
     };

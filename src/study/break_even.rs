@@ -226,6 +226,7 @@ fn predict(
     let np = discs as f64;
     let amounts = if run.execution == LISTS {
         Amounts {
+            steps: 1.0,
             discs: np,
             cells: 0.0,
             candidates: figures.candidates * np,
@@ -234,12 +235,14 @@ fn predict(
             relisted: figures.candidates * np / figures.steps_a_list,
         }
     } else if run.execution == FAST_LISTS {
-        fast_lists.with(&Amounts::default(), |amount, _| amount * np / fast_lists.discs)
+        let of_so_many = fast_lists.with(&Amounts::default(), |amount, _| amount * np / fast_lists.discs);
+        Amounts { steps: 1.0, ..of_so_many }
     } else {
         // Each pair once; in the lists it is in both.
         let contacts = 0.5 * figures.contacts * np;
         let cells = lengths.cells as f64;
-        Amounts { discs: np, cells, candidates: HALF_MASK * np * np / cells, contacts, ..Amounts::default() }
+        let candidates = HALF_MASK * np * np / cells;
+        Amounts { steps: 1.0, discs: np, cells, candidates, contacts, ..Amounts::default() }
     };
     let method = run.rates().unwrap_or_default();
     let rates = host.rates.get(method).ok_or_else(|| OutOfRange::NotMeasured(format!("method {method}")))?;

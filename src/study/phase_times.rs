@@ -101,7 +101,7 @@ impl PhaseTimes {
     /// Of so many discs, nothing measured yet.
     pub fn none(discs: usize) -> PhaseTimes {
         PhaseTimes {
-            amounts: Amounts { discs: discs as f64, ..Amounts::default() },
+            amounts: Amounts { steps: 1.0, discs: discs as f64, ..Amounts::default() },
             samples: Default::default(),
             makings: Pieces::default(),
             made: 0.0,
@@ -135,13 +135,6 @@ impl PhaseTimes {
     /// The share of a phase's time that was measured in quiet moments, and not only told at their pace.
     pub fn quiet(&self, phase: Phase, reference: f64) -> f64 {
         self.samples[phase as usize].quiet(reference)
-    }
-
-    /// Whether every phase was measured in quiet moments.
-    pub fn is_quiet(&self, reference: f64) -> bool {
-        let there =
-            self.samples.iter().filter(|samples| samples.typical(reference).is_some_and(|ns| ns > 0.0));
-        there.map(|samples| samples.quiet(reference)).all(|share| share >= QUIET)
     }
 
     /// Nanoseconds of a phase in quiet moments, without the making of lists.
@@ -184,71 +177,105 @@ pub fn phase_times(
     sampling: &Sampling,
     pace: &mut Pace,
 ) -> Result<PhaseTimes, MeasurementError> {
-    let mut method = assemble(checked)?;
-    let model = model(checked);
     let discs = checked.particles.grain_count();
-    let lists = method.lists().is_some();
-    let cells = if lists { 0 } else { Lengths::new(&model, discs, checked.particles.len()).cells };
     let steps = sampling.repeats * (sampling.particle_steps / discs).clamp(sampling.least_steps, 2000);
-    let mut times = PhaseTimes::none(discs);
-    let mut found = Found::default();
+    let mut timing = Timing::new(checked, pace)?;
     let start = Instant::now();
-    let mut all = 0;
-    let mut made = 0;
-    // Steps of which only the makings of lists count, for these are rare.
-    let mut unnoticed = |times: &mut PhaseTimes, method: &mut dyn Method, pace: &mut Pace, count: usize| {
-        let (ran, around) = pace.around(&mut 0, || Ran::some(method, count, &mut Found::default()));
-        let ran = ran?;
-        times.take_makings(&ran, around);
-        all += count;
-        made += ran.makings.len();
-        Ok::<(), Failure>(())
-    };
-    unnoticed(&mut times, method.as_mut(), pace, sampling.equilibration)?;
+    timing.unnoticed(sampling.equilibration)?;
     let step = start.elapsed().as_nanos() as f64 / sampling.equilibration.max(1) as f64;
-    let group = ((SHORT / step).floor() as usize).min(steps);
-    let (mut steps_timed, mut made_timed) = (0, 0);
-    if group > 1 {
+    match ((SHORT / step).floor() as usize).min(steps) {
+        0 | 1 => timing.one_by_one(steps, step)?,
+        group => timing.in_groups(steps, group)?,
+    }
+    let cells = Lengths::new(&model(checked), discs, checked.particles.len()).cells;
+    Ok(timing.done(cells))
+}
+
+/// A run that is being timed.
+struct Timing<'a> {
+    method: Box<dyn Method>,
+    pace: &'a mut Pace,
+    times: PhaseTimes,
+    found: Found,
+    /// Steps so far, and how often lists were made in them.
+    steps: usize,
+    made: usize,
+}
+
+impl Timing<'_> {
+    fn new<'a>(checked: &Checked, pace: &'a mut Pace) -> Result<Timing<'a>, MeasurementError> {
+        let times = PhaseTimes::none(checked.particles.grain_count());
+        Ok(Timing { method: assemble(checked)?, pace, times, found: Found::default(), steps: 0, made: 0 })
+    }
+
+    /// Steps of which only the makings of lists count, for these are rare.
+    fn unnoticed(&mut self, count: usize) -> Result<(), Failure> {
+        let method = self.method.as_mut();
+        let (ran, around) = self.pace.around(&mut 0, || Ran::some(method, count, &mut Found::default()));
+        let ran = ran?;
+        self.times.take_makings(&ran, around);
+        self.count(count, ran.makings.len());
+        Ok(())
+    }
+
+    fn count(&mut self, steps: usize, made: usize) {
+        self.steps += steps;
+        self.made += made;
+    }
+
+    /// So many steps, timed group by group.
+    fn in_groups(&mut self, steps: usize, group: usize) -> Result<(), Failure> {
         let (mut left, mut quiet) = (steps, 0);
         while left > 0 {
             let count = group.min(left);
-            if pace.wait(quiet, SHORT) {
-                unnoticed(&mut times, method.as_mut(), pace, 1)?;
+            if self.pace.wait(quiet, SHORT) {
+                self.unnoticed(1)?;
             }
-            let (ran, around) = pace.around(&mut quiet, || Ran::some(method.as_mut(), count, &mut found));
+            let (method, found) = (self.method.as_mut(), &mut self.found);
+            let (ran, around) = self.pace.around(&mut quiet, || Ran::some(method, count, found));
             let ran = ran?;
-            times.take_group(method.as_ref(), count, &ran, around);
+            self.times.take_group(self.method.as_ref(), count, &ran, around);
+            self.count(count, ran.makings.len());
             left -= count;
-            steps_timed += count;
-            made_timed += ran.makings.len();
         }
-    } else {
+        Ok(())
+    }
+
+    /// So many steps, each timed from rest to rest, that last about so many nanoseconds.
+    fn one_by_one(&mut self, steps: usize, lasting: f64) -> Result<(), Failure> {
         let mut quiet = 0;
         for _ in 0..steps {
-            if pace.wait(quiet, step) {
-                unnoticed(&mut times, method.as_mut(), pace, 1)?;
+            if self.pace.wait(quiet, lasting) {
+                self.unnoticed(1)?;
             }
-            let (ran, pieces) =
-                pace.from_rest_to_rest(&mut quiet, || Ran::some(method.as_mut(), 1, &mut found));
+            let (method, found) = (self.method.as_mut(), &mut self.found);
+            let (ran, pieces) = self.pace.from_rest_to_rest(&mut quiet, || Ran::some(method, 1, found));
             let made_anew = !ran?.makings.is_empty();
-            times.take_step(&pieces, made_anew);
-            made_timed += usize::from(made_anew);
+            self.times.take_step(&pieces, made_anew);
+            self.count(1, usize::from(made_anew));
         }
-        steps_timed = steps;
+        Ok(())
     }
-    times.made = (made + made_timed) as f64 / (all + steps_timed).max(1) as f64;
-    let discs = discs as f64;
-    let near = HALF_MASK * discs * discs / cells.max(1) as f64;
-    let candidates = if lists { found.mean(found.candidates) } else { near };
-    times.amounts = Amounts {
-        discs,
-        cells: cells as f64,
-        candidates,
-        contacts: found.mean(found.contacts),
-        remade: times.made * discs,
-        relisted: if lists { times.made * candidates } else { 0.0 },
-    };
-    Ok(times)
+
+    /// What came out, on a lattice of so many cells if there is one.
+    fn done(self, cells: usize) -> PhaseTimes {
+        let Timing { method, mut times, found, steps, made, .. } = self;
+        let lists = method.lists().is_some();
+        let discs = times.amounts.discs;
+        times.made = made as f64 / steps.max(1) as f64;
+        let near = HALF_MASK * discs * discs / cells.max(1) as f64;
+        let candidates = if lists { found.mean(found.candidates) } else { near };
+        times.amounts = Amounts {
+            steps: 1.0,
+            discs,
+            cells: if lists { 0.0 } else { cells as f64 },
+            candidates,
+            contacts: found.mean(found.contacts),
+            remade: times.made * discs,
+            relisted: if lists { times.made * candidates } else { 0.0 },
+        };
+        times
+    }
 }
 
 /// Steps that were run.

@@ -4,7 +4,7 @@
 use super::pace::Timed;
 
 /// So many quiet samples are enough.
-const FEW: usize = 4;
+const FEW: usize = 2;
 /// How far the paces of two samples are apart at least that tell how a time follows the pace, as a logarithm.
 const APART: f64 = 0.1;
 /// A sample is compared with so many after it.
@@ -76,13 +76,16 @@ impl Pieces {
         for piece in pieces {
             let mut told: Vec<f64> =
                 piece.iter().filter(|timed| timed.was_quiet(reference)).map(|timed| timed.ns).collect();
-            if told.len() < FEW {
+            let of_quiet = told.len() >= FEW;
+            if !of_quiet {
                 let power = *known.get_or_insert_with(|| power(pieces));
                 told = piece.iter().map(|timed| timed.ns / timed.pace(reference).powf(power)).collect();
             }
             told.sort_by(f64::total_cmp);
+            // What is told is sometimes told too short.
+            let least = if of_quiet { 0.0 } else { TOLD };
             for (sum, share) in sums.iter_mut().zip(shares) {
-                *sum += quantile(&told, share).unwrap_or(0.0);
+                *sum += quantile(&told, share.max(least)).unwrap_or(0.0);
             }
         }
         Some(sums)
@@ -140,9 +143,11 @@ pub fn quantile(rising: &[f64], share: f64) -> Option<f64> {
     Some(rising[(share * last as f64).round() as usize])
 }
 
-/// The share of samples that lie below the one that counts: what is rare on the one side and what is disturbed on the other
-/// do not.
-pub const COUNTS: f64 = 0.25;
+/// The share of samples that lie below the one that counts: whatever disturbs makes them longer, and what others have left in
+/// the larger caches does so even in quiet moments; but the very shortest may be one that the clock cut short.
+pub const COUNTS: f64 = 0.1;
+/// No lower share than this counts where the samples were told at the pace of quiet moments.
+const TOLD: f64 = 0.25;
 
 #[cfg(test)]
 mod tests {

@@ -195,18 +195,18 @@ fn validation(effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, F
         particles,
         occupancies,
         rounds,
-        repeats: 4,
+        repeats: 1,
         particle_steps: 10_000,
     };
     match effort {
         Effort::Quick => {
-            let (host, runs) = (default_model()?, runs(vec![100, 2000], vec![0.2], 2));
+            let (host, runs) = (default_model()?, runs(vec![100, 2000], vec![0.2], 6));
             let data = model_validation(&host, Calibrated::Shipped, &runs, progress)?;
             made(report::model_validation::section(&data), &data)
         }
         Effort::Full => {
-            let (sweeps, best) = (calibration::Effort { sweeps: 24 }, InstructionSet::best());
-            let runs = runs(vec![110, 1200, 6300], vec![0.05, 0.24], 3);
+            let (sweeps, best) = (calibration::Effort { sweeps: 12 }, InstructionSet::best());
+            let runs = runs(vec![110, 1200, 6300], vec![0.05, 0.24], 6);
             let (host, data) = calibrated_in_turns(origin::host(), best, sweeps, &runs, progress)?;
             made(report::model_validation::section(&data), &data)
                 .map(|made| made.with_file("host.toml", host.to_toml()))

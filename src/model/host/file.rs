@@ -1,10 +1,10 @@
 //! Host files: what `calibrate` writes, as TOML.
 
-use super::{HostModel, Transfer};
+use super::{HostModel, Residual, Transfer};
 use crate::model::machine_file::Position;
 
 /// The version of the file format that this program reads.
-pub const FORMAT: u32 = 8;
+pub const FORMAT: u32 = 9;
 
 /// Why a host file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -106,6 +106,13 @@ impl HostModel {
                 .map(|(what, value)| (format!("{name}.{what}"), value))
             })
         });
+        let lists = self.lanes.iter().map(|(lane, costs)| (format!("lanes.{lane}"), &costs.seen));
+        let unsound = lists.chain([("loops".to_owned(), &self.loops.seen)]).flat_map(|(of, seen)| {
+            let bad = seen.iter().filter(|(_, seen)| !seen.residuals.iter().all(Residual::is_sound));
+            bad.map(move |(name, _)| format!("{of}.seen.{name}.residuals"))
+        });
+        let what = "holds a number that is not finite, a negative one or a ratio of nought";
+        defects.extend(unsound.map(|entry| (entry, what.to_owned())));
         let rates = self.rates.iter().flat_map(|(method, rates)| {
             let points = rates.0.values().flat_map(|phases| phases.values()).flatten();
             points.flat_map(|point| point.ns.values()).map(move |&ns| (format!("rates.{method}"), ns))
@@ -164,8 +171,9 @@ mod tests {
             ("run = ", "run = -", "`run` is -"),
             ("run = ", "runs = ", "unknown field `runs`"),
             ("overlap", "overlapp", "unknown field `overlapp`"),
-            ("format = 8", "format = 9", "`format` is 9"),
-            ("format = 8\n", "", "missing field `format`"),
+            ("residuals = [[", "residuals = [[-1.0, 1.0, 1.0], [", "residuals` holds a number"),
+            ("format = 9", "format = 10", "`format` is 10"),
+            ("format = 9\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
             assert!(said.contains(expected) && said.contains("line "), "{said}");

@@ -2,7 +2,8 @@
 //! from the operations it counts, so loops that a calibration has seen are charged what they took on short vectors; others
 //! by their classes of operations, fitted to those that were seen.
 
-use super::{Estimate, Level, OutOfRange, PassCost, Transfer};
+use super::residuals::{self, Residual};
+use super::{Estimate, Level, OutOfRange, PassCost, Surroundings, Transfer};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::backend::tape::Outlines;
@@ -20,6 +21,16 @@ pub struct ProgramCost {
     pub start: Estimate,
     /// How it differs beyond the first-level cache.
     pub factors: Factors,
+    /// How far off all that is on drill scenes: distance (bytes), elements of a vector or a strip, ratio.
+    pub residuals: Vec<Residual>,
+}
+
+impl ProgramCost {
+    /// How many times as long as said the program takes that finds such things around it, over vectors or strips of some
+    /// elements.
+    pub fn off(&self, around: &Surroundings, length: usize) -> f64 {
+        residuals::ratio(&self.residuals, around, length)
+    }
 }
 
 /// How a program differs from what is said of all.

@@ -1,17 +1,19 @@
 //! Today's hosts: what a pass of the interpreter takes, `t = t0 + n (tau + e0 + sum of e_level)`, with the level of each
 //! operand found by reuse distance on the passes that are executed, and t0 and tau of a program's passes together where a
-//! calibration has seen it; what compiled loops take; and what a unit of the work takes whose amount hangs on the data.
+//! calibration has seen it, with what the levels leave unsaid of it; what compiled loops take; and what a unit of the work takes whose amount hangs on the data.
 
 mod file;
 mod levels;
 mod loops;
 mod rates;
+mod residuals;
 mod reuse;
 
 pub use file::{BadEntry, FORMAT, HostFileError, default_model};
 pub use levels::{LINE, Level, Surroundings, Transfer, Wait, beyond, from_afar};
 pub use loops::{Factors, LoopCosts, ProgramCost, class_counts, overlapped};
 pub use rates::{Amounts, RatePoint, Rates};
+pub use residuals::Residual;
 pub use reuse::{Since, Touch, Vector, element_bytes, touched_arrays, touches};
 
 use serde::{Deserialize, Serialize};
@@ -176,6 +178,15 @@ fn measured_as(kind: &str) -> &str {
 }
 
 impl HostModel {
+    /// The same host by its levels alone, without what they leave unsaid.
+    #[must_use]
+    pub fn by_levels(&self) -> HostModel {
+        let mut model = self.clone();
+        let interpreted = model.lanes.values_mut().flat_map(|lane| lane.seen.values_mut());
+        interpreted.chain(model.loops.seen.values_mut()).for_each(|seen| seen.residuals.clear());
+        model
+    }
+
     /// The same host with every program of the interpreter charged pass by pass, as those are that were not seen.
     #[must_use]
     pub fn pass_by_pass(&self) -> HostModel {
@@ -272,7 +283,7 @@ impl HostModel {
             let parts = factors.scaled([near, wait, 0.0]);
             sum += strips as f64 * (parts.iter().sum::<f64>() + besides);
         }
-        Ok(sum)
+        Ok(sum * lane.seen.get(&outlines.signature()).map_or(1.0, |seen| seen.off(around, strip)))
     }
 
     /// Nanoseconds that a pass over `n` elements waits for what it touches.
@@ -306,7 +317,8 @@ impl HostModel {
         let (cost, factors) = self.loops.of(outlines)?;
         let wait = around.wait(&self.levels, &touched_arrays(outlines), n as f64, |level| level.loops);
         let parts = factors.scaled([n as f64 * cost.element.value, wait.streamed, wait.indexed]);
-        Ok(cost.start.value + overlapped(self.loops.overlap, parts))
+        let off = self.loops.seen.get(&outlines.signature()).map_or(1.0, |seen| seen.off(around, n));
+        Ok(off * (cost.start.value + overlapped(self.loops.overlap, parts)))
     }
 }
 
@@ -406,6 +418,7 @@ mod tests {
             element: of(0.75),
             start: of(7.0),
             factors: Factors::default(),
+            residuals: vec![],
         };
         lane.seen.insert(outlines.signature(), seen);
         assert_eq!(lane.near(&outlines, 8, 0.5).unwrap(), 7.0 + 8.0 * 0.75);

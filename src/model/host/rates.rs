@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 /// How much there is to do in a step: measured in a run, or estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Amounts {
+    /// Steps, one: what a phase takes however little there is to do.
+    pub steps: f64,
     /// Discs.
     pub discs: f64,
     /// Cells of the lattice; none for lists.
@@ -24,17 +26,19 @@ pub struct Amounts {
 
 impl Amounts {
     /// The names of the units, in the order of [`Amounts::values`].
-    pub const NAMES: [&'static str; 6] = ["disc", "cell", "candidate", "contact", "remade", "relisted"];
+    pub const NAMES: [&'static str; 7] =
+        ["step", "disc", "cell", "candidate", "contact", "remade", "relisted"];
 
     /// The amounts by unit.
-    pub fn values(&self) -> [f64; 6] {
-        [self.discs, self.cells, self.candidates, self.contacts, self.remade, self.relisted]
+    pub fn values(&self) -> [f64; 7] {
+        [self.steps, self.discs, self.cells, self.candidates, self.contacts, self.remade, self.relisted]
     }
 
     /// Each amount with that of another.
     #[must_use]
     pub fn with(&self, other: &Amounts, mean: impl Fn(f64, f64) -> f64) -> Amounts {
         Amounts {
+            steps: mean(self.steps, other.steps),
             discs: mean(self.discs, other.discs),
             cells: mean(self.cells, other.cells),
             candidates: mean(self.candidates, other.candidates),

@@ -52,7 +52,7 @@ pub(super) struct Levels {
 pub(super) const BEYOND: usize = 4;
 /// What is fitted: e0; what each level beyond the nearest adds to a byte fetched, to one of an array from before, to a byte
 /// that must go back, to the first one of a pass, and to a line that an index vector leads to unforeseen.
-const UNKNOWN: usize = 5 * BEYOND + 1;
+const UNKNOWN: usize = KINDS * BEYOND + 1;
 /// Where the arrays begin.
 const ARRAYS: usize = 1 + BEYOND;
 /// Where what goes back begins.
@@ -63,31 +63,47 @@ const FIRST: usize = 1 + 3 * BEYOND;
 const LINES: usize = 1 + 4 * BEYOND;
 pub(super) type Costs = [f64; UNKNOWN];
 
+/// Kinds of costs of a level.
+const KINDS: usize = 5;
+
+/// What is paid for that comes from beyond a capacity.
+#[derive(Clone, Copy)]
+struct Beyond {
+    /// Bytes, lines and passes by the kind of their cost.
+    kinds: [f64; KINDS],
+    /// Elements of passes any of whose operands do.
+    elements: f64,
+}
+
 impl Charged {
-    /// What is paid for: no level is cheaper than a nearer one, so every level adds to those before it.
-    fn point(&self, capacities: [f64; BEYOND]) -> Point {
-        let mut features = [0.0; UNKNOWN];
+    fn beyond(&self, capacity: f64) -> Beyond {
+        let mut beyond = Beyond { kinds: [0.0; KINDS], elements: 0.0 };
+        // A level that costs 1 beyond its capacity, and none before.
+        let near = Level { capacity: Some(capacity), ..Level::default() };
+        let costs = [
+            Transfer { fetch: 1.0, ..Transfer::default() },
+            Transfer { fetch_array: 1.0, ..Transfer::default() },
+            Transfer { write_back: 1.0, ..Transfer::default() },
+            Transfer { first: 1.0, ..Transfer::default() },
+            Transfer { line: 1.0, ..Transfer::default() },
+        ];
+        let levels = costs.map(|passes| [near.clone(), Level { passes, ..Level::default() }]);
         for Waiting { times, n, touched } in &self.passes {
-            for (level, capacity) in capacities.into_iter().enumerate() {
-                // A level that costs 1 beyond its capacity, and none before.
-                let near = Level { capacity: Some(capacity), ..Level::default() };
-                let wait = |passes: Transfer| {
-                    let levels = [near.clone(), Level { passes, ..Level::default() }];
-                    self.around.wait(&levels, touched, *n, |level| level.passes)
-                };
-                let own = [
-                    wait(Transfer { fetch: 1.0, ..Transfer::default() }),
-                    wait(Transfer { fetch_array: 1.0, ..Transfer::default() }),
-                    wait(Transfer { write_back: 1.0, ..Transfer::default() }),
-                    wait(Transfer { first: 1.0, ..Transfer::default() }),
-                    wait(Transfer { line: 1.0, ..Transfer::default() }),
-                ];
-                for (kind, own) in own.into_iter().enumerate() {
-                    features[1 + kind * BEYOND + level] += times * own.sum();
-                }
-                if level == 0 {
-                    features[0] += times * n * own[0].far;
-                }
+            let wait = |levels: &[Level; 2]| self.around.wait(levels, touched, *n, |level| level.passes);
+            let own = levels.each_ref().map(wait);
+            beyond.elements += times * n * own[0].far;
+            beyond.kinds.iter_mut().zip(own).for_each(|(kind, own)| *kind += times * own.sum());
+        }
+        beyond
+    }
+
+    /// What is paid for: no level is cheaper than a nearer one, so every level adds to those before it.
+    fn point(&self, beyond: [Beyond; BEYOND]) -> Point {
+        let mut features = [0.0; UNKNOWN];
+        features[0] = beyond[0].elements;
+        for (level, beyond) in beyond.iter().enumerate() {
+            for (kind, paid) in beyond.kinds.iter().enumerate() {
+                features[1 + kind * BEYOND + level] = *paid;
             }
         }
         let Charged { computing, start, ns, weight, .. } = *self;
@@ -173,9 +189,20 @@ fn streamed(features: &Costs, costs: &Costs) -> f64 {
 /// one level from the next; lines that nothing announces do, and loops wait for these most.
 pub(super) fn fit_levels(passes: &[Charged], loops: &[Charged]) -> Levels {
     let mut best = Fitted { error: f64::INFINITY, ..Fitted::default() };
-    for capacities in candidates() {
-        let points = |all: &[Charged]| all.iter().map(|each| each.point(capacities)).collect::<Vec<_>>();
-        let [passes, loops] = [passes, loops].map(points);
+    let candidates = candidates();
+    let measured = [passes, loops];
+    // Many candidates share a capacity, and what lies beyond it is much to count.
+    let mut known: BTreeMap<u64, [Vec<Beyond>; 2]> = BTreeMap::new();
+    for capacity in candidates.iter().flatten() {
+        let beyond = |all: &[Charged]| all.iter().map(|each| each.beyond(*capacity)).collect();
+        known.entry(capacity.to_bits()).or_insert_with(|| measured.map(beyond));
+    }
+    for capacities in candidates {
+        let beyond = capacities.map(|capacity| &known[&capacity.to_bits()]);
+        let [passes, loops] = [0, 1].map(|which: usize| {
+            let all = measured[which].iter().enumerate();
+            all.map(|(at, each)| each.point(beyond.map(|of| of[which][at]))).collect::<Vec<_>>()
+        });
         // What the levels cost all programs alike; how each differs from that; and the levels again, given this.
         let factors = Fitted::of(capacities, &passes, &loops).factors(&passes, &loops);
         let with = |all: &[Point], factors| all.iter().map(|point| point.with(factors)).collect::<Vec<_>>();
@@ -361,6 +388,10 @@ mod tests {
         }
     }
 
+    fn point(charged: &Charged, capacities: [f64; BEYOND]) -> Point {
+        charged.point(capacities.map(|capacity| charged.beyond(capacity)))
+    }
+
     #[test]
     fn costs_that_went_in_come_out() {
         let capacities = [2.0 * KIB, 32.0 * KIB, 512.0 * KIB, 8192.0 * KIB];
@@ -373,7 +404,7 @@ mod tests {
             charged(90_000.0 * KIB, false, 0.1),
             charged(90_000.0 * KIB, true, 0.145),
         ];
-        let points = all.map(|each| each.point(capacities));
+        let points = all.map(|each| point(&each, capacities));
         let costs = fit_passes(&points);
         for point in &points {
             assert!(point.deviation(point.waiting(&costs)) < 0.02, "{costs:?}");
@@ -390,7 +421,7 @@ mod tests {
         truth[1..ARRAYS].copy_from_slice(&[0.0, 0.002, 0.004, 0.02]);
         truth[LINES..].copy_from_slice(&[0.0, 0.0, 4.0, 16.0]);
         let features = |distance: f64, lines: [f64; BEYOND]| {
-            let mut features = charged(distance, false, 0.0).point(capacities).features;
+            let mut features = point(&charged(distance, false, 0.0), capacities).features;
             features[LINES..].copy_from_slice(&lines);
             features
         };

@@ -1,13 +1,11 @@
 //! Compiled loops: the programs of a step on vectors in the first-level cache, and their classes of operations.
 
 use super::fit;
-use super::levels::{Charged, Waiting};
+use super::large::{self, INTERPRETED, Ran, SCENES};
 use super::passes::{Lane, estimate};
 use super::timing::Samples;
-use crate::method::lattice_md::{Arrays, Lengths, Part, StepProgram, programs};
-use crate::model::host::{
-    Factors, LoopCosts, PassCost, ProgramCost, Surroundings, class_counts, touched_arrays,
-};
+use crate::method::lattice_md::{Arrays, Lengths, StepProgram, programs};
+use crate::model::host::{Estimate, Factors, LoopCosts, ProgramCost, class_counts};
 use crate::run::model;
 use crate::study::pace::Pace;
 use crate::study::phase_times::Run;
@@ -15,7 +13,6 @@ use crate::study::throughput::MeasurementError;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::backend::tape::Outlines;
 use stripmine_kernels::isa::{Memory, OpClass};
 use stripmine_kernels::{Execution, InstructionSet};
 
@@ -29,57 +26,43 @@ const STRIPS: [usize; 2] = [2, 8];
 const SHORTEST: f64 = 40_000.0;
 /// The drill scene: discs at rest that do not touch, as no validation runs them.
 const DRILL: Run = Run { particles: 240, occupancy: 0.13, precision: "f64", execution: "chained" };
-/// NP and ρ of the larger drill scenes, whose arrays lie in the levels beyond the first.
-const LARGE: [(usize, f64); 11] = [
-    (70, 0.12),
-    (150, 0.06),
-    (320, 0.16),
-    (480, 0.09),
-    (700, 0.06),
-    (1800, 0.13),
-    (5000, 0.06),
-    (9000, 0.13),
-    (15_000, 0.22),
-    (21_000, 0.07),
-    (30_000, 0.13),
-];
 /// What the drill scenes leave out, one after the other.
 const MODELS: [&[&str]; 2] = [
     &["particles.temperature=0", "particles.seed=7"],
     &["particles.temperature=0", "particles.seed=7", "law.friction=0", "law.shear_damping=0"],
 ];
 
-/// How the interpreter runs the large drill scenes: in one strip, and in strips whose registers lie in the first and in the
-/// second level; no validation has them.
-const INTERPRETED: [Execution; 4] =
-    [Execution::Eager, Execution::Strip(48), Execution::Strip(192), Execution::Strip(800)];
-/// Disc-steps of a sample of the interpreter and of loops, about, and steps at most.
-const INTERPRETED_DISCS: usize = 2000;
-const LOOP_DISCS: usize = 10_000;
+/// Elements of the longest vectors of a sample of the interpreter and of loops, about, and steps at most.
+const INTERPRETED_ELEMENTS: usize = 20_000;
+const LOOP_ELEMENTS: usize = 100_000;
 const MOST: usize = 8;
-/// The interpreter is slow: it is sampled in one sweep of so many, over the largest scenes, whose registers lie in memory,
-/// in one strip only and more rarely still.
-const RARELY: usize = 2;
-const LARGEST: usize = 20_000;
-const MORE_RARELY: usize = 10;
+
+/// The interpreter is slow: of so many sweeps it takes part in one, over vectors of so many elements.
+fn turn(elements: usize) -> usize {
+    match elements {
+        0..=30_000 => 2,
+        30_001..=100_000 => 4,
+        _ => 8,
+    }
+}
 
 /// Operations of each class of an element, and the nanoseconds it took.
 type Counted = (BTreeMap<&'static str, f64>, f64);
 
 /// The loops of one model in one precision.
-struct Step {
+pub(super) struct Step {
     name: String,
-    programs: Vec<StepProgram>,
-    ranges: Vec<Range<usize>>,
+    pub(super) programs: Vec<StepProgram>,
+    pub(super) ranges: Vec<Range<usize>>,
     memory: usize,
     large: bool,
     samples: Vec<[Samples; 2]>,
     /// The interpreter in short strips.
     strips: Vec<[Samples; 2]>,
     /// Whole vectors, one program after the other as in a step.
-    whole: Vec<Samples>,
+    pub(super) whole: Vec<Samples>,
     /// The same by the interpreter.
-    interpreted: [Vec<Samples>; INTERPRETED.len()],
+    pub(super) interpreted: [Vec<Samples>; INTERPRETED.len()],
 }
 
 /// Arrays of either precision.
@@ -103,7 +86,7 @@ impl Loops {
     /// Lays out the drill scenes.
     pub(super) fn new() -> Result<Loops, MeasurementError> {
         let mut loops = Loops { steps: vec![], arrays: vec![] };
-        let large = LARGE.iter().map(|&place| (place, MODELS[0]));
+        let large = SCENES.iter().map(|&place| (place, MODELS[0]));
         let small = MODELS.map(|overrides| ((DRILL.particles, DRILL.occupancy), overrides));
         for ((particles, occupancy), overrides) in small.into_iter().chain(large) {
             for precision in ["f64", "f32", "mixed"] {
@@ -165,17 +148,14 @@ impl Loops {
                 debug_assert!(outcome.is_ok(), "{outcome:?}");
             };
             let all = |at: usize| step.ranges[at].len();
-            let discs = step.discs();
-            let (rarely, executions) =
-                if discs < LARGEST { (RARELY, INTERPRETED.len()) } else { (MORE_RARELY, 1) };
-            if step.large && number.is_multiple_of(rarely) {
-                let interpreted = INTERPRETED.into_iter().zip(&mut step.interpreted);
-                for (execution, samples) in interpreted.take(executions) {
-                    let times = (INTERPRETED_DISCS / discs).clamp(1, MOST);
+            let longest = step.ranges.iter().map(ExactSizeIterator::len).max().unwrap_or(1).max(1);
+            if step.large && number.is_multiple_of(turn(longest)) {
+                for (execution, samples) in INTERPRETED.into_iter().zip(&mut step.interpreted) {
+                    let times = (INTERPRETED_ELEMENTS / longest).clamp(1, MOST);
                     Samples::take_in_turns(samples, pace, times, |at| run(at, all(at), execution));
                 }
             }
-            let times = (LOOP_DISCS / discs).clamp(1, MOST);
+            let times = (LOOP_ELEMENTS / longest).clamp(1, MOST);
             Samples::take_in_turns(&mut step.whole, pace, times, |at| run(at, all(at), Execution::Chained));
             if step.large {
                 // What is near is learned from the small ones.
@@ -230,8 +210,8 @@ impl Loops {
                     ((of(&samples[1]) - run - long * start(of)) / elements).max(1e-4)
                 };
                 let what = format!("{}, {}", program.part.name(), step.name);
-                let (element, start, factors) = (estimate(element), estimate(start), Factors::default());
-                let cost = ProgramCost { what, element, start, factors };
+                let (element, start) = (estimate(element), estimate(start));
+                let cost = seen_near(what, element, start);
                 begins.extend(lane.begin(&outlines, cost.start.value));
                 lane.costs.seen.entry(outlines.signature()).or_insert(cost);
             }
@@ -253,12 +233,11 @@ impl Loops {
                 });
                 let outlines = program.program.outlines();
                 let what = format!("{}, {}", program.part.name(), step.name);
-                let factors = Factors::default();
                 of_lane
                     .entry(outlines.lane.to_owned())
                     .or_default()
                     .push((class_counts(&outlines), element.value));
-                seen.entry(outlines.signature()).or_insert(ProgramCost { what, element, start, factors });
+                seen.entry(outlines.signature()).or_insert(seen_near(what, element, start));
             }
         }
         let mut classes = BTreeMap::new();
@@ -286,67 +265,13 @@ impl Loops {
         LoopCosts { classes, residual: fit::median(residuals.into_iter()), overlap: 0.5, seen }
     }
 
-    /// The programs of the large drill scenes as the interpreter ran them; `look` is what looking at the clock takes.
-    pub(super) fn charged<'a>(
-        &'a self,
-        lanes: &'a [Lane],
-        begin: f64,
-        look: f64,
-    ) -> impl Iterator<Item = Charged> + 'a {
-        let large = self.steps.iter().filter(|step| step.large);
-        large.flat_map(move |step| step.charged(lanes, begin, look))
-    }
-
-    /// The same as compiled loops, whose costs in the first-level cache are known.
-    pub(super) fn charged_loops(&self, costs: &LoopCosts, look: f64) -> Vec<Charged> {
-        let large = self.steps.iter().filter(|step| step.large);
-        large.flat_map(|step| step.charged_loops(costs, look)).collect()
+    /// The programs of the large drill scenes in every execution; `look` is what looking at the clock takes.
+    pub(super) fn large(&self, lanes: &[Lane], look: f64) -> Vec<Ran> {
+        self.steps.iter().filter(|step| step.large).flat_map(|step| large::ran(step, lanes, look)).collect()
     }
 }
 
-impl Step {
-    /// Discs: the longest vectors that programs of discs have.
-    fn discs(&self) -> usize {
-        let of_discs = self.programs.iter().zip(&self.ranges).find(|(step, _)| step.part == Part::Predictor);
-        of_discs.map_or(1, |(_, range)| range.len())
-    }
-
-    fn charged(&self, lanes: &[Lane], begin: f64, look: f64) -> Vec<Charged> {
-        let outlines: Vec<Outlines> = self.programs.iter().map(|step| step.program.outlines()).collect();
-        let lane = |outlines: &Outlines| lanes.iter().find(|lane| lane.name == outlines.lane);
-        let lengths = self.ranges.iter().map(ExactSizeIterator::len);
-        let cycle: Vec<(&Outlines, usize)> = outlines.iter().zip(lengths).collect();
-        let mut all = vec![];
-        for (execution, samples) in INTERPRETED.into_iter().zip(&self.interpreted) {
-            let strip = |n: usize| if let Execution::Strip(strip) = execution { strip.min(n) } else { n };
-            let registers = cycle
-                .iter()
-                .filter_map(|(outlines, n)| Some(lane(outlines)?.costs.register_extent(outlines, strip(*n))));
-            let around = Surroundings::of_cycle(&cycle, execution, registers.fold(0.0, f64::max));
-            let programs = cycle.iter().zip(around).zip(samples);
-            all.extend(programs.filter_map(|((&(outlines, n), around), samples)| {
-                let ns = samples.typical() - look;
-                let usable = ns.is_finite() && ns > 0.0 && n > 0;
-                usable.then(|| lane(outlines)?.charged(outlines, (n, strip(n)), begin, around, ns)).flatten()
-            }));
-        }
-        all
-    }
-
-    fn charged_loops(&self, costs: &LoopCosts, look: f64) -> Vec<Charged> {
-        let outlines: Vec<Outlines> = self.programs.iter().map(|step| step.program.outlines()).collect();
-        let lengths = self.ranges.iter().map(ExactSizeIterator::len);
-        let cycle: Vec<(&Outlines, usize)> = outlines.iter().zip(lengths).collect();
-        let around = Surroundings::of_cycle(&cycle, Execution::Chained, 0.0);
-        let each = cycle.iter().zip(around).zip(&self.whole);
-        let charged = each.filter_map(|((&(outlines, n), around), samples)| {
-            let ((PassCost { element, start }, _), ns) = (costs.of(outlines).ok()?, samples.typical() - look);
-            let n = n as f64;
-            let passes = vec![Waiting { times: 1.0, n, touched: touched_arrays(outlines) }];
-            let (computing, start, program) = (n * element.value, start.value, Some(outlines.signature()));
-            let charged = Charged { computing, start, passes, around, ns, weight: 1.0, program };
-            (ns.is_finite() && ns > 0.0 && n > 0.0).then_some(charged)
-        });
-        charged.collect()
-    }
+/// A program of which nothing is known yet but what it takes in the first-level cache.
+fn seen_near(what: String, element: Estimate, start: Estimate) -> ProgramCost {
+    ProgramCost { what, element, start, factors: Factors::default(), residuals: vec![] }
 }

@@ -5,6 +5,7 @@ mod capacities;
 mod drills;
 mod factors;
 mod fit;
+mod large;
 mod levels;
 mod loops;
 mod passes;
@@ -33,7 +34,7 @@ pub struct Effort {
 
 impl Default for Effort {
     fn default() -> Self {
-        Effort { sweeps: 20 }
+        Effort { sweeps: 12 }
     }
 }
 
@@ -56,9 +57,7 @@ pub enum CalibrationError {
 }
 
 /// The drill scenes are run at the first of so many sweeps, and take as long as these do.
-const SCENES_EVERY: usize = 8;
-/// Every scene is run so many times, and again where it was never quiet.
-const LAYOUTS: usize = 2;
+const SCENES_EVERY: usize = 4;
 
 /// Measures this host, called `title`, on one thread, and fits its model. `progress` gets the share that is done.
 ///
@@ -138,9 +137,7 @@ impl Calibration {
             if self.sweeps.is_multiple_of(SCENES_EVERY) {
                 let before = self.done(parts);
                 let part = self.done(parts + 1) - before;
-                self.scenes.sweep(self.sweeps >= LAYOUTS * SCENES_EVERY, &mut self.pace, |share| {
-                    progress(before + part * share)
-                })?;
+                self.scenes.sweep(&mut self.pace, |share| progress(before + part * share))?;
             }
             self.sweep();
             progress(self.done(self.sweeps.div_ceil(SCENES_EVERY)));
@@ -197,10 +194,13 @@ impl Calibration {
         let run = fit::median(lanes.iter().map(Lane::run));
         let begin = loops.see(&mut lanes, run);
         let long = lanes.iter().flat_map(|lane| lane.long_passes(begin));
-        let charged: Vec<Charged> = long.chain(loops.charged(&lanes, begin, look)).collect();
+        let large = loops.large(&lanes, look);
         let mut costs = loops.costs();
+        let passes: Vec<Charged> =
+            long.chain(large.iter().filter_map(|ran| ran.passes(&lanes, begin))).collect();
+        let compiled: Vec<Charged> = large.iter().filter_map(|ran| ran.compiled(&costs)).collect();
         let Levels { operand, levels, overlap, factors: [in_passes, in_loops], residual } =
-            fit_levels(&charged, &loops.charged_loops(&costs, look));
+            fit_levels(&passes, &compiled);
         for (found, seen) in lanes
             .iter_mut()
             .map(|lane| (&in_passes, &mut lane.costs.seen))
@@ -211,7 +211,7 @@ impl Calibration {
             }
         }
         let samples = || lanes.iter().flat_map(Lane::samples).chain(loops.samples());
-        HostModel {
+        let mut host = HostModel {
             format: FORMAT,
             title,
             instruction_set: set.name().to_owned(),
@@ -235,6 +235,8 @@ impl Calibration {
             loops: LoopCosts { overlap, ..costs },
             lanes: lanes.into_iter().map(|lane| (lane.name.to_owned(), lane.costs)).collect(),
             rates: scenes.rates(yardstick),
-        }
+        };
+        large::tell(&mut host, &large);
+        host
     }
 }

@@ -16,8 +16,7 @@ pub(super) const SHORTEST_VECTOR: usize = 8;
 /// Vectors that stay in the first-level cache, in hardware registers.
 const SHORT: [usize; 6] = [1, 2, 4, 8, 16, 32];
 /// Vectors that do not.
-const LONG: [usize; 13] =
-    [520, 1080, 2200, 4400, 9000, 17_000, 34_000, 68_000, 130_000, 270_000, 540_000, 1_300_000, LONGEST];
+const LONG: [usize; 8] = [520, 1600, 5200, 17_000, 52_000, 170_000, 540_000, LONGEST];
 /// Longest vectors that both precisions are drilled on: beyond, bytes are bytes.
 const BOTH: usize = 300_000;
 /// Passes of the mixtures.

@@ -9,17 +9,17 @@ use crate::study::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampli
 use crate::study::throughput::MeasurementError;
 use std::collections::BTreeMap;
 
-/// NP of the drill scenes.
-pub(super) const PARTICLES: [usize; 5] = [60, 400, 3000, 12_000, 32_000];
-/// ρ of the drill scenes; the first three are sparse.
-const OCCUPANCIES: [f64; 6] = [0.03, 0.07, 0.12, 0.17, 0.21, 0.26];
+/// NP of the drill scenes: close enough to each other that no level of memory ends unseen between two of them.
+pub(super) const PARTICLES: [usize; 8] = [60, 160, 420, 1100, 3000, 8000, 16_000, 32_000];
+/// ρ of the drill scenes, of every second NP these and of the others those; the first two are sparse.
+const OCCUPANCIES: [[f64; 4]; 2] = [[0.03, 0.12, 0.17, 0.26], [0.07, 0.1, 0.18, 0.22]];
 const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
 
 /// Steps before the clock starts, and those that are timed: fewer of many discs, but enough for lists to be made anew.
 fn sampling(run: &Run) -> Sampling {
     let discs = if run.has_lists() { 250_000 } else { 100_000 };
     let equilibration = (discs / run.particles).clamp(3, 60);
-    Sampling { equilibration, repeats: 3, particle_steps: 10_000, least_steps: 2 }
+    Sampling { equilibration, repeats: 1, particle_steps: 10_000, least_steps: 2 }
 }
 
 /// Every drill scene, and what was measured of it.
@@ -29,8 +29,8 @@ impl Scenes {
     /// Nothing measured yet.
     pub(super) fn new() -> Result<Scenes, MeasurementError> {
         let mut scenes = vec![];
-        for particles in PARTICLES {
-            for occupancy in OCCUPANCIES {
+        for (particles, occupancies) in PARTICLES.into_iter().zip(OCCUPANCIES.iter().cycle()) {
+            for &occupancy in occupancies {
                 for precision in PRECISIONS {
                     for execution in [FAST, FAST_LISTS, LISTS] {
                         let run = Run { particles, occupancy, precision, execution };
@@ -42,19 +42,10 @@ impl Scenes {
         Ok(Scenes(scenes))
     }
 
-    /// Runs every scene once more; `again` those only that were not measured in quiet moments. `progress` gets the share that is done.
-    pub(super) fn sweep(
-        &mut self,
-        again: bool,
-        pace: &mut Pace,
-        progress: impl Fn(f64),
-    ) -> Result<(), MeasurementError> {
+    /// Runs every scene once more. `progress` gets the share that is done.
+    pub(super) fn sweep(&mut self, pace: &mut Pace, progress: impl Fn(f64)) -> Result<(), MeasurementError> {
         let all = self.0.len() as f64;
         for (at, (run, checked, times)) in self.0.iter_mut().enumerate() {
-            let enough = |times: &PhaseTimes| again && times.is_quiet(pace.reference());
-            if times.as_ref().is_some_and(enough) {
-                continue;
-            }
             let more = phase_times(checked, &sampling(run), pace)?;
             *times = Some(match times.take() {
                 Some(before) => before.joined(more),
@@ -180,8 +171,8 @@ const ROUNDS: usize = 40;
 
 /// The units that a phase can depend on: others would only fit the noise.
 fn charged(phase: Phase, amounts: &Amounts) -> Amounts {
-    let Amounts { discs, cells, candidates, contacts, .. } = *amounts;
-    let none = Amounts { discs, ..Amounts::default() };
+    let Amounts { steps, discs, cells, candidates, contacts, .. } = *amounts;
+    let none = Amounts { steps, discs, ..Amounts::default() };
     match phase {
         Phase::Forces => Amounts { cells, candidates, contacts, ..none },
         Phase::Index => Amounts { cells, ..none },

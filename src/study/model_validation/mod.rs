@@ -23,7 +23,8 @@ pub struct Effort {
     pub particles: Vec<usize>,
     /// ρ on cells as wide as the radius.
     pub occupancies: Vec<f64>,
-    /// Rounds over all runs: what one of them meets in a busy moment, another does not.
+    /// Rounds over all runs, each laid out in memory anew: who else is at work on the machine, and what of his lies in the larger
+    /// caches, is the same for a while.
     pub rounds: usize,
     /// Repeats of a run in a round.
     pub repeats: usize,
@@ -167,9 +168,6 @@ fn alone() -> Result<ThreadPool, MeasurementError> {
     rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(MeasurementError::Threads)
 }
 
-/// Rounds that every run is part of, two in each half.
-const LAYOUTS: usize = 4;
-
 /// All runs, and what was measured of them.
 struct Measured {
     effort: Effort,
@@ -192,14 +190,9 @@ impl Measured {
     fn round(&mut self, progress: &dyn Fn(f64)) -> Result<(), MeasurementError> {
         let all = self.scenes.len() as f64;
         for (at, (scene, times)) in self.scenes.iter().zip(&mut self.times).enumerate() {
-            let times = &mut times[self.rounds % 2];
-            // Laid out anew at least twice; and again where it was never quiet.
-            let enough = |times: &PhaseTimes| self.rounds >= LAYOUTS && times.is_quiet(self.pace.reference());
-            if times.as_ref().is_some_and(enough) {
-                continue;
-            }
+            let half = &mut times[self.rounds % 2];
             let more = scene.measure(&self.effort, &mut self.pace)?;
-            *times = Some(match times.take() {
+            *half = Some(match half.take() {
                 Some(before) => before.joined(more),
                 None => more,
             });
@@ -212,9 +205,10 @@ impl Measured {
     /// Beside what a model predicts.
     fn against(&self, host: &HostModel, calibrated: Calibrated) -> Result<ModelValidation, ValidationError> {
         let reference = self.pace.reference();
+        let levels = host.by_levels();
         let mut cases = vec![];
         for (scene, halves) in self.scenes.iter().zip(&self.times) {
-            cases.extend(scene.cases(host, halves, reference)?);
+            cases.extend(scene.cases([host, &levels], halves, reference)?);
         }
         Ok(ModelValidation {
             host: host.title.clone(),

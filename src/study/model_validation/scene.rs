@@ -12,6 +12,9 @@ use crate::study::predicted_step::{Step, of_precision};
 use crate::study::throughput::MeasurementError;
 use stripmine_kernels::Execution;
 
+/// Steps after which the caches hold what the next one finds.
+const WARMED: usize = 3;
+
 /// A run, ready. What it does if that does not hang on the data: else the run must first say how much there was to do.
 pub(super) struct Scene {
     run: Run,
@@ -46,7 +49,12 @@ impl Scene {
     /// Runs it once more.
     pub(super) fn measure(&self, effort: &Effort, pace: &mut Pace) -> Result<PhaseTimes, MeasurementError> {
         let sampling = Sampling {
-            equilibration: (effort.particle_steps / self.run.particles).clamp(5, 50),
+            // What programs take does not hang on the data: the caches alone must have come to rest.
+            equilibration: if self.step.is_some() {
+                WARMED
+            } else {
+                (effort.particle_steps / self.run.particles).clamp(5, 50)
+            },
             repeats: effort.repeats,
             particle_steps: effort.particle_steps,
             // Lists are made anew every few steps only.
@@ -55,11 +63,11 @@ impl Scene {
         phase_times(&self.checked, &sampling, pace)
     }
 
-    /// Every phase that it has, predicted and as it was measured in the rounds of even and of odd number; `reference` is what
+    /// Every phase that it has, predicted by a model and by its levels alone, and as it was measured in the rounds of even and of odd number; `reference` is what
     /// the yardstick takes in quiet moments (ns).
     pub(super) fn cases(
         &self,
-        host: &HostModel,
+        [host, levels]: [&HostModel; 2],
         halves: &[Option<PhaseTimes>; 2],
         reference: f64,
     ) -> Result<Vec<Case>, ValidationError> {
@@ -70,15 +78,18 @@ impl Scene {
             [Some(even), Some(odd)] => Some([even, odd].map(|half| half.typical(phase, reference).0)),
             _ => None,
         };
-        let predicted: Vec<(f64, Option<f64>)> = match self.predicted(host)? {
-            Some(phases) => phases.into_iter().map(|[ns, baseline]| (ns, Some(baseline))).collect(),
-            None => {
+        let predicted: Vec<(f64, Option<[f64; 2]>)> = match (self.predicted(host)?, self.predicted(levels)?) {
+            (Some(all), Some(levels)) => {
+                let both = all.into_iter().zip(levels);
+                both.map(|([ns, baseline], [by_levels, _])| (ns, Some([baseline, by_levels]))).collect()
+            }
+            _ => {
                 let phases = rated(host, &self.run, &times).map_err(|cause| self.out(cause))?;
                 phases.into_iter().map(|ns| (ns, None)).collect()
             }
         };
         let Run { particles, occupancy, precision, execution } = self.run;
-        let cases = Phase::ALL.iter().zip(predicted).map(|(&phase, (predicted, baseline))| {
+        let cases = Phase::ALL.iter().zip(predicted).map(|(&phase, (predicted, simpler))| {
             let (measured, quartiles) = times.typical(phase, reference);
             Case {
                 particles,
@@ -91,7 +102,8 @@ impl Scene {
                 quartiles,
                 halves: of_halves(phase),
                 quiet: times.quiet(phase, reference),
-                baseline,
+                baseline: simpler.map(|[baseline, _]| baseline),
+                by_levels: simpler.map(|[_, by_levels]| by_levels),
             }
         });
         // Not every execution has every phase.
