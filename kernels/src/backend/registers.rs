@@ -93,9 +93,9 @@ impl<'m, R: Registers> Strip<'m, R> {
         Strip { registers, memory, base }
     }
 
-    /// Elements of a column through an index vector. The column comes by value: were it looked up in the memory lane by lane,
-    /// a processor that tells addresses apart by their last 12 bits only would wait for the spill's stores each time that
-    /// the one happens to lie some pages from the other, and a gather take twice as long.
+    /// Elements of a column through an index vector. The column comes by value: looked up in the memory lane by lane, behind
+    /// stores to the spill, it made a gather take twice as long in one process and not in the next, most likely where the
+    /// two lay at the same last bits of their addresses.
     #[inline(always)]
     pub(crate) fn gather_from<T: Element>(self, column: Column<T>, index: R::Index, elsewhere: R::V) -> R::V {
         let mut spill = Spill::new();

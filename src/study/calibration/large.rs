@@ -32,8 +32,7 @@ pub(super) const SCENES: [(usize, f64); 16] = [
 ];
 
 /// How the interpreter runs them: in one strip, and in strips whose registers lie in the first and in the second level; none
-/// that a validation has. All are whole numbers of times that a loop goes over some registers at once: a strip of three or
-/// seven registers takes a tenth longer than its neighbours.
+/// that a validation has. Powers of two, so that no strip leaves elements over.
 pub(super) const INTERPRETED: [Execution; 5] = [
     Execution::Eager,
     Execution::Strip(32),
