@@ -1,6 +1,6 @@
 //! Registers of the processor at hand, chosen at run time: AVX-512, AVX2, NEON, or scalar, by the crate `pulp`.
 
-use super::registers::Registers;
+use super::registers::{IndexLanes, Registers};
 use crate::isa::{Element, Predicate, Vector};
 use pulp::Simd;
 #[cfg(target_arch = "x86_64")]
@@ -14,6 +14,9 @@ pub trait PulpElement: Element {
     type Register<S: Simd>: Copy;
     /// A register of truth values of `S`.
     type Truth<S: Simd>: Copy;
+    /// An index vector, of as many entries as the widest registers have lanes: with more, what is loaded would be laid out on
+    /// the stack and read back in wider pieces, which waits.
+    type Index: IndexLanes;
     #[doc(hidden)]
     fn splat<S: Simd>(simd: S, value: Self) -> Self::Register<S>;
     #[doc(hidden)]
@@ -58,13 +61,14 @@ pub trait PulpElement: Element {
 }
 
 macro_rules! pulp_element {
-    ($ty:ident, $register:ident, $truth:ident, $lanes:ident,
+    ($ty:ident, $register:ident, $truth:ident, $lanes:ident, $widest:literal,
      $splat:ident $add:ident $sub:ident $mul:ident $div:ident $min:ident $max:ident $sqrt:ident $abs:ident
      $less_than:ident $less_equal:ident $equal:ident $select:ident $and:ident $not:ident $first_true:ident
      $movemask:ident) => {
         impl PulpElement for $ty {
             type Register<S: Simd> = S::$register;
             type Truth<S: Simd> = S::$truth;
+            type Index = [u32; $widest];
             #[inline(always)]
             fn splat<S: Simd>(simd: S, value: Self) -> S::$register {
                 simd.$splat(value)
@@ -165,11 +169,11 @@ macro_rules! pulp_element {
 }
 
 pulp_element!(
-    f64, f64s, m64s, F64_LANES, splat_f64s add_f64s sub_f64s mul_f64s div_f64s min_f64s max_f64s sqrt_f64s abs_f64s
+    f64, f64s, m64s, F64_LANES, 8, splat_f64s add_f64s sub_f64s mul_f64s div_f64s min_f64s max_f64s sqrt_f64s abs_f64s
     less_than_f64s less_than_or_equal_f64s equal_f64s select_f64s and_m64s not_m64s first_true_m64s _mm256_movemask_pd
 );
 pulp_element!(
-    f32, f32s, m32s, F32_LANES, splat_f32s add_f32s sub_f32s mul_f32s div_f32s min_f32s max_f32s sqrt_f32s abs_f32s
+    f32, f32s, m32s, F32_LANES, 16, splat_f32s add_f32s sub_f32s mul_f32s div_f32s min_f32s max_f32s sqrt_f32s abs_f32s
     less_than_f32s less_than_or_equal_f32s equal_f32s select_f32s and_m32s not_m32s first_true_m32s _mm256_movemask_ps
 );
 
@@ -278,7 +282,7 @@ impl<S: Simd, T: PulpElement> Vector for Register<S, T> {
 impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
     type Lane = T;
     type V = Register<S, T>;
-    type Index = [u32; 16];
+    type Index = T::Index;
     const LANES: usize = size_of::<T::Register<S>>() / T::BYTES;
 
     #[inline(always)]

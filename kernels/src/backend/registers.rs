@@ -1,6 +1,7 @@
 //! The machine made of registers: one body of every instruction over any register file.
 
 use crate::isa::{Column, Counter, Element, Machine, Memory, Slot, Storage, Vector, same};
+use std::hint::select_unpredictable;
 use std::mem::MaybeUninit;
 
 /// The most lanes any register file has: bounds the buffers of lane-by-lane instructions.
@@ -86,6 +87,9 @@ impl<T: Copy> Spill<T> {
     }
 }
 
+/// Instructions that touch memory take its column by value: looked up lane by lane or register by register, behind stores to
+/// the stack, a pass took a tenth longer or twice as long at some depths of the stack and not at others. A load waits for an
+/// earlier store at the same last 12 bits of its address.
 impl<'m, R: Registers> Strip<'m, R> {
     #[inline(always)]
     pub(crate) fn new(registers: R, memory: &'m Memory<'m>, base: usize) -> Self {
@@ -93,29 +97,105 @@ impl<'m, R: Registers> Strip<'m, R> {
         Strip { registers, memory, base }
     }
 
-    /// Elements of a column through an index vector. The column comes by value: looked up in the memory lane by lane, behind
-    /// stores to the spill, it made a gather take twice as long in one process and not in the next, most likely where the
-    /// two lay at the same last bits of their addresses.
+    #[inline(always)]
+    fn place<T: Storage>(self, column: Column<T>, shift: isize) -> *mut T {
+        // SAFETY: the memory was admitted for the footprint, so base + shift and the lanes behind it exist.
+        unsafe { column.at(self.base.wrapping_add_signed(shift)) }
+    }
+
+    /// As [`Machine::load_shifted`].
+    #[inline(always)]
+    pub(crate) fn load_from<T: Element>(self, column: Column<T>, shift: isize) -> R::V {
+        let from = self.place(column, shift);
+        if same::<T, R::Lane>() {
+            // SAFETY: T is Lane; LANES elements exist (footprint).
+            unsafe { self.registers.load(from.cast()) }
+        } else {
+            // SAFETY: LANES elements exist (footprint).
+            self.assemble(|lane| R::Lane::from_f64(unsafe { *from.add(lane) }.to_f64()))
+        }
+    }
+
+    /// As [`Machine::store_shifted`].
+    #[inline(always)]
+    pub(crate) fn store_to<T: Element>(self, column: Column<T>, shift: isize, value: R::V) {
+        let to = self.place(column, shift);
+        if same::<T, R::Lane>() {
+            // SAFETY: T is Lane; LANES elements exist and are writable (footprint).
+            unsafe { self.registers.store(to.cast(), value) };
+        } else {
+            // SAFETY: LANES elements exist and are writable (footprint).
+            self.disperse(value, |lane, number| unsafe { *to.add(lane) = T::from_f64(number.to_f64()) });
+        }
+    }
+
+    /// As [`Machine::gather`].
     #[inline(always)]
     pub(crate) fn gather_from<T: Element>(self, column: Column<T>, index: R::Index, elsewhere: R::V) -> R::V {
         let mut spill = Spill::new();
         // SAFETY: the spill has room for MAX_LANES >= LANES elements.
         unsafe { self.registers.store(spill.start(), elsewhere) };
-        if column.len() == 0 {
-            // Nothing to read for "none" below; any other number is as wrong here as there.
-            (0..R::LANES).filter(|&lane| index.lane(lane) != 0).for_each(|_| _ = column.read(0));
-            return elsewhere;
-        }
+        // Read for "none" and thrown away, for a branch would be mispredicted at every other cell; and no element of the
+        // column, which would always be the same, where stores to the spill may seem to be.
+        let nothing = T::default();
         for lane in 0..R::LANES {
             let number = index.lane(lane);
-            // Entry 1 is read for "none" and thrown away: a branch here would be mispredicted at every other cell.
-            let element = column.read(number.saturating_sub(1) as usize);
+            let is_none = number == 0;
+            let from = select_unpredictable(is_none, &raw const nothing, column.entry(number));
+            // SAFETY: an entry that there is, or the one above.
+            let element = R::Lane::from_f64(unsafe { *from }.to_f64());
             // SAFETY: written by the store above.
             let to = unsafe { &mut *spill.start().add(lane) };
-            *to = if number == 0 { *to } else { R::Lane::from_f64(element.to_f64()) };
+            *to = select_unpredictable(is_none, *to, element);
         }
         // SAFETY: all LANES elements were written.
         unsafe { self.registers.load(spill.start()) }
+    }
+
+    /// As [`Machine::load_index`].
+    #[inline(always)]
+    pub(crate) fn load_index_from(self, column: Column<u32>) -> R::Index {
+        let from = self.place(column, 0);
+        let mut index = R::Index::none();
+        for lane in 0..R::LANES {
+            // SAFETY: LANES elements exist (footprint).
+            index.set_lane(lane, unsafe { *from.add(lane) });
+        }
+        index
+    }
+
+    /// As [`Machine::store_index`].
+    #[inline(always)]
+    pub(crate) fn store_index_to(self, column: Column<u32>, value: R::Index) {
+        let to = self.place(column, 0);
+        for lane in 0..R::LANES {
+            // SAFETY: LANES elements exist and are writable (footprint).
+            unsafe { *to.add(lane) = value.lane(lane) };
+        }
+    }
+
+    /// As [`Machine::gather_index`].
+    #[inline(always)]
+    pub(crate) fn gather_index_from(self, column: Column<u32>, index: R::Index) -> R::Index {
+        let mut gathered = R::Index::none();
+        for lane in 0..R::LANES {
+            let number = index.lane(lane);
+            if number != 0 {
+                gathered.set_lane(lane, column.read(number as usize - 1));
+            }
+        }
+        gathered
+    }
+
+    /// As [`Machine::scatter_index`].
+    #[inline(always)]
+    pub(crate) fn scatter_index_to(self, column: Column<u32>, index: R::Index, value: R::Index) {
+        for lane in 0..R::LANES {
+            let number = index.lane(lane);
+            if number != 0 {
+                column.write(number as usize - 1, value.lane(lane));
+            }
+        }
     }
 
     /// Builds a vector lane by lane.
@@ -141,12 +221,6 @@ impl<'m, R: Registers> Strip<'m, R> {
             take(lane, unsafe { spill.start().add(lane).read() });
         }
     }
-
-    #[inline(always)]
-    fn place<T: Storage>(self, slot: Slot<T>, shift: isize) -> *mut T {
-        // SAFETY: the memory was admitted for the footprint, so base + shift and the lanes behind it exist.
-        unsafe { self.memory.column(slot).at(self.base.wrapping_add_signed(shift)) }
-    }
 }
 
 impl<R: Registers> Machine for Strip<'_, R> {
@@ -167,14 +241,7 @@ impl<R: Registers> Machine for Strip<'_, R> {
 
     #[inline(always)]
     fn load_shifted<T: Element>(self, slot: Slot<T>, shift: isize) -> R::V {
-        let from = self.place(slot, shift);
-        if same::<T, R::Lane>() {
-            // SAFETY: T is Lane; LANES elements exist (footprint).
-            unsafe { self.registers.load(from.cast()) }
-        } else {
-            // SAFETY: LANES elements exist (footprint).
-            self.assemble(|lane| R::Lane::from_f64(unsafe { *from.add(lane) }.to_f64()))
-        }
+        self.load_from(*self.memory.column(slot), shift)
     }
 
     #[inline(always)]
@@ -184,14 +251,7 @@ impl<R: Registers> Machine for Strip<'_, R> {
 
     #[inline(always)]
     fn store_shifted<T: Element>(self, slot: Slot<T>, shift: isize, value: R::V) {
-        let to = self.place(slot, shift);
-        if same::<T, R::Lane>() {
-            // SAFETY: T is Lane; LANES elements exist and are writable (footprint).
-            unsafe { self.registers.store(to.cast(), value) };
-        } else {
-            // SAFETY: LANES elements exist and are writable (footprint).
-            self.disperse(value, |lane, number| unsafe { *to.add(lane) = T::from_f64(number.to_f64()) });
-        }
+        self.store_to(*self.memory.column(slot), shift, value);
     }
 
     #[inline(always)]
@@ -214,22 +274,12 @@ impl<R: Registers> Machine for Strip<'_, R> {
 
     #[inline(always)]
     fn load_index(self, slot: Slot<u32>) -> R::Index {
-        let from = self.place(slot, 0);
-        let mut index = R::Index::none();
-        for lane in 0..R::LANES {
-            // SAFETY: LANES elements exist (footprint).
-            index.set_lane(lane, unsafe { *from.add(lane) });
-        }
-        index
+        self.load_index_from(*self.memory.column(slot))
     }
 
     #[inline(always)]
     fn store_index(self, slot: Slot<u32>, value: R::Index) {
-        let to = self.place(slot, 0);
-        for lane in 0..R::LANES {
-            // SAFETY: LANES elements exist and are writable (footprint).
-            unsafe { *to.add(lane) = value.lane(lane) };
-        }
+        self.store_index_to(*self.memory.column(slot), value);
     }
 
     #[inline(always)]
@@ -239,26 +289,12 @@ impl<R: Registers> Machine for Strip<'_, R> {
 
     #[inline(always)]
     fn gather_index(self, slot: Slot<u32>, index: R::Index) -> R::Index {
-        let column = *self.memory.column(slot);
-        let mut gathered = R::Index::none();
-        for lane in 0..R::LANES {
-            let number = index.lane(lane);
-            if number != 0 {
-                gathered.set_lane(lane, column.read(number as usize - 1));
-            }
-        }
-        gathered
+        self.gather_index_from(*self.memory.column(slot), index)
     }
 
     #[inline(always)]
     fn scatter_index(self, slot: Slot<u32>, index: R::Index, value: R::Index) {
-        let column = self.memory.column(slot);
-        for lane in 0..R::LANES {
-            let number = index.lane(lane);
-            if number != 0 {
-                column.write(number as usize - 1, value.lane(lane));
-            }
-        }
+        self.scatter_index_to(*self.memory.column(slot), index, value);
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Registers of a width fixed at compile time, by the crate `wide`: what a build without run-time dispatch gets.
 
-use super::registers::Registers;
+use super::registers::{IndexLanes, Registers};
 use crate::isa::{Element, Predicate, Vector};
 use ::wide::{f32x8, f64x4};
 use std::marker::PhantomData;
@@ -10,6 +10,8 @@ use std::ops::{Add, Div, Mul, Sub};
 pub trait WideElement: Element {
     /// The register: 256 bits, whatever the processor.
     type Register: WideRegister<Self>;
+    /// An index vector as wide.
+    type Index: IndexLanes;
 }
 
 /// A register of `wide` as the machine needs it.
@@ -51,7 +53,7 @@ operator!(Mul, mul);
 operator!(Div, div);
 
 macro_rules! wide_element {
-    ($ty:ident, $wide:ident) => {
+    ($ty:ident, $wide:ident, $lanes:literal) => {
         impl Predicate for Truth<$wide> {
             #[inline(always)]
             fn and(self, other: Self) -> Self {
@@ -130,16 +132,17 @@ macro_rules! wide_element {
 
         impl WideElement for $ty {
             type Register = Register<$wide>;
+            type Index = [u32; $lanes];
         }
     };
 }
-wide_element!(f64, f64x4);
-wide_element!(f32, f32x8);
+wide_element!(f64, f64x4, 4);
+wide_element!(f32, f32x8, 8);
 
 impl<T: WideElement> Registers for Wide<T> {
     type Lane = T;
     type V = T::Register;
-    type Index = [u32; 8];
+    type Index = T::Index;
     const LANES: usize = size_of::<T::Register>() / T::BYTES;
 
     #[inline(always)]

@@ -89,12 +89,6 @@ pub struct Column<T> {
 impl<T: Storage> Column<T> {
     const UNBOUND: Column<T> = Column { origin: std::ptr::null_mut(), length: 0, writable: false };
 
-    /// Elements of the slice.
-    #[inline(always)]
-    pub(crate) fn len(&self) -> usize {
-        self.length
-    }
-
     /// Pointer to an element.
     ///
     /// # Safety
@@ -115,6 +109,18 @@ impl<T: Storage> Column<T> {
         assert!(position < self.length, "gather from element {position} of {}", self.length);
         // SAFETY: just checked; bound columns point to live slices.
         unsafe { *self.origin.add(position) }
+    }
+
+    /// Pointer to what an entry of an index vector stands for: the element of that number, counted from one. Zero stands for
+    /// none, and points nowhere.
+    ///
+    /// # Panics
+    /// As [`Column::read`].
+    #[inline(always)]
+    pub(crate) fn entry(&self, number: u32) -> *const T {
+        let number = number as usize;
+        assert!(number <= self.length, "gather from element {} of {}", number - 1, self.length);
+        self.origin.wrapping_add(number).wrapping_sub(1)
     }
 
     /// Writes the element at `position`.

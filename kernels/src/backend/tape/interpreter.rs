@@ -6,7 +6,9 @@ use super::instruction::{Action, File, Instruction, Operand, RegisterName};
 use super::pool;
 use super::register_file::RegisterFile;
 use crate::backend::{IndexLanes, Precision, Registers, Scalar, Strip};
-use crate::isa::{Counter, Element, Machine, Memory, Op, Predicate, ProgramError, Slot, Storage, Vector};
+use crate::isa::{
+    Array, Column, Counter, Element, Machine, Memory, Op, Predicate, ProgramError, Slot, Storage, Vector,
+};
 use crate::program::{InstructionSet, Task, dispatch};
 use crate::rests::Rests;
 use std::cell::Cell;
@@ -103,6 +105,12 @@ impl<'m, R: Registers> Span<'m, R> {
         Strip::new(self.hardware, self.memory, self.base + register * R::LANES)
     }
 
+    /// Where an array is.
+    #[inline(always)]
+    fn column<T: Storage>(self, array: Array) -> Column<T> {
+        *self.memory.column(Slot::new(array))
+    }
+
     /// The lanes at the place of one hardware register.
     ///
     /// # Safety
@@ -111,6 +119,19 @@ impl<'m, R: Registers> Span<'m, R> {
     unsafe fn read(self, from: *const R::Lane, register: usize) -> R::V {
         // SAFETY: the caller's promise.
         unsafe { self.hardware.load(from.add(register * R::LANES)) }
+    }
+
+    /// The lanes of a source at the place of one hardware register.
+    ///
+    /// # Safety
+    /// The source has the span's lanes.
+    #[inline(always)]
+    unsafe fn lanes(self, source: Source<R::Lane>, register: usize) -> R::V {
+        match source {
+            // SAFETY: the caller's promise.
+            Source::Lanes(from) => unsafe { self.read(from, register) },
+            Source::Uniform(value) => self.hardware.splat(value),
+        }
     }
 
     /// A pass of something made at each place.
@@ -208,7 +229,7 @@ impl<R: Registers> RegisterFiles<R> {
             }
             Operand::Uniform(value) => Source::Uniform(*value),
             Operand::Memory(from) => {
-                let column = span.memory.column(Slot::<R::Lane>::new(from.array));
+                let column = span.column::<R::Lane>(from.array);
                 // SAFETY: the memory was admitted: the footprint covers base + shift and the span's lanes behind it.
                 Source::Lanes(unsafe { column.at(span.base.wrapping_add_signed(from.shift)) })
             }
@@ -274,31 +295,18 @@ impl<R: Registers> RegisterFiles<R> {
             }
             Action::Load(from) => match from.element {
                 f64::NAME => {
-                    let slot = Slot::<f64>::new(from.array);
-                    span.each(to, |i| span.at(i).load_shifted(slot, from.shift));
+                    let (column, shift) = (span.column::<f64>(from.array), from.shift);
+                    span.each(to, |i| span.at(i).load_from(column, shift));
                 }
                 _ => {
-                    let slot = Slot::<f32>::new(from.array);
-                    span.each(to, |i| span.at(i).load_shifted(slot, from.shift));
+                    let (column, shift) = (span.column::<f32>(from.array), from.shift);
+                    span.each(to, |i| span.at(i).load_from(column, shift));
                 }
             },
-            Action::Gather(from, index, elsewhere) => {
-                let (index, elsewhere) = (self.index(*index), self.source(elsewhere, span));
-                match from.element {
-                    f64::NAME => {
-                        let column = *span.memory.column(Slot::<f64>::new(from.array));
-                        span.unary(to, elsewhere, |i, other| {
-                            span.at(i).gather_from(column, index[i].get(), other)
-                        });
-                    }
-                    _ => {
-                        let column = *span.memory.column(Slot::<f32>::new(from.array));
-                        span.unary(to, elsewhere, |i, other| {
-                            span.at(i).gather_from(column, index[i].get(), other)
-                        });
-                    }
-                }
-            }
+            Action::Gather(from, index, elsewhere) => match from.element {
+                f64::NAME => self.gather(span, to, span.column::<f64>(from.array), *index, elsewhere),
+                _ => self.gather(span, to, span.column::<f32>(from.array), *index, elsewhere),
+            },
             Action::Numbers => span.each(to, |i| span.at(i).numbers()),
             Action::FromIndex(index) => {
                 let index = self.index(*index);
@@ -306,6 +314,23 @@ impl<R: Registers> RegisterFiles<R> {
             }
             action => unreachable!("{action:?} writes no register of numbers"),
         }
+    }
+
+    /// One place that calls for the body, or the compiler would call it for every hardware register.
+    #[inline(always)]
+    fn gather<T: Element>(
+        &self,
+        span: Span<'_, R>,
+        to: &[Cell<R::V>],
+        column: Column<T>,
+        index: RegisterName,
+        elsewhere: &Operand<R::Lane>,
+    ) {
+        let (index, elsewhere) = (self.index(index), self.source(elsewhere, span));
+        span.each(to, |i| {
+            // SAFETY: sources have the span's lanes.
+            span.at(i).gather_from(column, index[i].get(), unsafe { span.lanes(elsewhere, i) })
+        });
     }
 
     /// Instructions that write a predicate.
@@ -338,12 +363,12 @@ impl<R: Registers> RegisterFiles<R> {
         match &pass.action {
             Action::ToIndex(a) => span.unary(to, self.source(a, span), |i, a| span.at(i).to_index(a)),
             Action::LoadIndex(from) => {
-                let slot = Slot::new(from.array);
-                span.each(to, |i| span.at(i).load_index(slot));
+                let column = span.column(from.array);
+                span.each(to, |i| span.at(i).load_index_from(column));
             }
             Action::GatherIndex(from, index) => {
-                let (slot, index) = (Slot::new(from.array), self.index(*index));
-                span.each(to, |i| span.at(i).gather_index(slot, index[i].get()));
+                let (column, index) = (span.column(from.array), self.index(*index));
+                span.each(to, |i| span.at(i).gather_index_from(column, index[i].get()));
             }
             action => unreachable!("{action:?} writes no index vector"),
         }
@@ -354,19 +379,19 @@ impl<R: Registers> RegisterFiles<R> {
     fn effect(&self, pass: &Instruction<R::Lane>, span: Span<'_, R>) {
         match &pass.action {
             Action::Store(to, value) => match to.element {
-                f64::NAME => self.store(span, Slot::<f64>::new(to.array), to.shift, value),
-                _ => self.store(span, Slot::<f32>::new(to.array), to.shift, value),
+                f64::NAME => self.store(span, span.column::<f64>(to.array), to.shift, value),
+                _ => self.store(span, span.column::<f32>(to.array), to.shift, value),
             },
             Action::StoreIndex(to, value) => {
-                let (slot, value) = (Slot::new(to.array), self.index(*value));
+                let (column, value) = (span.column(to.array), self.index(*value));
                 for (i, value) in value[..span.length].iter().enumerate() {
-                    span.at(i).store_index(slot, value.get());
+                    span.at(i).store_index_to(column, value.get());
                 }
             }
             Action::ScatterIndex(to, index, value) => {
-                let (slot, index, value) = (Slot::new(to.array), self.index(*index), self.index(*value));
+                let (column, index, value) = (span.column(to.array), self.index(*index), self.index(*value));
                 for (i, (index, value)) in index[..span.length].iter().zip(value).enumerate() {
-                    span.at(i).scatter_index(slot, index.get(), value.get());
+                    span.at(i).scatter_index_to(column, index.get(), value.get());
                 }
             }
             Action::Count(predicate, counter) => {
@@ -379,15 +404,18 @@ impl<R: Registers> RegisterFiles<R> {
     }
 
     #[inline(always)]
-    fn store<T: Element>(&self, span: Span<'_, R>, slot: Slot<T>, shift: isize, value: &Operand<R::Lane>) {
+    fn store<T: Element>(
+        &self,
+        span: Span<'_, R>,
+        column: Column<T>,
+        shift: isize,
+        value: &Operand<R::Lane>,
+    ) {
         let value = self.source(value, span);
         for i in 0..span.length {
-            let value = match value {
-                // SAFETY: sources have the span's lanes.
-                Source::Lanes(from) => unsafe { span.read(from, i) },
-                Source::Uniform(value) => span.hardware.splat(value),
-            };
-            span.at(i).store_shifted(slot, shift, value);
+            // SAFETY: sources have the span's lanes.
+            let value = unsafe { span.lanes(value, i) };
+            span.at(i).store_to(column, shift, value);
         }
     }
 }
