@@ -30,10 +30,10 @@ pub(super) struct ValidateModel {
           value_parser = clap::value_parser!(u16).range(1..=200))]
     sweeps: u16,
     /// Numbers of particles
-    #[arg(long, value_delimiter = ',', default_values_t = [280, 1450, 5000, 21_500])]
+    #[arg(long, value_delimiter = ',', default_values_t = [150, 1250, 4600, 25_000])]
     particles: Vec<usize>,
     /// Occupancies, on cells as wide as the radius
-    #[arg(long, value_delimiter = ',', default_values_t = [0.064, 0.108, 0.145, 0.195])]
+    #[arg(long, value_delimiter = ',', default_values_t = [0.06, 0.112, 0.15, 0.21])]
     occupancies: Vec<f64>,
     /// Rounds over all runs
     #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u16).range(1..))]

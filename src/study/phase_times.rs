@@ -180,9 +180,8 @@ pub fn phase_times(
     let discs = checked.particles.grain_count();
     let steps = sampling.repeats * (sampling.particle_steps / discs).clamp(sampling.least_steps, 2000);
     let mut timing = Timing::new(checked, pace)?;
-    let start = Instant::now();
-    timing.unnoticed(sampling.equilibration)?;
-    let step = start.elapsed().as_nanos() as f64 / sampling.equilibration.max(1) as f64;
+    // The shortest: one that met a busy moment would have short steps timed as long ones.
+    let step = timing.unnoticed(sampling.equilibration.max(1))?;
     match ((SHORT / step).floor() as usize).min(steps) {
         0 | 1 => timing.one_by_one(steps, step)?,
         group => timing.in_groups(steps, group)?,
@@ -208,14 +207,14 @@ impl Timing<'_> {
         Ok(Timing { method: assemble(checked)?, pace, times, found: Found::default(), steps: 0, made: 0 })
     }
 
-    /// Steps of which only the makings of lists count, for these are rare.
-    fn unnoticed(&mut self, count: usize) -> Result<(), Failure> {
+    /// Steps of which only the makings of lists count, for these are rare. Nanoseconds of the shortest.
+    fn unnoticed(&mut self, count: usize) -> Result<f64, Failure> {
         let method = self.method.as_mut();
         let (ran, around) = self.pace.around(&mut 0, || Ran::some(method, count, &mut Found::default()));
         let ran = ran?;
         self.times.take_makings(&ran, around);
         self.count(count, ran.makings.len());
-        Ok(())
+        Ok(1e9 * ran.shortest)
     }
 
     fn count(&mut self, steps: usize, made: usize) {
@@ -280,6 +279,8 @@ impl Timing<'_> {
 
 /// Steps that were run.
 struct Ran {
+    /// Seconds of the shortest step.
+    shortest: f64,
     /// Seconds of each making of lists, with the upkeep of its step.
     makings: Vec<f64>,
 }
@@ -288,17 +289,19 @@ impl Ran {
     /// So many more, each of which is looked at.
     fn some(method: &mut dyn Method, count: usize, found: &mut Found) -> Result<Ran, Failure> {
         let made = |method: &dyn Method| method.lists().map_or(0, |(_, made)| made);
-        let mut makings = vec![];
+        let (mut makings, mut shortest) = (vec![], f64::INFINITY);
         method.reset_timings();
         for _ in 0..count {
             let (seconds, earlier) = (method.timings().seconds(Phase::Index), made(method));
+            let start = Instant::now();
             method.step()?;
+            shortest = start.elapsed().as_secs_f64().min(shortest);
             found.look(method);
             if made(method) > earlier {
                 makings.push(method.timings().seconds(Phase::Index) - seconds);
             }
         }
-        Ok(Ran { makings })
+        Ok(Ran { shortest, makings })
     }
 }
 

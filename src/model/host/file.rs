@@ -4,7 +4,7 @@ use super::{HostModel, Residual, Transfer};
 use crate::model::machine_file::Position;
 
 /// The version of the file format that this program reads.
-pub const FORMAT: u32 = 9;
+pub const FORMAT: u32 = 10;
 
 /// Why a host file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -99,6 +99,8 @@ impl HostModel {
                 [
                     ("element.value", seen.element.value),
                     ("start.value", seen.start.value),
+                    ("rest.element.value", seen.rest.element.value),
+                    ("rest.start.value", seen.rest.start.value),
                     ("factors.computing", seen.factors.computing),
                     ("factors.waiting", seen.factors.waiting),
                     ("factors.beyond", seen.factors.beyond.iter().sum()),
@@ -172,8 +174,8 @@ mod tests {
             ("run = ", "runs = ", "unknown field `runs`"),
             ("overlap", "overlapp", "unknown field `overlapp`"),
             ("residuals = [[", "residuals = [[-1.0, 1.0, 1.0], [", "residuals` holds a number"),
-            ("format = 9", "format = 10", "`format` is 10"),
-            ("format = 9\n", "", "missing field `format`"),
+            ("format = 10", "format = 11", "`format` is 11"),
+            ("format = 10\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
             assert!(said.contains(expected) && said.contains("line "), "{said}");

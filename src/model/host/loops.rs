@@ -5,6 +5,7 @@
 use super::residuals::{self, Residual};
 use super::{Estimate, Level, OutOfRange, PassCost, Surroundings, Transfer};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use stripmine_kernels::backend::tape::Outlines;
 use stripmine_kernels::isa::OpClass;
@@ -19,6 +20,8 @@ pub struct ProgramCost {
     pub element: Estimate,
     /// Nanoseconds besides: of a run, or of a strip of the interpreter.
     pub start: Estimate,
+    /// The same of what is left beyond whole hardware registers, which goes element by element.
+    pub rest: PassCost,
     /// How it differs beyond the first-level cache.
     pub factors: Factors,
     /// How far off all that is on drill scenes: distance (bytes), elements of a vector or a strip, ratio.
@@ -26,6 +29,19 @@ pub struct ProgramCost {
 }
 
 impl ProgramCost {
+    /// Nanoseconds to begin, and to compute, over `n` elements in the first-level cache, so many in a hardware register.
+    pub fn near(&self, n: usize, lanes: usize) -> [f64; 2] {
+        let left = n % lanes.max(1);
+        let whole = n - left;
+        let parts = [(whole, self.start, self.element), (left, self.rest.start, self.rest.element)];
+        parts.into_iter().filter(|(n, ..)| *n > 0).fold(
+            [0.0; 2],
+            |[begin, computing], (n, start, element)| {
+                [begin + start.value, computing + n as f64 * element.value]
+            },
+        )
+    }
+
     /// How many times as long as said the program takes that finds such things around it, over vectors or strips of some
     /// elements.
     pub fn off(&self, around: &Surroundings, length: usize) -> f64 {
@@ -86,21 +102,21 @@ pub struct LoopCosts {
 }
 
 impl LoopCosts {
-    /// The cost of a program's loop and how it differs: as it was seen, or by its classes.
+    /// The cost of a program's loop: as it was seen, or by its classes.
     ///
     /// # Errors
     /// [`OutOfRange::NotMeasured`] where not even its lanes were.
-    pub fn of(&self, outlines: &Outlines) -> Result<(PassCost, Factors), OutOfRange> {
-        if let Some(ProgramCost { element, start, factors, .. }) = self.seen.get(&outlines.signature()) {
-            return Ok((PassCost { element: *element, start: *start }, *factors));
+    pub fn of(&self, outlines: &Outlines) -> Result<Cow<'_, ProgramCost>, OutOfRange> {
+        if let Some(seen) = self.seen.get(&outlines.signature()) {
+            return Ok(Cow::Borrowed(seen));
         }
         self.by_classes(outlines)
-            .map(|cost| (cost, Factors::default()))
+            .map(Cow::Owned)
             .ok_or_else(|| OutOfRange::NotMeasured(format!("chained execution of {} lanes", outlines.lane)))
     }
 
     /// The cost of a loop by its classes of operations.
-    pub fn by_classes(&self, outlines: &Outlines) -> Option<PassCost> {
+    fn by_classes(&self, outlines: &Outlines) -> Option<ProgramCost> {
         let classes = self.classes.get(outlines.lane)?;
         let counts = class_counts(outlines);
         let value =
@@ -108,7 +124,15 @@ impl LoopCosts {
         let starts: Vec<f64> = self.seen.values().map(|seen| seen.start.value).collect();
         let start = starts.iter().sum::<f64>() / starts.len().max(1) as f64;
         let interval = |value: f64| Estimate { value, interval: self.residual * value };
-        Some(PassCost { element: interval(value), start: interval(start) })
+        let element = interval(value);
+        Some(ProgramCost {
+            what: "by its classes".to_owned(),
+            element,
+            start: interval(start),
+            rest: PassCost { element, start: Estimate::default() },
+            factors: Factors::default(),
+            residuals: vec![],
+        })
     }
 
     /// Nanoseconds of the cheapest class that computes: what the trivial baseline charges for everything.

@@ -314,11 +314,11 @@ impl HostModel {
     }
 
     fn chained(&self, outlines: &Outlines, n: usize, around: &Surroundings) -> Result<f64, OutOfRange> {
-        let (cost, factors) = self.loops.of(outlines)?;
+        let cost = self.loops.of(outlines)?;
+        let [begin, computing] = cost.near(n, self.lane(outlines.lane)?.lanes);
         let wait = around.wait(&self.levels, &touched_arrays(outlines), n as f64, |level| level.loops);
-        let parts = factors.scaled([n as f64 * cost.element.value, wait.streamed, wait.indexed]);
-        let off = self.loops.seen.get(&outlines.signature()).map_or(1.0, |seen| seen.off(around, n));
-        Ok(off * (cost.start.value + overlapped(self.loops.overlap, parts)))
+        let parts = cost.factors.scaled([computing, wait.streamed, wait.indexed]);
+        Ok(cost.off(around, n) * (begin + overlapped(self.loops.overlap, parts)))
     }
 }
 
@@ -335,10 +335,10 @@ impl LaneCosts {
     /// # Errors
     /// [`OutOfRange::NotMeasured`] where a kind of pass was not measured.
     pub fn near(&self, outlines: &Outlines, n: usize, begin: f64) -> Result<f64, OutOfRange> {
-        let at = |start: f64, element: f64| self.starts(n) * start + n as f64 * element;
         if let Some(seen) = self.seen.get(&outlines.signature()) {
-            return Ok(at(seen.start.value, seen.element.value));
+            return Ok(seen.near(n, self.lanes).iter().sum());
         }
+        let at = |start: f64, element: f64| self.starts(n) * start + n as f64 * element;
         let change = begin * self.change(outlines.passes.len());
         let each = |pass| {
             let PassCost { element, start } = self.cost(pass)?;
@@ -417,10 +417,12 @@ mod tests {
             what: "two sums".to_owned(),
             element: of(0.75),
             start: of(7.0),
+            rest: PassCost { element: of(1.5), start: of(3.0) },
             factors: Factors::default(),
             residuals: vec![],
         };
         lane.seen.insert(outlines.signature(), seen);
-        assert_eq!(lane.near(&outlines, 8, 0.5).unwrap(), 7.0 + 8.0 * 0.75);
+        let near = [3, 8, 9].map(|n| lane.near(&outlines, n, 0.5).unwrap());
+        assert_eq!(near, [3.0 + 3.0 * 1.5, 7.0 + 8.0 * 0.75, 7.0 + 8.0 * 0.75 + 3.0 + 1.5]);
     }
 }

@@ -5,7 +5,7 @@ use super::levels::{Charged, Waiting};
 use super::loops::Step;
 use super::passes::Lane;
 use super::timing::Samples;
-use crate::model::host::{HostModel, LoopCosts, PassCost, Residual, Surroundings, touched_arrays};
+use crate::model::host::{HostModel, LoopCosts, Residual, Surroundings, touched_arrays};
 use std::rc::Rc;
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
@@ -31,12 +31,12 @@ pub(super) const SCENES: [(usize, f64); 16] = [
     (24_000, 0.06),
 ];
 
-/// How the interpreter runs them: in one strip, and in strips whose registers lie in the first and in the second level; none
-/// that a validation has. Powers of two, so that no strip leaves elements over.
+/// How the interpreter runs them: in one strip, and in strips whose registers lie in the first and in the second level, among
+/// them the vectors of a CRAY, which most people will ask for. Powers of two, so that no strip leaves elements over.
 pub(super) const INTERPRETED: [Execution; 5] = [
     Execution::Eager,
     Execution::Strip(32),
-    Execution::Strip(128),
+    Execution::Strip(64),
     Execution::Strip(256),
     Execution::Strip(1024),
 ];
@@ -101,12 +101,13 @@ impl Ran {
     }
 
     /// The same as a loop, whose cost in the first-level cache is known; none of the interpreter's.
-    pub(super) fn compiled(&self, costs: &LoopCosts) -> Option<Charged> {
-        let (PassCost { element, start }, _) = costs.of(&self.outlines).ok().filter(|_| self.is_loop())?;
+    pub(super) fn compiled(&self, costs: &LoopCosts, lanes: &[Lane]) -> Option<Charged> {
+        let cost = costs.of(&self.outlines).ok().filter(|_| self.is_loop())?;
+        let [start, computing] = cost.near(self.n, of(lanes, &self.outlines)?.costs.lanes);
         let n = self.n as f64;
         Some(Charged {
-            computing: n * element.value,
-            start: start.value,
+            computing,
+            start,
             passes: vec![Waiting { times: 1.0, n, touched: touched_arrays(&self.outlines) }],
             around: self.around.clone(),
             ns: self.ns,

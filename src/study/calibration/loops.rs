@@ -5,7 +5,7 @@ use super::large::{self, INTERPRETED, Ran, SCENES};
 use super::passes::{Lane, estimate};
 use super::timing::Samples;
 use crate::method::lattice_md::{Arrays, Lengths, StepProgram, programs};
-use crate::model::host::{Estimate, Factors, LoopCosts, ProgramCost, class_counts};
+use crate::model::host::{Estimate, Factors, LoopCosts, PassCost, ProgramCost, class_counts};
 use crate::run::model;
 use crate::study::pace::Pace;
 use crate::study::phase_times::Run;
@@ -22,10 +22,14 @@ const ELEMENTS: [usize; 2] = [32, 96];
 /// element takes from what a pass takes to begin, and short enough that arrays and registers lie in the first-level cache.
 const STRIPPED: usize = 16;
 const STRIPS: [usize; 2] = [2, 8];
+/// How many elements are left over beyond whole registers of so many lanes, in runs that tell what these take.
+fn left_over(lanes: usize) -> [usize; 2] {
+    [1, lanes.saturating_sub(1).max(2)]
+}
 /// Least nanoseconds of a sample.
 const SHORTEST: f64 = 40_000.0;
 /// The drill scene: discs at rest that do not touch, as no validation runs them.
-const DRILL: Run = Run { particles: 240, occupancy: 0.13, precision: "f64", execution: "chained" };
+const DRILL: Run = Run { particles: 300, occupancy: 0.13, precision: "f64", execution: "chained" };
 /// What the drill scenes leave out, one after the other.
 const MODELS: [&[&str]; 2] = [
     &["particles.temperature=0", "particles.seed=7"],
@@ -56,13 +60,43 @@ pub(super) struct Step {
     pub(super) ranges: Vec<Range<usize>>,
     memory: usize,
     large: bool,
-    samples: Vec<[Samples; 2]>,
+    loops: Vec<Near>,
     /// The interpreter in short strips.
-    strips: Vec<[Samples; 2]>,
+    strips: Vec<Near>,
     /// Whole vectors, one program after the other as in a step.
     pub(super) whole: Vec<Samples>,
     /// The same by the interpreter.
     pub(super) interpreted: [Vec<Samples>; INTERPRETED.len()],
+}
+
+/// Runs of a program in the first-level cache.
+#[derive(Clone, Default)]
+struct Near {
+    /// Over whole registers: short and longer.
+    whole: [Samples; 2],
+    /// With elements left over: few and many.
+    left: [Samples; 2],
+}
+
+impl Near {
+    fn all(&self) -> impl Iterator<Item = &Samples> {
+        self.whole.iter().chain(&self.left)
+    }
+
+    fn all_mut(&mut self) -> impl Iterator<Item = &mut Samples> {
+        self.whole.iter_mut().chain(&mut self.left)
+    }
+
+    /// What is left over takes, where `whole` runs without it.
+    fn rest(&self, lanes: usize, whole: usize) -> PassCost {
+        let [few, many] = left_over(lanes).map(|left| left as f64);
+        let element =
+            |of: &dyn Fn(&Samples) -> f64| ((of(&self.left[1]) - of(&self.left[0])) / (many - few)).max(1e-4);
+        let start = |of: &dyn Fn(&Samples) -> f64| {
+            (of(&self.left[0]) - of(&self.whole[whole]) - few * element(of)).max(0.0)
+        };
+        PassCost { element: estimate(self.all(), element), start: estimate(self.all(), start) }
+    }
 }
 
 /// Arrays of either precision.
@@ -111,7 +145,7 @@ impl Loops {
         let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
         let programs = programs::<S, P>(&model);
         let ranges = programs.iter().map(|step| lengths.range(step.length)).collect();
-        let samples: Vec<[Samples; 2]> = programs.iter().map(|_| Default::default()).collect();
+        let near: Vec<Near> = programs.iter().map(|_| Near::default()).collect();
         let whole: Vec<Samples> = programs.iter().map(|_| Samples::default()).collect();
         let interpreted = INTERPRETED.map(|_| whole.clone());
         let friction = if model.friction { "" } else { ", frictionless" };
@@ -123,8 +157,8 @@ impl Loops {
             ranges,
             memory: self.arrays.len(),
             large,
-            strips: samples.clone(),
-            samples,
+            strips: near.clone(),
+            loops: near,
             whole,
             interpreted,
         });
@@ -161,16 +195,18 @@ impl Loops {
                 // What is near is learned from the small ones.
                 continue;
             }
-            for (at, samples) in step.samples.iter_mut().enumerate() {
-                for (samples, n) in samples.iter_mut().zip(ELEMENTS) {
-                    samples.take(pace, SHORTEST, || run(at, n.min(all(at)), Execution::Chained));
-                }
-            }
-            for (at, samples) in step.strips.iter_mut().enumerate() {
+            for (at, (loops, strips)) in step.loops.iter_mut().zip(&mut step.strips).enumerate() {
                 let lanes = lanes(step.programs[at].program.outlines().lane);
-                for (samples, strip) in samples.iter_mut().zip(STRIPS) {
-                    let strip = Execution::Strip(strip * lanes);
-                    samples.take(pace, SHORTEST, || run(at, (STRIPPED * lanes).min(all(at)), strip));
+                let left = left_over(lanes);
+                let [short, long] = ELEMENTS;
+                for (samples, n) in loops.all_mut().zip([short, long, short + left[0], short + left[1]]) {
+                    samples.take(pace, SHORTEST, || run(at, n, Execution::Chained));
+                }
+                let whole = STRIPPED * lanes;
+                let [short, long] = STRIPS.map(|strip| strip * lanes);
+                let all = [(whole, short), (whole, long), (whole + left[0], long), (whole + left[1], long)];
+                for (samples, (n, strip)) in strips.all_mut().zip(all) {
+                    samples.take(pace, SHORTEST, || run(at, n, Execution::Strip(strip)));
                 }
             }
         }
@@ -179,8 +215,8 @@ impl Loops {
     /// Tells all samples at the pace of a reference.
     pub(super) fn settle(&mut self, reference: f64) {
         for step in &mut self.steps {
-            let near = step.samples.iter_mut().chain(&mut step.strips).flatten().chain(&mut step.whole);
-            let samples = near.chain(step.interpreted.iter_mut().flatten());
+            let near = step.loops.iter_mut().chain(&mut step.strips).flat_map(Near::all_mut);
+            let samples = near.chain(&mut step.whole).chain(step.interpreted.iter_mut().flatten());
             samples.for_each(|samples| samples.settle(reference));
         }
     }
@@ -190,7 +226,7 @@ impl Loops {
         self.steps
             .iter()
             .filter(|step| !step.large)
-            .flat_map(|step| step.samples.iter().chain(&step.strips).flatten())
+            .flat_map(|step| step.loops.iter().chain(&step.strips).flat_map(Near::all))
     }
 
     /// What the programs take in the interpreter, where a run takes so long besides: into the costs of their lanes. With how
@@ -198,9 +234,10 @@ impl Loops {
     pub(super) fn see(&self, lanes: &mut [Lane], run: f64) -> f64 {
         let mut begins = vec![];
         for step in self.steps.iter().filter(|step| !step.large) {
-            for (program, samples) in step.programs.iter().zip(&step.strips) {
+            for (program, near) in step.programs.iter().zip(&step.strips) {
                 let outlines = program.program.outlines();
                 let Some(lane) = lanes.iter_mut().find(|lane| lane.name == outlines.lane) else { continue };
+                let samples = &near.whole;
                 let elements = (STRIPPED * lane.costs.lanes) as f64;
                 let [short, long] = STRIPS.map(|strip| (STRIPPED / strip) as f64);
                 let start = |of: &dyn Fn(&Samples) -> f64| {
@@ -210,8 +247,8 @@ impl Loops {
                     ((of(&samples[1]) - run - long * start(of)) / elements).max(1e-4)
                 };
                 let what = format!("{}, {}", program.part.name(), step.name);
-                let (element, start) = (estimate(element), estimate(start));
-                let cost = seen_near(what, element, start);
+                let (element, start) = (estimate(samples, element), estimate(samples, start));
+                let cost = seen_near(what, element, start, near.rest(lane.costs.lanes, 1));
                 begins.extend(lane.begin(&outlines, cost.start.value));
                 lane.costs.seen.entry(outlines.signature()).or_insert(cost);
             }
@@ -220,14 +257,16 @@ impl Loops {
     }
 
     /// The costs.
-    pub(super) fn costs(&self) -> LoopCosts {
+    pub(super) fn costs(&self, lanes: &[Lane]) -> LoopCosts {
         let mut seen = BTreeMap::new();
         let mut of_lane: BTreeMap<String, Vec<Counted>> = BTreeMap::new();
         for step in self.steps.iter().filter(|step| !step.large) {
-            for (program, samples) in step.programs.iter().zip(&step.samples) {
+            for (program, near) in step.programs.iter().zip(&step.loops) {
+                let samples = &near.whole;
                 let [short, long] = ELEMENTS.map(|n| n as f64);
-                let element = estimate(|of| ((of(&samples[1]) - of(&samples[0])) / (long - short)).max(1e-4));
-                let start = estimate(|of| {
+                let element =
+                    estimate(samples, |of| ((of(&samples[1]) - of(&samples[0])) / (long - short)).max(1e-4));
+                let start = estimate(samples, |of| {
                     let slope = (of(&samples[1]) - of(&samples[0])) / (long - short);
                     (of(&samples[0]) - short * slope).max(0.0)
                 });
@@ -237,7 +276,9 @@ impl Loops {
                     .entry(outlines.lane.to_owned())
                     .or_default()
                     .push((class_counts(&outlines), element.value));
-                seen.entry(outlines.signature()).or_insert(seen_near(what, element, start));
+                let lanes = lanes.iter().find(|lane| lane.name == outlines.lane);
+                let rest = near.rest(lanes.map_or(1, |lane| lane.costs.lanes), 0);
+                seen.entry(outlines.signature()).or_insert(seen_near(what, element, start, rest));
             }
         }
         let mut classes = BTreeMap::new();
@@ -272,6 +313,6 @@ impl Loops {
 }
 
 /// A program of which nothing is known yet but what it takes in the first-level cache.
-fn seen_near(what: String, element: Estimate, start: Estimate) -> ProgramCost {
-    ProgramCost { what, element, start, factors: Factors::default(), residuals: vec![] }
+fn seen_near(what: String, element: Estimate, start: Estimate, rest: PassCost) -> ProgramCost {
+    ProgramCost { what, element, start, rest, factors: Factors::default(), residuals: vec![] }
 }

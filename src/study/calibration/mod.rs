@@ -57,7 +57,7 @@ pub enum CalibrationError {
 }
 
 /// The drill scenes are run at the first of so many sweeps, and take as long as these do.
-const SCENES_EVERY: usize = 4;
+const SCENES_EVERY: usize = 3;
 
 /// Measures this host, called `title`, on one thread, and fits its model. `progress` gets the share that is done.
 ///
@@ -195,10 +195,10 @@ impl Calibration {
         let begin = loops.see(&mut lanes, run);
         let long = lanes.iter().flat_map(|lane| lane.long_passes(begin));
         let large = loops.large(&lanes, look);
-        let mut costs = loops.costs();
+        let mut costs = loops.costs(&lanes);
         let passes: Vec<Charged> =
             long.chain(large.iter().filter_map(|ran| ran.passes(&lanes, begin))).collect();
-        let compiled: Vec<Charged> = large.iter().filter_map(|ran| ran.compiled(&costs)).collect();
+        let compiled: Vec<Charged> = large.iter().filter_map(|ran| ran.compiled(&costs, &lanes)).collect();
         let Levels { operand, levels, overlap, factors: [in_passes, in_loops], residual } =
             fit_levels(&passes, &compiled);
         for (found, seen) in lanes

@@ -241,9 +241,22 @@ impl Lane {
     }
 }
 
-/// A number, and how sure it is by parts of the samples; a hundredth besides, for what all of them share.
-pub(super) fn estimate(of: impl Fn(&dyn Fn(&Samples) -> f64) -> f64) -> Estimate {
+/// A number made of some samples, and how sure it is: by their parts, and by a hundredth of each of them besides, for what all
+/// parts of a measurement share and the next one does not.
+pub(super) fn estimate<'a>(
+    all: impl IntoIterator<Item = &'a Samples>,
+    of: impl Fn(&dyn Fn(&Samples) -> f64) -> f64,
+) -> Estimate {
     let value = of(&Samples::typical);
     let parts: [f64; PARTS] = std::array::from_fn(|part| of(&|samples: &Samples| samples.of_part(part)));
-    Estimate { value, interval: fit::half_interval(parts) + 0.01 * value }
+    let shared = all.into_iter().map(|one| {
+        let longer = |samples: &Samples| {
+            samples.typical() * if std::ptr::eq(samples, one) { 1.0 + SHARED } else { 1.0 }
+        };
+        (of(&longer) - value).powi(2)
+    });
+    Estimate { value, interval: fit::half_interval(parts) + shared.sum::<f64>().sqrt() }
 }
+
+/// What all parts of a measurement share, as a share of a sample.
+const SHARED: f64 = 0.01;
