@@ -4,7 +4,7 @@ use super::{HostModel, Residual, Transfer};
 use crate::model::machine_file::Position;
 
 /// The version of the file format that this program reads.
-pub const FORMAT: u32 = 10;
+pub const FORMAT: u32 = 11;
 
 /// Why a host file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -173,9 +173,9 @@ mod tests {
             ("run = ", "run = -", "`run` is -"),
             ("run = ", "runs = ", "unknown field `runs`"),
             ("overlap", "overlapp", "unknown field `overlapp`"),
-            ("residuals = [[", "residuals = [[-1.0, 1.0, 1.0], [", "residuals` holds a number"),
-            ("format = 10", "format = 11", "`format` is 11"),
-            ("format = 10\n", "", "missing field `format`"),
+            ("residuals = [[", "residuals = [[-1.0, 1.0, 1.0, 1.0], [", "residuals` holds a number"),
+            ("format = 11", "format = 12", "`format` is 12"),
+            ("format = 11\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
             assert!(said.contains(expected) && said.contains("line "), "{said}");

@@ -2,8 +2,8 @@
 //! from the operations it counts, so loops that a calibration has seen are charged what they took on short vectors; others
 //! by their classes of operations, fitted to those that were seen.
 
-use super::residuals::{self, Residual};
-use super::{Estimate, Level, OutOfRange, PassCost, Surroundings, Transfer};
+use super::residuals::{self, Place, Residual};
+use super::{Estimate, Level, OutOfRange, PassCost, Transfer};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -24,7 +24,7 @@ pub struct ProgramCost {
     pub rest: PassCost,
     /// How it differs beyond the first-level cache.
     pub factors: Factors,
-    /// How far off all that is on drill scenes: distance (bytes), elements of a vector or a strip, ratio.
+    /// How far off all that is on drill scenes: distance (bytes), elements of a strip or nought, elements, ratio.
     pub residuals: Vec<Residual>,
 }
 
@@ -42,10 +42,9 @@ impl ProgramCost {
         )
     }
 
-    /// How many times as long as said the program takes that finds such things around it, over vectors or strips of some
-    /// elements.
-    pub fn off(&self, around: &Surroundings, length: usize) -> f64 {
-        residuals::ratio(&self.residuals, around, length)
+    /// How many times as long as said the program takes.
+    pub fn off(&self, place: &Place) -> f64 {
+        residuals::ratio(&self.residuals, place)
     }
 }
 

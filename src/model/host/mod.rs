@@ -13,7 +13,7 @@ pub use file::{BadEntry, FORMAT, HostFileError, default_model};
 pub use levels::{LINE, Level, Surroundings, Transfer, Wait, beyond, from_afar};
 pub use loops::{Factors, LoopCosts, ProgramCost, class_counts, overlapped};
 pub use rates::{Amounts, RatePoint, Rates};
-pub use residuals::Residual;
+pub use residuals::{Place, Residual};
 pub use reuse::{Since, Touch, Vector, element_bytes, touched_arrays, touches};
 
 use serde::{Deserialize, Serialize};
@@ -233,8 +233,8 @@ impl HostModel {
         }
         self.admits(n)?;
         match execution {
-            Execution::Eager => self.interpreted(outlines, n, n, around),
-            Execution::Strip(strip) => self.interpreted(outlines, n, strip.min(n), around),
+            Execution::Eager => self.interpreted(outlines, n, None, around),
+            Execution::Strip(strip) => self.interpreted(outlines, n, Some(strip), around),
             Execution::Chained => self.chained(outlines, n, around),
             Execution::Block(_) => Err(OutOfRange::NotMeasured("execution in blocks".to_owned())),
         }
@@ -262,9 +262,10 @@ impl HostModel {
         &self,
         outlines: &Outlines,
         n: usize,
-        strip: usize,
+        strips: Option<usize>,
         around: &Surroundings,
     ) -> Result<f64, OutOfRange> {
+        let strip = strips.map_or(n, |strip| strip.min(n));
         let lane = self.lane(outlines.lane)?;
         let touched = touches(outlines, lane.register_bytes);
         let factors = lane.factors(outlines);
@@ -283,7 +284,8 @@ impl HostModel {
             let parts = factors.scaled([near, wait, 0.0]);
             sum += strips as f64 * (parts.iter().sum::<f64>() + besides);
         }
-        Ok(sum * lane.seen.get(&outlines.signature()).map_or(1.0, |seen| seen.off(around, strip)))
+        let place = Place::new(around, strips, n);
+        Ok(sum * lane.seen.get(&outlines.signature()).map_or(1.0, |seen| seen.off(&place)))
     }
 
     /// Nanoseconds that a pass over `n` elements waits for what it touches.
@@ -318,7 +320,7 @@ impl HostModel {
         let [begin, computing] = cost.near(n, self.lane(outlines.lane)?.lanes);
         let wait = around.wait(&self.levels, &touched_arrays(outlines), n as f64, |level| level.loops);
         let parts = cost.factors.scaled([computing, wait.streamed, wait.indexed]);
-        Ok(cost.off(around, n) * (begin + overlapped(self.loops.overlap, parts)))
+        Ok(cost.off(&Place::new(around, None, n)) * (begin + overlapped(self.loops.overlap, parts)))
     }
 }
 

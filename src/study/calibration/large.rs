@@ -5,7 +5,7 @@ use super::levels::{Charged, Waiting};
 use super::loops::Step;
 use super::passes::Lane;
 use super::timing::Samples;
-use crate::model::host::{HostModel, LoopCosts, Residual, Surroundings, touched_arrays};
+use crate::model::host::{HostModel, LoopCosts, Place, Residual, Surroundings, touched_arrays};
 use std::rc::Rc;
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
@@ -120,7 +120,8 @@ impl Ran {
     fn residual(&self, host: &HostModel) -> Option<Residual> {
         let Ran { outlines, n, execution, around, ns } = self;
         let said = host.program(outlines, *n, *execution, around).ok().filter(|said| *said > 0.0)?;
-        Some(Residual::new(around, length(*n, *execution), ns / said))
+        let strip = if let Execution::Strip(strip) = execution { Some(*strip) } else { None };
+        Some(Residual::new(Place::new(around, strip, *n), ns / said))
     }
 }
 
