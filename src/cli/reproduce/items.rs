@@ -205,8 +205,8 @@ fn validation(effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, F
             made(report::model_validation::section(&data), &data)
         }
         Effort::Full => {
-            let (sweeps, best) = (calibration::Effort { sweeps: 12 }, InstructionSet::best());
-            let runs = runs(vec![110, 1200, 6300], vec![0.05, 0.24], 6);
+            let (sweeps, best) = (calibration::Effort { sweeps: 9 }, InstructionSet::best());
+            let runs = runs(vec![150, 4000], vec![0.05, 0.24], 6);
             let (host, data) = calibrated_in_turns(origin::host(), best, sweeps, &runs, progress)?;
             made(report::model_validation::section(&data), &data)
                 .map(|made| made.with_file("host.toml", host.to_toml()))

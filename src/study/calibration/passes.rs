@@ -260,3 +260,24 @@ pub(super) fn estimate<'a>(
 
 /// What all parts of a measurement share, as a share of a sample.
 const SHARED: f64 = 0.01;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::pace::Timed;
+
+    fn samples(ns: f64) -> Samples {
+        let mut samples = Samples::default();
+        (0..2 * PARTS).for_each(|_| samples.push(Timed { ns, around: [1.0; 2] }));
+        samples.settle(1.0);
+        samples
+    }
+
+    #[test]
+    fn a_difference_is_as_unsure_as_what_it_is_of() {
+        let [long, short] = [samples(1000.0), samples(900.0)];
+        let Estimate { value, interval } = estimate([&long, &short], |of| of(&long) - of(&short));
+        assert!((value - 100.0).abs() < 1e-9);
+        assert!((interval - 10.0_f64.hypot(9.0)).abs() < 1e-9, "{interval}");
+    }
+}

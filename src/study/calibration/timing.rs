@@ -161,6 +161,12 @@ impl Samples {
         }
     }
 
+    /// One more that was timed.
+    #[cfg(test)]
+    pub(super) fn push(&mut self, timed: Timed) {
+        self.each.push(&[timed]);
+    }
+
     /// Tells the samples at the pace of quiet moments, where the yardstick takes `reference`.
     pub(super) fn settle(&mut self, reference: f64) {
         let Some([low, typical, high]) = self.each.quantiles(reference, [0.25, COUNTS, 0.75]) else { return };
