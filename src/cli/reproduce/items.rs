@@ -206,7 +206,7 @@ fn validation(effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, F
         }
         Effort::Full => {
             let (sweeps, best) = (calibration::Effort { sweeps: 9 }, InstructionSet::best());
-            let runs = runs(vec![150, 4000], vec![0.05, 0.24], 6);
+            let runs = runs(vec![150, 4000], vec![0.05, 0.24], 5);
             let (host, data) = calibrated_in_turns(origin::host(), best, sweeps, &runs, progress)?;
             made(report::model_validation::section(&data), &data)
                 .map(|made| made.with_file("host.toml", host.to_toml()))
@@ -220,7 +220,7 @@ fn atlas(effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, Failur
     let host = default_model()?;
     let (measured, repeats): (&[usize], usize) = match effort {
         Effort::Quick => (&[300], 2),
-        Effort::Full => (&[100, 300, 1000, 3000, 10_000], 5),
+        Effort::Full => (&[100, 300, 1000, 3000, 10_000], 4),
     };
     let data = break_even::atlas(&machines, &host, measured, repeats, progress)?;
     made(report::break_even::section(&data, "stripmine reproduce --only atlas"), &data)
