@@ -9,6 +9,7 @@ use crate::report::{self, Section};
 use crate::study::break_even::atlas;
 use crate::study::density_cost::density_cost;
 use crate::study::measured_cost::{Effort, measured_cost};
+use crate::study::rounds::Bound;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -70,7 +71,7 @@ impl ChartVerb {
         write(section, &measured_data, start)?;
 
         let start = Instant::now();
-        let atlas = atlas(&[machine], &host, &[100, 1000, 10_000], 3, |share| show(0.5, share))?;
+        let atlas = atlas(&[machine], &host, &[100, 1000, 10_000], Bound::of(3), |share| show(0.5, share))?;
         let section = report::break_even::section(&atlas, &again);
         came_out.push(section.came_out.clone());
         let atlas_data = value(serde_json::to_value(&atlas))?;

@@ -10,6 +10,7 @@ use crate::study::calibration;
 use crate::study::model_validation::{
     Calibrated, Effort, ModelValidation, calibrated_in_turns, model_validation,
 };
+use crate::study::rounds::Bound;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -38,6 +39,9 @@ pub(super) struct ValidateModel {
     /// Rounds over all runs
     #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
+    /// Rounds more, at most, over those runs alone whose rounds of even and of odd number lie more than a tenth apart
+    #[arg(long, default_value_t = 24)]
+    further: u16,
     /// Repeats of each run in a round
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
@@ -67,7 +71,8 @@ impl ValidateModel {
         let effort = Effort {
             particles: self.particles.clone(),
             occupancies: self.occupancies.clone(),
-            rounds: self.rounds.into(),
+            rounds: Bound::of(self.rounds.into()),
+            further: self.further.into(),
             repeats: self.repeats.into(),
             particle_steps: 10_000,
         };

@@ -4,7 +4,8 @@ use super::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use super::{Cell, Section, Table, Verdict};
 use crate::method::Phase;
 use crate::study::model_validation::{
-    Calibrated, Case, Errors, ModelValidation, OF_DATA, OF_DATA_QUIET, PROGRAMS, PROGRAMS_QUIET,
+    Calibrated, Case, Errors, ModelValidation, OF_DATA, OF_DATA_REPEATED, PROGRAMS, PROGRAMS_REPEATED,
+    UNSETTLED,
 };
 
 /// How many of the worst cases are named.
@@ -23,7 +24,7 @@ pub fn section(data: &ModelValidation) -> Section {
         says: "BP93 predicts times and checks none of them. Aim: on runs that nothing was fitted to, a median error of at \
                most 5 %, 90 % of the cases within 15 %, the worst 30 %; where the work hangs on the data, a median of 10 %."
             .into(),
-        came_out: [programs, of_data, group(PROGRAMS_QUIET), group(OF_DATA_QUIET)]
+        came_out: [programs, of_data, group(PROGRAMS_REPEATED), group(OF_DATA_REPEATED)]
             .into_iter()
             .flatten()
             .map(said)
@@ -127,6 +128,12 @@ fn errors(data: &ModelValidation) -> Table {
         pace(data),
         "Fast and lists: predicted from the numbers of candidates and contacts that the run itself had.".to_owned(),
     ];
+    let [rounds, further] = data.rounds;
+    notes.push(format!(
+        "{rounds} rounds over all runs, and up to {further} more over those whose halves lay more than {:.0} % apart: until they do \
+         not, whatever is predicted.",
+        100.0 * UNSETTLED
+    ));
     notes.push(match data.calibrated {
         Calibrated::Shipped => {
             "This is the model that comes with the program, not one of this host: calibrate first.".to_owned()
@@ -163,18 +170,29 @@ fn errors(data: &ModelValidation) -> Table {
 }
 
 fn row(case: &Case) -> Vec<Cell> {
+    let half = |at: usize| case.halves.map_or(Cell::Nothing, |halves| Cell::Number(halves[at], 0));
     vec![
         Cell::Text(case.name()),
         Cell::Number(case.predicted, 0),
         Cell::Number(case.measured, 0),
         Cell::Number(case.quartiles[0], 0),
         Cell::Number(case.quartiles[1], 0),
+        half(0),
+        half(1),
         Cell::Number(100.0 * (case.predicted / case.measured - 1.0), 1),
     ]
 }
 
-const CASE: [&str; 6] =
-    ["case", "predicted (ns)", "measured (ns)", "lower quartile (ns)", "upper quartile (ns)", "error (%)"];
+const CASE: [&str; 8] = [
+    "case",
+    "predicted (ns)",
+    "measured (ns)",
+    "lower quartile (ns)",
+    "upper quartile (ns)",
+    "even rounds (ns)",
+    "odd rounds (ns)",
+    "error (%)",
+];
 
 fn worst(data: &ModelValidation) -> Table {
     Table {

@@ -6,6 +6,7 @@ use super::density_cost::{ListFigures, grid, list_figures};
 use super::pace::Pace;
 use super::phase_times::{FAST, FAST_LISTS, HALF_MASK, LISTS, PhaseTimes, Run, Sampling, phase_times};
 use super::predicted_step::{Step, of_precision};
+use super::rounds::Bound;
 use super::throughput::MeasurementError;
 use crate::method::Phase;
 use crate::method::lattice_md::Lengths;
@@ -113,8 +114,8 @@ pub enum AtlasError {
     OutOfRange(#[from] OutOfRange),
 }
 
-/// The atlas of some machines and a host; measured for these numbers of particles, in so many repeats. `progress` gets the
-/// share that is done.
+/// The atlas of some machines and a host; measured for these numbers of particles, in so many rounds over all of them, for
+/// who else is at work on the machine is the same for a while. `progress` gets the share that is done.
 ///
 /// # Errors
 /// [`AtlasError`] if a scene breaks or lies outside what was calibrated.
@@ -122,7 +123,7 @@ pub fn atlas(
     machines: &[MachineModel],
     host: &HostModel,
     measured: &[usize],
-    repeats: usize,
+    rounds: Bound,
     progress: impl Fn(f64) + Sync,
 ) -> Result<Atlas, AtlasError> {
     let lists: Vec<ListFigures> = OCCUPANCIES.map(list_figures).into_iter().collect::<Result<_, _>>()?;
@@ -166,14 +167,19 @@ pub fn atlas(
         places: predicted,
     });
     let mut pace = Pace::default();
-    let mut times = vec![];
+    let mut times: Vec<(usize, f64, Vec<PhaseTimes>)> = vec![];
     for &particles in measured {
-        for occupancy in OCCUPANCIES {
-            let each = WAYS
-                .iter()
-                .map(|way| alone.install(|| measure(particles, occupancy, way, repeats, &mut pace)));
-            times.push((particles, occupancy, each.collect::<Result<Vec<_>, _>>()?));
-            progress(times.len() as f64 / (measured.len() * OCCUPANCIES.len()) as f64);
+        times.extend(OCCUPANCIES.map(|occupancy| (particles, occupancy, vec![])));
+    }
+    let (places, mut rounds) = (times.len() as f64, rounds.begin());
+    while rounds.next().is_some() {
+        for (at, (particles, occupancy, ways)) in times.iter_mut().enumerate() {
+            let before = std::mem::take(ways).into_iter().map(Some).chain(std::iter::repeat(None));
+            for (way, before) in WAYS.iter().zip(before) {
+                let more = alone.install(|| measure(*particles, *occupancy, way, &mut pace))?;
+                ways.push(PhaseTimes::with(before, more));
+            }
+            progress(rounds.share((at + 1) as f64 / places));
         }
     }
     // When it was quiet is known once all is measured.
@@ -250,17 +256,16 @@ fn predict(
     Ok(phases.sum::<Result<f64, OutOfRange>>()?)
 }
 
-/// The times of a step, measured.
+/// The times of a step, measured once.
 fn measure(
     particles: usize,
     occupancy: f64,
     way: &(&'static str, Option<Execution>),
-    repeats: usize,
     pace: &mut Pace,
 ) -> Result<PhaseTimes, MeasurementError> {
     let checked = run(particles, occupancy, way).scene(&[])?;
     let equilibration = (100_000 / particles).clamp(3, 30);
-    let sampling = Sampling { equilibration, repeats, particle_steps: 5_000, least_steps: 3 };
+    let sampling = Sampling { equilibration, repeats: 1, particle_steps: 5_000, least_steps: 3 };
     phase_times(&checked, &sampling, pace)
 }
 

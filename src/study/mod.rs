@@ -18,6 +18,7 @@ pub mod pieces;
 pub mod pipe_flow;
 pub mod precision;
 pub mod predicted_step;
+pub mod rounds;
 pub mod statistics;
 pub mod threads;
 pub mod throughput;

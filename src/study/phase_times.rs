@@ -108,6 +108,15 @@ impl PhaseTimes {
         }
     }
 
+    /// What there is of a run, if there is something already, and the same run measured once more.
+    #[must_use]
+    pub fn with(before: Option<PhaseTimes>, more: PhaseTimes) -> PhaseTimes {
+        match before {
+            Some(before) => before.joined(more),
+            None => more,
+        }
+    }
+
     /// The same run measured once more, at another time.
     #[must_use]
     pub fn joined(mut self, more: PhaseTimes) -> PhaseTimes {
@@ -147,9 +156,6 @@ impl PhaseTimes {
         self.makings.typical(reference)
     }
 }
-
-/// Such a share of the time at least was then measured in quiet moments.
-pub const QUIET: f64 = 0.9;
 
 /// Nanoseconds of a sample of several steps, about: quiet moments last no longer. Longer steps are timed one by one, from rest
 /// to rest.

@@ -10,9 +10,10 @@ use std::rc::Rc;
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
 
-/// NP and ρ: lattices of 600 to 400 000 cells, each larger than the one before by half, some with many discs and some
-/// with few; where a level ends, a third more can take half as long again.
-pub(super) const SCENES: [(usize, f64); 16] = [
+/// NP and ρ: lattices of 600 to 400 000 cells, each larger than the one before by half or less, some with many discs and
+/// some with few; where a level ends, a third more can take half as long again. Most of those with few discs, whose gathers
+/// meet other levels than those of many.
+pub(super) const SCENES: [(usize, f64); 22] = [
     (70, 0.12),
     (90, 0.07),
     (480, 0.21),
@@ -20,14 +21,20 @@ pub(super) const SCENES: [(usize, f64); 16] = [
     (210, 0.06),
     (700, 0.13),
     (1700, 0.21),
+    (1300, 0.13),
     (720, 0.06),
+    (3300, 0.21),
     (2400, 0.13),
+    (1300, 0.06),
     (5800, 0.21),
+    (4300, 0.13),
     (2500, 0.06),
     (8000, 0.13),
+    (4300, 0.06),
     (19_000, 0.21),
     (8200, 0.06),
     (28_000, 0.13),
+    (14_000, 0.06),
     (24_000, 0.06),
 ];
 

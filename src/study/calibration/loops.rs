@@ -3,7 +3,7 @@
 use super::fit;
 use super::large::{self, INTERPRETED, Ran, SCENES};
 use super::passes::{Lane, estimate};
-use super::timing::Samples;
+use super::timing::{PARTS, Samples};
 use crate::method::lattice_md::{Arrays, Lengths, StepProgram, programs};
 use crate::model::host::{Estimate, Factors, LoopCosts, PassCost, ProgramCost, class_counts};
 use crate::run::model;
@@ -41,6 +41,9 @@ const INTERPRETED_ELEMENTS: usize = 20_000;
 const LOOP_ELEMENTS: usize = 100_000;
 const MOST: usize = 8;
 
+/// Whole vectors whose halves of the samples are farther apart than this share are worth more of them.
+const UNSETTLED: f64 = 0.1;
+
 /// The interpreter is slow: of so many sweeps it takes part in one, over vectors of so many elements.
 fn turn(elements: usize) -> usize {
     match elements {
@@ -67,6 +70,82 @@ pub(super) struct Step {
     pub(super) whole: Vec<Samples>,
     /// The same by the interpreter.
     pub(super) interpreted: [Vec<Samples>; INTERPRETED.len()],
+}
+
+impl Step {
+    /// Elements of the longest vector.
+    fn longest(&self) -> usize {
+        self.ranges.iter().map(ExactSizeIterator::len).max().unwrap_or(1).max(1)
+    }
+
+    /// One more sample of the programs over whole vectors, one after the other as in a step, by the executions that are
+    /// wanted.
+    fn in_turns(
+        &mut self,
+        pace: &mut Pace,
+        set: InstructionSet,
+        memory: &Memory<'_>,
+        wanted: impl Fn(Execution) -> bool,
+    ) {
+        let longest = self.longest();
+        let Step { programs, ranges, whole, interpreted, .. } = self;
+        for (execution, samples, elements) in executions(whole, interpreted) {
+            if wanted(execution) {
+                Samples::take_in_turns(samples, pace, (elements / longest).clamp(1, MOST), |at| {
+                    run(&programs[at], memory, ranges[at].clone(), execution, set);
+                });
+            }
+        }
+    }
+
+    /// One more sample of every program in the first-level cache; `lanes` says how many elements of a type are in a hardware
+    /// register.
+    fn near(
+        &mut self,
+        pace: &mut Pace,
+        set: InstructionSet,
+        memory: &Memory<'_>,
+        lanes: &dyn Fn(&str) -> usize,
+    ) {
+        let Step { programs, ranges, loops, strips, .. } = self;
+        for (at, (loops, strips)) in loops.iter_mut().zip(strips).enumerate() {
+            let start = ranges[at].start;
+            let run = |n: usize, execution| run(&programs[at], memory, start..start + n, execution, set);
+            let lanes = lanes(programs[at].program.outlines().lane);
+            let left = left_over(lanes);
+            let [short, long] = ELEMENTS;
+            for (samples, n) in loops.all_mut().zip([short, long, short + left[0], short + left[1]]) {
+                samples.take(pace, SHORTEST, || run(n, Execution::Chained));
+            }
+            let whole = STRIPPED * lanes;
+            let [short, long] = STRIPS.map(|strip| strip * lanes);
+            let all = [(whole, short), (whole, long), (whole + left[0], long), (whole + left[1], long)];
+            for (samples, (n, strip)) in strips.all_mut().zip(all) {
+                samples.take(pace, SHORTEST, || run(n, Execution::Strip(strip)));
+            }
+        }
+    }
+}
+
+/// The samples of whole vectors by each execution, and how many elements a sample goes over, about.
+fn executions<'a>(
+    whole: &'a mut Vec<Samples>,
+    interpreted: &'a mut [Vec<Samples>; INTERPRETED.len()],
+) -> impl Iterator<Item = (Execution, &'a mut Vec<Samples>, usize)> {
+    let interpreted = INTERPRETED.into_iter().zip(interpreted);
+    let interpreted = interpreted.map(|(execution, samples)| (execution, samples, INTERPRETED_ELEMENTS));
+    interpreted.chain([(Execution::Chained, whole, LOOP_ELEMENTS)])
+}
+
+fn run(
+    step: &StepProgram,
+    memory: &Memory<'_>,
+    elements: Range<usize>,
+    execution: Execution,
+    set: InstructionSet,
+) {
+    let outcome = step.program.run(memory, elements, execution, set);
+    debug_assert!(outcome.is_ok(), "{outcome:?}");
 }
 
 /// Runs of a program in the first-level cache.
@@ -100,20 +179,28 @@ impl Near {
 }
 
 /// Arrays of either precision.
-trait Bound {
+trait Laid {
     fn memory(&mut self) -> Memory<'_>;
+
+    /// Lays them out anew, at other addresses. Whether rows meet that lie in the first-level cache together hangs on these: of
+    /// some layouts the predictor took 256 ns, of most 160. Longer rows come from farther away in any case.
+    fn elsewhere(&mut self);
 }
 
-impl<S: Precision, P: Precision> Bound for Arrays<S, P> {
+impl<S: Precision, P: Precision> Laid for Arrays<S, P> {
     fn memory(&mut self) -> Memory<'_> {
         self.memory().0
+    }
+
+    fn elsewhere(&mut self) {
+        *self = self.clone();
     }
 }
 
 /// Every loop to be measured, and the arrays they run on.
 pub(super) struct Loops {
     steps: Vec<Step>,
-    arrays: Vec<Box<dyn Bound>>,
+    arrays: Vec<Box<dyn Laid>>,
 }
 
 impl Loops {
@@ -175,41 +262,38 @@ impl Loops {
         number: usize,
     ) {
         for step in &mut self.steps {
-            let memory = self.arrays[step.memory].memory();
-            let run = |at: usize, n: usize, execution: Execution| {
-                let start = step.ranges[at].start;
-                let outcome = step.programs[at].program.run(&memory, start..start + n, execution, set);
-                debug_assert!(outcome.is_ok(), "{outcome:?}");
-            };
-            let all = |at: usize| step.ranges[at].len();
-            let longest = step.ranges.iter().map(ExactSizeIterator::len).max().unwrap_or(1).max(1);
-            if step.large && number.is_multiple_of(turn(longest)) {
-                for (execution, samples) in INTERPRETED.into_iter().zip(&mut step.interpreted) {
-                    let times = (INTERPRETED_ELEMENTS / longest).clamp(1, MOST);
-                    Samples::take_in_turns(samples, pace, times, |at| run(at, all(at), execution));
-                }
-            }
-            let times = (LOOP_ELEMENTS / longest).clamp(1, MOST);
-            Samples::take_in_turns(&mut step.whole, pace, times, |at| run(at, all(at), Execution::Chained));
-            if step.large {
-                // What is near is learned from the small ones.
-                continue;
-            }
-            for (at, (loops, strips)) in step.loops.iter_mut().zip(&mut step.strips).enumerate() {
-                let lanes = lanes(step.programs[at].program.outlines().lane);
-                let left = left_over(lanes);
-                let [short, long] = ELEMENTS;
-                for (samples, n) in loops.all_mut().zip([short, long, short + left[0], short + left[1]]) {
-                    samples.take(pace, SHORTEST, || run(at, n, Execution::Chained));
-                }
-                let whole = STRIPPED * lanes;
-                let [short, long] = STRIPS.map(|strip| strip * lanes);
-                let all = [(whole, short), (whole, long), (whole + left[0], long), (whole + left[1], long)];
-                for (samples, (n, strip)) in strips.all_mut().zip(all) {
-                    samples.take(pace, SHORTEST, || run(at, n, Execution::Strip(strip)));
-                }
+            let arrays = &mut self.arrays[step.memory];
+            arrays.elsewhere();
+            let memory = arrays.memory();
+            let takes_turn = step.large && number.is_multiple_of(turn(step.longest()));
+            step.in_turns(pace, set, &memory, |execution| execution == Execution::Chained || takes_turn);
+            // What is near is learned from the small ones.
+            if !step.large {
+                step.near(pace, set, &memory, lanes);
             }
         }
+    }
+
+    /// Some more samples of whole vectors whose samples differ, at the pace of a reference. Whether there were any.
+    pub(super) fn again(&mut self, pace: &mut Pace, set: InstructionSet, reference: f64) -> bool {
+        self.settle(reference);
+        let mut any = false;
+        for step in self.steps.iter_mut().filter(|step| step.large) {
+            let mut unsettled = vec![];
+            for (execution, samples, _) in executions(&mut step.whole, &mut step.interpreted) {
+                if samples.iter().any(|samples| samples.disagreement() > UNSETTLED) {
+                    Samples::go_on(samples);
+                    unsettled.push(execution);
+                }
+            }
+            for _ in 0..PARTS * usize::from(!unsettled.is_empty()) {
+                let arrays = &mut self.arrays[step.memory];
+                arrays.elsewhere();
+                step.in_turns(pace, set, &arrays.memory(), |execution| unsettled.contains(&execution));
+            }
+            any |= !unsettled.is_empty();
+        }
+        any
     }
 
     /// Tells all samples at the pace of a reference.

@@ -19,7 +19,7 @@ use crate::model::host::{FORMAT, HostModel, LoopCosts, Measured, OutOfRange};
 use drills::{Arrays, LONGEST};
 use levels::{Charged, Levels, fit_levels};
 use loops::Loops;
-use passes::{Lane, SHORTEST_VECTOR};
+use passes::{Lane, NEAR, SHORTEST_VECTOR};
 use scenes::Scenes;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::isa::ProgramError;
@@ -145,6 +145,12 @@ impl Calibration {
         Ok(())
     }
 
+    /// Some more samples of what does not repeat itself yet, beyond the sweeps. Whether there was any.
+    pub(super) fn again(&mut self) -> bool {
+        let reference = self.pace.reference();
+        self.loops.again(&mut self.pace, self.set, reference)
+    }
+
     /// The share that is done, after so many runs of the drill scenes.
     fn done(&self, scenes: usize) -> f64 {
         let all = self.effort.sweeps + SCENES_EVERY * self.effort.sweeps.div_ceil(SCENES_EVERY);
@@ -157,9 +163,12 @@ impl Calibration {
         let mut timings = Timings::default();
         clock.take(pace, 20_000.0, || timings.time(Phase::Predict, || ()));
         binding.take(pace, 20_000.0, || _ = std::hint::black_box(arrays.0.memory()));
-        let memories = [arrays.0.memory(), arrays.1.memory()];
-        for (lane, memory) in lanes.iter_mut().zip(&memories) {
-            lane.sweep(pace, memory, *set, *sweeps);
+        // At other addresses each time: whether rows meet in the first-level cache hangs on these.
+        let (mut wide, mut narrow) = (Arrays::<f64, f32>::new(NEAR), Arrays::<f32, f64>::new(NEAR));
+        let near = [wide.memory(), narrow.memory()];
+        let far = [arrays.0.memory(), arrays.1.memory()];
+        for (lane, (near, far)) in lanes.iter_mut().zip(near.iter().zip(&far)) {
+            lane.sweep(pace, [near, far], *set, *sweeps);
         }
         let in_register =
             |name: &str| lanes.iter().find(|lane| lane.name == name).map_or(1, |lane| lane.costs.lanes);

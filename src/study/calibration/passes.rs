@@ -15,6 +15,8 @@ use stripmine_kernels::{Execution, InstructionSet, Runnable};
 pub(super) const SHORTEST_VECTOR: usize = 8;
 /// Vectors that stay in the first-level cache, in hardware registers.
 const SHORT: [usize; 6] = [1, 2, 4, 8, 16, 32];
+/// Elements of the longest of these, however wide the registers.
+pub(super) const NEAR: usize = 32 * 64;
 /// Vectors that do not.
 const LONG: [usize; 8] = [520, 1600, 5200, 17_000, 52_000, 170_000, 540_000, LONGEST];
 /// Longest vectors that both precisions are drilled on: beyond, bytes are bytes.
@@ -93,9 +95,17 @@ impl Lane {
         })
     }
 
-    /// The sweep of this number: one more sample of every point, of long vectors only in some sweeps.
-    pub(super) fn sweep(&mut self, pace: &mut Pace, memory: &Memory<'_>, set: InstructionSet, number: usize) {
+    /// The sweep of this number: one more sample of every point, of long vectors only in some sweeps. `near` has room for
+    /// the short ones, `far` for all.
+    pub(super) fn sweep(
+        &mut self,
+        pace: &mut Pace,
+        [near, far]: [&Memory<'_>; 2],
+        set: InstructionSet,
+        number: usize,
+    ) {
         let run = |program: &dyn Runnable, n: usize| {
+            let memory = if n <= NEAR { near } else { far };
             let outcome = program.run(memory, 0..n, Execution::Eager, set);
             debug_assert!(outcome.is_ok(), "{outcome:?}");
         };

@@ -47,10 +47,7 @@ impl Scenes {
         let all = self.0.len() as f64;
         for (at, (run, checked, times)) in self.0.iter_mut().enumerate() {
             let more = phase_times(checked, &sampling(run), pace)?;
-            *times = Some(match times.take() {
-                Some(before) => before.joined(more),
-                None => more,
-            });
+            *times = Some(PhaseTimes::with(times.take(), more));
             progress((at + 1) as f64 / all);
         }
         Ok(())

@@ -161,6 +161,11 @@ impl Samples {
         }
     }
 
+    /// However many there are of quiet moments, more are wanted of works done in turns.
+    pub(super) fn go_on(all: &mut [Samples]) {
+        all.iter_mut().for_each(|samples| samples.quiet = 0);
+    }
+
     /// One more that was timed.
     #[cfg(test)]
     pub(super) fn push(&mut self, timed: Timed) {

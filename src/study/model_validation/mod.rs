@@ -4,12 +4,14 @@
 mod errors;
 mod scene;
 
-pub use errors::{Case, Errors, OF_DATA, OF_DATA_QUIET, PROGRAMS, PROGRAMS_QUIET};
+pub use errors::{Case, Errors, OF_DATA, OF_DATA_REPEATED, PROGRAMS, PROGRAMS_REPEATED};
 
 use super::calibration::{self, Calibration, CalibrationError};
 use super::pace::Pace;
 use super::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run};
+use super::rounds::Bound;
 use super::throughput::MeasurementError;
+use crate::method::Phase;
 use crate::model::host::{HostModel, OutOfRange};
 use rayon::ThreadPool;
 use scene::{Scene, rated};
@@ -25,7 +27,10 @@ pub struct Effort {
     pub occupancies: Vec<f64>,
     /// Rounds over all runs, each laid out in memory anew: who else is at work on the machine, and what of his lies in the larger
     /// caches, is the same for a while.
-    pub rounds: usize,
+    pub rounds: Bound,
+    /// Rounds more, at most, over those runs alone that do not repeat themselves yet: two by two, as those of even and of odd
+    /// number are told apart.
+    pub further: usize,
     /// Repeats of a run in a round.
     pub repeats: usize,
     /// Particle-steps of a repeat, about.
@@ -87,6 +92,8 @@ pub struct ModelValidation {
     pub instruction_set: String,
     /// Where it comes from.
     pub calibrated: Calibrated,
+    /// Rounds over all runs, and how many more there were over those that did not repeat themselves within [`UNSETTLED`].
+    pub rounds: [usize; 2],
     /// How many times as long as in the calibration's quiet moments the yardstick took in those of the runs.
     pub pace: f64,
     /// Every case.
@@ -127,9 +134,11 @@ pub fn model_validation(
         scene.predicted(host)?;
     }
     alone()?.install(|| {
-        for round in 0..effort.rounds {
-            measured.round(&|share| progress((round as f64 + share) / effort.rounds as f64))?;
+        let mut rounds = effort.rounds.begin();
+        while rounds.next().is_some() {
+            measured.round(&|share| progress(BASE * rounds.share(share)))?;
         }
+        measured.settle(|| false, &progress)?;
         measured.against(host, calibrated)
     })
 }
@@ -153,17 +162,23 @@ pub fn calibrated_in_turns(
     let mut measured = Measured::new(effort)?;
     alone()?.install(|| {
         let mut calibration = Calibration::new(title, set, sweeps)?;
-        let rounds = effort.rounds as f64;
-        for round in 0..effort.rounds {
-            let (before, upto) = (round as f64 / rounds, (round + 1) as f64 / rounds);
-            calibration.measure(upto, &|all| progress(0.5 * (before + all)))?;
-            measured.round(&|share| progress(0.5 * (upto + before + share / rounds)))?;
+        let mut rounds = effort.rounds.begin();
+        while let Some(round) = rounds.next() {
+            let upto = (round + 1) as f64 / effort.rounds.most as f64;
+            calibration.measure(upto, &|_| progress(BASE * rounds.share(0.0)))?;
+            measured.round(&|share| progress(BASE * rounds.share(0.5 * (1.0 + share))))?;
         }
+        measured.settle(|| calibration.again(), &progress)?;
         let host = calibration.model();
         let data = measured.against(&host, Calibrated::InTurns)?;
         Ok((host, data))
     })
 }
+
+/// Runs whose halves are farther apart than this share are run again.
+pub const UNSETTLED: f64 = 0.1;
+/// The share of the time that is taken by the rounds over all runs, about.
+const BASE: f64 = 0.8;
 
 /// Everything is measured on one thread.
 fn alone() -> Result<ThreadPool, MeasurementError> {
@@ -176,7 +191,8 @@ struct Measured {
     scenes: Vec<Scene>,
     /// Rounds of even and of odd number apart.
     times: Vec<[Option<PhaseTimes>; 2]>,
-    rounds: usize,
+    /// Rounds over all, and over some.
+    rounds: [usize; 2],
     pace: Pace,
 }
 
@@ -185,22 +201,43 @@ impl Measured {
     fn new(effort: &Effort) -> Result<Measured, MeasurementError> {
         let scenes = runs(effort).map(Scene::new).collect::<Result<Vec<_>, _>>()?;
         let times = scenes.iter().map(|_| [None, None]).collect();
-        Ok(Measured { effort: effort.clone(), scenes, times, rounds: 0, pace: Pace::default() })
+        Ok(Measured { effort: effort.clone(), scenes, times, rounds: [0; 2], pace: Pace::default() })
     }
 
     /// Runs everything once more. `progress` gets the share that is done.
     fn round(&mut self, progress: &dyn Fn(f64)) -> Result<(), MeasurementError> {
         let all = self.scenes.len() as f64;
         for (at, (scene, times)) in self.scenes.iter().zip(&mut self.times).enumerate() {
-            let half = &mut times[self.rounds % 2];
-            let more = scene.measure(&self.effort, &mut self.pace)?;
-            *half = Some(match half.take() {
-                Some(before) => before.joined(more),
-                None => more,
-            });
+            scene.measure(&self.effort, &mut self.pace, &mut times[self.rounds[0] % 2])?;
             progress((at + 1) as f64 / all);
         }
-        self.rounds += 1;
+        self.rounds[0] += 1;
+        Ok(())
+    }
+
+    /// Runs once more, for the rounds of even and for those of odd number, what does not repeat itself yet; in turns with
+    /// `other`, which says whether it was of use, as long as either is. What is predicted has no say in it.
+    fn settle(
+        &mut self,
+        mut other: impl FnMut() -> bool,
+        progress: &dyn Fn(f64),
+    ) -> Result<(), MeasurementError> {
+        while self.rounds[1] + 2 <= self.effort.further {
+            let reference = self.pace.reference();
+            let unsettled: Vec<bool> =
+                self.times.iter().map(|halves| apart(halves, reference) > UNSETTLED).collect();
+            for half in 0..2 {
+                let all = self.scenes.iter().zip(&mut self.times).zip(&unsettled);
+                for ((scene, times), _) in all.filter(|(_, unsettled)| **unsettled) {
+                    scene.measure(&self.effort, &mut self.pace, &mut times[half])?;
+                }
+            }
+            if !(other() | unsettled.contains(&true)) {
+                break;
+            }
+            self.rounds[1] += 2;
+            progress(BASE + (1.0 - BASE) * self.rounds[1] as f64 / self.effort.further as f64);
+        }
         Ok(())
     }
 
@@ -216,11 +253,22 @@ impl Measured {
             host: host.title.clone(),
             instruction_set: host.instruction_set.clone(),
             calibrated,
+            rounds: self.rounds,
             pace: reference / host.measured.yardstick,
             errors: errors::errors(&cases),
             cases,
         })
     }
+}
+
+/// How far the halves of a run are apart, in the phase where they are farthest, as a share; nought where there is one alone.
+fn apart(halves: &[Option<PhaseTimes>; 2], reference: f64) -> f64 {
+    let [Some(even), Some(odd)] = halves else { return 0.0 };
+    let of = |phase: &Phase| {
+        let [a, b] = [even, odd].map(|half| half.typical(*phase, reference).0);
+        if a > 0.0 && b > 0.0 { a.max(b) / a.min(b) - 1.0 } else { 0.0 }
+    };
+    Phase::ALL.iter().map(of).fold(0.0, f64::max)
 }
 
 /// Every run, in order.

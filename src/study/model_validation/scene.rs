@@ -46,8 +46,13 @@ impl Scene {
         ValidationError::OutOfRange { case: self.run.name(), cause }
     }
 
-    /// Runs it once more.
-    pub(super) fn measure(&self, effort: &Effort, pace: &mut Pace) -> Result<PhaseTimes, MeasurementError> {
+    /// Runs it once more, and joins what comes out to what there is.
+    pub(super) fn measure(
+        &self,
+        effort: &Effort,
+        pace: &mut Pace,
+        times: &mut Option<PhaseTimes>,
+    ) -> Result<(), MeasurementError> {
         let sampling = Sampling {
             // What programs take does not hang on the data: the caches alone must have come to rest.
             equilibration: if self.step.is_some() {
@@ -60,7 +65,9 @@ impl Scene {
             // Lists are made anew every few steps only.
             least_steps: if self.run.has_lists() { 6 } else { 2 },
         };
-        phase_times(&self.checked, &sampling, pace)
+        let more = phase_times(&self.checked, &sampling, pace)?;
+        *times = Some(PhaseTimes::with(times.take(), more));
+        Ok(())
     }
 
     /// Every phase that it has, predicted by a model and by its levels alone, and as it was measured in the rounds of even and of odd number; `reference` is what
