@@ -16,13 +16,17 @@ fn headings(words: &[&str]) -> Vec<String> {
     words.iter().map(|&word| word.to_owned()).collect()
 }
 
+/// What takes less (ns an element) takes nothing that was measured.
+const LEAST: f64 = 1e-3;
+
 /// The row of something that starts and goes on, with Hockney's pair.
 fn hockney(names: [&str; 2], element: Estimate, start: Estimate) -> Vec<Cell> {
     let mut row: Vec<Cell> = names.map(|name| Cell::Text(name.to_owned())).to_vec();
     row.extend(with(element, 4));
     row.extend(with(start, 1));
-    row.push(Cell::Number(1e3 / element.value.max(1e-6), 0));
-    row.push(Cell::Number(start.value / element.value.max(1e-6), 0));
+    let told = |value: f64| if element.value < LEAST { Cell::Nothing } else { Cell::Number(value, 0) };
+    row.push(told(1e3 / element.value));
+    row.push(told(start.value / element.value));
     row
 }
 

@@ -4,7 +4,7 @@ use super::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use super::{Cell, Section, Table, Verdict};
 use crate::method::Phase;
 use crate::study::model_validation::{
-    Calibrated, Case, Errors, ModelValidation, OF_DATA, OF_DATA_REPEATED, PROGRAMS, PROGRAMS_REPEATED,
+    Calibrated, Case, Errors, ModelValidation, OF_DATA, OF_DATA_SETTLED, PROGRAMS, PROGRAMS_SETTLED,
     UNSETTLED,
 };
 
@@ -24,7 +24,7 @@ pub fn section(data: &ModelValidation) -> Section {
         says: "BP93 predicts times and checks none of them. Aim: on runs that nothing was fitted to, a median error of at \
                most 5 %, 90 % of the cases within 15 %, the worst 30 %; where the work hangs on the data, a median of 10 %."
             .into(),
-        came_out: [programs, of_data, group(PROGRAMS_REPEATED), group(OF_DATA_REPEATED)]
+        came_out: [programs, of_data, group(PROGRAMS_SETTLED), group(OF_DATA_SETTLED)]
             .into_iter()
             .flatten()
             .map(said)
@@ -130,8 +130,8 @@ fn errors(data: &ModelValidation) -> Table {
     ];
     let [rounds, further] = data.rounds;
     notes.push(format!(
-        "{rounds} rounds over all runs, and up to {further} more over those whose halves lay more than {:.0} % apart: until they do \
-         not, whatever is predicted.",
+        "{rounds} rounds over all runs, and up to {further} more over those that met no quiet moments or whose halves lay \
+         more than {:.0} % apart: until they do not, whatever is predicted.",
         100.0 * UNSETTLED
     ));
     notes.push(match data.calibrated {

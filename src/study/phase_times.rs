@@ -146,6 +146,13 @@ impl PhaseTimes {
         self.samples[phase as usize].quiet(reference)
     }
 
+    /// Whether every phase that it has was measured in quiet moments.
+    pub fn is_quiet(&self, reference: f64) -> bool {
+        let had = Phase::ALL.iter().filter(|&&phase| self.samples[phase as usize].runs() > 0);
+        had.copied()
+            .all(|phase| self.quiet(phase, reference) >= QUIET || self.upkeep(phase, reference) <= 0.0)
+    }
+
     /// Nanoseconds of a phase in quiet moments, without the making of lists.
     pub fn upkeep(&self, phase: Phase, reference: f64) -> f64 {
         self.samples[phase as usize].typical(reference).unwrap_or(0.0)
@@ -156,6 +163,9 @@ impl PhaseTimes {
         self.makings.typical(reference)
     }
 }
+
+/// What was measured in quiet moments for at least such a share of the time needs no more rounds.
+pub const QUIET: f64 = 0.9;
 
 /// Nanoseconds of a sample of several steps, about: quiet moments last no longer. Longer steps are timed one by one, from rest
 /// to rest.

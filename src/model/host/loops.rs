@@ -120,15 +120,19 @@ impl LoopCosts {
         let counts = class_counts(outlines);
         let value =
             counts.iter().map(|(class, count)| classes.get(*class).copied().unwrap_or(0.0) * count).sum();
-        let starts: Vec<f64> = self.seen.values().map(|seen| seen.start.value).collect();
-        let start = starts.iter().sum::<f64>() / starts.len().max(1) as f64;
+        let mean = |of: fn(&ProgramCost) -> f64| {
+            self.seen.values().map(of).sum::<f64>() / self.seen.len().max(1) as f64
+        };
         let interval = |value: f64| Estimate { value, interval: self.residual * value };
-        let element = interval(value);
+        let [element, start] = [value, mean(|seen| seen.start.value)].map(interval);
+        // What is left over takes so many times as long as in registers, as it does in the loops that were seen.
+        let longer = mean(|seen| seen.rest.element.value) / mean(|seen| seen.element.value).max(1e-6);
+        let [rest, begin] = [longer * value, mean(|seen| seen.rest.start.value)].map(interval);
         Some(ProgramCost {
             what: "by its classes".to_owned(),
             element,
-            start: interval(start),
-            rest: PassCost { element, start: Estimate::default() },
+            start,
+            rest: PassCost { element: rest, start: begin },
             factors: Factors::default(),
             residuals: vec![],
         })

@@ -33,6 +33,14 @@ pub struct Estimate {
     pub interval: f64,
 }
 
+impl Estimate {
+    /// Without another, and as unsure as both; nothing takes less than nought.
+    #[must_use]
+    pub fn less(self, other: Estimate) -> Estimate {
+        Estimate { value: (self.value - other.value).max(0.0), interval: self.interval.hypot(other.interval) }
+    }
+}
+
 /// A pass of one kind over a vector in the first-level cache: Hockney's `r_inf = 1/tau`, `n_half = t0/tau`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

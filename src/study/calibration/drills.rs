@@ -156,8 +156,14 @@ impl<M: Machine> Registers<M> {
                 Op::FromIndex => v[i] = m.index_numbers(index[few]),
                 Op::Store => m.store(Slot::<M::Lane>::new(WRITTEN[i]), v[i]),
                 Op::Gather => v[i] = m.gather(own, index[few], v[next]),
-                // An array that is stored below while its old contents are still needed: no operand of its readers.
-                Op::Load => v[i] = m.load(Slot::<M::Lane>::new(Array::Vy)),
+                // What was there before a store, read after it: no operand of its readers, which is what makes a load a
+                // pass. What the store takes is taken off again.
+                Op::Load => {
+                    let slot = Slot::<M::Lane>::new(WRITTEN[i]);
+                    let before = m.load(slot);
+                    m.store(slot, v[i]);
+                    v[i] = before;
+                }
                 _ => v[i] = v[i] + v[next],
             },
             Kind::Index(Op::Load) => index[few] = m.load_index(Slot::new(Array::Index)),

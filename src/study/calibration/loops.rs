@@ -8,7 +8,7 @@ use crate::method::lattice_md::{Arrays, Lengths, StepProgram, programs};
 use crate::model::host::{Estimate, Factors, LoopCosts, PassCost, ProgramCost, class_counts};
 use crate::run::model;
 use crate::study::pace::Pace;
-use crate::study::phase_times::Run;
+use crate::study::phase_times::{QUIET, Run};
 use crate::study::throughput::MeasurementError;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -30,10 +30,29 @@ fn left_over(lanes: usize) -> [usize; 2] {
 const SHORTEST: f64 = 40_000.0;
 /// The drill scene: discs at rest that do not touch, as no validation runs them.
 const DRILL: Run = Run { particles: 300, occupancy: 0.13, precision: "f64", execution: "chained" };
-/// What the drill scenes leave out, one after the other.
-const MODELS: [&[&str]; 2] = [
-    &["particles.temperature=0", "particles.seed=7"],
-    &["particles.temperature=0", "particles.seed=7", "law.friction=0", "law.shear_damping=0"],
+
+/// What is drilled of the drill scene.
+struct Variant {
+    /// What its programs are called by.
+    suffix: &'static str,
+    overrides: &'static [&'static str],
+    /// Whether the step checks itself, as runs do and the source does not.
+    watched: bool,
+}
+
+/// All of it first, which larger scenes have too; then what leaves something out.
+const VARIANTS: [Variant; 3] = [
+    Variant { suffix: "", overrides: &["particles.temperature=0", "particles.seed=7"], watched: true },
+    Variant {
+        suffix: ", frictionless",
+        overrides: &["particles.temperature=0", "particles.seed=7", "law.friction=0", "law.shear_damping=0"],
+        watched: true,
+    },
+    Variant {
+        suffix: ", unwatched",
+        overrides: &["particles.temperature=0", "particles.seed=7"],
+        watched: false,
+    },
 ];
 
 /// Elements of the longest vectors of a sample of the interpreter and of loops, about, and steps at most.
@@ -207,15 +226,15 @@ impl Loops {
     /// Lays out the drill scenes.
     pub(super) fn new() -> Result<Loops, MeasurementError> {
         let mut loops = Loops { steps: vec![], arrays: vec![] };
-        let large = SCENES.iter().map(|&place| (place, MODELS[0]));
-        let small = MODELS.map(|overrides| ((DRILL.particles, DRILL.occupancy), overrides));
-        for ((particles, occupancy), overrides) in small.into_iter().chain(large) {
+        let large = SCENES.iter().map(|&place| (place, &VARIANTS[0]));
+        let small = VARIANTS.iter().map(|variant| ((DRILL.particles, DRILL.occupancy), variant));
+        for ((particles, occupancy), variant) in small.chain(large) {
             for precision in ["f64", "f32", "mixed"] {
                 let run = Run { particles, occupancy, precision, ..DRILL };
                 match precision {
-                    "f64" => loops.lay_out::<f64, f64>(&run, overrides)?,
-                    "f32" => loops.lay_out::<f32, f32>(&run, overrides)?,
-                    _ => loops.lay_out::<f64, f32>(&run, overrides)?,
+                    "f64" => loops.lay_out::<f64, f64>(&run, variant)?,
+                    "f32" => loops.lay_out::<f32, f32>(&run, variant)?,
+                    _ => loops.lay_out::<f64, f32>(&run, variant)?,
                 }
             }
         }
@@ -225,19 +244,19 @@ impl Loops {
     fn lay_out<S: Precision, P: Precision>(
         &mut self,
         run: &Run,
-        overrides: &[&str],
+        variant: &Variant,
     ) -> Result<(), MeasurementError> {
-        let checked = run.scene(overrides)?;
-        let model = model(&checked);
+        let checked = run.scene(variant.overrides)?;
+        let mut model = model(&checked);
+        model.watch = model.watch.filter(|_| variant.watched);
         let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
         let programs = programs::<S, P>(&model);
         let ranges = programs.iter().map(|step| lengths.range(step.length)).collect();
         let near: Vec<Near> = programs.iter().map(|_| Near::default()).collect();
         let whole: Vec<Samples> = programs.iter().map(|_| Samples::default()).collect();
         let interpreted = INTERPRETED.map(|_| whole.clone());
-        let friction = if model.friction { "" } else { ", frictionless" };
         let large = run.particles != DRILL.particles;
-        let name = format!("{}{friction}", run.precision);
+        let name = format!("{}{}", run.precision, variant.suffix);
         self.steps.push(Step {
             name,
             programs,
@@ -274,14 +293,16 @@ impl Loops {
         }
     }
 
-    /// Some more samples of whole vectors whose samples differ, at the pace of a reference. Whether there were any.
+    /// Some more samples of whole vectors whose samples differ, or were taken in no quiet moments, at the pace of a reference.
+    /// Whether there were any.
     pub(super) fn again(&mut self, pace: &mut Pace, set: InstructionSet, reference: f64) -> bool {
         self.settle(reference);
         let mut any = false;
         for step in self.steps.iter_mut().filter(|step| step.large) {
             let mut unsettled = vec![];
             for (execution, samples, _) in executions(&mut step.whole, &mut step.interpreted) {
-                if samples.iter().any(|samples| samples.disagreement() > UNSETTLED) {
+                let settled = |of: &Samples| of.disagreement() <= UNSETTLED && of.quiet() >= QUIET;
+                if !samples.iter().all(settled) {
                     Samples::go_on(samples);
                     unsettled.push(execution);
                 }

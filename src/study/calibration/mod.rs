@@ -146,9 +146,10 @@ impl Calibration {
     }
 
     /// Some more samples of what does not repeat itself yet, beyond the sweeps. Whether there was any.
-    pub(super) fn again(&mut self) -> bool {
+    pub(super) fn again(&mut self) -> Result<bool, MeasurementError> {
         let reference = self.pace.reference();
-        self.loops.again(&mut self.pace, self.set, reference)
+        let scenes = self.scenes.again(&mut self.pace, reference)?;
+        Ok(scenes | self.loops.again(&mut self.pace, self.set, reference))
     }
 
     /// The share that is done, after so many runs of the drill scenes.

@@ -152,6 +152,12 @@ impl Lane {
             cost.start.interval += fit::half_interval(parts.map(|part| part.start.value));
             self.costs.passes.insert(kind.name(), cost);
         }
+        // A load is drilled with a store.
+        let store = self.costs.passes.get("st").copied().unwrap_or_default();
+        if let Some(load) = self.costs.passes.get_mut("ld") {
+            load.element = load.element.less(store.element);
+            load.start = load.start.less(store.start);
+        }
         let shifted = self.costs.passes.remove(&Kind::Shifted.name()).unwrap_or_default();
         let plain = self.costs.passes.get("sub").copied().unwrap_or_default();
         self.costs.array_operand = (shifted.element.value - plain.element.value).max(0.0);

@@ -22,8 +22,17 @@ fn sampling(run: &Run) -> Sampling {
     Sampling { equilibration, repeats: 1, particle_steps: 10_000, least_steps: 2 }
 }
 
-/// Every drill scene, and what was measured of it.
-pub(super) struct Scenes(Vec<(Run, Checked, Option<PhaseTimes>)>);
+/// A drill scene, and what was measured of it.
+type Scene = (Run, Checked, Option<PhaseTimes>);
+
+fn once_more((run, checked, times): &mut Scene, pace: &mut Pace) -> Result<(), MeasurementError> {
+    let more = phase_times(checked, &sampling(run), pace)?;
+    *times = Some(PhaseTimes::with(times.take(), more));
+    Ok(())
+}
+
+/// Every drill scene.
+pub(super) struct Scenes(Vec<Scene>);
 
 impl Scenes {
     /// Nothing measured yet.
@@ -45,12 +54,23 @@ impl Scenes {
     /// Runs every scene once more. `progress` gets the share that is done.
     pub(super) fn sweep(&mut self, pace: &mut Pace, progress: impl Fn(f64)) -> Result<(), MeasurementError> {
         let all = self.0.len() as f64;
-        for (at, (run, checked, times)) in self.0.iter_mut().enumerate() {
-            let more = phase_times(checked, &sampling(run), pace)?;
-            *times = Some(PhaseTimes::with(times.take(), more));
+        for (at, scene) in self.0.iter_mut().enumerate() {
+            once_more(scene, pace)?;
             progress((at + 1) as f64 / all);
         }
         Ok(())
+    }
+
+    /// Runs once more what met no quiet moments yet. Whether there was any.
+    pub(super) fn again(&mut self, pace: &mut Pace, reference: f64) -> Result<bool, MeasurementError> {
+        let mut any = false;
+        for scene in &mut self.0 {
+            if !scene.2.as_ref().is_some_and(|times| times.is_quiet(reference)) {
+                once_more(scene, pace)?;
+                any = true;
+            }
+        }
+        Ok(any)
     }
 
     /// The rates of the methods, at the pace of a reference.

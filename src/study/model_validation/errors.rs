@@ -1,8 +1,8 @@
 //! The cases of a validation, and how far off their predictions are.
 
-use super::{EXECUTIONS, PRECISIONS};
+use super::{EXECUTIONS, PRECISIONS, UNSETTLED};
 use crate::method::Phase;
-use crate::study::phase_times::{FAST, FAST_LISTS, LISTS};
+use crate::study::phase_times::{FAST, FAST_LISTS, LISTS, QUIET};
 use serde::Serialize;
 
 /// The group of all executions of programs.
@@ -10,13 +10,12 @@ pub const PROGRAMS: &str = "eager, strip-mined and chained";
 /// The group of all executions whose work hangs on the data.
 pub const OF_DATA: &str = "fast and lists";
 
-/// Those among the first whose measurement repeats itself within [`REPEATED`]: no prediction can be shown to be nearer than that.
-pub const PROGRAMS_REPEATED: &str =
-    "eager, strip-mined and chained, whose measurement repeats itself within 10 %";
+/// Those among the first that were measured in quiet moments, and whose halves are no more than [`UNSETTLED`] apart: no
+/// prediction can be shown to be nearer than that.
+pub const PROGRAMS_SETTLED: &str =
+    "eager, strip-mined and chained, measured in quiet moments and within 10 %";
 /// Those among the second.
-pub const OF_DATA_REPEATED: &str = "fast and lists, whose measurement repeats itself within 10 %";
-/// How far the halves of such a measurement are apart at most, as a share.
-const REPEATED: f64 = 0.1;
+pub const OF_DATA_SETTLED: &str = "fast and lists, measured in quiet moments and within 10 %";
 
 /// A phase of a step of one run.
 #[derive(Clone, Debug, Serialize)]
@@ -148,9 +147,10 @@ pub(super) fn errors(cases: &[Case]) -> Vec<Errors> {
     };
     group(PROGRAMS, &|case| !case.hangs_on_data());
     group(OF_DATA, &Case::hangs_on_data);
-    let repeated = |case: &Case| case.repeat_error().is_some_and(|apart| apart <= REPEATED);
-    group(PROGRAMS_REPEATED, &|case| !case.hangs_on_data() && repeated(case));
-    group(OF_DATA_REPEATED, &|case| case.hangs_on_data() && repeated(case));
+    let settled =
+        |case: &Case| case.quiet >= QUIET && case.repeat_error().is_some_and(|apart| apart <= UNSETTLED);
+    group(PROGRAMS_SETTLED, &|case| !case.hangs_on_data() && settled(case));
+    group(OF_DATA_SETTLED, &|case| case.hangs_on_data() && settled(case));
     EXECUTIONS.iter().for_each(|(name, _)| group(name, &|case| case.execution == *name));
     let straight = |case: &Case| !case.hangs_on_data();
     Phase::ALL.iter().for_each(|phase| {
@@ -197,6 +197,6 @@ mod tests {
         assert!((programs.by_levels.unwrap()[1] - 0.1).abs() < 1e-9);
         assert!((programs.repeated.unwrap()[0] - 0.02).abs() < 1e-9);
         assert_eq!(of(OF_DATA).baseline_median, None);
-        assert_eq!((of(PROGRAMS_REPEATED).cases, of(PROGRAMS_REPEATED).within), (2, [1, 2, 2, 2]));
+        assert_eq!((of(PROGRAMS_SETTLED).cases, of(PROGRAMS_SETTLED).within), (2, [1, 2, 2, 2]));
     }
 }

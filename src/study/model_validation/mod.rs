@@ -4,7 +4,7 @@
 mod errors;
 mod scene;
 
-pub use errors::{Case, Errors, OF_DATA, OF_DATA_REPEATED, PROGRAMS, PROGRAMS_REPEATED};
+pub use errors::{Case, Errors, OF_DATA, OF_DATA_SETTLED, PROGRAMS, PROGRAMS_SETTLED};
 
 use super::calibration::{self, Calibration, CalibrationError};
 use super::pace::Pace;
@@ -28,7 +28,7 @@ pub struct Effort {
     /// Rounds over all runs, each laid out in memory anew: who else is at work on the machine, and what of his lies in the larger
     /// caches, is the same for a while.
     pub rounds: Bound,
-    /// Rounds more, at most, over those runs alone that do not repeat themselves yet: two by two, as those of even and of odd
+    /// Rounds more, at most, over those runs alone that met no quiet moments or do not repeat themselves yet: two by two, as those of even and of odd
     /// number are told apart.
     pub further: usize,
     /// Repeats of a run in a round.
@@ -138,7 +138,7 @@ pub fn model_validation(
         while rounds.next().is_some() {
             measured.round(&|share| progress(BASE * rounds.share(share)))?;
         }
-        measured.settle(|| false, &progress)?;
+        measured.settle(|| Ok(false), &progress)?;
         measured.against(host, calibrated)
     })
 }
@@ -175,7 +175,7 @@ pub fn calibrated_in_turns(
     })
 }
 
-/// Runs whose halves are farther apart than this share are run again.
+/// Runs whose halves are farther apart than this share are run again; and those that met no quiet moments.
 pub const UNSETTLED: f64 = 0.1;
 /// The share of the time that is taken by the rounds over all runs, about.
 const BASE: f64 = 0.8;
@@ -215,24 +215,24 @@ impl Measured {
         Ok(())
     }
 
-    /// Runs once more, for the rounds of even and for those of odd number, what does not repeat itself yet; in turns with
+    /// Runs once more, for the rounds of even and for those of odd number, what is not settled yet; in turns with
     /// `other`, which says whether it was of use, as long as either is. What is predicted has no say in it.
     fn settle(
         &mut self,
-        mut other: impl FnMut() -> bool,
+        mut other: impl FnMut() -> Result<bool, MeasurementError>,
         progress: &dyn Fn(f64),
     ) -> Result<(), MeasurementError> {
         while self.rounds[1] + 2 <= self.effort.further {
             let reference = self.pace.reference();
             let unsettled: Vec<bool> =
-                self.times.iter().map(|halves| apart(halves, reference) > UNSETTLED).collect();
+                self.times.iter().map(|halves| !is_settled(halves, reference)).collect();
             for half in 0..2 {
                 let all = self.scenes.iter().zip(&mut self.times).zip(&unsettled);
                 for ((scene, times), _) in all.filter(|(_, unsettled)| **unsettled) {
                     scene.measure(&self.effort, &mut self.pace, &mut times[half])?;
                 }
             }
-            if !(other() | unsettled.contains(&true)) {
+            if !(other()? | unsettled.contains(&true)) {
                 break;
             }
             self.rounds[1] += 2;
@@ -261,14 +261,14 @@ impl Measured {
     }
 }
 
-/// How far the halves of a run are apart, in the phase where they are farthest, as a share; nought where there is one alone.
-fn apart(halves: &[Option<PhaseTimes>; 2], reference: f64) -> f64 {
-    let [Some(even), Some(odd)] = halves else { return 0.0 };
-    let of = |phase: &Phase| {
+/// Whether a run was measured in quiet moments, and each of its phases repeats itself within [`UNSETTLED`].
+fn is_settled(halves: &[Option<PhaseTimes>; 2], reference: f64) -> bool {
+    let [Some(even), Some(odd)] = halves else { return true };
+    let near = |phase: &Phase| {
         let [a, b] = [even, odd].map(|half| half.typical(*phase, reference).0);
-        if a > 0.0 && b > 0.0 { a.max(b) / a.min(b) - 1.0 } else { 0.0 }
+        a.max(b) <= (1.0 + UNSETTLED) * a.min(b)
     };
-    Phase::ALL.iter().map(of).fold(0.0, f64::max)
+    Phase::ALL.iter().all(near) && [even, odd].iter().any(|half| half.is_quiet(reference))
 }
 
 /// Every run, in order.
