@@ -31,10 +31,10 @@ pub(super) struct ValidateModel {
           value_parser = clap::value_parser!(u16).range(1..=200))]
     sweeps: u16,
     /// Numbers of particles
-    #[arg(long, value_delimiter = ',', default_values_t = [310, 1600, 5100, 20_500])]
+    #[arg(long, value_delimiter = ',', default_values_t = [400, 1750, 7000, 15_500])]
     particles: Vec<usize>,
     /// Occupancies, on cells as wide as the radius
-    #[arg(long, value_delimiter = ',', default_values_t = [0.058, 0.1, 0.14, 0.22])]
+    #[arg(long, value_delimiter = ',', default_values_t = [0.066, 0.118, 0.165, 0.225])]
     occupancies: Vec<f64>,
     /// Rounds over all runs
     #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u16).range(1..))]

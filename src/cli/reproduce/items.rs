@@ -208,7 +208,7 @@ fn validation(effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, F
             made(report::model_validation::section(&data), &data)
         }
         Effort::Full => {
-            let (sweeps, best) = (calibration::Effort { sweeps: 9 }, InstructionSet::best());
+            let (sweeps, best) = (calibration::Effort { sweeps: 6 }, InstructionSet::best());
             let runs = runs(vec![150, 4000], vec![0.05, 0.24], bound(6, VALIDATION));
             let (host, data) = calibrated_in_turns(origin::host(), best, sweeps, &runs, progress)?;
             made(report::model_validation::section(&data), &data)

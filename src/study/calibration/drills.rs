@@ -323,3 +323,18 @@ impl<L: Element, O: Element> Arrays<L, O> {
         memory
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_round_of_a_drill_is_a_pass_of_its_kind() {
+        for kind in Kind::ALL {
+            let name = if kind == Kind::Shifted { Op::Subtract.mnemonic().to_owned() } else { kind.name() };
+            let [long, short] = drill::<f64, f32>(kind)
+                .map(|program| program.outlines().passes.iter().filter(|pass| pass.kind() == name).count());
+            assert_eq!(long - short, ROUNDS[0] - ROUNDS[1], "{kind:?}");
+        }
+    }
+}
