@@ -4,7 +4,7 @@ use super::fit;
 use super::large::{self, INTERPRETED, Ran, SCENES};
 use super::passes::{Lane, estimate};
 use super::timing::{PARTS, Samples};
-use crate::method::lattice_md::{Arrays, Lengths, StepProgram, programs};
+use crate::method::lattice_md::{Arrays, Discs, Lengths, Model, StepProgram, programs};
 use crate::model::host::{Estimate, Factors, LoopCosts, PassCost, ProgramCost, class_counts};
 use crate::run::model;
 use crate::study::pace::Pace;
@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::{Memory, OpClass};
+use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::{Execution, InstructionSet};
 
 /// Elements of the short and of the longer runs of a loop: whole registers, and in the first-level cache.
@@ -35,25 +36,34 @@ const DRILL: Run = Run { particles: 300, occupancy: 0.13, precision: "f64", exec
 struct Variant {
     /// What its programs are called by.
     suffix: &'static str,
-    overrides: &'static [&'static str],
-    /// Whether the step checks itself, as runs do and the source does not.
-    watched: bool,
+    change: fn(&mut Model),
 }
 
-/// All of it first, which larger scenes have too; then what leaves something out.
-const VARIANTS: [Variant; 3] = [
-    Variant { suffix: "", overrides: &["particles.temperature=0", "particles.seed=7"], watched: true },
+/// The bench scene's own first, which larger scenes have too; then what leaves something out, or has something more.
+const VARIANTS: [Variant; 4] = [
+    Variant { suffix: "", change: |_| () },
     Variant {
         suffix: ", frictionless",
-        overrides: &["particles.temperature=0", "particles.seed=7", "law.friction=0", "law.shear_damping=0"],
-        watched: true,
+        change: |model| {
+            model.friction = false;
+            model.contact.shear_damping = 0.0;
+        },
     },
+    Variant { suffix: ", varying discs", change: |model| model.discs = Discs::Varying },
     Variant {
-        suffix: ", unwatched",
-        overrides: &["particles.temperature=0", "particles.seed=7"],
-        watched: false,
+        suffix: ", as in the source",
+        change: |model| {
+            model.discs = Discs::Varying;
+            model.coordinates = Coordinates::Absolute;
+            model.gravity = [9.81, 0.0];
+            // It does not check itself, as runs do.
+            model.watch = None;
+        },
     },
 ];
+
+/// Discs that rest: no drill hangs on what the one before has left.
+const AT_REST: [&str; 2] = ["particles.temperature=0", "particles.seed=7"];
 
 /// Elements of the longest vectors of a sample of the interpreter and of loops, about, and steps at most.
 const INTERPRETED_ELEMENTS: usize = 20_000;
@@ -246,9 +256,9 @@ impl Loops {
         run: &Run,
         variant: &Variant,
     ) -> Result<(), MeasurementError> {
-        let checked = run.scene(variant.overrides)?;
+        let checked = run.scene(&AT_REST)?;
         let mut model = model(&checked);
-        model.watch = model.watch.filter(|_| variant.watched);
+        (variant.change)(&mut model);
         let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
         let programs = programs::<S, P>(&model);
         let ranges = programs.iter().map(|step| lengths.range(step.length)).collect();
@@ -420,4 +430,24 @@ impl Loops {
 /// A program of which nothing is known yet but what it takes in the first-level cache.
 fn seen_near(what: String, element: Estimate, start: Estimate, rest: PassCost) -> ProgramCost {
     ProgramCost { what, element, start, rest, factors: Factors::default(), residuals: vec![] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::efficiency_table::{Question, step};
+
+    #[test]
+    fn the_step_of_the_source_is_drilled() {
+        let mut loops = Loops { steps: vec![], arrays: vec![] };
+        let source = VARIANTS.last().unwrap();
+        loops.lay_out::<f64, f64>(&DRILL, source).unwrap();
+        let signatures = |programs: &[StepProgram]| -> Vec<String> {
+            programs.iter().map(|step| step.program.outlines().signature()).collect()
+        };
+        let drilled = signatures(&loops.steps[0].programs);
+        for (of, wanted) in signatures(&step(&Question::default()).unwrap().0).iter().enumerate() {
+            assert!(drilled.contains(wanted), "program {of}: {wanted} is none of {drilled:?}");
+        }
+    }
 }
