@@ -31,10 +31,10 @@ pub(super) struct ValidateModel {
           value_parser = clap::value_parser!(u16).range(1..=200))]
     sweeps: u16,
     /// Numbers of particles
-    #[arg(long, value_delimiter = ',', default_values_t = [400, 1750, 7000, 15_500])]
+    #[arg(long, value_delimiter = ',', default_values_t = [560, 2050, 9500, 17_000])]
     particles: Vec<usize>,
     /// Occupancies, on cells as wide as the radius
-    #[arg(long, value_delimiter = ',', default_values_t = [0.066, 0.118, 0.165, 0.225])]
+    #[arg(long, value_delimiter = ',', default_values_t = [0.072, 0.125, 0.168, 0.235])]
     occupancies: Vec<f64>,
     /// Rounds over all runs
     #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u16).range(1..))]

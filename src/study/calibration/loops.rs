@@ -4,7 +4,8 @@ use super::fit;
 use super::large::{self, INTERPRETED, Ran, SCENES};
 use super::passes::{Lane, estimate};
 use super::timing::{PARTS, Samples};
-use crate::method::lattice_md::{Arrays, Discs, Lengths, Model, StepProgram, programs};
+use super::variants::{AT_REST, DRILL, VARIANTS, Variant};
+use crate::method::lattice_md::{Arrays, Lengths, StepProgram, programs};
 use crate::model::host::{Estimate, Factors, LoopCosts, PassCost, ProgramCost, class_counts};
 use crate::run::model;
 use crate::study::pace::Pace;
@@ -14,7 +15,6 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::{Memory, OpClass};
-use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::{Execution, InstructionSet};
 
 /// Elements of the short and of the longer runs of a loop: whole registers, and in the first-level cache.
@@ -29,42 +29,6 @@ fn left_over(lanes: usize) -> [usize; 2] {
 }
 /// Least nanoseconds of a sample.
 const SHORTEST: f64 = 40_000.0;
-/// The drill scene: discs at rest that do not touch, as no validation runs them.
-const DRILL: Run = Run { particles: 300, occupancy: 0.13, precision: "f64", execution: "chained" };
-
-/// What is drilled of the drill scene.
-struct Variant {
-    /// What its programs are called by.
-    suffix: &'static str,
-    change: fn(&mut Model),
-}
-
-/// The bench scene's own first, which larger scenes have too; then what leaves something out, or has something more.
-const VARIANTS: [Variant; 4] = [
-    Variant { suffix: "", change: |_| () },
-    Variant {
-        suffix: ", frictionless",
-        change: |model| {
-            model.friction = false;
-            model.contact.shear_damping = 0.0;
-        },
-    },
-    Variant { suffix: ", varying discs", change: |model| model.discs = Discs::Varying },
-    Variant {
-        suffix: ", as in the source",
-        change: |model| {
-            model.discs = Discs::Varying;
-            model.coordinates = Coordinates::Absolute;
-            model.gravity = [9.81, 0.0];
-            // It does not check itself, as runs do.
-            model.watch = None;
-        },
-    },
-];
-
-/// Discs that rest: no drill hangs on what the one before has left.
-const AT_REST: [&str; 2] = ["particles.temperature=0", "particles.seed=7"];
-
 /// Elements of the longest vectors of a sample of the interpreter and of loops, about, and steps at most.
 const INTERPRETED_ELEMENTS: usize = 20_000;
 const LOOP_ELEMENTS: usize = 100_000;

@@ -11,6 +11,7 @@ mod loops;
 mod passes;
 mod scenes;
 mod timing;
+mod variants;
 
 use super::pace::Pace;
 use super::throughput::MeasurementError;
