@@ -108,6 +108,14 @@ impl PhaseTimes {
         }
     }
 
+    /// Of one phase, so many steps of it timed.
+    #[cfg(test)]
+    pub(super) fn of(phase: Phase, all: &[Timed]) -> PhaseTimes {
+        let mut times = PhaseTimes::none(1);
+        all.iter().for_each(|timed| times.samples[phase as usize].push(&[*timed]));
+        times
+    }
+
     /// What there is of a run, if there is something already, and the same run measured once more.
     #[must_use]
     pub fn with(before: Option<PhaseTimes>, more: PhaseTimes) -> PhaseTimes {

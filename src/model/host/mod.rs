@@ -28,8 +28,8 @@ use stripmine_kernels::isa::Op;
 pub struct Estimate {
     /// The number.
     pub value: f64,
-    /// Half the width of its 95 % confidence interval: from the residuals of the fit, and from how far the two halves of
-    /// the measurement differ.
+    /// Half the width of its 95 % confidence interval: from the residuals of the fit, and from how far the parts of the
+    /// measurement differ.
     pub interval: f64,
 }
 

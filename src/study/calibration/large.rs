@@ -10,9 +10,8 @@ use std::rc::Rc;
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
 
-/// NP and ρ: lattices of 600 to 400 000 cells, each larger than the one before by half or less, some with many discs and
-/// some with few; where a level ends, a third more can take half as long again. Most of those with few discs, whose gathers
-/// meet other levels than those of many.
+/// NP and ρ: lattices of 600 to 400 000 cells, few of them more than half as large again as the one before, some with many
+/// discs and some with few, whose gathers meet other levels; where a level ends, a third more can take half as long again.
 pub(super) const SCENES: [(usize, f64); 22] = [
     (70, 0.12),
     (90, 0.07),

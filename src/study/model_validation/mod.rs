@@ -28,8 +28,8 @@ pub struct Effort {
     /// Rounds over all runs, each laid out in memory anew: who else is at work on the machine, and what of his lies in the larger
     /// caches, is the same for a while.
     pub rounds: Bound,
-    /// Rounds more, at most, over those runs alone that met no quiet moments or do not repeat themselves yet: two by two, as those of even and of odd
-    /// number are told apart.
+    /// Rounds more, at most, over those runs alone that met no quiet moments or do not repeat themselves yet: two by two, as
+    /// those of even and of odd number are told apart.
     pub further: usize,
     /// Repeats of a run in a round.
     pub repeats: usize,
@@ -92,7 +92,8 @@ pub struct ModelValidation {
     pub instruction_set: String,
     /// Where it comes from.
     pub calibrated: Calibrated,
-    /// Rounds over all runs, and how many more there were over those that did not repeat themselves within [`UNSETTLED`].
+    /// Rounds over all runs, and how many more there were over those that met no quiet moments, or did not repeat themselves
+    /// within [`UNSETTLED`].
     pub rounds: [usize; 2],
     /// How many times as long as in the calibration's quiet moments the yardstick took in those of the runs.
     pub pace: f64,
@@ -164,8 +165,9 @@ pub fn calibrated_in_turns(
         let mut calibration = Calibration::new(title, set, sweeps)?;
         let mut rounds = effort.rounds.begin();
         while let Some(round) = rounds.next() {
-            let upto = (round + 1) as f64 / effort.rounds.most as f64;
-            calibration.measure(upto, &|_| progress(BASE * rounds.share(0.0)))?;
+            let most = effort.rounds.most as f64;
+            let (before, upto) = (round as f64 / most, (round + 1) as f64 / most);
+            calibration.measure(upto, &|all| progress(BASE * rounds.share(0.5 * most * (all - before))))?;
             measured.round(&|share| progress(BASE * rounds.share(0.5 * (1.0 + share))))?;
         }
         measured.settle(|| calibration.again(), &progress)?;
@@ -282,4 +284,26 @@ fn runs(effort: &Effort) -> impl Iterator<Item = Run> {
             EXECUTIONS.map(|(execution, _)| Run { particles, occupancy, precision, execution })
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::pace::Timed;
+
+    #[test]
+    fn a_run_is_settled_that_met_quiet_moments_and_repeats_itself() {
+        let half = |ns: f64, reading: f64| {
+            let all = vec![Timed { ns, around: [reading; 2] }; 4];
+            Some(PhaseTimes::of(Phase::Forces, &all))
+        };
+        let settled = |even, odd| is_settled(&[even, odd], 10.0);
+        assert!(settled(half(100.0, 10.0), half(109.0, 10.0)));
+        assert!(
+            !settled(half(100.0, 10.0), half(112.0, 10.0)) && !settled(half(112.0, 10.0), half(100.0, 10.0))
+        );
+        // Never quiet, however alike; and one round alone says nothing.
+        assert!(!settled(half(100.0, 15.0), half(100.0, 15.0)));
+        assert!(settled(half(100.0, 15.0), None));
+    }
 }
