@@ -1,6 +1,7 @@
 //! Linked cells: who is near whom, for any number of particles a cell.
 
 use crate::domain::Domain;
+use stripmine_kernels::sweep::fast::{Grid, GridError};
 
 /// Particles sorted into bins at least as wide as a distance of interest.
 #[derive(Clone, Debug)]
@@ -13,10 +14,11 @@ pub struct Bins {
 
 impl Bins {
     /// Sorts positions into bins for finding everything nearer than `reach` (length).
-    pub fn new(domain: Domain, positions: impl Iterator<Item = [f64; 2]>, reach: f64) -> Bins {
-        // More bins than this gain nothing: an empty box must not cost memory.
-        const MOST: f64 = 4096.0;
-        let counts = domain.sides.map(|side| (side / reach).clamp(1.0, MOST) as usize);
+    pub fn new(domain: Domain, positions: impl ExactSizeIterator<Item = [f64; 2]>, reach: f64) -> Bins {
+        // More bins than positions gain nothing: an empty box must not cost memory.
+        let share = domain.sides[0] * domain.sides[1] / (positions.len() + 1) as f64;
+        let wide = reach.max(share.sqrt());
+        let counts = domain.sides.map(|side| (side / wide).clamp(1.0, f64::from(u16::MAX)) as usize);
         let widths = [domain.sides[0] / counts[0] as f64, domain.sides[1] / counts[1] as f64];
         let members = vec![Vec::new(); counts[0] * counts[1]];
         let mut bins = Bins { domain, counts, widths, members };
@@ -57,6 +59,17 @@ impl Bins {
             }
         }
     }
+}
+
+/// Sectors at least `reach` wide (length) for `discs` discs in a box. Where numbers of single precision are at work, places
+/// seen from a sector's centre must be short, so that sectors are narrow even if nearly all are empty.
+///
+/// # Errors
+/// [`GridError`] if the box is none for sectors.
+pub fn sectors_of(domain: &Domain, reach: f64, single: bool, discs: usize) -> Result<Grid, GridError> {
+    let widest = if single { 2.0 * reach } else { f64::INFINITY };
+    let Domain { origin, sides, periodic } = *domain;
+    Grid::new(origin, sides, periodic, reach, widest, discs)
 }
 
 #[cfg(test)]

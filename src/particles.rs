@@ -78,3 +78,13 @@ impl Particles {
         Some([radii().reduce(f64::min)?, radii().reduce(f64::max)?])
     }
 }
+
+/// How far discs may move in a step (length) for no contact deeper than a fraction `max_penetration` of the sum of the radii
+/// to pass unseen between two steps, if no radius is below `smallest_radius` (length).
+///
+/// Two discs that pass each other on parallel lines at the distance (1 − p) s, s the sum of their radii, overlap along the
+/// way 2 s √(1 − (1 − p)²); together they may move as far, each half of it.
+pub fn longest_step(smallest_radius: f64, max_penetration: f64) -> f64 {
+    let closest = 1.0 - max_penetration;
+    2.0 * smallest_radius * (1.0 - closest * closest).sqrt()
+}

@@ -97,7 +97,7 @@ fn run(seed: u64, time: f64, overrides: &[&str]) -> Pipe {
             flows.clear();
         }
     }
-    pipe.deepest = method.deep_contacts().deepest;
+    pipe.deepest = method.totals().deepest;
     pipe
 }
 

@@ -404,7 +404,7 @@ fn ghosts(stop_penetration: f64) -> (Model, Particles) {
     ];
     let (mut model, particles) = arena([16, 16], false, &discs);
     model.contact.stiffness = 1e-9;
-    model.watch = Some(Watch { max_penetration: 0.1, stop_penetration, smallest_radius: 0.5 });
+    model.watch = Some(Watch::new(0.1, stop_penetration, 0.5));
     (model, particles)
 }
 

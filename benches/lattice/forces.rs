@@ -147,7 +147,7 @@ fn executions<P: ByHand>(criterion: &mut Criterion, precision: &str) {
             });
         }
         // What the checks of a run cost: the deepest contact watched in every cell.
-        let watch = Some(Watch { max_penetration: 0.1, stop_penetration: 0.3, smallest_radius: 0.5 });
+        let watch = Some(Watch::new(0.1, 0.3, 0.5));
         let watching = programs_of::<f64, P>(&Model { watch, ..model.clone() });
         let mut arrays = Arrays::<f64, P>::new(&Model { watch, ..model.clone() }, &particles);
         warm_up::<P>(&watching, &mut arrays);

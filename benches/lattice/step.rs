@@ -18,10 +18,7 @@ fn without_check(mut programs: Vec<StepProgram>) -> Vec<StepProgram> {
 
 pub fn step(criterion: &mut Criterion) {
     let (model, particles, _) = dense::<f64>(100_000, true);
-    let watched = Model {
-        watch: Some(Watch { max_penetration: 0.1, stop_penetration: 0.3, smallest_radius: 0.5 }),
-        ..model.clone()
-    };
+    let watched = Model { watch: Some(Watch::new(0.1, 0.3, 0.5)), ..model.clone() };
     let cases = [
         ("with the checks", &watched, programs::<f64, f64>(&watched), Part::ALL),
         ("without the checks", &model, without_check(programs::<f64, f64>(&model)), Part::ALL),

@@ -23,7 +23,7 @@ fn scattered(
     discs: usize,
     seed: u64,
 ) -> Scattered {
-    let grid = Grid::new(ORIGIN, sides, periodic, reach + skin, discs).unwrap();
+    let grid = Grid::new(ORIGIN, sides, periodic, reach + skin, f64::INFINITY, discs).unwrap();
     let mut sectors = Sectors::new(grid, discs, reach);
     let mut random = Stream::new(seed, Purpose::Test, 0);
     let mut places = [vec![], vec![]];

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::sweep::fast::GridError;
 
 /// A particle that a failure names.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,12 +86,40 @@ pub enum Failure {
         /// The limit.
         limit: f64,
     },
-    /// Sectors meet themselves across a periodic side.
+    /// A disc that moved so far in a step that it may have passed through another unseen.
     #[error(
-        "a periodic side of the box has no room for three sectors as wide as a contact and the skin reach; take more \
-         discs, a smaller method.skin, or method.kind = \"lattice\""
+        "step {step}: {count} discs moved farther than {limit:.6} in the step, first {first}; contacts deeper than \
+         law.max_penetration could pass unseen between two steps: lower dt to {dt:.4e}, slow the discs, or set \
+         integrator.on_long_step = \"count\""
     )]
-    NoRoomForSectors,
+    LongStep {
+        /// The step.
+        step: u64,
+        /// How many.
+        count: u64,
+        /// The first.
+        first: Culprit,
+        /// How far a disc may move (length).
+        limit: f64,
+        /// A step in which the first would move as far (time).
+        dt: f64,
+    },
+    /// Sums over all discs that no number holds.
+    #[error(
+        "step {step}: {quantity} is {value}, which is no finite number: the units make masses, speeds or stiffness too large \
+         for double precision; choose units in which they are nearer to 1"
+    )]
+    Overflow {
+        /// The step.
+        step: u64,
+        /// What was summed up.
+        quantity: &'static str,
+        /// What came out.
+        value: f64,
+    },
+    /// Sectors do not fit the box.
+    #[error("{0}; take more discs, a smaller method.skin, or method.kind = \"lattice\"")]
+    NoSectors(#[from] GridError),
     /// The machine refused a program.
     #[error(transparent)]
     Machine(#[from] ProgramError),

@@ -3,9 +3,11 @@
 pub mod failure;
 pub mod lattice_md;
 pub mod timings;
+pub mod totals;
 
 pub use failure::{Culprit, Failure};
 pub use timings::{Phase, Timings};
+pub use totals::{Total, Totals};
 
 use crate::particles::Particles;
 use stripmine_kernels::ledger::{Ledger, Length};
@@ -17,20 +19,6 @@ pub enum StateColumn {
     F64(Vec<f64>),
     /// Single precision.
     F32(Vec<f32>),
-}
-
-/// Contacts deeper than a scene calls reasonable, counted since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DeepContacts {
-    /// Discs in such a contact, summed over the steps.
-    pub disc_steps: u64,
-    /// The deepest penetration (a fraction of the sum of the radii).
-    pub deepest: f64,
-    /// The step of the deepest.
-    pub step: u64,
-    /// Discs in a lattice cell that was another disc's, summed over the steps; more than none only where such conflicts
-    /// are resolved.
-    pub shared_cells: u64,
 }
 
 /// A method that steps particles. It never prints and never writes a file.
@@ -53,8 +41,12 @@ pub trait Method: Send {
     /// Force along x and y and torque on every particle, as of the last step.
     fn forces(&self) -> Vec<[f64; 3]>;
 
-    /// Contacts beyond the scene's `max_penetration`.
-    fn deep_contacts(&self) -> DeepContacts;
+    /// What has been counted and summed up since the start.
+    fn totals(&self) -> Totals;
+
+    /// How many periods each particle has moved along x and y since the start, in the order of
+    /// [`particles`](Self::particles); empty where that is not followed.
+    fn crossings(&self) -> Vec<[f64; 2]>;
 
     /// Everything that the next step depends on, by name.
     fn state(&self) -> Vec<(String, StateColumn)>;
@@ -66,7 +58,7 @@ pub trait Method: Send {
     fn restore(
         &mut self,
         steps: u64,
-        deep: DeepContacts,
+        totals: Totals,
         columns: Vec<(String, StateColumn)>,
     ) -> Result<(), String>;
 

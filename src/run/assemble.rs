@@ -1,27 +1,13 @@
 //! From a checked scene to the method that runs it.
 
 use crate::method::lattice_md::{
-    Contacts, Discs, GearValues, ListOptions, Machine, Model, OnConflict, Rebuild, Scheme, Search, Watch,
-    start,
+    Contacts, Discs, GearValues, ListOptions, Machine, Model, OnConflict, OnLongStep, Rebuild, Scheme,
+    Search, Watch, start,
 };
 use crate::method::{Failure, Method};
 use crate::scene::{self, Checked, MethodKind};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::law::granular::Disc;
-
-/// Skin of neighbour lists where the scene gives none, in largest radii.
-const SKIN: f64 = 0.3;
-
-/// Skin of the fast lists (length) where the scene gives none: half of the gap between the discs, were they spread evenly,
-/// within bounds. The wider the skin, the longer the lists, and the longer they last.
-fn roomy_skin(checked: &Checked) -> f64 {
-    let Checked { domain, particles, geometry, .. } = checked;
-    let largest = geometry.radii[1];
-    let area = domain.sides[0] * domain.sides[1] / particles.len().max(1) as f64;
-    // Neighbours on a hexagonal lattice are so far apart.
-    let spacing = (area * 2.0 / 3f64.sqrt()).sqrt();
-    (0.5 * (spacing - 2.0 * largest)).clamp(SKIN * largest, largest)
-}
 
 /// What a checked scene models: no more than it needs.
 pub fn model(checked: &Checked) -> Model {
@@ -55,6 +41,11 @@ pub fn model(checked: &Checked) -> Model {
             max_penetration: scene.law.max_penetration,
             stop_penetration: scene.law.stop_penetration,
             smallest_radius: geometry.radii[0],
+            on_long_step: match scene.integrator.on_long_step {
+                scene::OnLongStep::Stop => OnLongStep::Stop,
+                scene::OnLongStep::Count => OnLongStep::Count,
+            },
+            energy: false,
         }),
     }
 }
@@ -64,6 +55,20 @@ pub fn model(checked: &Checked) -> Model {
 /// # Errors
 /// [`Failure`] if the start breaks a precondition, or the processor lacks the instruction set asked for.
 pub fn assemble(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
+    start_of(checked, model(checked))
+}
+
+/// The same, with energy followed: what contacts dissipate, what walls put in, periods that discs cross along gravity.
+///
+/// # Errors
+/// As [`assemble`].
+pub fn assemble_following_energy(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
+    let mut model = model(checked);
+    model.watch = model.watch.map(|watch| Watch { energy: true, ..watch });
+    start_of(checked, model)
+}
+
+fn start_of(checked: &Checked, model: Model) -> Result<Box<dyn Method>, Failure> {
     let Checked { scene, particles, geometry, .. } = checked;
     let fast = scene.method.execution == scene::Execution::Fast;
     let contacts = match scene.method.kind {
@@ -73,21 +78,18 @@ pub fn assemble(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
         })),
         MethodKind::Lattice => Contacts::Lattice,
         MethodKind::Sectors => Contacts::Fast(Search::Sectors),
-        MethodKind::NeighborList { skin, .. } if fast => {
-            Contacts::Fast(Search::Lists { skin: skin.unwrap_or_else(|| roomy_skin(checked)) })
-        }
-        MethodKind::NeighborList { rebuild, skin } => Contacts::Lists(ListOptions {
+        MethodKind::NeighborList { .. } if fast => Contacts::Fast(Search::Lists { skin: geometry.skin }),
+        MethodKind::NeighborList { rebuild, .. } => Contacts::Lists(ListOptions {
             rebuild: match rebuild {
                 scene::Rebuild::Cells => Rebuild::Cells,
                 scene::Rebuild::AllPairs => Rebuild::AllPairs,
             },
-            skin: skin.unwrap_or(SKIN * geometry.radii[1]),
+            skin: geometry.skin,
         }),
     };
     let machine = Machine {
         execution: scene.method.execution.of_programs(),
         set: scene.method.instruction_set.unwrap_or_else(InstructionSet::best),
     };
-    let (model, particles) = (model(checked), particles.clone());
-    start(scene.method.precision, model, contacts, machine, scene.walls, particles)
+    start(scene.method.precision, model, contacts, machine, scene.walls, particles.clone())
 }

@@ -7,8 +7,9 @@ mod recorder;
 mod summary;
 mod work;
 
-pub use assemble::{assemble, model};
+pub use assemble::{assemble, assemble_following_energy, model};
 pub use summary::Summary;
+pub use work::Balance;
 
 use crate::io::FileError;
 use crate::io::checkpoint::{CheckpointError, WriteError};
@@ -121,7 +122,7 @@ pub fn run(
     mut progress: impl FnMut(u64, u64),
 ) -> Result<Ending, RunError> {
     let checked = document.check()?;
-    let mut method = assemble(&checked).map_err(RunError::Start)?;
+    let mut method = assemble_following_energy(&checked).map_err(RunError::Start)?;
     let mut recorder = match existing {
         Existing::Resume => Recorder::resume(folder, &checked, method.as_mut())?,
         _ if existing == Existing::Refuse && Recorder::is_run(folder) => {
@@ -139,7 +140,8 @@ pub fn run(
         }
         if let Err(failure) = method.step() {
             recorder.last_frame(method.as_ref())?;
-            let summary = summarize(&checked, method.as_ref(), start, Some(&failure));
+            let energy = recorder.balance(method.as_ref());
+            let summary = summarize(&checked, method.as_ref(), energy, start, Some(&failure));
             recorder.summary(&summary)?;
             return Err(RunError::Physics { failure, snapshot: recorder.trajectory_path() });
         }
@@ -150,7 +152,8 @@ pub fn run(
     }
     recorder.checkpoint(method.as_ref())?;
     recorder.final_files(method.as_ref())?;
-    let summary = summarize(&checked, method.as_ref(), start, None);
+    let energy = recorder.balance(method.as_ref());
+    let summary = summarize(&checked, method.as_ref(), energy, start, None);
     recorder.summary(&summary)?;
     Ok(Ending::Done(Box::new(summary)))
 }
@@ -158,8 +161,9 @@ pub fn run(
 fn summarize(
     checked: &Checked,
     method: &dyn Method,
+    energy: Balance,
     start: std::time::Instant,
     failure: Option<&Failure>,
 ) -> Summary {
-    Summary::of(checked, method, start.elapsed().as_secs_f64(), failure)
+    Summary::of(checked, method, energy, start.elapsed().as_secs_f64(), failure)
 }

@@ -1,12 +1,12 @@
 //! The folder of a run: what is written when.
 
-use super::work::Work;
+use super::work::{Balance, Work};
 use super::{RunError, Summary};
 use crate::io::checkpoint::{Checkpoint, Column, Counter, NAME, read_latest};
 use crate::io::extxyz::{Frame, Trajectory};
 use crate::io::table_file::TableFile;
 use crate::io::{FileError, lammps};
-use crate::method::{DeepContacts, Method, StateColumn};
+use crate::method::{Failure, Method, StateColumn, Total, Totals};
 use crate::observe::{Observation, Scenery};
 use crate::report::origin::Origin;
 use crate::scene::Checked;
@@ -16,13 +16,16 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// The columns of `thermo.csv` after the step.
-const THERMO: [&str; 13] = [
+const THERMO: [&str; 17] = [
     "time",
     "kinetic",
     "rotational",
     "elastic",
     "gravitational",
     "dissipated",
+    "gravity_work",
+    "wall_work",
+    "balance_error",
     "momentum_x",
     "momentum_y",
     "temperature",
@@ -30,6 +33,7 @@ const THERMO: [&str; 13] = [
     "deepest_penetration",
     "contacts",
     "deep_disc_steps",
+    "long_steps",
 ];
 
 /// Writes the files of a run.
@@ -63,10 +67,7 @@ impl Recorder {
         }
         let thermo = TableFile::create(folder.join("thermo.csv"), &THERMO)?;
         let trajectory = Trajectory::create(folder.join("trajectory.xyz"))?;
-        let scenery = Scenery::of(&super::model(checked));
-        let particles = method.particles();
-        let first = Observation::of(method.steps(), method.time(), &particles, &scenery);
-        let work = Work::begin(&first, &particles);
+        let work = work_from(checked, method);
         let mut recorder = Recorder::with(folder, checked, thermo, trajectory, work);
         recorder.write("scene.toml", &recorder.scene)?;
         recorder.thermo(method)?;
@@ -104,35 +105,22 @@ impl Recorder {
         let foreign = |reason: String| RunError::Foreign { file: latest.file.clone(), reason };
         let mut checkpoint = latest.checkpoint;
         same_scene(folder, &checkpoint.scene, &checked.scene.to_toml())?;
-        let count = |name: &str| match checkpoint.counters.get(name) {
-            Some(Counter::Count(count)) => Ok(*count),
-            _ => Err(foreign(format!("the counter {name} is missing"))),
-        };
-        let sum = |name: &str| match checkpoint.counters.get(name) {
-            Some(Counter::Sum(sum)) => Ok(*sum),
-            _ => Err(foreign(format!("the sum {name} is missing"))),
-        };
-        let deep = DeepContacts {
-            disc_steps: count("deep.disc_steps")?,
-            deepest: sum("deep.deepest")?,
-            step: count("deep.step")?,
-            shared_cells: count("deep.shared_cells")?,
-        };
-        let mut work = Work { start: sum("work.start")?, gravity: sum("work.gravity")?, seen: vec![] };
+        let totals = Totals::from_entries(|name| match checkpoint.counters.get(name)? {
+            Counter::Count(count) => Some(Total::Count(*count)),
+            Counter::Sum(sum) => Some(Total::Sum(*sum)),
+        });
+        let totals = totals.map_err(|name| foreign(format!("the total {name} is missing")))?;
         let mut state = Vec::new();
-        let mut seen = [vec![], vec![]];
         for (name, column) in std::mem::take(&mut checkpoint.columns) {
-            match (name.as_str(), column) {
-                ("work.x", Column::F64(values)) => seen[0] = values,
-                ("work.y", Column::F64(values)) => seen[1] = values,
-                (_, Column::F64(values)) => state.push((name, StateColumn::F64(values))),
-                (_, Column::F32(values)) => state.push((name, StateColumn::F32(values))),
-                (_, _) => return Err(foreign(format!("the column {name} is of no state"))),
+            match column {
+                Column::F64(values) => state.push((name, StateColumn::F64(values))),
+                Column::F32(values) => state.push((name, StateColumn::F32(values))),
+                _ => return Err(foreign(format!("the column {name} is of no state"))),
             }
         }
-        let [x, y] = seen;
-        work.seen = x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
-        method.restore(checkpoint.step, deep, state).map_err(foreign)?;
+        // The method is at the start still, as it was when the run began.
+        let work = work_from(checked, method);
+        method.restore(checkpoint.step, totals, state).map_err(foreign)?;
         let thermo = TableFile::resume(folder.join("thermo.csv"), &THERMO, checkpoint.step)?;
         let trajectory = Trajectory::resume(folder.join("trajectory.xyz"), checkpoint.step)?;
         lammps::cut_dump(&folder.join("dump.lammpstrj"), checkpoint.step)?;
@@ -164,23 +152,31 @@ impl Recorder {
     fn thermo(&mut self, method: &dyn Method) -> Result<(), RunError> {
         let particles = method.particles();
         let seen = Observation::of(method.steps(), method.time(), &particles, &self.scenery);
-        let Scenery { domain, gravity, .. } = self.scenery;
-        let dissipated = self.work.dissipated(&seen, &particles, &domain, gravity);
+        let balance = self.work.balance(&seen, &particles, method);
+        let totals = method.totals();
         let row = [
             seen.time,
             seen.kinetic,
             seen.rotational,
             seen.elastic,
             seen.gravitational,
-            dissipated,
+            balance.dissipated,
+            balance.gravity_work,
+            balance.wall_work,
+            balance.balance_error,
             seen.momentum_x,
             seen.momentum_y,
             seen.temperature,
             seen.flow,
             seen.deepest_penetration,
             seen.contacts as f64,
-            method.deep_contacts().disc_steps as f64,
+            totals.deep_disc_steps as f64,
+            totals.long_steps as f64,
         ];
+        if let Some((&quantity, &value)) = THERMO.iter().zip(&row).find(|(_, value)| !value.is_finite()) {
+            let failure = Failure::Overflow { step: seen.step, quantity, value };
+            return Err(RunError::Physics { failure, snapshot: self.trajectory_path() });
+        }
         Ok(self.thermo.append(seen.step, &row)?)
     }
 
@@ -239,23 +235,17 @@ impl Recorder {
                 .and_then(|dump| dump.sync_data())
                 .map_err(FileError::at(&path, "writing the dump"))?;
         }
-        let deep = method.deep_contacts();
-        let counters = BTreeMap::from([
-            ("deep.disc_steps".to_owned(), Counter::Count(deep.disc_steps)),
-            ("deep.deepest".to_owned(), Counter::Sum(deep.deepest)),
-            ("deep.step".to_owned(), Counter::Count(deep.step)),
-            ("deep.shared_cells".to_owned(), Counter::Count(deep.shared_cells)),
-            ("work.start".to_owned(), Counter::Sum(self.work.start)),
-            ("work.gravity".to_owned(), Counter::Sum(self.work.gravity)),
-        ]);
+        let counters: BTreeMap<String, Counter> = (method.totals().entries().into_iter())
+            .map(|(name, total)| match total {
+                Total::Count(count) => (name.to_owned(), Counter::Count(count)),
+                Total::Sum(sum) => (name.to_owned(), Counter::Sum(sum)),
+            })
+            .collect();
         let state = method.state().into_iter().map(|(name, column)| match column {
             StateColumn::F64(values) => (name, Column::F64(values)),
             StateColumn::F32(values) => (name, Column::F32(values)),
         });
-        let mut columns: Vec<(String, Column)> = state.collect();
-        for (axis, name) in ["work.x", "work.y"].into_iter().enumerate() {
-            columns.push((name.to_owned(), Column::F64(self.work.seen.iter().map(|r| r[axis]).collect())));
-        }
+        let columns: Vec<(String, Column)> = state.collect();
         let Origin { version, commit, dirty, target } = Origin::here();
         let origin = [
             ("version", version.to_owned()),
@@ -287,6 +277,13 @@ impl Recorder {
         Ok(())
     }
 
+    /// The balance of energy as it stands.
+    pub(super) fn balance(&self, method: &dyn Method) -> Balance {
+        let particles = method.particles();
+        let seen = Observation::of(method.steps(), method.time(), &particles, &self.scenery);
+        self.work.balance(&seen, &particles, method)
+    }
+
     /// `summary.json`.
     pub(super) fn summary(&self, summary: &Summary) -> Result<(), RunError> {
         let path = self.folder.join("summary.json");
@@ -294,6 +291,14 @@ impl Recorder {
             .map_err(|cause| FileError::at(&path, "writing")(cause.into()))?;
         self.write("summary.json", &(text + "\n"))
     }
+}
+
+/// The balance of energy of a run whose method is at the start.
+fn work_from(checked: &Checked, method: &dyn Method) -> Work {
+    let scenery = Scenery::of(&super::model(checked));
+    let particles = method.particles();
+    let first = Observation::of(method.steps(), method.time(), &particles, &scenery);
+    Work::begin(&first, &particles, scenery.domain, scenery.gravity)
 }
 
 /// Refuses a scene that differs from the run's in more than how long and what is written.

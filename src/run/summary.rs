@@ -1,5 +1,6 @@
 //! What a run says of itself at the end.
 
+use super::work::Balance;
 use crate::method::lattice_md::{self, Discs, Lengths, Model, programs};
 use crate::method::{Failure, Method};
 use crate::observe::{Observation, Scenery};
@@ -42,7 +43,11 @@ pub struct Summary {
     pub seconds: f64,
     /// Wall seconds of this session in each phase of the steps.
     pub phases: BTreeMap<&'static str, f64>,
-    /// Discs in contacts deeper than `max_penetration`, summed over the steps.
+    /// Energies put in and taken out since the start, and the error of their balance.
+    pub energy: Balance,
+    /// Discs that moved farther in a step than contacts can be seen, summed over the steps.
+    pub long_steps: u64,
+    /// Grains in contacts deeper than `max_penetration`, summed over the steps.
     pub deep_disc_steps: u64,
     /// Discs beside the lattice because their cell was another's, summed over the steps.
     pub resolved_conflicts: u64,
@@ -61,26 +66,34 @@ impl Summary {
     pub(super) fn of(
         checked: &Checked,
         method: &dyn Method,
+        energy: Balance,
         seconds: f64,
         failure: Option<&Failure>,
     ) -> Summary {
         let Checked { scene, particles, geometry, left_out, warnings, .. } = checked;
         let set = scene.method.instruction_set.unwrap_or_else(InstructionSet::best);
         let grains = particles.grain_count();
-        let deep = method.deep_contacts();
+        let totals = method.totals();
         let mut warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
-        if deep.disc_steps > 0 {
+        if totals.deep_disc_steps > 0 {
             warnings.push(format!(
                 "contacts were deeper than law.max_penetration = {}: {} disc-steps, the deepest {:.4} at step {}; the \
                  contact law and the lattice are exact only for shallow contacts: stiffen them or slow the discs",
-                scene.law.max_penetration, deep.disc_steps, deep.deepest, deep.step
+                scene.law.max_penetration, totals.deep_disc_steps, totals.deepest, totals.deepest_step
             ));
         }
-        if deep.shared_cells > 0 {
+        if totals.long_steps > 0 {
+            warnings.push(format!(
+                "{} times a disc moved so far in a step that contacts deeper than law.max_penetration may have passed unseen: \
+                 lower dt, or slow the discs",
+                totals.long_steps
+            ));
+        }
+        if totals.shared_cells > 0 {
             warnings.push(format!(
                 "{} times a disc was in a lattice cell that was another's, and was kept beside the lattice: exact, but \
                  slower the more there are",
-                deep.shared_cells
+                totals.shared_cells
             ));
         }
         let scenery = Scenery::of(&super::model(checked));
@@ -100,9 +113,11 @@ impl Summary {
             steps: method.steps(),
             seconds,
             phases: method.timings().named(),
-            deep_disc_steps: deep.disc_steps,
-            resolved_conflicts: deep.shared_cells,
-            deepest_watched: deep.deepest,
+            energy,
+            long_steps: totals.long_steps,
+            deep_disc_steps: totals.deep_disc_steps,
+            resolved_conflicts: totals.shared_cells,
+            deepest_watched: totals.deepest,
             work_relative_to_everything: (!ledger.is_empty()).then(|| relative_work(checked)),
             ledger,
             last: Observation::of(method.steps(), method.time(), &method.particles(), &scenery),

@@ -7,7 +7,7 @@ use super::keys::{Fallback, Key, Selector, Value};
 use super::places::beside;
 use super::{
     Amount, Domain, Execution, Grains, Inertia, Integrator, Law, Lining, List, Method, MethodKind,
-    OnConflict, Output, Precision, Rebuild, Run, Scene, Scheme, Speed, Start, WallMotion,
+    OnConflict, OnLongStep, Output, Precision, Rebuild, Run, Scene, Scheme, Speed, Start, WallMotion,
 };
 use stripmine_kernels::law::granular::{Contact, ContactArm};
 use stripmine_kernels::sweep::lattice::Coordinates;
@@ -94,6 +94,10 @@ pub(super) fn read(entries: &Entries) -> Get<Scene> {
                 _ => Scheme::Gear { values: from.whole(&VALUES)? as usize },
             },
             dt,
+            on_long_step: match from.word(&ON_LONG_STEP)?.as_str() {
+                "count" => OnLongStep::Count,
+                _ => OnLongStep::Stop,
+            },
         },
         run: Run {
             steps: match from.number_if_any(&TIME) {
@@ -185,6 +189,7 @@ fn law(from: &Values<'_>) -> Get<Law> {
             cohesionless: from.switch(&COHESIONLESS)?,
             arm: match from.word(&CONTACT_ARM)?.as_str() {
                 "overlap" => ContactArm::Overlap,
+                "lammps" => ContactArm::Lammps,
                 _ => ContactArm::Radius,
             },
         },
@@ -276,10 +281,18 @@ fn values(scene: &Scene) -> Vec<(&'static Key, Value)> {
         (&FRICTION, Value::Number(law.contact.friction)),
         (&COHESIONLESS, Value::Switch(law.contact.cohesionless)),
         (&INERTIA, word(if law.inertia == Inertia::Sphere { "sphere" } else { "disc" })),
-        (&CONTACT_ARM, word(if law.contact.arm == ContactArm::Overlap { "overlap" } else { "radius" })),
+        (
+            &CONTACT_ARM,
+            word(match law.contact.arm {
+                ContactArm::Radius => "radius",
+                ContactArm::Overlap => "overlap",
+                ContactArm::Lammps => "lammps",
+            }),
+        ),
         (&MAX_PENETRATION, Value::Number(law.max_penetration)),
         (&STOP_PENETRATION, Value::Number(law.stop_penetration)),
         (&DT, Value::Number(integrator.dt)),
+        (&ON_LONG_STEP, word(if integrator.on_long_step == OnLongStep::Count { "count" } else { "stop" })),
         (&STEPS, Value::Whole(run.steps)),
         (&THERMO_EVERY, Value::Whole(run.thermo_every)),
         (&SNAPSHOT_EVERY, Value::Whole(run.snapshot_every)),

@@ -97,7 +97,7 @@ define_keys! {
     RADII = "particles" "radii", Numbers(Positive), "length", Otherwise("all `radius`"), LIST,
         "Radii of the grains.";
     WALL_POSITIONS = "particles" "wall_positions", Pairs, "length", Otherwise("no walls"), LIST,
-        "Centres of wall discs.";
+        "Centres of wall discs; nothing moves a wall disc but wall_motion: its mass in a contact is infinite.";
     WALL_RADIUS = "particles" "wall_radius", Number(Positive), "length", Otherwise("0.9 `radius`"), WALLED,
         "Radius of the wall discs.";
     WALL_SPACING = "particles" "wall_spacing", Number(Positive), "length", Otherwise("3 `wall_radius`"), LINED,
@@ -114,17 +114,17 @@ define_keys! {
     STIFFNESS = "law" "stiffness", Number(Positive), "force/length^1.5", Required, ALWAYS,
         "Hertz stiffness k_N.";
     NORMAL_DAMPING = "law" "normal_damping", Number(NonNegative), "1/time", Is("0.0"), ALWAYS,
-        "Normal damping γ_N; multiplied by the effective mass.";
+        "Normal damping γ_N; multiplied by the effective mass, which with a wall disc is the grain's own, twice that of two equal grains.";
     SHEAR_DAMPING = "law" "shear_damping", Number(NonNegative), "1/time", Is("0.0"), ALWAYS,
-        "Tangential damping γ_S; multiplied by the effective mass.";
+        "Tangential damping γ_S; multiplied by the effective mass, as normal_damping.";
     FRICTION = "law" "friction", Number(NonNegative), "", Is("0.0"), ALWAYS,
         "Coulomb friction coefficient μ.";
     COHESIONLESS = "law" "cohesionless", Switch, "", Is("true"), ALWAYS,
-        "Whether the normal force is never negative, so that separating discs do not pull.";
+        "Whether the normal force is never negative, so that separating discs do not pull; false leaves the damping as the source has it, which pulls at the end of a contact.";
     INERTIA = "law" "inertia", Choice(&["disc", "sphere"]), "", Is("\"disc\""), ALWAYS,
         "Moment of inertia: disc ½ m R², sphere ⅖ m R².";
-    CONTACT_ARM = "law" "contact_arm", Choice(&["radius", "overlap"]), "", Is("\"radius\""), ALWAYS,
-        "Where the tangential force acts, seen from a centre: at R, as the source has it, or at R − ξ/2.";
+    CONTACT_ARM = "law" "contact_arm", Choice(&["radius", "overlap", "lammps"]), "", Is("\"radius\""), ALWAYS,
+        "Where the tangential force acts, seen from a centre: at R, as the source has it; at R − ξ/2, which shortens both the torque and the velocity of the surface; or, as in LAMMPS, the torque at R − ξ/2 and the velocity at R.";
     MAX_PENETRATION = "law" "max_penetration", Number(Within(0.5)), "", Is("0.1"), ALWAYS,
         "Penetration, as a fraction of the sum of the radii, up to which the lattice is exact; deeper contacts are counted.";
     STOP_PENETRATION = "law" "stop_penetration", Number(Within(1.0)), "", Is("0.3"), ALWAYS,
@@ -158,6 +158,8 @@ define_keys! {
         "Derivatives carried, from the position on; fewer are stabler with damping, more are more accurate without.";
     DT = "integrator" "dt", Number(Positive), "time", Required, ALWAYS,
         "Time step.";
+    ON_LONG_STEP = "integrator" "on_long_step", Choice(&["stop", "count"]), "", Is("\"stop\""), ALWAYS,
+        "What becomes of a disc that moves so far in a step that a contact deeper than law.max_penetration may pass unseen: the run stops, or the disc is counted.";
 
     STEPS = "run" "steps", Whole(0, 1_000_000_000_000), "", Otherwise("from `time`"), ALWAYS,
         "Number of steps.";

@@ -362,6 +362,18 @@ pub struct Integrator {
     pub scheme: Scheme,
     /// Time step (time).
     pub dt: f64,
+    /// What becomes of a disc that moves farther in a step than contacts can be seen.
+    pub on_long_step: OnLongStep,
+}
+
+/// What becomes of a disc that moves farther in a step than contacts can be seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OnLongStep {
+    /// The run stops.
+    #[default]
+    Stop,
+    /// It is counted.
+    Count,
 }
 
 /// How long, and how often something is written (steps; 0 is never).

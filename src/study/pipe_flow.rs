@@ -134,7 +134,7 @@ pub fn pipe_flow(question: &Question, progress: impl Fn(f64)) -> Result<PipeFlow
     }
     let late = &flow.density[flow.density.len() / 2..];
     flow.directions = directions(late, length, SHORTEST_WAVE * radius);
-    flow.deepest = method.deep_contacts().deepest;
+    flow.deepest = method.totals().deepest;
     flow.checksum = super::checksum(&method.particles());
     Ok(flow)
 }

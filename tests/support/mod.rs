@@ -50,7 +50,7 @@ pub fn gas(least: usize, packing_fraction: f64, seed: u64) -> (Model, Particles)
         scheme: Scheme::Gear(GearValues::Five),
         dt: 0.005,
         gravity: [0.0; 2],
-        watch: Some(Watch { max_penetration: 0.1, stop_penetration: 0.3, smallest_radius: 0.45 }),
+        watch: Some(Watch::new(0.1, 0.3, 0.45)),
     };
     (model, particles)
 }

@@ -103,4 +103,5 @@ define_arrays! {
     (PartnerFx, "partner.Fx", "cells: force along x from pairs met as the partner"),
     (PartnerFy, "partner.Fy", "cells: force along y from pairs met as the partner"),
     (PartnerTorque, "partner.torque", "cells: torque from pairs met as the partner"),
+    (Power, "power", "cells: what the contacts of the disc dissipate (energy/time), its share"),
 }

@@ -121,10 +121,11 @@ impl Law<2> for AsPrinted {
         // (16)
         let arms = radii.map(|radius| match self.contact.arm {
             ContactArm::Radius => radius,
-            ContactArm::Overlap => radius - number(0.5) * depth,
+            ContactArm::Overlap | ContactArm::Lammps => radius - number(0.5) * depth,
         });
         let [own_omega, omega] = both(Field::Omega);
-        let (own_rim, rim) = (arms[0] * own_omega, arms[1] * omega);
+        let surfaces = if self.contact.arm == ContactArm::Lammps { radii } else { arms };
+        let (own_rim, rim) = (surfaces[0] * own_omega, surfaces[1] * omega);
         let along = vx * sx + vy * sy;
         let slip = if self.prints(Misprint::Slip) { along + own_rim - rim } else { along - own_rim - rim };
 

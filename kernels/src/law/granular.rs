@@ -9,8 +9,10 @@ pub enum ContactArm {
     /// At the undeformed radius R, as the source has it.
     #[default]
     Radius,
-    /// At R − ξ/2, in the middle of the overlap.
+    /// At R − ξ/2, in the middle of the overlap: both the torque and the velocity of the surface there.
     Overlap,
+    /// The torque at R − ξ/2, the velocity of the surface at R, as in LAMMPS.
+    Lammps,
 }
 
 /// The parameters of the contact law.
@@ -139,26 +141,42 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         let effective_mass = uniform(1.0) / (own.inverse_mass + inverse_mass);
         let overlap = penetration.max(zero);
         let elastic = uniform(stiffness) * (overlap * overlap.sqrt());
-        let damping = (uniform(normal_damping) * effective_mass) * (vx * nx + vy * ny);
+        let rate = uniform(normal_damping) * effective_mass;
+        let separation = vx * nx + vy * ny;
+        let damping = rate * separation;
         let floor = uniform(if cohesionless { 0.0 } else { f64::NEG_INFINITY });
         let normal = (elastic - damping).max(floor);
         let fn_ = E::V::select(contact, normal, zero); // (8)
+        // The springs' power less the pair's: what damping and the clamp take. Met from both sides, a pair's loss is shared
+        // as the recoil is: a fixed disc has no part in it.
+        let dissipate = |power: E::V| {
+            let share = if E::BOTH_PARTNERS { power } else { power * (own.inverse_mass * effective_mass) };
+            env.dissipate(E::V::select(contact, share, zero));
+        };
 
         if !FRICTION {
             env.section("sums"); // (10), (11)
             share(env, place, Sum::Fx, fn_ * nx);
             share(env, place, Sum::Fy, fn_ * ny);
+            if env.counts_dissipation() {
+                env.section("dissipation");
+                dissipate((elastic - normal) * separation);
+            }
             return;
         }
 
         env.section("shear force"); // (15), (16), with the tangent s = (−ny, nx) of (13)
         let mut arms = [own.radius, radius];
-        if arm == ContactArm::Overlap {
+        if arm != ContactArm::Radius {
             let half = uniform(0.5) * overlap;
             arms = [own.radius - half, radius - half];
         }
-        let spin = arms[0] * own.omega + arms[1] * env.partner(Field::Omega, place);
-        let slip = (vy * nx - vx * ny) - spin;
+        let surfaces = if arm == ContactArm::Lammps { [own.radius, radius] } else { arms };
+        let own_spin = surfaces[0] * own.omega;
+        let omega = env.partner(Field::Omega, place);
+        let spin = own_spin + surfaces[1] * omega;
+        let sliding = vy * nx - vx * ny;
+        let slip = sliding - spin;
         let drag = (uniform(shear_damping) * effective_mass) * slip;
         let limit = uniform(friction) * normal.abs();
         let shear = (zero - drag).min(limit).max(zero - limit);
@@ -170,6 +188,12 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         env.own_add(Sum::Torque, zero - arms[0] * fs);
         if E::BOTH_PARTNERS {
             env.partner_sub(Sum::Torque, place, arms[1] * fs);
+        }
+        if env.counts_dissipation() {
+            env.section("dissipation");
+            // The friction's power is that of its force on the centres and of its torques.
+            let rubbed = shear * (sliding - (arms[0] * own.omega + arms[1] * omega));
+            dissipate((elastic - normal) * separation - rubbed);
         }
     }
 }

@@ -36,6 +36,15 @@ impl Sum {
     pub const ALL: [Sum; 3] = [Sum::Fx, Sum::Fy, Sum::Torque];
 }
 
+/// What is looked at beside the sums, while contacts are at hand.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Asked {
+    /// Contacts deeper than this (length) are listed.
+    pub watched: Option<f64>,
+    /// Whether the power that contacts dissipate is summed up.
+    pub dissipation: bool,
+}
+
 /// What a law may ask of the way particles meet.
 ///
 /// *Own* is the particle the law is evaluated for, *partner* the one that stands at a place. A law never subtracts
@@ -68,6 +77,11 @@ pub trait Env<const DIM: usize>: Copy {
     fn watches(self) -> bool;
     /// Reports the penetration (length) of every pair, negative without contact. Called only where [`Env::watches`].
     fn watch(self, penetration: Self::V);
+    /// Whether dissipation is counted.
+    fn counts_dissipation(self) -> bool;
+    /// Reports the power (energy/time) that every pair turns into heat, 0 without contact; where a pair is met from both
+    /// sides, the own particle's share. Called only where [`Env::counts_dissipation`].
+    fn dissipate(self, power: Self::V);
     /// Names what follows, for the ledger and the listing.
     fn section(self, name: &'static str);
 }

@@ -1,10 +1,11 @@
 //! The scalar rival of the lattice: lists of near partners, walked one by one.
 //!
 //! Places are cells of the same lattice, so that a pair has the same image and the same displacement to the bit; and
-//! contacts are summed in the mask's order, so that the sums are those of the full lattice sweep.
+//! contacts are summed in the mask's order, so that the sums are those of the full lattice sweep. Two discs may share a
+//! cell, which the lattice forbids: such partners come last, in the order of their numbers.
 
 use crate::backend::Precision;
-use crate::law::{Env, Field, Law, Sum};
+use crate::law::{Asked, Env, Field, Law, Sum};
 use crate::mask::Mask;
 use crate::sweep::lattice::{Frame, LatticeShape};
 use std::cell::Cell;
@@ -83,6 +84,8 @@ pub struct Met {
     pub pairs: u64,
     /// Contacts deeper than watched: disc and partner, each from both sides.
     pub deep: Vec<(usize, usize)>,
+    /// What the contacts dissipate (energy/time), where that is counted.
+    pub dissipated: f64,
 }
 
 /// How cells of the lattice are seen from each other.
@@ -90,7 +93,7 @@ pub struct Met {
 pub struct Ways {
     shape: LatticeShape,
     half_width: isize,
-    /// Number of a place of the mask, by row and column from the lower left corner; none for the own cell.
+    /// Number of a place of the mask, by row and column from the lower left corner; the own cell comes last.
     place: Vec<Option<u16>>,
     edge: [f64; 2],
     relative: bool,
@@ -106,14 +109,13 @@ impl Ways {
             let at = (offset.rows as isize + half_width) * side + offset.columns as isize + half_width;
             place[at as usize] = Some(number as u16);
         }
+        place[(half_width * side + half_width) as usize] = Some(mask.offsets().len() as u16);
         Ways { shape, half_width, place, edge: frame.edge, relative }
     }
 
     /// Column and row of a cell numbered from 1 in the padded lattice.
     fn column_and_row(&self, cell: u32) -> [isize; 2] {
-        let from_first = cell as isize - 1 - self.shape.position(0, 0) as isize;
-        let stride = self.shape.stride() as isize;
-        [from_first.rem_euclid(stride), from_first.div_euclid(stride)]
+        self.shape.column_and_row(cell as usize - 1)
     }
 
     /// The place at which `there` is seen from `own`, with the way between their centres and the periods crossed.
@@ -153,6 +155,8 @@ struct OneByOne<'a, P> {
     own: usize,
     watches: bool,
     penetration: Cell<P>,
+    dissipation: bool,
+    power: Cell<P>,
     sums: [Cell<P>; Sum::ALL.len()],
 }
 
@@ -205,12 +209,18 @@ impl<P: Precision> Env<2> for &OneByOne<'_, P> {
     fn watch(self, penetration: P) {
         self.penetration.set(penetration);
     }
+    fn counts_dissipation(self) -> bool {
+        self.dissipation
+    }
+    fn dissipate(self, power: P) {
+        self.power.set(self.power.get() + power);
+    }
     fn section(self, _: &'static str) {}
 }
 
 /// Walks the lists with a law; `write(disc, sums)` takes the sums (force along x, y, torque) of each of the first
-/// `grains` discs. Pairs farther apart than `reach` (length) are passed over without asking the law; contacts deeper than
-/// `watched` (length) are listed.
+/// `grains` discs. Pairs farther apart than `reach` (length) are passed over without asking the law. What `asked` for is
+/// looked at beside the sums.
 pub fn walk<P: Precision, L: Law<2>>(
     law: &L,
     lists: &Lists,
@@ -218,7 +228,7 @@ pub fn walk<P: Precision, L: Law<2>>(
     discs: Discs<'_, P>,
     grains: usize,
     reach: f64,
-    watched: Option<f64>,
+    asked: Asked,
     mut write: impl FnMut(usize, [P; 3]),
 ) -> Met {
     let zero = P::from_f64(0.0);
@@ -229,13 +239,16 @@ pub fn walk<P: Precision, L: Law<2>>(
     let mut env = OneByOne {
         discs,
         own: 0,
-        watches: watched.is_some(),
+        watches: asked.watched.is_some(),
         penetration: Cell::new(zero),
+        dissipation: asked.dissipation,
+        power: Cell::new(zero),
         sums: Default::default(),
     };
     for i in 0..grains {
         env.own = i;
         env.sums = [Cell::new(zero), Cell::new(zero), Cell::new(zero)];
+        env.power.set(zero);
         contacts.clear();
         for &j in lists.of(i) {
             let j = j as usize;
@@ -253,15 +266,16 @@ pub fn walk<P: Precision, L: Law<2>>(
                 contacts.push(Partner { disc: j, place, displacement });
             }
         }
-        contacts.sort_unstable_by_key(|partner| partner.place);
+        contacts.sort_unstable_by_key(|partner| (partner.place, partner.disc));
         let own = law.own(&env);
         for partner in &contacts {
             law.pair(&env, *partner, &own);
-            if watched.is_some_and(|depth| env.penetration.get().to_f64() > depth) {
+            if asked.watched.is_some_and(|depth| env.penetration.get().to_f64() > depth) {
                 met.deep.push((i, partner.disc));
             }
         }
         met.pairs += contacts.len() as u64;
+        met.dissipated += env.power.get().to_f64();
         write(i, [0, 1, 2].map(|sum| env.sums[sum].get()));
     }
     met

@@ -5,7 +5,7 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Inertia, Predictor, STATE};
 use stripmine_kernels::isa::{Array, Memory, ProgramError, Slot};
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
-use stripmine_kernels::law::{Field, Law, Sum};
+use stripmine_kernels::law::{Asked, Field, Law, Sum};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::sweep::fast::lattice::{Codes, Lattice, Occupancy};
@@ -319,7 +319,8 @@ impl<S: Precision, P: Precision> System<S, P> {
         let codes = Codes::new(&occupancy, self.frame);
         let lattice = Lattice { occupancy: &occupancy, codes: &codes };
         let mut sweep = Sweep::new(Finder::<S, P>::rows(&lattice));
-        let met = sweep.run(law, &lattice, &discs, [fx, fy, torque], Some(0.1), set)?;
+        let asked = Asked { watched: Some(0.1), dissipation: true };
+        let met = sweep.run(law, &lattice, &discs, [fx, fy, torque], asked, set)?;
         let mut forces = vec![[P::default(); 3]; self.discs];
         for (n, &disc) in order.iter().enumerate() {
             forces[disc as usize] = [0, 1, 2].map(|sum| sums[sum][n]);
@@ -380,10 +381,14 @@ pub fn equal<const FRICTION: bool>(contact: Contact) -> Granular<FRICTION, true>
     Granular { contact, disc: Disc { radius: 1.0, inverse_mass: 1.0 } }
 }
 
-/// The law's options that change forces: clamped or not, and the two arms.
+/// The law's options that change forces: clamped or not, and the arms.
 pub fn contacts() -> impl Iterator<Item = Contact> {
     [true, false].into_iter().flat_map(|cohesionless| {
-        [ContactArm::Radius, ContactArm::Overlap].map(|arm| Contact { cohesionless, arm, ..CONTACT })
+        [ContactArm::Radius, ContactArm::Overlap, ContactArm::Lammps].map(|arm| Contact {
+            cohesionless,
+            arm,
+            ..CONTACT
+        })
     })
 }
 

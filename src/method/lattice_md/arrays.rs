@@ -56,16 +56,41 @@ impl Lengths {
 #[derive(Clone, Debug)]
 pub struct Arrays<S, P> {
     lengths: Lengths,
-    /// Columns in state precision, each for one array of the machine.
-    state: Vec<(Array, OnLines<S>)>,
+    /// Columns in state precision.
+    state: Columns<S>,
     /// Columns in force precision that programs write.
-    lattice: Vec<(Array, OnLines<P>)>,
+    lattice: Columns<P>,
     /// Columns in force precision that stay as they are.
-    constant: Vec<(Array, OnLines<P>)>,
+    constant: Columns<P>,
     cell: OnLines<u32>,
+    /// Where the forces of every disc stand where that is not its cell: numbered from 1.
+    force_at: Option<OnLines<u32>>,
     index: OnLines<u32>,
     halo_cell: OnLines<u32>,
     halo_source: OnLines<u32>,
+}
+
+/// Columns, each for one array of the machine.
+type Columns<T> = Vec<(Array, OnLines<T>)>;
+
+/// State and lattice columns, bound to their slots.
+fn bound<'a, S: Precision, P: Precision>(
+    state: &'a mut Columns<S>,
+    lattice: &'a mut Columns<P>,
+    constant: &'a Columns<P>,
+) -> Memory<'a> {
+    let mut memory = Memory::new();
+    // Constants first: where state and lattice have one precision, the state's copy of a quantity takes its place.
+    for (array, column) in constant {
+        memory.bind_read(Slot::new(*array), column);
+    }
+    for (array, column) in lattice {
+        memory.bind_write(Slot::new(*array), column);
+    }
+    for (array, column) in state {
+        memory.bind_write(Slot::new(*array), column);
+    }
+    memory
 }
 
 /// An array's elements, at lines of its own.
@@ -74,19 +99,35 @@ fn laid_out<X: Copy>(array: Array, values: impl IntoIterator<Item = X>) -> OnLin
 }
 
 impl<S: Precision, P: Precision> Arrays<S, P> {
-    /// Lays out `particles`; derivatives above the velocity start at zero.
+    /// Lays out `particles`; derivatives above the velocity start at zero. Forces stand cell by cell.
     pub fn new(model: &Model, particles: &Particles) -> Self {
+        Arrays::lay_out(model, particles, false)
+    }
+
+    /// The same with forces disc by disc: for searches that let discs share a cell.
+    pub fn with_forces_by_disc(model: &Model, particles: &Particles) -> Self {
+        Arrays::lay_out(model, particles, true)
+    }
+
+    fn lay_out(model: &Model, particles: &Particles, by_disc: bool) -> Self {
         let lengths = Lengths::new(model, particles.grain_count(), particles.len());
         let (discs, padded) = (lengths.discs, lengths.padded);
         let convert = |array, values: Vec<f64>| (array, laid_out(array, values.into_iter().map(S::from_f64)));
         let on_lattice =
             |array, values: Vec<f64>| (array, laid_out(array, values.into_iter().map(P::from_f64)));
 
+        let anchored: Option<Vec<(u32, [f64; 2])>> = model
+            .is_anchored::<S>()
+            .then(|| particles.all().iter().map(|disc| model.anchored(disc.position)).collect());
+        let places: Vec<[f64; 2]> = match &anchored {
+            Some(anchored) => anchored.iter().map(|(_, place)| *place).collect(),
+            None => particles.all().iter().map(|disc| disc.position).collect(),
+        };
         let mut state = Vec::new();
         for (freedom, row) in STATE.iter().enumerate().take(model.freedoms()) {
             for (k, &array) in row.iter().enumerate().take(model.scheme.values()) {
-                let column = particles.all().iter().map(|disc| match (k, freedom) {
-                    (0, 0 | 1) => disc.position[freedom],
+                let column = particles.all().iter().zip(&places).map(|(disc, place)| match (k, freedom) {
+                    (0, 0 | 1) => place[freedom],
                     (1, 0 | 1) => disc.velocity[freedom] * model.dt,
                     (0, _) => disc.angle,
                     (1, _) => disc.omega * model.dt,
@@ -129,16 +170,19 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
             }
         }
 
-        let mut lattice: Vec<(Array, OnLines<P>)> = Vec::new();
+        let mut lattice: Columns<P> = Vec::new();
         let mut columns = |arrays: &[Array], length| {
             let zeros = |array| OnLines::filled(array as usize, P::from_f64(0.0), length);
             lattice.extend(arrays.iter().map(|&array| (array, zeros(array))));
         };
         columns(&[Array::DiscX, Array::DiscY, Array::DiscVx, Array::DiscVy], discs);
-        columns(&[Array::X, Array::Y, Array::Vx, Array::Vy, Array::Fx, Array::Fy], padded);
+        let forces = if by_disc { discs } else { padded };
+        columns(&[Array::X, Array::Y, Array::Vx, Array::Vy], padded);
+        columns(&[Array::Fx, Array::Fy], forces);
         if model.friction {
             columns(&[Array::DiscOmega], discs);
-            columns(&[Array::Omega, Array::Torque], padded);
+            columns(&[Array::Omega], padded);
+            columns(&[Array::Torque], forces);
         }
         if model.discs == Discs::Varying {
             columns(&[Array::Radius, Array::InverseMass], padded);
@@ -146,6 +190,9 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
         if model.watch.is_some() {
             columns(&[Array::Deepest], padded);
             constant.push((Array::Interior, laid_out(Array::Interior, model.shape.interior())));
+        }
+        if model.counts_dissipation() {
+            columns(&[Array::Power], padded);
         }
         // The predictor hands on the grains' velocities; a wall's stay until the wall is moved.
         let velocity = |disc: &Particle| [disc.velocity[0], disc.velocity[1], disc.omega];
@@ -160,7 +207,11 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
             state,
             lattice,
             constant,
-            cell: OnLines::filled(Array::DiscCell as usize, 0, discs),
+            cell: match anchored {
+                Some(anchored) => laid_out(Array::DiscCell, anchored.into_iter().map(|(cell, _)| cell)),
+                None => OnLines::filled(Array::DiscCell as usize, 0, discs),
+            },
+            force_at: by_disc.then(|| laid_out(Array::DiscCell, 1..=discs as u32)),
             index: OnLines::filled(Array::Index as usize, 0, padded),
             halo_cell: laid_out(Array::HaloCell, images.iter().map(|image| image.cell as u32 + 1)),
             halo_source: laid_out(Array::HaloSource, images.iter().map(|image| image.source as u32 + 1)),
@@ -175,22 +226,27 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
 
     /// All arrays, bound to their slots, with the lengths of the vectors.
     pub fn memory(&mut self) -> (Memory<'_>, &Lengths) {
-        let mut memory = Memory::new();
-        memory.bind_write(Slot::new(Array::DiscCell), &mut self.cell);
-        memory.bind_write(Slot::new(Array::Index), &mut self.index);
-        memory.bind_read(Slot::new(Array::HaloCell), &self.halo_cell);
-        memory.bind_read(Slot::new(Array::HaloSource), &self.halo_source);
-        // Constants first: where state and lattice have one precision, the state's copy of a quantity takes its place.
-        for (array, column) in &self.constant {
-            memory.bind_read(Slot::new(*array), column);
-        }
-        for (array, column) in &mut self.lattice {
-            memory.bind_write(Slot::new(*array), column);
-        }
-        for (array, column) in &mut self.state {
-            memory.bind_write(Slot::new(*array), column);
-        }
-        (memory, &self.lengths)
+        let Arrays { lengths, state, lattice, constant, cell, index, halo_cell, halo_source, .. } = self;
+        let mut memory = bound(state, lattice, constant);
+        memory.bind_write(Slot::new(Array::DiscCell), cell);
+        memory.bind_write(Slot::new(Array::Index), index);
+        memory.bind_read(Slot::new(Array::HaloCell), halo_cell);
+        memory.bind_read(Slot::new(Array::HaloSource), halo_source);
+        (memory, lengths)
+    }
+
+    /// The arrays as the corrector sees them: what it takes for a disc's cell is where the disc's forces stand.
+    pub fn memory_of_corrector(&mut self) -> (Memory<'_>, &Lengths) {
+        let Arrays { lengths, state, lattice, constant, cell, force_at, .. } = self;
+        let mut memory = bound(state, lattice, constant);
+        memory.bind_read(Slot::new(Array::DiscCell), force_at.as_deref().unwrap_or(cell));
+        (memory, lengths)
+    }
+
+    /// Where the forces of a disc stand in their columns.
+    pub fn force_at(&self, disc: usize) -> Option<usize> {
+        let number = self.force_at.as_deref().unwrap_or(&self.cell)[disc];
+        (number as usize).checked_sub(1)
     }
 
     /// A column in state precision.
@@ -221,6 +277,11 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
     /// The cell of every disc, numbered from 1; 0 is none.
     pub fn cell(&self) -> &[u32] {
         &self.cell
+    }
+
+    /// The cell of every disc, to be changed.
+    pub fn cell_mut(&mut self) -> &mut [u32] {
+        &mut self.cell
     }
 
     /// The disc in every cell, numbered from 1; 0 is none.

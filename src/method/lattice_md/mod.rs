@@ -3,6 +3,7 @@
 //! source compares with: scalar neighbour lists.
 
 mod arrays;
+mod crossings;
 mod fast;
 mod model;
 mod neighbor_list;
@@ -13,7 +14,7 @@ mod watch;
 
 pub use arrays::{Arrays, Lengths};
 pub use fast::{OnConflict, Search};
-pub use model::{Discs, GearValues, Model, Scheme, Watch};
+pub use model::{Discs, GearValues, Model, OnLongStep, Scheme, Watch};
 pub use neighbor_list::{ListOptions, Rebuild};
 pub use programs::{Part, StepProgram, execute, ledger, programs, rival_ledger};
 pub use simulation::{Contacts, LatticeMd, Machine, start};

@@ -1,7 +1,10 @@
 //! What is modelled: no more than a scene needs.
 
 use crate::domain::Domain;
+use crate::particles::longest_step;
 use stripmine_kernels::integrator::gear::{Acceleration, Inertia};
+use stripmine_kernels::isa::Storage;
+use stripmine_kernels::law::Asked;
 use stripmine_kernels::law::granular::{Contact, Disc};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
@@ -73,14 +76,41 @@ pub struct Watch {
     pub stop_penetration: f64,
     /// The smallest radius (length), of walls too.
     pub smallest_radius: f64,
+    /// What becomes of a disc that moves so far in a step that a contact may pass unseen.
+    pub on_long_step: OnLongStep,
+    /// Whether energy is followed: what contacts dissipate, what moving walls put in, periods that discs cross along
+    /// gravity.
+    pub energy: bool,
+}
+
+/// What becomes of a disc that moves farther in a step than contacts can be seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OnLongStep {
+    /// The run stops.
+    #[default]
+    Stop,
+    /// It is counted.
+    Count,
 }
 
 impl Watch {
+    /// Looks for contacts that are too deep (fractions of the sum of the radii) and stops at discs that are too fast, if no
+    /// radius is below `smallest_radius` (length); does not follow energy.
+    pub fn new(max_penetration: f64, stop_penetration: f64, smallest_radius: f64) -> Watch {
+        let on_long_step = OnLongStep::Stop;
+        Watch { max_penetration, stop_penetration, smallest_radius, on_long_step, energy: false }
+    }
+
     /// Penetration (length) that no pair passes whose fraction is at most `max_penetration`: what programs look for, so
     /// that only what they find need be held against the pair's own radii.
     pub fn depth(&self) -> f64 {
         // Less by more than single precision rounds.
         2.0 * self.max_penetration * self.smallest_radius * (1.0 - 1e-6)
+    }
+
+    /// How far a disc may move in a step (length).
+    pub fn longest_step(&self) -> f64 {
+        longest_step(self.smallest_radius, self.max_penetration)
     }
 }
 
@@ -126,6 +156,37 @@ impl Model {
         if damped { Acceleration::OfVelocities } else { Acceleration::OfPositions }
     }
 
+    /// Whether state positions of precision `S` are measured from the cells' centres: from the origin single precision would
+    /// lose motion in large boxes.
+    pub fn is_anchored<S: Storage>(&self) -> bool {
+        S::NAME == f32::NAME && self.coordinates == Coordinates::CellRelative
+    }
+
+    /// The cell of a position (length), numbered from 1 in the padded lattice, and the position from its centre; for a position
+    /// beyond a closed side the cell at that side.
+    pub fn anchored(&self, position: [f64; 2]) -> (u32, [f64; 2]) {
+        let position = self.domain().inside(position);
+        let counts = [self.shape.columns(), self.shape.rows()];
+        let mut cell = [0; 2];
+        let mut place = position;
+        for axis in 0..2 {
+            let edge = self.frame.edge[axis];
+            let from_low = position[axis] - self.frame.origin[axis];
+            let nearest = (from_low / edge).floor().clamp(0.0, (counts[axis] - 1) as f64);
+            cell[axis] = nearest as isize;
+            place[axis] = from_low - (nearest + 0.5) * edge;
+        }
+        (self.shape.position(cell[0], cell[1]) as u32 + 1, place)
+    }
+
+    /// The position (length) of what lies at a place seen from the centre of a cell numbered from 1.
+    pub fn position(&self, cell: u32, place: [f64; 2]) -> [f64; 2] {
+        let at = self.shape.column_and_row((cell as usize).saturating_sub(1));
+        [0, 1].map(|axis| {
+            self.frame.origin[axis] + (at[axis] as f64 + 0.5) * self.frame.edge[axis] + place[axis]
+        })
+    }
+
     /// The box that the lattice fills.
     pub fn domain(&self) -> Domain {
         let counts = [self.shape.columns(), self.shape.rows()];
@@ -134,6 +195,27 @@ impl Model {
             sides: [0, 1].map(|axis| counts[axis] as f64 * self.frame.edge[axis]),
             periodic: self.shape.periodic(),
         }
+    }
+
+    /// Whether contacts turn energy into heat, and that is followed.
+    pub fn counts_dissipation(&self) -> bool {
+        self.follows_energy() && self.acceleration() == Acceleration::OfVelocities
+    }
+
+    /// What is looked at while contacts are at hand.
+    pub fn asked(&self) -> Asked {
+        Asked { watched: self.watch.map(|watch| watch.depth()), dissipation: self.counts_dissipation() }
+    }
+
+    /// Along which axes it is followed how many periods discs cross: gravity works along them.
+    pub fn counts_crossings(&self) -> [bool; 2] {
+        let periodic = self.shape.periodic();
+        [0, 1].map(|axis| self.follows_energy() && periodic[axis] && self.gravity[axis] != 0.0)
+    }
+
+    /// Whether energy is followed.
+    pub fn follows_energy(&self) -> bool {
+        self.watch.is_some_and(|watch| watch.energy)
     }
 
     /// What forces and torques are divided by.

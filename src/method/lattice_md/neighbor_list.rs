@@ -71,7 +71,11 @@ impl<P: Precision> Rival<P> {
             dx * dx + dy * dy
         };
         let moved_too_far = 0.25 * self.options.skin * self.options.skin;
-        let at = |i: usize| [x[i].to_f64(), y[i].to_f64()];
+        let anchored = model.is_anchored::<S>();
+        let at = |i: usize| match anchored {
+            true => model.position(arrays.cell()[i], [x[i].to_f64(), y[i].to_f64()]),
+            false => [x[i].to_f64(), y[i].to_f64()],
+        };
         let discs = x.len();
         let fresh =
             self.made_at.len() == discs && (0..discs).all(|i| square(at(i), self.made_at[i]) < moved_too_far);
@@ -104,11 +108,9 @@ impl<P: Precision> Rival<P> {
             sum.resize(arrays.lengths().grains, P::from_f64(0.0));
         }
         self.met = with_law(model, Walk { rival: self, model, arrays, sums: &mut sums });
-        let cells: Vec<usize> =
-            arrays.cell()[..arrays.lengths().grains].iter().map(|&c| c as usize - 1).collect();
         for (array, sum) in [Array::Fx, Array::Fy, Array::Torque].into_iter().zip(sums) {
             if let Some(column) = arrays.lattice_mut(array) {
-                cells.iter().zip(sum).for_each(|(&cell, value)| column[cell] = value);
+                column[..sum.len()].copy_from_slice(&sum);
             }
         }
     }
@@ -137,12 +139,12 @@ impl<S: Precision, P: Precision> WithLaw for Walk<'_, S, P> {
             cell: self.arrays.cell(),
         };
         debug_assert!(self.model.discs != Discs::Varying || discs.radius.len() == discs.cell.len());
-        let watched = self.model.watch.map(|watch| watch.depth());
+        let asked = self.model.asked();
         // A rounding error more than contact, so that the law decides on every contact.
         let reach = self.rival.reach * (1.0 + 1e-6);
         let grains = self.arrays.lengths().grains;
         let Rival { lists, ways, .. } = self.rival;
-        walk(&law, lists, ways, discs, grains, reach, watched, |disc, sums| {
+        walk(&law, lists, ways, discs, grains, reach, asked, |disc, sums| {
             self.sums.iter_mut().zip(sums).for_each(|(column, sum)| column[disc] = sum);
         })
     }

@@ -66,11 +66,7 @@ pub fn programs<S: Precision, P: Precision>(model: &Model) -> Vec<StepProgram> {
     let mut programs = vec![
         step(Part::Predictor, Length::Grains, predictor::<S, P>(model)),
         step(Part::Index, Length::PaddedCells, Box::new(Program::new(Clear))),
-        step(
-            Part::Index,
-            Length::Discs,
-            Box::new(Program::new(Enter::<S, P>::new(model.shape, model.frame, model.coordinates))),
-        ),
+        step(Part::Index, Length::Discs, Box::new(Program::new(enter::<S, P>(model)))),
         step(Part::Index, Length::Discs, Box::new(Program::new(Check))),
     ];
     if model.shape.periodic().contains(&true) {
@@ -83,6 +79,14 @@ pub fn programs<S: Precision, P: Precision>(model: &Model) -> Vec<StepProgram> {
         step(Part::Corrector, Length::Grains, corrector::<S, P>(model)),
     ]);
     programs
+}
+
+fn enter<S: Precision, P: Precision>(model: &Model) -> Enter<S, P> {
+    let Model { shape, frame, coordinates, .. } = *model;
+    match model.is_anchored::<S>() {
+        true => Enter::anchored(shape, frame),
+        false => Enter::new(shape, frame, coordinates),
+    }
 }
 
 /// What a step of the programs executes.
@@ -158,6 +162,9 @@ impl<P: Precision> WithLaw for LatticeSweep<'_, P> {
         let mut forces = Forces::<P, L, false>::new(law, mask, *shape, *frame, *coordinates);
         if let Some(watch) = watch {
             forces = forces.watching(watch.depth());
+        }
+        if self.0.counts_dissipation() {
+            forces = forces.counting_dissipation();
         }
         (Box::new(Program::new(forces)), fields)
     }

@@ -1,12 +1,13 @@
 //! A running simulation: one step after the other, every broken precondition found in its step.
 
+use super::crossings::Crossings;
 use super::fast::{FastMd, Search};
 use super::neighbor_list::Rival;
 use super::programs::rival_ledger;
 use super::walls::walls_at;
 use super::watch::Names;
-use super::{Arrays, ListOptions, Model, Part, StepProgram, execute, ledger, programs};
-use crate::method::{DeepContacts, Failure, Method, Phase, StateColumn, Timings};
+use super::{Arrays, ListOptions, Model, OnLongStep, Part, StepProgram, execute, ledger, programs};
+use crate::method::{Failure, Method, Phase, StateColumn, Timings, Totals};
 use crate::particles::Particles;
 use crate::scene::{Precision, WallMotion};
 use stripmine_kernels::backend;
@@ -75,7 +76,10 @@ pub struct LatticeMd<S, P> {
     walls: WallMotion,
     rival: Option<Rival<P>>,
     steps: u64,
-    deep: DeepContacts,
+    totals: Totals,
+    crossings: Crossings,
+    /// The cells of the discs before the Index is made, while it is.
+    anchor: Vec<u32>,
     timings: Timings,
 }
 
@@ -98,9 +102,13 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
                 Some(Rival::new(&model, options, largest))
             }
         };
+        let crossings = Crossings::new(model.counts_crossings(), particles.len());
         let mut simulation = LatticeMd {
             programs: programs::<S, P>(&model),
-            arrays: Arrays::new(&model, &particles),
+            arrays: match contacts {
+                Contacts::Lists(_) => Arrays::with_forces_by_disc(&model, &particles),
+                Contacts::Lattice | Contacts::Fast(_) => Arrays::new(&model, &particles),
+            },
             ids: particles.all().iter().map(|disc| disc.id).collect(),
             start: particles,
             model,
@@ -108,13 +116,15 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             walls,
             rival,
             steps: 0,
-            deep: DeepContacts::default(),
+            totals: Totals::default(),
+            crossings,
+            anchor: vec![],
             timings: Timings::default(),
         };
         simulation.move_walls(0.0);
-        simulation.meet()?;
+        let power = simulation.meet()?;
         simulation.start_derivatives();
-        simulation.deep = DeepContacts::default();
+        simulation.totals = Totals::starting_with(power, simulation.wall_power());
         simulation.timings = Timings::default();
         Ok(simulation)
     }
@@ -128,9 +138,9 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
                 .start
                 .grains()
                 .iter()
-                .zip(self.arrays.cell())
-                .map(|(grain, &cell)| {
-                    let force = column[cell as usize - 1].to_f64();
+                .enumerate()
+                .map(|(number, grain)| {
+                    let force = self.arrays.force_at(number).map_or(f64::NAN, |at| column[at].to_f64());
                     let inertia = match (discs, freedom) {
                         (super::Discs::Equal { disc, .. }, 0 | 1) => 1.0 / disc.inverse_mass,
                         (super::Discs::Equal { inverse_inertia, .. }, _) => 1.0 / inverse_inertia,
@@ -149,13 +159,22 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
     }
 
     fn run(&mut self, parts: &[Part]) -> Result<[u64; COUNTERS], ProgramError> {
-        let (memory, lengths) = self.arrays.memory();
+        let (memory, lengths) = match parts {
+            [Part::Corrector] => self.arrays.memory_of_corrector(),
+            _ => self.arrays.memory(),
+        };
         execute(&self.programs, parts, &memory, lengths, self.machine.execution, self.machine.set)?;
         Ok([0, 1, 2, 3].map(|counter| memory.counted(Counter(counter))))
     }
 
     fn names(&self) -> Names<'_, S, P> {
-        Names { model: &self.model, arrays: &self.arrays, ids: &self.ids, step: self.steps }
+        Names {
+            model: &self.model,
+            arrays: &self.arrays,
+            anchor: &self.anchor,
+            ids: &self.ids,
+            step: self.steps,
+        }
     }
 
     fn move_walls(&mut self, time: f64) {
@@ -164,9 +183,18 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             return;
         }
         let (displacement, velocity) = walls_at(self.walls, time);
+        let positions = self.start.all()[grains..].iter().map(|disc| disc.position);
+        let mut positions: Vec<[f64; 2]> =
+            positions.map(|at| [at[0] + displacement[0], at[1] + displacement[1]]).collect();
+        if self.model.is_anchored::<S>() {
+            for (disc, position) in (grains..).zip(&mut positions) {
+                let (cell, place) = self.model.anchored(*position);
+                self.arrays.cell_mut()[disc] = cell;
+                *position = place;
+            }
+        }
         for axis in 0..2 {
-            let start =
-                self.start.all()[grains..].iter().map(|disc| disc.position[axis] + displacement[axis]);
+            let start = positions.iter().map(|position| position[axis]);
             if let Some(position) = self.arrays.state_mut([Array::X0, Array::Y0][axis]) {
                 position[grains..].iter_mut().zip(start).for_each(|(to, from)| *to = S::from_f64(from));
             }
@@ -176,9 +204,77 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         }
     }
 
-    /// Index, lattice vectors and forces of the positions as they stand.
-    fn meet(&mut self) -> Result<(), Failure> {
+    /// Discs that are so fast that contacts may pass unseen in a step.
+    fn judge_steps(&mut self) -> Result<(), Failure> {
+        let Some(watch) = self.model.watch else { return Ok(()) };
+        let column = |array| self.arrays.state(array).unwrap_or(&[]);
+        let (x, y) = (column(Array::X1), column(Array::Y1));
+        let square = S::from_f64(watch.longest_step() * watch.longest_step());
+        // What is no number is found when the cells are.
+        let is_far = |&(x, y): &(&S, &S)| square.less_than(*x * *x + *y * *y);
+        let grains = || x.iter().zip(y).take(self.arrays.lengths().grains);
+        let count = grains().filter(is_far).count() as u64;
+        if count == 0 {
+            return Ok(());
+        }
+        self.totals.long_steps += count;
+        match (watch.on_long_step, grains().position(|step| is_far(&step))) {
+            (OnLongStep::Stop, Some(first)) => {
+                Err(self.names().long_step(count, first, watch.longest_step()))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Periods that discs crossed when the Index wrapped them: no step is as long as half the box.
+    fn count_crossings(&mut self) {
+        if !self.crossings.is_followed() {
+            return;
+        }
+        let counts = [self.model.shape.columns(), self.model.shape.rows()];
+        for (disc, (&from, &to)) in self.anchor.iter().zip(self.arrays.cell()).enumerate() {
+            if from == to || from == 0 || to == 0 {
+                continue;
+            }
+            let [from, to] = [from, to].map(|cell| self.model.shape.column_and_row(cell as usize - 1));
+            let crossed = [0, 1].map(|axis| {
+                let moved = to[axis] - from[axis];
+                if 2 * moved.unsigned_abs() > counts[axis] { -(moved.signum() as f64) } else { 0.0 }
+            });
+            self.crossings.add(disc, crossed);
+        }
+    }
+
+    /// What moving walls put in (energy/time): all walls have one velocity, and what they do to the grains is the sum of
+    /// the grains' forces, for those of two grains cancel.
+    fn wall_power(&self) -> f64 {
+        if self.walls == WallMotion::Fixed || !self.model.follows_energy() {
+            return 0.0;
+        }
+        let (_, velocity) = walls_at(self.walls, self.time());
+        let grains = self.arrays.lengths().grains;
+        let along = |axis: usize| -> f64 {
+            let column = self.arrays.lattice([Array::Fx, Array::Fy][axis]).unwrap_or(&[]);
+            let forces = (0..grains).filter_map(|disc| Some(column[self.arrays.force_at(disc)?].to_f64()));
+            velocity[axis] * forces.sum::<f64>()
+        };
+        along(0) + along(1)
+    }
+
+    /// What the contacts found in the sweep of the lattice dissipate (energy/time).
+    fn power_on_lattice(&self) -> f64 {
+        let Some(power) = self.arrays.lattice(Array::Power) else { return 0.0 };
+        let grains = &self.arrays.cell()[..self.arrays.lengths().grains];
+        grains.iter().map(|&cell| power[cell as usize - 1].to_f64()).sum()
+    }
+
+    /// Index, lattice vectors and forces of the positions as they stand; gives what contacts dissipate (energy/time).
+    fn meet(&mut self) -> Result<f64, Failure> {
         let mut timings = self.timings;
+        if self.crossings.is_followed() || self.model.is_anchored::<S>() {
+            self.anchor.clear();
+            self.anchor.extend_from_slice(self.arrays.cell());
+        }
         let counted = timings.time(Phase::Index, || self.run(&[Part::Index]))?;
         let strays = counted[STRAYS.0 as usize];
         if strays > 0
@@ -186,6 +282,9 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         {
             return Err(failure);
         }
+        self.count_crossings();
+        // From now on discs are seen from the cells that they are in.
+        self.anchor.clear();
         if counted[CONFLICTS.0 as usize] > 0
             && self.rival.is_none()
             && let Some(failure) = self.names().conflict()
@@ -193,35 +292,33 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             return Err(failure);
         }
         let watch = self.model.watch;
-        let marked = match self.rival.take() {
+        let (power, marked) = match self.rival.take() {
             None => {
                 timings.time(Phase::Index, || self.run(&[Part::Lattice]))?;
                 let counted = timings.time(Phase::Forces, || self.run(&[Part::Forces]))?;
                 let found = watch.filter(|_| counted[DEEP.0 as usize] > 0);
-                found.map_or(vec![], |watch| self.names().marked_on_lattice(watch.depth()))
+                let marked = found.map_or(vec![], |watch| self.names().marked_on_lattice(watch.depth()));
+                (self.power_on_lattice(), marked)
             }
             Some(mut rival) => {
                 timings.time(Phase::Index, || rival.keep(&self.model, &self.arrays));
                 timings.time(Phase::Forces, || rival.forces(&self.model, &mut self.arrays));
                 let deep = std::mem::take(&mut rival.met.deep);
+                let power = rival.met.dissipated;
                 self.rival = Some(rival);
-                deep
+                (power, deep)
             }
         };
         self.timings = timings;
-        let Some(watch) = watch.filter(|_| !marked.is_empty()) else { return Ok(()) };
-        let (discs, deepest) = self.names().deep(&marked, watch.max_penetration);
-        self.deep.disc_steps += discs;
+        let Some(watch) = watch.filter(|_| !marked.is_empty()) else { return Ok(power) };
+        let (grains, deepest) = self.names().deep(&marked, watch.max_penetration);
         if let Some(deepest) = deepest {
-            if deepest.0 > self.deep.deepest {
-                self.deep.deepest = deepest.0;
-                self.deep.step = self.steps;
-            }
+            self.totals.add_deep(self.steps, grains, deepest.0);
             if deepest.0 > watch.stop_penetration {
                 return Err(self.names().too_deep(deepest, watch.stop_penetration));
             }
         }
-        Ok(())
+        Ok(power)
     }
 }
 
@@ -230,9 +327,11 @@ impl<S: backend::Precision, P: backend::Precision> Method for LatticeMd<S, P> {
         self.steps += 1;
         let mut timings = self.timings;
         timings.time(Phase::Predict, || self.run(&[Part::Predictor]))?;
+        timings.time(Phase::Index, || self.judge_steps())?;
         self.timings = timings;
         self.move_walls(self.time());
-        self.meet()?;
+        let power = self.meet()?;
+        self.totals.add_work(self.model.dt, power, self.wall_power());
         let mut timings = self.timings;
         let counted = timings.time(Phase::Correct, || self.run(&[Part::Corrector]))?;
         self.timings = timings;
@@ -258,9 +357,15 @@ impl<S: backend::Precision, P: backend::Precision> Method for LatticeMd<S, P> {
         let column = |array| self.arrays.state(array).unwrap_or(&[]);
         let value = |array, disc: usize| column(array).get(disc).map_or(0.0, |x: &S| x.to_f64());
         let (_, wall_velocity) = walls_at(self.walls, self.time());
-        let grains = self.arrays.lengths().grains;
+        let (grains, domain) = (self.arrays.lengths().grains, self.model.domain());
         for (i, disc) in particles.all_mut().iter_mut().enumerate() {
-            disc.position = [value(Array::X0, i), value(Array::Y0, i)];
+            disc.position = match self.model.is_anchored::<S>() {
+                true => {
+                    let place = [value(Array::X0, i), value(Array::Y0, i)];
+                    domain.inside(self.model.position(self.arrays.cell()[i], place))
+                }
+                false => [value(Array::X0, i), value(Array::Y0, i)],
+            };
             if i < grains {
                 disc.velocity = [Array::X1, Array::Y1].map(|array| value(array, i) / self.model.dt);
                 disc.omega = value(Array::Phi1, i) / self.model.dt;
@@ -273,16 +378,20 @@ impl<S: backend::Precision, P: backend::Precision> Method for LatticeMd<S, P> {
     }
 
     fn forces(&self) -> Vec<[f64; 3]> {
-        let on = |array, cell: u32| match (self.arrays.lattice(array), cell) {
-            (Some(column), 1..) => column[cell as usize - 1].to_f64(),
+        let on = |array, disc: usize| match (self.arrays.lattice(array), self.arrays.force_at(disc)) {
+            (Some(column), Some(at)) => column[at].to_f64(),
             _ => 0.0,
         };
-        let forces = |&cell: &u32| [Array::Fx, Array::Fy, Array::Torque].map(|array| on(array, cell));
-        self.arrays.cell().iter().map(forces).collect()
+        let forces = |disc| [Array::Fx, Array::Fy, Array::Torque].map(|array| on(array, disc));
+        (0..self.start.len()).map(forces).collect()
     }
 
-    fn deep_contacts(&self) -> DeepContacts {
-        self.deep
+    fn totals(&self) -> Totals {
+        self.totals
+    }
+
+    fn crossings(&self) -> Vec<[f64; 2]> {
+        self.crossings.counts().to_vec()
     }
 
     fn state(&self) -> Vec<(String, StateColumn)> {
@@ -290,13 +399,20 @@ impl<S: backend::Precision, P: backend::Precision> Method for LatticeMd<S, P> {
             f64::NAME => StateColumn::F64(values.iter().map(|x| x.to_f64()).collect()),
             _ => StateColumn::F32(values.iter().map(|x| x.to_f64() as f32).collect()),
         };
-        self.arrays.states().map(|(array, values)| (array.label().to_owned(), column(values))).collect()
+        let arrays = self.arrays.states().map(|(array, values)| (array.label(), column(values)));
+        let crossings =
+            self.crossings.columns().into_iter().map(|(name, counts)| (name, StateColumn::F64(counts)));
+        let cells = self.model.is_anchored::<S>().then(|| {
+            let cells = self.arrays.cell().iter().map(|&cell| f64::from(cell)).collect();
+            (Array::DiscCell.label(), StateColumn::F64(cells))
+        });
+        arrays.chain(cells).chain(crossings).map(|(name, column)| (name.to_owned(), column)).collect()
     }
 
     fn restore(
         &mut self,
         steps: u64,
-        deep: DeepContacts,
+        totals: Totals,
         columns: Vec<(String, StateColumn)>,
     ) -> Result<(), String> {
         let expected: Vec<Array> = self.arrays.states().map(|(array, _)| array).collect();
@@ -321,8 +437,31 @@ impl<S: backend::Precision, P: backend::Precision> Method for LatticeMd<S, P> {
             }
             to.copy_from_slice(&values);
         }
+        if self.model.is_anchored::<S>() {
+            let label = Array::DiscCell.label();
+            let cells = columns.iter().find(|(name, _)| name == label).map(|(_, column)| column);
+            let most = self.model.shape.padded() as f64;
+            match cells {
+                Some(StateColumn::F64(cells))
+                    if cells.len() == self.arrays.cell().len()
+                        && cells.iter().all(|cell| (1.0..=most).contains(cell)) =>
+                {
+                    let to = self.arrays.cell_mut().iter_mut();
+                    to.zip(cells).for_each(|(to, &cell)| *to = cell as u32);
+                }
+                _ => {
+                    return Err(format!(
+                        "the column {label} is missing, or its cells are none of the lattice"
+                    ));
+                }
+            }
+        }
+        self.crossings.take_up(|name| match columns.iter().find(|(known, _)| known == name) {
+            Some((_, StateColumn::F64(values))) => Ok(values.clone()),
+            _ => Err(format!("the column {name} is missing")),
+        })?;
         self.steps = steps;
-        self.deep = deep;
+        self.totals = totals;
         self.move_walls(self.time());
         Ok(())
     }

@@ -9,14 +9,23 @@ use stripmine_kernels::isa::Array;
 pub(super) struct Names<'a, S, P> {
     pub(super) model: &'a Model,
     pub(super) arrays: &'a Arrays<S, P>,
+    /// The cells from which discs are seen while these are looked for; empty if they are those of the arrays.
+    pub(super) anchor: &'a [u32],
     pub(super) ids: &'a [u32],
     pub(super) step: u64,
 }
 
 impl<S: Precision, P: Precision> Names<'_, S, P> {
     fn position(&self, disc: usize) -> [f64; 2] {
-        [Array::X0, Array::Y0]
-            .map(|axis| self.arrays.state(axis).map_or(f64::NAN, |column| column[disc].to_f64()))
+        let place = [Array::X0, Array::Y0]
+            .map(|axis| self.arrays.state(axis).map_or(f64::NAN, |column| column[disc].to_f64()));
+        if !self.model.is_anchored::<S>() {
+            return place;
+        }
+        let own = self.arrays.cell()[disc];
+        // A stray is in no cell, but was in one.
+        let cell = if own == 0 { self.anchor.get(disc).copied().unwrap_or_default() } else { own };
+        self.model.position(cell, place)
     }
 
     fn culprit(&self, disc: usize) -> Culprit {
@@ -93,22 +102,30 @@ impl<S: Precision, P: Precision> Names<'_, S, P> {
         self.model.shape.swept().filter(marked).flat_map(around).collect()
     }
 
-    /// Of pairs, each from both sides and with the pairs of one disc side by side: how many discs are deeper in one than
-    /// the limit, and the deepest contact: penetration and the two discs.
+    /// Of pairs, each from both sides and with the pairs of one disc side by side: how many grains are deeper in one than
+    /// the limit, and the deepest contact of a grain: penetration and the two discs.
     pub(super) fn deep(&self, pairs: &[(usize, usize)], limit: f64) -> (u64, Option<(f64, usize, usize)>) {
-        let mut discs = 0;
+        let mut grains = 0;
         let mut deepest: Option<(f64, usize, usize)> = None;
-        for of_disc in pairs.chunk_by(|a, b| a.0 == b.0) {
+        let is_grain = |disc: usize| disc < self.arrays.lengths().grains;
+        for of_disc in pairs.chunk_by(|a, b| a.0 == b.0).filter(|pairs| is_grain(pairs[0].0)) {
             let penetrations = of_disc.iter().map(|&(own, there)| (self.penetration(own, there), own, there));
             let Some(worst) = penetrations.max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
             if worst.0 > limit {
-                discs += 1;
+                grains += 1;
                 if deepest.is_none_or(|(deepest, ..)| worst.0 > deepest) {
                     deepest = Some(worst);
                 }
             }
         }
-        (discs, deepest)
+        (grains, deepest)
+    }
+
+    /// The failure of grains that are too fast.
+    pub(super) fn long_step(&self, count: u64, first: usize, limit: f64) -> Failure {
+        let first = self.culprit(first);
+        let dt = limit / first.velocity[0].hypot(first.velocity[1]);
+        Failure::LongStep { step: self.step, count, first, limit, dt }
     }
 
     /// The failure of a contact that is too deep.

@@ -1,6 +1,6 @@
 //! The discs of a scene.
 
-use super::super::error::{Reason, SceneError};
+use super::super::error::{Reason, SceneError, Warning};
 use super::super::key_table::*;
 use super::super::keys::Key;
 use super::super::places::Document;
@@ -38,11 +38,20 @@ pub(super) fn radii(scene: &Scene, found: Option<[f64; 2]>) -> Option<[f64; 2]> 
     }
 }
 
-/// The box and the discs at the start, wrapped into it, walls with the velocity that their motion starts with.
-pub(super) fn make(document: &Document) -> Result<(Domain, Particles), SceneError> {
+/// What a scene starts with.
+pub(super) struct Made {
+    pub(super) domain: Domain,
+    /// The discs, wrapped into the box, walls with the velocity that their motion starts with.
+    pub(super) particles: Particles,
+    /// What is to be said of how they were read.
+    pub(super) warnings: Vec<Warning>,
+}
+
+/// The box and the discs at the start.
+pub(super) fn make(document: &Document) -> Result<Made, SceneError> {
     let scene = &document.scene;
     let domain = domain(scene).unwrap_or(Domain { origin: [0.0; 2], sides: [1.0; 2], periodic: [true; 2] });
-    resolved(document, &domain)?;
+    resolved(document, &domain, radii(scene, None))?;
     let (domain, mut particles) = match &scene.start {
         Start::File(path) => (domain, from_file(document, &domain, path)?),
         Start::List(list) => (domain, listed(list)),
@@ -68,20 +77,39 @@ pub(super) fn make(document: &Document) -> Result<(Domain, Particles), SceneErro
             amplitude.map(|a| a * (std::f64::consts::TAU * frequency))
         }
     };
+    resolved(document, &domain, radii(scene, particles.radii()))?;
+    let moving = |disc: &&Particle| {
+        disc.kind == Kind::Wall
+            && (disc.velocity != [0.0; 2] || disc.omega != 0.0)
+            && disc.velocity != start_velocity
+    };
+    let mut warnings = Vec::new();
+    if let Some(first) = particles.all().iter().find(moving) {
+        let count = particles.all().iter().filter(moving).count();
+        warnings.push(Warning {
+            key: FILE.path(),
+            message: format!(
+                "{count} wall discs have a velocity or spin in the start file, first wall disc {} with ({:.4e}, {:.4e}) and \
+                 {:.4e}; walls move as particles.wall_motion says, so these are not used",
+                first.id, first.velocity[0], first.velocity[1], first.omega
+            ),
+            suggestion: "set particles.wall_motion, or make them grains (species Si)".to_owned(),
+        });
+    }
     for disc in particles.all_mut() {
         disc.position = wrapped(&domain, disc.position);
         if disc.kind == Kind::Wall {
-            disc.velocity = start_velocity;
+            (disc.velocity, disc.omega) = (start_velocity, 0.0);
         }
     }
-    Ok((domain, particles))
+    Ok(Made { domain, particles, warnings })
 }
 
-/// Whether numbers can tell positions in the box apart far better than the smallest disc that the scene admits.
-fn resolved(document: &Document, domain: &Domain) -> Result<(), SceneError> {
+/// Whether numbers can tell positions in the box apart far better than the smallest of the radii, where these are known.
+fn resolved(document: &Document, domain: &Domain, radii: Option<[f64; 2]>) -> Result<(), SceneError> {
     /// Largest error of a position, relative to the smallest radius.
     const COARSEST: f64 = 1e-6;
-    let Some([smallest, _]) = radii(&document.scene, None) else { return Ok(()) };
+    let Some([smallest, _]) = radii else { return Ok(()) };
     for axis in 0..2 {
         let farthest = domain.origin[axis].abs() + domain.sides[axis];
         let step = farthest * f64::EPSILON;

@@ -4,9 +4,10 @@ use super::super::error::{Reason, SceneError, Spot};
 use super::super::key_table::*;
 use super::super::keys::Key;
 use super::super::places::Document;
-use super::super::{OnConflict, Start};
+use super::super::{Execution, MethodKind, OnConflict, Precision, Start};
 use super::readable;
 use crate::domain::Domain;
+use crate::grid::sectors_of;
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
 
@@ -25,6 +26,11 @@ pub struct Geometry {
     pub edge_bounds: [f64; 2],
     /// Discs for each cell.
     pub occupancy: f64,
+    /// Listed pairs are up to this far from contact (length), where there are lists.
+    pub skin: f64,
+    /// Sides of the cells or sectors from whose centres positions are measured, where they are not measured from the origin
+    /// (length).
+    pub widest_cell: [f64; 2],
 }
 
 /// Rounding must not forbid what the bounds just allow.
@@ -32,6 +38,10 @@ const SLACK: f64 = 1.0 + 1e-12;
 
 /// Counts on either side of the wanted one that are tried for each axis.
 const WINDOW: f64 = 64.0;
+
+/// Widest cells, in largest diameters, in which contacts are found: the search compares squares of distances in single
+/// precision, with a margin of 2e-5, seen from the centres of cells up to three and a half cells away.
+const WIDEST: f64 = 8.0;
 
 /// What bounds the cells.
 #[derive(Clone, Copy)]
@@ -126,7 +136,12 @@ pub(super) fn fit(
             Ok((shape, frame, mask)) => {
                 let occupancy = discs as f64 / shape.cells() as f64;
                 let edge_bounds = [bounds.least, bounds.most()];
-                return Ok(Geometry { shape, frame, mask, radii, edge_bounds, occupancy });
+                let counts = [shape.columns(), shape.rows()];
+                let filled =
+                    Domain { sides: [0, 1].map(|axis| counts[axis] as f64 * frame.edge[axis]), ..*domain };
+                let (skin, widest_cell) = search(document, [domain, &filled], radii[1], discs, frame.edge)
+                    .map_err(|error| vec![error])?;
+                return Ok(Geometry { shape, frame, mask, radii, edge_bounds, occupancy, skin, widest_cell });
             }
             // The smaller mask's reason is the plainer one, but a wrong edge is wrong for the larger one too.
             Err(more) if errors.is_empty() || scene.method.cell_edge.is_some() => errors = more,
@@ -136,6 +151,54 @@ pub(super) fn fit(
     Err(errors)
 }
 
+/// Skin of neighbour lists where the scene gives none, in largest radii.
+const SKIN: f64 = 0.3;
+
+/// The skin of lists, and the sides of the cells from which positions are measured (length), in the scene's box, which the
+/// lattice fills perhaps beyond its open sides.
+fn search(
+    document: &Document,
+    [domain, filled]: [&Domain; 2],
+    largest: f64,
+    discs: usize,
+    lattice_cell: [f64; 2],
+) -> Result<(f64, [f64; 2]), SceneError> {
+    let method = &document.scene.method;
+    let fast = method.execution == Execution::Fast;
+    let skin = match method.kind {
+        MethodKind::NeighborList { skin: Some(skin), .. } => skin,
+        MethodKind::NeighborList { skin: None, .. } if fast => roomy_skin(domain, largest, discs),
+        _ => SKIN * largest,
+    };
+    let (reach, key) = match method.kind {
+        MethodKind::NeighborList { .. } if fast => (2.0 * largest + skin, &super::super::key_table::SKIN),
+        MethodKind::Sectors => (2.0 * largest, &METHOD),
+        _ => return Ok((skin, lattice_cell)),
+    };
+    let single = method.precision != Precision::F64;
+    match sectors_of(filled, reach, single, discs) {
+        Ok(grid) => Ok((skin, grid.frame.edge)),
+        Err(cause) => {
+            let spot = if document.gives(key) { document.spot(key) } else { box_spot(document) };
+            let error = spot.error(Reason::Geometry, cause.to_string());
+            Err(error.advising("make the box larger, lower method.skin, or set method.kind = \"lattice\""))
+        }
+    }
+}
+
+/// Skin of the fast lists (length) where the scene gives none: half of the gap between the discs, were they spread evenly,
+/// within bounds, and not more than the box has room for. The wider the skin, the longer the lists, and the longer they last.
+fn roomy_skin(domain: &Domain, largest: f64, discs: usize) -> f64 {
+    let area = domain.sides[0] * domain.sides[1] / discs.max(1) as f64;
+    // Neighbours on a hexagonal lattice are so far apart.
+    let spacing = (area * 2.0 / 3f64.sqrt()).sqrt();
+    let wanted = (0.5 * (spacing - 2.0 * largest)).clamp(SKIN * largest, largest);
+    // Three sectors fill a periodic side.
+    let periodic = (0..2).filter(|&axis| domain.periodic[axis]);
+    let room = periodic.map(|axis| domain.sides[axis] / 3.0 - 2.0 * largest).fold(f64::INFINITY, f64::min);
+    if room > 0.0 { wanted.min(room * (1.0 - 1e-12)) } else { wanted }
+}
+
 fn lattice(
     document: &Document,
     domain: &Domain,
@@ -143,6 +206,15 @@ fn lattice(
 ) -> Result<(LatticeShape, Frame, Mask), Vec<SceneError>> {
     let asked = document.scene.method.cell_edge;
     let wanted = asked.unwrap_or(bounds.most());
+    let widest = WIDEST * f64::from(bounds.half_width) * bounds.least;
+    if let Some(edge) = asked.filter(|&edge| edge > widest) {
+        let message = format!(
+            "`method.cell_edge` = {edge} is too large: contacts are looked for in single precision from the centres of the \
+             cells, and would be missed in cells wider than {WIDEST} of the largest diameter"
+        );
+        let error = document.spot(&CELL_EDGE).error(Reason::Geometry, message);
+        return Err(vec![error.expecting(format!("an edge of at most {} (length)", readable(widest)))]);
+    }
     if wanted * SLACK < bounds.least || wanted > bounds.most() * SLACK {
         let width = 2 * bounds.half_width + 1;
         let (message, why) = if wanted < bounds.least {

@@ -4,6 +4,7 @@ mod discs;
 mod geometry;
 mod motion;
 
+use discs::Made;
 pub use geometry::Geometry;
 pub use motion::Estimates;
 
@@ -49,14 +50,14 @@ pub(super) fn check(document: Document) -> Result<Checked, SceneErrors> {
             None
         }
     };
-    if let Some((domain, particles)) = &made {
+    if let Some(Made { domain, particles, .. }) = &made {
         errors.extend(outside(&document, domain, particles));
         errors.extend(overlaps(&document, domain, particles));
     }
-    let radii = made.as_ref().and_then(|(_, particles)| particles.radii());
+    let radii = made.as_ref().and_then(|made| made.particles.radii());
     let radii = discs::radii(&document.scene, radii);
-    let domain = made.as_ref().map(|(domain, _)| *domain).or_else(|| discs::domain(&document.scene));
-    let count = made.as_ref().map_or(0, |(_, particles)| particles.len());
+    let domain = made.as_ref().map(|made| made.domain).or_else(|| discs::domain(&document.scene));
+    let count = made.as_ref().map_or(0, |made| made.particles.len());
     let geometry = match (domain, radii) {
         (Some(domain), Some(radii)) => {
             geometry::fit(&document, &domain, radii, count).map_err(|more| errors.extend(more)).ok()
@@ -64,15 +65,18 @@ pub(super) fn check(document: Document) -> Result<Checked, SceneErrors> {
         _ => None,
     };
     errors.extend(motion::instability(&document));
+    if let (Some(Made { domain, particles, .. }), Some(geometry)) = (&made, &geometry) {
+        errors.extend(motion::long_steps(&document, domain, particles, geometry));
+    }
     SceneErrors::none_of(errors)?;
-    let (Some((domain, particles)), Some(geometry)) = (made, geometry) else {
+    let (Some(Made { domain, particles, mut warnings }), Some(geometry)) = (made, geometry) else {
         // Whatever is not there has left an error above.
         let error = document.spot(&RADIUS).error(Reason::Geometry, "there is nothing to simulate");
         return Err(error.into());
     };
     let scene = document.scene;
     let estimates = Estimates::of(&scene, &particles);
-    let warnings = motion::warnings(&scene, &particles, &estimates);
+    warnings.extend(motion::warnings(&scene, &domain, &particles, &geometry, &estimates));
     let alike = all_alike(&particles);
     let left_out = left_out(&scene, &particles, alike);
     Ok(Checked { scene, domain, particles, alike, geometry, estimates, left_out, warnings })

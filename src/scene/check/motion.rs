@@ -4,8 +4,10 @@ use super::super::error::{Reason, SceneError, Warning};
 use super::super::key_table::*;
 use super::super::keys::Key;
 use super::super::places::Document;
-use super::super::{Inertia, Precision, Scene, Scheme, WallMotion};
-use crate::particles::Particles;
+use super::super::{Execution, Inertia, OnLongStep, Precision, Scene, Scheme, WallMotion};
+use super::{Geometry, noun};
+use crate::domain::Domain;
+use crate::particles::{Particle, Particles, longest_step};
 use serde::Serialize;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
@@ -54,6 +56,9 @@ const NETWORK: f64 = 3.0;
 
 /// Fewer steps a contact follow it badly: `pipe` has 17, and half its dt changes no statistics.
 const LEAST_STEPS: f64 = 15.0;
+
+/// With fewer steps a contact no scheme is stable.
+const FEWEST_STEPS: f64 = 3.0;
 
 /// How much faster than typical the fastest approach is.
 const FASTEST: f64 = 3.0;
@@ -105,7 +110,7 @@ impl Estimates {
 /// A damping at which even a single contact is unstable.
 pub(super) fn instability(document: &Document) -> Option<SceneError> {
     let scene = &document.scene;
-    let super::super::Integrator { dt, scheme } = scene.integrator;
+    let super::super::Integrator { dt, scheme, .. } = scene.integrator;
     let (gamma, limit) = (scene.law.contact.normal_damping, damping_limit(scheme));
     let name = scheme_in_words(scheme);
     (gamma * dt > limit).then(|| {
@@ -126,14 +131,117 @@ pub(super) fn instability(document: &Document) -> Option<SceneError> {
     })
 }
 
+/// Steps too long for the discs at the start: they would pass each other unseen, collide in too few steps, or be lost in the
+/// precision of their positions.
+pub(super) fn long_steps(
+    document: &Document,
+    domain: &Domain,
+    particles: &Particles,
+    geometry: &Geometry,
+) -> Vec<SceneError> {
+    let scene = &document.scene;
+    let dt = scene.integrator.dt;
+    let estimates = Estimates::of(scene, particles);
+    let mut errors = Vec::new();
+    let speed = |disc: &Particle| disc.velocity[0].hypot(disc.velocity[1]);
+    let fastest = particles.all().iter().max_by(|a, b| speed(a).total_cmp(&speed(b)));
+    let limit = longest_step(geometry.radii[0], scene.law.max_penetration);
+    if let Some(disc) = fastest
+        && scene.integrator.on_long_step == OnLongStep::Stop
+        && !(speed(disc) * dt <= limit)
+    {
+        let (what, speed) = (noun(disc.kind), speed(disc));
+        let message = format!(
+            "{what} {} moves at {speed:.4e}, {:.4e} in a step; beyond {limit:.4e} contacts deeper than law.max_penetration = {} \
+             could pass unseen between two steps",
+            disc.id,
+            speed * dt,
+            scene.law.max_penetration
+        );
+        let error = document.spot(&DT).error(Reason::Stability, message);
+        errors.push(error.expecting(format!("dt below {:.4e} (time)", limit / speed)).advising(
+            "lower dt, slow the discs, or count such steps instead: integrator.on_long_step = \"count\"",
+        ));
+    }
+    if let (Some(steps), Some(duration)) = (estimates.steps_per_contact, estimates.contact_duration)
+        && steps < FEWEST_STEPS
+    {
+        let message = format!(
+            "a contact at speed {:.4e} lasts {duration:.4e}, {steps:.2} steps: no scheme is stable with fewer than about \
+             {FEWEST_STEPS}, and discs would come out of collisions faster than they went in",
+            estimates.approach_speed
+        );
+        let error = document.spot(&DT).error(Reason::Stability, message);
+        errors.push(error.expecting(format!(
+            "dt below {:.4e} (time), and below {:.4e} for {LEAST_STEPS} steps a contact",
+            duration / FEWEST_STEPS,
+            duration / LEAST_STEPS
+        )));
+    }
+    if let Some((rounding, step)) = lost_motion(scene, domain, geometry, &estimates)
+        && rounding > MOST_LOST * step
+    {
+        let absolute = are_absolute(scene);
+        let message = format!(
+            "positions in single precision, {}, are rounded by up to {rounding:.1e}, but a typical step is {step:.1e}: \
+             discs would move by wrong distances or not at all",
+            if absolute { "measured from the origin" } else { "measured from the cells' centres" }
+        );
+        let error = document.spot(&PRECISION).error(Reason::Geometry, message);
+        errors.push(error.expecting(format!("steps longer than {:.1e} (length)", rounding / MOST_LOST)).advising(
+            match absolute {
+                true => "set method.coordinates = \"cell-relative\", or method.precision = \"mixed\" or \"f64\"",
+                false => "set method.precision = \"mixed\" or \"f64\"",
+            },
+        ));
+    }
+    errors
+}
+
+/// Part of a step that rounding a position may take: more is refused.
+const MOST_LOST: f64 = 1e-2;
+
+/// Part of a step that rounding a position may take: more is warned of.
+const MUCH_LOST: f64 = 1e-3;
+
+/// Whether the state's positions are measured from the origin.
+fn are_absolute(scene: &Scene) -> bool {
+    scene.method.execution != Execution::Fast && scene.method.coordinates == Coordinates::Absolute
+}
+
+/// By how much a position is rounded in a step at most, and how long a typical step is (length), where the state is in single
+/// precision and anything moves.
+fn lost_motion(
+    scene: &Scene,
+    domain: &Domain,
+    geometry: &Geometry,
+    estimates: &Estimates,
+) -> Option<(f64, f64)> {
+    let typical = estimates.approach_speed / std::f64::consts::SQRT_2 * scene.integrator.dt;
+    if scene.method.precision != Precision::F32 || typical == 0.0 {
+        return None;
+    }
+    let farthest = |axis: usize| match are_absolute(scene) {
+        true => domain.origin[axis].abs() + domain.sides[axis],
+        false => 0.5 * geometry.widest_cell[axis],
+    };
+    Some((0.5 * f64::from(f32::EPSILON) * farthest(0).max(farthest(1)), typical))
+}
+
 /// What seldom ends well.
-pub(super) fn warnings(scene: &Scene, particles: &Particles, estimates: &Estimates) -> Vec<Warning> {
+pub(super) fn warnings(
+    scene: &Scene,
+    domain: &Domain,
+    particles: &Particles,
+    geometry: &Geometry,
+    estimates: &Estimates,
+) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let mut warn = |key: &Key, message: String, suggestion: String| {
         warnings.push(Warning { key: key.path(), message, suggestion });
     };
     let contact = &scene.law.contact;
-    let super::super::Integrator { dt, scheme } = scene.integrator;
+    let super::super::Integrator { dt, scheme, .. } = scene.integrator;
     let limit = estimates.damping_limit;
     if estimates.network_damping > limit {
         warn(
@@ -186,10 +294,19 @@ pub(super) fn warnings(scene: &Scene, particles: &Particles, estimates: &Estimat
             "there is gravity but there are no walls: discs fall for ever, or out of the box".to_owned();
         warn(&GRAVITY, why, "add walls, or set domain.gravity = [0, 0]".to_owned());
     }
-    if scene.method.precision != Precision::F64 && scene.method.coordinates == Coordinates::Absolute {
+    if scene.method.precision != Precision::F64 && are_absolute(scene) {
         let why = "absolute coordinates in f32: forces are right to 3e-4 at best, to 1e-2 in large boxes"
             .to_owned();
         warn(&COORDINATES, why, "use cell-relative coordinates, right to 4e-6".to_owned());
+    }
+    if let Some((rounding, step)) = lost_motion(scene, domain, geometry, estimates)
+        && rounding > MUCH_LOST * step
+    {
+        let message = format!(
+            "positions in single precision are rounded by up to {rounding:.1e}, {:.1e} of a typical step",
+            rounding / step
+        );
+        warn(&PRECISION, message, "use \"mixed\" or \"f64\"".to_owned());
     }
     if let Some(set) = scene.method.instruction_set.filter(|set| !set.is_available()) {
         let message = format!("this processor has no {}", set.name());

@@ -8,6 +8,7 @@ use crate::isa::{Element, Predicate, ProgramError, Vector, same};
 use crate::program::{Task, dispatch};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Discs that one thread moves at a time.
 const BAND: usize = 1024;
@@ -37,6 +38,15 @@ pub enum Leash<'a, S> {
         /// How far (length).
         distance: f64,
     },
+}
+
+/// Discs that a pass has found.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Passed {
+    /// Those that strain at the leash, or have no finite place, in order.
+    pub left: Vec<u32>,
+    /// Those that are so fast that they move farther in a step than they may, or whose speed is no number, in order.
+    pub far: Vec<u32>,
 }
 
 /// Copies of the places for a search in single precision: written beside the state, while it is at hand.
@@ -90,10 +100,12 @@ pub struct Advance<'a, S, P, C> {
     pub discs: usize,
     /// Whether the state is corrected already, so that forces give no more than the acceleration: the first step.
     pub corrected: bool,
+    /// Discs that move farther than this (length) in a step, at the velocity predicted, are listed.
+    pub longest_step: f64,
 }
 
 impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
-    /// Does it; the discs that strain at the leash, or have no finite place, are listed in order.
+    /// Does it, and lists the discs that must be seen to.
     ///
     /// # Errors
     /// [`ProgramError::NoSuchInstructionSet`]; nothing was executed then.
@@ -105,8 +117,8 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
         leash: Leash<'_, S>,
         copies: Option<Copies<'_>>,
         set: InstructionSet,
-    ) -> Result<Vec<u32>, ProgramError> {
-        let Advance { motion, discs, corrected, inverse, .. } = self;
+    ) -> Result<Passed, ProgramError> {
+        let Advance { motion, discs, corrected, longest_step, inverse, .. } = self;
         let freedoms = self.state.len();
         assert!((2..=3).contains(&freedoms) && self.sums.len() == freedoms, "2 or 3 degrees of freedom");
         let vary = motion.inertia == Inertia::Varying;
@@ -140,23 +152,29 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             settles,
             places: places.map(<[f32]>::as_mut_ptr),
         };
-        let pass = |range: Range<usize>| -> Result<Vec<u32>, ProgramError> {
-            let mut movers = Vec::new();
-            let (arrays, movers_of) = (&arrays, &mut movers);
+        let square = longest_step * longest_step;
+        let pass = |range: Range<usize>| -> Result<Passed, ProgramError> {
+            let mut passed = Passed::default();
+            let (arrays, found) = (&arrays, &mut passed);
             match freedoms {
                 2 => dispatch(
                     set,
-                    Pass::<_, _, _, 2> { motion, arrays, range, corrected, unit, movers: movers_of },
+                    Pass::<_, _, _, 2> { motion, arrays, range, corrected, square, unit, passed: found },
                 ),
                 _ => dispatch(
                     set,
-                    Pass::<_, _, _, 3> { motion, arrays, range, corrected, unit, movers: movers_of },
+                    Pass::<_, _, _, 3> { motion, arrays, range, corrected, square, unit, passed: found },
                 ),
             }?;
-            Ok(movers)
+            Ok(passed)
         };
-        let movers: Result<Vec<Vec<u32>>, _> = on_threads(pieces(0..discs, BAND), pass).into_iter().collect();
-        Ok(movers?.concat())
+        let mut all = Passed::default();
+        for passed in on_threads(pieces(0..discs, BAND), pass) {
+            let Passed { left, far } = passed?;
+            all.left.extend(left);
+            all.far.extend(far);
+        }
+        Ok(all)
     }
 }
 
@@ -172,7 +190,8 @@ struct Arrays<'a, S, P> {
     places: [*mut f32; 2],
 }
 
-// SAFETY: passes over ranges that do not overlap touch different discs, and these are in different cells.
+// SAFETY: passes over ranges that do not overlap touch different discs, and these are in different cells, but for guests,
+// whose common place is stored to atomically and read by none.
 unsafe impl<S: Send + Sync, P: Send> Sync for Arrays<'_, S, P> {}
 
 /// The pass over some discs.
@@ -181,8 +200,10 @@ struct Pass<'a, S, P, C, const FREEDOMS: usize> {
     arrays: &'a Arrays<'a, S, P>,
     range: Range<usize>,
     corrected: bool,
+    /// Square of the longest step (length²).
+    square: f64,
     unit: f64,
-    movers: &'a mut Vec<u32>,
+    passed: &'a mut Passed,
 }
 
 impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Task<S> for Pass<'_, S, P, C, FREEDOMS> {
@@ -209,7 +230,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
     fn register<R: Registers<Lane = S>>(&mut self, registers: R, first: usize) {
         let Pass { motion, arrays, corrected, .. } = *self;
         let uniform = |value: f64| registers.splat(S::from_f64(value));
-        let mut place = [uniform(0.0); 2];
+        let (mut place, mut step) = ([uniform(0.0); 2], [uniform(0.0); 2]);
         for freedom in 0..FREEDOMS {
             // SAFETY: Advance has checked the columns; this thread alone works on these discs. Here and below.
             let force = unsafe { take(registers, arrays.sums[freedom].add(first)) };
@@ -237,6 +258,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             }
             if freedom < 2 {
                 place[freedom] = row[0];
+                step[freedom] = row[1];
             }
         }
         let stays = match arrays.leash {
@@ -252,10 +274,15 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 (dx * dx + dy * dy).less_equal(uniform(distance * distance))
             }
         };
-        let moved = registers.bits(stays.not());
+        let creeps = (step[0] * step[0] + step[1] * step[1]).less_equal(uniform(self.square));
+        let list = |bits: u64, to: &mut Vec<u32>| {
+            let lanes = (0..R::LANES).filter(|lane| bits >> lane & 1 == 1);
+            to.extend(lanes.map(|lane| (first + lane) as u32));
+        };
+        let moved = registers.bits(stays.and(creeps).not());
         if moved != 0 {
-            let lanes = (0..R::LANES).filter(|lane| moved >> lane & 1 == 1);
-            self.movers.extend(lanes.map(|lane| (first + lane) as u32));
+            list(registers.bits(stays.not()), &mut self.passed.left);
+            list(registers.bits(creeps.not()), &mut self.passed.far);
         }
         if !arrays.settles {
             return;
@@ -268,8 +295,12 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             // First all, then one by one: so they are converted at once.
             let along = along.map(|along| along.to_f64() as f32);
             for (lane, &along) in along.iter().enumerate().take(R::LANES) {
-                // SAFETY: the cells are ones of the lattice, each of one disc only.
-                unsafe { *arrays.places[axis].add(*arrays.cells.add(first + lane) as usize) = along };
+                // SAFETY: the cells are ones of the lattice, each of one disc only but for the room behind it, which guests
+                // share and only these stores touch: they are atomic, and compile to plain ones.
+                unsafe {
+                    let place = arrays.places[axis].add(*arrays.cells.add(first + lane) as usize);
+                    AtomicU32::from_ptr(place.cast()).store(along.to_bits(), Ordering::Relaxed);
+                }
             }
         }
     }

@@ -7,7 +7,7 @@ use super::sectors::Touches;
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};
-use crate::law::{Law, Sum};
+use crate::law::{Asked, Law, Sum};
 use crate::program::dispatch;
 use crate::threads::in_stages;
 use std::ops::Range;
@@ -22,7 +22,7 @@ struct Band<F> {
 }
 
 /// What a sweep met.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Met {
     /// Pairs the law was asked about, each once.
     pub pairs: u64,
@@ -30,6 +30,9 @@ pub struct Met {
     pub deep: Vec<[u32; 2]>,
     /// Pairs whose force is no finite number. Two fixed discs that touch are such a pair.
     pub not_finite: Vec<[u32; 2]>,
+    /// What the contacts dissipate (energy/time), where that is asked for. Summed in an order that depends on the scene
+    /// alone.
+    pub dissipated: f64,
 }
 
 /// A law over all contacts, each met once.
@@ -70,7 +73,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         finder: &impl Finder<S, P, Found = F>,
         discs: &Discs<'_, S>,
         sums: [&mut [P]; 3],
-        watched: Option<f64>,
+        asked: Asked,
         set: InstructionSet,
     ) -> Result<Met, ProgramError> {
         assert!(self.rows == finder.rows(), "a sweep is made for its rows");
@@ -88,7 +91,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
                 let pairs = finder.pairs(&band.found);
                 band.pairs += pairs.count() as u64;
                 let (sentinel, notes) = (count as u32, &mut band.notes);
-                dispatch(set, Evaluate { law, pairs: &pairs, sentinel, discs, sums, watched, notes })?;
+                dispatch(set, Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes })?;
             }
             Ok(())
         };
@@ -107,13 +110,14 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
             let Band { notes, pairs: count_of_band, .. } = &mut self.bands[0];
             *count_of_band += pairs.count() as u64;
             let sentinel = count as u32;
-            dispatch(set, Evaluate { law, pairs: &pairs, sentinel, discs, sums, watched, notes })?;
+            dispatch(set, Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes })?;
         }
         let mut met = Met::default();
         for band in &mut self.bands {
             met.pairs += std::mem::take(&mut band.pairs);
             met.deep.append(&mut band.notes.deep);
             met.not_finite.append(&mut band.notes.not_finite);
+            met.dissipated += std::mem::take(&mut band.notes.dissipated);
         }
         Ok(met)
     }

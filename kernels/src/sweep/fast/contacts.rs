@@ -4,7 +4,7 @@ use super::SENTINELS;
 use super::finder::Pairs;
 use crate::backend::{Precision, Registers};
 use crate::isa::{Element, Vector};
-use crate::law::{Env, Field, Law, Sum};
+use crate::law::{Asked, Env, Field, Law, Sum};
 use crate::program::{GROUP, Task};
 use std::cell::Cell;
 use std::mem::MaybeUninit;
@@ -63,6 +63,8 @@ pub(super) struct Notes {
     pub(super) deep: Vec<Pair>,
     /// Pairs whose force is no finite number.
     pub(super) not_finite: Vec<Pair>,
+    /// What the contacts dissipate (energy/time).
+    pub(super) dissipated: f64,
 }
 
 /// Evaluates the law for pairs.
@@ -72,7 +74,7 @@ pub(super) struct Evaluate<'a, S, P, L, Q> {
     pub(super) sentinel: u32,
     pub(super) discs: &'a Discs<'a, S>,
     pub(super) sums: SumColumns<P>,
-    pub(super) watched: Option<f64>,
+    pub(super) asked: Asked,
     pub(super) notes: &'a mut Notes,
 }
 
@@ -86,8 +88,9 @@ struct Gathered<'a, R: Registers, S> {
     own: &'a Lanes<u32>,
     partner: &'a Lanes<u32>,
     way: [R::V; 2],
-    watched: Option<f64>,
+    asked: Asked,
     penetration: Cell<R::V>,
+    power: Cell<R::V>,
     own_sums: [Cell<R::V>; 3],
     partner_sums: [Cell<R::V>; 3],
 }
@@ -172,11 +175,19 @@ impl<R: Registers, S: Element> Env<2> for &Gathered<'_, R, S> {
     }
     #[inline(always)]
     fn watches(self) -> bool {
-        self.watched.is_some()
+        self.asked.watched.is_some()
     }
     #[inline(always)]
     fn watch(self, penetration: R::V) {
         self.penetration.set(penetration);
+    }
+    #[inline(always)]
+    fn counts_dissipation(self) -> bool {
+        self.asked.dissipation
+    }
+    #[inline(always)]
+    fn dissipate(self, power: R::V) {
+        self.power.set(power);
     }
     #[inline(always)]
     fn section(self, _: &'static str) {}
@@ -220,8 +231,9 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
             own: &own,
             partner: &partner,
             way,
-            watched: self.watched,
+            asked: self.asked,
             penetration: zero(),
+            power: zero(),
             own_sums: [zero(), zero(), zero()],
             partner_sums: [zero(), zero(), zero()],
         };
@@ -263,7 +275,14 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
         let list = |bits: u64, to: &mut Vec<Pair>| {
             to.extend((0..count).filter(|lane| bits >> lane & 1 == 1).map(|lane| [own[lane], partner[lane]]));
         };
-        if let Some(depth) = self.watched {
+        if self.asked.dissipation {
+            let power = spill(registers, gathered.power.get());
+            // Two fixed discs that touch have no effective mass, and of any others the pair is listed below.
+            let counted =
+                power.iter().take(count).map(|power| power.to_f64()).filter(|power| power.is_finite());
+            counted.for_each(|power| notes.dissipated += power);
+        }
+        if let Some(depth) = self.asked.watched {
             let depth = registers.splat(P::from_f64(depth));
             let bits = registers.bits(depth.less_than(gathered.penetration.get()));
             if bits != 0 {

@@ -18,11 +18,11 @@ pub mod lattice;
 mod sectors;
 mod verlet;
 
-pub use advance::{Advance, Copies, Leash, Motion};
+pub use advance::{Advance, Copies, Leash, Motion, Passed};
 pub use bands::{Met, Sweep};
 pub use contacts::Discs;
 pub use finder::{Cursor, Finder, Pairs, Rows};
-pub use sectors::{Grid, Sectors, Touches};
+pub use sectors::{Grid, GridError, Sectors, Touches};
 pub use verlet::VerletList;
 
 /// Elements behind the discs' own in every column that a sweep reads: two discs that never touch, which fill up

@@ -17,6 +17,34 @@ const AHEAD: [[isize; 2]; 5] = [[0, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
 /// Discs for which a sector is wide enough, on the average: fewer make many empty sectors, more make many pairs to try.
 const OCCUPANTS: f64 = 0.7;
 
+/// Why there are no sectors for a box.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GridError {
+    /// A periodic side has no room for three: a pair would be met twice.
+    #[error(
+        "the periodic side along {}, {side} long, has no room for three sectors of at least {reach}: a pair would be met \
+         twice",
+        ["x", "y"][*axis]
+    )]
+    PeriodicTooShort {
+        /// The axis.
+        axis: usize,
+        /// Its length (length).
+        side: f64,
+        /// Least width of a sector (length).
+        reach: f64,
+    },
+    /// More sectors than can be numbered.
+    #[error("{columns}×{rows} sectors are more than the 2^32 − 2 that can be numbered")]
+    TooMany {
+        /// Along x.
+        columns: f64,
+        /// Along y.
+        rows: f64,
+    },
+}
+
 /// Which sectors there are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
@@ -29,28 +57,37 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Sectors at least `reach` wide (length) for `discs` discs in a box of some sides (length). None if a periodic side
-    /// has no room for three: a pair would be met twice.
+    /// Sectors at least `reach` wide (length), and not much wider than `widest`, for `discs` discs in a box of some sides
+    /// (length).
+    ///
+    /// # Errors
+    /// [`GridError`] if a periodic side has no room for three, or there would be too many to number.
     pub fn new(
         origin: [f64; 2],
         sides: [f64; 2],
         periodic: [bool; 2],
         reach: f64,
+        widest: f64,
         discs: usize,
-    ) -> Option<Grid> {
+    ) -> Result<Grid, GridError> {
         let room = OCCUPANTS * sides[0] * sides[1] / discs.max(1) as f64;
-        let wide = reach.max(room.sqrt());
-        let mut counts = [1, 1];
+        let wide = reach.max(room.sqrt().min(widest));
+        let mut counts = [1.0, 1.0];
         for axis in 0..2 {
-            let most = (sides[axis] / reach) as usize;
-            let least = if periodic[axis] { 3 } else { 1 };
-            if periodic[axis] && most < least {
-                return None;
+            let side = sides[axis];
+            let least = if periodic[axis] { 3.0 } else { 1.0 };
+            if periodic[axis] && (side / reach).floor() < least {
+                return Err(GridError::PeriodicTooShort { axis, side, reach });
             }
-            counts[axis] = ((sides[axis] / wide) as usize).max(least);
+            counts[axis] = (side / wide).floor().max(least);
         }
-        let edge = [sides[0] / counts[0] as f64, sides[1] / counts[1] as f64];
-        Some(Grid { frame: Frame { origin, edge }, counts, periodic })
+        let [columns, rows] = counts;
+        // The comparison fails for what is no number, too.
+        if !(columns * rows < f64::from(u32::MAX)) {
+            return Err(GridError::TooMany { columns, rows });
+        }
+        let edge = [sides[0] / columns, sides[1] / rows];
+        Ok(Grid { frame: Frame { origin, edge }, counts: counts.map(|count| count as usize), periodic })
     }
 
     /// The sector that lies at most one column and one row from one.

@@ -40,13 +40,73 @@ pub struct Enter<S, P> {
     shape: LatticeShape,
     frame: Frame,
     coordinates: Coordinates,
+    anchored: bool,
     precisions: PhantomData<(S, P)>,
 }
 
 impl<S: Element, P: Element> Enter<S, P> {
-    /// For a lattice at `frame`.
+    /// For a lattice at `frame`, with state positions from the origin.
     pub fn new(shape: LatticeShape, frame: Frame, coordinates: Coordinates) -> Self {
-        Enter { shape, frame, coordinates, precisions: PhantomData }
+        Enter { shape, frame, coordinates, anchored: false, precisions: PhantomData }
+    }
+
+    /// For a lattice at `frame`, with state positions from the centre of the cell in which the disc was entered last: they
+    /// are as precise in single precision as the cell is small, wherever it lies.
+    pub fn anchored(shape: LatticeShape, frame: Frame) -> Self {
+        let coordinates = Coordinates::CellRelative;
+        Enter { shape, frame, coordinates, anchored: true, precisions: PhantomData }
+    }
+
+    /// As [`along`](Self::along), for a position from the centre of the cell `from`, a column or a row; with the position as it
+    /// was and from the centre of the new cell.
+    #[inline(always)]
+    fn along_from<M: Machine<Lane = f64>>(&self, m: M, axis: usize, from: M::V) -> (M::V, M::P, [M::V; 2]) {
+        let cells = [self.shape.columns(), self.shape.rows()][axis] as f64;
+        let edge = self.frame.edge[axis];
+        let (zero, count) = (m.uniform(0.0), m.uniform(cells));
+
+        m.section("cell");
+        let r = m.load(Slot::<S>::new([Array::X0, Array::Y0][axis]));
+        let mut from = from;
+        // In cells from the low side.
+        let mut along = (from + m.uniform(0.5)) + r * m.uniform(1.0 / edge);
+        if self.shape.periodic()[axis] {
+            m.section("wrap");
+            let beyond = M::V::select(count.less_equal(along), zero - count, zero);
+            let periods = M::V::select(along.less_than(zero), count, beyond);
+            along = along + periods;
+            from = from + periods;
+        }
+        m.section("cell");
+        let inside = zero.less_equal(along).and(along.less_equal(count));
+        let cell = along.truncate().min(m.uniform(cells - 1.0));
+        m.section("coordinates");
+        // Exactly as it was where the disc has stayed in its cell.
+        let moved = r + (from - cell) * m.uniform(edge);
+        (cell, inside, [r, moved])
+    }
+
+    /// The column and the row in which a disc was entered last.
+    #[inline(always)]
+    fn anchor<M: Machine<Lane = f64>>(&self, m: M) -> [M::V; 2] {
+        m.section("anchor");
+        let first = m.uniform((self.shape.position(0, 0) + 1) as f64);
+        let stride = self.shape.stride() as f64;
+        let from_first = m.index_numbers(m.load_index(DISC_CELL)) - first;
+        // Half a cell more: rounding must not make a row of the one before.
+        let row = ((from_first + m.uniform(0.5)) * m.uniform(1.0 / stride)).truncate();
+        [from_first - row * m.uniform(stride), row]
+    }
+
+    /// Writes positions seen from the new cells. A stray stays where it is seen from, so that it can be named.
+    #[inline(always)]
+    fn store_anchored<M: Machine<Lane = f64>>(&self, m: M, inside: M::P, positions: [[M::V; 2]; 2]) {
+        m.section("coordinates");
+        for (axis, [r, moved]) in positions.into_iter().enumerate() {
+            let r = M::V::select(inside, moved, r);
+            m.store(Slot::<S>::new([Array::X0, Array::Y0][axis]), r);
+            m.store(Slot::<P>::new([Array::DiscX, Array::DiscY][axis]), r);
+        }
     }
 
     /// Column or row of a position, whether it is one of the lattice, and the position as the lattice wants it.
@@ -84,19 +144,32 @@ impl<S: Element, P: Element> Enter<S, P> {
     }
 }
 
-// SAFETY: the slots depend on the shape and the coordinates only.
+// SAFETY: the slots depend on the shape, the coordinates and whether positions are anchored only.
 unsafe impl<S: Element, P: Element> Text for Enter<S, P> {
     type Lane = f64;
 
     #[inline(always)]
     fn body<M: Machine<Lane = f64>>(&self, m: M) {
-        let (column, inside_columns) = self.along(m, 0);
-        let (row, inside_rows) = self.along(m, 1);
+        let mut seen = None;
+        let (column, inside_columns, row, inside_rows) = if self.anchored {
+            let [column, row] = self.anchor(m);
+            let (column, inside_columns, x) = self.along_from(m, 0, column);
+            let (row, inside_rows, y) = self.along_from(m, 1, row);
+            seen = Some([x, y]);
+            (column, inside_columns, row, inside_rows)
+        } else {
+            let (column, inside_columns) = self.along(m, 0);
+            let (row, inside_rows) = self.along(m, 1);
+            (column, inside_columns, row, inside_rows)
+        };
 
         m.section("cell");
         let first = m.uniform((self.shape.position(0, 0) + 1) as f64);
         let number = row * m.uniform(self.shape.stride() as f64) + (column + first);
         let inside = inside_columns.and(inside_rows);
+        if let Some(positions) = seen {
+            self.store_anchored(m, inside, positions);
+        }
         let cell = m.to_index(M::V::select(inside, number, m.uniform(0.0)));
         m.store_index(DISC_CELL, cell);
         m.count(STRAYS, inside.not());

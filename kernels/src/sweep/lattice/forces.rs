@@ -30,6 +30,7 @@ pub struct Forces<P, L, const HALF: bool> {
     places: Vec<Neighbour>,
     relative: bool,
     watched: Option<f64>,
+    dissipation: bool,
     precision: PhantomData<P>,
 }
 
@@ -52,7 +53,14 @@ impl<P: Element, L: Law<2>, const HALF: bool> Forces<P, L, HALF> {
             shift: shape.shift(offset),
             way: [f64::from(offset.columns) * frame.edge[0], f64::from(offset.rows) * frame.edge[1]],
         });
-        Forces { law, places: places.collect(), relative, watched: None, precision: PhantomData }
+        Forces {
+            law,
+            places: places.collect(),
+            relative,
+            watched: None,
+            dissipation: false,
+            precision: PhantomData,
+        }
     }
 
     /// The same program, which also writes the penetration of each cell's deepest contact to the array `deepest` and counts
@@ -60,6 +68,13 @@ impl<P: Element, L: Law<2>, const HALF: bool> Forces<P, L, HALF> {
     #[must_use]
     pub fn watching(self, depth: f64) -> Self {
         Forces { watched: Some(depth), ..self }
+    }
+
+    /// The same program, which also writes what each disc's contacts dissipate (energy/time) to the array `power`, half of it
+    /// where both discs may move and have one mass.
+    #[must_use]
+    pub fn counting_dissipation(self) -> Self {
+        Forces { dissipation: true, ..self }
     }
 }
 
@@ -78,6 +93,8 @@ struct Around<M: Machine, const HALF: bool> {
     relative: bool,
     watches: bool,
     deepest: Cell<M::V>,
+    dissipation: bool,
+    power: Cell<M::V>,
     sums: [Cell<M::V>; Sum::ALL.len()],
 }
 
@@ -156,6 +173,16 @@ impl<M: Machine, const HALF: bool> Env<2> for &Around<M, HALF> {
     }
 
     #[inline(always)]
+    fn counts_dissipation(self) -> bool {
+        self.dissipation
+    }
+
+    #[inline(always)]
+    fn dissipate(self, power: M::V) {
+        self.power.set(self.power.get() + power);
+    }
+
+    #[inline(always)]
     fn section(self, name: &'static str) {
         self.machine.section(name);
     }
@@ -177,6 +204,8 @@ unsafe impl<P: Element, L: Law<2>, const HALF: bool> Text for Forces<P, L, HALF>
             relative: self.relative,
             watches: self.watched.is_some(),
             deepest: Cell::new(zero),
+            dissipation: self.dissipation,
+            power: Cell::new(zero),
             sums: [Cell::new(zero), Cell::new(zero), Cell::new(zero)],
         };
         let own = self.law.own(&around);
@@ -186,6 +215,9 @@ unsafe impl<P: Element, L: Law<2>, const HALF: bool> Text for Forces<P, L, HALF>
         m.section("sums");
         for &sum in self.law.sums() {
             m.store(Slot::<P>::new(sum_arrays(sum).0), around.sums[sum as usize].get());
+        }
+        if self.dissipation {
+            m.store(Slot::<P>::new(Array::Power), around.power.get());
         }
         if let Some(depth) = self.watched {
             m.section("watch");

@@ -153,6 +153,14 @@ impl LatticeShape {
         (self.lead() as isize + from_first) as usize
     }
 
+    /// Column and row of the cell at a position in a padded lattice vector: what [`position`](Self::position) came from, if that
+    /// was no halo cell at the end of a row.
+    pub fn column_and_row(&self, position: usize) -> [isize; 2] {
+        let from_first = position as isize - self.position(0, 0) as isize;
+        let stride = self.stride() as isize;
+        [from_first.rem_euclid(stride), from_first.div_euclid(stride)]
+    }
+
     /// How far the cell of `offset` is from the own cell.
     pub fn shift(&self, offset: Offset) -> isize {
         offset.rows as isize * self.stride() as isize + offset.columns as isize

@@ -191,5 +191,9 @@ impl Env<2> for &Meeting<'_> {
         false
     }
     fn watch(self, _: f64) {}
+    fn counts_dissipation(self) -> bool {
+        false
+    }
+    fn dissipate(self, _: f64) {}
     fn section(self, _: &'static str) {}
 }

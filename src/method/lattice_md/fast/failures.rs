@@ -2,6 +2,7 @@
 
 use super::FastMd;
 use super::state::Move;
+use crate::method::lattice_md::OnLongStep;
 use crate::method::{Culprit, Failure};
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::sweep::fast::Met;
@@ -18,7 +19,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
     }
 
     /// A disc that no cell takes: outside the box, or nowhere.
-    pub(super) fn stray(&self, Move { disc, cell, place }: Move, count: u64) -> Failure {
+    pub(super) fn stray(&self, Move { disc, cell, place, .. }: Move, count: u64) -> Failure {
         let frame = self.home.grid().frame;
         let centre = [0, 1].map(|axis| frame.origin[axis] + (cell[axis] as f64 + 0.5) * frame.edge[axis]);
         let first = self.culprit_at(disc, [centre[0] + place[0], centre[1] + place[1]]);
@@ -52,6 +53,28 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
         1.0 - dx.hypot(dy) / reach
     }
 
+    /// Counts discs that are so fast that contacts may pass unseen in a step, and stops if there must be none.
+    pub(super) fn judge_steps(&mut self, far: &[u32]) -> Result<(), Failure> {
+        let Some(watch) = self.model.watch.filter(|_| !far.is_empty()) else { return Ok(()) };
+        let speed = |disc: usize| {
+            let [x, y] = [0, 1].map(|axis| self.state.row(axis, disc)[1].to_f64() / self.model.dt);
+            x.hypot(y)
+        };
+        // What is no number has been found with the cells.
+        let discs = || far.iter().map(|&disc| disc as usize).filter(|&disc| !speed(disc).is_nan());
+        let count = discs().count() as u64;
+        self.totals.long_steps += count;
+        let Some(first) = discs().min_by_key(|&disc| self.state.number(disc)) else { return Ok(()) };
+        let (limit, step) = (watch.longest_step(), self.steps);
+        match watch.on_long_step {
+            OnLongStep::Count => Ok(()),
+            OnLongStep::Stop => {
+                let dt = limit / speed(first);
+                Err(Failure::LongStep { step, count, first: self.culprit(first), limit, dt })
+            }
+        }
+    }
+
     /// Counts deep contacts, and stops at what must not be.
     pub(super) fn judge(&mut self, met: &Met) -> Result<(), Failure> {
         let grains = self.start.grain_count();
@@ -72,19 +95,18 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             return Err(Failure::NotFinite { step: self.steps, count: lost.len() as u64, first });
         }
         let Some(watch) = self.model.watch else { return Ok(()) };
-        let penetrations = pairs(&met.deep).into_iter().map(|pair| (self.penetration(pair), pair));
+        let is_grain = |disc: usize| disc < grains;
+        let of_grains = pairs(&met.deep).into_iter().filter(|pair| pair.iter().any(|&disc| is_grain(disc)));
+        let penetrations = of_grains.map(|pair| (self.penetration(pair), pair));
         let deep: Vec<(f64, [usize; 2])> =
             penetrations.filter(|deep| deep.0 > watch.max_penetration).collect();
-        let mut discs: Vec<usize> = deep.iter().flat_map(|deep| deep.1).collect();
+        let mut discs: Vec<usize> =
+            deep.iter().flat_map(|deep| deep.1).filter(|&disc| is_grain(disc)).collect();
         discs.sort_unstable();
         discs.dedup();
-        self.deep.disc_steps += discs.len() as u64;
         let deepest = deep.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
         let Some((penetration, [first, second])) = deepest else { return Ok(()) };
-        if penetration > self.deep.deepest {
-            self.deep.deepest = penetration;
-            self.deep.step = self.steps;
-        }
+        self.totals.add_deep(self.steps, discs.len() as u64, penetration);
         if penetration > watch.stop_penetration {
             let (first, second) = (self.culprit(first), self.culprit(second));
             let (step, limit) = (self.steps, watch.stop_penetration);

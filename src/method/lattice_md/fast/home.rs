@@ -1,16 +1,16 @@
 //! Where discs are looked for: on the lattice, in sectors, or in Verlet lists.
 
 use super::state::{Move, State};
-use crate::domain::Domain;
+use crate::grid::sectors_of;
 use crate::method::lattice_md::Model;
 use crate::particles::Particles;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::isa::ProgramError;
-use stripmine_kernels::law::Law;
+use stripmine_kernels::isa::{ProgramError, Storage};
+use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::lattice::{Candidates, Codes, Lattice, Occupancy, Taken};
 use stripmine_kernels::sweep::fast::{
-    Copies, Discs, Finder, Grid, Leash, Met, Rows, Sectors, Sweep, Touches, VerletList,
+    Copies, Discs, Finder, Grid, GridError, Leash, Met, Rows, Sectors, Sweep, Touches, VerletList,
 };
 
 /// How the fast execution finds contacts.
@@ -57,20 +57,20 @@ pub(super) struct Lists<S> {
 }
 
 impl<S: Precision, P: Precision> Home<S, P> {
-    /// With nobody at home. None if a periodic side of the box is too short for sectors.
-    pub(super) fn new(search: Search, model: &Model, particles: &Particles) -> Option<Self> {
+    /// With nobody at home.
+    ///
+    /// # Errors
+    /// [`GridError`] if the box is none for sectors.
+    pub(super) fn new(search: Search, model: &Model, particles: &Particles) -> Result<Self, GridError> {
         let radii = particles.radii();
         let largest = radii.map_or(1.0, |[_, largest]| largest);
         let (discs, reach) = (particles.len(), 2.0 * largest);
+        let single = S::NAME != f64::NAME || P::NAME != f64::NAME;
         let sectors = |skin: f64| {
-            let Domain { origin, sides, periodic } = model.domain();
-            let grid = Grid::new(origin, sides, periodic, reach + skin, discs)?;
-            Some((
-                Sectors::new(grid, discs, reach),
-                Sweep::new(rows::<S, P, _>(&Sectors::new(grid, 0, reach))),
-            ))
+            let grid = sectors_of(&model.domain(), reach + skin, single, discs)?;
+            Ok((Sectors::new(grid, discs, reach), Sweep::new(rows::<S, P, _>(&Sectors::new(grid, 0, reach)))))
         };
-        Some(match search {
+        Ok(match search {
             Search::Lattice(on_conflict) => {
                 let vary = radii.is_some_and(|[smallest, largest]| smallest != largest);
                 let occupancy = Occupancy::new(model.shape, model.frame, discs, reach, vary);
@@ -140,7 +140,7 @@ impl<S: Precision, P: Precision> Home<S, P> {
     /// # Errors
     /// [`Taken`] if the cell is another disc's.
     pub(super) fn enter(&mut self, to: &Move, model: &Model, state: &State<S>) -> Result<(), Taken> {
-        let Move { disc, cell, place } = *to;
+        let Move { disc, cell, place, .. } = *to;
         match self {
             Home::Lattice { occupancy, on_conflict, .. } => {
                 let radius = |disc: usize| state.radius(model, disc);
@@ -244,16 +244,16 @@ impl<S: Precision, P: Precision> Home<S, P> {
         law: &L,
         discs: &Discs<'_, S>,
         sums: [&mut [P]; 3],
-        watched: Option<f64>,
+        asked: Asked,
         set: InstructionSet,
     ) -> Result<Met, ProgramError> {
         match self {
             Home::Lattice { occupancy, codes, sweep, .. } => {
-                sweep.run(law, &Lattice { occupancy, codes }, discs, sums, watched, set)
+                sweep.run(law, &Lattice { occupancy, codes }, discs, sums, asked, set)
             }
-            Home::Sectors { sectors, sweep } => sweep.run(law, sectors, discs, sums, watched, set),
+            Home::Sectors { sectors, sweep } => sweep.run(law, sectors, discs, sums, asked, set),
             Home::Lists { sweep, lists, .. } => match &lists.list {
-                Some(list) => sweep.run(law, list, discs, sums, watched, set),
+                Some(list) => sweep.run(law, list, discs, sums, asked, set),
                 None => Ok(Met::default()),
             },
         }
@@ -264,6 +264,11 @@ impl<S: Precision> Lists<S> {
     /// Pairs listed.
     pub(super) fn entries(&self) -> usize {
         self.list.as_ref().map_or(0, VerletList::entries)
+    }
+
+    /// How much farther than contact a listed pair may be (length).
+    pub(super) fn skin(&self) -> f64 {
+        self.skin
     }
 
     /// Where a disc was when the lists were made.

@@ -7,10 +7,11 @@ mod home;
 mod state;
 mod steps;
 
+use super::crossings::Crossings;
 use super::programs::{WithLaw, with_law};
 use super::walls::walls_at;
 use super::{Model, Scheme};
-use crate::method::{DeepContacts, Failure, Method, Phase, StateColumn, Timings};
+use crate::method::{Failure, Method, Phase, StateColumn, Timings, Totals};
 use crate::particles::Particles;
 use crate::scene::WallMotion;
 use home::Home;
@@ -40,7 +41,11 @@ pub(super) struct FastMd<S, P> {
     /// Whether the state is predicted and its forces are not yet known.
     awaits_forces: bool,
     steps: u64,
-    deep: DeepContacts,
+    totals: Totals,
+    crossings: Crossings,
+    /// Grains, and moving walls in the same list, that are so near to an open side that lists may last until they have left
+    /// through it.
+    rim: Vec<u32>,
     timings: Timings,
 }
 
@@ -56,8 +61,9 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
         walls: WallMotion,
         particles: Particles,
     ) -> Result<Self, Failure> {
-        let home = Home::new(search, &model, &particles).ok_or(Failure::NoRoomForSectors)?;
+        let home = Home::new(search, &model, &particles)?;
         let sums = [0, 1, 2].map(|_| vec![P::default(); particles.len()]);
+        let crossings = Crossings::new(model.counts_crossings(), particles.len());
         let mut simulation = FastMd {
             state: State::new(&model, &particles),
             sums,
@@ -69,7 +75,9 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             met: 0,
             awaits_forces: false,
             steps: 0,
-            deep: DeepContacts::default(),
+            totals: Totals::default(),
+            crossings,
+            rim: vec![],
             timings: Timings::default(),
             model,
         };
@@ -79,8 +87,8 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
         let moves: Vec<Move> = moves.collect::<Result<_, _>>()?;
         simulation.rehouse(&moves)?;
         simulation.put_in_order();
-        simulation.meet()?;
-        simulation.deep = DeepContacts::default();
+        let power = simulation.meet()?;
+        simulation.totals = Totals::starting_with(power, simulation.wall_power());
         Ok(simulation)
     }
 
@@ -97,18 +105,35 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             *sum = order.iter().map(|&disc| sum[disc as usize]).collect();
         }
         self.home.make_lists(&self.state);
+        self.rim = self.discs_at_the_rim();
         self.changes = 0;
         order
     }
 
-    /// All forces of the positions as they stand.
-    fn meet(&mut self) -> Result<(), Failure> {
+    /// What moving walls put in (energy/time): all walls have one velocity, and what they do to the grains is the sum of
+    /// the grains' forces, for those of two grains cancel. Summed in the scene's order of the discs.
+    fn wall_power(&self) -> f64 {
+        if self.walls == WallMotion::Fixed || !self.model.follows_energy() {
+            return 0.0;
+        }
+        let (_, velocity) = walls_at(self.walls, self.time());
+        let mut forces = vec![[0.0; 2]; self.start.len()];
+        for disc in 0..self.start.grain_count() {
+            forces[self.state.number(disc)] = [0, 1].map(|axis| self.sums[axis][disc].to_f64());
+        }
+        let along = |axis: usize| velocity[axis] * forces.iter().map(|force| force[axis]).sum::<f64>();
+        along(0) + along(1)
+    }
+
+    /// All forces of the positions as they stand; gives what contacts dissipate (energy/time).
+    fn meet(&mut self) -> Result<f64, Failure> {
         let mut timings = self.timings;
         let met = timings.time(Phase::Forces, || self.add_forces())?;
         self.timings = timings;
         self.met = met.pairs;
         self.awaits_forces = false;
-        self.judge(&met)
+        self.judge(&met)?;
+        Ok(met.dissipated)
     }
 
     fn add_forces(&mut self) -> Result<Met, ProgramError> {
@@ -138,9 +163,8 @@ impl<S: Precision, P: Precision> WithLaw for Sweeping<'_, S, P> {
 
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
         let FastMd { model, state, sums, home, set, .. } = self.0;
-        let watched = model.watch.map(|watch| watch.depth());
         let sums = sums.each_mut().map(Vec::as_mut_slice);
-        home.sweep(&law, &state.discs(model), sums, watched, *set)
+        home.sweep(&law, &state.discs(model), sums, model.asked(), *set)
     }
 }
 
@@ -151,14 +175,17 @@ impl<S: Precision, P: Precision> Method for FastMd<S, P> {
         if self.changes > self.start.grain_count() / 4 {
             timings.time(Phase::Index, || _ = self.put_in_order());
         }
-        let left = timings.time(Phase::CorrectPredict, || steps::advance(self, first))?;
+        let passed = timings.time(Phase::CorrectPredict, || steps::advance(self, first))?;
         self.steps += 1;
         self.awaits_forces = true;
         self.timings = timings;
-        timings.time(Phase::Index, || keep_awake(|| self.keep_index(&left)))?;
+        timings.time(Phase::Index, || keep_awake(|| self.keep_index(&passed.left)))?;
         self.timings = timings;
-        self.deep.shared_cells += self.home.guests() as u64;
-        self.meet()
+        self.judge_steps(&passed.far)?;
+        self.totals.shared_cells += self.home.guests() as u64;
+        let power = self.meet()?;
+        self.totals.add_work(self.model.dt, power, self.wall_power());
+        Ok(())
     }
 
     fn steps(&self) -> u64 {
@@ -202,8 +229,12 @@ impl<S: Precision, P: Precision> Method for FastMd<S, P> {
         forces
     }
 
-    fn deep_contacts(&self) -> DeepContacts {
-        self.deep
+    fn totals(&self) -> Totals {
+        self.totals
+    }
+
+    fn crossings(&self) -> Vec<[f64; 2]> {
+        self.crossings.counts().to_vec()
     }
 
     fn state(&self) -> Vec<(String, StateColumn)> {
@@ -213,12 +244,12 @@ impl<S: Precision, P: Precision> Method for FastMd<S, P> {
     fn restore(
         &mut self,
         steps: u64,
-        deep: DeepContacts,
+        totals: Totals,
         columns: Vec<(String, StateColumn)>,
     ) -> Result<(), String> {
         self.take_up(columns)?;
         self.steps = steps;
-        self.deep = deep;
+        self.totals = totals;
         self.state.turn_walls(walls_at(self.walls, self.time()).1, self.model.dt);
         Ok(())
     }

@@ -9,12 +9,13 @@ use stripmine_kernels::integrator::gear::STATE;
 use stripmine_kernels::isa::{Element, Storage};
 use stripmine_kernels::sweep::fast::{self, SENTINELS};
 
-/// A disc with the cell it goes to and its place there, seen from the cell's centre (length).
+/// A disc with the cell it goes to, its place there, seen from the cell's centre (length), and the periods that it crosses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Move {
     pub(super) disc: usize,
     pub(super) cell: [usize; 2],
     pub(super) place: [f64; 2],
+    pub(super) periods: [f64; 2],
 }
 
 /// Columns with an entry a disc, grains first, and two discs behind them that never touch.
@@ -188,6 +189,8 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
                 columns.push(((*name).to_owned(), to_column(numbers, |disc| made_at[disc])));
             }
         }
+        let crossings = self.crossings.columns().into_iter();
+        columns.extend(crossings.map(|(name, counts)| (name.to_owned(), StateColumn::F64(counts))));
         columns
     }
 
@@ -232,10 +235,14 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             Some(_) => Some([find(MADE_AT[0], S::NAME)?, find(MADE_AT[1], S::NAME)?]),
             None => None,
         };
+        self.crossings.take_up(|name| match columns.iter().find(|(known, _)| known == name) {
+            Some((_, StateColumn::F64(values))) => Ok(values.clone()),
+            _ => Err(format!("the column {name} is missing")),
+        })?;
         (0..numbers.len()).for_each(|disc| self.home.leave(disc));
         for (disc, (&column, &row)) in cells[0].iter().zip(&cells[1]).enumerate() {
             let cell = [column as usize, row as usize];
-            let to = Move { disc, cell, place: state.place(disc) };
+            let to = Move { disc, cell, place: state.place(disc), periods: [0.0; 2] };
             let entered = self.home.enter(&to, &self.model, &state);
             entered.map_err(|_| "two discs are in one cell".to_owned())?;
         }

@@ -2,6 +2,7 @@
 
 use super::state::{Move, State};
 use super::{FastMd, walls_at};
+use crate::domain::Domain;
 use crate::method::lattice_md::{Discs, GearValues, Model, Scheme};
 use crate::method::{Failure, Method};
 use crate::scene::WallMotion;
@@ -10,7 +11,7 @@ use stripmine_kernels::integrator::gear::Gear;
 use stripmine_kernels::integrator::velocity_verlet::VelocityVerlet;
 use stripmine_kernels::integrator::{self};
 use stripmine_kernels::isa::ProgramError;
-use stripmine_kernels::sweep::fast::{Advance, Grid, Motion};
+use stripmine_kernels::sweep::fast::{Advance, Grid, Motion, Passed};
 
 /// Does something with the motion of a model, whichever scheme that has.
 macro_rules! with_motion {
@@ -58,11 +59,12 @@ pub(super) fn corrected<S: Precision>(
     with_motion!(model, |motion| motion.corrected(freedom, row, force, inverse))
 }
 
-/// Corrects the last step, unless the first begins, and predicts the next; gives the discs that left their cells.
+/// Corrects the last step, unless the first begins, and predicts the next; gives the discs that left their cells and those
+/// that are too fast.
 pub(super) fn advance<S: Precision, P: Precision>(
     simulation: &mut FastMd<S, P>,
     first: bool,
-) -> Result<Vec<u32>, ProgramError> {
+) -> Result<Passed, ProgramError> {
     let FastMd { model, state, sums, home, start, set, .. } = simulation;
     let freedoms = model.freedoms();
     let (columns, inverse) = state.for_advance();
@@ -70,8 +72,11 @@ pub(super) fn advance<S: Precision, P: Precision>(
     let sums = sums.iter_mut().take(freedoms).map(Vec::as_mut_slice).collect();
     let discs = start.grain_count();
     let (leash, copies) = home.leash();
+    let longest_step = model.watch.map_or(f64::INFINITY, |watch| watch.longest_step());
     with_motion!(model, |motion| {
-        Advance { motion: &motion, state, sums, inverse, discs, corrected: first }.run(leash, copies, *set)
+        let advance =
+            Advance { motion: &motion, state, sums, inverse, discs, corrected: first, longest_step };
+        advance.run(leash, copies, *set)
     })
 }
 
@@ -80,7 +85,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
     pub(super) fn locate(&self, disc: usize, position: [f64; 2]) -> Result<Move, Failure> {
         let frame = self.home.grid().frame;
         let place = [0, 1].map(|axis| position[axis] - (frame.origin[axis] + 0.5 * frame.edge[axis]));
-        let from = Move { disc, cell: [0, 0], place };
+        let from = Move { disc, cell: [0, 0], place, periods: [0.0; 2] };
         self.settled(from).ok_or_else(|| self.stray(from, 1))
     }
 
@@ -99,6 +104,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             let mut there = cell[axis] as f64 + steps;
             to.place[axis] = place[axis] - steps * edge;
             if periodic[axis] && (-count..2.0 * count).contains(&there) {
+                to.periods[axis] = (there / count).floor();
                 there = there.rem_euclid(count);
             } else if there == count && to.place[axis] <= -0.5 * edge {
                 // On the far side: that is the last cell's.
@@ -139,7 +145,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
         let (mut moves, mut strays) = (Vec::new(), Vec::new());
         for disc in discs {
             let cell = self.home.cell(disc).unwrap_or_default();
-            let from = Move { disc, cell, place: self.state.place(disc) };
+            let from = Move { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
             match self.settled(from) {
                 Some(to) => moves.push(to),
                 None => strays.push(from),
@@ -164,12 +170,44 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             self.state.put(to.disc, place);
             stale |= self.home.lists().is_some_and(|lists| lists.has_strayed(to.disc, place));
         }
+        let outside = |&&disc: &&u32| self.is_outside(disc as usize);
+        if let Some(&first) =
+            self.rim.iter().filter(outside).min_by_key(|&&disc| self.state.number(disc as usize))
+        {
+            let count = self.rim.iter().filter(outside).count() as u64;
+            let cell = self.home.cell(first as usize).unwrap_or_default();
+            let place = self.state.place(first as usize);
+            return Err(self.stray(Move { disc: first as usize, cell, place, periods: [0.0; 2] }, count));
+        }
         if stale {
             let moves = self.settle_all(0..self.start.len())?;
             self.rehouse(&moves)?;
             self.put_in_order();
         }
         Ok(())
+    }
+
+    /// The discs that may leave through an open side before lists are made anew.
+    pub(super) fn discs_at_the_rim(&self) -> Vec<u32> {
+        let Some(lists) = self.home.lists() else { return vec![] };
+        let Domain { origin, sides, periodic } = self.model.domain();
+        // A little more than the lists last: rounding must hide no disc.
+        let reach = 0.5 * lists.skin() * (1.0 + 1e-6);
+        let near = |disc: usize| {
+            let position = self.position(disc, self.state.place(disc));
+            (0..2).filter(|&axis| !periodic[axis]).any(|axis| {
+                let along = position[axis] - origin[axis];
+                !(reach..=sides[axis] - reach).contains(&along)
+            })
+        };
+        (0..self.start.len()).filter(|&disc| near(disc)).map(|disc| disc as u32).collect()
+    }
+
+    /// Whether a disc is beyond an open side.
+    fn is_outside(&self, disc: usize) -> bool {
+        let cell = self.home.cell(disc).unwrap_or_default();
+        let from = Move { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
+        self.settled(from).is_none()
     }
 
     /// Moves discs into their new cells; if two want one that must be one disc's, none is moved.
@@ -179,6 +217,9 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
         }
         moves.iter().for_each(|to| self.home.leave(to.disc));
         for to in moves {
+            if to.disc < self.start.grain_count() {
+                self.crossings.add(self.state.number(to.disc), to.periods);
+            }
             self.state.put(to.disc, to.place);
             let entered = self.home.enter(to, &self.model, &self.state);
             debug_assert!(entered.is_ok(), "looked for above");

@@ -1,0 +1,356 @@
+//! What a method cannot do right is refused or said: every way of finding contacts, in every precision, against what is known
+//! of the motion.
+
+use stripmine::method::{Failure, Method, Totals};
+use stripmine::observe::{Observation, Scenery};
+use stripmine::run::{assemble, assemble_following_energy, model};
+use stripmine::scene::{Checked, Document};
+
+/// Every engine by the overrides that choose it.
+const ENGINES: [(&str, &[&str]); 6] = [
+    ("chained lattice", &["method.execution=chained"]),
+    ("eager lattice", &["method.execution=eager"]),
+    ("fast lattice", &["method.execution=fast"]),
+    ("sectors", &["method.kind=sectors", "method.execution=fast"]),
+    ("chained lists", &["method.kind=neighbor-list", "method.execution=chained"]),
+    ("fast lists", &["method.kind=neighbor-list", "method.execution=fast"]),
+];
+
+fn checked(scene: &str, overrides: &[&[&str]]) -> Checked {
+    let overrides: Vec<String> = overrides.concat().into_iter().map(str::to_owned).collect();
+    let document = match scene.contains('\n') {
+        true => Document::parse("scene", scene, &overrides),
+        false => Document::load(scene, &overrides),
+    };
+    document.and_then(Document::check).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn refused(scene: &str, overrides: &[&str]) -> String {
+    let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
+    let document = match scene.contains('\n') {
+        true => Document::parse("scene", scene, &overrides),
+        false => Document::load(scene, &overrides),
+    };
+    document.and_then(Document::check).expect_err("must be refused").to_string()
+}
+
+fn observe(checked: &Checked, method: &dyn Method) -> Observation {
+    Observation::of(method.steps(), method.time(), &method.particles(), &Scenery::of(&model(checked)))
+}
+
+fn advance(method: &mut dyn Method, steps: u64) {
+    (0..steps).for_each(|_| method.step().unwrap_or_else(|failure| panic!("{failure}")));
+}
+
+/// Discs of radius 0.5 and mass 1 in a box with periodic sides.
+fn discs(sides: [f64; 2], positions: &str, velocities: &str, dt: f64) -> String {
+    format!(
+        "format = 1\nunits = \"reduced\"\n[domain]\nsides = {sides:?}\n[particles]\ngenerate = \"list\"\n\
+         positions = {positions}\nvelocities = {velocities}\nradius = 0.5\nmass = 1.0\n[law]\nstiffness = 100.0\n\
+         stop_penetration = 0.99\n[integrator]\nkind = \"velocity-verlet\"\ndt = {dt:?}\n[run]\nsteps = 1\n"
+    )
+}
+
+/// Two discs so soft that they come into one cell of the lattice, which lists do not mind.
+#[test]
+fn discs_in_one_cell_meet_in_lists() {
+    let scene =
+        discs([10.0, 10.0], "[[4.6323, 4.6323], [5.3677, 5.3677]]", "[[1.6, 1.6], [-1.6, -1.6]]", 1e-3);
+    let run = |engine: &[&str]| {
+        let checked = checked(&scene, &[engine]);
+        let mut method = assemble(&checked).unwrap();
+        let before = observe(&checked, method.as_ref());
+        advance(method.as_mut(), 1000);
+        let after = observe(&checked, method.as_ref());
+        assert!((after.energy() / before.energy() - 1.0).abs() < 1e-5, "{engine:?}: {after:?}");
+        (method.particles(), method.totals())
+    };
+    let (sectors, deep) = run(ENGINES[3].1);
+    assert!(deep.deepest > 0.3, "they must come deep: {deep:?}");
+    for (name, engine) in [ENGINES[4], ENGINES[5]] {
+        let (lists, also_deep) = run(engine);
+        for (a, b) in sectors.all().iter().zip(lists.all()) {
+            assert!((a.velocity[0] - b.velocity[0]).abs() < 1e-9, "{name}: {a:?} {b:?}");
+        }
+        assert_eq!(deep.deep_disc_steps, also_deep.deep_disc_steps, "{name}");
+    }
+    let failure = |engine: &[&str]| -> Failure {
+        let mut method = assemble(&checked(&scene, &[engine, &["law.stop_penetration=0.3"]])).unwrap();
+        (0..1000).find_map(|_| method.step().err()).expect("too deep")
+    };
+    for (name, engine) in [ENGINES[3], ENGINES[4], ENGINES[5]] {
+        assert!(matches!(failure(engine), Failure::TooDeep { .. }), "{name}");
+    }
+}
+
+/// A warm gas whose discs come into one cell now and then keeps its energy in lists.
+#[test]
+fn a_hot_gas_keeps_its_energy_in_lists() {
+    let checked =
+        checked("dense-gas", &[ENGINES[4].1, &["particles.count=100", "particles.temperature=0.3"]]);
+    let mut method = assemble(&checked).unwrap();
+    let before = observe(&checked, method.as_ref()).energy();
+    advance(method.as_mut(), 2000);
+    let after = observe(&checked, method.as_ref()).energy();
+    assert!((after / before - 1.0).abs() < 1e-4, "{before} {after}");
+}
+
+/// Single precision moves a disc as far as it flies, however large the box and wherever it is.
+#[test]
+fn single_precision_loses_no_motion() {
+    for (length, x, speed) in [(10_000.0, 5000.0, 0.09), (10_000.0, 9000.0, 0.11), (1000.0, 700.0, 0.01)] {
+        let scene = discs(
+            [length, 4.0],
+            &format!("[[{x:?}, 2.0], [1.5, 2.0]]"),
+            &format!("[[{speed:?}, 0.0], [0.0, {speed:?}]]"),
+            0.005,
+        );
+        for (name, engine) in ENGINES {
+            // Programs sweep all the empty cells.
+            let steps = if engine[0].ends_with("fast") || engine[1..].concat().ends_with("fast") {
+                2000
+            } else {
+                100
+            };
+            let checked = checked(&scene, &[engine, &["method.precision=f32"]]);
+            let mut method = assemble(&checked).unwrap();
+            let start = method.particles();
+            advance(method.as_mut(), steps);
+            let moved = method.particles().all()[0].position[0] - start.all()[0].position[0];
+            let off = moved / (speed * 0.005 * steps as f64) - 1.0;
+            assert!(off.abs() < 2e-3, "{name} in {length}: moved {moved}");
+        }
+    }
+}
+
+/// Across every periodic side, in either direction, single precision goes where double precision goes.
+#[test]
+fn single_precision_crosses_sides_as_double_does() {
+    for (velocity, (name, engine)) in
+        ["[[-0.9, -0.7]]", "[[1.1, 0.8]]"].into_iter().flat_map(|v| ENGINES.map(|e| (v, e)))
+    {
+        let scene = discs([12.0, 9.0], "[[1.0, 1.0]]", velocity, 0.005);
+        let run = |precision: &str| {
+            let mut method = assemble(&checked(&scene, &[engine, &[precision]])).unwrap();
+            advance(method.as_mut(), 6000);
+            method.particles()
+        };
+        for (a, b) in run("method.precision=f64").all().iter().zip(run("method.precision=f32").all()) {
+            for axis in 0..2 {
+                let side = [12.0, 9.0][axis];
+                let off = (a.position[axis] - b.position[axis] + 1.5 * side).rem_euclid(side) - 0.5 * side;
+                assert!(off.abs() < 5e-3, "{name}: {a:?} {b:?}");
+            }
+        }
+    }
+}
+
+/// Nearly empty boxes have wide sectors in double precision only.
+#[test]
+fn collisions_in_empty_boxes_keep_their_energy_in_single_precision() {
+    for (name, engine) in &ENGINES[2..] {
+        // Chained lists enter discs in a lattice, whose cells are all cleared.
+        let (length, x) = if *name == "chained lists" { (200.0, 90.3) } else { (20_000.0, 9000.3) };
+        let positions = format!("[[{x:?}, 9.0], [{:?}, 9.4]]", x + 2.0);
+        let scene = discs([length, 20.0], &positions, "[[0.3, 0.0], [-0.3, 0.0]]", 0.005);
+        for (precision, bound) in [("method.precision=f32", 2e-3), ("method.precision=mixed", 2e-3)] {
+            let checked = checked(&scene, &[engine, &[precision]]);
+            let mut method = assemble(&checked).unwrap();
+            let before = observe(&checked, method.as_ref()).kinetic;
+            advance(method.as_mut(), 1500);
+            let seen = observe(&checked, method.as_ref());
+            assert_eq!(seen.contacts, 0, "the collision must be over");
+            let turned = method.particles().all()[0].velocity[1].abs();
+            assert!(turned > 0.05, "they must have collided: {turned}");
+            assert!((seen.kinetic / before - 1.0).abs() < bound, "{name} {precision}: {seen:?}");
+        }
+    }
+}
+
+#[test]
+fn single_precision_from_the_origin_is_refused_where_it_loses_motion() {
+    let absolute = ["method.precision=f32", "method.coordinates=absolute"];
+    let scene = discs([1000.0, 4.0], "[[700.0, 2.0]]", "[[0.01, 0.0]]", 0.005);
+    let said = refused(&scene, &absolute);
+    assert!(said.contains("cell-relative") && said.contains("6.0e-5"), "{said}");
+    let near = discs([5.0, 4.0], "[[1.0, 2.0]]", "[[1.0, 0.0]]", 0.005);
+    assert!(checked(&near, &[&absolute]).warnings.iter().all(|warning| warning.key != "method.precision"));
+    // Cells help no longer where discs hardly move.
+    let slow = discs([5.0, 4.0], "[[1.0, 2.0]]", "[[1e-5, 0.0]]", 0.005);
+    assert!(refused(&slow, &["method.precision=f32"]).contains("single precision"));
+}
+
+/// What contacts dissipate is counted where it happens: rare rows change nothing, and every engine counts the same.
+#[test]
+fn dissipation_is_counted_and_the_balance_closes() {
+    let run = |engine: &[&str], steps: u64| -> (Totals, f64) {
+        let more =
+            ["particles.count=100", "law.normal_damping=0.3", "law.shear_damping=0.2", "law.friction=0.4"];
+        let checked = checked("dense-gas", &[&more, engine]);
+        let mut method = assemble_following_energy(&checked).unwrap();
+        let energy = |method: &dyn Method| {
+            let seen = observe(&checked, method);
+            seen.kinetic + seen.rotational + seen.elastic
+        };
+        let before = energy(method.as_ref());
+        advance(method.as_mut(), steps);
+        let totals = method.totals();
+        (totals, energy(method.as_ref()) - before + totals.dissipated)
+    };
+    let (faithful, error) = run(ENGINES[0].1, 3000);
+    assert!(faithful.dissipated > 0.1, "{faithful:?}");
+    assert!(error.abs() < 1e-3 * faithful.dissipated, "{error} of {faithful:?}");
+    for (name, engine) in &ENGINES[1..] {
+        let (totals, _) = run(engine, 3000);
+        assert!((totals.dissipated / faithful.dissipated - 1.0).abs() < 1e-6, "{name}: {totals:?}");
+    }
+    let elastic = checked("dense-gas", &[&["particles.count=100"]]);
+    let mut method = assemble_following_energy(&elastic).unwrap();
+    advance(method.as_mut(), 200);
+    assert_eq!(method.totals().dissipated, 0.0);
+}
+
+/// Grains that fall through a periodic side again and again, and a floor that shakes.
+#[test]
+fn work_of_gravity_and_walls_is_counted() {
+    for (scene, steps, tolerance) in [("pipe-small", 4000, 0.02), ("shaken-box", 4000, 0.02)] {
+        for (name, engine) in [ENGINES[0], ENGINES[2], ENGINES[3], ENGINES[4], ENGINES[5]] {
+            let checked = checked(scene, &[engine]);
+            let mut method = assemble_following_energy(&checked).unwrap();
+            let start = method.particles();
+            let inner = |method: &dyn Method| {
+                let seen = observe(&checked, method);
+                seen.kinetic + seen.rotational + seen.elastic
+            };
+            let before = inner(method.as_ref());
+            advance(method.as_mut(), steps);
+            let (now, crossings, totals) = (method.particles(), method.crossings(), method.totals());
+            let mut work = 0.0;
+            for (number, (a, b)) in start.grains().iter().zip(now.grains()).enumerate() {
+                for axis in 0..2 {
+                    let periods = crossings.get(number).map_or(0.0, |periods| periods[axis]);
+                    let way = b.position[axis] - a.position[axis] + periods * checked.domain.sides[axis];
+                    let pulled = checked.scene.domain.gravity[axis];
+                    if pulled != 0.0 {
+                        work += b.mass * pulled * way;
+                    }
+                }
+            }
+            let error = inner(method.as_ref()) - before - work - totals.wall_work + totals.dissipated;
+            let scale = totals.dissipated + work.abs() + totals.wall_work.abs();
+            assert!(error.abs() < tolerance * scale, "{scene}, {name}: {error} {work} {totals:?}");
+            assert_eq!(scene == "shaken-box", totals.wall_work != 0.0);
+        }
+    }
+}
+
+/// A disc that leaves through an open side for a moment is noticed in that step, by lists too.
+#[test]
+fn a_disc_that_returns_has_left() {
+    let scene = discs([20.0, 20.0], "[[10.0, 19.9], [10.0, 5.0]]", "[[0.0, 1.0], [0.1, 0.0]]", 0.005)
+        .replace(
+            "sides = [20.0, 20.0]",
+            "sides = [20.0, 20.0]\nperiodic = [true, false]\ngravity = [0.0, -4.0]",
+        );
+    let failure = |engine: &[&str], more: &[&str]| {
+        let mut method = assemble(&checked(&scene, &[engine, more])).unwrap();
+        (0..200).find_map(|_| method.step().err()).expect("it left the box")
+    };
+    let Failure::OutOfBox { step, .. } = failure(ENGINES[3].1, &[]) else { panic!("another failure") };
+    for skin in ["method.skin=0.15", "method.skin=0.6", "method.skin=1.0"] {
+        let Failure::OutOfBox { step: at, first, .. } = failure(ENGINES[5].1, &[skin]) else {
+            panic!("{skin}")
+        };
+        assert_eq!((at, first.id), (step, 1), "{skin}");
+    }
+}
+
+/// A disc that becomes so fast that it could pass through others is caught in that step, or counted.
+#[test]
+fn steps_that_are_too_long_are_caught() {
+    let scene = discs([12.0, 9.0], "[[1.0, 1.0], [7.0, 5.0]]", "[[0.1, 0.0], [0.0, 0.1]]", 0.01)
+        .replace("periodic", "# periodic")
+        .replace("sides = [12.0, 9.0]", "sides = [12.0, 9.0]\ngravity = [40.0, 0.0]");
+    let mut steps = vec![];
+    for (name, engine) in ENGINES {
+        let mut method = assemble(&checked(&scene, &[engine])).unwrap();
+        let failure = (0..400).find_map(|_| method.step().err()).expect("too fast");
+        let Failure::LongStep { step, count, first, limit, .. } = failure else {
+            panic!("{name}: {failure}")
+        };
+        assert!(first.velocity[0].abs() * 0.01 > limit && count >= 1, "{name}");
+        steps.push(step);
+        let mut counting = assemble(&checked(&scene, &[engine, &["integrator.on_long_step=count"]])).unwrap();
+        advance(counting.as_mut(), step + 2);
+        assert!(counting.totals().long_steps >= 3, "{name}: {:?}", counting.totals());
+    }
+    assert!(steps.iter().all(|step| step.abs_diff(steps[0]) <= 1), "{steps:?}");
+}
+
+#[test]
+fn discs_that_are_too_fast_at_the_start_are_refused() {
+    // Five diameters a step.
+    let scene = discs([100.0, 9.0], "[[10.0, 4.0], [30.0, 4.0]]", "[[500.0, 0.0], [0.0, 0.0]]", 0.01);
+    let said = refused(&scene, &["law.stiffness=1e12"]);
+    assert!(said.contains("disc 1 moves at 5.0000e2") && said.contains("on_long_step"), "{said}");
+    let counted = ["law.stiffness=1e9", "integrator.on_long_step=count", "integrator.dt=0.002"];
+    assert!(refused(&scene, &counted).contains("steps"), "a collision of less than a step");
+}
+
+#[test]
+fn too_few_steps_a_contact_are_refused() {
+    let scene = discs([10.0, 10.0], "[[3.0, 5.0], [6.0, 5.0]]", "[[1.0, 0.0], [0.0, 0.0]]", 0.3);
+    let said = refused(&scene, &["law.stiffness=1e4"]);
+    assert!(said.contains("steps: no scheme is stable"), "{said}");
+}
+
+/// Cells so wide that the search would miss contacts, for its single precision.
+#[test]
+fn cells_too_wide_for_the_search_are_refused() {
+    let resolve = ["method.execution=fast", "method.on_conflict=resolve"];
+    let scene = discs([1e5, 1e5], "[[4.0, 5.0], [7.0, 5.0]]", "[[1.0, 0.0], [0.0, 0.0]]", 1e-3);
+    let said = refused(&scene, &[&resolve[..], &["method.cell_edge=1e4"]].concat());
+    assert!(said.contains("single precision") && said.contains("at most 8"), "{said}");
+    // The widest that is allowed finds every contact.
+    let packed = ["particles.count=400", "particles.temperature=0.05", "method.precision=f64"];
+    let run = |engine: &[&str]| {
+        let checked = checked("dense-gas", &[&packed, engine]);
+        let mut method = assemble(&checked).unwrap();
+        advance(method.as_mut(), 200);
+        observe(&checked, method.as_ref())
+    };
+    let (wide, sectors) = (run(&[&resolve[..], &["method.cell_edge=4"]].concat()), run(ENGINES[3].1));
+    assert_eq!(wide.contacts, sectors.contacts);
+    assert!((wide.energy() / sectors.energy() - 1.0).abs() < 1e-9);
+}
+
+/// Positions that no number resolves, wherever they come from.
+#[test]
+fn positions_too_coarse_for_their_distance_are_refused() {
+    let scene = discs([12.0, 9.0], "[[1e12, 1.0], [1e12, 5.0]]", "[[0.0, 0.0], [0.0, 0.1]]", 0.01)
+        .replace("sides = [12.0, 9.0]", "origin = [1e12, 0.0]\nsides = [12.0, 9.0]");
+    assert!(refused(&scene, &[]).contains("too coarse"));
+}
+
+/// Lists in boxes that are narrow, and skins for which a box has no room: found when a scene is checked.
+#[test]
+fn boxes_without_room_for_lists_are_refused_when_checked() {
+    let lists = ["method.kind=neighbor-list", "method.execution=fast"];
+    let mut method = assemble(&checked("two-discs", &[&lists, &["method.skin=7.4"]])).unwrap();
+    advance(method.as_mut(), 50);
+    let said = refused("dense-gas", &[&lists[..], &["particles.count=64", "method.skin=4.0"]].concat());
+    assert!(said.contains("no room for three sectors"), "{said}");
+    // Where no skin is asked for, the box decides.
+    let small = discs([4.0, 3.2], "[[1.0, 1.0]]", "[[0.1, 0.0]]", 0.005);
+    advance(assemble(&checked(&small, &[&lists])).unwrap().as_mut(), 10);
+    // What passes the check starts: small boxes of every size, with every search.
+    for sides in (0..60).map(|n| [2.6 + 0.07 * f64::from(n), 2.6 + 0.11 * f64::from(n % 13)]) {
+        let scene = discs(sides, "[[1.0, 1.0]]", "[[0.1, 0.0]]", 0.005);
+        for (name, engine) in ENGINES {
+            let overrides: Vec<String> = engine.iter().map(|&text| text.to_owned()).collect();
+            if let Ok(checked) = Document::parse("scene", &scene, &overrides).and_then(Document::check) {
+                assert!(assemble(&checked).is_ok(), "{name} in {sides:?}");
+            }
+        }
+    }
+}
