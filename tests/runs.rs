@@ -141,13 +141,6 @@ fn a_folder_with_a_run_is_respected() {
     let folder = tempfile::tempdir().unwrap();
     let run = folder.path().join("run");
     let steps = ["--set", "run.steps=20"];
-    let none = pipe(&run, &[&steps[..], &["--resume"]].concat());
-    assert_eq!(
-        (none.status.code(), said(&none).contains("no checkpoint")),
-        (Some(2), true),
-        "{}",
-        said(&none)
-    );
     succeed(pipe(&run, &steps));
     let before = read(&run, "thermo.csv");
     let again = pipe(&run, &steps);

@@ -41,13 +41,15 @@ impl ChartVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
         let What::DensityCost = self.what;
         let machine = machine::find(&self.machine)?;
+        // Before anything takes its time.
+        let folder = Folder::open(&self.out, &["cost", "measured", "atlas"], false)?;
         let (host, _) = host_model(self.host.as_deref(), common)?;
         let again = format!("stripmine chart density-cost --machine {}", self.machine);
         let bar = super::progress(common, "chart");
         let show = |from: f64, share: f64| bar.set_position((1e3 * (from + 0.5 * share)) as u64);
         let write = |section: Section, data: &serde_json::Value, start: Instant| -> Result<(), Failure> {
             let provenance = Provenance::here(again.clone(), start.elapsed().as_secs_f64());
-            let folder = Folder::new(&self.out).write(&Made::new(section, data)?, &provenance)?;
+            let folder = folder.write(&Made::new(section, data)?, &provenance)?;
             if !common.quiet {
                 bar.suspend(|| eprintln!("written: {}", folder.display()));
             }

@@ -121,6 +121,9 @@ pub(crate) enum Failure {
     /// A picture that cannot be drawn: a mistake of ours, exit code 5.
     #[error(transparent)]
     Figure(#[from] crate::report::figure::FigureError),
+    /// A folder of results that is another's, or in which another process writes: exit code 2; one that cannot be written: 5.
+    #[error(transparent)]
+    Results(#[from] reproduce::FolderError),
     /// Interrupted or terminated: exit code 130.
     #[error("interrupted at step {step}; a checkpoint is written, go on with --resume --out {}", folder.display())]
     Interrupted {
@@ -178,13 +181,14 @@ impl Failure {
                 StudyError::Question(_) => 2,
             },
             Failure::Figure(_) => 5,
+            Failure::Results(error) if error.is_refusal() => 2,
+            Failure::Results(_) => 5,
             Failure::Interrupted { .. } => 130,
             Failure::Run(error) => match error {
-                RunError::Exists(_) | RunError::NothingToResume(_) | RunError::OtherScene { .. } => 2,
+                error if error.is_refusal() => 2,
+                error if error.is_damage() => 6,
                 RunError::Scene(_) => 3,
                 RunError::Physics { .. } | RunError::Start(_) => 4,
-                RunError::Checkpoint(error) if error.is_corrupt() => 6,
-                RunError::Foreign { .. } => 6,
                 _ => 5,
             },
             Failure::InputOutput { .. } => 5,

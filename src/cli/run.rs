@@ -20,10 +20,13 @@ pub(super) struct RunVerb {
     /// Folder for the results; the scene's name with `.run` by default
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Go on with the run in the folder
+    /// Go on with the run in the folder; begin where there is none
     #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
-    /// Begin anew where the folder holds a run
+    /// Go on also with a run of another version, which does not promise the same bits
+    #[arg(long, requires = "resume")]
+    other_version: bool,
+    /// Begin from the start where the folder holds a run; only what that run wrote is removed
     #[arg(long)]
     overwrite: bool,
 }
@@ -36,7 +39,7 @@ impl RunVerb {
             PathBuf::from(format!("{}.run", stem.to_string_lossy()))
         });
         let existing = match (self.resume, self.overwrite) {
-            (true, _) => Existing::Resume,
+            (true, _) => Existing::Resume { other_version: self.other_version },
             (_, true) => Existing::Overwrite,
             _ => Existing::Refuse,
         };
@@ -46,10 +49,16 @@ impl RunVerb {
             Failure::writing("the handler of interruptions")(std::io::Error::other(cause))
         })?;
         let bar = progress_bar(common);
-        let ending = run(document, &folder, existing, &interrupted, |step, steps| {
+        let progress = |step, steps| {
             bar.set_length(steps);
             bar.set_position(step);
-        });
+        };
+        let notice = |note: &str| {
+            if !common.quiet {
+                bar.suspend(|| eprintln!("warning: {note}"));
+            }
+        };
+        let ending = run(document, &folder, existing, &interrupted, progress, notice);
         bar.finish_and_clear();
         match ending? {
             Ending::Done(summary) if common.json => print_json(&summary),

@@ -77,16 +77,21 @@ impl ValidateModel {
             repeats: self.repeats.into(),
             particle_steps: 10_000,
         };
+        // Before anything takes its time.
+        let folder = match &self.out {
+            Some(out) => Some(Folder::open(out, &["validation"], false)?),
+            None => None,
+        };
         let start = Instant::now();
         let (data, model) = self.validated(&effort, common)?;
-        if let Some(out) = &self.out {
+        if let Some(folder) = folder {
             let mut made = Made::new(report::model_validation::section(&data), &data)?;
             if let Some(model) = model {
                 made = made.with_file("host.toml", model.to_toml());
             }
             let provenance =
                 Provenance::here("stripmine validate-model".to_owned(), start.elapsed().as_secs_f64());
-            let folder = Folder::new(out).write(&made, &provenance)?;
+            let folder = folder.write(&made, &provenance)?;
             if !common.quiet {
                 eprintln!("written: {}", folder.display());
             }

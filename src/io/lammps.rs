@@ -3,13 +3,10 @@
 //!
 //! Grains are of type 1, wall discs of type 2. The box reaches from −1/2 to 1/2 in z.
 
-use super::FileError;
 use super::extxyz::{DEPTH, Frame};
 use crate::particles::Kind;
 use std::f64::consts::PI;
-use std::fs::OpenOptions;
-use std::io::{self, BufRead, BufReader, ErrorKind, Write};
-use std::path::Path;
+use std::io::{self, Write};
 
 fn atom_type(kind: Kind) -> u8 {
     match kind {
@@ -54,42 +51,6 @@ pub fn write_data(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
         writeln!(out, "{} {u:?} {v:?} 0.0 0.0 0.0 {:?}", disc.id, disc.omega)?;
     }
     Ok(())
-}
-
-/// Cuts the frames of a dump that are later than `step`, so that a run can go on behind
-/// them. A dump that is not there stays so.
-///
-/// # Errors
-/// If the system does not let it be read or cut.
-pub fn cut_dump(path: &Path, step: u64) -> Result<(), FileError> {
-    const HEAD: &str = "ITEM: TIMESTEP";
-    let file = match OpenOptions::new().read(true).write(true).open(path) {
-        Ok(file) => file,
-        Err(cause) if cause.kind() == ErrorKind::NotFound => return Ok(()),
-        Err(cause) => return Err(FileError::at(path, "opening the dump")(cause)),
-    };
-    let mut lines = BufReader::new(&file);
-    let (mut line, mut read, mut head, mut end) = (String::new(), 0, 0, None);
-    let mut after_head = false;
-    while end.is_none() {
-        line.clear();
-        let bytes = lines.read_line(&mut line).map_err(FileError::at(path, "reading the dump"))?;
-        if bytes == 0 {
-            break;
-        }
-        if after_head && line.trim().parse::<u64>().map_or(true, |found| found > step) {
-            end = Some(head);
-        }
-        after_head = line.trim_end() == HEAD;
-        if after_head {
-            head = read;
-        }
-        read += bytes as u64;
-    }
-    match end {
-        Some(end) => file.set_len(end).map_err(FileError::at(path, "cutting the dump")),
-        None => Ok(()),
-    }
 }
 
 /// Writes a frame of a text dump with id, type, position, velocity, angular velocity, radius and mass; frames

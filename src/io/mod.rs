@@ -1,8 +1,12 @@
-//! Files in and out: extended XYZ, LAMMPS data and dump, checkpoints, tables that grow with a run.
+//! Files in and out: extended XYZ, LAMMPS data and dump, checkpoints, tables that grow with a run; how they are put in
+//! their place, and one writer a folder.
 
 pub mod checkpoint;
 pub mod extxyz;
+pub mod growing_file;
 pub mod lammps;
+pub mod lock;
+pub(crate) mod replace;
 pub mod table_file;
 
 use std::path::{Path, PathBuf};

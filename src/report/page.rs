@@ -3,10 +3,13 @@
 use super::{Section, markdown};
 use std::fmt::Write;
 
+/// What stands near the beginning of every such page and of no other.
+pub const MARK: &str = "Written by `stripmine reproduce`; do not edit.";
+
 /// The page. Pictures and data lie in a folder for each item, which bears its name.
 pub fn render(sections: &[Section]) -> String {
-    let mut page = String::from(
-        "# What came out\n\nWritten by `stripmine reproduce`; do not edit. The same with charts to hover over and a film \
+    let mut page = format!(
+        "# What came out\n\n{MARK} The same with charts to hover over and a film \
          to play: [index.html](index.html), one file, to be opened from a copy on the disk.\n\n| | verdict |\n|---|---|\n",
     );
     for section in sections {

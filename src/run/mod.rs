@@ -1,19 +1,23 @@
-//! A run: advance, observe, record; checkpoints, interruption, resumption. What it writes is a folder:
-//! `scene.toml`, `thermo.csv`, `trajectory.xyz`, `summary.json`, `run.checkpoint` and, on request, LAMMPS files.
+//! A run: advance, observe, record; checkpoints, interruption, resumption. What it writes is a folder of its own:
+//! `scene.toml`, `thermo.csv`, `trajectory.xyz`, `summary.json`, `run.checkpoint`, a list of all this (`run.files`) and, on
+//! request, LAMMPS files.
 
 mod assemble;
-
+mod folder;
+mod frames;
+mod identity;
 mod recorder;
 mod summary;
 mod work;
 
 pub use assemble::{assemble, assemble_following_energy, model};
+pub use folder::FolderError;
 pub use summary::Summary;
 pub use work::Balance;
 
 use crate::io::FileError;
 use crate::io::checkpoint::{CheckpointError, WriteError};
-use crate::io::extxyz::TrajectoryError;
+use crate::io::growing_file::GrowingFileError;
 use crate::io::table_file::TableFileError;
 use crate::method::{Failure, Method};
 use crate::scene::{Checked, Document, SceneErrors};
@@ -26,9 +30,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub enum Existing {
     /// Refuse.
     Refuse,
-    /// Go on from its newest checkpoint.
-    Resume,
-    /// Begin anew; what was there is lost.
+    /// Go on from its newest checkpoint; begin where there is none.
+    Resume {
+        /// Also where another version of the program, which does not promise the same bits, began it.
+        other_version: bool,
+    },
+    /// Begin from the start; what the run there wrote is lost.
     Overwrite,
 }
 
@@ -42,9 +49,50 @@ pub enum RunError {
         .0.display()
     )]
     Exists(PathBuf),
-    /// The folder holds nothing to go on from.
-    #[error("{} holds no checkpoint to resume from; leave out --resume to begin", .0.display())]
-    NothingToResume(PathBuf),
+    /// The folder is another's, or another process writes there.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// More steps are done than asked for.
+    #[error(
+        "the run in {} has done {done} steps already, and {asked} are asked for: ask for run.steps={done} or more",
+        folder.display()
+    )]
+    FewerSteps {
+        /// The folder.
+        folder: PathBuf,
+        /// Steps done.
+        done: u64,
+        /// Steps of the scene.
+        asked: u64,
+    },
+    /// The discs at the start are not those of the run.
+    #[error(
+        "{} was begun with other discs than the scene now has at its start ({file}): digest {theirs} then, {ours} now;          give the start back its contents, or begin again in another folder",
+        folder.display()
+    )]
+    OtherDiscs {
+        /// The folder.
+        folder: PathBuf,
+        /// The start file, if there is one.
+        file: String,
+        /// Beginning of the digest of the run's discs.
+        theirs: String,
+        /// Beginning of the digest of those of the scene.
+        ours: String,
+    },
+    /// The program is not the one of the run.
+    #[error(
+        "{} was last written by {theirs}; this is {ours}, which does not promise the same bits: go on with that one, or          with this one nevertheless by --other-version",
+        folder.display()
+    )]
+    OtherVersion {
+        /// The folder.
+        folder: PathBuf,
+        /// The program of the run.
+        theirs: String,
+        /// This program.
+        ours: String,
+    },
     /// The scene is not the one of the run.
     #[error(
         "{} was run with another scene; its scene.toml says `{theirs}`, the scene given `{ours}` (only [run] and [output] may \
@@ -93,9 +141,36 @@ pub enum RunError {
     /// The table of observables.
     #[error(transparent)]
     Table(#[from] TableFileError),
-    /// The trajectory.
+    /// The frames.
     #[error(transparent)]
-    Trajectory(#[from] TrajectoryError),
+    Frames(#[from] GrowingFileError),
+}
+
+impl RunError {
+    /// Whether what lies in the folder has been damaged since it was written.
+    pub fn is_damage(&self) -> bool {
+        match self {
+            RunError::Checkpoint(error) => error.is_corrupt(),
+            RunError::Table(error) => error.is_damage(),
+            RunError::Frames(error) => error.is_damage(),
+            RunError::Folder(error) => matches!(error, FolderError::List { .. }),
+            RunError::Foreign { .. } => true,
+            _ => false,
+        }
+    }
+
+    /// Whether the request is refused, for what lies in the folder already or for who else writes there.
+    pub fn is_refusal(&self) -> bool {
+        match self {
+            RunError::Folder(error) => error.is_refusal(),
+            RunError::Exists(_)
+            | RunError::FewerSteps { .. }
+            | RunError::OtherScene { .. }
+            | RunError::OtherDiscs { .. }
+            | RunError::OtherVersion { .. } => true,
+            _ => false,
+        }
+    }
 }
 
 /// How a run ended.
@@ -110,7 +185,8 @@ pub enum Ending {
     },
 }
 
-/// Runs a scene into `folder`. `interrupted` is looked at after every step; `progress(step, steps)` now and then.
+/// Runs a scene into `folder`. `interrupted` is looked at after every step; `progress(step, steps)` now and then; `notice`
+/// hears what is out of the ordinary about going on with a run.
 ///
 /// # Errors
 /// [`RunError`]; where the physics broke, the folder holds the state of that step and a summary that says so.
@@ -120,16 +196,14 @@ pub fn run(
     existing: Existing,
     interrupted: &AtomicBool,
     mut progress: impl FnMut(u64, u64),
+    notice: impl FnMut(&str),
 ) -> Result<Ending, RunError> {
     let checked = document.check()?;
+    // What would be refused in the end is refused before anything takes its time.
+    folder::listed(folder)?;
     let mut method = assemble_following_energy(&checked).map_err(RunError::Start)?;
-    let mut recorder = match existing {
-        Existing::Resume => Recorder::resume(folder, &checked, method.as_mut())?,
-        _ if existing == Existing::Refuse && Recorder::is_run(folder) => {
-            return Err(RunError::Exists(folder.to_owned()));
-        }
-        _ => Recorder::begin(folder, &checked, method.as_ref())?,
-    };
+    let mut recorder = Recorder::open(folder, existing, &checked, method.as_mut())?;
+    recorder.new_notes().iter().map(String::as_str).for_each(notice);
     let steps = checked.scene.run.steps;
     let stride = (steps / 1000).max(1);
     let start = std::time::Instant::now();
@@ -138,23 +212,23 @@ pub fn run(
             recorder.checkpoint(method.as_ref())?;
             return Ok(Ending::Interrupted { step: method.steps() });
         }
-        if let Err(failure) = method.step() {
-            recorder.last_frame(method.as_ref())?;
+        let failed = match method.step() {
+            Ok(()) => recorder.after_step(method.as_ref())?,
+            Err(failure) => Some(failure),
+        };
+        if let Some(failure) = failed {
             let energy = recorder.balance(method.as_ref());
             let summary = summarize(&checked, method.as_ref(), energy, start, Some(&failure));
-            recorder.summary(&summary)?;
+            recorder.fail(method.as_ref(), summary)?;
             return Err(RunError::Physics { failure, snapshot: recorder.trajectory_path() });
         }
-        recorder.after_step(method.as_ref())?;
         if method.steps().is_multiple_of(stride) {
             progress(method.steps(), steps);
         }
     }
-    recorder.checkpoint(method.as_ref())?;
-    recorder.final_files(method.as_ref())?;
     let energy = recorder.balance(method.as_ref());
     let summary = summarize(&checked, method.as_ref(), energy, start, None);
-    recorder.summary(&summary)?;
+    let summary = recorder.finish(method.as_ref(), summary)?;
     Ok(Ending::Done(Box::new(summary)))
 }
 

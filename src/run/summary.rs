@@ -35,6 +35,9 @@ pub struct Summary {
     pub left_out: Vec<String>,
     /// What was warned about.
     pub warnings: Vec<String>,
+    /// What was out of the ordinary along the run's sessions: another version of the program, an older checkpoint and the
+    /// like; known once it is written.
+    pub notes: Vec<String>,
     /// What stopped the run, if the physics did.
     pub failure: Option<String>,
     /// Steps done.
@@ -109,6 +112,7 @@ impl Summary {
             occupancy: on_lattice.then_some(geometry.occupancy),
             left_out: left_out.clone(),
             warnings,
+            notes: vec![],
             failure: failure.map(ToString::to_string),
             steps: method.steps(),
             seconds,

@@ -95,9 +95,6 @@ fn replacing_keeps_the_one_before_and_nothing_else() {
     checkpoint(0).write_atomically(&path).unwrap();
     assert_eq!(names(folder.path()), [NAME]);
     for step in 1..4 {
-        // What a killed program may have left.
-        fs::write(folder.path().join(format!("{NAME}.new")), "half").unwrap();
-        fs::hard_link(&path, folder.path().join(format!("{NAME}.link"))).unwrap();
         checkpoint(step).write_atomically(&path).unwrap();
         assert_eq!(names(folder.path()), [NAME, &older]);
         assert_eq!(Checkpoint::read(&path).unwrap().step, step);
@@ -118,16 +115,35 @@ fn a_kill_between_the_two_renamings_loses_nothing() {
     assert_eq!(Checkpoint::read(previous(&path)).unwrap().step, 1);
 }
 
+/// What others have put at names that could be foreseen is neither followed nor written over.
+#[cfg(unix)]
+#[test]
+fn no_link_is_followed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(NAME);
+    let thesis = folder.path().join("thesis.tex");
+    fs::write(&thesis, "whole").unwrap();
+    for name in [NAME.to_owned(), format!("{NAME}.previous"), format!("{NAME}.new"), format!("{NAME}.link")] {
+        std::os::unix::fs::symlink(&thesis, folder.path().join(name)).unwrap();
+    }
+    checkpoint(1).write_atomically(&path).unwrap();
+    checkpoint(2).write_atomically(&path).unwrap();
+    assert_eq!(fs::read_to_string(&thesis).unwrap(), "whole");
+    assert_eq!(Checkpoint::read(&path).unwrap().step, 2);
+    assert_eq!(Checkpoint::read(previous(&path)).unwrap().step, 1);
+}
+
 #[test]
 fn a_write_that_fails_leaves_the_old_one() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(NAME);
     checkpoint(1).write_atomically(&path).unwrap();
-    // A folder in the place of the temporary file.
-    fs::create_dir(folder.path().join(format!("{NAME}.new"))).unwrap();
+    // A folder in the place of the older one.
+    fs::create_dir(previous(&path)).unwrap();
     let error = checkpoint(2).write_atomically(&path).unwrap_err();
-    assert!(error.to_string().contains("run.checkpoint.new: writing the checkpoint"), "{error}");
+    assert!(error.to_string().contains("run.checkpoint: keeping the checkpoint"), "{error}");
     assert_eq!(Checkpoint::read(&path).unwrap().step, 1);
+    assert_eq!(names(folder.path()), [NAME.to_owned(), format!("{NAME}.previous")]);
 
     let mut twice = checkpoint(2);
     twice.columns.push(twice.columns[0].clone());

@@ -1,9 +1,11 @@
-//! Tables and trajectories that a resumed run goes on with.
+//! Files that a resumed run goes on with.
 
 use crate::{frame, text};
 use std::fs;
-use std::path::PathBuf;
-use stripmine::io::extxyz::Trajectory;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use stripmine::io::extxyz::write;
+use stripmine::io::growing_file::{GrowingFile, GrowingFileError, Mark};
 use stripmine::io::table_file::{TableFile, TableFileError};
 use tempfile::TempDir;
 
@@ -15,24 +17,33 @@ fn folder_and(name: &str) -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-fn table(path: &PathBuf, steps: impl Iterator<Item = u64>) {
+/// A table of some rows; the mark is after the first `marked` of them.
+fn table(path: &PathBuf, marked: usize, steps: &[u64]) -> Mark {
+    let _ = fs::remove_file(path);
     let mut table = TableFile::create(path, &COLUMNS).unwrap();
-    steps.for_each(|step| table.append(step, &[0.1 * step as f64, -1.0 / 3.0]).unwrap());
+    let mut mark = Mark::default();
+    for (i, step) in steps.iter().enumerate() {
+        if i == marked {
+            mark = table.sync().unwrap();
+        }
+        table.append(*step, &[0.1 * *step as f64, -1.0 / 3.0]).unwrap();
+    }
     table.sync().unwrap();
+    mark
 }
 
-/// A run that is interrupted and resumed leaves the same bytes as one that is not.
+/// A run that is interrupted and resumed leaves the same bytes as one that is not, whatever stands after the mark.
 #[test]
 fn a_resumed_table_is_the_table_of_one_run() {
     let (_folder, path) = folder_and("thermo.csv");
-    table(&path, [0, 10, 20, 30, 40].into_iter());
+    table(&path, 0, &[0, 10, 20, 30, 40]);
     let whole = fs::read_to_string(&path).unwrap();
     assert!(whole.starts_with("step,time,energy\n0,0.0,-0.3333333333333333\n10,1.0,"));
-
-    for (resumed, torn) in [(20, ""), (25, "50,5."), (20, "torn")] {
-        table(&path, [0, 10, 20, 30].into_iter());
+    for torn in ["", "50,5.", "torn", "\0\0\0"] {
+        let mark = table(&path, 3, &[0, 10, 20, 30]);
         fs::write(&path, fs::read_to_string(&path).unwrap() + torn).unwrap();
-        let mut table = TableFile::resume(&path, &COLUMNS, resumed).unwrap();
+        let mut table = TableFile::resume(&path, &COLUMNS, mark).unwrap();
+        table.cut().unwrap();
         for step in [30, 40] {
             table.append(step, &[0.1 * step as f64, -1.0 / 3.0]).unwrap();
         }
@@ -41,41 +52,45 @@ fn a_resumed_table_is_the_table_of_one_run() {
     }
 }
 
+/// What was there at the mark must be there still: missing and changed bytes are refused, and nothing is changed.
 #[test]
-fn a_torn_row_is_cut_off() {
+fn what_is_missing_or_changed_before_the_mark_is_refused() {
     let (_folder, path) = folder_and("thermo.csv");
-    table(&path, [0, 10].into_iter());
-    let whole = fs::read_to_string(&path).unwrap();
-    for cut in 1..20 {
-        fs::write(&path, &whole[..whole.len() - cut]).unwrap();
-        TableFile::resume(&path, &COLUMNS, 10).unwrap();
-        assert_eq!(fs::read_to_string(&path).unwrap(), "step,time,energy\n0,0.0,-0.3333333333333333\n");
+    let mark = table(&path, 3, &[0, 10, 20, 30]);
+    let whole = fs::read(&path).unwrap();
+    let marked = mark.bytes as usize;
+    for cut in 0..marked {
+        fs::write(&path, &whole[..cut]).unwrap();
+        let error = TableFile::resume(&path, &COLUMNS, mark).unwrap_err();
+        assert!(error.is_damage(), "{error}");
+        assert!(error.to_string().contains(&format!("has {cut} bytes, but {marked} were")), "{error}");
+        assert_eq!(fs::read(&path).unwrap(), whole[..cut]);
     }
+    for place in 0..marked {
+        let mut bytes = whole.clone();
+        bytes[place] ^= 1;
+        fs::write(&path, &bytes).unwrap();
+        let error = TableFile::resume(&path, &COLUMNS, mark).unwrap_err();
+        assert!(error.is_damage() && error.to_string().contains("thermo.csv has changed"), "{error}");
+        assert_eq!(fs::read(&path).unwrap(), bytes);
+    }
+    fs::remove_file(&path).unwrap();
+    let missing = TableFile::resume(&path, &COLUMNS, mark).unwrap_err();
+    assert!(missing.is_damage() && missing.to_string().contains("thermo.csv is missing"), "{missing}");
 }
 
 #[test]
-fn a_table_of_something_else_is_refused_and_stays() {
+fn a_table_of_other_columns_is_refused() {
     let (_folder, path) = folder_and("thermo.csv");
-    for (text, words) in [
-        ("", "thermo.csv:1: the columns are ``; this run writes `step,time,energy`"),
-        (
-            "step,time,heat\n",
-            "thermo.csv:1: the columns are `step,time,heat`; this run writes `step,time,energy`",
-        ),
-        (
-            "step,time,energy\n0,1,2\nx,1,2\n",
-            "thermo.csv:3: expected a row of 3 that begins with a step, found `x,1,2`",
-        ),
-        ("step,time,energy\n0,1\n", "thermo.csv:2: expected a row of 3 that begins with a step, found `0,1`"),
-    ] {
-        fs::write(&path, text).unwrap();
-        let error = TableFile::resume(&path, &COLUMNS, 10).unwrap_err().to_string();
-        assert!(error.ends_with(words), "{error}");
-        assert_eq!(fs::read_to_string(&path).unwrap(), text);
-    }
-    fs::remove_file(&path).unwrap();
-    let missing = TableFile::resume(&path, &COLUMNS, 10).unwrap_err();
-    assert!(matches!(missing, TableFileError::File(_)), "{missing}");
+    let mark = table(&path, 1, &[0, 10]);
+    let error = TableFile::resume(&path, &["time", "heat"], mark).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .ends_with("thermo.csv:1: the columns are `step,time,energy`; this run writes `step,time,heat`"),
+        "{error}"
+    );
+    assert!(error.is_damage());
 }
 
 #[test]
@@ -86,34 +101,65 @@ fn a_row_of_another_width_is_refused() {
     assert!(matches!(error, TableFileError::Width { found: 1, expected: 2, .. }), "{error}");
 }
 
+/// Frames, torn anywhere after the mark.
 #[test]
-fn a_resumed_trajectory_is_the_trajectory_of_one_run() {
+fn resumed_frames_are_those_of_one_run() {
     let (_folder, path) = folder_and("trajectory.xyz");
-    let all = [0, 5, 10, 15].map(frame);
+    let all = [0, 5, 10].map(frame);
     let whole: String = all.iter().map(text).collect();
-    // Whole, or torn anywhere in the last frame.
-    for cut in 0..text(&all[3]).len() {
-        fs::write(&path, &whole[..whole.len() - cut]).unwrap();
-        let mut trajectory = Trajectory::resume(&path, 7).unwrap();
-        all[2..].iter().for_each(|frame| trajectory.append(frame).unwrap());
-        trajectory.sync().unwrap();
-        assert_eq!(fs::read_to_string(&path).unwrap(), whole);
+    for torn in 0..text(&all[2]).len() {
+        let _ = fs::remove_file(&path);
+        let mut file = GrowingFile::create(&path).unwrap();
+        all[..2].iter().for_each(|frame| write(frame, &mut file).unwrap());
+        let mark = file.sync().unwrap();
+        file.write_all(&text(&all[2]).as_bytes()[..torn]).unwrap();
+        drop(file);
+        let mut file = GrowingFile::resume(&path, mark).unwrap();
+        file.cut().unwrap();
+        write(&all[2], &mut file).unwrap();
+        let end = file.sync().unwrap();
+        assert_eq!((fs::read_to_string(&path).unwrap(), end.bytes), (whole.clone(), whole.len() as u64));
     }
-    fs::write(&path, &whole[..whole.len() - 1]).unwrap();
-    drop(Trajectory::resume(&path, 15).unwrap());
-    assert_eq!(fs::read_to_string(&path).unwrap(), all[..3].iter().map(text).collect::<String>());
 }
 
+/// Nothing that is there already is written over, and no link is followed.
+#[cfg(unix)]
 #[test]
-fn a_trajectory_begins_empty_and_is_not_resumed_from_other_text() {
-    let (_folder, path) = folder_and("trajectory.xyz");
-    fs::write(&path, "step,time\n").unwrap();
-    let error = Trajectory::resume(&path, 7).unwrap_err().to_string();
-    assert!(error.ends_with(
-        "trajectory.xyz:1: expected the number of discs, which begins a frame, found `step,time`"
-    ));
-    let mut trajectory = Trajectory::create(&path).unwrap();
-    trajectory.append(&frame(0)).unwrap();
-    trajectory.sync().unwrap();
-    assert_eq!(fs::read_to_string(&path).unwrap(), text(&frame(0)));
+fn neither_files_nor_links_are_written_over() {
+    let (folder, path) = folder_and("trajectory.xyz");
+    let thesis = folder.path().join("thesis.tex");
+    fs::write(&thesis, "whole").unwrap();
+    std::os::unix::fs::symlink(&thesis, &path).unwrap();
+    assert!(GrowingFile::create(&path).is_err());
+    assert!(matches!(GrowingFile::resume(&path, Mark::default()), Err(GrowingFileError::NoFile(_))));
+    fs::remove_file(&path).unwrap();
+    fs::rename(&thesis, &path).unwrap();
+    assert!(GrowingFile::create(&path).is_err());
+    assert_eq!(fs::read_to_string(&path).unwrap(), "whole");
+}
+
+/// What others do to the file while it is written is noticed when it is to be on the disk.
+#[cfg(unix)]
+#[test]
+fn a_file_removed_replaced_or_changed_meanwhile_is_noticed() {
+    let (folder, path) = folder_and("trajectory.xyz");
+    let spoil: [&dyn Fn(&Path); 4] = [
+        &|path| fs::remove_file(path).unwrap(),
+        &|path| fs::rename(path, folder.path().join("elsewhere")).unwrap(),
+        &|path| {
+            fs::remove_file(path).unwrap();
+            fs::write(path, "another").unwrap();
+        },
+        &|path| fs::write(path, "").unwrap(),
+    ];
+    for spoil in spoil {
+        let _ = fs::remove_file(&path);
+        let mut file = GrowingFile::create(&path).unwrap();
+        file.write_all(b"some").unwrap();
+        file.sync().unwrap();
+        spoil(&path);
+        file.write_all(b"more").unwrap();
+        let error = file.sync().unwrap_err().to_string();
+        assert!(error.contains("trajectory.xyz"), "{error}");
+    }
 }

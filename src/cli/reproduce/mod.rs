@@ -6,7 +6,7 @@ mod items;
 use super::{Common, Failure, print_json};
 use crate::report::origin::Provenance;
 use clap::{Args, ValueEnum};
-pub(super) use folder::Folder;
+pub(super) use folder::{Folder, FolderError};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 pub(super) use items::Made;
 use items::{Effort, Item};
@@ -44,7 +44,8 @@ impl Reproduce {
             if self.only.is_empty() { item.belongs_to(effort) } else { self.only.contains(item) }
         };
         let items: Vec<Item> = Item::value_variants().iter().copied().filter(asked).collect();
-        let folder = Folder::new(&self.out);
+        let names: Vec<&str> = items.iter().map(|item| item.name()).collect();
+        let folder = Folder::open(&self.out, &names, true)?;
         let bar = progress_bar(common, &items, effort);
         let mut outcomes = Vec::new();
         let mut before = 0.0;

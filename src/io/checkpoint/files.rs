@@ -3,9 +3,10 @@
 use super::error::{CheckpointError, Fault, Kept};
 use super::{Checkpoint, WriteError, reading};
 use crate::io::FileError;
+use crate::io::replace::{folder_of, remove_if_there, sync_folder, temporary, written_beside};
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::{self, BufReader, BufWriter, ErrorKind};
+use std::io::{self, BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
 
 /// Name of the newest checkpoint in the folder of a run.
@@ -22,12 +23,8 @@ pub struct Latest {
 
 /// Where the checkpoint before this one is kept: `NAME.previous`.
 pub fn previous(path: &Path) -> PathBuf {
-    beside(path, ".previous")
-}
-
-fn beside(path: &Path, ending: &str) -> PathBuf {
     let mut name = OsString::from(path);
-    name.push(ending);
+    name.push(".previous");
     PathBuf::from(name)
 }
 
@@ -79,24 +76,11 @@ impl Checkpoint {
                 return Err(WriteError::RepeatedColumn(name.clone()));
             }
         }
-        let new = beside(path, ".new");
-        let written = self
-            .write_synced(&new)
-            .map_err(FileError::at(&new, "writing the checkpoint"))
-            .and_then(|()| keep(path).map_err(FileError::at(path, "keeping the checkpoint")))
-            .and_then(|()| fs::rename(&new, path).map_err(FileError::at(path, "replacing the checkpoint")))
-            .and_then(|()| sync_folder(path).map_err(FileError::at(path, "replacing the checkpoint")));
-        if written.is_err() {
-            // What is left of the attempt; the error to report is the first one.
-            let _ = fs::remove_file(&new);
-        }
-        Ok(written?)
-    }
-
-    fn write_synced(&self, path: &Path) -> io::Result<()> {
-        let mut out = BufWriter::new(File::create(path)?);
-        self.encode(&mut out)?;
-        out.get_ref().sync_all()
+        let new = written_beside(path, |out| self.encode(out))
+            .map_err(FileError::at(path, "writing the checkpoint"))?;
+        keep(path).map_err(FileError::at(path, "keeping the checkpoint"))?;
+        new.persist(path).map_err(|error| FileError::at(path, "replacing the checkpoint")(error.error))?;
+        Ok(sync_folder(folder_of(path)).map_err(FileError::at(path, "replacing the checkpoint"))?)
     }
 }
 
@@ -110,31 +94,16 @@ fn read_one(path: &Path) -> Result<Checkpoint, reading::Found> {
 /// Gives the file at `path`, if there is one, its second name [`previous`], so that `path` is never without a
 /// file. Where the file system has no second names, moves it there.
 fn keep(path: &Path) -> io::Result<()> {
-    let (older, link) = (previous(path), beside(path, ".link"));
-    remove_if_there(&link)?;
-    match fs::hard_link(path, &link) {
-        Ok(()) => {
-            fs::rename(&link, &older)?;
+    let older = previous(path);
+    match temporary().make_in(folder_of(path), |link| fs::hard_link(path, link)) {
+        Ok(link) => {
+            let link = link.into_temp_path();
+            let name = link.to_path_buf();
+            link.persist(&older).map_err(|error| error.error)?;
             // Renaming one name of a file to another of its names does nothing.
-            remove_if_there(&link)
+            remove_if_there(&name).map_err(|error| error.cause)
         }
         Err(cause) if cause.kind() == ErrorKind::NotFound => Ok(()),
         Err(_) => fs::rename(path, &older),
     }
-}
-
-fn remove_if_there(path: &Path) -> io::Result<()> {
-    match fs::remove_file(path) {
-        Err(cause) if cause.kind() != ErrorKind::NotFound => Err(cause),
-        _ => Ok(()),
-    }
-}
-
-/// Makes a renaming in the folder of `path` last.
-fn sync_folder(path: &Path) -> io::Result<()> {
-    if !cfg!(unix) {
-        return Ok(());
-    }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    File::open(folder.unwrap_or(Path::new(".")))?.sync_all()
 }

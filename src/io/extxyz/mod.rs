@@ -15,12 +15,10 @@ mod error;
 mod header;
 mod reader;
 mod rows;
-mod trajectory;
 mod writer;
 
 pub use error::{Mistake, ReadError, Reason};
 pub use reader::{Frames, Which, read};
-pub use trajectory::{Trajectory, TrajectoryError};
 pub use writer::write;
 
 use crate::particles::Particles;

@@ -95,10 +95,6 @@ pub(super) struct RawFrame {
     count: usize,
     /// Comment line and rows.
     text: Vec<u8>,
-    /// The byte of the file after it.
-    pub(super) end: u64,
-    /// Whether its last line has an end.
-    pub(super) ended: bool,
 }
 
 impl RawFrame {
@@ -114,8 +110,6 @@ pub(super) struct RawFrames<R> {
     reader: R,
     /// Lines read.
     line: usize,
-    /// Bytes read.
-    byte: u64,
     /// Line of the count of the frame before.
     previous: Option<usize>,
     /// Frames read.
@@ -126,7 +120,7 @@ pub(super) struct RawFrames<R> {
 
 impl<R: BufRead> RawFrames<R> {
     pub(super) fn new(reader: R) -> Self {
-        RawFrames { reader, line: 0, byte: 0, previous: None, frames: 0, ahead: None }
+        RawFrames { reader, line: 0, previous: None, frames: 0, ahead: None }
     }
 
     /// The next frame, none after the last; blank lines between frames are passed over.
@@ -143,8 +137,7 @@ impl<R: BufRead> RawFrames<R> {
         }
         self.previous = Some(line);
         self.frames += 1;
-        let ended = text.last() == Some(&b'\n');
-        Ok(Some(RawFrame { line, count, text, end: self.byte, ended }))
+        Ok(Some(RawFrame { line, count, text }))
     }
 
     /// That a frame, or nothing, begins here.
@@ -189,7 +182,6 @@ impl<R: BufRead> RawFrames<R> {
     fn append_line(&mut self, text: &mut Vec<u8>) -> Result<usize, Mistake> {
         let bytes = self.reader.read_until(b'\n', text).map_err(Mistake::reading)?;
         self.line += usize::from(bytes > 0);
-        self.byte += bytes as u64;
         Ok(bytes)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::programs::{WithLaw, with_law};
 use super::{Arrays, Discs, Model};
+use crate::domain::Domain;
 use crate::grid::Bins;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Array;
@@ -62,31 +63,44 @@ impl<P: Precision> Rival<P> {
         self.lists.entries()
     }
 
+    /// Where the discs were when the lists were made (length), along each axis.
+    pub(super) fn made_at(&self) -> [Vec<f64>; 2] {
+        [0, 1].map(|axis| self.made_at.iter().map(|position| position[axis]).collect())
+    }
+
+    /// Takes up lists that were made where the discs were at `made_at`, after so many makings, and met so many pairs in
+    /// the last step.
+    pub(super) fn take_up(&mut self, model: &Model, made_at: [Vec<f64>; 2], rebuilds: u64, pairs: u64) {
+        let [x, y] = made_at;
+        self.make(model, x.into_iter().zip(y).map(|(x, y)| [x, y]).collect());
+        self.rebuilds = rebuilds;
+        self.met.pairs = pairs;
+    }
+
     /// Makes the lists anew if a pair that is not listed could have come into contact.
     pub(super) fn keep<S: Precision>(&mut self, model: &Model, arrays: &Arrays<S, P>) {
         let (Some(x), Some(y)) = (arrays.state(Array::X0), arrays.state(Array::Y0)) else { return };
-        let domain = model.domain();
-        let square = |from: [f64; 2], to: [f64; 2]| {
-            let [dx, dy] = domain.way(from, to);
-            dx * dx + dy * dy
-        };
         let moved_too_far = 0.25 * self.options.skin * self.options.skin;
+        let domain = model.domain();
         let anchored = model.is_anchored::<S>();
         let at = |i: usize| match anchored {
             true => model.position(arrays.cell()[i], [x[i].to_f64(), y[i].to_f64()]),
             false => [x[i].to_f64(), y[i].to_f64()],
         };
         let discs = x.len();
-        let fresh =
-            self.made_at.len() == discs && (0..discs).all(|i| square(at(i), self.made_at[i]) < moved_too_far);
-        if fresh {
-            return;
+        let fresh = self.made_at.len() == discs
+            && (0..discs).all(|i| square(&domain, at(i), self.made_at[i]) < moved_too_far);
+        if !fresh {
+            self.make(model, (0..discs).map(at).collect());
         }
-        self.rebuilds += 1;
-        self.made_at = (0..discs).map(at).collect();
-        let made_at = &self.made_at;
+    }
+
+    /// Makes the lists for discs at these places (length).
+    fn make(&mut self, model: &Model, made_at: Vec<[f64; 2]>) {
+        let domain = model.domain();
+        let discs = made_at.len();
         let limit = self.reach + self.options.skin;
-        let near = |i: usize, j: usize| square(made_at[i], made_at[j]) < limit * limit;
+        let near = |i: usize, j: usize| square(&domain, made_at[i], made_at[j]) < limit * limit;
         self.lists = match self.options.rebuild {
             Rebuild::AllPairs => Lists::by_all_pairs(discs, near),
             Rebuild::Cells => {
@@ -94,6 +108,8 @@ impl<P: Precision> Rival<P> {
                 Lists::by_candidates(discs, |i, take| bins.around(made_at[i], take), near)
             }
         };
+        self.made_at = made_at;
+        self.rebuilds += 1;
     }
 
     /// Forces of all grains, written where the corrector looks for them.
@@ -114,6 +130,12 @@ impl<P: Precision> Rival<P> {
             }
         }
     }
+}
+
+/// Square of the distance between two places (length²).
+fn square(domain: &Domain, from: [f64; 2], to: [f64; 2]) -> f64 {
+    let [dx, dy] = domain.way(from, to);
+    dx * dx + dy * dy
 }
 
 /// A walk through the lists with the law of the model.

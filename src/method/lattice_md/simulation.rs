@@ -18,6 +18,11 @@ use stripmine_kernels::sweep::lattice::cells::{CONFLICTS, STRAYS};
 use stripmine_kernels::sweep::lattice::forces::DEEP;
 use stripmine_kernels::{Execution, InstructionSet};
 
+/// Columns of a neighbour list's state: where the discs were when the lists were made.
+const MADE_AT: [&str; 2] = ["listed.x", "listed.y"];
+/// How often lists were made, and how many pairs the last step met.
+const LIST_COUNTS: &str = "listed.counts";
+
 /// How contacts are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Contacts {
@@ -406,7 +411,17 @@ impl<S: backend::Precision, P: backend::Precision> Method for LatticeMd<S, P> {
             let cells = self.arrays.cell().iter().map(|&cell| f64::from(cell)).collect();
             (Array::DiscCell.label(), StateColumn::F64(cells))
         });
-        arrays.chain(cells).chain(crossings).map(|(name, column)| (name.to_owned(), column)).collect()
+        let state = arrays.chain(cells).chain(crossings).map(|(name, column)| (name.to_owned(), column));
+        let mut columns: Vec<(String, StateColumn)> = state.collect();
+        if let Some(rival) = &self.rival {
+            for (name, values) in MADE_AT.into_iter().zip(rival.made_at()) {
+                columns.push((name.to_owned(), StateColumn::F64(values)));
+            }
+            // Whole numbers up to 2⁵³: far more than there will ever be.
+            let counts = vec![rival.rebuilds as f64, rival.met.pairs as f64];
+            columns.push((LIST_COUNTS.to_owned(), StateColumn::F64(counts)));
+        }
+        columns
     }
 
     fn restore(
@@ -460,6 +475,23 @@ impl<S: backend::Precision, P: backend::Precision> Method for LatticeMd<S, P> {
             Some((_, StateColumn::F64(values))) => Ok(values.clone()),
             _ => Err(format!("the column {name} is missing")),
         })?;
+        if let Some(rival) = &mut self.rival {
+            let find = |name: &str, length: usize| -> Result<Vec<f64>, String> {
+                match columns.iter().find(|(there, _)| there == name) {
+                    Some((_, StateColumn::F64(values)))
+                        if values.len() == length && values.iter().all(|x| x.is_finite()) =>
+                    {
+                        Ok(values.clone())
+                    }
+                    _ => {
+                        Err(format!("there is no column {name} of {length} finite double-precision entries"))
+                    }
+                }
+            };
+            let made_at = [find(MADE_AT[0], self.ids.len())?, find(MADE_AT[1], self.ids.len())?];
+            let counts = find(LIST_COUNTS, 2)?;
+            rival.take_up(&self.model, made_at, counts[0] as u64, counts[1] as u64);
+        }
         self.steps = steps;
         self.totals = totals;
         self.move_walls(self.time());

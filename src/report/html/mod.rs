@@ -33,6 +33,9 @@ const SCRIPTS: [&str; 8] = [
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 
+/// What stands near the beginning of every such page and of no other.
+pub const MARK: &str = "<title>Stripmine: what came out</title>";
+
 /// The page. `drawn` gives the SVG of a figure: drawings are shown with it, charts and maps only where no script runs
 /// and on paper.
 pub fn render(sections: &[Section], drawn: &dyn Fn(&Section, &Figure) -> String) -> String {
@@ -43,7 +46,7 @@ pub fn render(sections: &[Section], drawn: &dyn Fn(&Section, &Figure) -> String)
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta http-equiv="Content-Security-Policy" content=(POLICY);
-                title { "Stripmine: what came out" }
+                (PreEscaped(MARK))
                 link rel="icon" href="data:,";
                 @for style in STYLES {
                     style { (PreEscaped(style)) }

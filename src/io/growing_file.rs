@@ -1,0 +1,251 @@
+//! A file that grows with a run, so watched that a run can go on with it or say why not.
+
+use super::FileError;
+use super::replace::is_name_of;
+use crc32fast::Hasher;
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// How far a file has grown: enough to find that moment again, and to see whether what was there then still is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Mark {
+    /// Bytes.
+    pub bytes: u64,
+    /// CRC-32 of these bytes.
+    pub checksum: u32,
+}
+
+/// A file being written at its end, by this process alone.
+#[derive(Debug)]
+pub struct GrowingFile {
+    path: PathBuf,
+    out: BufWriter<Summed>,
+}
+
+/// Why a file cannot be gone on with.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GrowingFileError {
+    /// The system would not let it be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// It is not there.
+    #[error(
+        "{} is missing: {expected} bytes of it were written up to the checkpoint; put it back, or begin again with \
+         --overwrite",
+        file.display()
+    )]
+    Missing {
+        /// The file.
+        file: PathBuf,
+        /// Bytes at the checkpoint.
+        expected: u64,
+    },
+    /// Shorter than it was.
+    #[error(
+        "{} has {found} bytes, but {expected} were written up to the checkpoint; put the missing ones back, or begin \
+         again with --overwrite",
+        file.display()
+    )]
+    Short {
+        /// The file.
+        file: PathBuf,
+        /// Bytes there are.
+        found: u64,
+        /// Bytes at the checkpoint.
+        expected: u64,
+    },
+    /// Other bytes than were written.
+    #[error(
+        "{} has changed: the {bytes} bytes written up to the checkpoint have the checksum {found:08x}, not \
+         {expected:08x}; put it back as it was, or begin again with --overwrite",
+        file.display()
+    )]
+    Changed {
+        /// The file.
+        file: PathBuf,
+        /// Bytes at the checkpoint.
+        bytes: u64,
+        /// Their checksum.
+        found: u32,
+        /// Their checksum at the checkpoint.
+        expected: u32,
+    },
+    /// A link, or no file at all.
+    #[error("{} is a link or no file; the file itself is expected there", .0.display())]
+    NoFile(PathBuf),
+}
+
+impl GrowingFileError {
+    /// Whether the content is at fault, not the system that should have read it.
+    pub fn is_damage(&self) -> bool {
+        !matches!(self, GrowingFileError::File(_))
+    }
+}
+
+impl GrowingFile {
+    /// Begins an empty file where nothing is.
+    ///
+    /// # Errors
+    /// If something is there already, or the system does not let it be written.
+    pub fn create(path: impl Into<PathBuf>) -> Result<Self, FileError> {
+        let path = path.into();
+        let file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create_new(true)
+            .open(&path)
+            .map_err(FileError::at(&path, "creating"))?;
+        Ok(GrowingFile { path, out: BufWriter::new(Summed::from(file)) })
+    }
+
+    /// Goes on at a mark; what was written after it is cut off.
+    ///
+    /// # Errors
+    /// If what was there at the mark is not there any more, the file is a link, or the system does not let it be read
+    /// and written.
+    pub fn resume(path: impl Into<PathBuf>, mark: Mark) -> Result<Self, GrowingFileError> {
+        let path = path.into();
+        let file = match OpenOptions::new().read(true).write(true).open(&path) {
+            Err(cause) if cause.kind() == ErrorKind::NotFound => {
+                return Err(GrowingFileError::Missing { file: path, expected: mark.bytes });
+            }
+            opened => opened.map_err(FileError::at(&path, "opening"))?,
+        };
+        let at = || FileError::at(&path, "reading");
+        if !is_name_of(&path, &file).map_err(at())? {
+            return Err(GrowingFileError::NoFile(path));
+        }
+        let found = file.metadata().map_err(at())?.len();
+        if found < mark.bytes {
+            return Err(GrowingFileError::Short { file: path, found, expected: mark.bytes });
+        }
+        let mut summed = Summed::from(file);
+        summed.read_up_to(mark.bytes).map_err(at())?;
+        let found = summed.mark().checksum;
+        if found != mark.checksum {
+            let Mark { bytes, checksum: expected } = mark;
+            return Err(GrowingFileError::Changed { file: path, bytes, found, expected });
+        }
+        Ok(GrowingFile { path, out: BufWriter::new(summed) })
+    }
+
+    /// Cuts off what a resumed file has after its mark; to be called once it is certain that the run goes on.
+    ///
+    /// # Errors
+    /// If the system does not let it be cut.
+    pub fn cut(&mut self) -> Result<(), FileError> {
+        let end = self.out.get_ref().bytes;
+        let file = &mut self.out.get_mut().file;
+        file.set_len(end)
+            .and_then(|()| file.seek(SeekFrom::Start(end)).map(drop))
+            .map_err(FileError::at(&self.path, "cutting"))
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The first line, without its end, as far as it is text.
+    ///
+    /// # Errors
+    /// If the system does not let it be read.
+    pub fn first_line(&mut self) -> Result<String, FileError> {
+        const LONGEST: u64 = 10_000;
+        let summed = self.out.get_mut();
+        let (end, file) = (summed.bytes, &mut summed.file);
+        let mut bytes = Vec::new();
+        file.rewind()
+            .and_then(|()| file.take(LONGEST).read_to_end(&mut bytes))
+            .and_then(|_| file.seek(SeekFrom::Start(end)))
+            .map_err(FileError::at(&self.path, "reading"))?;
+        let line = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
+        Ok(String::from_utf8_lossy(line).into_owned())
+    }
+
+    /// Returns when all that was written is on the disk, and says how far that is; to be called before a checkpoint.
+    ///
+    /// # Errors
+    /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
+    pub fn sync(&mut self) -> Result<Mark, FileError> {
+        let at = |action| FileError::at(&self.path, action);
+        self.out.flush().map_err(at("writing"))?;
+        let summed = self.out.get_ref();
+        let file = &summed.file;
+        file.sync_data().map_err(at("writing"))?;
+        if !is_name_of(&self.path, file).map_err(at("writing"))? {
+            let cause =
+                io::Error::new(ErrorKind::NotFound, "it was removed or replaced while the run wrote it");
+            return Err(at("writing")(cause));
+        }
+        summed.is_as_long_as_written().map_err(at("writing"))?;
+        Ok(summed.mark())
+    }
+}
+
+impl Write for GrowingFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.out.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+/// A file, and the checksum of what was written into it.
+#[derive(Debug)]
+struct Summed {
+    file: File,
+    bytes: u64,
+    checksum: Hasher,
+}
+
+impl From<File> for Summed {
+    fn from(file: File) -> Summed {
+        Summed { file, bytes: 0, checksum: Hasher::new() }
+    }
+}
+
+impl Summed {
+    fn mark(&self) -> Mark {
+        Mark { bytes: self.bytes, checksum: self.checksum.clone().finalize() }
+    }
+
+    /// That nothing else has cut or lengthened the file: writing on would leave a hole, or a part of another's.
+    fn is_as_long_as_written(&self) -> io::Result<()> {
+        let (found, written) = (self.file.metadata()?.len(), self.bytes);
+        if found == written {
+            return Ok(());
+        }
+        let cause = format!("it has {found} bytes, but {written} were written: something else changed it");
+        Err(io::Error::other(cause))
+    }
+
+    fn read_up_to(&mut self, end: u64) -> io::Result<()> {
+        let mut block = vec![0; 1 << 16];
+        while self.bytes < end {
+            let wanted = block.len().min(usize::try_from(end - self.bytes).unwrap_or(usize::MAX));
+            self.file.read_exact(&mut block[..wanted])?;
+            self.checksum.update(&block[..wanted]);
+            self.bytes += wanted as u64;
+        }
+        Ok(())
+    }
+}
+
+impl Write for Summed {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.is_as_long_as_written()?;
+        let written = self.file.write(bytes)?;
+        self.checksum.update(&bytes[..written]);
+        self.bytes += written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}

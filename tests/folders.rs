@@ -1,0 +1,342 @@
+//! Whose folder it is: what this program did not write it neither writes over nor removes, and it is alone where it writes.
+
+use assert_cmd::cargo::CommandCargoExt;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+
+fn stripmine(arguments: &[&str]) -> Command {
+    let mut command = Command::cargo_bin("stripmine").unwrap();
+    command.args(arguments).arg("--quiet");
+    command
+}
+
+/// Runs two discs for a few steps, LAMMPS files included, into a folder.
+fn run(folder: &Path, more: &[&str]) -> Command {
+    let mut command = stripmine(&["run", "two-discs", "--out", folder.to_str().unwrap()]);
+    command.args(["--set", "run.steps=20", "--set", "output.lammps_dump=true"]);
+    command.args(["--set", "output.lammps_data=true"]).args(more);
+    command
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn succeed(mut command: Command) {
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+}
+
+/// That the command is refused with this code and all of these words.
+fn refused(mut command: Command, code: i32, words: &[&str]) {
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(code), "{}", said(&output));
+    for word in words {
+        assert!(said(&output).contains(word), "{word} is not in: {}", said(&output));
+    }
+}
+
+/// Every file below a folder, links by where they lead.
+fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let entry = entry.unwrap();
+        let name = entry.file_name().into_string().unwrap();
+        let kind = entry.file_type().unwrap();
+        if kind.is_dir() {
+            for (below, bytes) in contents(&entry.path()) {
+                all.insert(format!("{name}/{below}"), bytes);
+            }
+            all.insert(format!("{name}/"), vec![]);
+        } else if kind.is_symlink() {
+            all.insert(name, fs::read_link(entry.path()).unwrap().into_os_string().into_encoded_bytes());
+        } else {
+            all.insert(name, fs::read(entry.path()).unwrap());
+        }
+    }
+    all
+}
+
+const ALL_WAYS: [&[&str]; 3] = [&[], &["--resume"], &["--overwrite"]];
+
+/// A folder that is no run's is refused with what stands in it, in every way to begin, and stays as it was.
+#[test]
+fn a_foreign_folder_is_left_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let run_names =
+        ["scene.toml", "trajectory.xyz", "thermo.csv", "dump.lammpstrj", "final.data", "summary.json"];
+    for names in [&["thesis.tex"][..], &run_names, &["run.checkpoint"], &["run.lock"], &[".hidden"]] {
+        let out = folder.path().join(names[0]);
+        fs::create_dir(&out).unwrap();
+        names.iter().for_each(|name| fs::write(out.join(name), "mine").unwrap());
+        for way in ALL_WAYS {
+            refused(run(&out, way), 2, &["run.files", names[0]]);
+            assert_eq!(contents(&out).len(), names.len());
+            assert!(contents(&out).values().all(|bytes| bytes == b"mine"));
+        }
+    }
+}
+
+/// `--out .` beside one's own scene: the scene is still there.
+#[test]
+fn a_scene_is_not_run_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = stripmine(&["scene", "show", "two-discs"]).output().unwrap().stdout;
+    fs::write(folder.path().join("scene.toml"), &scene).unwrap();
+    for way in ALL_WAYS {
+        let mut command = stripmine(&["run", "scene.toml", "--out", "."]);
+        command.current_dir(folder.path()).args(way);
+        refused(command, 2, &["scene.toml"]);
+        assert_eq!(contents(folder.path()), BTreeMap::from([("scene.toml".to_owned(), scene.clone())]));
+    }
+}
+
+/// A run's folder holds what its list says, no more; `--overwrite` removes that and nothing else.
+#[test]
+fn only_what_a_run_wrote_is_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    succeed(run(&out, &["--set", "run.checkpoint_every=5"]));
+    let list = fs::read_to_string(out.join("run.files")).unwrap();
+    let there: Vec<String> = contents(&out).into_keys().collect();
+    let mut listed: Vec<&str> = list.lines().skip(1).collect();
+    listed.sort_unstable();
+    assert_eq!(
+        (list.lines().next(), &listed[..]),
+        (Some("stripmine run files 1"), &there.iter().map(String::as_str).collect::<Vec<_>>()[..])
+    );
+
+    fs::write(out.join("notes.txt"), "mine").unwrap();
+    fs::create_dir(out.join("pictures")).unwrap();
+    fs::write(out.join("pictures/one.png"), "mine").unwrap();
+    let before = contents(&out);
+    refused(run(&out, &[]), 2, &["--resume", "--overwrite"]);
+    assert_eq!(contents(&out), before);
+    let plain = &["--overwrite", "--set", "output.lammps_dump=false", "--set", "output.lammps_data=false"];
+    succeed(run(&out, plain));
+    let after = contents(&out);
+    assert_eq!((&after["notes.txt"][..], &after["pictures/one.png"][..]), (&b"mine"[..], &b"mine"[..]));
+    assert!(!after.contains_key("dump.lammpstrj") && !after.contains_key("final.data"));
+    assert!(!after.contains_key("run.checkpoint.previous"));
+}
+
+/// A file that came into a run's folder from elsewhere is not written over, though a run could have one of that name.
+#[test]
+fn a_file_that_the_run_did_not_write_is_in_the_way() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    succeed(run(&out, &["--set", "output.lammps_data=false"]));
+    fs::write(out.join("final.data"), "mine").unwrap();
+    for way in ["--resume", "--overwrite"] {
+        refused(run(&out, &[way]), 2, &["final.data"]);
+        assert_eq!(fs::read(out.join("final.data")).unwrap(), b"mine");
+    }
+}
+
+/// Links in a run's folder are replaced or refused, never followed.
+#[cfg(unix)]
+#[test]
+fn links_are_not_followed() {
+    use std::os::unix::fs::symlink;
+    let folder = tempfile::tempdir().unwrap();
+    let (out, thesis) = (folder.path().join("run"), folder.path().join("thesis.tex"));
+    fs::write(&thesis, "mine").unwrap();
+    succeed(run(&out, &["--set", "run.checkpoint_every=5"]));
+    let names: Vec<String> = contents(&out).into_keys().collect();
+    for name in names {
+        fs::remove_file(out.join(&name)).unwrap();
+        symlink(&thesis, out.join(&name)).unwrap();
+        for way in ["--resume", "--overwrite"] {
+            let code = run(&out, &[way]).output().unwrap().status.code();
+            assert!([Some(0), Some(2), Some(6)].contains(&code), "{name} {way}: {code:?}");
+            assert_eq!(fs::read(&thesis).unwrap(), b"mine", "{name} {way}");
+        }
+        let _ = fs::remove_dir_all(&out);
+        succeed(run(&out, &["--set", "run.checkpoint_every=5"]));
+    }
+    symlink(&thesis, out.join("run.lock")).unwrap();
+    refused(run(&out, &["--overwrite"]), 2, &["run.lock"]);
+    assert_eq!(fs::read(&thesis).unwrap(), b"mine");
+}
+
+/// A list that says what it cannot say is refused, and nothing is removed by it.
+#[test]
+fn a_list_of_other_names_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    fs::create_dir(&out).unwrap();
+    fs::write(folder.path().join("thesis.tex"), "mine").unwrap();
+    fs::write(out.join("notes.txt"), "mine").unwrap();
+    for (list, words) in [
+        ("", "run.files:1"),
+        ("stripmine run files 2\nthermo.csv\n", "run.files:1"),
+        ("stripmine run files 1\n../thesis.tex\n", "run.files:2"),
+        ("stripmine run files 1\nthermo.csv\nnotes.txt\n", "run.files:3"),
+        ("stripmine run files 1\n\u{1b}[2J\n", "run.files:2"),
+    ] {
+        fs::write(out.join("run.files"), list).unwrap();
+        for way in ALL_WAYS {
+            refused(run(&out, way), 6, &[words]);
+        }
+        assert!(folder.path().join("thesis.tex").exists() && out.join("notes.txt").exists());
+    }
+}
+
+/// A run that lasts until it is killed.
+fn endless(folder: &Path) -> Child {
+    let mut command = run(folder, &["--set", "run.steps=1000000000", "--set", "run.checkpoint_every=100"]);
+    let child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    while !folder.join("run.checkpoint").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    child
+}
+
+/// A second process is told who writes there; when that one is killed, however, the folder is free.
+#[test]
+fn one_process_writes_into_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let mut child = endless(&out);
+    for way in ALL_WAYS {
+        refused(run(&out, way), 2, &[&format!("process {}", child.id()), "since", "--out"]);
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let longer = &["--resume", "--set", "run.steps=1000000000"];
+    let mut child = run(&out, longer).stdout(Stdio::null()).spawn().unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    assert!(child.try_wait().unwrap().is_none(), "the lock of the killed process is still there");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    succeed(run(&out, &["--overwrite"]));
+    assert!(!out.join("run.lock").exists());
+}
+
+fn reproduce(folder: &Path) -> Command {
+    stripmine(&["reproduce", "--only", "mask", "--out", folder.to_str().unwrap()])
+}
+
+/// Results are written where nothing is, or over results; a folder or page of another's is left alone.
+#[test]
+fn results_replace_results_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("reports");
+    succeed(reproduce(&out));
+    let first = contents(&out);
+    assert!(first.keys().all(|name| !name.starts_with('.')), "{:?}", first.keys());
+    fs::write(out.join("index.png"), "mine").unwrap();
+    succeed(reproduce(&out));
+    assert_eq!(fs::read(out.join("index.png")).unwrap(), b"mine");
+    assert_eq!(contents(&out).len(), first.len() + 1);
+
+    let mine = |name: &str, words: &str| {
+        let path = out.join(name);
+        let before = fs::read(&path).ok();
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(&path, "mine").unwrap();
+        let there = contents(&out);
+        refused(reproduce(&out), 2, &[words]);
+        assert_eq!(contents(&out), there);
+        match before {
+            Some(bytes) => fs::write(&path, bytes).unwrap(),
+            None => fs::remove_file(&path).unwrap(),
+        }
+    };
+    mine("mask/thesis.tex", "thesis.tex");
+    mine("README.md", "README.md");
+    mine("index.html", "index.html");
+    mine("mask/provenance.json", "mask");
+    fs::create_dir(out.join("mask/figures")).unwrap();
+    refused(reproduce(&out), 2, &["figures"]);
+    fs::remove_dir(out.join("mask/figures")).unwrap();
+    succeed(reproduce(&out));
+
+    for names in [&["mask/thesis.tex"][..], &["README.md"], &["thesis.tex"], &["host/thesis.tex"]] {
+        let other = folder.path().join("other");
+        for name in names {
+            fs::create_dir_all(other.join(name).parent().unwrap()).unwrap();
+            fs::write(other.join(name), "mine").unwrap();
+        }
+        let before = contents(&other);
+        let path = other.to_str().unwrap();
+        for arguments in [
+            &["reproduce", "--only", "mask", "--out", path][..],
+            &["chart", "density-cost", "--out", path],
+            &["validate-model", "--out", path],
+        ] {
+            refused(stripmine(arguments), 2, &["other"]);
+            assert_eq!(contents(&other), before, "{arguments:?}");
+        }
+        fs::remove_dir_all(other).unwrap();
+    }
+}
+
+/// What sessions that were killed have left of their temporary folders goes with the next one; a folder of another's that is
+/// called so stays.
+#[test]
+fn leftovers_of_results_are_cleared_away() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("reports");
+    succeed(reproduce(&out));
+    let first: Vec<String> = contents(&out).into_keys().collect();
+    let [part, empty, other] = ["a", "b", "c"].map(|name| out.join(format!(".stripmine-{name}.part")));
+    fs::create_dir(&part).unwrap();
+    fs::copy(out.join("mask/provenance.json"), part.join("provenance.json")).unwrap();
+    fs::create_dir_all(empty.join("item")).unwrap();
+    fs::create_dir(&other).unwrap();
+    fs::write(other.join("thesis.tex"), "mine").unwrap();
+    succeed(reproduce(&out));
+    assert_eq!(fs::read(other.join("thesis.tex")).unwrap(), b"mine");
+    fs::remove_dir_all(other).unwrap();
+    assert_eq!(contents(&out).into_keys().collect::<Vec<_>>(), first);
+}
+
+/// Links in a folder of results are not followed.
+#[cfg(unix)]
+#[test]
+fn links_among_results_are_not_followed() {
+    use std::os::unix::fs::symlink;
+    let folder = tempfile::tempdir().unwrap();
+    let (out, thesis) = (folder.path().join("reports"), folder.path().join("thesis"));
+    fs::create_dir(&thesis).unwrap();
+    fs::write(thesis.join("README.md"), "mine").unwrap();
+    succeed(reproduce(&out));
+    for name in ["mask", "README.md", "index.html", ".stripmine.lock"] {
+        let (path, kept) = (out.join(name), folder.path().join("kept"));
+        let there = fs::rename(&path, &kept).is_ok();
+        symlink(if name == "mask" { thesis.clone() } else { thesis.join("README.md") }, &path).unwrap();
+        refused(reproduce(&out), 2, &[name]);
+        assert_eq!(contents(&thesis), BTreeMap::from([("README.md".to_owned(), b"mine".to_vec())]));
+        fs::remove_file(&path).unwrap();
+        if there {
+            fs::rename(&kept, &path).unwrap();
+        }
+    }
+}
+
+/// The committed results are ones that this program goes on with.
+#[test]
+fn committed_results_are_known_as_ours() {
+    let folder = tempfile::tempdir().unwrap();
+    let reports = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports");
+    for name in ["README.md", "index.html", "index.png"] {
+        fs::copy(reports.join(name), folder.path().join(name)).unwrap();
+    }
+    for entry in fs::read_dir(reports.join("mask")).unwrap() {
+        let entry = entry.unwrap();
+        fs::create_dir_all(folder.path().join("mask")).unwrap();
+        fs::copy(entry.path(), folder.path().join("mask").join(entry.file_name())).unwrap();
+    }
+    succeed(reproduce(folder.path()));
+    for entry in fs::read_dir(&reports).unwrap().chain(fs::read_dir(reports.join("host")).unwrap()) {
+        let item = entry.unwrap().path();
+        let Ok(list) = fs::read(item.join("provenance.json")) else { continue };
+        let list: serde_json::Value = serde_json::from_slice(&list).unwrap();
+        let listed: Vec<&str> =
+            list["files"].as_array().unwrap().iter().filter_map(|name| name.as_str()).collect();
+        assert!(contents(&item).keys().all(|name| listed.contains(&name.as_str())), "{}", item.display());
+    }
+}
