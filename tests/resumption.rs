@@ -1,0 +1,306 @@
+//! Going on with a run: the same run to the bit, or a reason why not.
+
+use assert_cmd::cargo::CommandCargoExt;
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use stripmine::io::checkpoint::{Checkpoint, Counter};
+
+fn stripmine(scene: &str, folder: &Path, more: &[&str]) -> Command {
+    let mut command = Command::cargo_bin("stripmine").unwrap();
+    command.args(["run", scene, "--out", folder.to_str().unwrap()]);
+    command.args(["--set", "run.thermo_every=5", "--set", "run.snapshot_every=30"]);
+    command.args(["--set", "run.checkpoint_every=40", "--set", "output.lammps_dump=true"]).args(more);
+    command
+}
+
+fn run(folder: &Path, steps: u64, more: &[&str]) -> Output {
+    let steps = format!("run.steps={steps}");
+    stripmine("two-discs", folder, &[&["--set", &steps], more].concat()).output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn succeed(output: &Output) {
+    assert!(output.status.success(), "{}", said(output));
+}
+
+fn refused(output: &Output, code: i32, words: &[&str]) {
+    assert_eq!(output.status.code(), Some(code), "{}", said(output));
+    words.iter().for_each(|word| assert!(said(output).contains(word), "{word} is not in: {}", said(output)));
+}
+
+fn summary(folder: &Path) -> Value {
+    serde_json::from_slice(&fs::read(folder.join("summary.json")).unwrap()).unwrap()
+}
+
+fn notes(folder: &Path) -> Vec<String> {
+    let summary = summary(folder);
+    summary["notes"].as_array().unwrap().iter().map(|note| note.as_str().unwrap().to_owned()).collect()
+}
+
+/// The files that the physics alone decides.
+const BITS: [&str; 3] = ["thermo.csv", "trajectory.xyz", "dump.lammpstrj"];
+
+fn bits(folder: &Path) -> [Vec<u8>; 3] {
+    BITS.map(|name| fs::read(folder.join(name)).unwrap())
+}
+
+/// A folder, and the bits of a run of 100 steps, uninterrupted.
+fn folder_and_bits() -> (tempfile::TempDir, PathBuf, [Vec<u8>; 3]) {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = folder.path().join("whole");
+    succeed(&run(&whole, 100, &[]));
+    let (bits, path) = (bits(&whole), folder.path().join("run"));
+    (folder, path, bits)
+}
+
+/// The last state is a frame though it is not due, once though it is, and not where the run went on.
+#[test]
+fn the_last_state_is_a_frame_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let steps = |path: &Path| -> Vec<u64> {
+        let text = fs::read_to_string(path.join("trajectory.xyz")).unwrap();
+        let of = |line: &str| {
+            line.split("step=").nth(1).map(|rest| rest.split(' ').next().unwrap().parse().unwrap())
+        };
+        let frames: Vec<u64> = text.lines().filter_map(of).collect();
+        let dump = fs::read_to_string(path.join("dump.lammpstrj")).unwrap();
+        let heads = dump.lines().zip(dump.lines().skip(1)).filter(|(head, _)| *head == "ITEM: TIMESTEP");
+        assert_eq!(heads.map(|(_, step)| step.parse::<u64>().unwrap()).collect::<Vec<_>>(), frames);
+        frames
+    };
+    let every = |every: &'static str| ["--set", every];
+    for (last, snapshots, expected) in [
+        (70, every("run.snapshot_every=30"), &[0, 30, 60, 70][..]),
+        (60, every("run.snapshot_every=30"), &[0, 30, 60]),
+        (70, every("run.snapshot_every=0"), &[0, 70]),
+    ] {
+        let path = folder.path().join(format!("{last}{}", expected.len()));
+        succeed(&run(&path, last, &snapshots));
+        assert_eq!(steps(&path), expected);
+        let before = bits(&path);
+        // Done already: nothing changes. To more steps: the last frame is cut off again where it is not due.
+        succeed(&run(&path, last, &[&snapshots[..], &["--resume"]].concat()));
+        assert!(bits(&path) == before);
+        succeed(&run(&path, 90, &[&snapshots[..], &["--resume"]].concat()));
+        let whole = folder.path().join("whole");
+        succeed(&run(&whole, 90, &[&snapshots[..], &["--overwrite"]].concat()));
+        assert!(bits(&path) == bits(&whole));
+    }
+    // Frames of other steps from now on: none is there twice.
+    let path = folder.path().join("changed");
+    succeed(&run(&path, 60, &[]));
+    succeed(&run(&path, 60, &["--resume", "--set", "run.snapshot_every=0"]));
+    assert_eq!(steps(&path), [0, 30, 60]);
+}
+
+/// Other masses in the start file than at the beginning are another run.
+#[test]
+fn the_contents_of_the_start_file_belong_to_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, start, out) =
+        (folder.path().join("s.toml"), folder.path().join("two.xyz"), folder.path().join("run"));
+    let discs = |mass: &str| {
+        format!(
+            "2\nLattice=\"10.0 0.0 0.0 0.0 8.0 0.0 0.0 0.0 1.0\" Origin=\"0.0 0.0 -0.5\" pbc=\"T T F\" \
+             Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3 Time=0.0 step=0\n\
+             Si 2.0 5.0 0.0 1 1.0 0.0 0.0 0.5 {mass} 0.0 0.0 0.0\nSi 5.0 5.0 0.0 2 0.0 0.0 0.0 0.5 1.0 0.0 0.0 0.25\n"
+        )
+    };
+    fs::write(&start, discs("1.0")).unwrap();
+    fs::write(
+        &scene,
+        "format = 1\nunits = \"reduced\"\n[domain]\nsides = [10.0, 8.0]\n[particles]\nfile = \"two.xyz\"\n[law]\n\
+         stiffness = 187.0\n[integrator]\ndt = 0.005\n[run]\nsteps = 50\n",
+    )
+    .unwrap();
+    let go = |more: &[&str]| stripmine(scene.to_str().unwrap(), &out, more).output().unwrap();
+    succeed(&go(&[]));
+    let before = bits(&out);
+    let longer = ["--resume", "--set", "run.steps=80"];
+    fs::write(&start, discs("1.5")).unwrap();
+    refused(&go(&longer), 2, &["two.xyz", "other discs"]);
+    assert!(bits(&out) == before);
+    fs::write(&start, discs("1.00")).unwrap();
+    succeed(&go(&longer));
+}
+
+/// Changes what a checkpoint says of its program.
+fn forge(folder: &Path, change: impl FnOnce(&mut Checkpoint)) {
+    let path = folder.join("run.checkpoint");
+    let mut checkpoint = Checkpoint::read(&path).unwrap();
+    change(&mut checkpoint);
+    checkpoint.write_atomically(&path).unwrap();
+}
+
+/// Another version that promises the same bits goes on and says so; one that does not is refused, unless told to.
+#[test]
+fn another_version_is_said_or_refused() {
+    let (_folder, path, whole) = folder_and_bits();
+    succeed(&run(&path, 60, &[]));
+    forge(&path, |checkpoint| drop(checkpoint.origin.insert("commit".to_owned(), "0123456789ab".to_owned())));
+    let output = run(&path, 80, &["--resume"]);
+    succeed(&output);
+    assert!(said(&output).contains("warning: gone on at step 60") && said(&output).contains("0123456789ab"));
+    assert!(notes(&path).len() == 1 && notes(&path)[0].contains("0123456789ab"), "{:?}", notes(&path));
+    forge(&path, |checkpoint| {
+        checkpoint.counters.insert("bits".to_owned(), Counter::Count(99));
+    });
+    let before = bits(&path);
+    refused(&run(&path, 100, &["--resume"]), 2, &["--other-version", "bits"]);
+    assert!(bits(&path) == before);
+    succeed(&run(&path, 100, &["--resume", "--other-version"]));
+    // What an earlier session said is still known.
+    assert!(notes(&path).len() == 2 && notes(&path)[1].contains("does not promise"), "{:?}", notes(&path));
+    assert!(bits(&path) == whole);
+}
+
+/// More steps done than asked for.
+#[test]
+fn fewer_steps_than_done_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run");
+    succeed(&run(&path, 60, &[]));
+    let before = (bits(&path), summary(&path));
+    refused(&run(&path, 50, &["--resume"]), 2, &["60 steps", "50 are asked for"]);
+    assert!((bits(&path), summary(&path)) == before);
+}
+
+/// Rows and frames of before the checkpoint that are missing or changed: exit code 6, and nothing is touched.
+#[test]
+fn damaged_files_are_refused() {
+    let (_folder, path, whole) = folder_and_bits();
+    succeed(&run(&path, 60, &[]));
+    for name in BITS {
+        let file = path.join(name);
+        let kept = fs::read(&file).unwrap();
+        let mut flipped = kept.clone();
+        flipped[kept.len() / 2] ^= 1;
+        let first_line = kept.iter().position(|&byte| byte == b'\n').unwrap() + 1;
+        for (damaged, words) in
+            [(&flipped[..], "has changed"), (&kept[..first_line], "bytes, but"), (&[], "has 0 bytes, but")]
+        {
+            fs::write(&file, damaged).unwrap();
+            refused(&run(&path, 100, &["--resume"]), 6, &[name, words]);
+            assert_eq!(fs::read(&file).unwrap(), damaged);
+        }
+        fs::remove_file(&file).unwrap();
+        refused(&run(&path, 100, &["--resume"]), 6, &[name, "is missing"]);
+        fs::write(&file, kept).unwrap();
+    }
+    succeed(&run(&path, 100, &["--resume"]));
+    assert!(bits(&path) == whole);
+}
+
+/// What was written after the checkpoint may be torn anywhere, also within the first words of a dump's frame.
+#[test]
+fn what_is_torn_after_the_checkpoint_is_mended() {
+    let (_folder, path, whole) = folder_and_bits();
+    succeed(&run(&path, 80, &[]));
+    let kept = bits(&path);
+    let words = b"ITEM: TIMESTEP\n80\nITEM: NUMBER";
+    for torn in 0..words.len() {
+        for (name, bytes) in BITS.iter().zip(&kept) {
+            fs::write(path.join(name), [&bytes[..], &words[..torn]].concat()).unwrap();
+        }
+        succeed(&run(&path, 80, &["--resume"]));
+        assert!(bits(&path) == kept);
+    }
+    succeed(&run(&path, 100, &["--resume"]));
+    assert!(bits(&path) == whole);
+}
+
+/// The older checkpoint serves where the newest is missing, and that is said, on the spot and at the end.
+#[test]
+fn a_fallback_to_the_older_checkpoint_is_said() {
+    let (_folder, path, whole) = folder_and_bits();
+    succeed(&run(&path, 60, &[]));
+    fs::remove_file(path.join("run.checkpoint")).unwrap();
+    let output = run(&path, 100, &["--resume"]);
+    succeed(&output);
+    assert!(said(&output).contains("warning: ") && said(&output).contains("older checkpoint, of step 40"));
+    assert!(notes(&path).len() == 1 && notes(&path)[0].contains("older checkpoint"), "{:?}", notes(&path));
+    assert!(bits(&path) == whole);
+}
+
+/// `--resume` begins where there is nothing, and again where there is no checkpoint yet; another scene is refused there too.
+#[test]
+fn resuming_before_the_first_checkpoint_begins() {
+    let (_folder, path, whole) = folder_and_bits();
+    succeed(&run(&path, 100, &["--resume"]));
+    assert!(bits(&path) == whole && notes(&path).is_empty());
+    for name in ["run.checkpoint", "run.checkpoint.previous", "summary.json"] {
+        fs::remove_file(path.join(name)).unwrap();
+    }
+    refused(&run(&path, 100, &["--resume", "--set", "law.friction=0.3"]), 2, &["friction"]);
+    assert!(bits(&path) == whole);
+    let output = run(&path, 100, &["--resume"]);
+    succeed(&output);
+    assert!(said(&output).contains("begun again") && bits(&path) == whole);
+    fs::remove_dir_all(&path).unwrap();
+    fs::create_dir(&path).unwrap();
+    succeed(&run(&path, 100, &["--resume"]));
+    assert!(bits(&path) == whole);
+}
+
+/// Files that something else removes while a run writes are missed at the next checkpoint, not at the end of all time.
+#[cfg(unix)]
+#[test]
+fn files_removed_meanwhile_are_missed() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["thermo.csv", "trajectory.xyz", "dump.lammpstrj", "scene.toml", "run.files", "run.lock"] {
+        let path = folder.path().join(name);
+        let mut command = stripmine("two-discs", &path, &["--set", "run.steps=1000000000", "--quiet"]);
+        let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        while !path.join("run.checkpoint").exists() {
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
+        fs::remove_file(path.join(name)).unwrap();
+        refused(&child.wait_with_output().unwrap(), 5, &[name, "removed"]);
+    }
+}
+
+/// Every method goes on to the same files and the same summary, but for times: also the lists of the rival, as they were.
+#[test]
+fn every_method_has_the_same_summary_after_going_on() {
+    let folder = tempfile::tempdir().unwrap();
+    for (i, method) in [
+        &["--set", "method.execution=chained"][..],
+        &["--set", "method.kind=neighbor-list", "--set", "method.execution=chained"],
+        &[
+            "--set",
+            "method.kind=neighbor-list",
+            "--set",
+            "method.execution=chained",
+            "--set",
+            "method.precision=f32",
+        ],
+        &["--set", "method.kind=neighbor-list", "--set", "method.execution=fast"],
+        &["--set", "method.kind=sectors", "--set", "method.execution=fast"],
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(format!("{name}{i}")));
+        let go = |path: &Path, steps: &str, more: &[&str]| {
+            let output =
+                stripmine("pipe-small", path, &[method, &["--set", steps], more].concat()).output().unwrap();
+            succeed(&output);
+        };
+        go(&whole, "run.steps=300", &[]);
+        for steps in ["run.steps=70", "run.steps=171", "run.steps=300"] {
+            go(&parts, steps, &["--resume"]);
+        }
+        assert!(bits(&whole) == bits(&parts), "{method:?}");
+        let of_physics = |path: &Path| {
+            let mut summary = summary(path);
+            ["seconds", "phases"].into_iter().for_each(|name| summary[name] = Value::Null);
+            summary
+        };
+        assert_eq!(of_physics(&whole), of_physics(&parts), "{method:?}");
+    }
+}
