@@ -79,6 +79,23 @@ fn a_foreign_folder_is_left_alone() {
     }
 }
 
+/// Names of others' files are said without what a terminal would obey.
+#[cfg(unix)]
+#[test]
+fn names_are_said_plainly() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a\u{1b}[2Jb\u{202e}c"), "mine").unwrap();
+    for mut command in [run(folder.path(), &[]), reproduce(folder.path())] {
+        let output = command.output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        let words = said(&output);
+        assert!(
+            words.contains("a\\u{1b}[2Jb\\u{202e}c") && !words.contains(['\u{1b}', '\u{202e}']),
+            "{words}"
+        );
+    }
+}
+
 /// `--out .` beside one's own scene: the scene is still there.
 #[test]
 fn a_scene_is_not_run_over() {

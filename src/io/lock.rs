@@ -148,7 +148,7 @@ fn holder(file: &File) -> String {
     let text = text(file).unwrap_or_default();
     let said = |what: &str| {
         let value = text.lines().find_map(|line| line.strip_prefix(what)?.strip_prefix(' '))?;
-        Some(value.chars().filter(|c| !c.is_control()).collect::<String>())
+        Some(value.chars().flat_map(char::escape_debug).collect::<String>())
     };
     match (said("process"), said("host"), said("since")) {
         (Some(process), Some(host), Some(since)) => format!("process {process} on {host} since {since}"),

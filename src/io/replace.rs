@@ -66,6 +66,17 @@ pub(crate) fn sync_folder(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }
 
+/// What stands in a folder, for a message: the first few names, with nothing in them that a terminal would obey.
+pub(crate) fn listing(names: &[String]) -> String {
+    const NAMED: usize = 5;
+    let plain = |name: &String| name.chars().flat_map(char::escape_debug).collect::<String>();
+    let said = names.iter().take(NAMED).map(plain).collect::<Vec<_>>().join(", ");
+    match names.len().saturating_sub(NAMED) {
+        0 => said,
+        more => format!("{said} and {more} more"),
+    }
+}
+
 /// Removes a file or a link, never what the link points to; one that is not there is no error.
 pub(crate) fn remove_if_there(path: &Path) -> Result<(), FileError> {
     match fs::remove_file(path) {

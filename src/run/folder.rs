@@ -8,7 +8,7 @@
 use crate::io::FileError;
 use crate::io::checkpoint::NAME as CHECKPOINT;
 use crate::io::lock::{Lock, LockError, is_lock};
-use crate::io::replace::{is_temporary, remove_if_there, replace};
+use crate::io::replace::{is_temporary, listing, remove_if_there, replace};
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Read, Write};
@@ -42,9 +42,6 @@ const FILES: [&str; 9] = [LIST, SCENE, THERMO, TRAJECTORY, DUMP, DATA, SUMMARY, 
 
 /// What a run writes whatever its scene.
 const ALWAYS: [&str; 7] = [LIST, SCENE, THERMO, TRAJECTORY, SUMMARY, CHECKPOINT, PREVIOUS];
-
-/// At most this many names are said of what stands in a folder.
-const NAMED: usize = 5;
 
 /// Why a run does not write into a folder.
 #[derive(Debug, thiserror::Error)]
@@ -128,11 +125,7 @@ pub(super) fn listed(folder: &Path) -> Result<Option<BTreeSet<&'static str>>, Fo
         return Ok(None);
     }
     names.sort();
-    let more = names.len().saturating_sub(NAMED);
-    let mut said = names[..names.len() - more].join(", ");
-    if more > 0 {
-        said.push_str(&format!(" and {more} more"));
-    }
+    let said = listing(&names);
     Err(FolderError::NotOurs { folder: folder.to_owned(), names: said })
 }
 

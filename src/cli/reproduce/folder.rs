@@ -7,7 +7,7 @@ use super::items::{Item, Made};
 use crate::cli::{Failure, to_json};
 use crate::io::FileError;
 use crate::io::lock::{Lock, LockError, is_lock};
-use crate::io::replace::{is_temporary, remove_if_there, replace, temporary};
+use crate::io::replace::{is_temporary, listing, remove_if_there, replace, temporary};
 use crate::report::figure::{Figure, png, svg};
 use crate::report::origin::Provenance;
 use crate::report::{Section, csv, html, page};
@@ -30,9 +30,6 @@ const HOST: &str = "host";
 const PAGES: [(&str, &str); 2] = [("README.md", page::MARK), ("index.html", html::MARK)];
 /// Where in a page its mark is looked for (bytes from the beginning).
 const START: u64 = 1000;
-/// At most this many names are said of what stands in a folder.
-const NAMED: usize = 5;
-
 /// Why results are not written.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum FolderError {
@@ -249,11 +246,7 @@ fn entries(folder: &Path) -> Result<Option<Vec<String>>, FileError> {
 }
 
 fn not_ours(folder: &Path, foreign: &[String]) -> FolderError {
-    let mut names = foreign[..foreign.len().min(NAMED)].join(", ");
-    if foreign.len() > NAMED {
-        names.push_str(&format!(" and {} more", foreign.len() - NAMED));
-    }
-    FolderError::NotOurs { folder: folder.to_owned(), names }
+    FolderError::NotOurs { folder: folder.to_owned(), names: listing(foreign) }
 }
 
 fn is_folder(path: &Path) -> bool {
