@@ -64,4 +64,5 @@ pub mod placement;
 pub mod report;
 pub mod run;
 pub mod scene;
+mod signals;
 pub mod study;

@@ -1,13 +1,16 @@
 //! `stripmine calibrate`: how long this host's operations take.
 
-use super::{Common, Failure, print, print_json};
+use super::{Common, Failure, output, print, print_json, say, warn};
 use crate::model::host::Measured;
 use crate::report;
 use crate::report::origin::host;
+use crate::signals;
 use crate::study::calibration::{Effort, TOO_DIFFERENT, TOO_NOISY, TOO_RARE, calibrate};
 use clap::Args;
-use std::path::PathBuf;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 use stripmine_kernels::InstructionSet;
+use tempfile::NamedTempFile;
 
 /// Measures this host's operations and caches, and writes a host file for validate-model; one to two minutes
 #[derive(Args)]
@@ -28,31 +31,57 @@ impl CalibrateVerb {
         if self.out.exists() && !self.force {
             return Err(Failure::HostFileExists(self.out.clone()));
         }
-        let bar = super::progress(common, "calibrate");
+        // A place that cannot be written is found before minutes of measuring.
+        drop(self.beginning()?);
+        let bar = output::progress(common, "calibrate");
         let effort = Effort { sweeps: self.sweeps.into() };
         let model = calibrate(host(), InstructionSet::best(), effort, |share| {
             bar.set_position((1e3 * share) as u64)
         })?;
-        bar.finish_and_clear();
-        if common.json {
-            print_json(&model)?;
-        } else {
-            let drawn: Vec<String> =
-                report::calibration::tables(&model).iter().map(report::terminal::render).collect();
-            print(&drawn.join("\n"))?;
-        }
+        output::clear_progress();
+        let drawn: Vec<String> =
+            report::calibration::tables(&model).iter().map(report::terminal::render).collect();
+        let drawn = drawn.join("\n");
         if let Some(noise) = noise(&model.measured) {
             if !self.force {
+                if !common.json {
+                    print(&drawn)?;
+                }
                 return Err(Failure::TooNoisy(noise));
             }
-            eprintln!("warning: {noise}: the machine is busy");
+            warn(format_args!("{noise}: the machine is busy"));
         }
-        std::fs::write(&self.out, model.to_toml())
-            .map_err(Failure::writing(self.out.display().to_string()))?;
+        // Before anything is printed: the reader of that may close the pipe.
+        signals::whole(|| self.write(&model.to_toml()))?;
         if !common.quiet {
-            eprintln!("written: {}", self.out.display());
+            say(format_args!("written: {}", self.out.display()));
         }
-        Ok(())
+        if common.json { print_json(&model) } else { print(&drawn) }
+    }
+
+    /// A file without a name of its own yet, beside the one that is to be written.
+    fn beginning(&self) -> Result<NamedTempFile, Failure> {
+        let folder = self.out.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let mut builder = tempfile::Builder::new();
+        #[cfg(unix)]
+        {
+            // As for any file: what the user's mask leaves of it.
+            use std::os::unix::fs::PermissionsExt;
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        builder.tempfile_in(folder.unwrap_or(Path::new("."))).map_err(self.failed())
+    }
+
+    /// Writes the whole file, or leaves what was there.
+    fn write(&self, text: &str) -> Result<(), Failure> {
+        let mut file = self.beginning()?;
+        file.write_all(text.as_bytes()).and_then(|()| file.as_file().sync_all()).map_err(self.failed())?;
+        let placed = if self.force { file.persist(&self.out) } else { file.persist_noclobber(&self.out) };
+        placed.map(drop).map_err(|refused| self.failed()(refused.error))
+    }
+
+    fn failed(&self) -> impl FnOnce(std::io::Error) -> Failure {
+        Failure::writing(self.out.display().to_string())
     }
 }
 

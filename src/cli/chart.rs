@@ -2,10 +2,11 @@
 
 use super::reproduce::{Folder, Made};
 use super::validate_model::host_model;
-use super::{Common, Failure, print, print_json};
+use super::{Common, Failure, output, print, print_json, say};
 use crate::model::machine;
 use crate::report::origin::Provenance;
 use crate::report::{self, Section};
+use crate::signals;
 use crate::study::break_even::atlas;
 use crate::study::density_cost::density_cost;
 use crate::study::measured_cost::{Effort, measured_cost};
@@ -45,13 +46,14 @@ impl ChartVerb {
         let folder = Folder::open(&self.out, &["cost", "measured", "atlas"], false)?;
         let (host, _) = host_model(self.host.as_deref(), common)?;
         let again = format!("stripmine chart density-cost --machine {}", self.machine);
-        let bar = super::progress(common, "chart");
+        let bar = output::progress(common, "chart");
         let show = |from: f64, share: f64| bar.set_position((1e3 * (from + 0.5 * share)) as u64);
         let write = |section: Section, data: &serde_json::Value, start: Instant| -> Result<(), Failure> {
             let provenance = Provenance::here(again.clone(), start.elapsed().as_secs_f64());
-            let folder = folder.write(&Made::new(section, data)?, &provenance)?;
+            let made = Made::new(section, data)?;
+            let folder = signals::whole(|| folder.write(&made, &provenance))?;
             if !common.quiet {
-                bar.suspend(|| eprintln!("written: {}", folder.display()));
+                say(format_args!("written: {}", folder.display()));
             }
             Ok(())
         };
@@ -78,7 +80,7 @@ impl ChartVerb {
         came_out.push(section.came_out.clone());
         let atlas_data = value(serde_json::to_value(&atlas))?;
         write(section, &atlas_data, start)?;
-        bar.finish_and_clear();
+        output::clear_progress();
         if common.json {
             let all =
                 serde_json::json!({ "model": model_data, "measured": measured_data, "atlas": atlas_data });

@@ -4,8 +4,10 @@ mod bench;
 mod calibrate;
 mod chart;
 mod completions;
+mod failure;
 mod listing;
 mod man;
+mod output;
 mod reproduce;
 mod run;
 mod scene;
@@ -15,6 +17,7 @@ mod validate_model;
 
 use crate::model::machine::MachineError;
 use crate::run::RunError;
+use crate::signals::{self, End};
 use crate::study::StudyError;
 use crate::study::break_even::AtlasError;
 use crate::study::calibration::CalibrationError;
@@ -22,8 +25,9 @@ use crate::study::host_ladder::LadderError;
 use crate::study::model_validation::ValidationError;
 use crate::study::throughput::MeasurementError;
 use clap::{Args, Parser, Subcommand};
+use output::{print, print_json, say, to_json, warn};
 use std::ffi::OsString;
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::process::ExitCode;
 
 /// A SIMD vector machine for 2D particle dynamics.
@@ -68,6 +72,15 @@ enum Verb {
 /// Why a verb did not come to its end; each kind has its exit code.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
+    /// Arguments that the command does not understand: exit code 2.
+    #[error(transparent)]
+    Arguments(clap::Error),
+    /// Options of which no scene can be made: exit code 2.
+    #[error(transparent)]
+    Options(crate::scene::SceneErrors),
+    /// Threads that the system does not give: exit code 5.
+    #[error("the threads cannot be had: {0}; ask for fewer with --threads")]
+    Threads(rayon::ThreadPoolBuildError),
     /// A question that has no answer: exit code 2.
     #[error(transparent)]
     Usage(#[from] crate::study::efficiency_table::QuestionError),
@@ -132,6 +145,15 @@ pub(crate) enum Failure {
         /// The folder of the run.
         folder: std::path::PathBuf,
     },
+    /// Ended by a signal, and nothing of it goes on: exit code 130.
+    #[error("{}", match .0 {
+        End::Whole => "interrupted: what was finished before is kept, nothing is half written",
+        End::Forced => "interrupted twice, and ended at once: what was being written may be incomplete",
+    })]
+    Stopped(End),
+    /// Standard output takes no more: exit code 5; 0 where its reader closed the pipe, for it has seen enough.
+    #[error("standard output cannot be written: {0}")]
+    StandardOutput(std::io::Error),
     /// Reading or writing: exit code 5.
     #[error("{what}: {cause}")]
     InputOutput {
@@ -150,9 +172,12 @@ impl Failure {
 
     fn exit_code(&self) -> u8 {
         match self {
-            // A reader that closes the pipe has seen enough.
-            Failure::InputOutput { cause, .. } if cause.kind() == ErrorKind::BrokenPipe => 0,
-            Failure::Usage(_) | Failure::UnknownVerb { .. } | Failure::HostFileExists(_) => 2,
+            Failure::StandardOutput(cause) if cause.kind() == ErrorKind::BrokenPipe => 0,
+            Failure::Arguments(_)
+            | Failure::Options(_)
+            | Failure::Usage(_)
+            | Failure::UnknownVerb { .. }
+            | Failure::HostFileExists(_) => 2,
             Failure::HostFile(_) => 3,
             Failure::HostLadder(LadderError::Question(_)) => 2,
             Failure::HostLadder(LadderError::OutOfRange(_)) | Failure::TooNoisy(_) => 4,
@@ -160,6 +185,8 @@ impl Failure {
             | Failure::Validation(ValidationError::Calibration(CalibrationError::Program(_))) => 5,
             Failure::Validation(ValidationError::OutOfRange { .. })
             | Failure::Atlas(AtlasError::OutOfRange(_)) => 4,
+            // Its scenes are made of options.
+            Failure::Validation(ValidationError::Measurement(MeasurementError::Scene(_))) => 2,
             Failure::Validation(
                 ValidationError::Measurement(error)
                 | ValidationError::Calibration(CalibrationError::Measurement(error)),
@@ -173,6 +200,8 @@ impl Failure {
             },
             Failure::Machine(MachineError::Unknown { .. }) => 2,
             Failure::Machine(MachineError::File(_)) => 3,
+            // Bytes that are no text.
+            Failure::Machine(MachineError::Read { cause, .. }) if cause.kind() == ErrorKind::InvalidData => 3,
             Failure::Machine(MachineError::Read { .. }) => 5,
             Failure::Scene(_) => 3,
             Failure::Study(error) | Failure::Atlas(AtlasError::Study(error)) => match error {
@@ -183,7 +212,7 @@ impl Failure {
             Failure::Figure(_) => 5,
             Failure::Results(error) if error.is_refusal() => 2,
             Failure::Results(_) => 5,
-            Failure::Interrupted { .. } => 130,
+            Failure::Interrupted { .. } | Failure::Stopped(_) => signals::INTERRUPTED,
             Failure::Run(error) => match error {
                 error if error.is_refusal() => 2,
                 error if error.is_damage() => 6,
@@ -191,20 +220,51 @@ impl Failure {
                 RunError::Physics { .. } | RunError::Start(_) => 4,
                 _ => 5,
             },
-            Failure::InputOutput { .. } => 5,
+            Failure::Threads(_) | Failure::StandardOutput(_) | Failure::InputOutput { .. } => 5,
         }
     }
 }
 
 /// Runs the command with its arguments, the first of which is its name.
 pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
-    let CommandLine { verb, common } = CommandLine::parse_from(arguments);
+    let arguments: Vec<OsString> = arguments.collect();
+    // Asked before the arguments are understood: a mistake among them is told as data too.
+    let as_data = arguments.iter().any(|argument| argument == "--json");
+    let last_words = move |end| {
+        output::clear_progress();
+        failure::tell(&Failure::Stopped(end), as_data);
+    };
+    let outcome = signals::install(last_words)
+        .map_err(Failure::writing("the handler of interruptions"))
+        .and_then(|()| understood(&arguments))
+        .and_then(|line| line.map_or(Ok(()), carried_out));
+    output::clear_progress();
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            let code = failure.exit_code();
+            if code != 0 {
+                failure::tell(&failure, as_data);
+            }
+            ExitCode::from(code)
+        }
+    }
+}
+
+/// What the arguments ask for; nothing where the answer, help or version, is given.
+fn understood(arguments: &[OsString]) -> Result<Option<CommandLine>, Failure> {
+    match CommandLine::try_parse_from(arguments) {
+        Ok(line) => Ok(Some(line)),
+        Err(mistake) if mistake.use_stderr() => Err(Failure::Arguments(mistake)),
+        Err(answer) => output::print_answer(&answer).map(|()| None),
+    }
+}
+
+fn carried_out(CommandLine { verb, common }: CommandLine) -> Result<(), Failure> {
     // Without an answer the default pool has a thread for each core.
     let threads = common.threads.map_or(0, usize::from);
-    if let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global() {
-        eprintln!("warning: {error}");
-    }
-    let outcome = match verb {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(Failure::Threads)?;
+    match verb {
         Verb::Reproduce(verb) => verb.run(&common),
         Verb::Table(verb) => verb.run(&common),
         Verb::Listing(verb) => verb.run(&common),
@@ -216,41 +276,5 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         Verb::Chart(verb) => verb.run(&common),
         Verb::Completions(verb) => verb.run(),
         Verb::Man(verb) => verb.run(),
-    };
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            if failure.exit_code() != 0 {
-                eprintln!("error: {failure}");
-            }
-            ExitCode::from(failure.exit_code())
-        }
     }
-}
-
-/// Progress in thousandths, with ETA, on a terminal; nothing elsewhere.
-fn progress(common: &Common, what: &'static str) -> indicatif::ProgressBar {
-    use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-    let target = if common.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    let bar = ProgressBar::with_draw_target(Some(1000), target);
-    let style = ProgressStyle::with_template("{wide_bar} {msg} {percent}% [{elapsed}, ETA {eta}]");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar.set_message(what);
-    bar
-}
-
-/// Writes data to standard output.
-fn print(text: &str) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
-    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(Failure::writing("standard output"))
-}
-
-/// Writes data to standard output as one JSON document.
-fn print_json(data: &impl serde::Serialize) -> Result<(), Failure> {
-    print(&(to_json(data)? + "\n"))
-}
-
-/// Data as JSON, floats in shortest round-trip form.
-fn to_json(data: &impl serde::Serialize) -> Result<String, Failure> {
-    serde_json::to_string_pretty(data).map_err(|cause| Failure::writing("JSON")(cause.into()))
 }

@@ -1,13 +1,11 @@
 //! `stripmine run`: one simulation into a folder.
 
-use super::{Common, Failure, print, print_json};
+use super::{Common, Failure, output, print, print_json, warn};
 use crate::run::{Ending, Existing, Summary, run};
 use crate::scene::Document;
+use crate::signals;
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// One simulation: observables, trajectory, summary and checkpoints in a folder
 #[derive(Args)]
@@ -43,43 +41,29 @@ impl RunVerb {
             (_, true) => Existing::Overwrite,
             _ => Existing::Refuse,
         };
-        let interrupted = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&interrupted);
-        ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(|cause| {
-            Failure::writing("the handler of interruptions")(std::io::Error::other(cause))
-        })?;
-        let bar = progress_bar(common);
+        let bar = output::bar(common, 0, "{wide_bar} step {pos}/{len} [{elapsed}, ETA {eta}]");
         let progress = |step, steps| {
             bar.set_length(steps);
             bar.set_position(step);
         };
         let notice = |note: &str| {
             if !common.quiet {
-                bar.suspend(|| eprintln!("warning: {note}"));
+                warn(note);
             }
         };
-        let ending = run(document, &folder, existing, &interrupted, progress, notice);
-        bar.finish_and_clear();
+        let ending = run(document, &folder, existing, signals::asked(), progress, notice);
+        output::clear_progress();
         match ending? {
             Ending::Done(summary) if common.json => print_json(&summary),
             Ending::Done(summary) => {
                 if !common.quiet {
-                    summary.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+                    summary.warnings.iter().for_each(warn);
                 }
                 print(&text(&summary, &folder))
             }
             Ending::Interrupted { step } => Err(Failure::Interrupted { step, folder }),
         }
     }
-}
-
-/// Progress with ETA on a terminal, nothing elsewhere.
-fn progress_bar(common: &Common) -> ProgressBar {
-    let target = if common.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    let bar = ProgressBar::with_draw_target(Some(0), target);
-    let style = ProgressStyle::with_template("{wide_bar} step {pos}/{len} [{elapsed}, ETA {eta}]");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
 }
 
 fn text(summary: &Summary, folder: &Path) -> String {

@@ -1,9 +1,9 @@
 //! `stripmine scene`: presets, keys, and the check of a scene.
 
-use super::{Common, Failure, print, print_json};
+use super::{Common, Failure, print, print_json, warn};
 use crate::report::table::{Cell, Table};
 use crate::report::terminal;
-use crate::scene::{Checked, Document, Estimates, Fallback, KEYS, PRESETS, SECTIONS, SceneErrors, Warning};
+use crate::scene::{Checked, Document, Estimates, Fallback, KEYS, PRESETS, SECTIONS, Warning};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Subcommand};
 use serde::Serialize;
@@ -177,26 +177,10 @@ impl<'c> Found<'c> {
     }
 }
 
-#[derive(Serialize)]
-struct Mistakes<'e> {
-    scene: &'e str,
-    errors: &'e SceneErrors,
-}
-
 fn check(name: &str, overrides: &[String], common: &Common) -> Result<(), Failure> {
-    let checked = match Document::load(name, overrides).and_then(Document::check) {
-        Ok(checked) => checked,
-        Err(errors) => {
-            if common.json {
-                print_json(&Mistakes { scene: name, errors: &errors })?;
-            }
-            return Err(errors.into());
-        }
-    };
+    let checked = Document::load(name, overrides).and_then(Document::check)?;
     if !common.quiet {
-        for warning in &checked.warnings {
-            eprintln!("warning: {warning}");
-        }
+        checked.warnings.iter().for_each(warn);
     }
     let found = Found::new(name, &checked);
     if common.json { print_json(&found) } else { print(&terminal::render(&found.table())) }

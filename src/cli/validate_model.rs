@@ -2,16 +2,19 @@
 
 use super::calibrate::noise;
 use super::reproduce::{Folder, Made};
-use super::{Common, Failure, print, print_json};
-use crate::model::host::{HostModel, default_model};
+use super::{Common, Failure, output, print, print_json, say, warn};
+use crate::model::host::{BadEntry, HostFileError, HostModel, default_model};
+use crate::model::machine_file::Position;
 use crate::report;
 use crate::report::origin::{self, Provenance};
+use crate::signals;
 use crate::study::calibration;
 use crate::study::model_validation::{
     Calibrated, Effort, ModelValidation, calibrated_in_turns, model_validation,
 };
 use crate::study::rounds::Bound;
 use clap::Args;
+use clap::builder::RangedU64ValueParser;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use stripmine_kernels::InstructionSet;
@@ -31,7 +34,8 @@ pub(super) struct ValidateModel {
           value_parser = clap::value_parser!(u16).range(1..=200))]
     sweeps: u16,
     /// Numbers of particles
-    #[arg(long, value_delimiter = ',', default_values_t = [560, 2050, 9500, 17_000])]
+    #[arg(long, value_delimiter = ',', default_values_t = [560, 2050, 9500, 17_000],
+          value_parser = RangedU64ValueParser::<usize>::new().range(1..))]
     particles: Vec<usize>,
     /// Occupancies, on cells as wide as the radius
     #[arg(long, value_delimiter = ',', default_values_t = [0.072, 0.125, 0.168, 0.235])]
@@ -56,15 +60,27 @@ pub(super) fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostMo
     let Some(file) = file else {
         let model = default_model()?;
         if !common.quiet {
-            eprintln!(
+            say(format_args!(
                 "no --host: using the model that comes with the program, of {}; see calibrate",
                 model.title
-            );
+            ));
         }
         return Ok((model, true));
     };
-    let text = std::fs::read_to_string(file).map_err(Failure::writing(file.display().to_string()))?;
-    Ok((HostModel::parse(&file.display().to_string(), &text)?, false))
+    let name = file.display().to_string();
+    let bytes = std::fs::read(file).map_err(Failure::writing(&name))?;
+    let text = std::str::from_utf8(&bytes).map_err(|cause| {
+        let before = String::from_utf8_lossy(&bytes[..cause.valid_up_to()]);
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) + 1;
+        let entry = BadEntry {
+            position: Some(Position { line, column }),
+            entry: "the text".to_owned(),
+            what: "is not UTF-8".to_owned(),
+        };
+        HostFileError::Content { file: name.clone(), entries: vec![entry] }
+    })?;
+    Ok((HostModel::parse(&name, text)?, false))
 }
 
 impl ValidateModel {
@@ -91,9 +107,9 @@ impl ValidateModel {
             }
             let provenance =
                 Provenance::here("stripmine validate-model".to_owned(), start.elapsed().as_secs_f64());
-            let folder = folder.write(&made, &provenance)?;
+            let folder = signals::whole(|| folder.write(&made, &provenance))?;
             if !common.quiet {
-                eprintln!("written: {}", folder.display());
+                say(format_args!("written: {}", folder.display()));
             }
         }
         if common.json {
@@ -110,22 +126,22 @@ impl ValidateModel {
         effort: &Effort,
         common: &Common,
     ) -> Result<(ModelValidation, Option<HostModel>), Failure> {
-        let bar = super::progress(common, "validate-model");
+        let bar = output::progress(common, "validate-model");
         let progress = |share: f64| bar.set_position((1e3 * share) as u64);
         if self.calibrate {
             let sweeps = calibration::Effort { sweeps: self.sweeps.into() };
             let (model, data) =
                 calibrated_in_turns(origin::host(), InstructionSet::best(), sweeps, effort, progress)?;
-            bar.finish_and_clear();
+            output::clear_progress();
             if let Some(noise) = noise(&model.measured) {
-                eprintln!("warning: {noise}: the machine is busy");
+                warn(format_args!("{noise}: the machine is busy"));
             }
             return Ok((data, Some(model)));
         }
         let (model, shipped) = host_model(self.host.as_deref(), common)?;
         let calibrated = if shipped { Calibrated::Shipped } else { Calibrated::Before };
         let data = model_validation(&model, calibrated, effort, progress)?;
-        bar.finish_and_clear();
+        output::clear_progress();
         Ok((data, None))
     }
 }

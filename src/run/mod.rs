@@ -21,6 +21,7 @@ use crate::io::growing_file::GrowingFileError;
 use crate::io::table_file::TableFileError;
 use crate::method::{Failure, Method};
 use crate::scene::{Checked, Document, SceneErrors};
+use crate::signals;
 use recorder::Recorder;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -202,7 +203,10 @@ pub fn run(
     // What would be refused in the end is refused before anything takes its time.
     folder::listed(folder)?;
     let mut method = assemble_following_energy(&checked).map_err(RunError::Start)?;
+    // A beginning that is cut off would leave a folder without a checkpoint; a run that is resumed has one.
+    let held = (!matches!(existing, Existing::Resume { .. })).then(signals::hold);
     let mut recorder = Recorder::open(folder, existing, &checked, method.as_mut())?;
+    let _held = held.unwrap_or_else(signals::hold);
     recorder.new_notes().iter().map(String::as_str).for_each(notice);
     let steps = checked.scene.run.steps;
     let stride = (steps / 1000).max(1);

@@ -3,11 +3,11 @@
 mod folder;
 mod items;
 
-use super::{Common, Failure, print_json};
+use super::{Common, Failure, output, print_json, say};
 use crate::report::origin::Provenance;
+use crate::signals;
 use clap::{Args, ValueEnum};
 pub(super) use folder::{Folder, FolderError};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 pub(super) use items::Made;
 use items::{Effort, Item};
 use serde::Serialize;
@@ -46,7 +46,8 @@ impl Reproduce {
         let items: Vec<Item> = Item::value_variants().iter().copied().filter(asked).collect();
         let names: Vec<&str> = items.iter().map(|item| item.name()).collect();
         let folder = Folder::open(&self.out, &names, true)?;
-        let bar = progress_bar(common, &items, effort);
+        let expected: f64 = items.iter().map(|item| item.seconds(effort)).sum();
+        let bar = output::bar(common, ticks(expected), output::SHARES);
         let mut outcomes = Vec::new();
         let mut before = 0.0;
         for &item in &items {
@@ -58,14 +59,15 @@ impl Reproduce {
             bar.set_position(ticks(before));
             let seconds = start.elapsed().as_secs_f64();
             let command = format!("stripmine reproduce{}", if self.quick { " --quick" } else { "" });
-            // Finished items are on the disk, and on the page, before the next one starts.
-            let path = folder.write(&made, &Provenance::here(command, seconds))?;
-            folder.write_page()?;
+            // Finished items are on the disk, and on the page, before the next one starts, and before a signal ends it all.
+            let provenance = Provenance::here(command, seconds);
+            let path = signals::whole(|| {
+                let path = folder.write(&made, &provenance)?;
+                folder.write_page().map(|()| path)
+            })?;
             if !common.quiet {
                 let word = made.section.verdict.word();
-                bar.suspend(|| {
-                    eprintln!("{:<12} {word:<18} {seconds:>6.1} s  {}", item.name(), path.display())
-                });
+                say(format_args!("{:<12} {word:<18} {seconds:>6.1} s  {}", item.name(), path.display()));
             }
             outcomes.push(Outcome {
                 item: item.name(),
@@ -74,7 +76,7 @@ impl Reproduce {
                 folder: path,
             });
         }
-        bar.finish_and_clear();
+        output::clear_progress();
         if common.json { print_json(&outcomes) } else { Ok(()) }
     }
 }
@@ -82,14 +84,4 @@ impl Reproduce {
 /// Progress is counted in thousandths of an expected second.
 fn ticks(seconds: f64) -> u64 {
     (1000.0 * seconds) as u64
-}
-
-/// Progress with ETA on a terminal, nothing elsewhere.
-fn progress_bar(common: &Common, items: &[Item], effort: Effort) -> ProgressBar {
-    let target = if common.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    let expected = items.iter().map(|item| item.seconds(effort)).sum();
-    let bar = ProgressBar::with_draw_target(Some(ticks(expected)), target);
-    let style = ProgressStyle::with_template("{wide_bar} {msg} {percent}% [{elapsed}, ETA {eta}]");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
 }
