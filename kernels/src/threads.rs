@@ -1,5 +1,8 @@
 //! Work cut into parts, on the threads of the current `rayon` pool.
 //!
+//! That the threads that wait awake never wait for each other for ever is shown by `kernels/tests/waiting.rs`, which tries
+//! every order of events.
+//!
 //! Parts are called through a pointer, so that the pool's machinery is compiled once and not for every kind of work.
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};

@@ -1,8 +1,8 @@
 //! `stripmine bench`: one throughput measurement of moving particles.
 
 use super::{Common, Failure, print, print_json};
-use crate::scene::Document;
-use crate::study::throughput::{Measurement, Throughput, throughput};
+use crate::scene::{Document, SceneErrors};
+use crate::study::throughput::{Measurement, MeasurementError, Throughput, throughput};
 use clap::{Args, ValueEnum};
 
 /// One throughput measurement of moving particles
@@ -15,7 +15,7 @@ pub(super) struct BenchVerb {
     #[arg(long, default_value_t = 10_000)]
     particles: usize,
     /// Area of the discs over that of the box
-    #[arg(long, default_value_t = 0.84)]
+    #[arg(long, default_value_t = 0.84, allow_negative_numbers = true)]
     packing_fraction: f64,
     /// Precision of state and forces
     #[arg(long, default_value = "f64", value_parser = ["f64", "f32", "mixed"])]
@@ -30,10 +30,10 @@ pub(super) struct BenchVerb {
     #[arg(long)]
     frictionless: bool,
     /// Side of a lattice cell; the largest that the geometry allows by default
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     cell_edge: Option<f64>,
     /// Steps of each repeat; about a second's worth by default
-    #[arg(long)]
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     steps: Option<u64>,
     /// Repeats
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
@@ -61,36 +61,65 @@ impl BenchVerb {
             What::NeighborList => "neighbor-list",
             What::Sectors => "sectors",
         };
-        let mut overrides = vec![
-            format!("particles.count={}", self.particles),
-            format!("particles.packing_fraction={}", self.packing_fraction),
-            format!("method.kind=\"{method}\""),
-            format!("method.precision=\"{}\"", self.precision),
+        // What the scene is told, and the option that says so.
+        let mut told = vec![
+            (format!("particles.count={}", self.particles), format!("--particles {}", self.particles)),
+            (
+                format!("particles.packing_fraction={}", self.packing_fraction),
+                format!("--packing-fraction {}", self.packing_fraction),
+            ),
+            (format!("method.kind=\"{method}\""), method.to_owned()),
+            (format!("method.precision=\"{}\"", self.precision), format!("--precision {}", self.precision)),
         ];
-        overrides.push(match self.integrator.strip_prefix("gear") {
+        let integrator = match self.integrator.strip_prefix("gear") {
             Some(values) => format!("integrator.values={values}"),
             None => format!("integrator.kind=\"{}\"", self.integrator),
-        });
-        overrides.push(format!("method.execution=\"{}\"", self.execution));
+        };
+        told.push((integrator, format!("--integrator {}", self.integrator)));
+        told.push((
+            format!("method.execution=\"{}\"", self.execution),
+            format!("--execution {}", self.execution),
+        ));
         if self.instruction_set != "auto" {
-            overrides.push(format!("method.instruction_set=\"{}\"", self.instruction_set));
+            told.push((
+                format!("method.instruction_set=\"{}\"", self.instruction_set),
+                format!("--instruction-set {}", self.instruction_set),
+            ));
         }
         if self.frictionless {
-            overrides.push("law.friction=0".to_owned());
+            told.push(("law.friction=0".to_owned(), "--frictionless".to_owned()));
         }
-        overrides.extend(self.cell_edge.map(|edge| format!("method.cell_edge={edge}")));
+        told.extend(
+            self.cell_edge.map(|edge| (format!("method.cell_edge={edge}"), format!("--cell-edge {edge}"))),
+        );
+        let overrides: Vec<String> = told.iter().map(|(told, _)| told.clone()).collect();
         // About 10⁷ particle-steps a second, to the order of magnitude.
         let steps =
             self.steps.unwrap_or_else(|| (10_000_000 / self.particles.max(1) as u64).clamp(20, 20_000));
         let measurement = Measurement {
-            document: Document::load("bench", &overrides)?,
+            document: Document::load("bench", &overrides)
+                .map_err(|mistakes| Failure::Options(in_options(mistakes, &told)))?,
             equilibration: 200.max(steps / 10),
             steps,
             repeats: self.repeats.into(),
         };
-        let result = throughput(measurement)?;
+        let result = throughput(measurement).map_err(|error| match error {
+            MeasurementError::Scene(mistakes) => Failure::Options(in_options(mistakes, &told)),
+            error => error.into(),
+        })?;
         if common.json { print_json(&result) } else { print(&text(&result)) }
     }
+}
+
+/// Mistakes of the scene as those of the options that it was made of.
+fn in_options(SceneErrors(mut mistakes): SceneErrors, told: &[(String, String)]) -> SceneErrors {
+    for mistake in &mut mistakes {
+        let option = told.iter().find(|(told, _)| mistake.file == format!("--set {told}"));
+        if let Some((_, option)) = option {
+            mistake.file.clone_from(option);
+        }
+    }
+    SceneErrors(mistakes)
 }
 
 fn text(result: &Throughput) -> String {

@@ -1,0 +1,207 @@
+//! Every verb with what it cannot do: the exit code of the contract, words on standard error, and, with `--json`, the failure as
+//! one document on standard output.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::path::Path;
+use std::process::Output;
+
+fn stripmine(folder: &Path, arguments: &[&str]) -> Output {
+    Command::cargo_bin("stripmine").unwrap().current_dir(folder).args(arguments).output().unwrap()
+}
+
+/// What the cases find in their folder: files that are no text, and a file where a folder should be.
+fn prepare(folder: &Path) {
+    let write = |name: &str, bytes: &[u8]| std::fs::write(folder.join(name), bytes).unwrap();
+    write("file", b"mine");
+    write("latin.toml", b"format = 1\nunits = \"\xe9\"\n");
+    let columns = "species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
+    let head = format!("1\nProperties={columns} Lattice=\"9 0 0 0 9 0 0 0 1\" pbc=\"F F F\"\nAr 1 ");
+    write("frame.xyz", &[head.as_bytes(), b"\xff 0 1 0 0 0 0.5 1 0 0 0\n"].concat());
+    let scene = String::from_utf8(stripmine(folder, &["scene", "show", "two-discs"]).stdout).unwrap();
+    write("scene.toml", scene.replace("format = 1", "format = 99").as_bytes());
+}
+
+/// Arguments, exit code, kind of the failure as data, and words of the message.
+const CASES: &[(&[&str], i32, &str, &[&str])] = &[
+    (&["nonsense"], 2, "usage", &["nonsense"]),
+    (&["table", "extra"], 2, "usage", &["extra"]),
+    (&["table", "--threads", "0"], 2, "usage", &["--threads", "0"]),
+    (&["table", "--particles", "0"], 2, "usage", &["at least one"]),
+    (&["table", "--particles", "-3"], 2, "usage", &["-3"]),
+    (&["table", "--occupancy", "2"], 2, "usage", &["occupancy", "2"]),
+    (&["table", "--particles", "0", "--occupancy", "2"], 2, "usage", &["at least one"]),
+    (&["table", "--gear-values", "3"], 2, "usage", &["4..=6"]),
+    (&["table", "--mask", "6"], 2, "usage", &["5, 7"]),
+    (&["table", "--host"], 2, "usage", &["--ladder"]),
+    (&["table", "--machine", "cray-9"], 2, "usage", &["cray-9", "cray-1"]),
+    (&["table", "--machine", "none.toml"], 5, "input-output", &["none.toml"]),
+    (&["table", "--machine", "latin.toml"], 3, "input", &["latin.toml", "UTF-8"]),
+    (&["table", "--ladder", "--machine", "scene.toml"], 3, "input", &["scene.toml"]),
+    (&["table", "--ladder", "--host", "none.toml"], 5, "input-output", &["none.toml"]),
+    (&["table", "--ladder", "--host", "."], 5, "input-output", &["directory"]),
+    (&["table", "--ladder", "--host", "latin.toml"], 3, "input", &["line 2, column 10", "UTF-8"]),
+    (&["table", "--ladder", "--host", "scene.toml"], 3, "input", &["scene.toml"]),
+    (&["listing"], 2, "usage", &["PART"]),
+    (&["listing", "foces"], 2, "usage", &["forces"]),
+    (&["listing", "forces", "--particles", "3"], 2, "usage", &["5 cells"]),
+    (&["scene"], 2, "usage", &["check"]),
+    (&["scene", "show", "three-discs"], 2, "usage", &["two-discs"]),
+    (&["scene", "check"], 2, "usage", &["SCENE"]),
+    (&["scene", "check", "none.toml"], 3, "input", &["none.toml"]),
+    (&["scene", "check", "latin.toml"], 3, "input", &["latin.toml:2:", "UTF-8"]),
+    (&["scene", "check", "scene.toml"], 3, "input", &["scene.toml:", "99"]),
+    (&["scene", "check", "pipe", "--set", "law.friction=-1"], 3, "input", &["friction", "-1"]),
+    (&["scene", "check", "pipe", "--set", "nothing"], 3, "input", &["nothing"]),
+    (&["scene", "check", "two-discs", "--set", "particles.file=\"frame.xyz\""], 3, "input", &["frame.xyz:3"]),
+    (&["run"], 2, "usage", &["SCENE"]),
+    (&["run", "none.toml"], 3, "input", &["none.toml"]),
+    (&["run", "two-discs", "--resume", "--overwrite"], 2, "usage", &["--overwrite"]),
+    (&["run", "two-discs", "--resume", "--out", "fresh"], 2, "usage", &["fresh", "checkpoint"]),
+    (&["run", "two-discs", "--out", "file"], 5, "input-output", &["file"]),
+    (&["run", "two-discs", "--out", "file/below"], 5, "input-output", &["file/below"]),
+    (&["run", "two-discs", "--set", "law.friction=-1"], 3, "input", &["friction"]),
+    (
+        &["run", "two-discs", "--out", "deep", "--set", "law.stiffness=1e-3"],
+        4,
+        "precondition",
+        &["overlap", "deep/trajectory.xyz"],
+    ),
+    (&["bench"], 2, "usage", &["WHAT"]),
+    (&["bench", "disks"], 2, "usage", &["lattice"]),
+    (&["bench", "lattice", "--steps", "0"], 2, "usage", &["--steps", "0"]),
+    (&["bench", "lattice", "--repeats", "0"], 2, "usage", &["--repeats", "0"]),
+    (&["bench", "lattice", "--particles", "0"], 2, "usage", &["--particles 0"]),
+    (&["bench", "lattice", "--packing-fraction", "2"], 2, "usage", &["--packing-fraction 2", "0.907"]),
+    (&["bench", "lattice", "--packing-fraction", "NaN"], 2, "usage", &["--packing-fraction NaN"]),
+    (&["bench", "lattice", "--packing-fraction", "-1"], 2, "usage", &["--packing-fraction -1"]),
+    (&["bench", "lattice", "--cell-edge", "-1"], 2, "usage", &["--cell-edge -1"]),
+    (&["bench", "lattice", "--cell-edge", "3"], 2, "usage", &["--cell-edge 3", "0.6363"]),
+    (&["bench", "lattice", "--execution", "quick"], 2, "usage", &["--execution quick", "chained"]),
+    (&["bench", "lattice", "--precision", "f16"], 2, "usage", &["f32"]),
+    (&["bench", "lattice", "--integrator", "euler"], 2, "usage", &["gear5"]),
+    (&["bench", "sectors", "--execution", "chained"], 2, "usage", &["--execution chained", "sectors"]),
+    (&["calibrate", "--sweeps", "0"], 2, "usage", &["--sweeps", "0"]),
+    (&["calibrate", "--out", "file"], 2, "usage", &["file", "--force"]),
+    (&["calibrate", "--out", "none/host.toml"], 5, "input-output", &["none/host.toml"]),
+    (&["validate-model", "--particles", "0"], 2, "usage", &["--particles", "0"]),
+    (&["validate-model", "--particles", "100", "--occupancies", "7"], 2, "usage", &["packing_fraction"]),
+    (&["validate-model", "--rounds", "0"], 2, "usage", &["--rounds", "0"]),
+    (&["validate-model", "--host", "none.toml"], 5, "input-output", &["none.toml"]),
+    (&["validate-model", "--host", "latin.toml"], 3, "input", &["latin.toml", "UTF-8"]),
+    (&["validate-model", "--host", "scene.toml", "--calibrate"], 2, "usage", &["--calibrate"]),
+    (&["validate-model", "--out", "file"], 5, "input-output", &["file"]),
+    (&["chart"], 2, "usage", &["WHAT"]),
+    (&["chart", "density-cost", "--machine", "cray-9"], 2, "usage", &["cray-9"]),
+    (&["chart", "density-cost", "--machine", "none.toml"], 5, "input-output", &["none.toml"]),
+    (&["chart", "density-cost", "--out", "file"], 5, "input-output", &["file"]),
+    (&["reproduce", "--only", "figure-9"], 2, "usage", &["pipe-small"]),
+    (&["reproduce", "--only", "mask", "--out", "file"], 5, "input-output", &["file"]),
+    (&["completions", "tcsh"], 2, "usage", &["bash"]),
+    (&["man", "fly"], 2, "usage", &["reproduce"]),
+];
+
+#[test]
+fn every_verb_refuses_with_its_exit_code_in_words_and_as_data() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    prepare(folder);
+    let mut wrong = vec![];
+    for &(arguments, code, kind, words) in CASES {
+        let output = stripmine(folder, &[arguments, &["--json"]].concat());
+        let said = String::from_utf8_lossy(&output.stderr);
+        let data: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
+        let error = &data["error"];
+        let told = error["message"].as_str().is_some_and(|message| !message.is_empty())
+            && ["place", "remedy"].iter().all(|key| error.get(key).is_some());
+        let holds = output.status.code() == Some(code)
+            && error["kind"] == kind
+            && told
+            && words.iter().all(|word| said.contains(word))
+            && !said.contains("panicked");
+        if !holds {
+            wrong.push(format!("{arguments:?}: {:?}, {kind}, {words:?}\n{said}{data:#}", output.status));
+        }
+    }
+    assert!(wrong.is_empty(), "{} of {}:\n\n{}", wrong.len(), CASES.len(), wrong.join("\n\n"));
+    assert_eq!(std::fs::read(folder.join("file")).unwrap(), b"mine");
+}
+
+/// A scene's mistakes are all told, each with its place; the first of them is the error.
+#[test]
+fn mistakes_of_a_scene_have_their_places_as_data() {
+    let folder = tempfile::tempdir().unwrap();
+    let bad = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/bad/many-mistakes-at-once.toml");
+    for verb in [&["scene", "check"][..], &["run"]] {
+        let output = stripmine(folder.path(), &[verb, &[bad.to_str().unwrap(), "--json"]].concat());
+        assert_eq!(output.status.code(), Some(3));
+        let data: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let errors = data["errors"].as_array().unwrap();
+        assert!(errors.len() > 1 && errors[0]["place"]["line"].is_u64());
+        assert_eq!(data["error"]["place"]["line"], errors[0]["place"]["line"]);
+        assert_eq!(data["error"]["message"], errors[0]["message"]);
+    }
+}
+
+/// What standard output does not take is an input/output failure, for help and version too; a reader that closes the pipe is
+/// none; and a full or closed standard error changes no exit code.
+#[cfg(target_os = "linux")]
+#[test]
+fn full_and_closed_outputs_end_in_exit_codes() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = assert_cmd::cargo::cargo_bin("stripmine");
+    let mut wrong = vec![];
+    for (line, code) in [
+        ("\"$0\" table >/dev/full", 5),
+        ("\"$0\" table --json >/dev/full", 5),
+        ("\"$0\" --help >/dev/full", 5),
+        ("\"$0\" --version >/dev/full", 5),
+        ("\"$0\" man >/dev/full", 5),
+        ("\"$0\" completions bash >/dev/full", 5),
+        ("\"$0\" listing forces >/dev/full", 5),
+        ("\"$0\" scene keys >/dev/full", 5),
+        ("\"$0\" run two-discs --overwrite --out full >/dev/full", 5),
+        ("\"$0\" nonsense --json >/dev/full", 2),
+        ("\"$0\" scene check none --json >/dev/full", 3),
+        ("{ \"$0\" listing forces; echo $? >code; } | true; exit $(cat code)", 0),
+        ("{ \"$0\" scene keys --json; echo $? >code; } | true; exit $(cat code)", 0),
+        ("\"$0\" table 2>/dev/full", 0),
+        ("\"$0\" scene check pipe-as-printed 2>/dev/full", 0),
+        ("\"$0\" reproduce --only mask --out pages 2>/dev/full", 0),
+        ("\"$0\" run two-discs --overwrite --out full 2>/dev/full", 0),
+        ("\"$0\" table --particles 0 2>/dev/full", 2),
+        ("\"$0\" nonsense 2>/dev/full", 2),
+        ("\"$0\" 2>/dev/full", 2),
+        ("\"$0\" scene check none 2>/dev/full", 3),
+        ("\"$0\" table 2>&-", 0),
+        ("\"$0\" nonsense 2>&-", 2),
+        ("\"$0\" table --particles 0 >&- 2>&-", 2),
+        ("\"$0\" table <&- >&- 2>&-", 0),
+    ] {
+        let mut shell = std::process::Command::new("sh");
+        let ended = shell.current_dir(folder.path()).args(["-c", line]).arg(&program).output().unwrap();
+        let said = String::from_utf8_lossy(&ended.stderr);
+        if ended.status.code() != Some(code) || said.contains("panicked") {
+            wrong.push(format!("{line}: {:?} instead of {code}\n{said}", ended.status));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A file that reaches the limit of its size is an input/output failure, not a death by a signal.
+#[cfg(unix)]
+#[test]
+fn the_limit_of_file_sizes_ends_in_an_exit_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = assert_cmd::cargo::cargo_bin("stripmine");
+    for arguments in
+        ["run pipe-small --out run", "reproduce --only mask --out pages", "table --ladder >table.txt"]
+    {
+        let line = format!("ulimit -f 1; \"$0\" {arguments}");
+        let mut shell = std::process::Command::new("sh");
+        let ended = shell.current_dir(folder.path()).args(["-c", &line]).arg(&program).output().unwrap();
+        let said = String::from_utf8_lossy(&ended.stderr);
+        assert_eq!(ended.status.code(), Some(5), "{arguments}: {said}");
+        assert!(said.contains("too large"), "{arguments}: {said}");
+    }
+}
