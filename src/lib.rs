@@ -61,6 +61,7 @@ pub mod model;
 pub mod observe;
 pub mod particles;
 pub mod placement;
+pub mod quoted;
 pub mod report;
 pub mod run;
 pub mod scene;

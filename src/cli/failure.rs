@@ -6,6 +6,7 @@ use crate::io::checkpoint::CheckpointError;
 use crate::model::host::HostFileError;
 use crate::model::machine::MachineError;
 use crate::model::machine_file::MachineFileError;
+use crate::quoted;
 use crate::run::RunError;
 use crate::scene::SceneErrors;
 use crate::study::StudyError;
@@ -55,16 +56,24 @@ impl Place {
 /// Says a failure: in words on standard error and, where data is asked for and none is there yet, as data on standard output.
 pub(super) fn tell(failure: &Failure, as_data: bool) {
     match failure {
-        Failure::Arguments(mistake) => {
+        Failure::Arguments(mistake) if is_plain(mistake) => {
             // Where standard error is full or closed there is nowhere to say so.
             let _ = mistake.print();
         }
+        // The parser's own words begin as ours do.
+        Failure::Arguments(mistake) => say(mistake.render().to_string().trim_end()),
         _ => say(format_args!("error: {failure}")),
     }
     if as_data && is_untouched() {
         // The first failure decides the exit code, whether it can be told or not.
         let _ = print_json(&Document { error: failure.report(), errors: failure.mistakes() });
     }
+}
+
+/// Whether a mistake among the arguments quotes nothing that a terminal would obey.
+fn is_plain(mistake: &clap::Error) -> bool {
+    let text = mistake.render().to_string();
+    quoted::message(&text) == text
 }
 
 impl Failure {
@@ -141,10 +150,10 @@ impl Failure {
             | Failure::Machine(
                 MachineError::Read { file, .. } | MachineError::File(MachineFileError::Syntax { file, .. }),
             ) => of_entry(file, None),
-            Failure::HostFile(HostFileError::Content { file, entries }) => {
+            Failure::HostFile(HostFileError::Content { file, entries, .. }) => {
                 of_entry(file, entries.first().and_then(|entry| entry.position))
             }
-            Failure::Machine(MachineError::File(MachineFileError::Content { file, defects })) => {
+            Failure::Machine(MachineError::File(MachineFileError::Content { file, defects, .. })) => {
                 of_entry(file, defects.first().and_then(|(position, _)| *position))
             }
             Failure::Interrupted { folder, .. }

@@ -15,6 +15,7 @@ mod scene_choice;
 mod table;
 mod validate_model;
 
+use crate::model::host::HostFileError;
 use crate::model::machine::MachineError;
 use crate::run::RunError;
 use crate::signals::{self, End};
@@ -40,6 +41,9 @@ struct CommandLine {
     common: Common,
 }
 
+/// More threads than any machine at hand has cores; each takes memory of its own.
+const MOST_THREADS: i64 = 1024;
+
 /// What every verb takes.
 #[derive(Args, Clone, Debug)]
 struct Common {
@@ -49,8 +53,8 @@ struct Common {
     /// Nothing on standard error but errors
     #[arg(long, global = true)]
     quiet: bool,
-    /// Threads; all cores by default
-    #[arg(long, global = true, value_parser = clap::value_parser!(u16).range(1..))]
+    /// Threads, at most 1024; all cores by default
+    #[arg(long, global = true, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     threads: Option<u16>,
 }
 
@@ -178,6 +182,7 @@ impl Failure {
             | Failure::Usage(_)
             | Failure::UnknownVerb { .. }
             | Failure::HostFileExists(_) => 2,
+            Failure::HostFile(HostFileError::Read(_)) => 5,
             Failure::HostFile(_) => 3,
             Failure::HostLadder(LadderError::Question(_)) => 2,
             Failure::HostLadder(LadderError::OutOfRange(_)) | Failure::TooNoisy(_) => 4,

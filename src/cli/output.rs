@@ -2,6 +2,7 @@
 //! the command does.
 
 use super::{Common, Failure};
+use crate::quoted;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -22,7 +23,7 @@ fn shown() -> MutexGuard<'static, Option<ProgressBar>> {
 pub(super) fn say(message: impl Display) {
     let line = || {
         // Where standard error is full or closed there is nowhere to say so.
-        let _ = writeln!(io::stderr().lock(), "{message}");
+        let _ = writeln!(io::stderr().lock(), "{}", quoted::message(&message.to_string()));
     };
     let bar = shown().clone();
     match bar {

@@ -3,8 +3,7 @@
 use super::calibrate::noise;
 use super::reproduce::{Folder, Made};
 use super::{Common, Failure, output, print, print_json, say, warn};
-use crate::model::host::{BadEntry, HostFileError, HostModel, default_model};
-use crate::model::machine_file::Position;
+use crate::model::host::{HostModel, default_model};
 use crate::report;
 use crate::report::origin::{self, Provenance};
 use crate::signals;
@@ -67,20 +66,7 @@ pub(super) fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostMo
         }
         return Ok((model, true));
     };
-    let name = file.display().to_string();
-    let bytes = std::fs::read(file).map_err(Failure::writing(&name))?;
-    let text = std::str::from_utf8(&bytes).map_err(|cause| {
-        let before = String::from_utf8_lossy(&bytes[..cause.valid_up_to()]);
-        let line = before.matches('\n').count() + 1;
-        let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) + 1;
-        let entry = BadEntry {
-            position: Some(Position { line, column }),
-            entry: "the text".to_owned(),
-            what: "is not UTF-8".to_owned(),
-        };
-        HostFileError::Content { file: name.clone(), entries: vec![entry] }
-    })?;
-    Ok((HostModel::parse(&name, text)?, false))
+    Ok((HostModel::load(file)?, false))
 }
 
 impl ValidateModel {

@@ -6,6 +6,7 @@ pub mod extxyz;
 pub mod growing_file;
 pub mod lammps;
 pub mod lock;
+pub mod regular_file;
 pub(crate) mod replace;
 pub mod table_file;
 
@@ -13,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 /// A file that the system would not let be read or written.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {action}: {cause}", file.display())]
+#[error("{}: {action}: {cause}", crate::quoted::path(file))]
 pub struct FileError {
     /// The file.
     pub file: PathBuf,

@@ -2,6 +2,7 @@
 
 use super::machine_file::MachineFileError;
 use super::units::{MemoryPorts, Units};
+use crate::quoted::quoted;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use stripmine_kernels::isa::op::{OpClass, OpCounts};
@@ -257,7 +258,8 @@ const PRESETS: &[(&str, &str)] = embedded![
 pub enum MachineError {
     /// No preset has the name asked for, and it does not look like that of a file.
     #[error(
-        "unknown machine `{name}`; known are {}, and machine files by their path, which ends in .toml",
+        "unknown machine `{}`; known are {}, and machine files by their path, which ends in .toml",
+        quoted(name),
         known.join(", ")
     )]
     Unknown {
@@ -267,7 +269,7 @@ pub enum MachineError {
         known: Vec<&'static str>,
     },
     /// A file that cannot be read.
-    #[error("machine file `{file}`: {cause}")]
+    #[error("machine file `{}`: {cause}", quoted(file))]
     Read {
         /// Name of the file.
         file: String,
@@ -292,9 +294,7 @@ pub fn find(name: &str) -> Result<MachineModel, MachineError> {
     if !name.ends_with(".toml") {
         return preset(name);
     }
-    let text =
-        std::fs::read_to_string(name).map_err(|cause| MachineError::Read { file: name.to_owned(), cause })?;
-    Ok(MachineModel::parse(name, &text)?)
+    MachineModel::load(name)
 }
 
 /// The preset called `name`.

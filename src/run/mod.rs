@@ -68,7 +68,7 @@ pub enum RunError {
     },
     /// The discs at the start are not those of the run.
     #[error(
-        "{} was begun with other discs than the scene now has at its start ({file}): digest {theirs} then, {ours} now;          give the start back its contents, or begin again in another folder",
+        "{} was begun with other discs than the scene now has at its start ({file}): digest {theirs} then, {ours} now; give the start back its contents, or begin again in another folder",
         folder.display()
     )]
     OtherDiscs {
@@ -83,7 +83,7 @@ pub enum RunError {
     },
     /// The program is not the one of the run.
     #[error(
-        "{} was last written by {theirs}; this is {ours}, which does not promise the same bits: go on with that one, or          with this one nevertheless by --other-version",
+        "{} was last written by {theirs}; this is {ours}, which does not promise the same bits: go on with that one, or with this one nevertheless by --other-version",
         folder.display()
     )]
     OtherVersion {

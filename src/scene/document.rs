@@ -1,8 +1,9 @@
 //! From the text of a scene to values that are each right for themselves.
 
-use super::error::{Place, Reason, SceneError, SceneErrors, Spot};
+use super::error::{Mistakes, Place, Reason, SceneError, SceneErrors, Spot};
 use super::key_table::{FORMAT, KEYS, SECTIONS};
 use super::keys::{Fault, Key, Selector, Value, nearest};
+use crate::quoted::quoted;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -14,8 +15,8 @@ type Id = (&'static str, &'static str);
 pub(super) struct Entry {
     pub(super) value: Value,
     pub(super) spot: Spot,
-    /// Where the items of a list stand.
-    pub(super) items: Vec<Spot>,
+    /// Where the items of a list stand; nothing where they come from an override.
+    pub(super) items: Vec<Place>,
     pub(super) overrides: bool,
 }
 
@@ -27,7 +28,7 @@ pub(super) struct Entries {
     sections: BTreeMap<&'static str, Place>,
     /// Keys that were given, but not well.
     pub(super) faulty: BTreeSet<Id>,
-    pub(super) errors: Vec<SceneError>,
+    pub(super) errors: Mistakes,
 }
 
 impl Entries {
@@ -51,28 +52,51 @@ impl Entries {
 /// Where lines begin.
 struct Lines<'t> {
     file: &'t str,
-    text: &'t str,
+    text: &'t [u8],
     starts: Vec<usize>,
+    /// Characters before every [`Lines::BLOCK`]th byte.
+    before: Vec<usize>,
 }
 
 impl<'t> Lines<'t> {
+    /// So far a place is counted from, however long its line.
+    const BLOCK: usize = 1024;
+
     fn new(file: &'t str, text: &'t str) -> Self {
-        let breaks = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
-        Lines { file, text, starts: std::iter::once(0).chain(breaks).collect() }
+        let text = text.as_bytes();
+        let breaks = text.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1);
+        let starts = std::iter::once(0).chain(breaks).collect();
+        let mut characters = 0;
+        let before = text.chunks(Lines::BLOCK).map(|block| {
+            let before = characters;
+            characters += count_characters(block);
+            before
+        });
+        Lines { file, text, starts, before: before.collect() }
+    }
+
+    /// Characters before a byte.
+    fn characters(&self, offset: usize) -> usize {
+        let block = (offset / Lines::BLOCK).min(self.before.len().saturating_sub(1));
+        let rest = self.text.get(block * Lines::BLOCK..offset.min(self.text.len())).unwrap_or_default();
+        self.before.get(block).copied().unwrap_or(0) + count_characters(rest)
     }
 
     fn place(&self, offset: usize) -> Place {
         let line = self.starts.partition_point(|start| *start <= offset);
         let start = self.starts[line.saturating_sub(1)];
-        let before = self.text.as_bytes().get(start..offset.min(self.text.len())).unwrap_or_default();
-        // Characters, not bytes: continuation bytes of UTF-8 do not count.
-        let column = 1 + before.iter().filter(|byte| **byte & 0xC0 != 0x80).count();
+        let column = 1 + self.characters(offset) - self.characters(start);
         Place { line: line as u32, column: column as u32 }
     }
 
     fn spot(&self, offset: usize) -> Spot {
         Spot { file: self.file.to_owned(), place: Some(self.place(offset)) }
     }
+}
+
+/// Characters, not bytes: continuation bytes of UTF-8 do not count.
+fn count_characters(text: &[u8]) -> usize {
+    text.iter().filter(|byte| **byte & 0xC0 != 0x80).count()
 }
 
 /// Reads the text of a scene and then the overrides, each `section.key=value`.
@@ -84,28 +108,26 @@ pub(super) fn read(file: &str, text: &str, overrides: &[String]) -> Result<Entri
         values: BTreeMap::new(),
         sections: BTreeMap::new(),
         faulty: BTreeSet::new(),
-        errors: Vec::new(),
+        errors: Mistakes::default(),
     };
     if !syntax.is_empty() {
         // One mistake often makes several messages; what a broken text says besides is not to be trusted.
+        let mut known = BTreeSet::new();
         for error in syntax {
-            let spot = match error.span() {
-                Some(span) => lines.spot(span.start),
-                None => Spot { file: file.to_owned(), place: None },
-            };
-            let line = |place: Option<Place>| place.map(|place| place.line);
-            if entries.errors.iter().all(|known| line(known.place) != line(spot.place)) {
+            let place = error.span().map(|span| lines.place(span.start));
+            if known.insert(place.map(|place| place.line)) {
+                let spot = Spot { file: file.to_owned(), place };
                 entries.errors.push(spot.error(Reason::Syntax, format!("not TOML: {}", error.message())));
             }
         }
-        SceneErrors::none_of(entries.errors)?;
+        entries.errors.none_of(file)?;
         return Err(Spot { file: file.to_owned(), place: None }.error(Reason::Syntax, "not TOML").into());
     }
     let source = Source { lines: Some(&lines), file };
     for (name, value) in table.get_ref() {
         source.top(&mut entries, name, value);
     }
-    let version = entries.errors.iter().find(|error| error.reason == Reason::Format);
+    let version = entries.errors.named().iter().find(|error| error.reason == Reason::Format);
     if let Some(error) = version.cloned() {
         // Another version has other keys: what else seems wrong may not be.
         return Err(error.into());
@@ -189,10 +211,13 @@ impl Source<'_> {
     }
 
     fn unknown_section(&self, entries: &mut Entries, name: &Spanned<std::borrow::Cow<'_, str>>) {
+        if !entries.errors.has_room() {
+            return entries.errors.count();
+        }
         let names = SECTIONS.map(|(name, _)| name);
         let mut error = self
             .spot(name.span().start)
-            .error(Reason::Unknown, format!("unknown section [{}]", name.get_ref().escape_debug()))
+            .error(Reason::Unknown, format!("unknown section [{}]", quoted(name.get_ref())))
             .expecting(names.map(|name| format!("[{name}]")).join(" "));
         if let Some(nearest) = nearest(name.get_ref(), names) {
             error = error.advising(format!("did you mean [{nearest}]?"));
@@ -214,10 +239,12 @@ impl Source<'_> {
         match key.kind.read(value) {
             Ok(read) => {
                 let elements = value.get_ref().as_array().into_iter().flatten();
+                let places =
+                    |lines: &Lines<'_>| elements.map(|item| lines.place(item.span().start)).collect();
                 let entry = Entry {
                     value: read,
                     spot: self.spot(name.span().start),
-                    items: elements.map(|item| self.spot(item.span().start)).collect(),
+                    items: self.lines.map(places).unwrap_or_default(),
                     overrides: self.lines.is_none(),
                 };
                 entries.faulty.remove(&key.id());
@@ -236,12 +263,15 @@ impl Source<'_> {
         section: &'static str,
         name: &Spanned<std::borrow::Cow<'_, str>>,
     ) {
+        if !entries.errors.has_room() {
+            return entries.errors.count();
+        }
         let in_section = || KEYS.iter().filter(|key| key.section == section).map(|key| key.name);
         let place =
             if section.is_empty() { "at the top of the file".to_owned() } else { format!("in [{section}]") };
         let mut error = self
             .spot(name.span().start)
-            .error(Reason::Unknown, format!("unknown key `{}` {place}", name.get_ref().escape_debug()));
+            .error(Reason::Unknown, format!("unknown key `{}` {place}", quoted(name.get_ref())));
         let elsewhere = KEYS.iter().find(|key| key.name == name.get_ref());
         if let Some(key) = elsewhere {
             let home = if key.section.is_empty() {

@@ -1,5 +1,6 @@
 //! What can be wrong with a scene, and where.
 
+use crate::quoted;
 use serde::Serialize;
 
 /// A place in a text.
@@ -48,6 +49,10 @@ pub enum Reason {
     Geometry,
     /// A time step at which the integrator is unstable.
     Stability,
+    /// A run that needs more memory than this machine has.
+    Memory,
+    /// Mistakes beyond those that are named.
+    More,
 }
 
 /// A mistake of a scene.
@@ -69,14 +74,14 @@ pub struct SceneError {
 }
 
 fn paragraph(error: &SceneError) -> String {
-    let mut text = error.file.clone();
+    let mut text = quoted::quoted(&error.file);
     if let Some(Place { line, column }) = error.place {
         text.push_str(&format!(":{line}:{column}"));
     }
-    text.push_str(&format!(": {}", error.message));
+    text.push_str(&format!(": {}", quoted::message(&error.message)));
     for (what, words) in [("expected", &error.expected), ("help", &error.suggestion)] {
         if let Some(words) = words {
-            text.push_str(&format!("\n  {what}: {words}"));
+            text.push_str(&format!("\n  {what}: {}", quoted::message(words)));
         }
     }
     text
@@ -96,7 +101,56 @@ impl SceneError {
     }
 }
 
-/// Every mistake found in a scene, in the order of their places; at least one.
+/// Mistakes as they are found; names the first ones and counts the rest.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Mistakes {
+    named: Vec<SceneError>,
+    more: usize,
+}
+
+impl Mistakes {
+    /// So many mistakes are named: a file of another kind may hold millions.
+    pub(super) const NAMED: usize = 50;
+
+    /// Whether a mistake would be named; where not, there is no need to find words for it.
+    pub(super) fn has_room(&self) -> bool {
+        self.named.len() < Mistakes::NAMED
+    }
+
+    pub(super) fn named(&self) -> &[SceneError] {
+        &self.named
+    }
+
+    pub(super) fn push(&mut self, error: SceneError) {
+        match self.has_room() {
+            true => self.named.push(error),
+            false => self.more += 1,
+        }
+    }
+
+    /// One more, of which nothing is said.
+    pub(super) fn count(&mut self) {
+        self.more += 1;
+    }
+
+    /// Nothing wrong, or the mistakes of the file.
+    pub(super) fn none_of(self, file: &str) -> Result<(), SceneErrors> {
+        let Err(SceneErrors(mut errors)) = SceneErrors::none_of(self.named) else { return Ok(()) };
+        if self.more > 0 {
+            let spot = Spot { file: file.to_owned(), place: None };
+            errors.push(spot.error(Reason::More, format!("{} more mistakes, not named", self.more)));
+        }
+        Err(SceneErrors(errors))
+    }
+}
+
+impl Extend<SceneError> for Mistakes {
+    fn extend<T: IntoIterator<Item = SceneError>>(&mut self, errors: T) {
+        errors.into_iter().for_each(|error| self.push(error));
+    }
+}
+
+/// Every mistake found in a scene, in the order of their places; at least one. Of very many only the first are named.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
 #[error("{}", paragraphs(.0))]
 #[serde(transparent)]
@@ -130,7 +184,11 @@ fn paragraphs(errors: &[SceneError]) -> String {
     let all: Vec<String> = errors.iter().map(ToString::to_string).collect();
     match all.len() {
         1 => all.concat(),
-        count => format!("{count} mistakes in the scene\n\n{}\n", all.join("\n\n")),
+        count => {
+            let more = errors.iter().any(|error| error.reason == Reason::More);
+            let count = if more { format!("more than {}", count - 1) } else { count.to_string() };
+            format!("{count} mistakes in the scene\n\n{}\n", all.join("\n\n"))
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a key is: its name, type, range, unit, default and documentation.
 
-use super::error::Reason;
+use super::error::{Mistakes, Reason};
+use crate::quoted::quoted;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeInteger, DeValue};
@@ -166,9 +167,9 @@ impl Kind {
 
 /// What stands there, in words: a value where it is short.
 fn found(value: &DeValue<'_>) -> String {
-    let short = |text: &str| text.chars().take(40).collect::<String>();
+    let short = |text: &str| quoted(&text.chars().take(40).collect::<String>());
     match value {
-        DeValue::String(text) => format!("the text \"{}\"", short(text).escape_debug()),
+        DeValue::String(text) => format!("the text \"{}\"", short(text)),
         DeValue::Integer(number) => format!("the number {}", short(number.as_str())),
         DeValue::Float(number) => format!("the number {}", short(number.as_str())),
         DeValue::Boolean(value) => value.to_string(),
@@ -234,9 +235,13 @@ fn switch(value: &Spanned<DeValue<'_>>) -> Read<bool> {
     value.get_ref().as_bool().map_or_else(|| wrong_type(value), Ok)
 }
 
+/// Longest text that is a value (bytes): longer than any path.
+const LONGEST_TEXT: usize = 4096;
+
 fn text(value: &Spanned<DeValue<'_>>) -> Read<String> {
     match value.get_ref().as_str() {
         Some(text) if text.trim().is_empty() || text.chars().any(char::is_control) => out_of_range(value),
+        Some(text) if text.len() > LONGEST_TEXT => out_of_range(value),
         Some(text) => Ok(text.to_owned()),
         None => wrong_type(value),
     }
@@ -260,10 +265,16 @@ fn choice(value: &Spanned<DeValue<'_>>, words: &'static [&'static str]) -> Read<
 fn list<T>(value: &Spanned<DeValue<'_>>, item: impl Fn(&Spanned<DeValue<'_>>) -> Read<T>) -> Read<Vec<T>> {
     let Some(items) = value.get_ref().as_array() else { return wrong_type(value) };
     let (mut good, mut faults) = (Vec::new(), Vec::new());
-    for read in items.iter().map(item) {
-        match read {
+    for (number, value) in items.iter().enumerate() {
+        match item(value) {
             Ok(value) => good.push(value),
             Err(more) => faults.extend(more),
+        }
+        let rest = items.len() - number - 1;
+        if faults.len() >= Mistakes::NAMED / 2 && rest > 0 {
+            let found = format!("wrong in as many places; the {rest} items after this one are not looked at");
+            faults.push(Fault::new(value, Reason::Type, found));
+            break;
         }
     }
     if faults.is_empty() { Ok(good) } else { Err(faults) }
@@ -279,6 +290,10 @@ pub(super) fn nearest(
     name: &str,
     candidates: impl IntoIterator<Item = &'static str>,
 ) -> Option<&'static str> {
+    // Longer than any name: nothing is near, and the comparison takes as long as both together.
+    if name.len() > 64 {
+        return None;
+    }
     let distance = |candidate: &str| strsim::damerau_levenshtein(&name.to_lowercase(), candidate);
     let near = |candidate: &&str| distance(candidate) <= (candidate.len() / 3).max(2).min(name.len());
     candidates.into_iter().filter(near).min_by_key(|candidate| distance(candidate))

@@ -5,7 +5,11 @@ use super::document::{self, Entries};
 use super::error::{Reason, SceneErrors, Spot};
 use super::keys::Key;
 use super::{Scene, assemble, presets, rules};
+use crate::io::regular_file;
 use std::path::Path;
+
+/// Longest scene file (bytes); a list of positions may be long.
+const LONGEST: u64 = 64 << 20;
 
 /// A scene with the text it comes from, so that what the check finds has a place.
 #[derive(Clone, Debug)]
@@ -23,7 +27,7 @@ impl Document {
     pub fn parse(file: &str, text: &str, overrides: &[String]) -> Result<Document, SceneErrors> {
         let mut entries = document::read(file, text, overrides)?;
         rules::apply(&mut entries);
-        SceneErrors::none_of(std::mem::take(&mut entries.errors))?;
+        std::mem::take(&mut entries.errors).none_of(file)?;
         let scene = assemble::read(&entries)?;
         Ok(Document { scene, entries: Some(entries) })
     }
@@ -38,7 +42,7 @@ impl Document {
         }
         let nowhere = Spot { file: what.to_owned(), place: None };
         let names: Vec<&str> = presets::PRESETS.iter().map(|preset| preset.name).collect();
-        let bytes = std::fs::read(what).map_err(|cause| {
+        let bytes = regular_file::read(Path::new(what), LONGEST).map_err(|cause| {
             let message = match cause.kind() {
                 std::io::ErrorKind::NotFound => "there is no such preset and no such file".to_owned(),
                 _ => format!("cannot be read: {cause}"),
@@ -51,8 +55,7 @@ impl Document {
             }
         })?;
         let text = String::from_utf8(bytes).map_err(|cause| {
-            let good = cause.utf8_error().valid_up_to();
-            let line = 1 + cause.as_bytes()[..good].iter().filter(|byte| **byte == b'\n').count();
+            let line = regular_file::line_that_is_not_text(cause.as_bytes()).unwrap_or(1);
             let spot =
                 Spot { file: what.to_owned(), place: Some(super::Place { line: line as u32, column: 1 }) };
             spot.error(Reason::Syntax, "this line is not UTF-8 text").expecting("a TOML file in UTF-8")
@@ -89,10 +92,9 @@ impl Document {
     /// Where an item of a list stands.
     pub(super) fn item_spot(&self, key: &Key, item: usize) -> Spot {
         let entry = self.entries.as_ref().and_then(|entries| entries.given(key));
-        match entry.and_then(|entry| entry.items.get(item)) {
-            Some(spot) => spot.clone(),
-            None => self.spot(key),
-        }
+        let place = entry.and_then(|entry| entry.items.get(item));
+        let spot = self.spot(key);
+        Spot { place: place.copied().or(spot.place), ..spot }
     }
 }
 

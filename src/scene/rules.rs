@@ -219,5 +219,5 @@ fn agreement(entries: &mut Entries) {
     };
     ordered(&MAX_PENETRATION, &STOP_PENETRATION, "a run warns before it stops");
     errors.extend(search(entries));
-    entries.errors.append(&mut errors);
+    entries.errors.extend(errors);
 }

@@ -1,12 +1,13 @@
 //! What can be wrong with a checkpoint, and what is left.
 
 use super::VERSION;
+use crate::quoted::{self, quoted};
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// Why a checkpoint cannot be used.
 #[derive(Debug, thiserror::Error)]
-#[error("checkpoint {}: {fault}{}{}", file.display(), place(*.offset), advice(file, kept))]
+#[error("checkpoint {}: {fault}{}{}", quoted::path(file), place(*.offset), advice(file, kept))]
 pub struct CheckpointError {
     /// The file.
     pub file: PathBuf,
@@ -75,7 +76,7 @@ pub enum Fault {
     #[error("is corrupt: {0}")]
     Meaningless(&'static str),
     /// A name given twice.
-    #[error("is corrupt: {what} `{name}` is there twice")]
+    #[error("is corrupt: {what} `{}` is there twice", quoted(name))]
     Repeated {
         /// Column, counter or entry of the origin.
         what: &'static str,
@@ -117,12 +118,12 @@ fn advice(file: &Path, kept: &Kept) -> String {
         Kept::Whole { file: older, step } => format!(
             "\n  kept: the older one, {}, of step {step}, is whole\
              \n  help: to go on from it, rename it to {}",
-            older.display(),
-            file.display()
+            quoted::path(older),
+            quoted::path(file)
         ),
         Kept::Unusable { file: older } => format!(
             "\n  kept: the older one, {}, but it cannot be used either\n  help: start the run again",
-            older.display()
+            quoted::path(older)
         ),
     }
 }

@@ -2,10 +2,10 @@
 
 use super::error::{CheckpointError, Fault, Kept};
 use super::{Checkpoint, WriteError, reading};
-use crate::io::FileError;
 use crate::io::replace::{folder_of, remove_if_there, sync_folder, temporary, written_beside};
+use crate::io::{FileError, regular_file};
 use std::ffi::OsString;
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
 
@@ -86,7 +86,7 @@ impl Checkpoint {
 
 fn read_one(path: &Path) -> Result<Checkpoint, reading::Found> {
     let unreadable = |cause: io::Error| (None, Fault::Io(cause));
-    let file = File::open(path).map_err(unreadable)?;
+    let file = regular_file::open(path).map_err(unreadable)?;
     let length = file.metadata().map_err(unreadable)?.len();
     reading::decode(BufReader::new(file), length)
 }

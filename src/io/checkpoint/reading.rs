@@ -3,8 +3,8 @@
 use super::error::Fault;
 use super::{Checkpoint, Column, Counter, HEADER, MAGIC, SECTION_FRAME, VERSION};
 use crc32fast::Hasher;
-use std::collections::BTreeMap;
-use std::io::Read;
+use std::collections::{BTreeMap, HashSet};
+use std::io::{self, ErrorKind, Read};
 
 /// A fault, and the byte at which it is, where known.
 pub(super) type Found = (Option<u64>, Fault);
@@ -74,13 +74,14 @@ pub(super) fn decode(input: impl Read, length: u64) -> Result<Checkpoint, Found>
         return Err(at(promised, Fault::Trailing { extra: length - promised }));
     }
     let mut checkpoint = Checkpoint::default();
+    let mut names = HashSet::new();
     for i in 0..sections {
         let (start, payload) = section(&mut source, length, i, sections)?;
         let mut rest = Payload { bytes: &payload, offset: start };
         if i == 0 {
             state(&mut rest, &mut checkpoint)?;
         } else {
-            column(&mut rest, &mut checkpoint)?;
+            column(&mut rest, &mut checkpoint, &mut names)?;
         }
         rest.end()?;
     }
@@ -112,7 +113,10 @@ fn section(
         return Err(at(start + 4, Fault::Length { what: "a section", claimed, left }));
     }
     let first = source.offset;
-    let mut payload = vec![0; claimed as usize];
+    let mut payload = Vec::new();
+    let memory = |_| at(start, io::Error::from(ErrorKind::OutOfMemory).into());
+    payload.try_reserve_exact(claimed as usize).map_err(memory)?;
+    payload.resize(claimed as usize, 0);
     source.raw(&mut payload)?;
     source.checksum.update(&payload);
     source.check(start, || match i {
@@ -143,10 +147,10 @@ fn state(rest: &mut Payload, checkpoint: &mut Checkpoint) -> Result<(), Found> {
     Ok(())
 }
 
-fn column(rest: &mut Payload, checkpoint: &mut Checkpoint) -> Result<(), Found> {
+fn column(rest: &mut Payload, checkpoint: &mut Checkpoint, names: &mut HashSet<String>) -> Result<(), Found> {
     let start = rest.offset;
     let name = rest.text("the name of a column")?;
-    if checkpoint.column(&name).is_some() {
+    if !names.insert(name.clone()) {
         return Err(at(start, Fault::Repeated { what: "the column", name }));
     }
     let tag_at = rest.offset;

@@ -1,5 +1,6 @@
 //! What can be wrong with an extended XYZ file, and where.
 
+use crate::quoted::{self, quoted};
 use std::fmt;
 use std::io;
 
@@ -33,6 +34,12 @@ pub enum Reason {
     /// The system would not let it be read.
     #[error("cannot be read: {0}")]
     Io(#[from] io::Error),
+    /// A line longer than any that means something.
+    #[error("the line is longer than {most} bytes; a row has some twenty numbers")]
+    LongLine {
+        /// The bound (bytes).
+        most: usize,
+    },
     /// Nothing in it.
     #[error("the file is empty; expected the number of discs")]
     Empty,
@@ -40,7 +47,7 @@ pub enum Reason {
     #[error("not UTF-8 text")]
     NotText,
     /// No number where a frame begins.
-    #[error("expected the number of discs, which begins a frame, found `{found}`{}", after(*.previous))]
+    #[error("expected the number of discs, which begins a frame, found `{}`{}", quoted(found), after(*.previous))]
     Count {
         /// What stands there.
         found: String,
@@ -74,10 +81,10 @@ pub enum Reason {
         expected: &'static str,
     },
     /// A key given twice.
-    #[error("`{0}` is given twice")]
+    #[error("`{}` is given twice", quoted(.0))]
     RepeatedKey(String),
     /// A value that the key cannot have.
-    #[error("{key} is `{found}`; expected {expected}")]
+    #[error("{key} is `{}`; expected {expected}", quoted(found))]
     Value {
         /// The key.
         key: &'static str,
@@ -90,10 +97,10 @@ pub enum Reason {
     #[error("Properties has no column `{0}`")]
     MissingColumn(&'static str),
     /// A column named twice.
-    #[error("Properties names the column `{0}` twice")]
+    #[error("Properties names the column `{}` twice", quoted(.0))]
     RepeatedColumn(String),
     /// A column of another type or width.
-    #[error("Properties has `{found}`; expected `{expected}`")]
+    #[error("Properties has `{}`; expected `{expected}`", quoted(found))]
     ColumnShape {
         /// What stands there.
         found: String,
@@ -109,7 +116,7 @@ pub enum Reason {
         expected: usize,
     },
     /// A field that is no number.
-    #[error("{column} is `{found}`; expected a number")]
+    #[error("{column} is `{}`; expected a number", quoted(found))]
     Number {
         /// Name of the column.
         column: &'static str,
@@ -117,7 +124,7 @@ pub enum Reason {
         found: String,
     },
     /// Infinite, or no number at all.
-    #[error("{column} is `{found}`; expected a finite number")]
+    #[error("{column} is `{}`; expected a finite number", quoted(found))]
     NotFinite {
         /// Name of the column.
         column: &'static str,
@@ -143,7 +150,7 @@ pub enum Reason {
         value: f64,
     },
     /// An id that is no positive whole number of 32 bits.
-    #[error("id is `{0}`; expected a whole number from 1 to 4294967295")]
+    #[error("id is `{}`; expected a whole number from 1 to 4294967295", quoted(.0))]
     Id(String),
     /// An id that another disc has.
     #[error("id {id} is taken by the disc in line {line}")]
@@ -154,7 +161,7 @@ pub enum Reason {
         line: usize,
     },
     /// Neither a grain nor a wall disc.
-    #[error("unknown species `{0}`; expected `Si` (a grain) or `W` (a wall disc)")]
+    #[error("unknown species `{}`; expected `Si` (a grain) or `W` (a wall disc)", quoted(.0))]
     Species(String),
 }
 
@@ -202,8 +209,18 @@ pub(super) struct Mistakes {
 impl Mistakes {
     const KEPT: usize = 20;
 
+    /// Whether one more would be kept; where not, its place need not be found.
+    pub(super) fn has_room(&self) -> bool {
+        self.first.len() < Mistakes::KEPT
+    }
+
+    /// One more, of which nothing is said.
+    pub(super) fn count(&mut self) {
+        self.more += 1;
+    }
+
     pub(super) fn add(&mut self, mistake: Mistake) {
-        if self.first.len() < Mistakes::KEPT {
+        if self.has_room() {
             self.first.push(mistake);
         } else {
             self.more += 1;
@@ -241,10 +258,10 @@ impl fmt::Display for Mistake {
 }
 
 fn listing(error: &ReadError) -> String {
-    let mut lines: Vec<String> =
-        error.mistakes.iter().map(|mistake| format!("{}:{mistake}", error.file)).collect();
+    let file = quoted::path(error.file.as_ref());
+    let mut lines: Vec<String> = error.mistakes.iter().map(|mistake| format!("{file}:{mistake}")).collect();
     if error.more > 0 {
-        lines.push(format!("{}: {} more mistakes", error.file, error.more));
+        lines.push(format!("{file}: {} more mistakes", error.more));
     }
     lines.join("\n")
 }

@@ -42,13 +42,20 @@ impl Entry {
 pub(super) fn parse(text: &str, line: usize) -> Result<Header, Mistakes> {
     let mut mistakes = Mistakes::default();
     let entries = entries(text).map_err(|(byte, reason)| Mistake::at(line, text, byte, reason))?;
-    for (i, entry) in entries.iter().enumerate() {
-        if KEYS.contains(&entry.key.as_str()) && entries[..i].iter().any(|other| other.key == entry.key) {
-            mistakes.add(Mistake::at(line, text, entry.byte, Reason::RepeatedKey(entry.key.clone())));
+    // Finding a column takes as long as the line: only for what is said.
+    let mut keep = |entry: &Entry, reason| match mistakes.has_room() {
+        true => mistakes.add(Mistake::at(line, text, entry.byte, reason)),
+        false => mistakes.count(),
+    };
+    let mut known: [Option<&Entry>; KEYS.len()] = [None; KEYS.len()];
+    for entry in &entries {
+        let Some(key) = KEYS.iter().position(|key| *key == entry.key) else { continue };
+        match known[key] {
+            None => known[key] = Some(entry),
+            Some(_) => keep(entry, Reason::RepeatedKey(entry.key.clone())),
         }
     }
-    let find = |key: &str| entries.iter().find(|entry| entry.key == key);
-    let mut keep = |entry: &Entry, reason| mistakes.add(Mistake::at(line, text, entry.byte, reason));
+    let find = |key: &str| known.iter().copied().flatten().find(|entry| entry.key == key);
 
     let mut missing = Vec::new();
     let mut cell = [0.0; 2];

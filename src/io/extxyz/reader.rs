@@ -2,11 +2,15 @@
 
 use super::error::{Mistake, Mistakes, ReadError, Reason};
 use super::{Frame, header};
+use crate::io::regular_file;
 use crate::particles::Particles;
 use std::collections::HashMap;
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
+
+/// Longest line (bytes); other programs may write hundreds of columns.
+const LONGEST_LINE: usize = 1 << 20;
 
 /// Which frame of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -49,7 +53,7 @@ impl Frames<BufReader<File>> {
     /// If the system does not let it be read.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, ReadError> {
         let name = path.as_ref().display().to_string();
-        match File::open(path) {
+        match regular_file::open(path.as_ref()) {
             Ok(file) => Ok(Frames::new(BufReader::new(file), name)),
             Err(cause) => Err(Mistakes::from(Mistake::reading(cause)).of_file(&name)),
         }
@@ -180,8 +184,12 @@ impl<R: BufRead> RawFrames<R> {
     }
 
     fn append_line(&mut self, text: &mut Vec<u8>) -> Result<usize, Mistake> {
-        let bytes = self.reader.read_until(b'\n', text).map_err(Mistake::reading)?;
+        let mut line = self.reader.by_ref().take(LONGEST_LINE as u64 + 1);
+        let bytes = line.read_until(b'\n', text).map_err(Mistake::reading)?;
         self.line += usize::from(bytes > 0);
+        if bytes > LONGEST_LINE {
+            return Err(Mistake::in_line(self.line, Reason::LongLine { most: LONGEST_LINE }));
+        }
         Ok(bytes)
     }
 }

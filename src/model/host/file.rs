@@ -1,7 +1,10 @@
 //! Host files: what `calibrate` writes, as TOML.
 
 use super::{HostModel, Residual, Transfer};
-use crate::model::machine_file::Position;
+use crate::io::{FileError, regular_file};
+use crate::model::machine_file::{LONGEST, NAMED, Position};
+use crate::quoted::{message, one_line, quoted};
+use std::path::Path;
 
 /// The version of the file format that this program reads.
 pub const FORMAT: u32 = 11;
@@ -10,22 +13,41 @@ pub const FORMAT: u32 = 11;
 #[derive(Debug, thiserror::Error)]
 pub enum HostFileError {
     /// Not TOML, or an entry that is missing, unknown or of the wrong type; the cause shows line and column.
-    #[error("host file `{file}`: {cause}")]
+    #[error("host file `{}`: {}", quoted(file), message(&cause.to_string()))]
     Syntax {
         /// Name of the file.
         file: String,
         /// What the TOML reader says, with the place.
         cause: Box<toml::de::Error>,
     },
-    /// Entries that cannot be, all of them, a line each.
-    #[error("{}", lines(file, entries))]
+    /// Bytes that are no text.
+    #[error("host file `{}`, line {line}: not UTF-8 text; expected a TOML file in UTF-8", quoted(file))]
+    NotText {
+        /// Name of the file.
+        file: String,
+        /// The first line that is not.
+        line: usize,
+    },
+    /// A file that cannot be read.
+    #[error(transparent)]
+    Read(#[from] FileError),
+    /// Entries that cannot be, the first of them, a line each.
+    #[error("{}", lines(file, entries, *more))]
     Content {
         /// Name of the file.
         file: String,
         /// Every one of them.
         entries: Vec<BadEntry>,
+        /// How many more there are.
+        more: usize,
     },
 }
+
+/// Above every number of a host file: with larger ones a sum of all that a step does might not be finite.
+const MOST: f64 = 1e15;
+/// Lanes of a register, and elements of a vector, that a host may have.
+const COUNTS: [(std::ops::RangeInclusive<usize>, &str); 2] =
+    [(1..=65_536, "a whole number from 1 to 65536"), (1..=1 << 40, "a whole number from 1 to 2^40")];
 
 /// An entry of a host file that cannot be.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,30 +60,55 @@ pub struct BadEntry {
     pub what: String,
 }
 
-fn lines(file: &str, entries: &[BadEntry]) -> String {
+fn lines(file: &str, entries: &[BadEntry], more: usize) -> String {
+    let file = quoted(file);
     let line = |bad: &BadEntry| {
         let at = bad.position.map_or(String::new(), |at| format!(", {at}"));
-        format!("host file `{file}`{at}: `{}` {}", bad.entry, bad.what)
+        format!("host file `{file}`{at}: `{}` {}", one_line(&bad.entry), one_line(&bad.what))
     };
-    entries.iter().map(line).collect::<Vec<_>>().join("\n")
+    let mut lines: Vec<String> = entries.iter().map(line).collect();
+    if more > 0 {
+        lines.push(format!("host file `{file}`: {more} more"));
+    }
+    lines.join("\n")
 }
 
 impl HostModel {
-    /// Reads a host file; `file` is the name that errors give it.
+    /// Reads a host file.
+    ///
+    /// # Errors
+    /// [`HostFileError`]: it cannot be read, or is bad.
+    pub fn load(path: &Path) -> Result<HostModel, HostFileError> {
+        let file = path.display().to_string();
+        let bytes =
+            regular_file::read(path, LONGEST).map_err(FileError::at(path, "reading the host file"))?;
+        match String::from_utf8(bytes) {
+            Ok(text) => HostModel::parse(&file, &text),
+            Err(cause) => {
+                let line = regular_file::line_that_is_not_text(cause.as_bytes()).unwrap_or(1);
+                Err(HostFileError::NotText { file, line })
+            }
+        }
+    }
+
+    /// Reads a host file's text; `file` is the name that errors give it.
     ///
     /// # Errors
     /// [`HostFileError`]: the grammar's first defect, or every entry that cannot be.
     pub fn parse(file: &str, text: &str) -> Result<HostModel, HostFileError> {
         let model: HostModel = toml::from_str(text)
             .map_err(|cause| HostFileError::Syntax { file: file.to_owned(), cause: Box::new(cause) })?;
-        let defects = model.defects().into_iter();
+        let defects = model.defects();
+        let more = defects.len().saturating_sub(NAMED);
         let entries: Vec<BadEntry> = defects
+            .into_iter()
+            .take(NAMED)
             .map(|(entry, what)| BadEntry { position: Position::of(text, &entry), entry, what })
             .collect();
         if entries.is_empty() {
             Ok(model)
         } else {
-            Err(HostFileError::Content { file: file.to_owned(), entries })
+            Err(HostFileError::Content { file: file.to_owned(), entries, more })
         }
     }
 
@@ -133,8 +180,18 @@ impl HostModel {
         let rest = rest.map(|(entry, value)| (entry.to_owned(), value));
         let levels = levels.map(|value| ("levels".to_owned(), value));
         for (entry, value) in rest.into_iter().chain(levels).chain(lanes).chain(seen).chain(rates) {
-            if !(value.is_finite() && value >= 0.0) {
-                defects.push((entry, format!("is {value}, but must be finite and not negative")));
+            if !(0.0..=MOST).contains(&value) {
+                defects.push((entry, format!("is {value}, but must be from 0 to {MOST:e}")));
+            }
+        }
+        let [lanes, lengths] = &COUNTS;
+        let widths =
+            self.lanes.iter().map(|(lane, costs)| (format!("lanes.{lane}.lanes"), costs.lanes, lanes));
+        let measured = [("shortest", self.measured.shortest), ("longest", self.measured.longest)];
+        let measured = measured.map(|(name, length)| (format!("measured.{name}"), length, lengths));
+        for (entry, count, (range, words)) in widths.chain(measured) {
+            if !range.contains(&count) {
+                defects.push((entry, format!("is {count}, but must be {words}")));
             }
         }
         if self.levels.is_empty() || self.lanes.is_empty() {

@@ -9,6 +9,7 @@ use stripmine_kernels::isa::op::OpClass;
 pub(super) fn machine(machine: &MachineModel) -> Result<(), Defect> {
     whole("year", &machine.year)?;
     positive("clock_period_ns", &machine.clock_period_ns)?;
+    at_most(LAST_YEAR, "year", &machine.year)?;
     if let Some(registers) = &machine.vector_registers {
         whole("vector_registers.count", &registers.count)?;
         whole("vector_registers.length", &registers.length)?;
@@ -31,9 +32,26 @@ pub(super) fn machine(machine: &MachineModel) -> Result<(), Defect> {
     }
 }
 
+/// Four digits.
+const LAST_YEAR: f64 = 9999.0;
+/// Above every number of a machine: with larger ones a sum of all that a program does might not be finite.
+const MOST: f64 = 1e12;
+/// Registers, their elements, units and ports are fewer.
+const MOST_COUNTED: f64 = 1e6;
+/// Operations that one operation may come to; a clock writes them out one by one.
+const LONGEST_EXPANSION: u64 = 10_000;
+
 fn positive(entry: &str, quantity: &Quantity) -> Result<(), Defect> {
     let value = quantity.value;
-    if value.is_finite() && value > 0.0 { Ok(()) } else { Err(not_positive(entry, value)) }
+    if !(value.is_finite() && value > 0.0) {
+        return Err(not_positive(entry, value));
+    }
+    at_most(MOST, entry, quantity)
+}
+
+fn at_most(most: f64, entry: &str, quantity: &Quantity) -> Result<(), Defect> {
+    let value = quantity.value;
+    if value <= most { Ok(()) } else { Err(Defect::TooLarge { entry: entry.to_owned(), value, most }) }
 }
 
 fn not_positive(entry: &str, value: f64) -> Defect {
@@ -42,6 +60,7 @@ fn not_positive(entry: &str, value: f64) -> Defect {
 
 fn whole(entry: &str, quantity: &Quantity) -> Result<(), Defect> {
     positive(entry, quantity)?;
+    at_most(MOST_COUNTED, entry, quantity)?;
     let value = quantity.value;
     if value.fract() == 0.0 {
         return Ok(());
@@ -109,8 +128,14 @@ pub(super) fn expand_fully(
     class: OpClass,
     expansions: &BTreeMap<OpClass, Expansion>,
 ) -> Result<ClassCounts, Defect> {
-    follow(class, expansions, &mut Vec::new())
-        .map_err(|cycle| Defect::EndlessExpansion { entry: format!("expansions.{}", class.name()), cycle })
+    let entry = || format!("expansions.{}", class.name());
+    let executed = follow(class, expansions, &mut Vec::new())
+        .map_err(|cycle| Defect::EndlessExpansion { entry: entry(), cycle })?;
+    let count = executed.values().fold(0u64, |sum, count| sum.saturating_add(*count));
+    if count > LONGEST_EXPANSION {
+        return Err(Defect::LongExpansion { entry: entry(), count, most: LONGEST_EXPANSION });
+    }
+    Ok(executed)
 }
 
 /// Follows the expansion of `class` to its end; `open` holds the classes being expanded, an error the circle.

@@ -1,35 +1,51 @@
 //! What can be wrong with a machine file.
 
 use super::{FORMAT, Position};
+use crate::quoted::{message, one_line, quoted};
 use stripmine_kernels::isa::op::OpClass;
 
 /// Why a machine file cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum MachineFileError {
     /// Not TOML, or an entry that is missing, unknown or of the wrong type; the cause shows line and column.
-    #[error("machine file `{file}`: {cause}")]
+    #[error("machine file `{}`: {}", quoted(file), message(&cause.to_string()))]
     Syntax {
         /// Name of the file.
         file: String,
         /// What the TOML reader says, with the place.
         cause: Box<toml::de::Error>,
     },
-    /// Entries that cannot be, all of them, a line each.
-    #[error("{}", lines(file, defects))]
+    /// Bytes that are no text.
+    #[error("machine file `{}`, line {line}: not UTF-8 text; expected a TOML file in UTF-8", quoted(file))]
+    NotText {
+        /// Name of the file.
+        file: String,
+        /// The first line that is not.
+        line: usize,
+    },
+    /// Entries that cannot be, the first of them, a line each.
+    #[error("{}", lines(file, defects, *more))]
     Content {
         /// Name of the file.
         file: String,
         /// What is wrong, each with its place: where the file has the entry, or the table that should.
         defects: Vec<(Option<Position>, Defect)>,
+        /// How many more there are.
+        more: usize,
     },
 }
 
-fn lines(file: &str, defects: &[(Option<Position>, Defect)]) -> String {
+fn lines(file: &str, defects: &[(Option<Position>, Defect)], more: usize) -> String {
+    let file = quoted(file);
     let line = |(position, defect): &(Option<Position>, Defect)| {
         let at = position.map_or(String::new(), |at| format!(", {at}"));
-        format!("machine file `{file}`{at}: {defect}")
+        format!("machine file `{file}`{at}: {}", one_line(&defect.to_string()))
     };
-    defects.iter().map(line).collect::<Vec<_>>().join("\n")
+    let mut lines: Vec<String> = defects.iter().map(line).collect();
+    if more > 0 {
+        lines.push(format!("machine file `{file}`: {more} more defects"));
+    }
+    lines.join("\n")
 }
 
 /// What is wrong with an entry.
@@ -81,6 +97,26 @@ pub enum Defect {
         /// The number.
         value: f64,
     },
+    /// A number larger than any machine's.
+    #[error("`{entry}` is {value:e}, but must be at most {most:e}")]
+    TooLarge {
+        /// The entry with the number.
+        entry: String,
+        /// The number.
+        value: f64,
+        /// The bound.
+        most: f64,
+    },
+    /// An expansion into more operations than any machine needs.
+    #[error("`{entry}` comes to {count} operations, but at most {most} are counted out")]
+    LongExpansion {
+        /// The entry.
+        entry: String,
+        /// Operations, expansions followed to their end.
+        count: u64,
+        /// The bound.
+        most: u64,
+    },
     /// A number with a fraction where things are counted.
     #[error("`{entry}` is {value}, but must be a whole number")]
     NotWhole {
@@ -131,7 +167,9 @@ impl Defect {
         match self {
             Defect::UnsupportedFormat { .. } => "format".to_owned(),
             Defect::EmptyNote { entry } => format!("{entry}.note"),
-            Defect::NotPositive { entry, .. } | Defect::NotWhole { entry, .. } => format!("{entry}.value"),
+            Defect::NotPositive { entry, .. }
+            | Defect::NotWhole { entry, .. }
+            | Defect::TooLarge { entry, .. } => format!("{entry}.value"),
             Defect::UnknownField { entry, .. }
             | Defect::MissingField { entry, .. }
             | Defect::WrongType { entry, .. }
@@ -139,6 +177,7 @@ impl Defect {
             | Defect::MissingStartUp { entry }
             | Defect::NoUnit { entry, .. }
             | Defect::EmptyExpansion { entry }
+            | Defect::LongExpansion { entry, .. }
             | Defect::EndlessExpansion { entry, .. } => entry.clone(),
         }
     }

@@ -43,13 +43,20 @@ mod position;
 pub use error::{Defect, MachineFileError};
 pub use position::Position;
 
-use super::machine::{Expansion, Fact, MachineModel, Provenance, Quantity, VectorRegisters};
+use super::machine::{Expansion, Fact, MachineError, MachineModel, Provenance, Quantity, VectorRegisters};
 use super::units::{MemoryPorts, Unit, Units};
+use crate::io::regular_file;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
 /// The version of the file format that this program reads.
 pub const FORMAT: u32 = 1;
+
+/// Longest machine or host file (bytes).
+pub(crate) const LONGEST: u64 = 4 << 20;
+
+/// So many defects are named, each with its place, which is looked for in the whole text.
+pub(crate) const NAMED: usize = 20;
 
 /// The file as it is written, names of classes still unchecked.
 #[derive(Deserialize)]
@@ -87,18 +94,34 @@ struct WrittenExpansion {
 }
 
 impl MachineModel {
+    /// Reads a machine file.
+    ///
+    /// # Errors
+    /// [`MachineError`]: the system does not let it be read, or it is bad.
+    pub fn load(file: &str) -> Result<MachineModel, MachineError> {
+        let bytes = regular_file::read(file.as_ref(), LONGEST)
+            .map_err(|cause| MachineError::Read { file: file.to_owned(), cause })?;
+        match String::from_utf8(bytes) {
+            Ok(text) => Ok(MachineModel::parse(file, &text)?),
+            Err(cause) => {
+                let line = regular_file::line_that_is_not_text(cause.as_bytes()).unwrap_or(1);
+                Err(MachineFileError::NotText { file: file.to_owned(), line }.into())
+            }
+        }
+    }
+
     /// Reads a machine from the `text` of a machine file; `file` is the name that errors give it.
     ///
     /// # Errors
     /// [`MachineFileError`]: not TOML, or every entry found wrong; what only the whole machine can show is looked for once
     /// every entry is right.
     pub fn parse(file: &str, text: &str) -> Result<MachineModel, MachineFileError> {
-        let content = |defects: Vec<Defect>| MachineFileError::Content {
-            file: file.to_owned(),
-            defects: defects
-                .into_iter()
-                .map(|defect| (Position::of(text, &defect.entry()), defect))
-                .collect(),
+        let content = |mut defects: Vec<Defect>| {
+            let more = defects.len().saturating_sub(NAMED);
+            defects.truncate(NAMED);
+            let placed = |defect: Defect| (Position::of(text, &defect.entry()), defect);
+            let defects = defects.into_iter().map(placed).collect();
+            MachineFileError::Content { file: file.to_owned(), defects, more }
         };
         let defects = grammar::defects(text);
         if !defects.is_empty() {
@@ -247,7 +270,7 @@ mod tests {
             note = "a circle"
         "#;
         let error = MachineModel::parse("bad.toml", &format!("{GOOD}{circle}")).unwrap_err();
-        let MachineFileError::Content { file, defects } = &error else { panic!("{error}") };
+        let MachineFileError::Content { file, defects, .. } = &error else { panic!("{error}") };
         let [(_, Defect::EndlessExpansion { entry, cycle })] = defects.as_slice() else { panic!("{error}") };
         assert_eq!((file.as_str(), entry.as_str()), ("bad.toml", "expansions.multiply"));
         assert_eq!(*cycle, ["multiply", "divide", "multiply"]);

@@ -10,6 +10,7 @@ use crate::domain::Domain;
 use crate::io::extxyz;
 use crate::particles::{Kind, Particle, Particles};
 use crate::placement::{Filling, Row, hexagonal, random, row, stir, wrapped};
+use crate::quoted;
 use std::f64::consts::PI;
 
 /// Most discs of one kind, grains or walls, that fit a usual memory.
@@ -132,7 +133,7 @@ fn from_file(document: &Document, domain: &Domain, path: &std::path::Path) -> Re
         document.spot(&FILE).error(Reason::StartFile, format!("the start file cannot be used: {error}"))
     })?;
     if frame.particles.is_empty() {
-        let message = format!("the start file {} holds no disc", path.display());
+        let message = format!("the start file {} holds no disc", quoted::path(path));
         return Err(document.spot(&FILE).error(Reason::StartFile, message));
     }
     for (found, stated, key) in [(frame.cell, domain.sides, &SIDES), (frame.origin, domain.origin, &ORIGIN)] {
@@ -141,7 +142,7 @@ fn from_file(document: &Document, domain: &Domain, path: &std::path::Path) -> Re
             let message = format!(
                 "`{}` is {stated:?}, but the box of the start file {} says {found:?}",
                 key.path(),
-                path.display()
+                quoted::path(path)
             );
             let error = document.spot(key).error(Reason::Contradiction, message);
             return Err(error.expecting(format!("{} = {found:?}", key.name)));

@@ -154,28 +154,51 @@ fn spot_of(document: &Document, particles: &Particles, number: usize) -> super::
     }
 }
 
+/// Pairs that overlap too deep: how many, and the deepest of them, in the order of their depth.
+#[derive(Default)]
+struct Deep {
+    worst: Vec<(usize, usize, f64)>,
+    count: usize,
+}
+
+/// So many pairs are counted: where all discs lie on a heap there are as many as the square of their number.
+const COUNTED: usize = 1_000_000;
+
+impl Deep {
+    fn add(&mut self, pair: (usize, usize, f64)) {
+        self.count += 1;
+        let at = self.worst.partition_point(|(_, _, penetration)| *penetration >= pair.2);
+        if at < NAMED {
+            self.worst.insert(at, pair);
+            self.worst.truncate(NAMED);
+        }
+    }
+}
+
 /// Pairs that overlap deeper than the scene allows.
 fn overlaps(document: &Document, domain: &Domain, particles: &Particles) -> Vec<super::SceneError> {
     let limit = document.scene.law.max_penetration;
     let Some([_, largest]) = particles.radii() else { return Vec::new() };
     let mut near = Near::new(*domain, 2.0 * largest);
     let discs = particles.all();
-    let mut deep = Vec::new();
-    for (number, disc) in discs.iter().enumerate() {
+    let mut deep = Deep::default();
+    'all: for (number, disc) in discs.iter().enumerate() {
         let position = wrapped(domain, disc.position);
         for (other, there) in near.of(position) {
             let reach = disc.radius + discs[other as usize].radius;
             let penetration = 1.0 - distance(domain, position, there) / reach;
             if penetration > limit {
-                deep.push((other as usize, number, penetration));
+                deep.add((other as usize, number, penetration));
+            }
+            if deep.count == COUNTED {
+                break 'all;
             }
         }
         near.add(number as u32, position);
     }
-    let count = deep.len();
-    deep.sort_by(|a, b| b.2.total_cmp(&a.2));
+    let Deep { worst, count } = deep;
     let mut errors: Vec<super::SceneError> = Vec::new();
-    for (first, second, penetration) in deep.into_iter().take(NAMED) {
+    for (first, second, penetration) in worst {
         let [a, b] = [first, second].map(|number| {
             let disc = &discs[number];
             let [x, y] = disc.position.map(readable);
@@ -191,7 +214,11 @@ fn overlaps(document: &Document, domain: &Domain, particles: &Particles) -> Vec<
         errors.push(spot_of(document, particles, second).error(Reason::Overlap, message).expecting(least));
     }
     if let (Some(last), true) = (errors.last_mut(), count > NAMED) {
-        last.suggestion = Some(format!("{} more pairs overlap, no deeper", count - NAMED));
+        let more = count - NAMED;
+        last.suggestion = Some(match count {
+            COUNTED => format!("at least {more} more pairs overlap; the search ended there"),
+            _ => format!("{more} more pairs overlap, no deeper"),
+        });
     }
     errors
 }
