@@ -56,6 +56,7 @@ pub mod cli;
 pub mod domain;
 pub mod grid;
 pub mod io;
+pub mod machine_memory;
 pub mod method;
 pub mod model;
 pub mod observe;

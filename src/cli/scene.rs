@@ -3,6 +3,7 @@
 use super::{Common, Failure, print, print_json, warn};
 use crate::report::table::{Cell, Table};
 use crate::report::terminal;
+use crate::run::memory::{self, Foreseen};
 use crate::scene::{Checked, Document, Estimates, Fallback, KEYS, PRESETS, SECTIONS, Warning};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Subcommand};
@@ -106,6 +107,7 @@ struct Found<'c> {
     steps: u64,
     duration: f64,
     estimates: Estimates,
+    memory: Foreseen,
     left_out: &'c [String],
     warnings: &'c [Warning],
 }
@@ -134,6 +136,7 @@ impl<'c> Found<'c> {
             steps: scene.run.steps,
             duration: scene.duration(),
             estimates: *estimates,
+            memory: memory::foreseen(checked),
             left_out,
             warnings,
         }
@@ -162,6 +165,10 @@ impl<'c> Found<'c> {
             ("approach speed", format!("{:.4e}", e.approach_speed)),
             ("steps per contact", or_none(e.steps_per_contact, |steps| format!("{steps:.1}"))),
             ("penetration of an impact", format!("{:.4}", e.impact_penetration)),
+            ("memory of a run", {
+                let left = self.memory.available.map(|bytes| format!(" of {} left", memory::in_words(bytes)));
+                memory::in_words(self.memory.needed) + &left.unwrap_or_default()
+            }),
             ("damping γ dt, dense 3 γ dt, limit", {
                 format!("{:.4}, {:.4}, {}", e.damping, e.network_damping, e.damping_limit)
             }),
@@ -178,7 +185,8 @@ impl<'c> Found<'c> {
 }
 
 fn check(name: &str, overrides: &[String], common: &Common) -> Result<(), Failure> {
-    let checked = Document::load(name, overrides).and_then(Document::check)?;
+    let fits = |checked: Checked| memory::foreseen(&checked).fits(name).map(|()| checked);
+    let checked = Document::load(name, overrides).and_then(Document::check).and_then(fits)?;
     if !common.quiet {
         checked.warnings.iter().for_each(warn);
     }

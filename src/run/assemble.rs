@@ -50,28 +50,11 @@ pub fn model(checked: &Checked) -> Model {
     }
 }
 
-/// The method of a checked scene, at the start.
-///
-/// # Errors
-/// [`Failure`] if the start breaks a precondition, or the processor lacks the instruction set asked for.
-pub fn assemble(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
-    start_of(checked, model(checked))
-}
-
-/// The same, with energy followed: what contacts dissipate, what walls put in, periods that discs cross along gravity.
-///
-/// # Errors
-/// As [`assemble`].
-pub fn assemble_following_energy(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
-    let mut model = model(checked);
-    model.watch = model.watch.map(|watch| Watch { energy: true, ..watch });
-    start_of(checked, model)
-}
-
-fn start_of(checked: &Checked, model: Model) -> Result<Box<dyn Method>, Failure> {
-    let Checked { scene, particles, geometry, .. } = checked;
+/// How a checked scene has its contacts found.
+pub(super) fn contacts(checked: &Checked) -> Contacts {
+    let Checked { scene, geometry, .. } = checked;
     let fast = scene.method.execution == scene::Execution::Fast;
-    let contacts = match scene.method.kind {
+    match scene.method.kind {
         MethodKind::Lattice if fast => Contacts::Fast(Search::Lattice(match scene.method.on_conflict {
             scene::OnConflict::Stop => OnConflict::Stop,
             scene::OnConflict::Resolve => OnConflict::Resolve,
@@ -86,7 +69,35 @@ fn start_of(checked: &Checked, model: Model) -> Result<Box<dyn Method>, Failure>
             },
             skin: geometry.skin,
         }),
-    };
+    }
+}
+
+/// The method of a checked scene, at the start.
+///
+/// # Errors
+/// [`Failure`] if the start breaks a precondition, or the processor lacks the instruction set asked for.
+pub fn assemble(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
+    start_of(checked, model(checked))
+}
+
+/// The same, with energy followed: what contacts dissipate, what walls put in, periods that discs cross along gravity.
+///
+/// # Errors
+/// As [`assemble`].
+pub fn assemble_following_energy(checked: &Checked) -> Result<Box<dyn Method>, Failure> {
+    start_of(checked, model_following_energy(checked))
+}
+
+/// What a checked scene models where energy is followed.
+pub(super) fn model_following_energy(checked: &Checked) -> Model {
+    let mut model = model(checked);
+    model.watch = model.watch.map(|watch| Watch { energy: true, ..watch });
+    model
+}
+
+fn start_of(checked: &Checked, model: Model) -> Result<Box<dyn Method>, Failure> {
+    let Checked { scene, particles, .. } = checked;
+    let contacts = contacts(checked);
     let machine = Machine {
         execution: scene.method.execution.of_programs(),
         set: scene.method.instruction_set.unwrap_or_else(InstructionSet::best),

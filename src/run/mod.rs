@@ -6,6 +6,7 @@ mod assemble;
 mod folder;
 mod frames;
 mod identity;
+pub mod memory;
 mod recorder;
 mod summary;
 mod work;
@@ -200,6 +201,7 @@ pub fn run(
     notice: impl FnMut(&str),
 ) -> Result<Ending, RunError> {
     let checked = document.check()?;
+    memory::foreseen(&checked).fits("scene")?;
     // What would be refused in the end is refused before anything takes its time.
     folder::listed(folder)?;
     let mut method = assemble_following_energy(&checked).map_err(RunError::Start)?;

@@ -68,7 +68,7 @@ define_keys! {
         "Start file, extended XYZ with id, pos, velo, radius, mass, omega; relative to the scene file.";
     SEED = "particles" "seed", Whole(0, u64::MAX), "", Is("1"), DRAWN,
         "Seed of radii, positions and velocities.";
-    COUNT = "particles" "count", Whole(1, 20_000_000), "", Otherwise("from `packing_fraction`"), DRAWN,
+    COUNT = "particles" "count", Whole(1, 2_147_483_647), "", Otherwise("from `packing_fraction`"), DRAWN,
         "Number of grains; a hexagonal lattice may take a few more, to close.";
     PACKING_FRACTION = "particles" "packing_fraction", Number(Within(0.907)), "", Otherwise("from `count`"), DRAWN,
         "N π radius² over the area that is open to grains: the box, the clear channel of a pipe, the fill height of a box.";

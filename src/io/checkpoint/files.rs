@@ -46,6 +46,14 @@ pub fn read_latest(folder: &Path) -> Result<Option<Latest>, CheckpointError> {
 }
 
 impl Checkpoint {
+    /// A checkpoint from the bytes of its file.
+    ///
+    /// # Errors
+    /// What is wrong, and the byte at which it is, where known.
+    pub fn decode(bytes: &[u8]) -> Result<Checkpoint, (Option<u64>, Fault)> {
+        reading::decode(bytes, bytes.len() as u64)
+    }
+
     /// Reads a checkpoint, every bit as it was written.
     ///
     /// # Errors

@@ -8,13 +8,33 @@ use super::super::{Amount, Grains, Lining, List, Scene, Speed, Start, WallMotion
 use super::readable;
 use crate::domain::Domain;
 use crate::io::extxyz;
+use crate::machine_memory;
 use crate::particles::{Kind, Particle, Particles};
 use crate::placement::{Filling, Row, hexagonal, random, row, stir, wrapped};
 use crate::quoted;
 use std::f64::consts::PI;
 
-/// Most discs of one kind, grains or walls, that fit a usual memory.
-const MOST: f64 = 2e7;
+/// Most discs of one kind, grains or walls: with those of the other their ids must be numbers of 32 bits.
+const MOST: f64 = (u32::MAX / 2) as f64;
+
+/// Whether the machine has the memory to place so many discs and to look for overlaps: each disc, and its entry in a map of
+/// squares whose number is a power of two. Asked before anything is placed.
+fn placeable(document: &Document, count: f64, key: &Key) -> Result<(), SceneError> {
+    /// Bytes of an entry of the map, and of a disc in its square.
+    const SQUARE: [f64; 2] = [25.0, 40.0];
+    let squares = (count * 8.0 / 7.0).log2().ceil().exp2();
+    let needed = count * (size_of::<Particle>() as f64 + SQUARE[1]) + squares * SQUARE[0];
+    match machine_memory::available() {
+        Some(available) if needed > available as f64 => {
+            let message = format!(
+                "to place {count:.4e} discs takes {needed:.3e} bytes of memory; this machine has {:.3e} left",
+                available as f64
+            );
+            Err(document.spot(key).error(Reason::Memory, message).advising("take fewer discs"))
+        }
+        _ => Ok(()),
+    }
+}
 
 /// The box, where the scene states it.
 pub(super) fn domain(scene: &Scene) -> Option<Domain> {
@@ -57,6 +77,7 @@ pub(super) fn make(document: &Document) -> Result<Made, SceneError> {
         Start::File(path) => (domain, from_file(document, &domain, path)?),
         Start::List(list) => (domain, listed(list)),
         Start::Hexagonal { count, packing_fraction, grains } => {
+            placeable(document, *count as f64, &COUNT)?;
             on_lattice(scene, *count, *packing_fraction, grains)
         }
         Start::Random { amount, grains } => {
@@ -209,7 +230,7 @@ fn grain_count(document: &Document, amount: Amount, open: f64, grains: &Grains) 
     let fraction = count * share;
     let refuse = |message: String| document.spot(key).error(Reason::Placement, message);
     if count > MOST {
-        return Err(refuse(format!("{count:.4e} discs are more than the {MOST:.0e} that are placed")));
+        return Err(refuse(format!("{count:.4e} discs are more than the {MOST:.3e} that can be numbered")));
     }
     if count < 1.0 {
         return Err(refuse(format!("no disc: one alone fills {share:.4} of the area open to grains")));
@@ -221,6 +242,7 @@ fn grain_count(document: &Document, amount: Amount, open: f64, grains: &Grains) 
         ));
         return Err(error.advising("place fewer discs, or start from generate = \"hexagonal\""));
     }
+    placeable(document, count, key)?;
     Ok(count as usize)
 }
 
@@ -258,9 +280,10 @@ fn lined(
 ) -> Result<Vec<Particle>, SceneError> {
     let each = domain.sides[0] / lining.spacing;
     if each * rows.len() as f64 > MOST {
-        let message = format!("a row takes {each:.4e} wall discs; more than {MOST:.0e} are not placed");
+        let message = format!("a row takes {each:.4e} wall discs; more than {MOST:.3e} cannot be numbered");
         return Err(document.spot(&WALL_SPACING).error(Reason::Placement, message));
     }
+    placeable(document, each * rows.len() as f64 + count as f64, &WALL_SPACING)?;
     let share = lining.radius / grains.radius;
     let mass = grains.mass * share * share;
     let mut walls: Vec<Particle> = Vec::new();

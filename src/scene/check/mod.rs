@@ -9,9 +9,9 @@ pub use geometry::Geometry;
 pub use motion::Estimates;
 
 use super::error::{Reason, SceneErrors, Warning};
-use super::key_table::{FILE, POSITIONS, RADIUS, WALL_AMPLITUDE, WALL_POSITIONS};
+use super::key_table::{FILE, METHOD, POSITIONS, RADIUS, WALL_AMPLITUDE, WALL_POSITIONS};
 use super::places::Document;
-use super::{Scene, WallMotion};
+use super::{Execution, MethodKind, Scene, WallMotion};
 use crate::domain::Domain;
 use crate::particles::{Kind, Particles};
 use crate::placement::{Near, distance, wrapped};
@@ -51,6 +51,7 @@ pub(super) fn check(document: Document) -> Result<Checked, SceneErrors> {
         }
     };
     if let Some(Made { domain, particles, .. }) = &made {
+        errors.extend(numbered(&document, particles));
         errors.extend(outside(&document, domain, particles));
         errors.extend(overlaps(&document, domain, particles));
     }
@@ -88,6 +89,20 @@ fn all_alike(particles: &Particles) -> bool {
         disc.kind == Kind::Grain && disc.radius == first.radius && disc.mass == first.mass
     };
     particles.all().iter().all(same)
+}
+
+/// More discs than the partners in a fast method's lists have bits for.
+fn numbered(document: &Document, particles: &Particles) -> Option<super::SceneError> {
+    const MOST: usize = (1 << 29) - 3;
+    let method = &document.scene.method;
+    let listed = method.execution == Execution::Fast && method.kind != MethodKind::Lattice;
+    (listed && particles.len() > MOST).then(|| {
+        let message = format!("{} discs; sectors and fast lists number at most {MOST}", particles.len());
+        document
+            .spot(&METHOD)
+            .error(Reason::Placement, message)
+            .advising("method.kind = \"lattice\" numbers more")
+    })
 }
 
 /// Discs that are not in the box.

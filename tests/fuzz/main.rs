@@ -1,0 +1,50 @@
+//! Readers under mutated inputs: whatever the bytes, an answer or a typed error, in bounded memory and work.
+//!
+//! Each case is a seed (an input that is right, or one of `corpus/`) and some mutations of it; a failing case is cut down to the
+//! fewest mutations that fail and printed. Cases are the same in every run. `STRIPMINE_FUZZ_CASES` says how many there are;
+//! what is found is mended and its input kept in `corpus/`, which is read as it is as well.
+
+mod allocations;
+mod mutation;
+mod readers;
+mod runs;
+
+use mutation::Mutation;
+use proptest::collection::vec;
+use proptest::test_runner::{Config, TestRng, TestRunner};
+
+/// Inputs kept from earlier finds.
+pub(crate) fn corpus(kind: &str) -> Vec<Vec<u8>> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/corpus").join(kind);
+    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path()).collect();
+    files.sort();
+    files.into_iter().map(|file| std::fs::read(file).unwrap()).collect()
+}
+
+/// Reads every seed, and `cases` mutated ones; none may take more than `most` bytes of memory in all.
+pub(crate) fn fuzz(seeds: &[Vec<u8>], cases: u32, most: u64, read: impl Fn(&[u8])) {
+    assert!(!seeds.is_empty());
+    let bounded = |input: &[u8]| {
+        let taken = allocations::counted(|| read(input));
+        assert!(taken <= most, "{taken} bytes were taken for an input of {}", input.len());
+    };
+    seeds.iter().for_each(|seed| bounded(seed));
+    let config = Config { cases, failure_persistence: None, max_shrink_iters: 2000, ..Config::default() };
+    let rng = TestRng::from_seed(proptest::test_runner::RngAlgorithm::ChaCha, &[7; 32]);
+    let mut runner = TestRunner::new_with_rng(config, rng);
+    let case = (0..seeds.len(), vec(mutation::any(), 1..6));
+    let outcome = runner.run(&case, |(seed, mutations): (usize, Vec<Mutation>)| {
+        let mut input = seeds[seed].clone();
+        mutations.iter().for_each(|mutation| mutation.apply(&mut input, seeds));
+        bounded(&input);
+        Ok(())
+    });
+    if let Err(failure) = outcome {
+        panic!("{failure}");
+    }
+}
+
+/// How many cases: a few in every run of the tests, as many as asked for in a long one.
+pub(crate) fn cases(few: u32) -> u32 {
+    std::env::var("STRIPMINE_FUZZ_CASES").map_or(few, |text| text.parse().unwrap())
+}

@@ -1,0 +1,172 @@
+//! One fuzz test for each reader.
+
+use crate::{cases, corpus, fuzz};
+use crc32fast::Hasher;
+use std::io::Cursor;
+use stripmine::io::checkpoint::{Checkpoint, Column, Counter};
+use stripmine::io::extxyz::{self, Frames};
+use stripmine::model::host::{HostModel, default_model};
+use stripmine::model::machine::{MachineModel, names};
+use stripmine::scene::{Document, KEYS, PRESETS};
+
+const MEGABYTE: u64 = 1 << 20;
+
+pub(crate) fn scenes() -> Vec<Vec<u8>> {
+    let presets = PRESETS.iter().map(|preset| preset.text.as_bytes().to_vec());
+    presets.chain(corpus("scene")).collect()
+}
+
+fn read_scene(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    if let Ok(document) = Document::parse("scene.toml", &text, &[]) {
+        let written = document.scene.to_toml();
+        let again = Document::parse("scene.toml", &written, &[]).unwrap();
+        assert_eq!(again.scene, document.scene, "{written}");
+    }
+}
+
+#[test]
+fn scenes_are_read_or_refused() {
+    fuzz(&scenes(), cases(3000), 64 * MEGABYTE, read_scene);
+}
+
+/// Overrides are texts of their own: every key with what stands in other places.
+#[test]
+fn overrides_are_read_or_refused() {
+    let seeds: Vec<Vec<u8>> =
+        KEYS.iter().map(|key| format!("{}=[1.0, 2.0]", key.path()).into_bytes()).collect();
+    fuzz(&seeds, cases(3000), 16 * MEGABYTE, |bytes| {
+        let set = String::from_utf8_lossy(bytes).into_owned();
+        if let Ok(document) = Document::load("two-discs", &[set]) {
+            document.scene.to_toml();
+        }
+    });
+}
+
+fn frames() -> Vec<Vec<u8>> {
+    let start = include_bytes!("../scenes/bad/two.xyz").to_vec();
+    let twice = start.repeat(2);
+    [start, twice].into_iter().chain(corpus("xyz")).collect()
+}
+
+#[test]
+fn frames_are_read_or_refused() {
+    fuzz(&frames(), cases(5000), 64 * MEGABYTE, |bytes| {
+        for frame in Frames::new(Cursor::new(bytes), "fuzz.xyz").flatten() {
+            let mut written = Vec::new();
+            extxyz::write(&frame, &mut written).unwrap();
+            let again = Frames::new(Cursor::new(written), "again.xyz").next().unwrap().unwrap();
+            assert_eq!(again, frame);
+        }
+    });
+}
+
+#[test]
+fn machine_files_are_read_or_refused() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/model/machines");
+    let presets = names().map(|name| std::fs::read(folder.join(format!("{name}.toml"))).unwrap());
+    let seeds: Vec<Vec<u8>> = presets.chain(corpus("machine")).collect();
+    fuzz(&seeds, cases(1000), 256 * MEGABYTE, |bytes| {
+        match MachineModel::parse("fuzz.toml", &String::from_utf8_lossy(bytes)) {
+            Ok(machine) => {
+                let mut counts = stripmine_kernels::isa::op::OpCounts::default();
+                stripmine_kernels::isa::op::Op::ALL.iter().for_each(|&op| counts.record(op));
+                assert!(machine.expand(&counts).values().all(|&count| count > 0));
+            }
+            Err(error) => assert!(error.to_string().len() < 100_000),
+        }
+    });
+}
+
+/// A host model with few programs, so that mutations meet every kind of entry.
+fn small_host() -> Vec<u8> {
+    let mut model = default_model().unwrap();
+    let few = |seen: &mut std::collections::BTreeMap<String, _>| {
+        while seen.len() > 1 {
+            seen.pop_last();
+        }
+    };
+    for lane in model.lanes.values_mut() {
+        few(&mut lane.seen);
+        while lane.passes.len() > 2 {
+            lane.passes.pop_last();
+        }
+    }
+    few(&mut model.loops.seen);
+    model.to_toml().into_bytes()
+}
+
+#[test]
+fn host_files_are_read_or_refused() {
+    let seeds: Vec<Vec<u8>> = std::iter::once(small_host()).chain(corpus("host")).collect();
+    fuzz(&seeds, cases(500), 256 * MEGABYTE, |bytes| {
+        match HostModel::parse("fuzz.toml", &String::from_utf8_lossy(bytes)) {
+            Ok(model) => assert_eq!(HostModel::parse("again.toml", &model.to_toml()).unwrap(), model),
+            Err(error) => assert!(error.to_string().len() < 100_000),
+        }
+    });
+}
+
+fn checkpoint() -> Vec<u8> {
+    let checkpoint = Checkpoint {
+        step: 12,
+        time: 0.5,
+        scene: "format = 1\n".to_owned(),
+        origin: [("version".to_owned(), "0.1.0".to_owned())].into(),
+        counters: [("a".to_owned(), Counter::Count(3)), ("b".to_owned(), Counter::Sum(0.25))].into(),
+        columns: vec![
+            ("x".to_owned(), Column::F64(vec![1.0, 2.0])),
+            ("y".to_owned(), Column::F32(vec![1.0])),
+            ("z".to_owned(), Column::U32(vec![7, 8, 9])),
+            ("w".to_owned(), Column::U64(vec![])),
+        ],
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.checkpoint");
+    checkpoint.write_atomically(&path).unwrap();
+    std::fs::read(path).unwrap()
+}
+
+/// Sets length and checksums right, as far as there are any: what a checksum would catch is not all that can be wrong.
+fn sealed(bytes: &[u8]) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    if bytes.len() < 28 {
+        return bytes;
+    }
+    let length = bytes.len() as u64;
+    bytes[16..24].copy_from_slice(&length.to_le_bytes());
+    let mut checksum = Hasher::new();
+    checksum.update(&bytes[..24]);
+    let seal = |bytes: &mut Vec<u8>, at: usize, checksum: &Hasher| {
+        bytes[at..at + 4].copy_from_slice(&checksum.clone().finalize().to_le_bytes());
+    };
+    seal(&mut bytes, 24, &checksum);
+    let mut at = 28;
+    while at + 16 <= bytes.len() {
+        let mut claimed = [0; 8];
+        claimed.copy_from_slice(&bytes[at + 4..at + 12]);
+        let Some(end) = usize::try_from(u64::from_le_bytes(claimed))
+            .ok()
+            .and_then(|claimed| claimed.checked_add(at + 12))
+        else {
+            break;
+        };
+        if end.checked_add(4).is_none_or(|end| end > bytes.len()) {
+            break;
+        }
+        checksum.update(&bytes[at..end]);
+        seal(&mut bytes, end, &checksum);
+        at = end + 4;
+    }
+    bytes
+}
+
+#[test]
+fn checkpoints_are_read_or_refused() {
+    let seeds: Vec<Vec<u8>> = std::iter::once(checkpoint()).chain(corpus("checkpoint")).collect();
+    assert!(Checkpoint::decode(&sealed(&seeds[0])).is_ok());
+    fuzz(&seeds, cases(5000), MEGABYTE, |bytes| {
+        let _ = Checkpoint::decode(bytes);
+        let _ = Checkpoint::decode(&sealed(bytes));
+    });
+}

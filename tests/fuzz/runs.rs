@@ -1,0 +1,74 @@
+//! Mutated scenes that are checked, and run for a few steps.
+
+use crate::readers::scenes;
+use crate::{cases, fuzz};
+use stripmine::run::{assemble, memory};
+use stripmine::scene::{Amount, Document, Grains, Lining, Scene, Start};
+
+/// Whether a scene has few discs and few cells, so that a case takes no time.
+fn is_small(scene: &Scene) -> bool {
+    const MOST: f64 = 300.0;
+    let sides = scene.domain.sides.unwrap_or([1.0; 2]);
+    let few = |amount: &Amount, grains: &Grains| match amount {
+        Amount::Count(count) => (*count as f64) <= MOST,
+        Amount::PackingFraction(fraction) => {
+            fraction * sides[0] * sides[1] / (grains.radius * grains.radius * 3.0) <= MOST
+        }
+    };
+    let lined = |lining: &Lining| sides[0] / lining.spacing <= MOST;
+    match &scene.start {
+        Start::File(_) | Start::List(_) => true,
+        Start::Hexagonal { count, .. } => *count as f64 <= MOST,
+        Start::Random { amount, grains } => few(amount, grains),
+        Start::Pipe { amount, grains, lining, .. } | Start::Box { amount, grains, lining, .. } => {
+            few(amount, grains) && lined(lining)
+        }
+    }
+}
+
+fn run(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let Ok(document) = Document::parse("scene.toml", &text, &[]) else { return };
+    if !is_small(&document.scene) {
+        return;
+    }
+    let Ok(checked) = document.check() else { return };
+    let foreseen = memory::foreseen(&checked);
+    if foreseen.needed > 100_000_000 {
+        return;
+    }
+    let Ok(mut method) = assemble(&checked) else { return };
+    for _ in 0..3 {
+        if method.step().is_err() {
+            return;
+        }
+    }
+    assert_eq!(method.particles().len(), checked.particles.len());
+}
+
+/// Small scenes of every method: presets are too large to be run thousands of times.
+fn small_scenes() -> Vec<Vec<u8>> {
+    let mut scenes = Vec::new();
+    for preset in ["pipe-small", "shaken-box", "dense-gas", "two-discs", "bench"] {
+        for method in [
+            &["method.execution=fast"][..],
+            &["method.execution=fast", "method.on_conflict=resolve"],
+            &["method.execution=chained"],
+            &["method.execution=eager", "method.precision=f32"],
+            &["method.kind=sectors", "method.execution=fast"],
+            &["method.kind=neighbor-list", "method.execution=fast", "method.precision=mixed"],
+            &["method.kind=neighbor-list", "method.rebuild=all-pairs"],
+        ] {
+            let count = if preset == "two-discs" { "run.steps=3" } else { "particles.count=30" };
+            let sets: Vec<String> = method.iter().chain(&[count]).map(|set| (*set).to_owned()).collect();
+            scenes.push(Document::load(preset, &sets).unwrap().scene.to_toml().into_bytes());
+        }
+    }
+    scenes
+}
+
+#[test]
+fn small_scenes_are_run_or_refused() {
+    let seeds: Vec<Vec<u8>> = small_scenes().into_iter().chain(scenes()).collect();
+    fuzz(&seeds, cases(300), 1 << 32, run);
+}

@@ -1,0 +1,78 @@
+//! The memory that a run takes is what the check said it would take.
+#![cfg(target_os = "linux")]
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use stripmine::run::memory::{Foreseen, foreseen};
+use stripmine::scene::Document;
+
+/// The most memory that a process had at one time (bytes), once it has ended well.
+fn peak(arguments: &[String]) -> u64 {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stripmine"));
+    let child = command.args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let (mut status, mut usage) = (0, std::mem::MaybeUninit::<libc::rusage>::zeroed());
+    // SAFETY: both are there to be written, and zeros are an `rusage`.
+    let (ended, usage) = unsafe {
+        let ended = libc::wait4(child.id() as libc::pid_t, &raw mut status, 0, usage.as_mut_ptr());
+        (ended, usage.assume_init())
+    };
+    assert!(ended > 0 && status == 0, "{arguments:?} ends with {status}");
+    usage.ru_maxrss as u64 * 1024
+}
+
+/// Within 5 % for the six ways of a hundred thousand discs.
+#[test]
+fn a_run_takes_the_memory_that_was_foreseen() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut said = Vec::new();
+    for sets in [
+        &["method.execution=fast", "particles.packing_fraction=0.7"][..],
+        &["method.execution=fast", "particles.packing_fraction=0.05"],
+        &["method.execution=chained"],
+        &["method.kind=neighbor-list", "method.execution=fast"],
+        &["method.kind=neighbor-list", "method.execution=chained"],
+        &["method.kind=sectors", "method.execution=fast"],
+    ] {
+        let sets: Vec<String> =
+            sets.iter().chain(&["particles.count=100000", "run.steps=1"]).map(|&set| set.into()).collect();
+        let Foreseen { needed, .. } = foreseen(&Document::load("bench", &sets).unwrap().check().unwrap());
+        let mut arguments =
+            ["run", "bench", "--overwrite", "--threads", "2", "--out"].map(str::to_owned).to_vec();
+        arguments.push(folder.path().join("run").display().to_string());
+        sets.iter().for_each(|set| arguments.extend(["--set".to_owned(), set.clone()]));
+        let taken = peak(&arguments);
+        said.push((
+            needed as f64 / taken as f64 - 1.0,
+            format!("{sets:?}: {needed} foreseen, {taken} taken"),
+        ));
+    }
+    let off: Vec<&String> = said.iter().filter(|(off, _)| off.abs() > 0.05).map(|(_, said)| said).collect();
+    assert!(off.is_empty(), "{off:#?} of {said:#?}");
+}
+
+/// Bytes of the process while it refuses: a tenth of a gigabyte is far below what it was asked for.
+#[test]
+fn what_does_not_fit_is_refused_before_it_is_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let gas = "format = 1\nunits = \"reduced\"\n[domain]\nsides = [SIDE, SIDE]\n[particles]\ngenerate = \"random\"\ncount = COUNT\n\
+               radius = 0.5\nmass = 1.0\n[law]\nstiffness = 187.0\n[integrator]\ndt = 0.005\n[run]\nsteps = 1\n";
+    for (side, count, words) in [
+        // Two billion discs; and two discs in two billion cells.
+        ("1e5", "2e9", "to place 2.0000e9 discs takes"),
+        ("3e4", "2", "a run of 2 discs in"),
+    ] {
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, gas.replace("SIDE", side).replace("COUNT", count)).unwrap();
+        let said = refused(&["scene", "check"], &path);
+        assert!(said.contains(words) && said.contains("this machine has"), "{said}");
+        let said = refused(&["run"], &path);
+        assert!(said.contains(words), "{said}");
+    }
+}
+
+fn refused(verb: &[&str], scene: &Path) -> String {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stripmine"));
+    let output = command.args(verb).arg(scene).current_dir(scene.parent().unwrap()).output().unwrap();
+    assert_eq!(output.status.code(), Some(3), "{output:?}");
+    String::from_utf8(output.stderr).unwrap()
+}

@@ -1,0 +1,217 @@
+//! Text from outside in messages: whatever stands in a file, a name or an argument, a terminal is told, not commanded.
+
+use assert_cmd::Command;
+use std::path::Path;
+
+/// What would colour, delete, turn around or hide text.
+const NASTY: [&str; 6] =
+    ["\u{1b}[31m", "\u{7}\u{8}", "\u{9b}2J", "exe\u{202e}txt", "\u{2066}a\u{2069}", "a\u{200b}\u{feff}b"];
+
+fn said(arguments: &[&str], folder: &Path) -> (Option<i32>, String) {
+    let output =
+        Command::cargo_bin("stripmine").unwrap().args(arguments).current_dir(folder).output().unwrap();
+    (output.status.code(), String::from_utf8(output.stderr).unwrap())
+}
+
+/// Nothing but what is seen, and line ends.
+fn is_clean(text: &str) -> bool {
+    let hidden = |c: char| {
+        c.is_control() && c != '\n'
+            || matches!(c, '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{ad}')
+    };
+    !text.chars().any(hidden)
+}
+
+#[test]
+fn no_message_carries_what_a_terminal_obeys() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let two = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/bad/two.xyz");
+    let two = std::fs::read_to_string(two).unwrap();
+    let machine =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/model/machines/cray-1.toml"));
+    let machine = machine.unwrap();
+    let host = stripmine::model::host::default_model().unwrap().to_toml();
+    let escaped = |text: &str| text.chars().map(|c| format!("\\U{:08X}", c as u32)).collect::<String>();
+    for nasty in NASTY {
+        let key = escaped(nasty);
+        let scene = "format = 1\nunits = \"SI\"\n[domain]\nsides = [10.0, 8.0]\n[particles]\nfile = \"FILE\"\n[law]\nstiffness = 1\n\
+                     [integrator]\ndt = 1e-3\n[run]\nsteps = 1\n";
+        let files = [
+            ("syntax.toml", format!("format = 1\nx = {nasty}")),
+            (
+                "key.toml",
+                format!("format = 1\n\"{key}\" = 1\n[\"{key}\"]\n[law]\n\"{key}\" = 2\nkind = \"{key}\"\n"),
+            ),
+            ("file.toml", scene.replace("FILE", &key)),
+            ("species.toml", scene.replace("FILE", "species.xyz")),
+            ("number.toml", scene.replace("FILE", "number.xyz")),
+            ("count.toml", scene.replace("FILE", "count.xyz")),
+            ("column.toml", scene.replace("FILE", "column.xyz")),
+            ("value.toml", scene.replace("FILE", "value.xyz")),
+            ("species.xyz", two.replacen("Si ", &format!("{nasty} "), 1)),
+            ("number.xyz", two.replacen("0.5", nasty, 1)),
+            ("count.xyz", format!("{nasty}\n{two}")),
+            ("column.xyz", two.replacen("radius:R", &format!("{nasty}:R"), 1)),
+            ("value.xyz", two.replacen("Time=0.0", &format!("Time={nasty}"), 1)),
+            ("machine.toml", machine.replacen("title", &format!("\"{key}\" = 1\ntitle"), 1)),
+            ("machine-syntax.toml", machine.replacen("title = ", &format!("title = {nasty}"), 1)),
+            (
+                "class.toml",
+                machine.replacen("[start_up]", &format!("[start_up]\n\"{key}\" = {{ value = 1 }}"), 1),
+            ),
+            ("host.toml", host.replacen("title", &format!("\"{key}\" = 1\ntitle"), 1)),
+            ("host-syntax.toml", host.replacen("title = ", &format!("title = {nasty}"), 1)),
+        ];
+        for (name, text) in files {
+            std::fs::write(folder.path().join(name), text).unwrap();
+        }
+        let path = at(&format!("no{nasty}such.toml"));
+        let set = format!("{nasty}={nasty}");
+        for (code, arguments) in [
+            (3, &["scene", "check", "syntax.toml"][..]),
+            (3, &["scene", "check", "key.toml"]),
+            (3, &["scene", "check", "file.toml"]),
+            (3, &["scene", "check", "species.toml"]),
+            (3, &["scene", "check", "number.toml"]),
+            (3, &["scene", "check", "count.toml"]),
+            (3, &["scene", "check", "column.toml"]),
+            (3, &["scene", "check", "value.toml"]),
+            (3, &["scene", "check", &path]),
+            (3, &["scene", "check", "two-discs", "--set", &set]),
+            (3, &["scene", "check", "two-discs", "--set", nasty]),
+            (3, &["table", "--machine", "machine.toml"]),
+            (3, &["table", "--machine", "machine-syntax.toml"]),
+            (3, &["table", "--machine", "class.toml"]),
+            (5, &["table", "--machine", &path]),
+            (2, &["table", "--machine", nasty]),
+            (3, &["validate-model", "--host", "host.toml"]),
+            (3, &["validate-model", "--host", "host-syntax.toml"]),
+            (5, &["validate-model", "--host", &path]),
+            (2, &["scene", "show", nasty]),
+            (2, &["scene", nasty]),
+            (2, &[nasty]),
+            (2, &["run", "two-discs", "--threads", nasty]),
+        ] {
+            let (found, text) = said(arguments, folder.path());
+            assert_eq!(found, Some(code), "{arguments:?}: {text}");
+            assert!(!text.is_empty() && is_clean(&text), "{arguments:?}: {text:?}");
+        }
+    }
+}
+
+/// A checkpoint whose names are no names, and a folder that is called so.
+#[test]
+fn no_message_of_a_checkpoint_does_either() {
+    use stripmine::io::checkpoint::{CheckpointError, Fault, Kept};
+    for nasty in NASTY {
+        let error = CheckpointError {
+            file: nasty.into(),
+            offset: None,
+            fault: Fault::Repeated { what: "the column", name: nasty.to_owned() },
+            kept: Kept::Whole { file: nasty.into(), step: 1 },
+        };
+        assert!(is_clean(&error.to_string()), "{error:?}");
+    }
+}
+
+/// What never ends, waits for a writer or is no file at all is refused before it is opened.
+#[cfg(unix)]
+#[test]
+fn what_is_no_ordinary_file_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe.toml");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    std::os::unix::fs::symlink("/dev/zero", folder.path().join("zero.toml")).unwrap();
+    std::fs::create_dir(folder.path().join("folder.toml")).unwrap();
+    let scene = "format = 1\nunits = \"SI\"\n[domain]\nsides = [10.0, 8.0]\n[particles]\nfile = \"FILE\"\n[law]\nstiffness = 1\n\
+                 [integrator]\ndt = 1e-3\n[run]\nsteps = 1\n";
+    for (name, words) in [
+        ("pipe.toml", "it is a pipe; expected an ordinary file"),
+        ("zero.toml", "it is a device; expected an ordinary file"),
+        ("folder.toml", "it is a folder; expected an ordinary file"),
+    ] {
+        std::fs::write(folder.path().join("scene.toml"), scene.replace("FILE", name)).unwrap();
+        let run = format!("{name}.run");
+        std::fs::create_dir(folder.path().join(&run)).unwrap();
+        for (code, arguments) in [
+            (3, &["scene", "check", name][..]),
+            (3, &["scene", "check", "scene.toml"]),
+            (5, &["table", "--machine", name]),
+            (5, &["validate-model", "--host", name]),
+        ] {
+            let (found, text) = said(arguments, folder.path());
+            assert_eq!(found, Some(code), "{arguments:?}: {text}");
+            assert!(text.contains(words), "{arguments:?}: {text}");
+        }
+        let checkpoint = stripmine::io::checkpoint::Checkpoint::read(folder.path().join(name)).unwrap_err();
+        assert!(checkpoint.to_string().contains(words), "{checkpoint}");
+    }
+}
+
+/// Files of other kinds and broken ones may hold mistakes without end: the first are named, the rest counted.
+#[test]
+fn many_mistakes_are_counted() {
+    use stripmine::scene::{Reason, Scene};
+    let keys: String = (0..100_000).map(|i| format!("key{i} = 1\n")).collect();
+    let positions = format!("[particles]\npositions = [{}]", "[1.0, 2.0, 3.0], ".repeat(40_000));
+    for (text, more) in [
+        (format!("format = 1\n[law]\n{keys}"), Some("more mistakes, not named")),
+        (format!("format = 1\n{keys}"), Some("more mistakes, not named")),
+        (format!("format = 1\n{}", "x\n".repeat(100_000)), Some("more mistakes, not named")),
+        (format!("format = 1\n{positions}"), None),
+        (format!("format = 1\n[law]\n{} = 1", "k".repeat(1_000_000)), None),
+    ] {
+        let errors = Scene::parse("scene.toml", &text).unwrap_err();
+        assert!(errors.0.len() <= 60, "{}", errors.0.len());
+        let said =
+            errors.0.iter().find(|error| error.reason == Reason::More).map(|error| error.message.clone());
+        assert_eq!(said.is_some(), more.is_some(), "{said:?}");
+        assert!(said.is_none_or(|said| said.ends_with(more.unwrap())));
+        assert!(errors.to_string().len() < 200_000);
+    }
+}
+
+/// The column of an item is found without counting from the beginning of its line.
+#[test]
+fn a_long_line_is_read_in_time_that_grows_with_its_length() {
+    use stripmine::scene::Document;
+    let text = Document::load("two-discs", &[]).unwrap().scene.to_toml();
+    let list =
+        |count: usize| (0..count).map(|i| format!("[{}.0, 1.0]", i % 9)).collect::<Vec<_>>().join(", ");
+    let at = text.find("positions = ").unwrap();
+    let end = at + text[at..].find('\n').unwrap();
+    let velocities = text.find("velocities = ").map(|at| (at, at + text[at..].find('\n').unwrap()));
+    let long = format!("{}positions = [{}, [\"é\", 0.0]]{}", &text[..at], list(40_000), &text[end..]);
+    assert!(velocities.is_some());
+    let errors = Document::parse("scene.toml", &long, &[]).unwrap_err();
+    let place = errors.0[0].place.unwrap();
+    let column = long.lines().nth(place.line as usize - 1).unwrap().find('"').unwrap() + 1;
+    assert_eq!(place.column as usize, column, "{errors}");
+}
+
+#[test]
+fn threads_are_as_many_as_make_sense() {
+    let folder = tempfile::tempdir().unwrap();
+    for threads in ["0", "1025", "65535", "99999999999", "-1"] {
+        let (code, text) = said(&["scene", "list", "--threads", threads], folder.path());
+        assert_eq!(code, Some(2), "{text}");
+    }
+    let (_, text) = said(&["scene", "list", "--threads", "65535"], folder.path());
+    assert!(text.contains("1..=1024"), "{text}");
+}
+
+/// Of discs that all lie on one heap, pairs are counted to a bound and the deepest named.
+#[test]
+fn a_heap_of_discs_is_refused_without_counting_it_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let header = "Lattice=\"10.0 0 0 0 8.0 0 0 0 1\" Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
+    let rows: String = (1..=8000).map(|id| format!("Si 5 5 0 {id} 0 0 0 0.5 1 0 0 0\n")).collect();
+    std::fs::write(folder.path().join("heap.xyz"), format!("8000\n{header}\n{rows}")).unwrap();
+    let scene = "format = 1\nunits = \"SI\"\n[domain]\nsides = [10.0, 8.0]\n[particles]\nfile = \"heap.xyz\"\n[law]\nstiffness = 1\n\
+                 [integrator]\ndt = 1e-3\n[run]\nsteps = 1\n";
+    std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    let (code, text) = said(&["scene", "check", "scene.toml"], folder.path());
+    assert_eq!(code, Some(3));
+    assert!(text.contains("at least 999995 more pairs overlap; the search ended there"), "{text}");
+}
