@@ -98,7 +98,12 @@ impl HostModel {
     pub fn parse(file: &str, text: &str) -> Result<HostModel, HostFileError> {
         let model: HostModel = toml::from_str(text)
             .map_err(|cause| HostFileError::Syntax { file: file.to_owned(), cause: Box::new(cause) })?;
-        let defects = model.defects();
+        let mut defects = model.defects();
+        if defects.is_empty() {
+            // The same once more, whatever an entry is called: so that no number slips through.
+            let written = text.parse::<toml::Table>().map(toml::Value::Table);
+            written.iter().for_each(|value| infinite(value, String::new(), &mut defects));
+        }
         let more = defects.len().saturating_sub(NAMED);
         let entries: Vec<BadEntry> = defects
             .into_iter()
@@ -184,6 +189,12 @@ impl HostModel {
                 defects.push((entry, format!("is {value}, but must be from 0 to {MOST:e}")));
             }
         }
+        for level in &self.levels {
+            if level.capacity.is_some_and(|capacity| capacity <= 0.0) {
+                let what = format!("is {}, but must be positive", level.capacity.unwrap_or(0.0));
+                defects.push(("levels.capacity".to_owned(), what));
+            }
+        }
         let [lanes, lengths] = &COUNTS;
         let widths =
             self.lanes.iter().map(|(lane, costs)| (format!("lanes.{lane}.lanes"), costs.lanes, lanes));
@@ -198,6 +209,27 @@ impl HostModel {
             defects.push(("levels".to_owned(), "with `lanes` must not be empty".to_owned()));
         }
         defects
+    }
+}
+
+/// Every number below an entry that is not finite, or too large.
+fn infinite(value: &toml::Value, entry: String, found: &mut Vec<(String, String)>) {
+    let below = |name: &str| if entry.is_empty() { name.to_owned() } else { format!("{entry}.{name}") };
+    match value {
+        toml::Value::Float(number) if !(-MOST..=MOST).contains(number) => {
+            let number = number.abs();
+            found.push((
+                entry,
+                format!("is {}, but must be finite and at most {MOST:e}", number.to_string().to_lowercase()),
+            ));
+        }
+        toml::Value::Table(table) => {
+            table.iter().for_each(|(name, value)| infinite(value, below(name), found));
+        }
+        toml::Value::Array(items) => {
+            items.iter().for_each(|value| infinite(value, entry.clone(), found));
+        }
+        _ => {}
     }
 }
 

@@ -47,10 +47,14 @@ impl VerletList {
     pub fn new<S: Element>(sectors: &Sectors, places: [&[S]; 2], skin: f64) -> Self {
         let (grid, reach) = (*sectors.grid(), sectors.reach());
         let limit = (reach + skin) * (reach + skin);
-        // One sector along an axis is all there is, however narrow.
-        let wide =
-            |axis: usize| grid.counts[axis] == 1 || grid.frame.edge[axis] * (1.0 + 1e-12) >= reach + skin;
-        assert!(wide(0) && wide(1), "sectors too narrow");
+        assert!(
+            // A single sector along an open side has nothing beyond it.
+            (0..2).all(|axis| {
+                let alone = grid.counts[axis] == 1 && !grid.periodic[axis];
+                alone || grid.frame.edge[axis] * (1.0 + 1e-12) >= reach + skin
+            }),
+            "sectors too narrow"
+        );
         let discs = sectors.disc_count();
         let at = |disc: u32| places.map(|place| place[disc as usize].to_f64());
         let ways = grid.ways();

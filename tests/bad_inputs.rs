@@ -1,0 +1,130 @@
+//! Bad inputs of every kind, a line each, in `tests/bad/*.cases`: an input that is right, what is changed in it, and what must
+//! be said about that.
+//!
+//! A line is `BASE: OLD => NEW :: words :: words`. `NEW` takes the place of the first line of the base that begins with `OLD`;
+//! with `~>` in place of the arrow, of the first `OLD` in the text. The mark `‸` in `NEW` is where the error must point, and is
+//! taken out; `\n` is a line end. Bases are files beside, called `BASE.base`. Lines that begin with `#` say what follows.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+struct Case {
+    line: usize,
+    text: String,
+    /// Line and column at which the error must point.
+    place: Option<(usize, usize)>,
+    words: Vec<String>,
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bad")
+}
+
+fn cases(kind: &str) -> Vec<Case> {
+    let table = std::fs::read_to_string(folder().join(format!("{kind}.cases"))).unwrap();
+    let lines =
+        table.lines().enumerate().filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
+    lines.map(|(number, line)| case(number + 1, line)).collect()
+}
+
+fn case(line: usize, text: &str) -> Case {
+    let mut parts = text.split(" :: ");
+    let change = parts.next().unwrap();
+    let words: Vec<String> = parts.map(str::to_owned).collect();
+    assert!(!words.is_empty(), "line {line} expects nothing");
+    let (base, change) = change.split_once(": ").unwrap();
+    let whole = change.contains(" => ");
+    let (old, new) = change.split_once(if whole { " => " } else { " ~> " }).unwrap();
+    let base = std::fs::read_to_string(folder().join(format!("{base}.base"))).unwrap();
+    let begins = if whole {
+        base.starts_with(old).then_some(0).or_else(|| base.find(&format!("\n{old}")).map(|at| at + 1))
+    } else {
+        base.find(old)
+    };
+    let begins = begins.unwrap_or_else(|| panic!("line {line}: the base has no {old:?}"));
+    let ends = if whole {
+        base[begins..].find('\n').map_or(base.len(), |end| begins + end)
+    } else {
+        begins + old.len()
+    };
+    let marked = format!("{}{}{}", &base[..begins], new.replace("\\n", "\n"), &base[ends..]);
+    let place = marked.find('‸').map(|mark| {
+        let before = &marked[..mark];
+        (before.matches('\n').count() + 1, before.rsplit('\n').next().unwrap().chars().count() + 1)
+    });
+    Case { line, text: marked.replace('‸', ""), place, words }
+}
+
+/// Every case of a table ends with exit code 3 and says what and where; `ask` puts the question, `place` writes a place.
+fn all_are_refused(
+    kind: &str,
+    least: usize,
+    ask: impl Fn(&Path, &str) -> Output,
+    place: impl Fn(usize, usize) -> String,
+) {
+    let cases = cases(kind);
+    assert!(cases.len() >= least, "{} cases", cases.len());
+    let folder = tempfile::tempdir().unwrap();
+    let mut wrong = Vec::new();
+    for case in &cases {
+        let output = ask(folder.path(), &case.text);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let place = case.place.map(|(line, column)| place(line, column));
+        let missing: Vec<&String> =
+            case.words.iter().chain(&place).filter(|words| !said.contains(words.as_str())).collect();
+        if output.status.code() != Some(3) || !output.stdout.is_empty() || !missing.is_empty() {
+            wrong.push(format!(
+                "line {}: ends with {:?}, does not say {missing:?}\n{said}",
+                case.line,
+                output.status.code()
+            ));
+        }
+    }
+    assert!(wrong.is_empty(), "{} of {} of {kind}.cases:\n\n{}", wrong.len(), cases.len(), wrong.join("\n"));
+}
+
+fn stripmine(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_stripmine")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+#[test]
+fn bad_scenes_are_refused() {
+    let ask = |folder: &Path, text: &str| {
+        std::fs::write(folder.join("scene.toml"), text).unwrap();
+        stripmine(folder, &["scene", "check", "scene.toml"])
+    };
+    all_are_refused("scene", 130, ask, |line, column| format!("scene.toml:{line}:{column}: "));
+}
+
+#[test]
+fn bad_start_files_are_refused() {
+    let scene = std::fs::read_to_string(folder().join("start.base")).unwrap();
+    let ask = |folder: &Path, text: &str| {
+        std::fs::write(folder.join("start.xyz"), text).unwrap();
+        std::fs::write(folder.join("scene.toml"), &scene).unwrap();
+        stripmine(folder, &["scene", "check", "scene.toml"])
+    };
+    all_are_refused("start-file", 40, ask, |line, column| format!("start.xyz:{line}:{column}: "));
+}
+
+#[test]
+fn bad_machine_files_are_refused() {
+    let ask = |folder: &Path, text: &str| {
+        std::fs::write(folder.join("machine.toml"), text).unwrap();
+        stripmine(folder, &["table", "--machine", "machine.toml"])
+    };
+    all_are_refused("machine", 30, ask, |line, column| format!("line {line}, column {column}"));
+}
+
+#[test]
+fn bad_host_files_are_refused() {
+    let host = stripmine::model::host::default_model().unwrap().to_toml();
+    let ask = |folder: &Path, change: &str| {
+        // The base is too long to be kept twice: the text of a case is the change, old and new.
+        let (old, new) = change.trim_end().split_once('\n').unwrap();
+        assert!(host.contains(old), "{old}");
+        std::fs::write(folder.join("host.toml"), host.replacen(old, new, 1)).unwrap();
+        stripmine(folder, &["validate-model", "--host", "host.toml"])
+    };
+    all_are_refused("host", 15, ask, |line, column| format!("line {line}, column {column}"));
+}
