@@ -10,7 +10,7 @@ mod readers;
 mod runs;
 
 use mutation::Mutation;
-use proptest::collection::vec;
+use proptest::strategy::Strategy;
 use proptest::test_runner::{Config, TestRng, TestRunner};
 
 /// Inputs kept from earlier finds.
@@ -23,6 +23,17 @@ pub(crate) fn corpus(kind: &str) -> Vec<Vec<u8>> {
 
 /// Reads every seed, and `cases` mutated ones; none may take more than `most` bytes of memory in all.
 pub(crate) fn fuzz(seeds: &[Vec<u8>], cases: u32, most: u64, read: impl Fn(&[u8])) {
+    fuzz_with(mutation::some(), seeds, cases, most, read);
+}
+
+/// The same with mutations of some kind.
+pub(crate) fn fuzz_with(
+    mutations: impl Strategy<Value = Vec<Mutation>>,
+    seeds: &[Vec<u8>],
+    cases: u32,
+    most: u64,
+    read: impl Fn(&[u8]),
+) {
     assert!(!seeds.is_empty());
     let bounded = |input: &[u8]| {
         let taken = allocations::counted(|| read(input));
@@ -32,7 +43,7 @@ pub(crate) fn fuzz(seeds: &[Vec<u8>], cases: u32, most: u64, read: impl Fn(&[u8]
     let config = Config { cases, failure_persistence: None, max_shrink_iters: 2000, ..Config::default() };
     let rng = TestRng::from_seed(proptest::test_runner::RngAlgorithm::ChaCha, &[7; 32]);
     let mut runner = TestRunner::new_with_rng(config, rng);
-    let case = (0..seeds.len(), vec(mutation::any(), 1..6));
+    let case = (0..seeds.len(), mutations);
     let outcome = runner.run(&case, |(seed, mutations): (usize, Vec<Mutation>)| {
         let mut input = seeds[seed].clone();
         mutations.iter().for_each(|mutation| mutation.apply(&mut input, seeds));

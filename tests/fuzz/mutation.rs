@@ -1,5 +1,6 @@
 //! Small changes to an input, of the kinds that break readers.
 
+use proptest::collection::vec;
 use proptest::prelude::{Strategy, prop_oneof};
 
 /// A change. Places are parts of the whole, so that they mean something in any input.
@@ -24,6 +25,11 @@ pub(crate) enum Mutation {
     Number {
         at: u16,
         what: usize,
+    },
+    /// In place of the number its product with another.
+    Scale {
+        at: u16,
+        by: usize,
     },
     Word {
         at: u16,
@@ -133,7 +139,22 @@ const PIECES: &[&str] = &[
     "5\n",
 ];
 
-pub(crate) fn any() -> impl Strategy<Value = Mutation> {
+/// Factors that leave most numbers in their range.
+const FACTORS: [f64; 8] = [0.5, 2.0, 0.9, 1.1, 0.1, 10.0, 1.7, -1.0];
+
+/// A few changes of any kind.
+pub(crate) fn some() -> impl Strategy<Value = Vec<Mutation>> {
+    vec(any(), 1..6)
+}
+
+/// One to three changes after most of which an input still is one.
+pub(crate) fn gentle() -> impl Strategy<Value = Vec<Mutation>> {
+    let at = || proptest::prelude::any::<u16>();
+    let scale = || (at(), 0..FACTORS.len()).prop_map(|(at, by)| Mutation::Scale { at, by });
+    vec(prop_oneof![scale(), scale(), scale(), scale(), any()], 1..4)
+}
+
+fn any() -> impl Strategy<Value = Mutation> {
     let at = || proptest::prelude::any::<u16>();
     let number = || (at(), 0..NUMBERS.len()).prop_map(|(at, what)| Mutation::Number { at, what });
     prop_oneof![
@@ -198,6 +219,15 @@ impl Mutation {
                     byte.is_ascii_digit() || matches!(byte, b'.' | b'-' | b'+')
                 });
                 input.splice(number, NUMBERS[what].bytes());
+            }
+            Mutation::Scale { at, by } => {
+                let digits = run(input, place(at, length), |byte| byte.is_ascii_digit() || byte == b'.');
+                if let Ok(number) = String::from_utf8_lossy(&input[digits.clone()]).parse::<f64>() {
+                    let scaled = number * FACTORS[by];
+                    let whole = !input[digits.clone()].contains(&b'.');
+                    let text = if whole { format!("{scaled:.0}") } else { format!("{scaled:?}") };
+                    input.splice(digits, text.into_bytes());
+                }
             }
             Mutation::Word { at, with } => {
                 let other = input[word(with)].to_vec();
