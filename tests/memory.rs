@@ -7,6 +7,7 @@ use stripmine::run::memory::{Foreseen, foreseen};
 use stripmine::scene::Document;
 
 /// The most memory that a process had at one time (bytes), once it has ended well.
+#[expect(clippy::zombie_processes, reason = "it is waited for below, by what says how much it took")]
 fn peak(arguments: &[String]) -> u64 {
     let mut command = Command::new(env!("CARGO_BIN_EXE_stripmine"));
     let child = command.args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
