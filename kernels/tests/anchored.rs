@@ -8,7 +8,7 @@ use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::sweep::lattice::cells::{Enter, STRAYS};
 use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
-use stripmine_kernels::{Execution, InstructionSet, Program, Runnable};
+use stripmine_kernels::{Execution, InstructionSet, Program};
 
 const DISCS: usize = 300;
 

@@ -33,6 +33,8 @@ struct Met {
     sliding: usize,
     sticking: usize,
     pulling: usize,
+    /// Energy a time that leaves motion and springs.
+    dissipated: f64,
 }
 
 impl Met {
@@ -42,6 +44,7 @@ impl Met {
         self.sliding += other.sliding;
         self.sticking += other.sticking;
         self.pulling += other.pulling;
+        self.dissipated += other.dissipated;
     }
 }
 
@@ -85,14 +88,17 @@ fn naive_forces(
                     normal = 0.0;
                 }
             }
-            let shortening = match law.arm {
-                ContactArm::Radius => 0.0,
-                ContactArm::Overlap => xi / 2.0,
+            // What shortens the torque's arm, and the surface's.
+            let (shortening, shrinking) = match law.arm {
+                ContactArm::Radius => (0.0, 0.0),
+                ContactArm::Overlap => (xi / 2.0, xi / 2.0),
+                ContactArm::Lammps => (xi / 2.0, 0.0),
             };
             let (arm_a, arm_b) = (a.radius - shortening, b.radius - shortening);
+            let (rim_a, rim_b) = (a.radius - shrinking, b.radius - shrinking);
             let mut shear = 0.0;
             if friction {
-                let slip = v[0] * s[0] + v[1] * s[1] - arm_a * a.spin - arm_b * b.spin;
+                let slip = v[0] * s[0] + v[1] * s[1] - rim_a * a.spin - rim_b * b.spin;
                 let viscous = law.shear_damping * reduced * slip.abs();
                 let bound = law.friction * normal.abs();
                 if viscous > bound {
@@ -102,6 +108,11 @@ fn naive_forces(
                 }
                 shear = -slip.signum() * viscous.min(bound);
             }
+            // What the pair gets, and what goes into its spring.
+            let spins = if friction { arm_a * a.spin + arm_b * b.spin } else { 0.0 };
+            let work = normal * (v[0] * n[0] + v[1] * n[1]) + shear * (v[0] * s[0] + v[1] * s[1] - spins);
+            let stored = -law.stiffness * xi.powf(1.5) * (v[0] * n[0] + v[1] * n[1]);
+            met.dissipated -= work + stored;
             for axis in 0..2 {
                 let force = normal * n[axis] + shear * s[axis];
                 total[i][axis] += force;
@@ -149,7 +160,9 @@ fn compare<L: Law<2> + Sync>(case: &Case, law: &L, all_alike: bool, friction: bo
     };
     let fast = {
         let order: Vec<u32> = (0..start.discs as u32).collect();
-        let (forces, _) = start.fast_forces(law, &order, InstructionSet::best()).unwrap();
+        let (forces, found) = start.fast_forces(law, &order, InstructionSet::best()).unwrap();
+        let off = (found.dissipated / met.dissipated - 1.0).abs();
+        assert!(met.dissipated > 0.0 && off < 1e-11, "{found:?} but {met:?} in {case:?}");
         Sum::ALL.map(|sum| forces.iter().map(|force| force[sum as usize]).collect::<Vec<f64>>())
     };
     for forces in ways().map(faithful).into_iter().chain([fast]) {
@@ -178,7 +191,7 @@ fn compare_everywhere<L: Law<2> + Sync>(law: impl Fn(Contact) -> L, all_alike: b
         for periodic in [[true, true], [false, false], [true, false], [false, true]] {
             for coordinates in [Coordinates::CellRelative, Coordinates::Absolute] {
                 for cohesionless in [true, false] {
-                    for arm in [ContactArm::Radius, ContactArm::Overlap] {
+                    for arm in [ContactArm::Radius, ContactArm::Overlap, ContactArm::Lammps] {
                         seed += 1;
                         let contact = Contact { cohesionless, arm, normal_damping: 60.0, ..CONTACT };
                         let case = Case {
