@@ -33,7 +33,7 @@ fn frame(step: u64) -> Frame {
         particles: Particles::new(vec![grain, wall]),
         cell: [10.0 / 3.0, 8.0],
         origin: [-1.5, 0.1],
-        periodic: [true, false],
+        periodic: Some([true, false]),
         time: 0.1 * step as f64,
         step,
         seed: Some(u64::MAX),

@@ -150,7 +150,7 @@ fn scenes_survive_being_written() {
             "shaken-box",
             vec!["particles.wall_motion=fixed", "method.coordinates=absolute", "output.lammps_dump=true"],
         ),
-        ("two-discs", vec![&file, "domain.sides=[10.0, 8.0]"]),
+        ("two-discs", vec![&file, "domain.sides=[10.0, 8.0]", "domain.periodic=[true, true]"]),
     ];
     let presets = PRESETS.iter().map(|preset| (preset.name, Vec::new()));
     for (name, overrides) in presets.chain(variants) {

@@ -145,6 +145,10 @@ impl Failure {
         };
         match self {
             Failure::HostFileExists(file) => Place::at(file),
+            Failure::HostFile(HostFileError::Read(error)) => Place::at(&error.file),
+            Failure::HostFile(HostFileError::NotText { file, line }) => {
+                Some(Place { file: file.clone(), line: Some(*line), column: None })
+            }
             Failure::InputOutput { what, .. } => Place::at(Path::new(what)),
             Failure::HostFile(HostFileError::Syntax { file, .. })
             | Failure::Machine(

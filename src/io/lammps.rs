@@ -60,7 +60,7 @@ pub fn write_data(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
 /// Those of the writer.
 pub fn write_dump(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
     let flag = |periodic| if periodic { "pp" } else { "ff" };
-    let [x, y] = frame.periodic.map(flag);
+    let [x, y] = frame.periodic.unwrap_or([true; 2]).map(flag);
     writeln!(out, "ITEM: TIMESTEP\n{}", frame.step)?;
     writeln!(out, "ITEM: NUMBER OF ATOMS\n{}", frame.particles.len())?;
     writeln!(out, "ITEM: BOX BOUNDS {x} {y} ff")?;

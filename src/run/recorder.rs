@@ -312,7 +312,7 @@ impl Recorder {
             particles: method.particles(),
             cell: domain.sides,
             origin: domain.origin,
-            periodic: domain.periodic,
+            periodic: Some(domain.periodic),
             time: method.time(),
             step: method.steps(),
             seed: self.seed,

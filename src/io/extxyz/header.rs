@@ -7,7 +7,7 @@ use super::rows::Layout;
 pub(super) struct Header {
     pub(super) cell: [f64; 2],
     pub(super) origin: [f64; 2],
-    pub(super) periodic: [bool; 2],
+    pub(super) periodic: Option<[bool; 2]>,
     pub(super) time: f64,
     pub(super) step: u64,
     pub(super) seed: Option<u64>,
@@ -81,10 +81,10 @@ pub(super) fn parse(text: &str, line: usize) -> Result<Header, Mistakes> {
             _ => keep(entry, entry.wrong("Origin", ORIGIN)),
         }
     }
-    let mut periodic = [true; 2];
+    let mut periodic = None;
     if let Some(entry) = find("pbc") {
         match boundaries(entry) {
-            Some(axes) => periodic = axes,
+            Some(axes) => periodic = Some(axes),
             None => keep(entry, entry.wrong("pbc", BOUNDARIES)),
         }
     }

@@ -39,8 +39,8 @@ pub struct Frame {
     pub cell: [f64; 2],
     /// Lower left corner of the box (length).
     pub origin: [f64; 2],
-    /// Along which axes the box repeats.
-    pub periodic: [bool; 2],
+    /// Along which axes the box repeats, where the frame says so; others take it for repeating along all.
+    pub periodic: Option<[bool; 2]>,
     /// Time (time).
     pub time: f64,
     /// Steps done.

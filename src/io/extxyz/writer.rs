@@ -10,11 +10,13 @@ use std::io::{self, Write};
 /// Those of the writer.
 pub fn write(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
     let Frame { particles, cell: [lx, ly], origin: [x, y], periodic, time, step, seed } = frame;
-    let [px, py] = periodic.map(|yes| if yes { 'T' } else { 'F' });
     let [bottom, top] = DEPTH;
     writeln!(out, "{}", particles.len())?;
     write!(out, "Lattice=\"{lx:?} 0.0 0.0 0.0 {ly:?} 0.0 0.0 0.0 {:?}\" ", top - bottom)?;
-    write!(out, "Origin=\"{x:?} {y:?} {bottom:?}\" pbc=\"{px} {py} F\" ")?;
+    write!(out, "Origin=\"{x:?} {y:?} {bottom:?}\" ")?;
+    if let Some([px, py]) = periodic.map(|axes| axes.map(|yes| if yes { 'T' } else { 'F' })) {
+        write!(out, "pbc=\"{px} {py} F\" ")?;
+    }
     write!(out, "Properties={PROPERTIES} Time={time:?} step={step}")?;
     if let Some(seed) = seed {
         write!(out, " seed={seed}")?;

@@ -169,6 +169,15 @@ fn from_file(document: &Document, domain: &Domain, path: &std::path::Path) -> Re
             return Err(error.expecting(format!("{} = {found:?}", key.name)));
         }
     }
+    if let Some(found) = frame.periodic.filter(|&found| found != domain.periodic) {
+        let message = format!(
+            "`domain.periodic` is {:?}, but the start file {} says pbc = {found:?} along x and y",
+            domain.periodic,
+            quoted::path(path)
+        );
+        let error = document.spot(&PERIODIC).error(Reason::Contradiction, message);
+        return Err(error.expecting(format!("periodic = {found:?}")));
+    }
     Ok(frame.particles)
 }
 

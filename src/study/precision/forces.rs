@@ -3,6 +3,7 @@
 use super::{Gas, PACKING_FRACTIONS, StudyError, place};
 use crate::observe::contacts;
 use serde::Serialize;
+use stripmine_kernels::sweep::lattice::Coordinates;
 
 /// A way to compute forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -85,10 +86,13 @@ fn on_one_configuration(packing_fraction: f64, count: usize) -> Result<Vec<Force
     let overrides = place(count, packing_fraction, 1);
     let discs = Gas::equilibrated(&overrides)?;
     let computed = |way: Way| -> Result<Gas, StudyError> {
-        let method =
-            [("precision", way.precision), ("execution", way.execution), ("coordinates", way.coordinates)];
+        let method = [("precision", way.precision), ("execution", way.execution)];
         let method = method.map(|(key, value)| format!("method.{key}=\"{value}\""));
-        Gas::begin(&[overrides.as_slice(), &method].concat(), Some(&discs))
+        let coordinates = match way.coordinates {
+            "absolute" => Coordinates::Absolute,
+            _ => Coordinates::CellRelative,
+        };
+        Gas::seen_from(coordinates, &[overrides.as_slice(), &method].concat(), Some(&discs))
     };
     let reference = computed(Way { precision: "f64", ..WAYS[0] })?;
     let exact = reference.method.forces();

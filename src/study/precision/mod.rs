@@ -15,6 +15,7 @@ use crate::scene::Document;
 use energy::EnergyCase;
 use forces::ForceError;
 use serde::Serialize;
+use stripmine_kernels::sweep::lattice::Coordinates;
 use trajectories::Divergence;
 
 /// The dataset.
@@ -58,7 +59,18 @@ struct Gas {
 impl Gas {
     /// The bench scene with overrides, from `discs` where given.
     fn begin(overrides: &[String], discs: Option<&Particles>) -> Result<Gas, StudyError> {
+        Gas::seen_from(Coordinates::CellRelative, overrides, discs)
+    }
+
+    /// The same with positions seen from there, also where a run would be refused because single precision loses motion: what
+    /// that does is the question here.
+    fn seen_from(
+        coordinates: Coordinates,
+        overrides: &[String],
+        discs: Option<&Particles>,
+    ) -> Result<Gas, StudyError> {
         let mut checked = Document::load("bench", overrides)?.check()?;
+        checked.scene.method.coordinates = coordinates;
         if let Some(discs) = discs {
             checked.particles = discs.clone();
         }

@@ -189,8 +189,8 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
 
     /// The discs that may leave through an open side before lists are made anew.
     pub(super) fn discs_at_the_rim(&self) -> Vec<u32> {
-        let Some(lists) = self.home.lists() else { return vec![] };
         let Domain { origin, sides, periodic } = self.model.domain();
+        let Some(lists) = self.home.lists().filter(|_| periodic != [true; 2]) else { return vec![] };
         // A little more than the lists last: rounding must hide no disc.
         let reach = 0.5 * lists.skin() * (1.0 + 1e-6);
         let near = |disc: usize| {
