@@ -35,7 +35,6 @@ fn entered(start: &Discs, shape: LatticeShape, frame: Frame, how: (Execution, In
     Program::new(Enter::<f32, f32>::anchored(shape, frame)).run(&memory, 0..DISCS, how.0, how.1).unwrap();
     let Counter(number) = STRAYS;
     *strays = memory.counted(Counter(number));
-    drop(memory);
     discs
 }
 
@@ -53,7 +52,7 @@ fn discs_are_found_from_the_cells_in_which_they_were() {
         let mut random = Stream::new(6, Purpose::Test, half_width);
         // A third stays in its cell, the others go up to three cells away.
         let place: [Vec<f32>; 2] = [0, 1].map(|axis| {
-            let reach = |disc: usize| if disc % 3 == 0 { 0.49 } else { 3.0 };
+            let reach = |disc: usize| if disc.is_multiple_of(3) { 0.49 } else { 3.0 };
             (0..DISCS)
                 .map(|disc| (frame.edge[axis] * reach(disc) * (2.0 * random.uniform() - 1.0)) as f32)
                 .collect()
@@ -67,7 +66,7 @@ fn discs_are_found_from_the_cells_in_which_they_were() {
         };
         let first = entered(&start, shape, frame, (Execution::Chained, InstructionSet::Scalar));
         let mut strays = 0;
-        for disc in 0..DISCS {
+        for (disc, &from) in from.iter().enumerate() {
             let counts = [columns, rows];
             let mut to = [0; 2];
             let mut moved = [0.0; 2];
@@ -75,11 +74,11 @@ fn discs_are_found_from_the_cells_in_which_they_were() {
             for axis in 0..2 {
                 let (count, edge) = (counts[axis] as f64, frame.edge[axis]);
                 let r = f64::from(start.place[axis][disc]);
-                let there = (from[disc][axis] as f64 + 0.5 + r / edge).floor();
+                let there = (from[axis] as f64 + 0.5 + r / edge).floor();
                 let wrapped = if periodic[axis] { there.rem_euclid(count) } else { there };
                 inside &= (0.0..count).contains(&wrapped);
                 to[axis] = wrapped.max(0.0) as usize;
-                moved[axis] = r + (from[disc][axis] as f64 - there) * edge;
+                moved[axis] = r + (from[axis] as f64 - there) * edge;
             }
             if !inside {
                 strays += 1;
@@ -89,11 +88,11 @@ fn discs_are_found_from_the_cells_in_which_they_were() {
                 continue;
             }
             assert_eq!(first.cell[disc], number(to), "disc {disc}");
-            for axis in 0..2 {
+            for (axis, moved) in moved.into_iter().enumerate() {
                 let found = first.place[axis][disc];
-                assert!((f64::from(found) - moved[axis]).abs() < 1e-6, "disc {disc}");
+                assert!((f64::from(found) - moved).abs() < 1e-6, "disc {disc}");
                 assert_eq!(found, first.on_lattice[axis][disc]);
-                assert!(disc % 3 != 0 || found == start.place[axis][disc], "what stays is not touched");
+                assert!(!disc.is_multiple_of(3) || found == start.place[axis][disc], "what stays is not touched");
             }
         }
         assert_eq!(first.strays, strays);

@@ -149,7 +149,7 @@ pub(super) fn long_steps(
     let limit = longest_step(geometry.radii[0], scene.law.max_penetration);
     if let Some(disc) = fastest
         && scene.integrator.on_long_step == OnLongStep::Stop
-        && !(speed(disc) * dt <= limit)
+        && speed(disc) * dt > limit
     {
         let (what, speed) = (noun(disc.kind), speed(disc));
         let message = format!(

@@ -82,8 +82,7 @@ impl Grid {
             counts[axis] = (side / wide).floor().max(least);
         }
         let [columns, rows] = counts;
-        // The comparison fails for what is no number, too.
-        if !(columns * rows < f64::from(u32::MAX)) {
+        if columns * rows >= f64::from(u32::MAX) || (columns * rows).is_nan() {
             return Err(GridError::TooMany { columns, rows });
         }
         let edge = [sides[0] / columns, sides[1] / rows];
