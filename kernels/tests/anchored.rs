@@ -92,7 +92,10 @@ fn discs_are_found_from_the_cells_in_which_they_were() {
                 let found = first.place[axis][disc];
                 assert!((f64::from(found) - moved).abs() < 1e-6, "disc {disc}");
                 assert_eq!(found, first.on_lattice[axis][disc]);
-                assert!(!disc.is_multiple_of(3) || found == start.place[axis][disc], "what stays is not touched");
+                assert!(
+                    !disc.is_multiple_of(3) || found == start.place[axis][disc],
+                    "what stays is not touched"
+                );
             }
         }
         assert_eq!(first.strays, strays);

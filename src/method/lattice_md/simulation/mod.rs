@@ -1,27 +1,25 @@
 //! A running simulation: one step after the other, every broken precondition found in its step.
 
+mod account;
+mod saved;
+
 use super::crossings::Crossings;
 use super::fast::{FastMd, Search};
 use super::neighbor_list::Rival;
 use super::programs::rival_ledger;
 use super::walls::walls_at;
 use super::watch::Names;
-use super::{Arrays, ListOptions, Model, OnLongStep, Part, StepProgram, execute, ledger, programs};
+use super::{Arrays, ListOptions, Model, Part, StepProgram, execute, ledger, programs};
 use crate::method::{Failure, Method, Phase, StateColumn, Timings, Totals};
 use crate::particles::Particles;
 use crate::scene::{Precision, WallMotion};
 use stripmine_kernels::backend;
 use stripmine_kernels::integrator::gear::{NOT_FINITE, STATE};
-use stripmine_kernels::isa::{Array, COUNTERS, Counter, ProgramError, Storage};
+use stripmine_kernels::isa::{Array, COUNTERS, Counter, ProgramError};
 use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_kernels::sweep::lattice::cells::{CONFLICTS, STRAYS};
 use stripmine_kernels::sweep::lattice::forces::DEEP;
 use stripmine_kernels::{Execution, InstructionSet};
-
-/// Columns of a neighbour list's state: where the discs were when the lists were made.
-const MADE_AT: [&str; 2] = ["listed.x", "listed.y"];
-/// How often lists were made, and how many pairs the last step met.
-const LIST_COUNTS: &str = "listed.counts";
 
 /// How contacts are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -209,70 +207,6 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         }
     }
 
-    /// Discs that are so fast that contacts may pass unseen in a step.
-    fn judge_steps(&mut self) -> Result<(), Failure> {
-        let Some(watch) = self.model.watch else { return Ok(()) };
-        let column = |array| self.arrays.state(array).unwrap_or(&[]);
-        let (x, y) = (column(Array::X1), column(Array::Y1));
-        let square = S::from_f64(watch.longest_step() * watch.longest_step());
-        // What is no number is found when the cells are.
-        let is_far = |&(x, y): &(&S, &S)| square.less_than(*x * *x + *y * *y);
-        let grains = || x.iter().zip(y).take(self.arrays.lengths().grains);
-        let count = grains().filter(is_far).count() as u64;
-        if count == 0 {
-            return Ok(());
-        }
-        self.totals.long_steps += count;
-        match (watch.on_long_step, grains().position(|step| is_far(&step))) {
-            (OnLongStep::Stop, Some(first)) => {
-                Err(self.names().long_step(count, first, watch.longest_step()))
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Periods that discs crossed when the Index wrapped them: no step is as long as half the box.
-    fn count_crossings(&mut self) {
-        if !self.crossings.is_followed() {
-            return;
-        }
-        let counts = [self.model.shape.columns(), self.model.shape.rows()];
-        for (disc, (&from, &to)) in self.anchor.iter().zip(self.arrays.cell()).enumerate() {
-            if from == to || from == 0 || to == 0 {
-                continue;
-            }
-            let [from, to] = [from, to].map(|cell| self.model.shape.column_and_row(cell as usize - 1));
-            let crossed = [0, 1].map(|axis| {
-                let moved = to[axis] - from[axis];
-                if 2 * moved.unsigned_abs() > counts[axis] { -(moved.signum() as f64) } else { 0.0 }
-            });
-            self.crossings.add(disc, crossed);
-        }
-    }
-
-    /// What moving walls put in (energy/time): all walls have one velocity, and what they do to the grains is the sum of
-    /// the grains' forces, for those of two grains cancel.
-    fn wall_power(&self) -> f64 {
-        if self.walls == WallMotion::Fixed || !self.model.follows_energy() {
-            return 0.0;
-        }
-        let (_, velocity) = walls_at(self.walls, self.time());
-        let grains = self.arrays.lengths().grains;
-        let along = |axis: usize| -> f64 {
-            let column = self.arrays.lattice([Array::Fx, Array::Fy][axis]).unwrap_or(&[]);
-            let forces = (0..grains).filter_map(|disc| Some(column[self.arrays.force_at(disc)?].to_f64()));
-            velocity[axis] * forces.sum::<f64>()
-        };
-        along(0) + along(1)
-    }
-
-    /// What the contacts found in the sweep of the lattice dissipate (energy/time).
-    fn power_on_lattice(&self) -> f64 {
-        let Some(power) = self.arrays.lattice(Array::Power) else { return 0.0 };
-        let grains = &self.arrays.cell()[..self.arrays.lengths().grains];
-        grains.iter().map(|&cell| power[cell as usize - 1].to_f64()).sum()
-    }
-
     /// Index, lattice vectors and forces of the positions as they stand; gives what contacts dissipate (energy/time).
     fn meet(&mut self) -> Result<f64, Failure> {
         let mut timings = self.timings;
@@ -400,28 +334,7 @@ impl<S: backend::Precision, P: backend::Precision> Method for LatticeMd<S, P> {
     }
 
     fn state(&self) -> Vec<(String, StateColumn)> {
-        let column = |values: &[S]| match S::NAME {
-            f64::NAME => StateColumn::F64(values.iter().map(|x| x.to_f64()).collect()),
-            _ => StateColumn::F32(values.iter().map(|x| x.to_f64() as f32).collect()),
-        };
-        let arrays = self.arrays.states().map(|(array, values)| (array.label(), column(values)));
-        let crossings =
-            self.crossings.columns().into_iter().map(|(name, counts)| (name, StateColumn::F64(counts)));
-        let cells = self.model.is_anchored::<S>().then(|| {
-            let cells = self.arrays.cell().iter().map(|&cell| f64::from(cell)).collect();
-            (Array::DiscCell.label(), StateColumn::F64(cells))
-        });
-        let state = arrays.chain(cells).chain(crossings).map(|(name, column)| (name.to_owned(), column));
-        let mut columns: Vec<(String, StateColumn)> = state.collect();
-        if let Some(rival) = &self.rival {
-            for (name, values) in MADE_AT.into_iter().zip(rival.made_at()) {
-                columns.push((name.to_owned(), StateColumn::F64(values)));
-            }
-            // Whole numbers up to 2⁵³: far more than there will ever be.
-            let counts = vec![rival.rebuilds as f64, rival.met.pairs as f64];
-            columns.push((LIST_COUNTS.to_owned(), StateColumn::F64(counts)));
-        }
-        columns
+        self.columns()
     }
 
     fn restore(
@@ -430,68 +343,7 @@ impl<S: backend::Precision, P: backend::Precision> Method for LatticeMd<S, P> {
         totals: Totals,
         columns: Vec<(String, StateColumn)>,
     ) -> Result<(), String> {
-        let expected: Vec<Array> = self.arrays.states().map(|(array, _)| array).collect();
-        for array in expected {
-            let (_, column) = columns
-                .iter()
-                .find(|(name, _)| name == array.label())
-                .ok_or_else(|| format!("the column {} is missing", array.label()))?;
-            let values: Vec<S> = match column {
-                StateColumn::F64(values) if S::NAME == f64::NAME => {
-                    values.iter().map(|&x| S::from_f64(x)).collect()
-                }
-                StateColumn::F32(values) if S::NAME == f32::NAME => {
-                    values.iter().map(|&x| S::from_f64(x.into())).collect()
-                }
-                _ => return Err(format!("the column {} has another precision", array.label())),
-            };
-            let to = self.arrays.state_mut(array).unwrap_or(&mut []);
-            if to.len() != values.len() {
-                let label = array.label();
-                return Err(format!("the column {label} has {} entries, not {}", values.len(), to.len()));
-            }
-            to.copy_from_slice(&values);
-        }
-        if self.model.is_anchored::<S>() {
-            let label = Array::DiscCell.label();
-            let cells = columns.iter().find(|(name, _)| name == label).map(|(_, column)| column);
-            let most = self.model.shape.padded() as f64;
-            match cells {
-                Some(StateColumn::F64(cells))
-                    if cells.len() == self.arrays.cell().len()
-                        && cells.iter().all(|cell| (1.0..=most).contains(cell)) =>
-                {
-                    let to = self.arrays.cell_mut().iter_mut();
-                    to.zip(cells).for_each(|(to, &cell)| *to = cell as u32);
-                }
-                _ => {
-                    return Err(format!(
-                        "the column {label} is missing, or its cells are none of the lattice"
-                    ));
-                }
-            }
-        }
-        self.crossings.take_up(|name| match columns.iter().find(|(known, _)| known == name) {
-            Some((_, StateColumn::F64(values))) => Ok(values.clone()),
-            _ => Err(format!("the column {name} is missing")),
-        })?;
-        if let Some(rival) = &mut self.rival {
-            let find = |name: &str, length: usize| -> Result<Vec<f64>, String> {
-                match columns.iter().find(|(there, _)| there == name) {
-                    Some((_, StateColumn::F64(values)))
-                        if values.len() == length && values.iter().all(|x| x.is_finite()) =>
-                    {
-                        Ok(values.clone())
-                    }
-                    _ => {
-                        Err(format!("there is no column {name} of {length} finite double-precision entries"))
-                    }
-                }
-            };
-            let made_at = [find(MADE_AT[0], self.ids.len())?, find(MADE_AT[1], self.ids.len())?];
-            let counts = find(LIST_COUNTS, 2)?;
-            rival.take_up(&self.model, made_at, counts[0] as u64, counts[1] as u64);
-        }
+        self.take_up(&columns)?;
         self.steps = steps;
         self.totals = totals;
         self.move_walls(self.time());

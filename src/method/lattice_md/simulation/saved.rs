@@ -1,0 +1,106 @@
+//! The state of a simulation as columns, for checkpoints.
+
+use super::LatticeMd;
+use crate::method::StateColumn;
+use stripmine_kernels::backend;
+use stripmine_kernels::isa::{Array, Storage};
+
+/// Columns of a neighbour list's state: where the discs were when the lists were made.
+const MADE_AT: [&str; 2] = ["listed.x", "listed.y"];
+/// How often lists were made, and how many pairs the last step met.
+const LIST_COUNTS: &str = "listed.counts";
+
+impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
+    /// Everything that the next step depends on, by name.
+    pub(super) fn columns(&self) -> Vec<(String, StateColumn)> {
+        let column = |values: &[S]| match S::NAME {
+            f64::NAME => StateColumn::F64(values.iter().map(|x| x.to_f64()).collect()),
+            _ => StateColumn::F32(values.iter().map(|x| x.to_f64() as f32).collect()),
+        };
+        let arrays = self.arrays.states().map(|(array, values)| (array.label(), column(values)));
+        let crossings =
+            self.crossings.columns().into_iter().map(|(name, counts)| (name, StateColumn::F64(counts)));
+        let cells = self.model.is_anchored::<S>().then(|| {
+            let cells = self.arrays.cell().iter().map(|&cell| f64::from(cell)).collect();
+            (Array::DiscCell.label(), StateColumn::F64(cells))
+        });
+        let state = arrays.chain(cells).chain(crossings).map(|(name, column)| (name.to_owned(), column));
+        let mut columns: Vec<(String, StateColumn)> = state.collect();
+        if let Some(rival) = &self.rival {
+            for (name, values) in MADE_AT.into_iter().zip(rival.made_at()) {
+                columns.push((name.to_owned(), StateColumn::F64(values)));
+            }
+            // Whole numbers up to 2⁵³: far more than there will ever be.
+            let counts = vec![rival.rebuilds as f64, rival.met.pairs as f64];
+            columns.push((LIST_COUNTS.to_owned(), StateColumn::F64(counts)));
+        }
+        columns
+    }
+
+    /// Takes up columns that [`columns`](Self::columns) gave.
+    pub(super) fn take_up(&mut self, columns: &[(String, StateColumn)]) -> Result<(), String> {
+        let expected: Vec<Array> = self.arrays.states().map(|(array, _)| array).collect();
+        for array in expected {
+            let (_, column) = columns
+                .iter()
+                .find(|(name, _)| name == array.label())
+                .ok_or_else(|| format!("the column {} is missing", array.label()))?;
+            let values: Vec<S> = match column {
+                StateColumn::F64(values) if S::NAME == f64::NAME => {
+                    values.iter().map(|&x| S::from_f64(x)).collect()
+                }
+                StateColumn::F32(values) if S::NAME == f32::NAME => {
+                    values.iter().map(|&x| S::from_f64(x.into())).collect()
+                }
+                _ => return Err(format!("the column {} has another precision", array.label())),
+            };
+            let to = self.arrays.state_mut(array).unwrap_or(&mut []);
+            if to.len() != values.len() {
+                let label = array.label();
+                return Err(format!("the column {label} has {} entries, not {}", values.len(), to.len()));
+            }
+            to.copy_from_slice(&values);
+        }
+        if self.model.is_anchored::<S>() {
+            let label = Array::DiscCell.label();
+            let cells = columns.iter().find(|(name, _)| name == label).map(|(_, column)| column);
+            let most = self.model.shape.padded() as f64;
+            match cells {
+                Some(StateColumn::F64(cells))
+                    if cells.len() == self.arrays.cell().len()
+                        && cells.iter().all(|cell| (1.0..=most).contains(cell)) =>
+                {
+                    let to = self.arrays.cell_mut().iter_mut();
+                    to.zip(cells).for_each(|(to, &cell)| *to = cell as u32);
+                }
+                _ => {
+                    return Err(format!(
+                        "the column {label} is missing, or its cells are none of the lattice"
+                    ));
+                }
+            }
+        }
+        self.crossings.take_up(|name| match columns.iter().find(|(known, _)| known == name) {
+            Some((_, StateColumn::F64(values))) => Ok(values.clone()),
+            _ => Err(format!("the column {name} is missing")),
+        })?;
+        if let Some(rival) = &mut self.rival {
+            let find = |name: &str, length: usize| -> Result<Vec<f64>, String> {
+                match columns.iter().find(|(there, _)| there == name) {
+                    Some((_, StateColumn::F64(values)))
+                        if values.len() == length && values.iter().all(|x| x.is_finite()) =>
+                    {
+                        Ok(values.clone())
+                    }
+                    _ => {
+                        Err(format!("there is no column {name} of {length} finite double-precision entries"))
+                    }
+                }
+            };
+            let made_at = [find(MADE_AT[0], self.ids.len())?, find(MADE_AT[1], self.ids.len())?];
+            let counts = find(LIST_COUNTS, 2)?;
+            rival.take_up(&self.model, made_at, counts[0] as u64, counts[1] as u64);
+        }
+        Ok(())
+    }
+}
