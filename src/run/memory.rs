@@ -84,10 +84,9 @@ pub fn foreseen(checked: &Checked) -> Foreseen {
             (programs + of.rival(options.skin), columns)
         }
     };
-    // Either is gone before the other comes, but for what was in the bins, which the allocator keeps. At the start the discs
-    // that the first row is of are there while the next row is made.
+    // Either is gone before the other comes, but for what was in the bins, which the allocator keeps.
     let [bins, few] = of.bins();
-    let observing = 2.0 * DISC * of.discs + bins;
+    let observing = DISC * of.discs + bins;
     let writing = columns + of.followed();
     Foreseen {
         needed: (kept + engine + few + observing.max(writing)) as u64,
