@@ -103,4 +103,16 @@ mod tests {
             }
         }
     }
+
+    /// A large box with few particles takes no more memory than they need.
+    #[test]
+    fn empty_boxes_have_few_bins() {
+        let domain = Domain { origin: [0.0; 2], sides: [1e7, 1e6], periodic: [true, false] };
+        let positions = [[1.0, 1.0], [9e6, 5e5], [9e6 + 0.5, 5e5]];
+        let bins = Bins::new(domain, positions.into_iter(), 1.0);
+        assert!(bins.members.len() <= 8, "{}", bins.members.len());
+        let mut found = vec![];
+        bins.around(positions[1], |member| found.push(member));
+        assert!(found.contains(&1) && found.contains(&2), "{found:?}");
+    }
 }
