@@ -102,9 +102,10 @@ fn force_figure(errors: &[ForceError]) -> Figure {
         title: "Error of the forces over the size of the box".into(),
         caption: format!(
             "Packing fraction {}. Root of the mean square error over that of the forces; held against the fast execution in \
-             f64. The fast execution keeps positions from the cell's centre; the faithful one keeps them from the box's \
-             corner, in the precision of its state, and takes the difference with the cell in f64. Marks of one box stand \
-             beside each other; its side is that of the leftmost.",
+             f64. The fast execution keeps positions from the cell's centre, as the faithful one does in f32. In mixed \
+             precision the faithful one keeps them in f64 from the box's corner and takes the difference with the cell in \
+             f64; absolute ones are from the corner in f32. Marks of one box stand beside each other; its side is that of \
+             the leftmost.",
             PACKING_FRACTIONS[0]
         ),
         picture: Picture::Chart(Chart {
