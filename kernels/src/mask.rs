@@ -10,11 +10,6 @@ pub struct Offset {
 }
 
 impl Offset {
-    /// The same way back.
-    pub const fn reversed(self) -> Offset {
-        Offset { columns: -self.columns, rows: -self.rows }
-    }
-
     /// Square of the smallest distance between points of the own cell and of this one, in cells².
     pub const fn clearance_squared(self) -> u32 {
         let columns = self.columns.unsigned_abs().saturating_sub(1);
@@ -28,7 +23,6 @@ impl Offset {
 pub struct Mask {
     offsets: Vec<Offset>,
     half_width: u32,
-    covers_both_ways: bool,
 }
 
 impl Mask {
@@ -46,7 +40,7 @@ impl Mask {
             let ring = up.chain(left).chain(down).chain(right).chain(rest);
             offsets.extend(ring.map(|(columns, rows)| Offset { columns, rows }));
         }
-        Mask { offsets, half_width, covers_both_ways: true }
+        Mask { offsets, half_width }
     }
 
     /// The round mask of ISO99: the offsets with `i² + j² ≤ R² + R`, ring by ring as [`Mask::square`].
@@ -59,15 +53,7 @@ impl Mask {
 
     /// The right-hand cell alone: what one place costs. It covers the neighbourhood of no disc.
     pub fn one_place() -> Mask {
-        Mask { offsets: vec![Offset { columns: 1, rows: 0 }], half_width: 1, covers_both_ways: true }
-    }
-
-    /// One of every two opposite places, in the same order: each pair of cells is met once.
-    #[must_use]
-    pub fn half(&self) -> Mask {
-        let forward = |o: &Offset| o.rows > 0 || (o.rows == 0 && o.columns > 0);
-        let offsets = self.offsets.iter().copied().filter(forward).collect();
-        Mask { offsets, covers_both_ways: false, ..*self }
+        Mask { offsets: vec![Offset { columns: 1, rows: 0 }], half_width: 1 }
     }
 
     /// The places in their order of visit; the source numbers them from 1.
@@ -80,20 +66,14 @@ impl Mask {
         self.half_width
     }
 
-    /// Whether every pair is met from both sides (a full mask) or once (a half).
-    pub fn covers_both_ways(&self) -> bool {
-        self.covers_both_ways
-    }
-
     /// Square of the reach, in cells²: the smallest distance from a point of the own cell to a point outside the mask.
     /// Everything closer is seen. ISO99 table 1.
     pub fn reach_squared(&self) -> u32 {
         let beyond = self.half_width as i32 + 1;
-        let inside = |o: &Offset| self.offsets.contains(o) || self.offsets.contains(&o.reversed());
         let own = Offset { columns: 0, rows: 0 };
         (-beyond..=beyond)
             .flat_map(|columns| (-beyond..=beyond).map(move |rows| Offset { columns, rows }))
-            .filter(|o| *o != own && !inside(o))
+            .filter(|o| *o != own && !self.offsets.contains(o))
             .map(Offset::clearance_squared)
             .min()
             .unwrap_or(0)
@@ -134,20 +114,5 @@ mod tests {
         assert_eq!(Mask::square(2).reach_squared(), 4, "MIN");
         assert_eq!(Mask::square(3).reach_squared(), 9);
         assert_eq!(Mask::square(3).offsets().len(), 48);
-    }
-
-    #[test]
-    fn a_half_holds_one_of_every_two_opposite_places() {
-        for mask in [Mask::square(2), Mask::square(3), Mask::round(4), Mask::round(10)] {
-            let half = mask.half();
-            assert_eq!(2 * half.offsets().len(), mask.offsets().len());
-            assert!(half.offsets().iter().all(|o| !half.offsets().contains(&o.reversed())));
-            assert!(
-                mask.offsets()
-                    .iter()
-                    .all(|o| half.offsets().contains(o) != half.offsets().contains(&o.reversed()))
-            );
-            assert_eq!(half.reach_squared(), mask.reach_squared());
-        }
     }
 }

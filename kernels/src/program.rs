@@ -97,14 +97,13 @@ impl<T: Text> Program<T> {
     /// Records the text.
     ///
     /// # Panics
-    /// If the text writes an array that it also meets at a shift, and sums in no fixed groups: its result would
-    /// depend on the strip length.
+    /// If the text writes an array that it also meets at a shift: its result would depend on the strip length.
     pub fn new(text: T) -> Self {
         let tape = Tape::record(&text);
         let footprint = tape.footprint();
         let hazard = footprint.accesses().iter().find(|a| a.writes && (a.lowest, a.highest) != (0, 0));
         assert!(
-            T::GROUP.is_some() || hazard.is_none(),
+            hazard.is_none(),
             "{} is written and met at a shift: strips would see each other's results",
             hazard.map_or("", |access| access.array.label()),
         );
@@ -139,21 +138,6 @@ where
         set: InstructionSet,
     ) -> Result<(), ProgramError> {
         memory.admit(&self.footprint, &range)?;
-        if let Some(group) = T::GROUP {
-            debug_assert_eq!(group, GROUP, "texts sum in groups of GROUP");
-            match execution {
-                Execution::Strip(asked) if asked != group => {
-                    return Err(ProgramError::FixedGroup { group, asked });
-                }
-                Execution::Eager | Execution::Block(_) => {
-                    return Err(ProgramError::FixedGroup { group, asked: range.len() });
-                }
-                _ if !(range.start.is_multiple_of(group) && range.end.is_multiple_of(group)) => {
-                    return Err(ProgramError::PartialGroup { group, start: range.start, end: range.end });
-                }
-                _ => {}
-            }
-        }
         match execution {
             Execution::Strip(0) => return Err(ProgramError::EmptyStrip),
             Execution::Block(asked) if !Execution::BLOCKS.contains(&asked) => {
@@ -194,7 +178,7 @@ where
     T::Lane: Precision,
 {
     /// As [`Program::run`], on the threads of the current `rayon` pool: elements are cut into bands, which depend on
-    /// `range` alone. A program whose elements depend on each other (a scatter, a sum in groups) runs on one thread.
+    /// `range` alone. A program whose elements depend on each other (a scatter) runs on one thread.
     ///
     /// # Errors
     /// As [`Program::run`].
@@ -350,15 +334,7 @@ where
     #[inline(always)]
     fn on<R: Registers<Lane = T::Lane>>(self, registers: R) {
         // Inline constants, so that strips a text has no use for are not even compiled.
-        if const { T::GROUP.is_some() } {
-            match const { GROUP / R::LANES } {
-                16 => self.strips(Block::<R, 16>(registers)),
-                8 => self.strips(Block::<R, 8>(registers)),
-                4 => self.strips(Block::<R, 4>(registers)),
-                2 => self.strips(Block::<R, 2>(registers)),
-                _ => self.strips(registers),
-            }
-        } else if const { T::IN_BLOCKS } {
+        if const { T::IN_BLOCKS } {
             match self.execution {
                 Execution::Block(2) => self.strips(Block::<R, 2>(registers)),
                 Execution::Block(_) => self.strips(Block::<R, 8>(registers)),

@@ -28,7 +28,7 @@ fn agree<S: Precision, P: Precision, L: Law<2> + Sync>(case: &Case, law: &L, bou
     let how = (Execution::Chained, InstructionSet::best());
     faithful.index(case, law, how);
     assert_eq!((faithful.strays, faithful.conflicts), (0, 0));
-    faithful.forces::<L, false>(case, law, how).unwrap();
+    faithful.forces(case, law, how).unwrap();
     let in_order: Vec<u32> = (0..start.discs as u32).collect();
     let (forces, met) = start.fast_forces(law, &in_order, InstructionSet::Scalar).unwrap();
     assert!(met.not_finite.is_empty());

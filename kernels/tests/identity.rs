@@ -5,11 +5,10 @@ mod support;
 use proptest::prelude::*;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::Inertia;
-use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::Law;
 use stripmine_kernels::law::granular::ContactArm;
 use stripmine_kernels::sweep::lattice::Coordinates;
-use stripmine_kernels::{Execution, GROUP, InstructionSet};
+use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, Case, System, all_ways, equal, varying};
 
 const ORACLE: (Execution, InstructionSet) = (Execution::Chained, InstructionSet::Scalar);
@@ -89,68 +88,5 @@ proptest! {
         let case = Case { fill, seed, periodic: [x, y], coordinates, ..Case::new(columns, rows) };
         whole_steps_agree::<f64, f64, _, 5, 3>(&case, &varying::<true>(case.contact), Inertia::Varying);
         whole_steps_agree::<f32, f32, _, 5, 3>(&case, &varying::<true>(case.contact), Inertia::Varying);
-    }
-}
-
-/// The half sweep's order of summation is that of groups of 16 cells, whatever a register holds.
-fn half_sweeps_agree<P: Precision>(case: &Case) {
-    let law = varying::<true>(case.contact);
-    let mut start = System::<f64, P>::random(case);
-    start.index(case, &law, ORACLE);
-    let after = |how| {
-        let mut system = start.clone();
-        system.forces::<_, true>(case, &law, how).unwrap();
-        system.bits()
-    };
-    let oracle = after(ORACLE);
-    for set in InstructionSet::available() {
-        for execution in [Execution::Chained, Execution::Strip(GROUP)] {
-            assert!(after((execution, set)) == oracle, "{execution:?} on {set:?} differs for {case:?}");
-        }
-    }
-}
-
-#[test]
-fn half_sweeps_agree_between_instruction_sets_and_with_the_tape() {
-    for periodic in [[true, true], [false, false], [true, false]] {
-        let case = Case { periodic, ..Case::new(23, 11) };
-        half_sweeps_agree::<f64>(&case);
-        half_sweeps_agree::<f32>(&case);
-    }
-}
-
-/// Meeting each pair once or twice gives the same sums but for their rounding.
-#[test]
-fn half_and_full_sweeps_agree_to_rounding() {
-    for periodic in [[true, true], [false, true]] {
-        let case = Case { periodic, fill: 0.5, ..Case::new(23, 11) };
-        let law = varying::<true>(case.contact);
-        let mut full = System::<f64, f64>::random(&case);
-        full.index(&case, &law, ORACLE);
-        let mut half = full.clone();
-        full.forces::<_, false>(&case, &law, ORACLE).unwrap();
-        half.forces::<_, true>(&case, &law, ORACLE).unwrap();
-        let mut largest: f64 = 0.0;
-        for &sum in law.sums() {
-            let (full, half) = (full.on_discs(sum), half.on_discs(sum));
-            let scale = full.iter().fold(0.0, |scale: f64, f| scale.max(f.abs()));
-            assert!(scale > 1.0, "the case must have contacts");
-            for (a, b) in full.iter().zip(&half) {
-                largest = largest.max((a - b).abs() / scale);
-            }
-        }
-        assert!(largest < 1e-14, "{largest}");
-    }
-}
-
-#[test]
-fn executions_that_would_change_the_order_of_summation_are_refused() {
-    let case = Case::new(9, 9);
-    let law = varying::<true>(case.contact);
-    let mut system = System::<f64, f64>::random(&case);
-    system.index(&case, &law, ORACLE);
-    for (execution, asked) in [(Execution::Eager, system.shape.swept().len()), (Execution::Strip(8), 8)] {
-        let refused = system.forces::<_, true>(&case, &law, (execution, InstructionSet::Scalar));
-        assert_eq!(refused, Err(ProgramError::FixedGroup { group: GROUP, asked }));
     }
 }

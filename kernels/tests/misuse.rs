@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use stripmine_kernels::isa::{Array, Counter, Machine, Memory, ProgramError, Slot, Text, Vector};
-use stripmine_kernels::{Execution, GROUP, InstructionSet, Program};
+use stripmine_kernels::{Execution, InstructionSet, Program};
 
 const X: Slot<f64> = Slot::new(Array::X);
 const FX: Slot<f64> = Slot::new(Array::Fx);
@@ -23,12 +23,11 @@ fn ways() -> impl Iterator<Item = (Execution, InstructionSet)> {
 /// Fx = x three elements back + x two ahead, Fy = 1, and a count: touches memory in every way that is
 /// checked.
 #[derive(Clone, Copy)]
-struct Touch<const GROUPED: bool>;
+struct Touch;
 
 // SAFETY: the body names its slots unconditionally.
-unsafe impl<const GROUPED: bool> Text for Touch<GROUPED> {
+unsafe impl Text for Touch {
     type Lane = f64;
-    const GROUP: Option<usize> = if GROUPED { Some(GROUP) } else { None };
 
     fn body<M: Machine<Lane = f64>>(&self, m: M) {
         m.store(FY, m.uniform(1.0));
@@ -79,7 +78,7 @@ fn a_program_with_nothing_wrong_runs() {
     for (execution, set) in ways() {
         let mut arrays = Touched::new(32, 32, 32);
         let memory = arrays.memory();
-        Program::new(Touch::<false>).run(&memory, 3..30, execution, set).unwrap();
+        Program::new(Touch).run(&memory, 3..30, execution, set).unwrap();
         assert_eq!(memory.counted(COUNTED), 27);
         for (i, (fx, fy)) in arrays.fx.iter().zip(&arrays.fy).enumerate() {
             let expected = if (3..30).contains(&i) { [2.0, 1.0] } else { [-7.0, -7.0] };
@@ -93,14 +92,14 @@ fn a_program_with_nothing_wrong_runs() {
 #[test]
 fn an_unbound_array_is_named() {
     for (execution, set) in ways() {
-        let error = Program::new(Touch::<false>).run(&Memory::new(), 0..0, execution, set).unwrap_err();
+        let error = Program::new(Touch).run(&Memory::new(), 0..0, execution, set).unwrap_err();
         assert_eq!(error, ProgramError::Unbound { array: "Fy", element: "f64" });
         assert_eq!(error.to_string(), "the program uses Fy (f64), which is bound to no slice");
 
         let (single, mut fx, mut fy) = (vec![1f32; 32], vec![-7.0; 32], vec![-7.0; 32]);
         let memory =
             Memory::new().read(Slot::<f32>::new(Array::X), &single).write(FX, &mut fx).write(FY, &mut fy);
-        let error = Program::new(Touch::<false>).run(&memory, 3..30, execution, set).unwrap_err();
+        let error = Program::new(Touch).run(&memory, 3..30, execution, set).unwrap_err();
         assert_eq!(error, ProgramError::Unbound { array: "x", element: "f64" });
         assert!(fx.iter().chain(&fy).all(|&f| f == -7.0));
     }
@@ -112,7 +111,7 @@ fn writing_an_array_bound_for_reading_is_refused() {
     for (execution, set) in ways() {
         let (x, fx, mut fy) = (vec![1.0; 32], vec![-7.0; 32], vec![-7.0; 32]);
         let memory = Memory::new().read(X, &x).read(FX, &fx).write(FY, &mut fy);
-        let error = Program::new(Touch::<false>).run(&memory, 3..30, execution, set).unwrap_err();
+        let error = Program::new(Touch).run(&memory, 3..30, execution, set).unwrap_err();
         assert_eq!(error, ProgramError::ReadOnly { array: "Fx" });
         assert_eq!(error.to_string(), "the program writes Fx, which is bound for reading only");
         assert!(fy.iter().all(|&f| f == -7.0));
@@ -131,7 +130,7 @@ fn writing_an_array_bound_for_reading_is_refused() {
 fn too_short_an_array_is_refused_to_the_element() {
     let range = |start: usize, end: usize, arrays: [usize; 3], way| {
         let [x, fx, fy] = arrays;
-        refused(Touch::<false>, &mut Touched::new(x, fx, fy), start..end, way)
+        refused(Touch, &mut Touched::new(x, fx, fy), start..end, way)
     };
     for way in ways() {
         // x is met from 3 before to 2 behind.
@@ -148,7 +147,7 @@ fn too_short_an_array_is_refused_to_the_element() {
         for (range, written) in [(3..8, 5), (0..0, 0), (500..500, 0)] {
             let mut arrays = Touched::new(10, 8, 8);
             let memory = arrays.memory();
-            Program::new(Touch::<false>).run(&memory, range, way.0, way.1).unwrap();
+            Program::new(Touch).run(&memory, range, way.0, way.1).unwrap();
             assert_eq!(memory.counted(COUNTED), written);
         }
     }
@@ -159,45 +158,13 @@ fn too_short_an_array_is_refused_to_the_element() {
 fn impossible_strips_are_refused() {
     for set in [InstructionSet::Scalar, BEST()] {
         let mut arrays = Touched::new(40, 40, 40);
-        let mut try_it = |execution| refused(Touch::<false>, &mut arrays, 3..30, (execution, set));
+        let mut try_it = |execution| refused(Touch, &mut arrays, 3..30, (execution, set));
         assert_eq!(try_it(Execution::Strip(0)), ProgramError::EmptyStrip);
         for asked in [0, 1, 5, 16] {
             let error = try_it(Execution::Block(asked));
             assert_eq!(error, ProgramError::NoSuchBlock { asked, compiled: &[2, 8] });
             let expected = format!("strips of {asked} registers are not compiled; these are: [2, 8]");
             assert_eq!(error.to_string(), expected);
-        }
-    }
-}
-
-/// A text that sums in groups runs in whole groups only.
-#[test]
-fn groups_are_neither_cut_nor_changed() {
-    let mut arrays = Touched::new(128, 128, 128);
-    for set in [InstructionSet::Scalar, BEST()] {
-        for (start, end) in [(16, 47), (17, 48), (3, 19), (8, 24)] {
-            for execution in [Execution::Chained, Execution::Strip(GROUP)] {
-                let error = refused(Touch::<true>, &mut arrays, start..end, (execution, set));
-                assert_eq!(error, ProgramError::PartialGroup { group: GROUP, start, end });
-            }
-        }
-        let with = [
-            (Execution::Eager, 32),
-            (Execution::Block(2), 32),
-            (Execution::Block(5), 32),
-            (Execution::Strip(8), 8),
-            (Execution::Strip(32), 32),
-            (Execution::Strip(0), 0),
-        ];
-        for (execution, asked) in with {
-            let error = refused(Touch::<true>, &mut arrays, 16..48, (execution, set));
-            assert_eq!(error, ProgramError::FixedGroup { group: GROUP, asked }, "{execution:?}");
-        }
-        for execution in [Execution::Chained, Execution::Strip(GROUP)] {
-            let mut arrays = Touched::new(128, 128, 128);
-            let memory = arrays.memory();
-            Program::new(Touch::<true>).run(&memory, 16..48, execution, set).unwrap();
-            assert_eq!(memory.counted(COUNTED), 32);
         }
     }
 }
@@ -210,7 +177,7 @@ fn an_absent_instruction_set_is_named() {
     for set in absent {
         let mut arrays = Touched::new(40, 40, 40);
         for execution in [Execution::Chained, Execution::Block(8), Execution::Eager, Execution::Strip(4)] {
-            let error = refused(Touch::<false>, &mut arrays, 3..30, (execution, set));
+            let error = refused(Touch, &mut arrays, 3..30, (execution, set));
             assert_eq!(error, ProgramError::NoSuchInstructionSet(set.name()));
             assert!(error.to_string().contains(set.name()));
         }
@@ -219,43 +186,22 @@ fn an_absent_instruction_set_is_named() {
 
 /// Reads x beside its own place and writes it: of strips, the one would see what the other wrote.
 #[derive(Clone, Copy)]
-enum Hazard<const GROUPED: bool> {
-    Load,
-    Store,
-}
+struct Hazard;
 
-// SAFETY: the slots depend on the variant only.
-unsafe impl<const GROUPED: bool> Text for Hazard<GROUPED> {
+// SAFETY: the body names its slot unconditionally.
+unsafe impl Text for Hazard {
     type Lane = f64;
-    const GROUP: Option<usize> = if GROUPED { Some(GROUP) } else { None };
 
     fn body<M: Machine<Lane = f64>>(&self, m: M) {
-        match self {
-            Hazard::Load => m.store(X, m.load(X) + m.load_shifted(X, 1)),
-            Hazard::Store => m.store_shifted(X, -1, m.uniform(2.0)),
-        }
+        m.store(X, m.load(X) + m.load_shifted(X, 1));
     }
 }
 
-/// A text that writes what it also meets at a shift is none, unless it sums in groups.
+/// A text that writes what it also meets at a shift is no program.
 #[test]
 #[should_panic(expected = "x is written and met at a shift: strips would see each other's results")]
 fn a_text_that_writes_what_it_loads_at_a_shift_is_refused() {
-    Program::new(Hazard::<false>::Load);
-}
-
-/// A store at a shift alone is such a text too.
-#[test]
-#[should_panic(expected = "x is written and met at a shift: strips would see each other's results")]
-fn a_text_that_stores_at_a_shift_is_refused() {
-    Program::new(Hazard::<false>::Store);
-}
-
-/// In groups of fixed length the order is defined, so both texts are programs.
-#[test]
-fn texts_in_groups_may_write_at_shifts() {
-    assert_eq!(Program::new(Hazard::<true>::Load).tape().instructions().len(), 4);
-    assert_eq!(Program::new(Hazard::<true>::Store).tape().instructions().len(), 1);
+    Program::new(Hazard);
 }
 
 /// Meets memory through the index vector in `DiscCell`.

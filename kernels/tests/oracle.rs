@@ -155,7 +155,7 @@ fn compare<L: Law<2> + Sync>(case: &Case, law: &L, all_alike: bool, friction: bo
         let mut system = start.clone();
         system.index(case, law, how);
         assert_eq!((system.strays, system.conflicts), (0, 0), "{case:?}");
-        system.forces::<L, false>(case, law, how).unwrap();
+        system.forces(case, law, how).unwrap();
         Sum::ALL.map(|sum| system.on_discs(sum))
     };
     let fast = {
@@ -266,7 +266,7 @@ fn single_precision_error(coordinates: Coordinates) -> f64 {
         assert!(met.contacts > 100 && met.across_a_seam > 0, "{met:?}");
         system.index(&case, &law, how);
         assert_eq!((system.strays, system.conflicts), (0, 0));
-        system.forces::<_, false>(&case, &law, how).unwrap();
+        system.forces(&case, &law, how).unwrap();
         for sum in [Sum::Fx, Sum::Fy] {
             for (found, expected) in system.on_discs(sum).iter().zip(&expected) {
                 square += (found - expected[sum as usize]).powi(2);

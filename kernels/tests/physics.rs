@@ -30,7 +30,7 @@ fn pair_on_the_lattice(
     let mut system = System::<f64, f64>::placed(&case, frame, &pair.bodies);
     system.index(&case, &law, how);
     assert_eq!((system.strays, system.conflicts), (0, 0));
-    system.forces::<_, false>(&case, &law, how).unwrap();
+    system.forces(&case, &law, how).unwrap();
     let sums = Sum::ALL.map(|sum| system.on_discs(sum));
     let on = |disc: usize| [sums[0][disc], sums[1][disc], sums[2][disc]];
     let wrapped = |axis: usize| {
@@ -88,7 +88,7 @@ fn the_total_force_of_a_system_is_zero() {
         let law = varying::<true>(case.contact);
         let mut system = System::<f64, f64>::random(&case);
         system.index(&case, &law, ways()[1]);
-        system.forces::<_, false>(&case, &law, ways()[1]).unwrap();
+        system.forces(&case, &law, ways()[1]).unwrap();
         for sum in [Sum::Fx, Sum::Fy] {
             let forces = system.on_discs(sum);
             let (total, scale) = (forces.iter().sum::<f64>(), forces.iter().map(|f| f.abs()).sum::<f64>());
@@ -248,7 +248,7 @@ fn fixed_discs_in_contact_leave_the_forces_on_others_alone() {
     let law = varying::<true>(case.contact);
     let mut system = System::<f64, f64>::placed(&case, frame, &discs);
     system.index(&case, &law, (Execution::Chained, InstructionSet::best()));
-    system.forces::<_, false>(&case, &law, (Execution::Chained, InstructionSet::best())).unwrap();
+    system.forces(&case, &law, (Execution::Chained, InstructionSet::best())).unwrap();
     let on_grain = Sum::ALL.map(|sum| system.on_discs(sum)[0]);
     assert!(on_grain.iter().all(|f| f.is_finite()), "{on_grain:?}");
     assert!(on_grain[1] > 1.0, "the grain rests on both: {on_grain:?}");

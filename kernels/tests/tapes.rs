@@ -9,7 +9,7 @@ use stripmine_kernels::law::Law;
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::cells::{Check, Clear, Enter, Images};
-use stripmine_kernels::sweep::lattice::forces::{Forces, Join};
+use stripmine_kernels::sweep::lattice::forces::Forces;
 use stripmine_kernels::sweep::lattice::vectors::Spread;
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
 use stripmine_kernels::{Execution, InstructionSet, Program};
@@ -164,15 +164,6 @@ fn listing_has_a_line_for_each_instruction<L: Element>(name: &str, tape: &Tape<L
     assert_eq!(lines.next(), None, "{name}");
 }
 
-/// A full sweep is refused a half mask, and the other way round.
-#[test]
-#[should_panic(expected = "a half mask for a half sweep, a full one for a full sweep")]
-fn a_half_mask_is_none_for_a_full_sweep() {
-    let mask = Mask::square(2);
-    let (shape, frame) = lattice(&mask);
-    Forces::<f64, _, false>::new(law::<true, false>(), &mask.half(), shape, frame, Coordinates::Absolute);
-}
-
 /// Every kernel text with its options, recorded.
 fn every_tape(mut double: impl FnMut(&str, &Tape<f64>), mut single: impl FnMut(&str, &Tape<f32>)) {
     let inertia = Inertia::Equal { inverse_mass: 1.0, inverse_inertia: 2.0 };
@@ -199,16 +190,13 @@ fn every_tape(mut double: impl FnMut(&str, &Tape<f64>), mut single: impl FnMut(&
         let fields = law::<true, false>().fields();
         double("Spread", &Tape::record(&Spread::<f64>::new(shape, coordinates, fields)));
         single("Spread f32", &Tape::record(&Spread::<f32>::new(shape, coordinates, fields)));
-        let full = Forces::<f64, _, false>::new(law::<true, false>(), &mask, shape, frame, coordinates);
+        let full = Forces::<f64, _>::new(law::<true, false>(), &mask, shape, frame, coordinates);
         double("Forces", &Tape::record(&full));
-        let full = Forces::<f32, _, false>::new(law::<true, true>(), &mask, shape, frame, coordinates);
+        let full = Forces::<f32, _>::new(law::<true, true>(), &mask, shape, frame, coordinates);
         single("Forces f32", &Tape::record(&full));
-        let full = Forces::<f64, _, false>::new(law::<false, false>(), &mask, shape, frame, coordinates);
+        let full = Forces::<f64, _>::new(law::<false, false>(), &mask, shape, frame, coordinates);
         double("Forces without friction", &Tape::record(&full));
-        let half = Forces::<f64, _, true>::new(law::<true, false>(), &mask.half(), shape, frame, coordinates);
-        double("half Forces", &Tape::record(&half));
     }
-    double("Join", &Tape::record(&Join::<f64>::new(law::<true, false>().sums())));
     double("Folded", &Tape::record(&Folded::<f64>::default()));
     single("Folded f32", &Tape::record(&Folded::<f32>::default()));
 }

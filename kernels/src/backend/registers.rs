@@ -116,10 +116,10 @@ impl<'m, R: Registers> Strip<'m, R> {
         }
     }
 
-    /// As [`Machine::store_shifted`].
+    /// As [`Machine::store`].
     #[inline(always)]
-    pub(crate) fn store_to<T: Element>(self, column: Column<T>, shift: isize, value: R::V) {
-        let to = self.place(column, shift);
+    pub(crate) fn store_to<T: Element>(self, column: Column<T>, value: R::V) {
+        let to = self.place(column, 0);
         if same::<T, R::Lane>() {
             // SAFETY: T is Lane; LANES elements exist and are writable (footprint).
             unsafe { self.registers.store(to.cast(), value) };
@@ -246,12 +246,7 @@ impl<R: Registers> Machine for Strip<'_, R> {
 
     #[inline(always)]
     fn store<T: Element>(self, slot: Slot<T>, value: R::V) {
-        self.store_shifted(slot, 0, value);
-    }
-
-    #[inline(always)]
-    fn store_shifted<T: Element>(self, slot: Slot<T>, shift: isize, value: R::V) {
-        self.store_to(*self.memory.column(slot), shift, value);
+        self.store_to(*self.memory.column(slot), value);
     }
 
     #[inline(always)]

@@ -28,8 +28,6 @@ pub trait Machine: Copy {
     fn load_shifted<T: Element>(self, slot: Slot<T>, shift: isize) -> Self::V;
     /// Stores at the own place.
     fn store<T: Element>(self, slot: Slot<T>, value: Self::V);
-    /// Stores `shift` elements from the own place.
-    fn store_shifted<T: Element>(self, slot: Slot<T>, shift: isize, value: Self::V);
 
     /// The element numbers, from 1.
     fn numbers(self) -> Self::V;
@@ -75,9 +73,6 @@ pub trait Machine: Copy {
 pub unsafe trait Text {
     /// The number the text's registers hold.
     type Lane: Element;
-
-    /// The strip length that the order of summation is defined for, where it depends on it.
-    const GROUP: Option<usize> = None;
 
     /// Whether the text is also compiled for strips of several registers. Worth it where it computes a lot on what it
     /// loads; other texts are bound by memory and run one register at a time instead.

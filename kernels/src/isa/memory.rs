@@ -47,24 +47,6 @@ pub enum ProgramError {
     /// A vector length of zero was asked for.
     #[error("a strip must hold at least one element; 0 was asked for")]
     EmptyStrip,
-    /// The program's order of summation is defined for one strip length only.
-    #[error("this program sums in groups of {group}; strips of {asked} would change its order of summation")]
-    FixedGroup {
-        /// The group length the program is defined for.
-        group: usize,
-        /// The strip length asked for.
-        asked: usize,
-    },
-    /// The elements to run over do not begin and end with a group.
-    #[error("this program sums in groups of {group}; elements {start} to {end} cut one in two")]
-    PartialGroup {
-        /// The group length the program is defined for.
-        group: usize,
-        /// The first element asked for.
-        start: usize,
-        /// The element behind the last.
-        end: usize,
-    },
     /// No strip of that many registers is compiled.
     #[error("strips of {asked} registers are not compiled; these are: {compiled:?}")]
     NoSuchBlock {

@@ -27,7 +27,6 @@ macro_rules! for_each_op {
             (Load, "ld", Load, "load at the own place, unit stride"),
             (LoadShifted, "lds", Shift, "load at a shift: the shifted copy of a lattice vector"),
             (Store, "st", Store, "store at the own place"),
-            (StoreShifted, "sts", Store, "store at a shift"),
             (Gather, "gth", Gather, "load through an index vector"),
             (Scatter, "sct", Scatter, "store through an index vector"),
         }

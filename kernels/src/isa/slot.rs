@@ -100,8 +100,5 @@ define_arrays! {
     (Fy, "Fy", "cells: force along y"),
     (Torque, "torque", "cells: torque"),
     (Deepest, "deepest", "cells: penetration (length) of the deepest contact"),
-    (PartnerFx, "partner.Fx", "cells: force along x from pairs met as the partner"),
-    (PartnerFy, "partner.Fy", "cells: force along y from pairs met as the partner"),
-    (PartnerTorque, "partner.torque", "cells: torque from pairs met as the partner"),
     (Power, "power", "cells: what the contacts of the disc dissipate (energy/time), its share"),
 }

@@ -11,7 +11,7 @@ use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::sweep::fast::lattice::{Codes, Lattice, Occupancy};
 use stripmine_kernels::sweep::fast::{self, Finder, SENTINELS, Sweep};
 use stripmine_kernels::sweep::lattice::cells::{CONFLICTS, Check, Clear, Enter, Images, STRAYS};
-use stripmine_kernels::sweep::lattice::forces::{Forces, Join};
+use stripmine_kernels::sweep::lattice::forces::Forces;
 use stripmine_kernels::sweep::lattice::vectors::Spread;
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
 use stripmine_kernels::sweep::pair::{Body, Pair};
@@ -72,7 +72,6 @@ pub struct System<S, P> {
     pub index: Vec<u32>,
     pub lattice: [Vec<P>; 7],
     pub sums: [Vec<P>; 3],
-    pub partners: [Vec<P>; 3],
     pub strays: u64,
     pub conflicts: u64,
 }
@@ -133,7 +132,6 @@ impl<S: Precision, P: Precision> System<S, P> {
             index: vec![0; shape.padded()],
             lattice: std::array::from_fn(|_| padded.clone()),
             sums: std::array::from_fn(|_| padded.clone()),
-            partners: std::array::from_fn(|_| padded.clone()),
             strays: 0,
             conflicts: 0,
         }
@@ -202,10 +200,6 @@ impl<S: Precision, P: Precision> System<S, P> {
         for (array, column) in [Array::Fx, Array::Fy, Array::Torque].into_iter().zip(&mut self.sums) {
             memory = memory.write(Slot::<P>::new(array), column);
         }
-        let partners = [Array::PartnerFx, Array::PartnerFy, Array::PartnerTorque];
-        for (array, column) in partners.into_iter().zip(&mut self.partners) {
-            memory = memory.write(Slot::<P>::new(array), column);
-        }
         let result = run(&memory);
         let counted = [memory.counted(STRAYS), memory.counted(CONFLICTS)];
         self.strays += counted[0];
@@ -244,32 +238,19 @@ impl<S: Precision, P: Precision> System<S, P> {
     }
 
     /// Forces of the lattice vectors as they stand.
-    pub fn forces<L: Law<2>, const HALF: bool>(
+    pub fn forces<L: Law<2>>(
         &mut self,
         case: &Case,
         law: &L,
         (execution, set): (Execution, InstructionSet),
     ) -> Result<(), ProgramError> {
-        let full = Mask::square(case.half_width);
-        let mask = if HALF { full.half() } else { full };
+        let mask = Mask::square(case.half_width);
         let shape = self.shape;
-        self.partners.iter_mut().for_each(|partner| partner.fill(P::from_f64(0.0)));
         let program =
-            Program::new(Forces::<P, L, HALF>::new(law.clone(), &mask, shape, self.frame, case.coordinates));
-        let constant = [shape.far(self.frame), shape.interior(), vec![], vec![]];
-        let constant = constant.map(|column: Vec<P>| if column.is_empty() { vec![] } else { column });
-        self.memory(&Default::default(), &constant, |memory| {
+            Program::new(Forces::<P, L>::new(law.clone(), &mask, shape, self.frame, case.coordinates));
+        self.memory(&Default::default(), &Default::default(), |memory| {
             program.run(memory, shape.swept(), execution, set)
-        })?;
-        if HALF {
-            for partner in &mut self.partners {
-                Join::fold(&shape, partner);
-            }
-            self.memory(&Default::default(), &constant, |memory| {
-                Program::new(Join::<P>::new(law.sums())).run(memory, shape.swept(), execution, set)
-            })?;
-        }
-        Ok(())
+        })
     }
 
     /// Forces and torques on the discs as the fast sweep finds them, each disc numbered `order[n]`; nothing else changes.
@@ -343,7 +324,7 @@ impl<S: Precision, P: Precision> System<S, P> {
             Program::new(predictor).run(memory, 0..discs, how.0, how.1).unwrap();
         });
         self.index(case, law, how);
-        self.forces::<L, false>(case, law, how).unwrap();
+        self.forces(case, law, how).unwrap();
         self.memory(&Default::default(), &none, |memory| {
             let corrector = Corrector::<S, P, VALUES, FREEDOMS>::new(
                 DT,
@@ -398,7 +379,7 @@ pub fn random_pairs(seed: u64, count: usize) -> impl Iterator<Item = Pair> {
     (0..count).map(move |_| Pair::random(&mut random))
 }
 
-/// Every execution of programs without groups, on every instruction set of this processor.
+/// Every execution of programs, on every instruction set of this processor.
 pub fn all_ways() -> Vec<(Execution, InstructionSet)> {
     let executions = [Execution::Chained, Execution::Eager]
         .into_iter()

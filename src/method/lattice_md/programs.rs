@@ -159,7 +159,7 @@ impl<P: Precision> WithLaw for LatticeSweep<'_, P> {
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
         let Model { mask, shape, frame, coordinates, watch, .. } = self.0;
         let fields = law.fields();
-        let mut forces = Forces::<P, L, false>::new(law, mask, *shape, *frame, *coordinates);
+        let mut forces = Forces::<P, L>::new(law, mask, *shape, *frame, *coordinates);
         if let Some(watch) = watch {
             forces = forces.watching(watch.depth());
         }

@@ -178,9 +178,7 @@ pub enum OutOfRange {
 fn measured_as(kind: &str) -> &str {
     match kind {
         "lds" => Op::Load.mnemonic(),
-        "sts" => Op::Store.mnemonic(),
         "lds.convert" => "ld.convert",
-        "sts.convert" => "st.convert",
         kind => kind,
     }
 }

@@ -379,8 +379,8 @@ impl<R: Registers> RegisterFiles<R> {
     fn effect(&self, pass: &Instruction<R::Lane>, span: Span<'_, R>) {
         match &pass.action {
             Action::Store(to, value) => match to.element {
-                f64::NAME => self.store(span, span.column::<f64>(to.array), to.shift, value),
-                _ => self.store(span, span.column::<f32>(to.array), to.shift, value),
+                f64::NAME => self.store(span, span.column::<f64>(to.array), value),
+                _ => self.store(span, span.column::<f32>(to.array), value),
             },
             Action::StoreIndex(to, value) => {
                 let (column, value) = (span.column(to.array), self.index(*value));
@@ -404,18 +404,12 @@ impl<R: Registers> RegisterFiles<R> {
     }
 
     #[inline(always)]
-    fn store<T: Element>(
-        &self,
-        span: Span<'_, R>,
-        column: Column<T>,
-        shift: isize,
-        value: &Operand<R::Lane>,
-    ) {
+    fn store<T: Element>(&self, span: Span<'_, R>, column: Column<T>, value: &Operand<R::Lane>) {
         let value = self.source(value, span);
         for i in 0..span.length {
             // SAFETY: sources have the span's lanes.
             let value = unsafe { span.lanes(value, i) };
-            span.at(i).store_to(column, shift, value);
+            span.at(i).store_to(column, value);
         }
     }
 }

@@ -66,7 +66,7 @@ impl<L: Element> Tape<L> {
         for instruction in &self.instructions {
             if let Some(reference) = instruction.reference() {
                 let strided = !matches!(instruction.op, Op::Gather | Op::Scatter);
-                let writes = matches!(instruction.op, Op::Store | Op::StoreShifted | Op::Scatter);
+                let writes = matches!(instruction.op, Op::Store | Op::Scatter);
                 let shift = strided.then_some(reference.shift);
                 footprint.record(reference.array, reference.element, shift, writes);
             }

@@ -168,9 +168,6 @@ impl<'t, L: Element> Machine for Recording<'t, L> {
     fn store<T: Element>(self, slot: Slot<T>, value: Value<'t, L>) {
         self.0.push(Op::Store, None, Action::Store(reference(slot, 0), value.operand));
     }
-    fn store_shifted<T: Element>(self, slot: Slot<T>, shift: isize, value: Value<'t, L>) {
-        self.0.push(Op::StoreShifted, None, Action::Store(reference(slot, shift), value.operand));
-    }
     fn numbers(self) -> Value<'t, L> {
         self.number(Op::Numbers, Action::Numbers)
     }

@@ -2,7 +2,6 @@
 
 use super::shape::{Coordinates, Frame, LatticeShape};
 use super::vectors::arrays;
-use crate::GROUP;
 use crate::isa::{Array, Counter, Element, Machine, Slot, Text, Vector};
 use crate::law::{Env, Field, Law, Sum};
 use crate::mask::Mask;
@@ -20,12 +19,10 @@ struct Neighbour {
 
 /// Runs `law` over the places of a mask for every cell of the lattice. Vector length: [`LatticeShape::swept`].
 ///
-/// With a full mask every pair is met from both sides and each adds to its own sums, place by place in the mask's
-/// order, whatever the vector length. With a half mask (`HALF`) each pair is met once: the partner's share goes into
-/// arrays of its own, whose order of summation is that of groups of [`GROUP`] cells, so that only executions in such
-/// groups exist; [`Join`] finishes the sums.
+/// Every pair is met from both sides and each adds to its own sums, place by place in the mask's order, whatever the
+/// vector length.
 #[derive(Clone, Debug)]
-pub struct Forces<P, L, const HALF: bool> {
+pub struct Forces<P, L> {
     law: L,
     places: Vec<Neighbour>,
     relative: bool,
@@ -37,17 +34,9 @@ pub struct Forces<P, L, const HALF: bool> {
 /// Counts cells with a contact deeper than watched. Written by [`Forces`] that [`watch`](Forces::watching).
 pub const DEEP: Counter = Counter(2);
 
-impl<P: Element, L: Law<2>, const HALF: bool> Forces<P, L, HALF> {
+impl<P: Element, L: Law<2>> Forces<P, L> {
     /// The program for a law, a mask and a lattice.
-    ///
-    /// # Panics
-    /// If the mask is not of the kind (full or half) that `HALF` says.
     pub fn new(law: L, mask: &Mask, shape: LatticeShape, frame: Frame, coordinates: Coordinates) -> Self {
-        assert_eq!(
-            mask.covers_both_ways(),
-            !HALF,
-            "a half mask for a half sweep, a full one for a full sweep"
-        );
         let relative = coordinates == Coordinates::CellRelative;
         let places = mask.offsets().iter().map(|&offset| Neighbour {
             shift: shape.shift(offset),
@@ -78,17 +67,17 @@ impl<P: Element, L: Law<2>, const HALF: bool> Forces<P, L, HALF> {
     }
 }
 
-/// Where sums go: of the own disc, and of the partner.
-const fn sum_arrays(sum: Sum) -> (Array, Array) {
+/// Where a sum goes.
+const fn sum_array(sum: Sum) -> Array {
     match sum {
-        Sum::Fx => (Array::Fx, Array::PartnerFx),
-        Sum::Fy => (Array::Fy, Array::PartnerFy),
-        Sum::Torque => (Array::Torque, Array::PartnerTorque),
+        Sum::Fx => Array::Fx,
+        Sum::Fy => Array::Fy,
+        Sum::Torque => Array::Torque,
     }
 }
 
 /// What the law sees: one strip of cells and the vectors around it.
-struct Around<M: Machine, const HALF: bool> {
+struct Around<M: Machine> {
     machine: M,
     relative: bool,
     watches: bool,
@@ -98,22 +87,15 @@ struct Around<M: Machine, const HALF: bool> {
     sums: [Cell<M::V>; Sum::ALL.len()],
 }
 
-impl<M: Machine, const HALF: bool> Env<2> for &Around<M, HALF> {
+impl<M: Machine> Env<2> for &Around<M> {
     type V = M::V;
     type Place = Neighbour;
-    const BOTH_PARTNERS: bool = HALF;
+    const BOTH_PARTNERS: bool = false;
 
     #[inline(always)]
     fn own_position(self) -> [M::V; 2] {
         let m = self.machine;
-        let mut x = m.load(Slot::<M::Lane>::new(Array::X));
-        if HALF {
-            // A halo cell repeats a disc that is the own one elsewhere: as the own cell it must meet nobody.
-            let interior = m.load(Slot::<M::Lane>::new(Array::Interior));
-            let far = m.uniform(0.0) - m.load(Slot::<M::Lane>::new(Array::FarX));
-            x = M::V::select(m.uniform(0.0).less_than(interior), x, far);
-        }
-        [x, m.load(Slot::<M::Lane>::new(Array::Y))]
+        [Array::X, Array::Y].map(|axis| m.load(Slot::<M::Lane>::new(axis)))
     }
 
     #[inline(always)]
@@ -144,9 +126,8 @@ impl<M: Machine, const HALF: bool> Env<2> for &Around<M, HALF> {
     }
 
     #[inline(always)]
-    fn none(self, predicate: M::P) -> bool {
-        // The faithful sweep is branch-free; meeting each pair once, an empty group is left early.
-        HALF && self.machine.none(predicate)
+    fn none(self, _: M::P) -> bool {
+        false // As in the source, the sweep has no branches.
     }
 
     #[inline(always)]
@@ -155,11 +136,8 @@ impl<M: Machine, const HALF: bool> Env<2> for &Around<M, HALF> {
         cell.set(cell.get() + value);
     }
 
-    #[inline(always)]
-    fn partner_sub(self, sum: Sum, place: Neighbour, value: M::V) {
-        let slot = Slot::<M::Lane>::new(sum_arrays(sum).1);
-        let m = self.machine;
-        m.store_shifted(slot, place.shift, m.load_shifted(slot, place.shift) - value);
+    fn partner_sub(self, _: Sum, _: Neighbour, _: M::V) {
+        unreachable!("every pair is met from both sides")
     }
 
     #[inline(always)]
@@ -188,18 +166,16 @@ impl<M: Machine, const HALF: bool> Env<2> for &Around<M, HALF> {
     }
 }
 
-// SAFETY: slots and shifts depend on the law, the places and the coordinates only; where `none` lets the law leave, it
-// names fewer.
-unsafe impl<P: Element, L: Law<2>, const HALF: bool> Text for Forces<P, L, HALF> {
+// SAFETY: slots and shifts depend on the law, the places and the coordinates only.
+unsafe impl<P: Element, L: Law<2>> Text for Forces<P, L> {
     type Lane = P;
-    const GROUP: Option<usize> = if HALF { Some(GROUP) } else { None };
     const IN_BLOCKS: bool = true;
 
     #[inline(always)]
     fn body<M: Machine<Lane = P>>(&self, m: M) {
         m.section("own disc");
         let zero = m.uniform(0.0);
-        let around = Around::<M, HALF> {
+        let around = Around::<M> {
             machine: m,
             relative: self.relative,
             watches: self.watched.is_some(),
@@ -214,7 +190,7 @@ unsafe impl<P: Element, L: Law<2>, const HALF: bool> Text for Forces<P, L, HALF>
         }
         m.section("sums");
         for &sum in self.law.sums() {
-            m.store(Slot::<P>::new(sum_arrays(sum).0), around.sums[sum as usize].get());
+            m.store(Slot::<P>::new(sum_array(sum)), around.sums[sum as usize].get());
         }
         if self.dissipation {
             m.store(Slot::<P>::new(Array::Power), around.power.get());
@@ -226,48 +202,6 @@ unsafe impl<P: Element, L: Law<2>, const HALF: bool> Text for Forces<P, L, HALF>
             let deepest = M::V::select(interior, around.deepest.get(), zero);
             m.store(Slot::<P>::new(Array::Deepest), deepest);
             m.count(DEEP, m.uniform(depth).less_than(deepest));
-        }
-    }
-}
-
-/// Adds what partners in the halo received to the cells they are images of, and joins the own and the partners' sums.
-///
-/// The halo is folded image by image in the order of [`LatticeShape::images`], which no execution changes.
-#[derive(Clone, Copy, Debug)]
-pub struct Join<P> {
-    sums: &'static [Sum],
-    precision: PhantomData<P>,
-}
-
-impl<P: Element> Join<P> {
-    /// For the sums of a law.
-    pub fn new(sums: &'static [Sum]) -> Self {
-        Join { sums, precision: PhantomData }
-    }
-
-    /// Folds one padded array of partners' sums: the halo cells' shares go home.
-    ///
-    /// # Panics
-    /// If `partners` is shorter than the padded lattice.
-    pub fn fold(shape: &LatticeShape, partners: &mut [P]) {
-        assert!(partners.len() >= shape.padded(), "{} of {} elements", partners.len(), shape.padded());
-        for image in shape.images() {
-            partners[image.source] = partners[image.source] + partners[image.cell];
-        }
-    }
-}
-
-// SAFETY: the slots depend on the sums only.
-unsafe impl<P: Element> Text for Join<P> {
-    type Lane = P;
-
-    #[inline(always)]
-    fn body<M: Machine<Lane = P>>(&self, m: M) {
-        m.section("join");
-        for &sum in self.sums {
-            let (own, partner) = sum_arrays(sum);
-            let (own, partner) = (Slot::<P>::new(own), Slot::<P>::new(partner));
-            m.store(own, m.load(own) + m.load(partner));
         }
     }
 }
