@@ -135,9 +135,6 @@ fn executions<P: ByHand>(criterion: &mut Criterion, precision: &str) {
             InstructionSet::available()
                 .map(|set| (format!("chained {}", set.name()), Execution::Chained, set)),
         );
-        ways.extend(
-            Execution::BLOCKS.map(|k| (format!("strips of {k} registers"), Execution::Block(k), best)),
-        );
         ways.extend([64, 256, 1024].map(|n| (format!("tape, strips of {n}"), Execution::Strip(n), best)));
         ways.push(("tape, eager".to_owned(), Execution::Eager, best));
         for (name, execution, set) in ways {

@@ -1,7 +1,7 @@
 //! A text made ready to run: recorded once, checked before every run, executed in one of several ways.
 
 use crate::backend::tape::Outlines;
-use crate::backend::{Block, Precision, Pulp, Registers, Scalar, Strip, Tape, Wide};
+use crate::backend::{Precision, Pulp, Registers, Scalar, Strip, Tape, Wide};
 use crate::isa::{Footprint, Memory, OpCounts, ProgramError, Text};
 use crate::rests::{self, Rest};
 use crate::threads::{on_threads, pieces};
@@ -9,7 +9,8 @@ use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
 use std::ops::Range;
 
-/// Logical lanes that belong together wherever a sum depends on its order: the same for every backend and precision.
+/// Lanes of the widest register. Lattice vectors, bands and spans begin and end at multiples of it, so that what they are
+/// depends on no instruction set and no precision.
 pub const GROUP: usize = 16;
 
 /// How a program's instructions meet the elements of its arrays. All ways give the same bits.
@@ -19,16 +20,8 @@ pub enum Execution {
     Eager,
     /// The program runs instruction by instruction on strips of this many elements.
     Strip(usize),
-    /// The program is compiled for strips of this many registers, one of [`Execution::BLOCKS`]; a text that gains
-    /// nothing from that ([`Text::IN_BLOCKS`]) runs chained.
-    Block(usize),
     /// The program is compiled for one register at a time: every result feeds the next instruction directly.
     Chained,
-}
-
-impl Execution {
-    /// The strip lengths, in registers, that programs are compiled for.
-    pub const BLOCKS: [usize; 2] = [2, 8];
 }
 
 macro_rules! define_instruction_sets {
@@ -139,17 +132,11 @@ where
     ) -> Result<(), ProgramError> {
         memory.admit(&self.footprint, &range)?;
         match execution {
-            Execution::Strip(0) => return Err(ProgramError::EmptyStrip),
-            Execution::Block(asked) if !Execution::BLOCKS.contains(&asked) => {
-                return Err(ProgramError::NoSuchBlock { asked, compiled: &Execution::BLOCKS });
-            }
-            _ => {}
-        }
-        match execution {
+            Execution::Strip(0) => Err(ProgramError::EmptyStrip),
             Execution::Eager => self.tape.interpret(memory, range.clone(), range.len(), set),
             Execution::Strip(length) => self.tape.interpret(memory, range, length, set),
-            Execution::Block(_) | Execution::Chained => {
-                let loops = |range| dispatch(set, Compiled { text: &self.text, memory, range, execution });
+            Execution::Chained => {
+                let loops = |range| dispatch(set, Compiled { text: &self.text, memory, range });
                 if rests::heard() { self.in_spans(range, loops) } else { loops(range) }
             }
         }
@@ -324,35 +311,15 @@ struct Compiled<'r, T> {
     text: &'r T,
     memory: &'r Memory<'r>,
     range: Range<usize>,
-    execution: Execution,
 }
 
 impl<T: Text> Task<T::Lane> for Compiled<'_, T>
 where
     T::Lane: Precision,
 {
+    /// The text on full registers, and what is left over element by element.
     #[inline(always)]
     fn on<R: Registers<Lane = T::Lane>>(self, registers: R) {
-        // Inline constants, so that strips a text has no use for are not even compiled.
-        if const { T::IN_BLOCKS } {
-            match self.execution {
-                Execution::Block(2) => self.strips(Block::<R, 2>(registers)),
-                Execution::Block(_) => self.strips(Block::<R, 8>(registers)),
-                _ => self.strips(registers),
-            }
-        } else {
-            self.strips(registers);
-        }
-    }
-}
-
-impl<T: Text> Compiled<'_, T>
-where
-    T::Lane: Precision,
-{
-    /// The text on full strips of registers, and what is left over element by element.
-    #[inline(always)]
-    fn strips<R: Registers<Lane = T::Lane>>(self, registers: R) {
         let Range { start: mut base, end } = self.range;
         while base + R::LANES <= end {
             self.text.body(Strip::new(registers, self.memory, base));
@@ -360,7 +327,12 @@ where
         }
         self.elements(base);
     }
+}
 
+impl<T: Text> Compiled<'_, T>
+where
+    T::Lane: Precision,
+{
     /// The text element by element from `base` on: the same bits, so not worth a copy for every register file.
     #[inline(never)]
     fn elements(&self, mut base: usize) {

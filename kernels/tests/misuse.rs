@@ -15,7 +15,7 @@ const BEST: fn() -> InstructionSet = InstructionSet::best;
 
 /// The ways to execute that differ in how they reach memory.
 fn ways() -> impl Iterator<Item = (Execution, InstructionSet)> {
-    [Execution::Chained, Execution::Block(2), Execution::Strip(5), Execution::Eager]
+    [Execution::Chained, Execution::Strip(5), Execution::Eager]
         .into_iter()
         .flat_map(|execution| [InstructionSet::Scalar, BEST()].map(|set| (execution, set)))
 }
@@ -153,19 +153,13 @@ fn too_short_an_array_is_refused_to_the_element() {
     }
 }
 
-/// Strips of no elements and strips that are not compiled.
+/// Strips of no elements.
 #[test]
 fn impossible_strips_are_refused() {
     for set in [InstructionSet::Scalar, BEST()] {
         let mut arrays = Touched::new(40, 40, 40);
-        let mut try_it = |execution| refused(Touch, &mut arrays, 3..30, (execution, set));
-        assert_eq!(try_it(Execution::Strip(0)), ProgramError::EmptyStrip);
-        for asked in [0, 1, 5, 16] {
-            let error = try_it(Execution::Block(asked));
-            assert_eq!(error, ProgramError::NoSuchBlock { asked, compiled: &[2, 8] });
-            let expected = format!("strips of {asked} registers are not compiled; these are: [2, 8]");
-            assert_eq!(error.to_string(), expected);
-        }
+        let error = refused(Touch, &mut arrays, 3..30, (Execution::Strip(0), set));
+        assert_eq!(error, ProgramError::EmptyStrip);
     }
 }
 
@@ -176,7 +170,7 @@ fn an_absent_instruction_set_is_named() {
     assert!(absent.peek().is_some());
     for set in absent {
         let mut arrays = Touched::new(40, 40, 40);
-        for execution in [Execution::Chained, Execution::Block(8), Execution::Eager, Execution::Strip(4)] {
+        for execution in [Execution::Chained, Execution::Eager, Execution::Strip(4)] {
             let error = refused(Touch, &mut arrays, 3..30, (execution, set));
             assert_eq!(error, ProgramError::NoSuchInstructionSet(set.name()));
             assert!(error.to_string().contains(set.name()));

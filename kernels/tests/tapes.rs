@@ -263,7 +263,7 @@ fn folding_costs_nothing<L: Precision>(expected: L) {
         panic!("{:?} stores no scalar operand", instructions[0]);
     };
     assert_eq!(known.bits(), expected.bits());
-    for execution in [Execution::Chained, Execution::Block(2), Execution::Strip(5), Execution::Eager] {
+    for execution in [Execution::Chained, Execution::Strip(5), Execution::Eager] {
         let set = InstructionSet::best();
         let x: Vec<L> = (0..21).map(|i| L::from_f64(f64::from(i))).collect();
         let (mut fx, mut fy) = (vec![L::default(); 21], vec![L::default(); 21]);

@@ -409,13 +409,6 @@ fn method_values(method: &Method, values: &mut Vec<(&'static Key, Value)>) {
             Precision::Mixed => "mixed",
         }),
     ));
-    values.push((
-        &EXECUTION,
-        match method.execution {
-            // Scenes know no blocks.
-            Execution::Programs(Programs::Block(_)) => word("chained"),
-            execution => Value::Word(execution.name()),
-        },
-    ));
+    values.push((&EXECUTION, Value::Word(method.execution.name())));
     values.push((&INSTRUCTION_SET, word(method.instruction_set.map_or("auto", InstructionSet::name))));
 }

@@ -330,7 +330,6 @@ impl Execution {
             Execution::Programs(Programs::Chained) => "chained".to_owned(),
             Execution::Programs(Programs::Eager) => "eager".to_owned(),
             Execution::Programs(Programs::Strip(length)) => format!("strip:{length}"),
-            Execution::Programs(Programs::Block(registers)) => format!("block:{registers}"),
         }
     }
 

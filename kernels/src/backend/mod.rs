@@ -1,13 +1,11 @@
-//! The machines a text runs on: register files (scalar, `pulp`, `wide`, blocks of registers) and the tape.
+//! The machines a text runs on: register files (scalar, `pulp`, `wide`) and the tape.
 
-mod block;
 mod pulp;
 mod registers;
 mod scalar;
 pub mod tape;
 mod wide;
 
-pub use block::Block;
 pub use pulp::{Pulp, PulpElement};
 pub(crate) use registers::Strip;
 pub use registers::{IndexLanes, Registers};

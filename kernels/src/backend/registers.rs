@@ -5,7 +5,7 @@ use std::hint::select_unpredictable;
 use std::mem::MaybeUninit;
 
 /// The most lanes any register file has: bounds the buffers of lane-by-lane instructions.
-pub const MAX_LANES: usize = 256;
+pub const MAX_LANES: usize = 16;
 
 /// The entries of an index vector, one a lane.
 pub trait IndexLanes: Copy {
@@ -36,11 +36,11 @@ impl<const N: usize> IndexLanes for [u32; N] {
 pub trait Registers: Copy + 'static {
     /// The number a lane holds.
     type Lane: Element;
-    /// A register, or a fixed number of them.
+    /// A register.
     type V: Vector;
     /// An index vector as wide as `V`.
     type Index: IndexLanes;
-    /// Lanes of `V`, at most 256.
+    /// Lanes of `V`, at most 16.
     const LANES: usize;
 
     /// The same number in every lane.
@@ -57,7 +57,7 @@ pub trait Registers: Copy + 'static {
     unsafe fn store(self, to: *mut Self::Lane, value: Self::V);
     /// Whether no lane holds.
     fn none(self, predicate: <Self::V as Vector>::Predicate) -> bool;
-    /// The truth values as bits, lane 0 lowest; at most 64 lanes.
+    /// The truth values as bits, lane 0 lowest.
     fn bits(self, predicate: <Self::V as Vector>::Predicate) -> u64;
 }
 

@@ -74,10 +74,6 @@ pub unsafe trait Text {
     /// The number the text's registers hold.
     type Lane: Element;
 
-    /// Whether the text is also compiled for strips of several registers. Worth it where it computes a lot on what it
-    /// loads; other texts are bound by memory and run one register at a time instead.
-    const IN_BLOCKS: bool = false;
-
     /// The text.
     fn body<M: Machine<Lane = Self::Lane>>(&self, machine: M);
 }

@@ -47,14 +47,6 @@ pub enum ProgramError {
     /// A vector length of zero was asked for.
     #[error("a strip must hold at least one element; 0 was asked for")]
     EmptyStrip,
-    /// No strip of that many registers is compiled.
-    #[error("strips of {asked} registers are not compiled; these are: {compiled:?}")]
-    NoSuchBlock {
-        /// Registers asked for.
-        asked: usize,
-        /// The lengths that programs are compiled for.
-        compiled: &'static [usize],
-    },
     /// The processor lacks the instruction set asked for.
     #[error("this processor has no {0}")]
     NoSuchInstructionSet(&'static str),

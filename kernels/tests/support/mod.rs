@@ -381,10 +381,8 @@ pub fn random_pairs(seed: u64, count: usize) -> impl Iterator<Item = Pair> {
 
 /// Every execution of programs, on every instruction set of this processor.
 pub fn all_ways() -> Vec<(Execution, InstructionSet)> {
-    let executions = [Execution::Chained, Execution::Eager]
-        .into_iter()
-        .chain([1, 7, 16, 64, 1000].map(Execution::Strip))
-        .chain(Execution::BLOCKS.map(Execution::Block));
+    let executions =
+        [Execution::Chained, Execution::Eager].into_iter().chain([1, 7, 16, 64, 1000].map(Execution::Strip));
     let sets: Vec<_> = InstructionSet::available().collect();
     executions.flat_map(|execution| sets.iter().map(move |&set| (execution, set))).collect()
 }

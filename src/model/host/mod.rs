@@ -242,7 +242,6 @@ impl HostModel {
             Execution::Eager => self.interpreted(outlines, n, None, around),
             Execution::Strip(strip) => self.interpreted(outlines, n, Some(strip), around),
             Execution::Chained => self.chained(outlines, n, around),
-            Execution::Block(_) => Err(OutOfRange::NotMeasured("execution in blocks".to_owned())),
         }
     }
 
@@ -314,7 +313,7 @@ impl HostModel {
             let length = match execution {
                 Execution::Eager => *n,
                 Execution::Strip(strip) => strip.min(*n),
-                Execution::Chained | Execution::Block(_) => 0,
+                Execution::Chained => 0,
             };
             registers = registers.max(self.lane(outlines.lane)?.register_extent(outlines, length));
         }

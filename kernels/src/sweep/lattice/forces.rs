@@ -169,7 +169,6 @@ impl<M: Machine> Env<2> for &Around<M> {
 // SAFETY: slots and shifts depend on the law, the places and the coordinates only.
 unsafe impl<P: Element, L: Law<2>> Text for Forces<P, L> {
     type Lane = P;
-    const IN_BLOCKS: bool = true;
 
     #[inline(always)]
     fn body<M: Machine<Lane = P>>(&self, m: M) {
