@@ -2,7 +2,7 @@
 //! the tallies of the programs that run; the clocks read it.
 
 use crate::Runnable;
-use crate::isa::{OpClass, OpCounts};
+use crate::isa::OpCounts;
 
 /// The length of the vectors a program runs over, before a scene says how much that is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -95,13 +95,5 @@ impl Ledger {
         let mut sum = OpCounts::default();
         self.0.iter().filter(|entry| entry.part == part).for_each(|entry| sum.add(&entry.counts));
         sum
-    }
-
-    /// Operations of a part that compute, and those that move data.
-    pub fn computing_and_moving(&self, part: &str) -> (u64, u64) {
-        let counts = self.part(part);
-        let moving =
-            OpClass::ALL.iter().filter(|class| class.moves_data()).map(|&class| counts.of_class(class)).sum();
-        (counts.total() - moving, moving)
     }
 }

@@ -1,6 +1,5 @@
 //! Pair laws: what two particles do to each other, written once for every machine and every way of meeting.
 
-pub mod as_printed;
 pub mod granular;
 
 use crate::isa::Vector;

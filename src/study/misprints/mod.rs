@@ -1,8 +1,12 @@
 //! What does each misprint of BP93's contact law do? Pairs of discs under the law as printed and under the law that runs.
 
+mod as_printed;
+#[cfg(test)]
+mod tests;
+
+use as_printed::{AsPrinted, Misprint};
 use serde::Serialize;
 use stripmine_kernels::law::Law;
-use stripmine_kernels::law::as_printed::{AsPrinted, Misprint};
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::sweep::pair::Pair;
@@ -325,84 +329,4 @@ fn oblique() -> Finding {
         Right::AtMost(Pair::colliding(OBLIQUE_OFFSET).kinetic_energy()),
         [energy(printed(Misprint::Slip, OBLIQUE)), energy(ours(OBLIQUE))],
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn of(data: &Misprints, misprint: Misprint) -> impl Iterator<Item = &Finding> {
-        data.findings.iter().filter(move |finding| finding.equation == misprint.equation())
-    }
-
-    #[test]
-    fn every_misprint_fails_and_ours_holds() {
-        let data = misprints();
-        for misprint in Misprint::ALL {
-            assert!(of(&data, misprint).count() > 0, "{misprint:?}");
-        }
-        for finding in &data.findings {
-            assert!(finding.printed_fails() && finding.ours_holds(), "{finding:?}");
-        }
-    }
-
-    /// A misprint that did nothing would not be seen to fail, and a law that went wrong would not hold.
-    #[test]
-    fn right_is_told_from_wrong() {
-        let told = |right, by_printed, by_ours| {
-            let finding = finding(Misprint::Slip, "", String::new(), right, [by_printed, by_ours]);
-            [finding.printed_fails(), finding.ours_holds()]
-        };
-        assert_eq!(told(Right::Equal(0.0), -0.5, 1e-12), [true, true]);
-        assert_eq!(told(Right::Equal(0.0), 0.001, 0.001), [false, false]);
-        assert_eq!(told(Right::AtMost(0.5), 0.536, 0.465), [true, true]);
-        assert_eq!(told(Right::AtMost(0.5), 0.465, 0.536), [false, false]);
-        assert_eq!(told(Right::AtMost(0.5), f64::NAN, f64::NAN), [false, false]);
-    }
-
-    /// From 0.500 to 0.536 as printed; ours never rises, and without damping the energy comes back.
-    #[test]
-    fn printed_14_feeds_energy_into_a_head_on_collision() {
-        let Misprints { head_on, .. } = misprints();
-        let (first, last) = (head_on[0], head_on[head_on.len() - 1]);
-        assert_eq!([first.time, last.time], [0.0, 0.7]);
-        assert!((first.printed - 0.5).abs() < 1e-12 && (last.printed - 0.536).abs() < 5e-4, "{last:?}");
-        assert!((last.undamped - first.undamped).abs() < 1e-6, "{last:?}");
-        assert!(last.ours < 0.47, "{last:?}");
-        assert!(head_on.is_sorted_by(|now, later| later.ours <= now.ours + 1e-10));
-        assert!(head_on.is_sorted_by(|now, later| later.printed >= now.printed - 1e-10));
-    }
-
-    #[test]
-    fn collisions_are_over_when_they_are_judged() {
-        fn depth<L: Law<2>>(law: L, offset: f64, steps: usize) -> f64 {
-            path(Pair::colliding(offset), &law).nth(steps).unwrap().depth()
-        }
-        for depth in [
-            depth(printed(Misprint::NormalDamping, HEAD_ON), 0.0, HEAD_ON_STEPS),
-            depth(ours(HEAD_ON), 0.0, HEAD_ON_STEPS),
-            depth(printed(Misprint::Slip, OBLIQUE), OBLIQUE_OFFSET, OBLIQUE_STEPS),
-            depth(ours(OBLIQUE), OBLIQUE_OFFSET, OBLIQUE_STEPS),
-        ] {
-            assert!(depth < -0.1, "{depth}");
-        }
-    }
-
-    /// For v_t > 0 the printed form leaves the bound, for v_t < 0 it is ours; below the bound both are viscous.
-    #[test]
-    fn printed_15_leaves_the_bound_on_one_side_only() {
-        let Misprints { sliding, .. } = misprints();
-        let ends = [sliding[0], sliding[sliding.len() - 1]];
-        assert_eq!(ends.map(|at| at.slip), [-LARGEST_SLIP, LARGEST_SLIP]);
-        assert!(ends[0].printed <= 1.0 + ROUNDING && ends[1].printed > 6.0, "{ends:?}");
-        for at in &sliding {
-            assert!((slide(at.slip).slip() - at.slip).abs() < 1e-12, "{at:?}");
-            let normal = SLIDING.stiffness * 0.1f64.powf(1.5);
-            let viscous = SLIDING.shear_damping * 0.5 * at.slip.abs() / (SLIDING.friction * normal);
-            let expected = [if at.slip > 0.0 { viscous } else { viscous.min(1.0) }, viscous.min(1.0)];
-            for (found, expected) in [at.printed, at.ours].into_iter().zip(expected) {
-                assert!((found - expected).abs() < 1e-9, "{at:?} for {expected}");
-            }
-        }
-    }
 }

@@ -1,16 +1,16 @@
-//! The contact law with one of its source's misprints: for studies and tests, never for a run.
+//! The contact law with one of its source's misprints: for this study, never for a run.
 //!
-//! Written out equation by equation and apart from [`super::granular`], so that the law that runs has no place for a
-//! mistake on purpose. Without a misprint the two are one law: `without_a_misprint_this_law_is_ours` in
-//! `kernels/tests/misprints.rs`.
+//! Written out equation by equation and apart from the law that runs
+//! ([`granular`](stripmine_kernels::law::granular)), which so has no place for a mistake on purpose. Without a misprint
+//! the two are one law: `without_a_misprint_this_law_is_ours` in `tests.rs` beside this file.
 
-use super::granular::{Contact, ContactArm};
-use super::{Env, Field, Law, Sum};
-use crate::isa::{Predicate, Vector};
+use stripmine_kernels::isa::{Predicate, Vector};
+use stripmine_kernels::law::granular::{Contact, ContactArm};
+use stripmine_kernels::law::{Env, Field, Law, Sum};
 
 /// An equation of BP93's contact law that does not work as it is printed.
 ///
-/// The tests named are those of `kernels/tests/misprints.rs`.
+/// The tests named are those of `tests.rs` beside this file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Misprint {
     /// (10)–(11), the sums of the forces.
