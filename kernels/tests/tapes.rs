@@ -1,7 +1,7 @@
 //! What a tape promises about its instructions: registers, tallies, listings, folded arithmetic.
 
 use std::collections::HashMap;
-use stripmine_kernels::backend::tape::{Action, File, Operand, RegisterName};
+use stripmine_kernels::backend::tape::{Action, Effect, File, Indices, Number, Operand, RegisterName, Truth};
 use stripmine_kernels::backend::{Precision, Tape};
 use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Inertia, Predictor};
 use stripmine_kernels::isa::{Array, Element, Machine, Memory, Op, OpCounts, Slot, Text, Vector};
@@ -39,16 +39,29 @@ fn reads<L: Copy>(action: &Action<L>) -> Vec<RegisterName> {
         Operand::Memory(there) => panic!("a tape holds {there} as an operand"),
     };
     let names: Vec<Option<RegisterName>> = match action {
-        Action::Unary(a) | Action::ToIndex(a) | Action::Store(_, a) => vec![register(a)],
-        Action::Binary(a, b) | Action::Compare(a, b) => vec![register(a), register(b)],
-        Action::Logic(a, b) => vec![Some(*a), *b],
-        Action::Select(p, a, b) => vec![Some(*p), register(a), register(b)],
-        Action::Count(a, _) | Action::FromIndex(a) | Action::StoreIndex(_, a) | Action::GatherIndex(_, a) => {
-            vec![Some(*a)]
-        }
-        Action::Gather(_, a, elsewhere) => vec![Some(*a), register(elsewhere)],
-        Action::ScatterIndex(_, a, b) => vec![Some(*a), Some(*b)],
-        Action::Numbers | Action::Load(_) | Action::LoadIndex(_) => vec![],
+        Action::Number(_, number) => match number {
+            Number::Unary(_, a) => vec![register(a)],
+            Number::Binary(_, a, b) => vec![register(a), register(b)],
+            Number::Select(p, a, b) => vec![Some(*p), register(a), register(b)],
+            Number::FromIndex(a) => vec![Some(*a)],
+            Number::Gather(_, a, elsewhere) => vec![Some(*a), register(elsewhere)],
+            Number::Numbers | Number::Load(_) | Number::LoadShifted(_) => vec![],
+        },
+        Action::Truth(_, truth) => match truth {
+            Truth::Compare(_, a, b) => vec![register(a), register(b)],
+            Truth::Connective(_, a, b) => vec![Some(*a), Some(*b)],
+            Truth::Negation(_, a) => vec![Some(*a)],
+        },
+        Action::Indices(_, indices) => match indices {
+            Indices::ToIndex(a) => vec![register(a)],
+            Indices::Gather(_, a) => vec![Some(*a)],
+            Indices::Load(_) => vec![],
+        },
+        Action::Effect(effect) => match effect {
+            Effect::Store(_, a) => vec![register(a)],
+            Effect::Count(a, _) | Effect::StoreIndex(_, a) => vec![Some(*a)],
+            Effect::Scatter(_, a, b) => vec![Some(*a), Some(*b)],
+        },
     };
     names.into_iter().flatten().collect()
 }
@@ -56,16 +69,10 @@ fn reads<L: Copy>(action: &Action<L>) -> Vec<RegisterName> {
 /// The register file an instruction's result goes to.
 fn result_file<L>(action: &Action<L>) -> Option<File> {
     match action {
-        Action::Unary(_)
-        | Action::Binary(..)
-        | Action::Select(..)
-        | Action::Numbers
-        | Action::FromIndex(_)
-        | Action::Load(_)
-        | Action::Gather(..) => Some(File::Number),
-        Action::Compare(..) | Action::Logic(..) => Some(File::Predicate),
-        Action::ToIndex(_) | Action::LoadIndex(_) | Action::GatherIndex(..) => Some(File::Index),
-        Action::Count(..) | Action::Store(..) | Action::StoreIndex(..) | Action::ScatterIndex(..) => None,
+        Action::Number(..) => Some(File::Number),
+        Action::Truth(..) => Some(File::Predicate),
+        Action::Indices(..) => Some(File::Index),
+        Action::Effect(_) => None,
     }
 }
 
@@ -81,8 +88,13 @@ fn registers_are_sound<L: Element>(name: &str, tape: &Tape<L>) {
                 .unwrap_or_else(|| panic!("{name}: {} reads {operand}, never written", at + 1));
             last_read[value].2 = at;
         }
-        assert_eq!(instruction.to.map(|to| to.file), result_file(&instruction.action), "{name}: {}", at + 1);
-        if let Some(to) = instruction.to {
+        assert_eq!(
+            instruction.to().map(|to| to.file),
+            result_file(&instruction.action),
+            "{name}: {}",
+            at + 1
+        );
+        if let Some(to) = instruction.to() {
             if let Some(before) = held.insert(to, last_read.len()) {
                 let (_, written, read) = last_read[before];
                 assert!(read > written, "{name}: {} overwrites {to}, which nobody read", at + 1);
@@ -109,11 +121,13 @@ fn tally_is_the_sum_over_instructions<L: Element>(name: &str, tape: &Tape<L>) {
             sections.push((instruction.section, OpCounts::default()));
         }
         let (_, counts) = sections.iter_mut().find(|(section, _)| *section == instruction.section).unwrap();
-        counts.record(instruction.op);
+        counts.record(instruction.op());
         let converts = match instruction.action {
-            Action::Load(there) | Action::Store(there, _) | Action::Gather(there, ..) => {
-                there.element != L::NAME
-            }
+            Action::Number(
+                _,
+                Number::Load(there) | Number::LoadShifted(there) | Number::Gather(there, ..),
+            )
+            | Action::Effect(Effect::Store(there, _)) => there.element != L::NAME,
             _ => false,
         };
         if converts {
@@ -151,10 +165,10 @@ fn listing_has_a_line_for_each_instruction<L: Element>(name: &str, tape: &Tape<L
         let line = lines.next().unwrap();
         let mut words = line.split_whitespace();
         assert_eq!(words.next(), Some((at + 1).to_string().as_str()), "{name}: {line}");
-        assert_eq!(words.next(), Some(instruction.op.mnemonic()), "{name}: {line}");
+        assert_eq!(words.next(), Some(instruction.op().mnemonic()), "{name}: {line}");
         let rest = words.collect::<Vec<_>>().join(" ");
         let mentioned: Vec<&str> = rest.split([',', ' ', '(', ')']).collect();
-        for register in instruction.to.into_iter().chain(reads(&instruction.action)) {
+        for register in instruction.to().into_iter().chain(reads(&instruction.action)) {
             assert!(mentioned.contains(&register.to_string().as_str()), "{name}: {line} lacks {register}");
         }
         if let Some(there) = instruction.reference() {
@@ -257,9 +271,9 @@ unsafe impl<L: Element> Text for Folded<L> {
 fn folding_costs_nothing<L: Precision>(expected: L) {
     let program = Program::new(Folded::<L>::default());
     let instructions = program.tape().instructions();
-    let ops: Vec<Op> = instructions.iter().map(|instruction| instruction.op).collect();
+    let ops: Vec<Op> = instructions.iter().map(|instruction| instruction.op()).collect();
     assert_eq!(ops, [Op::Store, Op::Load, Op::Add, Op::Store]);
-    let Action::Store(_, Operand::Uniform(known)) = instructions[0].action else {
+    let Action::Effect(Effect::Store(_, Operand::Uniform(known))) = instructions[0].action else {
         panic!("{:?} stores no scalar operand", instructions[0]);
     };
     assert_eq!(known.bits(), expected.bits());

@@ -1,64 +1,123 @@
 //! Registers of the processor at hand, chosen at run time: AVX-512, AVX2, NEON, or scalar, by the crate `pulp`.
 
 use super::registers::{IndexLanes, Registers};
+use crate::isa::op::for_each_op;
 use crate::isa::{Element, Predicate, Vector};
 use pulp::Simd;
 #[cfg(target_arch = "x86_64")]
 use std::any::TypeId;
 use std::marker::PhantomData;
-use std::ops::{Add, Div, Mul, Sub};
 
-/// A precision that `pulp` has registers for. Its operations are named per type, hence this table.
-pub trait PulpElement: Element {
-    /// A register of `S`.
-    type Register<S: Simd>: Copy;
-    /// A register of truth values of `S`.
-    type Truth<S: Simd>: Copy;
-    /// An index vector, of as many entries as the widest registers have lanes: with more, what is loaded would be laid out on
-    /// the stack and read back in wider pieces, which waits.
-    type Index: IndexLanes;
-    #[doc(hidden)]
-    fn splat<S: Simd>(simd: S, value: Self) -> Self::Register<S>;
-    #[doc(hidden)]
-    fn add<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
-    #[doc(hidden)]
-    fn sub<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
-    #[doc(hidden)]
-    fn mul<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
-    #[doc(hidden)]
-    fn div<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
-    #[doc(hidden)]
-    fn min<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
-    #[doc(hidden)]
-    fn max<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
-    #[doc(hidden)]
-    fn sqrt<S: Simd>(simd: S, a: Self::Register<S>) -> Self::Register<S>;
-    #[doc(hidden)]
-    fn abs<S: Simd>(simd: S, a: Self::Register<S>) -> Self::Register<S>;
-    #[doc(hidden)]
-    fn truncate<S: Simd>(simd: S, a: Self::Register<S>) -> Self::Register<S>;
-    #[doc(hidden)]
-    fn less_than<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Truth<S>;
-    #[doc(hidden)]
-    fn less_equal<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Truth<S>;
-    #[doc(hidden)]
-    fn equal<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Truth<S>;
-    #[doc(hidden)]
-    fn select<S: Simd>(
-        simd: S,
-        truth: Self::Truth<S>,
-        holds: Self::Register<S>,
-        fails: Self::Register<S>,
-    ) -> Self::Register<S>;
-    #[doc(hidden)]
-    fn and<S: Simd>(simd: S, a: Self::Truth<S>, b: Self::Truth<S>) -> Self::Truth<S>;
-    #[doc(hidden)]
-    fn not<S: Simd>(simd: S, a: Self::Truth<S>) -> Self::Truth<S>;
-    #[doc(hidden)]
-    fn none<S: Simd>(simd: S, a: Self::Truth<S>) -> bool;
-    #[doc(hidden)]
-    fn bits<S: Simd>(simd: S, a: Self::Truth<S>) -> u64;
+macro_rules! define_pulp_element {
+    (operator { $(($ov:ident, $om:literal, $oc:ident, $od:literal, $trait:ident $of:ident)),* $(,)? }
+     binary { $(($bv:ident, $bm:literal, $bc:ident, $bd:literal, $bf:ident)),* $(,)? }
+     unary { $(($uv:ident, $um:literal, $uc:ident, $ud:literal, $uf:ident)),* $(,)? }
+     compare { $(($cv:ident, $cm:literal, $cc:ident, $cd:literal, $cf:ident)),* $(,)? }
+     connective { $(($av:ident, $am:literal, $ac:ident, $ad:literal, $af:ident)),* $(,)? }
+     negation { $(($nv:ident, $nm:literal, $nc:ident, $nd:literal, $nf:ident)),* $(,)? }
+     machine $machine:tt) => {
+        /// A precision that `pulp` has registers for. Its operations are named per type, hence this table.
+        pub trait PulpElement: Element {
+            /// A register of `S`.
+            type Register<S: Simd>: Copy;
+            /// A register of truth values of `S`.
+            type Truth<S: Simd>: Copy;
+            /// An index vector, of as many entries as the widest registers have lanes: with more, what is loaded would be
+            /// laid out on the stack and read back in wider pieces, which waits.
+            type Index: IndexLanes;
+
+            #[doc(hidden)]
+            fn splat<S: Simd>(simd: S, value: Self) -> Self::Register<S>;
+            $(
+                #[doc(hidden)]
+                fn $of<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
+            )*
+            $(
+                #[doc(hidden)]
+                fn $bf<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
+            )*
+            $(
+                #[doc(hidden)]
+                fn $uf<S: Simd>(simd: S, a: Self::Register<S>) -> Self::Register<S>;
+            )*
+            $(
+                #[doc(hidden)]
+                fn $cf<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Truth<S>;
+            )*
+            $(
+                #[doc(hidden)]
+                fn $af<S: Simd>(simd: S, a: Self::Truth<S>, b: Self::Truth<S>) -> Self::Truth<S>;
+            )*
+            $(
+                #[doc(hidden)]
+                fn $nf<S: Simd>(simd: S, a: Self::Truth<S>) -> Self::Truth<S>;
+            )*
+            #[doc(hidden)]
+            fn select<S: Simd>(
+                simd: S,
+                truth: Self::Truth<S>,
+                holds: Self::Register<S>,
+                fails: Self::Register<S>,
+            ) -> Self::Register<S>;
+            #[doc(hidden)]
+            fn none<S: Simd>(simd: S, a: Self::Truth<S>) -> bool;
+            #[doc(hidden)]
+            fn bits<S: Simd>(simd: S, a: Self::Truth<S>) -> u64;
+        }
+
+        $(
+            impl<S: Simd, T: PulpElement> std::ops::$trait for Register<S, T> {
+                type Output = Self;
+                #[inline(always)]
+                fn $of(self, other: Self) -> Self {
+                    Register(self.0, <T as PulpElement>::$of(self.0, self.1, other.1))
+                }
+            }
+        )*
+
+        impl<S: Simd, T: PulpElement> Predicate for Truth<S, T> {
+            $(
+                #[inline(always)]
+                fn $af(self, other: Self) -> Self {
+                    Truth(self.0, <T as PulpElement>::$af(self.0, self.1, other.1))
+                }
+            )*
+            $(
+                #[inline(always)]
+                fn $nf(self) -> Self {
+                    Truth(self.0, <T as PulpElement>::$nf(self.0, self.1))
+                }
+            )*
+        }
+
+        impl<S: Simd, T: PulpElement> Vector for Register<S, T> {
+            type Predicate = Truth<S, T>;
+            $(
+                #[inline(always)]
+                fn $uf(self) -> Self {
+                    Register(self.0, <T as PulpElement>::$uf(self.0, self.1))
+                }
+            )*
+            $(
+                #[inline(always)]
+                fn $bf(self, other: Self) -> Self {
+                    Register(self.0, <T as PulpElement>::$bf(self.0, self.1, other.1))
+                }
+            )*
+            $(
+                #[inline(always)]
+                fn $cf(self, other: Self) -> Truth<S, T> {
+                    Truth(self.0, <T as PulpElement>::$cf(self.0, self.1, other.1))
+                }
+            )*
+            #[inline(always)]
+            fn select(predicate: Truth<S, T>, holds: Self, fails: Self) -> Self {
+                Register(holds.0, <T as PulpElement>::select(holds.0, predicate.1, holds.1, fails.1))
+            }
+        }
+    };
 }
+for_each_op!(define_pulp_element);
 
 macro_rules! pulp_element {
     ($ty:ident, $register:ident, $truth:ident, $lanes:ident, $widest:literal,
@@ -219,65 +278,6 @@ pub struct Register<S: Simd, T: PulpElement>(S, T::Register<S>);
 /// One register of truth values.
 #[derive(Clone, Copy)]
 pub struct Truth<S: Simd, T: PulpElement>(S, T::Truth<S>);
-
-macro_rules! operator {
-    ($trait:ident, $method:ident) => {
-        impl<S: Simd, T: PulpElement> $trait for Register<S, T> {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Register(self.0, <T as PulpElement>::$method(self.0, self.1, other.1))
-            }
-        }
-    };
-}
-operator!(Add, add);
-operator!(Sub, sub);
-operator!(Mul, mul);
-operator!(Div, div);
-
-impl<S: Simd, T: PulpElement> Predicate for Truth<S, T> {
-    #[inline(always)]
-    fn and(self, other: Self) -> Self {
-        Truth(self.0, <T as PulpElement>::and(self.0, self.1, other.1))
-    }
-    #[inline(always)]
-    fn not(self) -> Self {
-        Truth(self.0, <T as PulpElement>::not(self.0, self.1))
-    }
-}
-
-macro_rules! forward {
-    (unary $($method:ident),*) => {$(
-        #[inline(always)]
-        fn $method(self) -> Self {
-            Register(self.0, <T as PulpElement>::$method(self.0, self.1))
-        }
-    )*};
-    (binary $($method:ident),*) => {$(
-        #[inline(always)]
-        fn $method(self, other: Self) -> Self {
-            Register(self.0, <T as PulpElement>::$method(self.0, self.1, other.1))
-        }
-    )*};
-    (comparison $($method:ident),*) => {$(
-        #[inline(always)]
-        fn $method(self, other: Self) -> Truth<S, T> {
-            Truth(self.0, <T as PulpElement>::$method(self.0, self.1, other.1))
-        }
-    )*};
-}
-
-impl<S: Simd, T: PulpElement> Vector for Register<S, T> {
-    type Predicate = Truth<S, T>;
-    forward!(unary sqrt, abs, truncate);
-    forward!(binary min, max);
-    forward!(comparison less_than, less_equal, equal);
-    #[inline(always)]
-    fn select(predicate: Truth<S, T>, holds: Self, fails: Self) -> Self {
-        Register(holds.0, <T as PulpElement>::select(holds.0, predicate.1, holds.1, fails.1))
-    }
-}
 
 impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
     type Lane = T;

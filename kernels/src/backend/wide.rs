@@ -1,10 +1,10 @@
 //! Registers of a width fixed at compile time, by the crate `wide`: what a build without run-time dispatch gets.
 
 use super::registers::{IndexLanes, Registers};
+use crate::isa::op::for_each_op;
 use crate::isa::{Element, Predicate, Vector};
 use ::wide::{f32x8, f64x4};
 use std::marker::PhantomData;
-use std::ops::{Add, Div, Mul, Sub};
 
 /// A precision that `wide` has a register for.
 pub trait WideElement: Element {
@@ -36,21 +36,19 @@ pub struct Truth<W>(W);
 #[derive(Clone, Copy, Default)]
 pub struct Wide<T>(PhantomData<T>);
 
-macro_rules! operator {
-    ($trait:ident, $method:ident) => {
-        impl<W: $trait<Output = W>> $trait for Register<W> {
+macro_rules! operators {
+    (operator { $(($variant:ident, $mnemonic:literal, $class:ident, $doc:literal, $trait:ident $method:ident)),* $(,)? }
+     $($others:tt)*) => {$(
+        impl<W: std::ops::$trait<Output = W>> std::ops::$trait for Register<W> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Register(self.0.$method(other.0))
+                Register(std::ops::$trait::$method(self.0, other.0))
             }
         }
-    };
+    )*};
 }
-operator!(Add, add);
-operator!(Sub, sub);
-operator!(Mul, mul);
-operator!(Div, div);
+for_each_op!(operators);
 
 macro_rules! wide_element {
     ($ty:ident, $wide:ident, $lanes:literal) => {

@@ -1,68 +1,154 @@
-//! The list of operations. Names, classes, counts and listings all derive from it.
+//! The list of operations. From it come names, classes and counts, the methods of [`Vector`](super::Vector) and their
+//! forwarding to registers, what a tape records, and what the interpreter executes.
+//!
+//! An operation is a row of a group, which says what it takes and gives. A row that is not served everywhere does not
+//! compile: a computing operation is a method that every vector must have, and any other names the actions of a tape that
+//! count as it, which listing, allocation and interpreter match one by one.
 
-/// Calls the macro `$apply` with every operation of the machine: `(variant, mnemonic, class, what it does)`.
+use super::vector::{Predicate, Vector};
+
+/// Calls the macro `$apply` with `$args` and every operation of the machine, a row each:
+/// `(variant, mnemonic, class, what it does, ...)`.
+///
+/// The groups: `operator` and `binary` (a number from two, by a trait of `std::ops` or a method of `Vector`), `unary` (from
+/// one), `compare` (a predicate from two numbers), `connective` and `negation` (from two predicates, from one), and
+/// `machine`, whose rows end with the actions of a tape that count as the operation.
 macro_rules! for_each_op {
-    ($apply:ident) => {
+    ($apply:ident $($args:tt)*) => {
         $apply! {
-            (Add, "add", Add, "sum of two vectors"),
-            (Subtract, "sub", Add, "difference of two vectors"),
-            (Multiply, "mul", Multiply, "product of two vectors"),
-            (Divide, "div", Divide, "quotient of two vectors"),
-            (SquareRoot, "sqrt", SquareRoot, "square root"),
-            (Absolute, "abs", Logical, "magnitude: the sign bit cleared"),
-            (Minimum, "min", Compare, "the smaller of two; the second where they do not compare"),
-            (Maximum, "max", Compare, "the larger of two; the second where they do not compare"),
-            (Truncate, "int", Convert, "integer part, rounded towards zero"),
-            (LessThan, "lt", Compare, "predicate a < b"),
-            (LessEqual, "le", Compare, "predicate a <= b"),
-            (Equal, "eq", Compare, "predicate a = b"),
-            (And, "and", Logical, "conjunction of two predicates"),
-            (Not, "not", Logical, "negation of a predicate"),
-            (Select, "sel", Logical, "merge: a where the predicate holds, else b"),
-            (Count, "cnt", Reduce, "population count of a predicate, added to a counter"),
-            (Numbers, "iota", Convert, "the element numbers 1, 2, 3, ..."),
-            (ToIndex, "toidx", Convert, "numbers to an index vector"),
-            (FromIndex, "fromidx", Convert, "an index vector to numbers"),
-            (Widen, "cvt", Convert, "change of precision at a load, gather or store"),
-            (Load, "ld", Load, "load at the own place, unit stride"),
-            (LoadShifted, "lds", Shift, "load at a shift: the shifted copy of a lattice vector"),
-            (Store, "st", Store, "store at the own place"),
-            (Gather, "gth", Gather, "load through an index vector"),
-            (Scatter, "sct", Scatter, "store through an index vector"),
+            $($args)*
+            operator {
+                (Add, "add", Add, "sum of two vectors", Add add),
+                (Subtract, "sub", Add, "difference of two vectors", Sub sub),
+                (Multiply, "mul", Multiply, "product of two vectors", Mul mul),
+                (Divide, "div", Divide, "quotient of two vectors", Div div),
+            }
+            binary {
+                (Minimum, "min", Compare, "the smaller of two; the second where they do not compare", min),
+                (Maximum, "max", Compare, "the larger of two; the second where they do not compare", max),
+            }
+            unary {
+                (SquareRoot, "sqrt", SquareRoot, "square root", sqrt),
+                (Absolute, "abs", Logical, "magnitude: the sign bit cleared", abs),
+                (Truncate, "int", Convert, "integer part, rounded towards zero", truncate),
+            }
+            compare {
+                (LessThan, "lt", Compare, "predicate a < b", less_than),
+                (LessEqual, "le", Compare, "predicate a <= b", less_equal),
+                (Equal, "eq", Compare, "predicate a = b", equal),
+            }
+            connective {
+                (And, "and", Logical, "conjunction of two predicates", and),
+            }
+            negation {
+                (Not, "not", Logical, "negation of a predicate", not),
+            }
+            machine {
+                (Select, "sel", Logical, "merge: a where the predicate holds, else b", [Number Select]),
+                (Count, "cnt", Reduce, "population count of a predicate, added to a counter", [Effect Count]),
+                (Numbers, "iota", Convert, "the element numbers 1, 2, 3, ...", [Number Numbers]),
+                (ToIndex, "toidx", Convert, "numbers to an index vector", [Indices ToIndex]),
+                (FromIndex, "fromidx", Convert, "an index vector to numbers", [Number FromIndex]),
+                (Widen, "cvt", Convert, "change of precision at a load, gather or store", []),
+                (Load, "ld", Load, "load at the own place, unit stride", [Number Load, Indices Load]),
+                (LoadShifted, "lds", Shift, "load at a shift: the shifted copy of a lattice vector", [Number LoadShifted]),
+                (Store, "st", Store, "store at the own place", [Effect Store, Effect StoreIndex]),
+                (Gather, "gth", Gather, "load through an index vector", [Number Gather, Indices Gather]),
+                (Scatter, "sct", Scatter, "store through an index vector", [Effect Scatter]),
+            }
         }
     };
 }
+pub(crate) use for_each_op;
 
 macro_rules! define_ops {
-    ($(($variant:ident, $mnemonic:literal, $class:ident, $doc:literal)),* $(,)?) => {
+    ($($group:ident { $(($variant:ident, $mnemonic:literal, $class:ident, $doc:literal, $($rest:tt)*)),* $(,)? })*) => {
         /// One vector operation of the machine.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Op {
-            $(#[doc = $doc] $variant,)*
+            $($(#[doc = $doc] $variant,)*)*
         }
 
         impl Op {
             /// Every operation, in the order of the list.
-            pub const ALL: &'static [Op] = &[$(Op::$variant),*];
+            pub const ALL: &'static [Op] = &[$($(Op::$variant),*),*];
 
             /// The name in a listing.
             pub const fn mnemonic(self) -> &'static str {
-                match self { $(Op::$variant => $mnemonic),* }
+                match self { $($(Op::$variant => $mnemonic,)*)* }
             }
 
             /// The class whose cost a machine states.
             pub const fn class(self) -> OpClass {
-                match self { $(Op::$variant => OpClass::$class),* }
+                match self { $($(Op::$variant => OpClass::$class,)*)* }
             }
 
             /// What the operation does, in one line.
             pub const fn meaning(self) -> &'static str {
-                match self { $(Op::$variant => $doc),* }
+                match self { $($(Op::$variant => $doc,)*)* }
             }
         }
     };
 }
 for_each_op!(define_ops);
+
+/// The operations of one group, each as a function of its operands.
+macro_rules! define_group {
+    ($(#[doc = $what:literal])+ $name:ident, $taking:ident ($($parameters:tt)*) $operands:tt -> $result:ty {
+        $(($variant:ident, $doc:literal, $method:path)),*
+    }) => {
+        $(#[doc = $what])+
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $name {
+            $(#[doc = $doc] $variant,)*
+        }
+
+        impl $name {
+            /// The operation.
+            pub const fn op(self) -> Op {
+                match self { $($name::$variant => Op::$variant,)* }
+            }
+
+            /// Does it.
+            #[inline(always)]
+            pub fn apply<V: $taking>(self, $($parameters)*) -> $result {
+                match self { $($name::$variant => $method $operands,)* }
+            }
+        }
+    };
+}
+
+macro_rules! define_groups {
+    (operator { $(($ov:ident, $om:literal, $oc:ident, $od:literal, $trait:ident $of:ident)),* $(,)? }
+     binary { $(($bv:ident, $bm:literal, $bc:ident, $bd:literal, $bf:ident)),* $(,)? }
+     unary { $(($uv:ident, $um:literal, $uc:ident, $ud:literal, $uf:ident)),* $(,)? }
+     compare { $(($cv:ident, $cm:literal, $cc:ident, $cd:literal, $cf:ident)),* $(,)? }
+     connective { $(($av:ident, $am:literal, $ac:ident, $ad:literal, $af:ident)),* $(,)? }
+     negation { $(($nv:ident, $nm:literal, $nc:ident, $nd:literal, $nf:ident)),* $(,)? }
+     machine $machine:tt) => {
+        define_group! {
+            /// A number from two.
+            BinaryOp, Vector (a: V, b: V) (a, b) -> V { $(($ov, $od, std::ops::$trait::$of),)* $(($bv, $bd, Vector::$bf)),* }
+        }
+        define_group! {
+            /// A number from one.
+            UnaryOp, Vector (a: V) (a) -> V { $(($uv, $ud, Vector::$uf)),* }
+        }
+        define_group! {
+            /// A predicate from two numbers.
+            CompareOp, Vector (a: V, b: V) (a, b) -> V::Predicate { $(($cv, $cd, Vector::$cf)),* }
+        }
+        define_group! {
+            /// A predicate from two.
+            ConnectiveOp, Predicate (a: V, b: V) (a, b) -> V { $(($av, $ad, Predicate::$af)),* }
+        }
+        define_group! {
+            /// A predicate from one.
+            NegationOp, Predicate (a: V) (a) -> V { $(($nv, $nd, Predicate::$nf)),* }
+        }
+    };
+}
+for_each_op!(define_groups);
 
 macro_rules! define_classes {
     ($(($variant:ident, $name:literal, $doc:literal)),* $(,)?) => {

@@ -1,43 +1,40 @@
 //! Values of the machine: vectors of numbers and vectors of truth values.
 
-use std::ops::{Add, Div, Mul, Sub};
+use super::op::for_each_op;
 
-/// A vector of truth values, one a lane. (A *mask* is always a neighbourhood.)
-pub trait Predicate: Copy {
-    /// Conjunction, lane by lane.
-    fn and(self, other: Self) -> Self;
-    /// Negation, lane by lane.
-    fn not(self) -> Self;
+macro_rules! define_vectors {
+    (operator { $(($ov:ident, $om:literal, $oc:ident, $od:literal, $trait:ident $of:ident)),* $(,)? }
+     binary { $(($bv:ident, $bm:literal, $bc:ident, $bd:literal, $bf:ident)),* $(,)? }
+     unary { $(($uv:ident, $um:literal, $uc:ident, $ud:literal, $uf:ident)),* $(,)? }
+     compare { $(($cv:ident, $cm:literal, $cc:ident, $cd:literal, $cf:ident)),* $(,)? }
+     connective { $(($av:ident, $am:literal, $ac:ident, $ad:literal, $af:ident)),* $(,)? }
+     negation { $(($nv:ident, $nm:literal, $nc:ident, $nd:literal, $nf:ident)),* $(,)? }
+     machine $machine:tt) => {
+        /// A vector of truth values, one a lane. (A *mask* is always a neighbourhood.)
+        pub trait Predicate: Copy {
+            $(#[doc = concat!("The ", $ad, ", lane by lane.")] fn $af(self, other: Self) -> Self;)*
+            $(#[doc = concat!("The ", $nd, ", lane by lane.")] fn $nf(self) -> Self;)*
+        }
+
+        /// A vector of numbers of one precision.
+        ///
+        /// Every operation is correctly rounded and never fused with another, so that all backends agree to the bit.
+        pub trait Vector: Copy $(+ std::ops::$trait<Output = Self>)* {
+            /// The vector of truth values that comparisons give.
+            type Predicate: Predicate;
+
+            $(#[doc = concat!("The ", $ud, ".")] fn $uf(self) -> Self;)*
+            $(#[doc = concat!("Lane by lane ", $bd, ".")] fn $bf(self, other: Self) -> Self;)*
+            $(
+                #[doc = concat!("The ", $cd, ", a the vector itself; false where they do not compare.")]
+                fn $cf(self, other: Self) -> Self::Predicate;
+            )*
+            /// `holds` where the predicate holds, else `fails`. Neither is disturbed by a NaN in the other.
+            fn select(predicate: Self::Predicate, holds: Self, fails: Self) -> Self;
+        }
+    };
 }
-
-/// A vector of numbers of one precision.
-///
-/// Every operation is correctly rounded and never fused with another, so that all backends agree to the bit.
-pub trait Vector:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
-{
-    /// The vector of truth values that comparisons give.
-    type Predicate: Predicate;
-
-    /// Square root.
-    fn sqrt(self) -> Self;
-    /// Magnitude: the sign bit cleared.
-    fn abs(self) -> Self;
-    /// Integer part, rounded towards zero.
-    fn truncate(self) -> Self;
-    /// `self` where `self < other`, else `other` (also where they do not compare).
-    fn min(self, other: Self) -> Self;
-    /// `self` where `self > other`, else `other` (also where they do not compare).
-    fn max(self, other: Self) -> Self;
-    /// `self < other`; false where they do not compare.
-    fn less_than(self, other: Self) -> Self::Predicate;
-    /// `self <= other`; false where they do not compare.
-    fn less_equal(self, other: Self) -> Self::Predicate;
-    /// `self = other`; false where they do not compare.
-    fn equal(self, other: Self) -> Self::Predicate;
-    /// `holds` where the predicate holds, else `fails`. Neither is disturbed by a NaN in the other.
-    fn select(predicate: Self::Predicate, holds: Self, fails: Self) -> Self;
-}
+for_each_op!(define_vectors);
 
 impl Predicate for bool {
     #[inline(always)]

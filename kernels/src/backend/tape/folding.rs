@@ -1,6 +1,6 @@
 //! Loads as operands: what is executed needs no copy of an array that lies in memory as it was loaded.
 
-use super::instruction::{Action, Instruction, Operand, Reference, RegisterName};
+use super::instruction::{Action, Instruction, Number, Operand, Reference, RegisterName};
 use crate::isa::Element;
 use std::collections::HashMap;
 
@@ -18,7 +18,9 @@ pub(super) fn fold_loads<L: Element>(instructions: &[Instruction<L>]) -> Vec<Ins
     }
     let mut folded: HashMap<RegisterName, Reference> = HashMap::new();
     for (at, instruction) in instructions.iter().enumerate() {
-        if let (Action::Load(reference), Some(to)) = (instruction.action, instruction.to) {
+        if let Action::Number(to, Number::Load(reference) | Number::LoadShifted(reference)) =
+            instruction.action
+        {
             let overwritten =
                 instructions[at..=last_use[&to]].iter().any(|later| later.overwrites(reference));
             if reference.element == L::NAME && !overwritten {
@@ -26,7 +28,7 @@ pub(super) fn fold_loads<L: Element>(instructions: &[Instruction<L>]) -> Vec<Ins
             }
         }
     }
-    passes.retain(|pass| !pass.to.is_some_and(|to| folded.contains_key(&to)));
+    passes.retain(|pass| !pass.to().is_some_and(|to| folded.contains_key(&to)));
     for pass in &mut passes {
         pass.operands(|operand| {
             if let Operand::Register(name) = operand
@@ -42,15 +44,20 @@ pub(super) fn fold_loads<L: Element>(instructions: &[Instruction<L>]) -> Vec<Ins
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::backend::tape::File;
-    use crate::isa::{Array, Op};
+    use crate::backend::tape::{Effect, File};
+    use crate::isa::Array;
+    use crate::isa::op::{BinaryOp, UnaryOp};
 
     fn register(number: u32) -> RegisterName {
         RegisterName { file: File::Number, number }
     }
 
-    fn instruction(op: Op, to: Option<u32>, action: Action<f64>) -> Instruction<f64> {
-        Instruction { op, section: 0, to: to.map(register), action }
+    fn number(to: u32, number: Number<f64>) -> Instruction<f64> {
+        Instruction { section: 0, action: Action::Number(register(to), number) }
+    }
+
+    fn store(to: Reference, value: Operand<f64>) -> Instruction<f64> {
+        Instruction { section: 0, action: Action::Effect(Effect::Store(to, value)) }
     }
 
     fn x(element: &'static str) -> Reference {
@@ -60,26 +67,25 @@ mod tests {
     #[test]
     fn a_load_becomes_an_operand_of_its_readers() {
         let [a, b] = [0, 1].map(|number| Operand::Register(register(number)));
-        let store = Reference { array: Array::ALL[1], ..x("f64") };
+        let to = Reference { array: Array::ALL[1], ..x("f64") };
         let passes = fold_loads(&[
-            instruction(Op::LoadShifted, Some(0), Action::Load(x("f64"))),
-            instruction(Op::Multiply, Some(1), Action::Binary(a, a)),
-            instruction(Op::Store, None, Action::Store(store, b)),
+            number(0, Number::LoadShifted(x("f64"))),
+            number(1, Number::Binary(BinaryOp::Multiply, a, a)),
+            store(to, b),
         ]);
         let from = Operand::Memory(x("f64"));
         assert_eq!(passes.len(), 2);
-        assert_eq!(passes[0].action, Action::Binary(from, from));
+        assert_eq!(passes[0], number(1, Number::Binary(BinaryOp::Multiply, from, from)));
     }
 
     #[test]
     fn a_load_stays_where_its_array_is_written_while_it_is_needed_or_holds_another_precision() {
         let a = Operand::Register(register(0));
         for element in ["f64", "f32"] {
-            let stored = Action::Store(x(element), Operand::Uniform(1.0));
             let code = [
-                instruction(Op::LoadShifted, Some(0), Action::Load(x(element))),
-                instruction(Op::Store, None, stored),
-                instruction(Op::SquareRoot, Some(1), Action::Unary(a)),
+                number(0, Number::LoadShifted(x(element))),
+                store(x(element), Operand::Uniform(1.0)),
+                number(1, Number::Unary(UnaryOp::SquareRoot, a)),
             ];
             assert_eq!(fold_loads(&code), code);
         }

@@ -1,5 +1,6 @@
 //! What a tape records: one instruction a vector operation.
 
+use crate::isa::op::{BinaryOp, CompareOp, ConnectiveOp, NegationOp, UnaryOp, for_each_op};
 use crate::isa::{Array, Element, Op};
 
 /// The three register files of the machine.
@@ -58,82 +59,145 @@ pub struct Reference {
     pub shift: isize,
 }
 
-/// What an instruction does to which operands.
+/// What gives numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Action<L> {
-    /// A number from one number.
-    Unary(Operand<L>),
-    /// A number from two.
-    Binary(Operand<L>, Operand<L>),
-    /// A predicate from two numbers.
-    Compare(Operand<L>, Operand<L>),
-    /// A predicate from one or two.
-    Logic(RegisterName, Option<RegisterName>),
-    /// Merge under a predicate.
+pub enum Number<L> {
+    /// One number.
+    Unary(UnaryOp, Operand<L>),
+    /// Two numbers.
+    Binary(BinaryOp, Operand<L>, Operand<L>),
+    /// A merge under a predicate.
     Select(RegisterName, Operand<L>, Operand<L>),
-    /// Population count into a counter.
-    Count(RegisterName, u8),
     /// Element numbers.
     Numbers,
-    /// Numbers to indices.
-    ToIndex(Operand<L>),
-    /// Indices to numbers.
+    /// Indices.
     FromIndex(RegisterName),
-    /// Numbers from memory.
+    /// Memory at the own place.
     Load(Reference),
+    /// Memory at a shift.
+    LoadShifted(Reference),
+    /// Memory through an index vector; the operand where it numbers none.
+    Gather(Reference, RegisterName, Operand<L>),
+}
+
+/// What gives a predicate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Truth<L> {
+    /// Two numbers.
+    Compare(CompareOp, Operand<L>, Operand<L>),
+    /// Two predicates.
+    Connective(ConnectiveOp, RegisterName, RegisterName),
+    /// One predicate.
+    Negation(NegationOp, RegisterName),
+}
+
+/// What gives an index vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Indices<L> {
+    /// Numbers.
+    ToIndex(Operand<L>),
+    /// Memory.
+    Load(Reference),
+    /// Memory through an index vector.
+    Gather(Reference, RegisterName),
+}
+
+/// What writes no register.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Effect<L> {
+    /// Population count into a counter.
+    Count(RegisterName, u8),
     /// Numbers to memory.
     Store(Reference, Operand<L>),
-    /// Indices from memory.
-    LoadIndex(Reference),
     /// Indices to memory.
     StoreIndex(Reference, RegisterName),
-    /// Numbers through an index vector; the operand where it numbers none.
-    Gather(Reference, RegisterName, Operand<L>),
-    /// Indices through an index vector.
-    GatherIndex(Reference, RegisterName),
     /// Indices to memory through an index vector: address, value.
-    ScatterIndex(Reference, RegisterName, RegisterName),
+    Scatter(Reference, RegisterName, RegisterName),
 }
+
+/// What an instruction does to which operands, and the register that it writes: the type says of which file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Action<L> {
+    /// Writes a register of numbers.
+    Number(RegisterName, Number<L>),
+    /// Writes a predicate.
+    Truth(RegisterName, Truth<L>),
+    /// Writes an index vector.
+    Indices(RegisterName, Indices<L>),
+    /// Writes memory or a counter.
+    Effect(Effect<L>),
+}
+
+macro_rules! define_action_op {
+    (operator $o:tt binary $b:tt unary $u:tt compare $c:tt connective $a:tt negation $n:tt machine {
+        $(($variant:ident, $mnemonic:literal, $class:ident, $doc:literal, [$($file:ident $action:ident),*])),* $(,)?
+    }) => {
+        impl<L> Action<L> {
+            /// The operation it is, which says its name and class.
+            pub fn op(&self) -> Op {
+                match self {
+                    Action::Number(_, Number::Binary(op, ..)) => op.op(),
+                    Action::Number(_, Number::Unary(op, _)) => op.op(),
+                    Action::Truth(_, Truth::Compare(op, ..)) => op.op(),
+                    Action::Truth(_, Truth::Connective(op, ..)) => op.op(),
+                    Action::Truth(_, Truth::Negation(op, _)) => op.op(),
+                    $($(Action::$file(.., $file::$action { .. }) => Op::$variant,)*)*
+                }
+            }
+        }
+    };
+}
+for_each_op!(define_action_op);
 
 /// One recorded vector instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instruction<L> {
-    /// The operation, which says its name and class.
-    pub op: Op,
     /// Index of the section it stands in.
     pub section: usize,
-    /// The register it writes, if any.
-    pub to: Option<RegisterName>,
     /// What it does.
     pub action: Action<L>,
 }
 
 impl<L: Element> Instruction<L> {
+    /// The operation, which says its name and class.
+    pub fn op(&self) -> Op {
+        self.action.op()
+    }
+
+    /// The register it writes, if any.
+    pub fn to(&self) -> Option<RegisterName> {
+        match self.action {
+            Action::Number(to, _) | Action::Truth(to, _) | Action::Indices(to, _) => Some(to),
+            Action::Effect(_) => None,
+        }
+    }
+
     /// The memory it touches.
     pub fn reference(&self) -> Option<Reference> {
         match self.action {
-            Action::Load(r)
-            | Action::Store(r, _)
-            | Action::LoadIndex(r)
-            | Action::StoreIndex(r, _)
-            | Action::Gather(r, ..)
-            | Action::GatherIndex(r, _)
-            | Action::ScatterIndex(r, ..) => Some(r),
+            Action::Number(_, Number::Load(r) | Number::LoadShifted(r) | Number::Gather(r, ..))
+            | Action::Indices(_, Indices::Load(r) | Indices::Gather(r, _))
+            | Action::Effect(Effect::Store(r, _) | Effect::StoreIndex(r, _) | Effect::Scatter(r, ..)) => {
+                Some(r)
+            }
             _ => None,
         }
     }
 
     /// The operations it counts as: its own, and a conversion where memory holds another precision than the lanes.
     pub fn operations(&self) -> impl Iterator<Item = Op> {
-        let converts = matches!(self.action, Action::Load(_) | Action::Store(..) | Action::Gather(..))
-            && self.reference().is_some_and(|reference| reference.element != L::NAME);
-        std::iter::once(self.op).chain(converts.then_some(Op::Widen))
+        let numbers = match self.action {
+            Action::Number(..) | Action::Effect(Effect::Store(..)) => self.reference(),
+            _ => None,
+        };
+        let converts = numbers.is_some_and(|reference| reference.element != L::NAME);
+        std::iter::once(self.op()).chain(converts.then_some(Op::Widen))
     }
 
     /// Whether it writes to the array that `reference` names.
     pub fn overwrites(&self, reference: Reference) -> bool {
         match self.action {
-            Action::Store(to, _) | Action::StoreIndex(to, _) | Action::ScatterIndex(to, ..) => {
+            Action::Effect(Effect::Store(to, _) | Effect::StoreIndex(to, _) | Effect::Scatter(to, ..)) => {
                 (to.array, to.element) == (reference.array, reference.element)
             }
             _ => false,
@@ -143,52 +207,58 @@ impl<L: Element> Instruction<L> {
     /// Calls `visit` with every operand of numbers.
     pub fn operands(&mut self, mut visit: impl FnMut(&mut Operand<L>)) {
         match &mut self.action {
-            Action::Unary(a) | Action::ToIndex(a) | Action::Store(_, a) | Action::Gather(_, _, a) => visit(a),
-            Action::Binary(a, b) | Action::Compare(a, b) | Action::Select(_, a, b) => {
+            Action::Number(_, Number::Unary(_, a) | Number::Gather(_, _, a))
+            | Action::Indices(_, Indices::ToIndex(a))
+            | Action::Effect(Effect::Store(_, a)) => visit(a),
+            Action::Number(_, Number::Binary(_, a, b) | Number::Select(_, a, b))
+            | Action::Truth(_, Truth::Compare(_, a, b)) => {
                 visit(a);
                 visit(b);
             }
-            Action::Logic(..)
-            | Action::Count(..)
-            | Action::Numbers
-            | Action::FromIndex(_)
-            | Action::Load(_)
-            | Action::LoadIndex(_)
-            | Action::StoreIndex(..)
-            | Action::GatherIndex(..)
-            | Action::ScatterIndex(..) => {}
+            Action::Number(
+                _,
+                Number::Numbers | Number::FromIndex(_) | Number::Load(_) | Number::LoadShifted(_),
+            )
+            | Action::Truth(_, Truth::Connective(..) | Truth::Negation(..))
+            | Action::Indices(_, Indices::Load(_) | Indices::Gather(..))
+            | Action::Effect(Effect::Count(..) | Effect::StoreIndex(..) | Effect::Scatter(..)) => {}
         }
     }
 
-    /// Calls `visit` with every register it reads, then, where it writes one, with that.
-    pub fn registers(&mut self, mut visit: impl FnMut(&mut RegisterName)) {
+    /// Calls `visit` with every register it reads.
+    pub fn reads(&mut self, mut visit: impl FnMut(&mut RegisterName)) {
         self.operands(|operand| {
             if let Operand::Register(name) = operand {
                 visit(name);
             }
         });
         match &mut self.action {
-            Action::Select(a, ..)
-            | Action::Gather(_, a, _)
-            | Action::Logic(a, None)
-            | Action::Count(a, _)
-            | Action::FromIndex(a)
-            | Action::StoreIndex(_, a)
-            | Action::GatherIndex(_, a) => visit(a),
-            Action::Logic(a, Some(b)) | Action::ScatterIndex(_, a, b) => {
+            Action::Number(_, Number::Select(a, ..) | Number::Gather(_, a, _) | Number::FromIndex(a))
+            | Action::Truth(_, Truth::Negation(_, a))
+            | Action::Indices(_, Indices::Gather(_, a))
+            | Action::Effect(Effect::Count(a, _) | Effect::StoreIndex(_, a)) => visit(a),
+            Action::Truth(_, Truth::Connective(_, a, b)) | Action::Effect(Effect::Scatter(_, a, b)) => {
                 visit(a);
                 visit(b);
             }
-            Action::Unary(_)
-            | Action::Binary(..)
-            | Action::Compare(..)
-            | Action::Numbers
-            | Action::ToIndex(_)
-            | Action::Load(_)
-            | Action::Store(..)
-            | Action::LoadIndex(_) => {}
+            Action::Number(
+                _,
+                Number::Unary(..)
+                | Number::Binary(..)
+                | Number::Numbers
+                | Number::Load(_)
+                | Number::LoadShifted(_),
+            )
+            | Action::Truth(_, Truth::Compare(..))
+            | Action::Indices(_, Indices::ToIndex(_) | Indices::Load(_))
+            | Action::Effect(Effect::Store(..)) => {}
         }
-        if let Some(to) = &mut self.to {
+    }
+
+    /// Calls `visit` with every register it reads, then, where it writes one, with that.
+    pub fn registers(&mut self, mut visit: impl FnMut(&mut RegisterName)) {
+        self.reads(&mut visit);
+        if let Action::Number(to, _) | Action::Truth(to, _) | Action::Indices(to, _) = &mut self.action {
             visit(to);
         }
     }

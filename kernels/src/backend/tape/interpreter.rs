@@ -2,13 +2,12 @@
 //! CRAY; short strips keep the registers in the cache.
 
 use super::Tape;
-use super::instruction::{Action, File, Instruction, Operand, RegisterName};
+use super::instruction::{Action, Effect, Indices, Instruction, Number, Operand, RegisterName, Truth};
 use super::pool;
 use super::register_file::RegisterFile;
 use crate::backend::{IndexLanes, Precision, Registers, Scalar, Strip};
-use crate::isa::{
-    Array, Column, Counter, Element, Machine, Memory, Op, Predicate, ProgramError, Slot, Storage, Vector,
-};
+use crate::isa::op::{BinaryOp, CompareOp, UnaryOp, for_each_op};
+use crate::isa::{Array, Column, Counter, Element, Machine, Memory, ProgramError, Slot, Storage, Vector};
 use crate::program::{InstructionSet, Task, dispatch};
 use crate::rests::Rests;
 use std::cell::Cell;
@@ -66,7 +65,7 @@ impl<L: Precision> Task<L> for Passes<'_, L> {
 /// Cells, because a result may take the place of an operand: every hardware register is read before it is written.
 struct RegisterFiles<R: Registers> {
     numbers: RegisterFile<R::V>,
-    predicates: RegisterFile<Truth<R>>,
+    predicates: RegisterFile<TruthOf<R>>,
     indices: RegisterFile<R::Index>,
 }
 
@@ -80,7 +79,42 @@ impl<R: Registers> Default for RegisterFiles<R> {
     }
 }
 
-type Truth<R> = <<R as Registers>::V as Vector>::Predicate;
+type TruthOf<R> = <<R as Registers>::V as Vector>::Predicate;
+
+/// A pass for every number from two. Which operation it is, is asked outside the loop.
+macro_rules! binary_passes {
+    ($op:ident $span:ident $to:ident $a:ident $b:ident
+     operator { $(($ov:ident, $om:literal, $oc:ident, $od:literal, $trait:ident $of:ident)),* $(,)? }
+     binary { $(($bv:ident, $bm:literal, $bc:ident, $bd:literal, $bf:ident)),* $(,)? }
+     $($others:tt)*) => {
+        match $op {
+            $(BinaryOp::$ov => $span.binary($to, $a, $b, |_, a, b| std::ops::$trait::$of(a, b)),)*
+            $(BinaryOp::$bv => $span.binary($to, $a, $b, |_, a, b| a.$bf(b)),)*
+        }
+    };
+}
+
+/// A pass for every number from one.
+macro_rules! unary_passes {
+    ($op:ident $span:ident $to:ident $a:ident operator $o:tt binary $b:tt
+     unary { $(($uv:ident, $um:literal, $uc:ident, $ud:literal, $uf:ident)),* $(,)? }
+     $($others:tt)*) => {
+        match $op {
+            $(UnaryOp::$uv => $span.unary($to, $a, |_, a| a.$uf()),)*
+        }
+    };
+}
+
+/// A pass for every comparison.
+macro_rules! compare_passes {
+    ($op:ident $span:ident $to:ident $a:ident $b:ident operator $o:tt binary $bin:tt unary $u:tt
+     compare { $(($cv:ident, $cm:literal, $cc:ident, $cd:literal, $cf:ident)),* $(,)? }
+     $($others:tt)*) => {
+        match $op {
+            $(CompareOp::$cv => $span.binary($to, $a, $b, |_, a, b| a.$cf(b)),)*
+        }
+    };
+}
 
 /// What an instruction reads: consecutive lanes of a register or of memory, or the same number in every lane.
 #[derive(Clone, Copy)]
@@ -237,7 +271,7 @@ impl<R: Registers> RegisterFiles<R> {
     }
 
     #[inline(always)]
-    fn predicate(&self, name: RegisterName) -> &[Cell<Truth<R>>] {
+    fn predicate(&self, name: RegisterName) -> &[Cell<TruthOf<R>>] {
         self.predicates.register(name.number)
     }
 
@@ -249,51 +283,32 @@ impl<R: Registers> RegisterFiles<R> {
     /// One instruction over one strip.
     #[inline(always)]
     fn step(&self, pass: &Instruction<R::Lane>, span: Span<'_, R>) {
-        match pass.to {
-            None => self.effect(pass, span),
-            Some(RegisterName { file: File::Number, number }) => {
-                self.number(pass, span, self.numbers.register(number));
-            }
-            Some(RegisterName { file: File::Predicate, number }) => {
-                self.truth(pass, span, self.predicates.register(number));
-            }
-            Some(RegisterName { file: File::Index, number }) => {
-                self.indexing(pass, span, self.indices.register(number));
-            }
+        match &pass.action {
+            Action::Number(to, number) => self.number(number, span, self.numbers.register(to.number)),
+            Action::Truth(to, truth) => self.truth(truth, span, self.predicates.register(to.number)),
+            Action::Indices(to, indices) => self.indices(indices, span, self.indices.register(to.number)),
+            Action::Effect(effect) => self.effect(effect, span),
         }
     }
 
-    /// Instructions that write a register of numbers.
+    /// What writes a register of numbers.
     #[inline(always)]
-    fn number(&self, pass: &Instruction<R::Lane>, span: Span<'_, R>, to: &[Cell<R::V>]) {
-        match &pass.action {
-            Action::Binary(a, b) => {
+    fn number(&self, number: &Number<R::Lane>, span: Span<'_, R>, to: &[Cell<R::V>]) {
+        match number {
+            Number::Binary(op, a, b) => {
                 let (a, b) = (self.source(a, span), self.source(b, span));
-                match pass.op {
-                    Op::Add => span.binary(to, a, b, |_, a, b| a + b),
-                    Op::Subtract => span.binary(to, a, b, |_, a, b| a - b),
-                    Op::Multiply => span.binary(to, a, b, |_, a, b| a * b),
-                    Op::Divide => span.binary(to, a, b, |_, a, b| a / b),
-                    Op::Minimum => span.binary(to, a, b, |_, a, b| a.min(b)),
-                    Op::Maximum => span.binary(to, a, b, |_, a, b| a.max(b)),
-                    op => unreachable!("{op:?} is no number of two"),
-                }
+                for_each_op!(binary_passes op span to a b);
             }
-            Action::Unary(a) => {
+            Number::Unary(op, a) => {
                 let a = self.source(a, span);
-                match pass.op {
-                    Op::SquareRoot => span.unary(to, a, |_, a| a.sqrt()),
-                    Op::Absolute => span.unary(to, a, |_, a| a.abs()),
-                    Op::Truncate => span.unary(to, a, |_, a| a.truncate()),
-                    op => unreachable!("{op:?} is no number of one"),
-                }
+                for_each_op!(unary_passes op span to a);
             }
-            Action::Select(predicate, a, b) => {
+            Number::Select(predicate, a, b) => {
                 let predicate = self.predicate(*predicate);
                 let (a, b) = (self.source(a, span), self.source(b, span));
                 span.binary(to, a, b, |i, a, b| R::V::select(predicate[i].get(), a, b));
             }
-            Action::Load(from) => match from.element {
+            Number::Load(from) | Number::LoadShifted(from) => match from.element {
                 f64::NAME => {
                     let (column, shift) = (span.column::<f64>(from.array), from.shift);
                     span.each(to, |i| span.at(i).load_from(column, shift));
@@ -303,16 +318,15 @@ impl<R: Registers> RegisterFiles<R> {
                     span.each(to, |i| span.at(i).load_from(column, shift));
                 }
             },
-            Action::Gather(from, index, elsewhere) => match from.element {
+            Number::Gather(from, index, elsewhere) => match from.element {
                 f64::NAME => self.gather(span, to, span.column::<f64>(from.array), *index, elsewhere),
                 _ => self.gather(span, to, span.column::<f32>(from.array), *index, elsewhere),
             },
-            Action::Numbers => span.each(to, |i| span.at(i).numbers()),
-            Action::FromIndex(index) => {
+            Number::Numbers => span.each(to, |i| span.at(i).numbers()),
+            Number::FromIndex(index) => {
                 let index = self.index(*index);
                 span.each(to, |i| span.at(i).index_numbers(index[i].get()));
             }
-            action => unreachable!("{action:?} writes no register of numbers"),
         }
     }
 
@@ -333,73 +347,66 @@ impl<R: Registers> RegisterFiles<R> {
         });
     }
 
-    /// Instructions that write a predicate.
+    /// What writes a predicate.
     #[inline(always)]
-    fn truth(&self, pass: &Instruction<R::Lane>, span: Span<'_, R>, to: &[Cell<Truth<R>>]) {
-        match &pass.action {
-            Action::Compare(a, b) => {
+    fn truth(&self, truth: &Truth<R::Lane>, span: Span<'_, R>, to: &[Cell<TruthOf<R>>]) {
+        match truth {
+            Truth::Compare(op, a, b) => {
                 let (a, b) = (self.source(a, span), self.source(b, span));
-                match pass.op {
-                    Op::LessThan => span.binary(to, a, b, |_, a, b| a.less_than(b)),
-                    Op::LessEqual => span.binary(to, a, b, |_, a, b| a.less_equal(b)),
-                    Op::Equal => span.binary(to, a, b, |_, a, b| a.equal(b)),
-                    op => unreachable!("{op:?} is no comparison"),
-                }
+                for_each_op!(compare_passes op span to a b);
             }
-            Action::Logic(a, b) => {
+            Truth::Connective(op, a, b) => {
+                let (a, b) = (self.predicate(*a), self.predicate(*b));
+                span.each(to, |i| op.apply(a[i].get(), b[i].get()));
+            }
+            Truth::Negation(op, a) => {
                 let a = self.predicate(*a);
-                match b.map(|b| self.predicate(b)) {
-                    Some(b) => span.each(to, |i| a[i].get().and(b[i].get())),
-                    None => span.each(to, |i| a[i].get().not()),
-                }
+                span.each(to, |i| op.apply(a[i].get()));
             }
-            action => unreachable!("{action:?} writes no predicate"),
         }
     }
 
-    /// Instructions that write an index vector.
+    /// What writes an index vector.
     #[inline(always)]
-    fn indexing(&self, pass: &Instruction<R::Lane>, span: Span<'_, R>, to: &[Cell<R::Index>]) {
-        match &pass.action {
-            Action::ToIndex(a) => span.unary(to, self.source(a, span), |i, a| span.at(i).to_index(a)),
-            Action::LoadIndex(from) => {
+    fn indices(&self, indices: &Indices<R::Lane>, span: Span<'_, R>, to: &[Cell<R::Index>]) {
+        match indices {
+            Indices::ToIndex(a) => span.unary(to, self.source(a, span), |i, a| span.at(i).to_index(a)),
+            Indices::Load(from) => {
                 let column = span.column(from.array);
                 span.each(to, |i| span.at(i).load_index_from(column));
             }
-            Action::GatherIndex(from, index) => {
+            Indices::Gather(from, index) => {
                 let (column, index) = (span.column(from.array), self.index(*index));
                 span.each(to, |i| span.at(i).gather_index_from(column, index[i].get()));
             }
-            action => unreachable!("{action:?} writes no index vector"),
         }
     }
 
-    /// Instructions that write memory or a counter.
+    /// What writes memory or a counter.
     #[inline(always)]
-    fn effect(&self, pass: &Instruction<R::Lane>, span: Span<'_, R>) {
-        match &pass.action {
-            Action::Store(to, value) => match to.element {
+    fn effect(&self, effect: &Effect<R::Lane>, span: Span<'_, R>) {
+        match effect {
+            Effect::Store(to, value) => match to.element {
                 f64::NAME => self.store(span, span.column::<f64>(to.array), value),
                 _ => self.store(span, span.column::<f32>(to.array), value),
             },
-            Action::StoreIndex(to, value) => {
+            Effect::StoreIndex(to, value) => {
                 let (column, value) = (span.column(to.array), self.index(*value));
                 for (i, value) in value[..span.length].iter().enumerate() {
                     span.at(i).store_index_to(column, value.get());
                 }
             }
-            Action::ScatterIndex(to, index, value) => {
+            Effect::Scatter(to, index, value) => {
                 let (column, index, value) = (span.column(to.array), self.index(*index), self.index(*value));
                 for (i, (index, value)) in index[..span.length].iter().zip(value).enumerate() {
                     span.at(i).scatter_index_to(column, index.get(), value.get());
                 }
             }
-            Action::Count(predicate, counter) => {
+            Effect::Count(predicate, counter) => {
                 for (i, predicate) in self.predicate(*predicate)[..span.length].iter().enumerate() {
                     span.at(i).count(Counter(*counter), predicate.get());
                 }
             }
-            action => unreachable!("{action:?} writes a register"),
         }
     }
 

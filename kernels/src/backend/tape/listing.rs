@@ -1,7 +1,7 @@
 //! A program as an assembly listing.
 
 use super::Tape;
-use super::instruction::{Action, Operand, Reference, RegisterName};
+use super::instruction::{Action, Effect, Indices, Number, Operand, Reference, RegisterName, Truth};
 use crate::isa::Element;
 use std::fmt;
 
@@ -41,27 +41,39 @@ impl<L: Element> fmt::Display for Listing<'_, L> {
                 section = instruction.section;
                 writeln!(f, "; {}", self.0.sections[section])?;
             }
-            write!(f, "{:>5}  {:<8}", number + 1, instruction.op.mnemonic())?;
-            if let Some(to) = instruction.to {
+            write!(f, "{:>5}  {:<8}", number + 1, instruction.op().mnemonic())?;
+            if let Some(to) = instruction.to() {
                 write!(f, "{to}")?;
-                if !matches!(instruction.action, Action::Numbers) {
+                if !matches!(instruction.action, Action::Number(_, Number::Numbers)) {
                     write!(f, ", ")?;
                 }
             }
             match &instruction.action {
-                Action::Unary(a) | Action::ToIndex(a) => write!(f, "{a}")?,
-                Action::Binary(a, b) | Action::Compare(a, b) => write!(f, "{a}, {b}")?,
-                Action::Logic(a, Some(b)) => write!(f, "{a}, {b}")?,
-                Action::Logic(a, None) | Action::FromIndex(a) => write!(f, "{a}")?,
-                Action::Select(predicate, a, b) => write!(f, "{predicate}, {a}, {b}")?,
-                Action::Count(predicate, counter) => write!(f, "C{counter}, {predicate}")?,
-                Action::Numbers => {}
-                Action::Load(from) | Action::LoadIndex(from) => write!(f, "{from}")?,
-                Action::Store(to, value) => write!(f, "{to}, {value}")?,
-                Action::StoreIndex(to, value) => write!(f, "{to}, {value}")?,
-                Action::Gather(from, index, elsewhere) => write!(f, "{from}({index}), {elsewhere}")?,
-                Action::GatherIndex(from, index) => write!(f, "{from}({index})")?,
-                Action::ScatterIndex(to, index, value) => write!(f, "{to}({index}), {value}")?,
+                Action::Number(_, number) => match number {
+                    Number::Unary(_, a) => write!(f, "{a}")?,
+                    Number::Binary(_, a, b) => write!(f, "{a}, {b}")?,
+                    Number::Select(predicate, a, b) => write!(f, "{predicate}, {a}, {b}")?,
+                    Number::Numbers => {}
+                    Number::FromIndex(a) => write!(f, "{a}")?,
+                    Number::Load(from) | Number::LoadShifted(from) => write!(f, "{from}")?,
+                    Number::Gather(from, index, elsewhere) => write!(f, "{from}({index}), {elsewhere}")?,
+                },
+                Action::Truth(_, truth) => match truth {
+                    Truth::Compare(_, a, b) => write!(f, "{a}, {b}")?,
+                    Truth::Connective(_, a, b) => write!(f, "{a}, {b}")?,
+                    Truth::Negation(_, a) => write!(f, "{a}")?,
+                },
+                Action::Indices(_, indices) => match indices {
+                    Indices::ToIndex(a) => write!(f, "{a}")?,
+                    Indices::Load(from) => write!(f, "{from}")?,
+                    Indices::Gather(from, index) => write!(f, "{from}({index})")?,
+                },
+                Action::Effect(effect) => match effect {
+                    Effect::Count(predicate, counter) => write!(f, "C{counter}, {predicate}")?,
+                    Effect::Store(to, value) => write!(f, "{to}, {value}")?,
+                    Effect::StoreIndex(to, value) => write!(f, "{to}, {value}")?,
+                    Effect::Scatter(to, index, value) => write!(f, "{to}({index}), {value}")?,
+                },
             }
             writeln!(f)?;
         }

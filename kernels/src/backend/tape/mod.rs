@@ -10,7 +10,9 @@ mod pool;
 mod recorder;
 mod register_file;
 
-pub use instruction::{Action, File, Instruction, Operand, Reference, RegisterName};
+pub use instruction::{
+    Action, Effect, File, Indices, Instruction, Number, Operand, Reference, RegisterName, Truth,
+};
 pub use listing::Listing;
 pub use outline::{Outline, Outlines, Place, register_shape};
 
@@ -65,8 +67,8 @@ impl<L: Element> Tape<L> {
         let mut footprint = Footprint::default();
         for instruction in &self.instructions {
             if let Some(reference) = instruction.reference() {
-                let strided = !matches!(instruction.op, Op::Gather | Op::Scatter);
-                let writes = matches!(instruction.op, Op::Store | Op::Scatter);
+                let strided = !matches!(instruction.op(), Op::Gather | Op::Scatter);
+                let writes = matches!(instruction.op(), Op::Store | Op::Scatter);
                 let shift = strided.then_some(reference.shift);
                 footprint.record(reference.array, reference.element, shift, writes);
             }

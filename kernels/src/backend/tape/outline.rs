@@ -1,7 +1,9 @@
 //! Instructions as a timing model sees them: which unit, from where, to where, whatever the lanes hold.
 
 use super::Tape;
-use super::instruction::{Action, File, Instruction, Operand, Reference, RegisterName};
+use super::instruction::{
+    Action, Effect, File, Indices, Instruction, Number, Operand, Reference, RegisterName,
+};
 use crate::backend::{Precision, Registers};
 use crate::isa::{Element, Op, ProgramError, Storage, Vector};
 use crate::program::{InstructionSet, Task, dispatch};
@@ -67,18 +69,21 @@ impl Outline {
                 reads.push(Place::Memory(*reference));
             }
         });
-        // Only the reads: a copy without a result visits no other register.
-        copy.to = None;
-        copy.registers(|name| reads.push(Place::Register(*name)));
-        let mut writes = instruction.to.map(Place::Register);
+        copy.reads(|name| reads.push(Place::Register(*name)));
+        let mut writes = instruction.to().map(Place::Register);
         match instruction.action {
-            Action::Load(from) | Action::LoadIndex(from) => reads.push(Place::Memory(from)),
-            Action::Gather(from, ..) | Action::GatherIndex(from, _) => reads.push(Place::Indexed(from)),
-            Action::Store(to, _) | Action::StoreIndex(to, _) => writes = Some(Place::Memory(to)),
-            Action::ScatterIndex(to, ..) => writes = Some(Place::Indexed(to)),
+            Action::Number(_, Number::Load(from) | Number::LoadShifted(from))
+            | Action::Indices(_, Indices::Load(from)) => reads.push(Place::Memory(from)),
+            Action::Number(_, Number::Gather(from, ..)) | Action::Indices(_, Indices::Gather(from, _)) => {
+                reads.push(Place::Indexed(from));
+            }
+            Action::Effect(Effect::Store(to, _) | Effect::StoreIndex(to, _)) => {
+                writes = Some(Place::Memory(to));
+            }
+            Action::Effect(Effect::Scatter(to, ..)) => writes = Some(Place::Indexed(to)),
             _ => {}
         }
-        Outline { op: instruction.op, converts: instruction.operations().count() > 1, reads, writes }
+        Outline { op: instruction.op(), converts: instruction.operations().count() > 1, reads, writes }
     }
 }
 

@@ -1,9 +1,11 @@
 //! The machine that records: every operation of a text becomes an instruction on a tape.
 
-use super::instruction::{Action, File, Instruction, Operand, Reference, RegisterName};
-use crate::isa::{Counter, Element, Machine, Op, Predicate, Slot, Storage, Vector};
+use super::instruction::{
+    Action, Effect, File, Indices, Instruction, Number, Operand, Reference, RegisterName, Truth,
+};
+use crate::isa::op::{BinaryOp, CompareOp, ConnectiveOp, NegationOp, UnaryOp, for_each_op};
+use crate::isa::{Counter, Element, Machine, Predicate, Slot, Storage, Vector};
 use std::cell::{Cell, RefCell};
-use std::ops::{Add, Div, Mul, Sub};
 
 /// Collects instructions while a text runs on it; every result gets a register of its own.
 pub(super) struct Recorder<L> {
@@ -23,16 +25,34 @@ impl<L: Element> Recorder<L> {
         }
     }
 
-    fn push(&self, op: Op, to: Option<RegisterName>, action: Action<L>) {
+    fn push(&self, action: Action<L>) {
         let section = self.section.get();
-        self.instructions.borrow_mut().push(Instruction { op, section, to, action });
+        self.instructions.borrow_mut().push(Instruction { section, action });
     }
 
-    fn emit(&self, op: Op, file: File, action: Action<L>) -> RegisterName {
-        let name = RegisterName { file, number: self.registers.get() };
-        self.registers.set(name.number + 1);
-        self.push(op, Some(name), action);
-        name
+    /// A register that nothing was written to yet.
+    fn register(&self, file: File) -> RegisterName {
+        let number = self.registers.get();
+        self.registers.set(number + 1);
+        RegisterName { file, number }
+    }
+
+    fn number(&self, number: Number<L>) -> RegisterName {
+        let to = self.register(File::Number);
+        self.push(Action::Number(to, number));
+        to
+    }
+
+    fn truth(&self, truth: Truth<L>) -> RegisterName {
+        let to = self.register(File::Predicate);
+        self.push(Action::Truth(to, truth));
+        to
+    }
+
+    fn indices(&self, indices: Indices<L>) -> RegisterName {
+        let to = self.register(File::Index);
+        self.push(Action::Indices(to, indices));
+        to
     }
 }
 
@@ -50,99 +70,97 @@ pub(super) struct TruthValue<'t, L> {
     register: RegisterName,
 }
 
-impl<L: Element> Value<'_, L> {
-    /// Arithmetic between scalar operands is done at once: no vector machine would spend an instruction on it.
-    fn binary(self, op: Op, other: Self, known: impl Fn(L, L) -> L) -> Self {
-        let operand = match (self.operand, other.operand) {
-            (Operand::Uniform(a), Operand::Uniform(b)) => Operand::Uniform(known(a, b)),
-            (a, b) => Operand::Register(self.recorder.emit(op, File::Number, Action::Binary(a, b))),
-        };
-        Value { recorder: self.recorder, operand }
-    }
-
-    fn unary(self, op: Op, known: impl Fn(L) -> L) -> Self {
-        let operand = match self.operand {
-            Operand::Uniform(a) => Operand::Uniform(known(a)),
-            a => Operand::Register(self.recorder.emit(op, File::Number, Action::Unary(a))),
-        };
-        Value { recorder: self.recorder, operand }
-    }
-}
-
 impl<'t, L: Element> Value<'t, L> {
-    fn compare(self, op: Op, other: Self) -> TruthValue<'t, L> {
-        let action = Action::Compare(self.operand, other.operand);
-        TruthValue { recorder: self.recorder, register: self.recorder.emit(op, File::Predicate, action) }
+    /// Arithmetic between scalar operands is done at once: no vector machine would spend an instruction on it.
+    fn binary(self, op: BinaryOp, other: Self) -> Self {
+        let operand = match (self.operand, other.operand) {
+            (Operand::Uniform(a), Operand::Uniform(b)) => Operand::Uniform(op.apply(a, b)),
+            (a, b) => Operand::Register(self.recorder.number(Number::Binary(op, a, b))),
+        };
+        Value { recorder: self.recorder, operand }
+    }
+
+    fn unary(self, op: UnaryOp) -> Self {
+        let operand = match self.operand {
+            Operand::Uniform(a) => Operand::Uniform(op.apply(a)),
+            a => Operand::Register(self.recorder.number(Number::Unary(op, a))),
+        };
+        Value { recorder: self.recorder, operand }
+    }
+
+    fn compare(self, op: CompareOp, other: Self) -> TruthValue<'t, L> {
+        let register = self.recorder.truth(Truth::Compare(op, self.operand, other.operand));
+        TruthValue { recorder: self.recorder, register }
     }
 }
 
-macro_rules! operator {
-    ($trait:ident, $method:ident, $op:ident) => {
-        impl<L: Element> $trait for Value<'_, L> {
-            type Output = Self;
-            fn $method(self, other: Self) -> Self {
-                self.binary(Op::$op, other, |a, b| a.$method(b))
+macro_rules! record {
+    (operator { $(($ov:ident, $om:literal, $oc:ident, $od:literal, $trait:ident $of:ident)),* $(,)? }
+     binary { $(($bv:ident, $bm:literal, $bc:ident, $bd:literal, $bf:ident)),* $(,)? }
+     unary { $(($uv:ident, $um:literal, $uc:ident, $ud:literal, $uf:ident)),* $(,)? }
+     compare { $(($cv:ident, $cm:literal, $cc:ident, $cd:literal, $cf:ident)),* $(,)? }
+     connective { $(($av:ident, $am:literal, $ac:ident, $ad:literal, $af:ident)),* $(,)? }
+     negation { $(($nv:ident, $nm:literal, $nc:ident, $nd:literal, $nf:ident)),* $(,)? }
+     machine $machine:tt) => {
+        $(
+            impl<L: Element> std::ops::$trait for Value<'_, L> {
+                type Output = Self;
+                fn $of(self, other: Self) -> Self {
+                    self.binary(BinaryOp::$ov, other)
+                }
+            }
+        )*
+
+        impl<L: Element> Predicate for TruthValue<'_, L> {
+            $(
+                fn $af(self, other: Self) -> Self {
+                    let truth = Truth::Connective(ConnectiveOp::$av, self.register, other.register);
+                    TruthValue { register: self.recorder.truth(truth), ..self }
+                }
+            )*
+            $(
+                fn $nf(self) -> Self {
+                    let truth = Truth::Negation(NegationOp::$nv, self.register);
+                    TruthValue { register: self.recorder.truth(truth), ..self }
+                }
+            )*
+        }
+
+        impl<'t, L: Element> Vector for Value<'t, L> {
+            type Predicate = TruthValue<'t, L>;
+
+            $(
+                fn $uf(self) -> Self {
+                    self.unary(UnaryOp::$uv)
+                }
+            )*
+            $(
+                fn $bf(self, other: Self) -> Self {
+                    self.binary(BinaryOp::$bv, other)
+                }
+            )*
+            $(
+                fn $cf(self, other: Self) -> Self::Predicate {
+                    self.compare(CompareOp::$cv, other)
+                }
+            )*
+            fn select(predicate: Self::Predicate, holds: Self, fails: Self) -> Self {
+                let recorder = predicate.recorder;
+                let merge = Number::Select(predicate.register, holds.operand, fails.operand);
+                Value { recorder, operand: Operand::Register(recorder.number(merge)) }
             }
         }
     };
 }
-operator!(Add, add, Add);
-operator!(Sub, sub, Subtract);
-operator!(Mul, mul, Multiply);
-operator!(Div, div, Divide);
-
-impl<L: Element> Predicate for TruthValue<'_, L> {
-    fn and(self, other: Self) -> Self {
-        let action = Action::Logic(self.register, Some(other.register));
-        TruthValue { register: self.recorder.emit(Op::And, File::Predicate, action), ..self }
-    }
-    fn not(self) -> Self {
-        let action = Action::Logic(self.register, None);
-        TruthValue { register: self.recorder.emit(Op::Not, File::Predicate, action), ..self }
-    }
-}
-
-impl<'t, L: Element> Vector for Value<'t, L> {
-    type Predicate = TruthValue<'t, L>;
-
-    fn sqrt(self) -> Self {
-        self.unary(Op::SquareRoot, L::sqrt)
-    }
-    fn abs(self) -> Self {
-        self.unary(Op::Absolute, L::abs)
-    }
-    fn truncate(self) -> Self {
-        self.unary(Op::Truncate, L::truncate)
-    }
-    fn min(self, other: Self) -> Self {
-        self.binary(Op::Minimum, other, L::min)
-    }
-    fn max(self, other: Self) -> Self {
-        self.binary(Op::Maximum, other, L::max)
-    }
-    fn less_than(self, other: Self) -> Self::Predicate {
-        self.compare(Op::LessThan, other)
-    }
-    fn less_equal(self, other: Self) -> Self::Predicate {
-        self.compare(Op::LessEqual, other)
-    }
-    fn equal(self, other: Self) -> Self::Predicate {
-        self.compare(Op::Equal, other)
-    }
-    fn select(predicate: Self::Predicate, holds: Self, fails: Self) -> Self {
-        let action = Action::Select(predicate.register, holds.operand, fails.operand);
-        let recorder = predicate.recorder;
-        Value { recorder, operand: Operand::Register(recorder.emit(Op::Select, File::Number, action)) }
-    }
-}
+for_each_op!(record);
 
 /// The recording machine itself.
 #[derive(Clone, Copy)]
 pub(super) struct Recording<'t, L>(pub(super) &'t Recorder<L>);
 
 impl<'t, L: Element> Recording<'t, L> {
-    fn number(self, op: Op, action: Action<L>) -> Value<'t, L> {
-        Value { recorder: self.0, operand: Operand::Register(self.0.emit(op, File::Number, action)) }
+    fn number(self, number: Number<L>) -> Value<'t, L> {
+        Value { recorder: self.0, operand: Operand::Register(self.0.number(number)) }
     }
 }
 
@@ -160,40 +178,40 @@ impl<'t, L: Element> Machine for Recording<'t, L> {
         Value { recorder: self.0, operand: Operand::Uniform(L::from_f64(value)) }
     }
     fn load<T: Element>(self, slot: Slot<T>) -> Value<'t, L> {
-        self.number(Op::Load, Action::Load(reference(slot, 0)))
+        self.number(Number::Load(reference(slot, 0)))
     }
     fn load_shifted<T: Element>(self, slot: Slot<T>, shift: isize) -> Value<'t, L> {
-        self.number(Op::LoadShifted, Action::Load(reference(slot, shift)))
+        self.number(Number::LoadShifted(reference(slot, shift)))
     }
     fn store<T: Element>(self, slot: Slot<T>, value: Value<'t, L>) {
-        self.0.push(Op::Store, None, Action::Store(reference(slot, 0), value.operand));
+        self.0.push(Action::Effect(Effect::Store(reference(slot, 0), value.operand)));
     }
     fn numbers(self) -> Value<'t, L> {
-        self.number(Op::Numbers, Action::Numbers)
+        self.number(Number::Numbers)
     }
     fn to_index(self, numbers: Value<'t, L>) -> RegisterName {
-        self.0.emit(Op::ToIndex, File::Index, Action::ToIndex(numbers.operand))
+        self.0.indices(Indices::ToIndex(numbers.operand))
     }
     fn index_numbers(self, index: RegisterName) -> Value<'t, L> {
-        self.number(Op::FromIndex, Action::FromIndex(index))
+        self.number(Number::FromIndex(index))
     }
     fn load_index(self, slot: Slot<u32>) -> RegisterName {
-        self.0.emit(Op::Load, File::Index, Action::LoadIndex(reference(slot, 0)))
+        self.0.indices(Indices::Load(reference(slot, 0)))
     }
     fn store_index(self, slot: Slot<u32>, value: RegisterName) {
-        self.0.push(Op::Store, None, Action::StoreIndex(reference(slot, 0), value));
+        self.0.push(Action::Effect(Effect::StoreIndex(reference(slot, 0), value)));
     }
     fn gather<T: Element>(self, slot: Slot<T>, index: RegisterName, elsewhere: Value<'t, L>) -> Value<'t, L> {
-        self.number(Op::Gather, Action::Gather(reference(slot, 0), index, elsewhere.operand))
+        self.number(Number::Gather(reference(slot, 0), index, elsewhere.operand))
     }
     fn gather_index(self, slot: Slot<u32>, index: RegisterName) -> RegisterName {
-        self.0.emit(Op::Gather, File::Index, Action::GatherIndex(reference(slot, 0), index))
+        self.0.indices(Indices::Gather(reference(slot, 0), index))
     }
     fn scatter_index(self, slot: Slot<u32>, index: RegisterName, value: RegisterName) {
-        self.0.push(Op::Scatter, None, Action::ScatterIndex(reference(slot, 0), index, value));
+        self.0.push(Action::Effect(Effect::Scatter(reference(slot, 0), index, value)));
     }
     fn count(self, counter: Counter, predicate: TruthValue<'t, L>) {
-        self.0.push(Op::Count, None, Action::Count(predicate.register, counter.0));
+        self.0.push(Action::Effect(Effect::Count(predicate.register, counter.0)));
     }
     fn none(self, _: TruthValue<'t, L>) -> bool {
         // A tape is straight-line: it holds every operation, as the CRAY executed them.
