@@ -32,7 +32,7 @@ fn agree<S: Precision, P: Precision, L: Law<2> + Sync>(case: &Case, law: &L, bou
     let in_order: Vec<u32> = (0..start.discs as u32).collect();
     let (forces, met) = start.fast_forces(law, &in_order, InstructionSet::Scalar).unwrap();
     assert!(met.not_finite.is_empty());
-    for &sum in law.sums() {
+    for &sum in L::SUMS {
         let expected = faithful.on_discs(sum);
         let rms = (expected.iter().map(|f| f * f).sum::<f64>() / expected.len().max(1) as f64).sqrt();
         for (disc, (found, expected)) in forces.iter().zip(&expected).enumerate() {
@@ -58,6 +58,7 @@ fn agree<S: Precision, P: Precision, L: Law<2> + Sync>(case: &Case, law: &L, bou
                 let (again, met_again) = pool.install(|| start.fast_forces(law, &order, set).unwrap());
                 assert!(bits(&again) == bits(&forces), "{} on {threads} threads: {case:?}", set.name());
                 assert_eq!(met_again.pairs, met.pairs);
+                assert_eq!(met_again.energy.map(f64::to_bits), met.energy.map(f64::to_bits));
                 assert_eq!(pairs(met_again.deep, &order), deep);
             }
         }

@@ -35,6 +35,8 @@ struct Met {
     pulling: usize,
     /// Energy a time that leaves motion and springs.
     dissipated: f64,
+    /// Energy in springs, and the virial of all forces.
+    energy: [f64; 2],
 }
 
 impl Met {
@@ -45,6 +47,7 @@ impl Met {
         self.sticking += other.sticking;
         self.pulling += other.pulling;
         self.dissipated += other.dissipated;
+        self.energy.iter_mut().zip(other.energy).for_each(|(sum, more)| *sum += more);
     }
 }
 
@@ -113,6 +116,8 @@ fn naive_forces(
             let work = normal * (v[0] * n[0] + v[1] * n[1]) + shear * (v[0] * s[0] + v[1] * s[1] - spins);
             let stored = -law.stiffness * xi.powf(1.5) * (v[0] * n[0] + v[1] * n[1]);
             met.dissipated -= work + stored;
+            met.energy[0] += 0.4 * law.stiffness * xi.powf(2.5);
+            met.energy[1] += normal * distance;
             for axis in 0..2 {
                 let force = normal * n[axis] + shear * s[axis];
                 total[i][axis] += force;
@@ -163,10 +168,17 @@ fn compare<L: Law<2> + Sync>(case: &Case, law: &L, all_alike: bool, friction: bo
         let (forces, found) = start.fast_forces(law, &order, InstructionSet::best()).unwrap();
         let off = (found.dissipated / met.dissipated - 1.0).abs();
         assert!(met.dissipated > 0.0 && off < 1e-11, "{found:?} but {met:?} in {case:?}");
+        for (found, expected) in found.energy.into_iter().zip(met.energy) {
+            let scale = met.energy[0].max(expected.abs());
+            assert!(
+                scale > 0.0 && (found - expected).abs() < 1e-11 * scale,
+                "{found} but {met:?} in {case:?}"
+            );
+        }
         Sum::ALL.map(|sum| forces.iter().map(|force| force[sum as usize]).collect::<Vec<f64>>())
     };
     for forces in ways().map(faithful).into_iter().chain([fast]) {
-        for &sum in law.sums() {
+        for &sum in L::SUMS {
             let found = &forces[sum as usize];
             let rms =
                 (expected.iter().map(|f| f[sum as usize].powi(2)).sum::<f64>() / found.len() as f64).sqrt();

@@ -201,7 +201,7 @@ fn every_tape(mut double: impl FnMut(&str, &Tape<f64>), mut single: impl FnMut(&
         double("Enter f64", &Tape::record(&Enter::<f64, f64>::new(shape, frame, coordinates)));
         double("Enter f32", &Tape::record(&Enter::<f32, f32>::new(shape, frame, coordinates)));
         double("Enter f64 to f32", &Tape::record(&Enter::<f64, f32>::new(shape, frame, coordinates)));
-        let fields = law::<true, false>().fields();
+        let fields = <Granular<true, false> as Law<2>>::FIELDS;
         double("Spread", &Tape::record(&Spread::<f64>::new(shape, coordinates, fields)));
         single("Spread f32", &Tape::record(&Spread::<f32>::new(shape, coordinates, fields)));
         let full = Forces::<f64, _>::new(law::<true, false>(), &mask, shape, frame, coordinates);

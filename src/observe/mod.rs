@@ -97,7 +97,7 @@ impl Observation {
         for (_, _, penetration, reach) in contacts(particles, &domain) {
             let depth = penetration * reach;
             seen.contacts += 1;
-            seen.elastic += 0.4 * contact.stiffness * depth * depth * depth.sqrt();
+            seen.elastic += contact.energy(|number| number, depth);
             seen.deepest_penetration = seen.deepest_penetration.max(penetration);
         }
         seen

@@ -47,6 +47,9 @@ pub enum ProgramError {
     /// A vector length of zero was asked for.
     #[error("a strip must hold at least one element; 0 was asked for")]
     EmptyStrip,
+    /// A law asks for a field, or adds to a sum, that it does not state.
+    #[error("the law asks for {0}, which it does not state")]
+    Unstated(&'static str),
     /// The processor lacks the instruction set asked for.
     #[error("this processor has no {0}")]
     NoSuchInstructionSet(&'static str),

@@ -32,6 +32,14 @@ pub struct Contact {
     pub arm: ContactArm,
 }
 
+impl Contact {
+    /// Energy that a contact `depth` deep (length, at least 0) stores, ⅖ k_N ξ^{5/2}.
+    #[inline(always)]
+    pub fn energy<V: Vector>(&self, uniform: impl Fn(f64) -> V, depth: V) -> V {
+        uniform(0.4 * self.stiffness) * depth * depth * depth.sqrt()
+    }
+}
+
 /// Discs that are all alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
@@ -79,18 +87,13 @@ impl<const FRICTION: bool, const EQUAL: bool> Granular<FRICTION, EQUAL> {
 impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUAL> {
     type Own<V: Copy> = Own<V>;
 
-    fn sums(&self) -> &'static [Sum] {
-        if FRICTION { &Sum::ALL } else { &[Sum::Fx, Sum::Fy] }
-    }
-
-    fn fields(&self) -> &'static [Field] {
-        match (FRICTION, EQUAL) {
-            (true, true) => &[Field::Vx, Field::Vy, Field::Omega],
-            (true, false) => &[Field::Vx, Field::Vy, Field::Omega, Field::Radius, Field::InverseMass],
-            (false, true) => &[Field::Vx, Field::Vy],
-            (false, false) => &[Field::Vx, Field::Vy, Field::Radius, Field::InverseMass],
-        }
-    }
+    const FIELDS: &'static [Field] = match (FRICTION, EQUAL) {
+        (true, true) => &[Field::Vx, Field::Vy, Field::Omega],
+        (true, false) => &[Field::Vx, Field::Vy, Field::Omega, Field::Radius, Field::InverseMass],
+        (false, true) => &[Field::Vx, Field::Vy],
+        (false, false) => &[Field::Vx, Field::Vy, Field::Radius, Field::InverseMass],
+    };
+    const SUMS: &'static [Sum] = if FRICTION { &Sum::ALL } else { &[Sum::Fx, Sum::Fy] };
 
     #[inline(always)]
     fn own<E: Env<2>>(&self, env: E) -> Own<E::V> {
@@ -153,6 +156,13 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
             let share = if E::BOTH_PARTNERS { power } else { power * (own.inverse_mass * effective_mass) };
             env.dissipate(E::V::select(contact, share, zero));
         };
+        if env.observes_energy() {
+            env.section("energy");
+            // Met from both sides, each has half. Friction acts across the way between the centres and has no virial.
+            let half = |whole: E::V| if E::BOTH_PARTNERS { whole } else { uniform(0.5) * whole };
+            env.energy(half(self.contact.energy(uniform, overlap)));
+            env.virial(E::V::select(contact, half(normal * distance), zero));
+        }
 
         if !FRICTION {
             env.section("sums"); // (10), (11)

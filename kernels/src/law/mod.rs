@@ -1,6 +1,9 @@
 //! Pair laws: what two particles do to each other, written once for every machine and every way of meeting.
 
 pub mod granular;
+mod stated;
+
+pub use stated::{Stated, check};
 
 use crate::isa::Vector;
 
@@ -30,9 +33,34 @@ pub enum Sum {
     Torque,
 }
 
+impl Field {
+    /// Every field, in the order of the list.
+    pub const ALL: [Field; 5] = [Field::Vx, Field::Vy, Field::Omega, Field::Radius, Field::InverseMass];
+
+    /// The name in errors.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Field::Vx => "the velocity along x",
+            Field::Vy => "the velocity along y",
+            Field::Omega => "the angular velocity",
+            Field::Radius => "the radius",
+            Field::InverseMass => "the inverse mass",
+        }
+    }
+}
+
 impl Sum {
     /// Every sum, in the order of the list.
     pub const ALL: [Sum; 3] = [Sum::Fx, Sum::Fy, Sum::Torque];
+
+    /// The name in errors.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Sum::Fx => "the force along x",
+            Sum::Fy => "the force along y",
+            Sum::Torque => "the torque",
+        }
+    }
 }
 
 /// What is looked at beside the sums, while contacts are at hand.
@@ -42,6 +70,8 @@ pub struct Asked {
     pub watched: Option<f64>,
     /// Whether the power that contacts dissipate is summed up.
     pub dissipation: bool,
+    /// Whether the energy and the virial of the pairs are summed up.
+    pub energy: bool,
 }
 
 /// What a law may ask of the way particles meet.
@@ -81,19 +111,31 @@ pub trait Env<const DIM: usize>: Copy {
     /// Reports the power (energy/time) that every pair turns into heat, 0 without contact; where a pair is met from both
     /// sides, the own particle's share. Called only where [`Env::counts_dissipation`].
     fn dissipate(self, power: Self::V);
+    /// Whether energy and virial are observed.
+    fn observes_energy(self) -> bool;
+    /// Reports the energy that every pair stores, 0 without contact; where a pair is met from both sides, half of it. Called
+    /// only where [`Env::observes_energy`].
+    fn energy(self, energy: Self::V);
+    /// Reports the virial of every pair, (r_own − r_partner)·F_own (energy); where a pair is met from both sides, half of it.
+    /// Called only where [`Env::observes_energy`].
+    fn virial(self, virial: Self::V);
     /// Names what follows, for the ledger and the listing.
     fn section(self, name: &'static str);
 }
 
 /// A pair law in `DIM` dimensions.
+///
+/// It states what it asks for and what it gives. A sweep provides that and no more: a law that forgets a field or a sum is
+/// refused ([`check`]), and could not reach what it did not state ([`Stated`]).
 pub trait Law<const DIM: usize>: Clone {
     /// The own particle's quantities, loaded once for all its partners.
     type Own<V: Copy>: Copy;
 
+    /// The quantities, beside positions, that the law asks for.
+    const FIELDS: &'static [Field];
     /// The sums the law contributes to.
-    fn sums(&self) -> &'static [Sum];
-    /// The quantities, besides positions, that the law asks for.
-    fn fields(&self) -> &'static [Field];
+    const SUMS: &'static [Sum];
+
     /// Loads the own particle.
     fn own<E: Env<DIM>>(&self, env: E) -> Self::Own<E::V>;
     /// What the own particle and its partner at `place` do to each other.

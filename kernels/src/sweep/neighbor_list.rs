@@ -5,7 +5,7 @@
 //! cell, which the lattice forbids: such partners come last, in the order of their numbers.
 
 use crate::backend::Precision;
-use crate::law::{Asked, Env, Field, Law, Sum};
+use crate::law::{Asked, Env, Field, Law, Stated, Sum};
 use crate::mask::Mask;
 use crate::sweep::lattice::{Frame, LatticeShape};
 use std::cell::Cell;
@@ -86,6 +86,8 @@ pub struct Met {
     pub deep: Vec<(usize, usize)>,
     /// What the contacts dissipate (energy/time), where that is counted.
     pub dissipated: f64,
+    /// Energy and virial of the contacts (energy), where they are observed.
+    pub energy: [f64; 2],
 }
 
 /// How cells of the lattice are seen from each other.
@@ -157,6 +159,8 @@ struct OneByOne<'a, P> {
     penetration: Cell<P>,
     dissipation: bool,
     power: Cell<P>,
+    observes_energy: bool,
+    energy: [Cell<P>; 2],
     sums: [Cell<P>; Sum::ALL.len()],
 }
 
@@ -215,6 +219,15 @@ impl<P: Precision> Env<2> for &OneByOne<'_, P> {
     fn dissipate(self, power: P) {
         self.power.set(self.power.get() + power);
     }
+    fn observes_energy(self) -> bool {
+        self.observes_energy
+    }
+    fn energy(self, energy: P) {
+        self.energy[0].set(self.energy[0].get() + energy);
+    }
+    fn virial(self, virial: P) {
+        self.energy[1].set(self.energy[1].get() + virial);
+    }
     fn section(self, _: &'static str) {}
 }
 
@@ -243,12 +256,15 @@ pub fn walk<P: Precision, L: Law<2>>(
         penetration: Cell::new(zero),
         dissipation: asked.dissipation,
         power: Cell::new(zero),
+        observes_energy: asked.energy,
+        energy: Default::default(),
         sums: Default::default(),
     };
     for i in 0..grains {
         env.own = i;
         env.sums = [Cell::new(zero), Cell::new(zero), Cell::new(zero)];
         env.power.set(zero);
+        env.energy.iter().for_each(|sum| sum.set(zero));
         contacts.clear();
         for &j in lists.of(i) {
             let j = j as usize;
@@ -267,15 +283,17 @@ pub fn walk<P: Precision, L: Law<2>>(
             }
         }
         contacts.sort_unstable_by_key(|partner| (partner.place, partner.disc));
-        let own = law.own(&env);
+        let met_one = Stated::new(&env, law);
+        let own = law.own(met_one);
         for partner in &contacts {
-            law.pair(&env, *partner, &own);
+            law.pair(met_one, *partner, &own);
             if asked.watched.is_some_and(|depth| env.penetration.get().to_f64() > depth) {
                 met.deep.push((i, partner.disc));
             }
         }
         met.pairs += contacts.len() as u64;
         met.dissipated += env.power.get().to_f64();
+        met.energy.iter_mut().zip(&env.energy).for_each(|(sum, of_disc)| *sum += of_disc.get().to_f64());
         write(i, [0, 1, 2].map(|sum| env.sums[sum].get()));
     }
     met

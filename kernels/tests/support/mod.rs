@@ -208,7 +208,7 @@ impl<S: Precision, P: Precision> System<S, P> {
     }
 
     /// Index and lattice vectors of the positions as they stand.
-    pub fn index<L: Law<2>>(&mut self, case: &Case, law: &L, how: (Execution, InstructionSet)) {
+    pub fn index<L: Law<2>>(&mut self, case: &Case, _: &L, how: (Execution, InstructionSet)) {
         let shape = self.shape;
         let images = shape.images();
         let halo = [
@@ -232,7 +232,7 @@ impl<S: Precision, P: Precision> System<S, P> {
             Program::new(enter).run(memory, 0..discs, execution, set).unwrap();
             Program::new(Check).run(memory, 0..discs, execution, set).unwrap();
             Program::new(Images).run(memory, 0..images.len(), execution, set).unwrap();
-            let spread = Spread::<P>::new(shape, case.coordinates, law.fields());
+            let spread = Spread::<P>::new(shape, case.coordinates, L::FIELDS);
             Program::new(spread).run(memory, 0..shape.padded(), execution, set).unwrap();
         });
     }
@@ -270,7 +270,7 @@ impl<S: Precision, P: Precision> System<S, P> {
             sorted(&column, [1.0; SENTINELS])
         };
         let mut occupancy =
-            Occupancy::new(self.shape, self.frame, self.discs, 2.2, law.fields().contains(&Field::Radius));
+            Occupancy::new(self.shape, self.frame, self.discs, 2.2, L::FIELDS.contains(&Field::Radius));
         let mut places = [vec![S::default(); self.discs], vec![S::default(); self.discs]];
         for (n, &disc) in order.iter().enumerate() {
             let disc = disc as usize;
@@ -300,7 +300,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         let codes = Codes::new(&occupancy, self.frame);
         let lattice = Lattice { occupancy: &occupancy, codes: &codes };
         let mut sweep = Sweep::new(Finder::<S, P>::rows(&lattice));
-        let asked = Asked { watched: Some(0.1), dissipation: true };
+        let asked = Asked { watched: Some(0.1), dissipation: true, energy: true };
         let met = sweep.run(law, &lattice, &discs, [fx, fy, torque], asked, set)?;
         let mut forces = vec![[P::default(); 3]; self.discs];
         for (n, &disc) in order.iter().enumerate() {

@@ -204,7 +204,11 @@ impl Model {
 
     /// What is looked at while contacts are at hand.
     pub fn asked(&self) -> Asked {
-        Asked { watched: self.watch.map(|watch| watch.depth()), dissipation: self.counts_dissipation() }
+        Asked {
+            watched: self.watch.map(|watch| watch.depth()),
+            dissipation: self.counts_dissipation(),
+            energy: false,
+        }
     }
 
     /// Along which axes it is followed how many periods discs cross: gravity works along them.

@@ -158,7 +158,6 @@ impl<P: Precision> WithLaw for LatticeSweep<'_, P> {
 
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
         let Model { mask, shape, frame, coordinates, watch, .. } = self.0;
-        let fields = law.fields();
         let mut forces = Forces::<P, L>::new(law, mask, *shape, *frame, *coordinates);
         if let Some(watch) = watch {
             forces = forces.watching(watch.depth());
@@ -166,7 +165,7 @@ impl<P: Precision> WithLaw for LatticeSweep<'_, P> {
         if self.0.counts_dissipation() {
             forces = forces.counting_dissipation();
         }
-        (Box::new(Program::new(forces)), fields)
+        (Box::new(Program::new(forces)), L::FIELDS)
     }
 }
 

@@ -75,13 +75,8 @@ impl AsPrinted {
 impl Law<2> for AsPrinted {
     type Own<V: Copy> = [V; 2];
 
-    fn sums(&self) -> &'static [Sum] {
-        &Sum::ALL
-    }
-
-    fn fields(&self) -> &'static [Field] {
-        &[Field::Vx, Field::Vy, Field::Omega, Field::Radius, Field::InverseMass]
-    }
+    const FIELDS: &'static [Field] = &Field::ALL;
+    const SUMS: &'static [Sum] = &Sum::ALL;
 
     fn own<E: Env<2>>(&self, env: E) -> [E::V; 2] {
         env.own_position()

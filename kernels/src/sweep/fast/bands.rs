@@ -7,7 +7,7 @@ use super::sectors::Touches;
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};
-use crate::law::{Asked, Law, Sum};
+use crate::law::{self, Asked, Law};
 use crate::program::dispatch;
 use crate::threads::in_stages;
 use std::ops::Range;
@@ -33,6 +33,8 @@ pub struct Met {
     /// What the contacts dissipate (energy/time), where that is asked for. Summed in an order that depends on the scene
     /// alone.
     pub dissipated: f64,
+    /// Energy and virial of the pairs (energy), where they are asked for. Summed likewise.
+    pub energy: [f64; 2],
 }
 
 /// A law over all contacts, each met once.
@@ -62,7 +64,8 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
     /// Adds what `law` gives to the sums (force along x, along y, torque), an entry a disc and sentinel.
     ///
     /// # Errors
-    /// [`ProgramError::NoSuchInstructionSet`]; nothing was executed then.
+    /// [`ProgramError::NoSuchInstructionSet`], or [`ProgramError::Unstated`] for a law that asks for what it does not state;
+    /// nothing was executed then.
     ///
     /// # Panics
     /// If the rows are others, a column that the law asks for has not an entry for every disc and sentinel, or one of
@@ -77,12 +80,11 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         set: InstructionSet,
     ) -> Result<Met, ProgramError> {
         assert!(self.rows == finder.rows(), "a sweep is made for its rows");
+        law::check(law)?;
         let count = finder.discs();
-        assert!(discs.suffice(law.fields(), count), "columns of {count} discs and {SENTINELS} sentinels");
+        assert!(discs.suffice(L::FIELDS, count), "columns of {count} discs and {SENTINELS} sentinels");
         let mut columns = sums.map(|sum| (sum.len(), sum.as_mut_ptr()));
-        assert!(law.sums().iter().all(|&sum| columns[sum as usize].0 >= count), "sums of {count} discs");
-        // The law's sums are a prefix of the list of all.
-        debug_assert!(law.sums().iter().zip(Sum::ALL).all(|(sum, there)| *sum == there));
+        assert!(L::SUMS.iter().all(|&sum| columns[sum as usize].0 >= count), "sums of {count} discs");
         let sums = SumColumns(columns.each_mut().map(|column| column.1));
         let sweep = |band: &mut Band<F>, rows: Range<usize>| -> Result<(), ProgramError> {
             let mut cursor = Cursor::at(rows.start);
@@ -118,6 +120,8 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
             met.deep.append(&mut band.notes.deep);
             met.not_finite.append(&mut band.notes.not_finite);
             met.dissipated += std::mem::take(&mut band.notes.dissipated);
+            let energy = std::mem::take(&mut band.notes.energy);
+            met.energy.iter_mut().zip(energy).for_each(|(sum, of_band)| *sum += of_band);
         }
         Ok(met)
     }

@@ -4,7 +4,7 @@ use super::SENTINELS;
 use super::finder::Pairs;
 use crate::backend::{Precision, Registers};
 use crate::isa::{Element, Vector};
-use crate::law::{Asked, Env, Field, Law, Sum};
+use crate::law::{Asked, Env, Field, Law, Stated, Sum};
 use crate::program::{GROUP, Task};
 use std::cell::Cell;
 use std::mem::MaybeUninit;
@@ -65,6 +65,8 @@ pub(super) struct Notes {
     pub(super) not_finite: Vec<Pair>,
     /// What the contacts dissipate (energy/time).
     pub(super) dissipated: f64,
+    /// Energy and virial of the pairs (energy).
+    pub(super) energy: [f64; 2],
 }
 
 /// Evaluates the law for pairs.
@@ -91,6 +93,8 @@ struct Gathered<'a, R: Registers, S> {
     asked: Asked,
     penetration: Cell<R::V>,
     power: Cell<R::V>,
+    /// Energy and virial.
+    energy: [Cell<R::V>; 2],
     own_sums: [Cell<R::V>; 3],
     partner_sums: [Cell<R::V>; 3],
 }
@@ -99,7 +103,9 @@ impl<R: Registers, S: Element> Gathered<'_, R, S> {
     #[inline(always)]
     fn gather(&self, column: &[S], discs: &Lanes<u32>) -> R::V {
         assemble(self.registers, |lane| {
-            // SAFETY: the columns have an entry for every disc of the Index and for the sentinels (checked by Sweep).
+            // SAFETY: the places and the columns of the fields that the law states have an entry for every disc and for the
+            // sentinels (checked by Sweep); of others `Stated` lets no law ask. Pairs are of discs (Finder's promise), and
+            // lanes without a pair have the sentinels.
             R::Lane::from_f64(unsafe { column.get_unchecked(discs[lane] as usize) }.to_f64())
         })
     }
@@ -190,6 +196,18 @@ impl<R: Registers, S: Element> Env<2> for &Gathered<'_, R, S> {
         self.power.set(power);
     }
     #[inline(always)]
+    fn observes_energy(self) -> bool {
+        self.asked.energy
+    }
+    #[inline(always)]
+    fn energy(self, energy: R::V) {
+        self.energy[0].set(energy);
+    }
+    #[inline(always)]
+    fn virial(self, virial: R::V) {
+        self.energy[1].set(virial);
+    }
+    #[inline(always)]
     fn section(self, _: &'static str) {}
 }
 
@@ -234,53 +252,62 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
             asked: self.asked,
             penetration: zero(),
             power: zero(),
+            energy: [zero(), zero()],
             own_sums: [zero(), zero(), zero()],
             partner_sums: [zero(), zero(), zero()],
         };
-        let disc = self.law.own(&gathered);
-        self.law.pair(&gathered, (), &disc);
+        // Only through `Stated`: it is what makes the unchecked reads of columns sound, whatever law this is.
+        let env = Stated::new(&gathered, self.law);
+        let disc = self.law.own(env);
+        self.law.pair(env, (), &disc);
 
-        let sums = self.law.sums();
         let (mut own_sums, mut partner_sums) = ([[P::default(); GROUP]; 3], [[P::default(); GROUP]; 3]);
         let mut magnitude = registers.splat(P::default());
-        for (s, &sum) in sums.iter().enumerate() {
-            let value = gathered.own_sums[sum as usize].get();
+        for sum in L::SUMS.iter().map(|&sum| sum as usize) {
+            let value = gathered.own_sums[sum].get();
             magnitude = magnitude + value.abs();
-            own_sums[s] = spill(registers, value);
-            partner_sums[s] = spill(registers, gathered.partner_sums[sum as usize].get());
+            own_sums[sum] = spill(registers, value);
+            partner_sums[sum] = spill(registers, gathered.partner_sums[sum].get());
         }
         // One contact after the other, own before partner: the order of summation knows no registers.
         for lane in 0..R::LANES {
             if lane == count {
                 break;
             }
-            for s in 0..sums.len() {
-                let column = self.sums.0[s];
-                // SAFETY: the columns have an entry for every disc of the Index (checked by Sweep); no other thread
-                // touches these.
+            for sum in L::SUMS.iter().map(|&sum| sum as usize) {
+                // SAFETY: Sweep has checked that the column of every sum that L states has an entry for every disc, and a
+                // finder's pairs are of discs; no other thread adds to discs of the rows that this one sweeps.
                 unsafe {
-                    let to = &mut *column.add(own[lane] as usize);
-                    *to = *to + own_sums[s][lane];
+                    let to = &mut *self.sums.0[sum].add(own[lane] as usize);
+                    *to = *to + own_sums[sum][lane];
                 }
             }
-            for s in 0..sums.len() {
-                let column = self.sums.0[s];
-                // SAFETY: as above.
+            for sum in L::SUMS.iter().map(|&sum| sum as usize) {
+                // SAFETY: the partner is a disc too, in these rows or those ahead of them, to which no other thread adds
+                // at this stage; the reference to the own disc's sum has ended.
                 unsafe {
-                    let to = &mut *column.add(partner[lane] as usize);
-                    *to = *to - partner_sums[s][lane];
+                    let to = &mut *self.sums.0[sum].add(partner[lane] as usize);
+                    *to = *to - partner_sums[sum][lane];
                 }
             }
         }
+        // One pair after the other. Two fixed discs that touch have no effective mass, and of any others whose force is no
+        // number the pair is listed below.
+        let add = |value: R::V, to: &mut f64| {
+            let values = spill(registers, value);
+            let values = values.iter().take(count).map(|value| value.to_f64());
+            values.filter(|value| value.is_finite()).for_each(|value| *to += value);
+        };
         let list = |bits: u64, to: &mut Vec<Pair>| {
             to.extend((0..count).filter(|lane| bits >> lane & 1 == 1).map(|lane| [own[lane], partner[lane]]));
         };
         if self.asked.dissipation {
-            let power = spill(registers, gathered.power.get());
-            // Two fixed discs that touch have no effective mass, and of any others the pair is listed below.
-            let counted =
-                power.iter().take(count).map(|power| power.to_f64()).filter(|power| power.is_finite());
-            counted.for_each(|power| notes.dissipated += power);
+            add(gathered.power.get(), &mut notes.dissipated);
+        }
+        if self.asked.energy {
+            let [energy, virial] = &mut notes.energy;
+            add(gathered.energy[0].get(), energy);
+            add(gathered.energy[1].get(), virial);
         }
         if let Some(depth) = self.asked.watched {
             let depth = registers.splat(P::from_f64(depth));

@@ -3,7 +3,7 @@
 use super::shape::{Coordinates, Frame, LatticeShape};
 use super::vectors::arrays;
 use crate::isa::{Array, Counter, Element, Machine, Slot, Text, Vector};
-use crate::law::{Env, Field, Law, Sum};
+use crate::law::{Env, Field, Law, Stated, Sum};
 use crate::mask::Mask;
 use std::cell::Cell;
 use std::marker::PhantomData;
@@ -36,6 +36,8 @@ pub const DEEP: Counter = Counter(2);
 
 impl<P: Element, L: Law<2>> Forces<P, L> {
     /// The program for a law, a mask and a lattice.
+    ///
+    /// Recording it panics if the law asks for what it does not state.
     pub fn new(law: L, mask: &Mask, shape: LatticeShape, frame: Frame, coordinates: Coordinates) -> Self {
         let relative = coordinates == Coordinates::CellRelative;
         let places = mask.offsets().iter().map(|&offset| Neighbour {
@@ -161,6 +163,13 @@ impl<M: Machine> Env<2> for &Around<M> {
     }
 
     #[inline(always)]
+    fn observes_energy(self) -> bool {
+        false
+    }
+    fn energy(self, _: M::V) {}
+    fn virial(self, _: M::V) {}
+
+    #[inline(always)]
     fn section(self, name: &'static str) {
         self.machine.section(name);
     }
@@ -183,12 +192,13 @@ unsafe impl<P: Element, L: Law<2>> Text for Forces<P, L> {
             power: Cell::new(zero),
             sums: [Cell::new(zero), Cell::new(zero), Cell::new(zero)],
         };
-        let own = self.law.own(&around);
+        let env = Stated::new(&around, &self.law);
+        let own = self.law.own(env);
         for &place in &self.places {
-            self.law.pair(&around, place, &own);
+            self.law.pair(env, place, &own);
         }
         m.section("sums");
-        for &sum in self.law.sums() {
+        for &sum in L::SUMS {
             m.store(Slot::<P>::new(sum_array(sum)), around.sums[sum as usize].get());
         }
         if self.dissipation {

@@ -7,7 +7,7 @@
 mod motion;
 mod samples;
 
-use crate::law::{Env, Field, Law, Sum};
+use crate::law::{Env, Field, Law, Stated, Sum};
 use std::cell::Cell;
 
 /// A disc with all that a law may ask of it.
@@ -53,10 +53,20 @@ pub struct Pair {
 impl Pair {
     /// Force along x, along y, and torque, on each of the two.
     pub fn sums<L: Law<2>>(&self, law: &L) -> [[f64; 3]; 2] {
-        let meeting = Meeting { bodies: &self.bodies, sums: Cell::default() };
-        let own = law.own(&meeting);
-        law.pair(&meeting, (), &own);
-        meeting.sums.get()
+        self.meet(law).sums.get()
+    }
+
+    /// The energy that the pair stores, and its virial (r_i − r_j)·F_i.
+    pub fn energy_and_virial<L: Law<2>>(&self, law: &L) -> [f64; 2] {
+        self.meet(law).energy.get()
+    }
+
+    fn meet<L: Law<2>>(&self, law: &L) -> Meeting<'_> {
+        let meeting = Meeting { bodies: &self.bodies, sums: Cell::default(), energy: Cell::default() };
+        let env = Stated::new(&meeting, law);
+        let own = law.own(env);
+        law.pair(env, (), &own);
+        meeting
     }
 
     /// Depth of the contact, ξ = R_i + R_j − |r_i − r_j|; negative for discs apart.
@@ -137,6 +147,8 @@ fn length(vector: [f64; 2]) -> f64 {
 struct Meeting<'a> {
     bodies: &'a [Body; 2],
     sums: Cell<[[f64; 3]; 2]>,
+    /// Energy and virial.
+    energy: Cell<[f64; 2]>,
 }
 
 impl Meeting<'_> {
@@ -195,5 +207,14 @@ impl Env<2> for &Meeting<'_> {
         false
     }
     fn dissipate(self, _: f64) {}
+    fn observes_energy(self) -> bool {
+        true
+    }
+    fn energy(self, energy: f64) {
+        self.energy.set([energy, self.energy.get()[1]]);
+    }
+    fn virial(self, virial: f64) {
+        self.energy.set([self.energy.get()[0], virial]);
+    }
     fn section(self, _: &'static str) {}
 }

@@ -33,12 +33,6 @@ impl Pair {
         self.bodies.iter().map(Body::kinetic_energy).sum()
     }
 
-    /// Elastic energy of the contact, ⅖ k_N ξ^{5/2}.
-    pub fn elastic_energy(&self, stiffness: f64) -> f64 {
-        let depth = self.depth().max(0.0);
-        0.4 * stiffness * (depth * depth * depth.sqrt())
-    }
-
     /// The pair now and after every step of `dt`, without end, by the classical Runge–Kutta method of fourth order;
     /// the inertia is a disc's, ½ M R².
     pub fn trajectory<L: Law<2>>(self, law: &L, dt: f64) -> impl Iterator<Item = Pair> {

@@ -1,0 +1,232 @@
+//! What a law states holds: it is given no other field and adds to no other sum.
+//!
+//! A sweep makes sure of the columns that the law's [`Law::FIELDS`] name and of the sums that [`Law::SUMS`] name, and then
+//! reads and adds without asking again. So a law reaches a sweep only through [`Stated`], which stops at anything else. Both
+//! lists are constants and so is every field a law names: what is left of the question, compiled, is nothing.
+
+use super::{Env, Field, Law, Sum};
+use crate::isa::{ProgramError, Vector};
+use std::cell::Cell;
+use std::marker::PhantomData;
+
+/// An environment in which the law `L` has what it states, and nothing else.
+pub struct Stated<E, L> {
+    env: E,
+    law: PhantomData<fn() -> L>,
+}
+
+impl<E: Copy, L> Clone for Stated<E, L> {
+    #[inline(always)]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<E: Copy, L> Copy for Stated<E, L> {}
+
+impl<E, L> Stated<E, L> {
+    /// An environment for one law.
+    #[inline(always)]
+    pub fn new(env: E, _: &L) -> Self {
+        Stated { env, law: PhantomData }
+    }
+
+    #[inline(always)]
+    fn field<const DIM: usize>(field: Field)
+    where
+        L: Law<DIM>,
+    {
+        if const { bits_of_fields(L::FIELDS) } & (1 << field as u32) == 0 {
+            unstated(field.name());
+        }
+    }
+
+    #[inline(always)]
+    fn sum<const DIM: usize>(sum: Sum)
+    where
+        L: Law<DIM>,
+    {
+        if const { bits_of_sums(L::SUMS) } & (1 << sum as u32) == 0 {
+            unstated(sum.name());
+        }
+    }
+}
+
+const fn bits_of_fields(fields: &[Field]) -> u32 {
+    let (mut bits, mut i) = (0, 0);
+    while i < fields.len() {
+        bits |= 1 << fields[i] as u32;
+        i += 1;
+    }
+    bits
+}
+
+const fn bits_of_sums(sums: &[Sum]) -> u32 {
+    let (mut bits, mut i) = (0, 0);
+    while i < sums.len() {
+        bits |= 1 << sums[i] as u32;
+        i += 1;
+    }
+    bits
+}
+
+#[cold]
+#[inline(never)]
+fn unstated(what: &'static str) -> ! {
+    panic!("{}", ProgramError::Unstated(what))
+}
+
+impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for Stated<E, L> {
+    type V = E::V;
+    type Place = E::Place;
+    const BOTH_PARTNERS: bool = E::BOTH_PARTNERS;
+
+    #[inline(always)]
+    fn own_position(self) -> [E::V; DIM] {
+        self.env.own_position()
+    }
+    #[inline(always)]
+    fn own(self, field: Field) -> E::V {
+        Self::field::<DIM>(field);
+        self.env.own(field)
+    }
+    #[inline(always)]
+    fn displacement(self, own: [E::V; DIM], place: E::Place) -> [E::V; DIM] {
+        self.env.displacement(own, place)
+    }
+    #[inline(always)]
+    fn partner(self, field: Field, place: E::Place) -> E::V {
+        Self::field::<DIM>(field);
+        self.env.partner(field, place)
+    }
+    #[inline(always)]
+    fn uniform(self, value: f64) -> E::V {
+        self.env.uniform(value)
+    }
+    #[inline(always)]
+    fn none(self, predicate: <E::V as Vector>::Predicate) -> bool {
+        self.env.none(predicate)
+    }
+    #[inline(always)]
+    fn own_add(self, sum: Sum, value: E::V) {
+        Self::sum::<DIM>(sum);
+        self.env.own_add(sum, value);
+    }
+    #[inline(always)]
+    fn partner_sub(self, sum: Sum, place: E::Place, value: E::V) {
+        Self::sum::<DIM>(sum);
+        self.env.partner_sub(sum, place, value);
+    }
+    #[inline(always)]
+    fn watches(self) -> bool {
+        self.env.watches()
+    }
+    #[inline(always)]
+    fn watch(self, penetration: E::V) {
+        self.env.watch(penetration);
+    }
+    #[inline(always)]
+    fn counts_dissipation(self) -> bool {
+        self.env.counts_dissipation()
+    }
+    #[inline(always)]
+    fn dissipate(self, power: E::V) {
+        self.env.dissipate(power);
+    }
+    #[inline(always)]
+    fn observes_energy(self) -> bool {
+        self.env.observes_energy()
+    }
+    #[inline(always)]
+    fn energy(self, energy: E::V) {
+        self.env.energy(energy);
+    }
+    #[inline(always)]
+    fn virial(self, virial: E::V) {
+        self.env.virial(virial);
+    }
+    #[inline(always)]
+    fn section(self, name: &'static str) {
+        self.env.section(name);
+    }
+}
+
+/// Whether a law asks for what it states and for nothing else: it is tried on one pair.
+///
+/// # Errors
+/// [`ProgramError::Unstated`] names the first field or sum that it does not state.
+pub fn check<const DIM: usize, L: Law<DIM>>(law: &L) -> Result<(), ProgramError> {
+    let probe = Probe::default();
+    let own = law.own(&probe);
+    law.pair(&probe, (), &own);
+    let missing = |asked: u32, stated: u32, bit: u32| (asked & !stated) & 1 << bit != 0;
+    let (fields, sums) = (bits_of_fields(L::FIELDS), bits_of_sums(L::SUMS));
+    let field = Field::ALL.into_iter().find(|&field| missing(probe.fields.get(), fields, field as u32));
+    let sum = Sum::ALL.into_iter().find(|&sum| missing(probe.sums.get(), sums, sum as u32));
+    match field.map(Field::name).or(sum.map(Sum::name)) {
+        Some(what) => Err(ProgramError::Unstated(what)),
+        None => Ok(()),
+    }
+}
+
+/// A pair of particles that all is one of, which notes what it is asked for.
+#[derive(Default)]
+struct Probe {
+    fields: Cell<u32>,
+    sums: Cell<u32>,
+}
+
+impl Probe {
+    fn ask(&self, field: Field) -> f64 {
+        self.fields.set(self.fields.get() | 1 << field as u32);
+        1.0
+    }
+    fn add(&self, sum: Sum) {
+        self.sums.set(self.sums.get() | 1 << sum as u32);
+    }
+}
+
+impl<const DIM: usize> Env<DIM> for &Probe {
+    type V = f64;
+    type Place = ();
+    const BOTH_PARTNERS: bool = true;
+
+    fn own_position(self) -> [f64; DIM] {
+        [0.0; DIM]
+    }
+    fn own(self, field: Field) -> f64 {
+        self.ask(field)
+    }
+    fn displacement(self, _: [f64; DIM], (): ()) -> [f64; DIM] {
+        [1.0; DIM]
+    }
+    fn partner(self, field: Field, (): ()) -> f64 {
+        self.ask(field)
+    }
+    fn uniform(self, value: f64) -> f64 {
+        value
+    }
+    fn none(self, _: bool) -> bool {
+        false // All of the law is to be seen.
+    }
+    fn own_add(self, sum: Sum, _: f64) {
+        self.add(sum);
+    }
+    fn partner_sub(self, sum: Sum, (): (), _: f64) {
+        self.add(sum);
+    }
+    fn watches(self) -> bool {
+        true
+    }
+    fn watch(self, _: f64) {}
+    fn counts_dissipation(self) -> bool {
+        true
+    }
+    fn dissipate(self, _: f64) {}
+    fn observes_energy(self) -> bool {
+        true
+    }
+    fn energy(self, _: f64) {}
+    fn virial(self, _: f64) {}
+    fn section(self, _: &'static str) {}
+}
