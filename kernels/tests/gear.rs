@@ -1,6 +1,7 @@
 //! Gear's schemes: their orders, their limits of stability, and what they do exactly.
 
-use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Inertia, Predictor, STATE, coefficients};
+use stripmine_kernels::integrator::Inertia;
+use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Predictor, STATE, coefficients};
 use stripmine_kernels::isa::{Array, Memory, Slot};
 use stripmine_kernels::{Execution, InstructionSet, Program};
 

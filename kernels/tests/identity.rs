@@ -4,7 +4,7 @@ mod support;
 
 use proptest::prelude::*;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::integrator::gear::Inertia;
+use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::law::Law;
 use stripmine_kernels::law::granular::ContactArm;
 use stripmine_kernels::sweep::lattice::Coordinates;

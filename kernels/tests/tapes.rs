@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use stripmine_kernels::backend::tape::{Action, Effect, File, Indices, Number, Operand, RegisterName, Truth};
 use stripmine_kernels::backend::{Precision, Tape};
-use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Inertia, Predictor};
+use stripmine_kernels::integrator::Inertia;
+use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Predictor};
 use stripmine_kernels::isa::{Array, Element, Machine, Memory, Op, OpCounts, Slot, Text, Vector};
 use stripmine_kernels::law::Law;
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};

@@ -3,8 +3,9 @@
 //! The state is a row of scaled derivatives q_k = (dt^k/k!) d^k r/dt^k for each degree of freedom: x, y and, with
 //! rotation, the angle.
 
-use super::Scheme;
-use crate::isa::{Array, Counter, Element, Machine, Predicate, Slot, Text, Vector};
+use super::{Context, Inertia, NOT_FINITE, Scheme, VELOCITY, gathered_acceleration};
+use crate::backend::Registers;
+use crate::isa::{Array, Element, Machine, Predicate, Slot, Text, Vector};
 use std::marker::PhantomData;
 
 /// The arrays of the scaled derivatives, a row for each degree of freedom.
@@ -13,9 +14,6 @@ pub const STATE: [[Array; 6]; 3] = [
     [Array::Y0, Array::Y1, Array::Y2, Array::Y3, Array::Y4, Array::Y5],
     [Array::Phi0, Array::Phi1, Array::Phi2, Array::Phi3, Array::Phi4, Array::Phi5],
 ];
-
-pub(super) const VELOCITY: [Array; 3] = [Array::DiscVx, Array::DiscVy, Array::DiscOmega];
-pub(super) const FORCE: [Array; 3] = [Array::Fx, Array::Fy, Array::Torque];
 
 /// What the accelerations depend on, which decides the first coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,14 +89,14 @@ impl<const VALUES: usize> Scheme for Gear<VALUES> {
     const CARRIED: usize = VALUES;
 
     #[inline(always)]
-    fn correct<V: Vector>(&self, uniform: impl Fn(f64) -> V, row: &mut [V; 6], second: V) {
+    fn correct<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; 6], second: R::V) {
         let difference = second - row[2];
-        add_difference::<V, VALUES>(&self.coefficients, uniform, row, difference);
+        add_difference::<R::V, VALUES>(&self.coefficients, |c| context.uniform(c), row, difference);
     }
 
     #[inline(always)]
-    fn predict<V: Vector>(&self, row: &mut [V; 6]) {
-        advance::<V, VALUES>(row);
+    fn predict<R: Registers>(&self, _: &Context<'_, R>, row: &mut [R::V; 6]) {
+        advance::<R::V, VALUES>(row);
     }
 }
 
@@ -149,46 +147,6 @@ unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> 
     }
 }
 
-/// What the forces are divided by.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Inertia {
-    /// All discs alike: inverse mass and inverse moment of inertia.
-    Equal {
-        /// Inverse mass.
-        inverse_mass: f64,
-        /// Inverse moment of inertia.
-        inverse_inertia: f64,
-    },
-    /// Each disc its own, from arrays.
-    Varying,
-}
-
-/// The acceleration of one degree of freedom, from the force gathered from the lattice.
-#[inline(always)]
-pub(super) fn acceleration<S: Element, P: Element, M: Machine>(
-    m: M,
-    cell: M::I,
-    freedom: usize,
-    inertia: Inertia,
-    gravity: [f64; 2],
-) -> M::V {
-    m.section("gather");
-    let force = m.gather(Slot::<P>::new(FORCE[freedom]), cell, m.uniform(0.0));
-    m.section("acceleration");
-    let inverse = match (inertia, freedom) {
-        (Inertia::Equal { inverse_mass, .. }, 0 | 1) => m.uniform(inverse_mass),
-        (Inertia::Equal { inverse_inertia, .. }, _) => m.uniform(inverse_inertia),
-        (Inertia::Varying, 0 | 1) => m.load(Slot::<S>::new(Array::DiscInverseMass)),
-        (Inertia::Varying, _) => m.load(Slot::<S>::new(Array::DiscInverseInertia)),
-    };
-    let acceleration = force * inverse;
-    if freedom < 2 && gravity[freedom] != 0.0 {
-        acceleration + m.uniform(gravity[freedom])
-    } else {
-        acceleration
-    }
-}
-
 /// Gathers the forces from the lattice and corrects the predicted state. Vector length: the discs.
 ///
 /// # As printed
@@ -203,9 +161,6 @@ pub struct Corrector<S, P, const VALUES: usize, const FREEDOMS: usize> {
     checked: bool,
     precisions: PhantomData<(S, P)>,
 }
-
-/// Counts discs whose correction is no finite number. Written by a [`Corrector`] that is [`checked`](Corrector::checked).
-pub const NOT_FINITE: Counter = Counter(3);
 
 impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Corrector<S, P, VALUES, FREEDOMS> {
     /// For steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
@@ -240,7 +195,7 @@ unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> 
         let cell = m.load_index(Slot::new(Array::DiscCell));
         let mut magnitude = m.uniform(0.0);
         for freedom in 0..FREEDOMS {
-            let acceleration = acceleration::<S, P, M>(m, cell, freedom, self.inertia, self.gravity);
+            let acceleration = gathered_acceleration::<S, P, M>(m, cell, freedom, self.inertia, self.gravity);
             m.section("correction");
             let mut q = row::<S, M, VALUES>(m, freedom);
             let difference = acceleration * m.uniform(self.half_dt_squared) - q[2];

@@ -1,17 +1,138 @@
-//! Integrators, one file each.
+//! Integrators, one file each, and what they share: F/m + g, and what a scheme may know beside the state.
 
 pub mod gear;
 pub mod velocity_verlet;
 
-use crate::isa::Vector;
+use crate::backend::Registers;
+use crate::isa::{Array, Counter, Element, Machine, Slot, Vector};
+use crate::noise::{self, Purpose};
+
+const VELOCITY: [Array; 3] = [Array::DiscVx, Array::DiscVy, Array::DiscOmega];
+const FORCE: [Array; 3] = [Array::Fx, Array::Fy, Array::Torque];
+
+/// Counts discs whose new state is no finite number. Written by programs that are
+/// [`checked`](gear::Corrector::checked).
+pub const NOT_FINITE: Counter = Counter(3);
+
+/// What the forces are divided by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Inertia {
+    /// All discs alike: inverse mass and inverse moment of inertia.
+    Equal {
+        /// Inverse mass.
+        inverse_mass: f64,
+        /// Inverse moment of inertia.
+        inverse_inertia: f64,
+    },
+    /// Each disc its own, from arrays.
+    Varying,
+}
+
+impl Inertia {
+    /// Inverse mass, or moment of inertia for the third degree of freedom; `own` gives the discs' where they vary.
+    #[inline(always)]
+    pub fn inverse<V>(self, freedom: usize, uniform: impl Fn(f64) -> V, own: impl FnOnce() -> V) -> V {
+        match (self, freedom) {
+            (Inertia::Equal { inverse_mass, .. }, 0 | 1) => uniform(inverse_mass),
+            (Inertia::Equal { inverse_inertia, .. }, _) => uniform(inverse_inertia),
+            (Inertia::Varying, _) => own(),
+        }
+    }
+}
+
+/// F/m + g of one degree of freedom: along x, along y, of the angle. A component of gravity that is 0 costs nothing.
+#[inline(always)]
+pub fn acceleration<V: Vector>(
+    uniform: impl Fn(f64) -> V,
+    gravity: [f64; 2],
+    freedom: usize,
+    force: V,
+    inverse: V,
+) -> V {
+    let acceleration = force * inverse;
+    if freedom < 2 && gravity[freedom] != 0.0 {
+        acceleration + uniform(gravity[freedom])
+    } else {
+        acceleration
+    }
+}
+
+/// The acceleration of one degree of freedom, from the force gathered from the lattice.
+#[inline(always)]
+fn gathered_acceleration<S: Element, P: Element, M: Machine>(
+    m: M,
+    cell: M::I,
+    freedom: usize,
+    inertia: Inertia,
+    gravity: [f64; 2],
+) -> M::V {
+    m.section("gather");
+    let force = m.gather(Slot::<P>::new(FORCE[freedom]), cell, m.uniform(0.0));
+    m.section("acceleration");
+    let uniform = |value: f64| m.uniform(value);
+    let own = [Array::DiscInverseMass, Array::DiscInverseInertia][freedom / 2];
+    let inverse = inertia.inverse(freedom, uniform, || m.load(Slot::<S>::new(own)));
+    acceleration(uniform, gravity, freedom, force, inverse)
+}
+
+/// What a scheme may know beside a row of the state: of the step, and of the discs in the lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct Context<'a, R> {
+    pub(crate) registers: R,
+    pub(crate) dt: f64,
+    pub(crate) seed: u64,
+    pub(crate) step: u64,
+    /// As many as lanes, where the scheme [draws](Scheme::DRAWS).
+    pub(crate) ids: &'a [u32],
+    pub(crate) freedom: usize,
+}
+
+impl<R: Registers> Context<'_, R> {
+    /// The same number in every lane.
+    #[inline(always)]
+    pub fn uniform(&self, value: f64) -> R::V {
+        self.registers.splat(R::Lane::from_f64(value))
+    }
+
+    /// Time step (time).
+    #[inline(always)]
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// The degree of freedom: 0 and 1 along x and y, 2 the angle.
+    #[inline(always)]
+    pub fn freedom(&self) -> usize {
+        self.freedom
+    }
+
+    /// Two independent standard normal numbers for every disc. They depend on the run's seed, the purpose, the disc's id and
+    /// the step alone: the same for every degree of freedom, whatever the registers and the order of the discs.
+    ///
+    /// # Panics
+    /// If the scheme does not say that it [draws](Scheme::DRAWS).
+    #[inline(always)]
+    pub fn normals(&self, purpose: Purpose) -> [R::V; 2] {
+        assert!(self.ids.len() >= R::LANES, "a scheme that draws says so");
+        let mut lanes = [[R::Lane::default(); crate::GROUP]; 2];
+        for (lane, &id) in self.ids.iter().enumerate().take(R::LANES) {
+            let drawn = noise::normals(self.seed, purpose, id, self.step);
+            (0..2).for_each(|number| lanes[number][lane] = R::Lane::from_f64(drawn[number]));
+        }
+        // SAFETY: each holds GROUP numbers, and a register has no more lanes than that.
+        lanes.map(|lanes| unsafe { self.registers.load(lanes.as_ptr()) })
+    }
+}
 
 /// A predictor and a corrector for one degree of freedom, on the scaled derivatives q_k = (dt^k/k!) d^k r/dt^k.
 pub trait Scheme: Copy + Send + Sync {
     /// How many scaled derivatives a step hands on to the next, where corrector and next predictor are one.
     const CARRIED: usize;
+    /// Whether it draws random numbers, for which the discs' ids are needed.
+    const DRAWS: bool = false;
 
     /// Corrects the predicted row with the acceleration found, `second` = (dt²/2) a.
-    fn correct<V: Vector>(&self, uniform: impl Fn(f64) -> V, row: &mut [V; 6], second: V);
+    fn correct<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; 6], second: R::V);
     /// Predicts the row one step ahead.
-    fn predict<V: Vector>(&self, row: &mut [V; 6]);
+    fn predict<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; 6]);
 }

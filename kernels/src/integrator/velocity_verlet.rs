@@ -3,8 +3,9 @@
 //! With q_1 = dt v and q_2 = (dt²/2) a, half a kick is q_1 += q_2 and a drift q_0 += q_1. Forces that depend on
 //! velocities are those of the velocities after the first half kick, as is usual.
 
-use super::Scheme;
-use super::gear::{Inertia, NOT_FINITE, STATE, VELOCITY, acceleration};
+use super::gear::STATE;
+use super::{Context, Inertia, NOT_FINITE, Scheme, VELOCITY, gathered_acceleration};
+use crate::backend::Registers;
 use crate::isa::{Array, Element, Machine, Predicate, Slot, Text, Vector};
 use std::marker::PhantomData;
 
@@ -13,20 +14,32 @@ use std::marker::PhantomData;
 pub struct VelocityVerlet;
 
 impl Scheme for VelocityVerlet {
-    // The acceleration is made anew from the forces.
+    // The acceleration comes from the forces again.
     const CARRIED: usize = 2;
 
     #[inline(always)]
-    fn correct<V: Vector>(&self, _: impl Fn(f64) -> V, row: &mut [V; 6], second: V) {
-        row[1] = row[1] + second;
-        row[2] = second;
+    fn correct<R: Registers>(&self, _: &Context<'_, R>, row: &mut [R::V; 6], second: R::V) {
+        kick(row, second);
     }
 
     #[inline(always)]
-    fn predict<V: Vector>(&self, row: &mut [V; 6]) {
-        row[1] = row[1] + row[2];
-        row[0] = row[0] + row[1];
+    fn predict<R: Registers>(&self, _: &Context<'_, R>, row: &mut [R::V; 6]) {
+        drift(row);
     }
+}
+
+/// The second half kick, with `second` = (dt²/2) a.
+#[inline(always)]
+fn kick<V: Vector>(row: &mut [V; 6], second: V) {
+    row[1] = row[1] + second;
+    row[2] = second;
+}
+
+/// The first half kick and the drift.
+#[inline(always)]
+fn drift<V: Vector>(row: &mut [V; 6]) {
+    row[1] = row[1] + row[2];
+    row[0] = row[0] + row[1];
 }
 
 /// The first half kick and the drift; hands the velocities to the lattice. Vector length: the discs.
@@ -64,7 +77,7 @@ unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Text for Drift<S, P, 
         for freedom in 0..FREEDOMS {
             m.section("drift");
             let mut q = row::<S, M>(m, freedom);
-            VelocityVerlet.predict(&mut q);
+            drift(&mut q);
             m.store(Slot::<S>::new(STATE[freedom][0]), q[0]);
             m.store(Slot::<S>::new(STATE[freedom][1]), q[1]);
             m.section("velocities");
@@ -109,14 +122,14 @@ unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Text for Kick<S, P, F
         let cell = m.load_index(Slot::new(Array::DiscCell));
         let mut magnitude = m.uniform(0.0);
         for freedom in 0..FREEDOMS {
-            let acceleration = acceleration::<S, P, M>(m, cell, freedom, self.inertia, self.gravity);
+            let acceleration = gathered_acceleration::<S, P, M>(m, cell, freedom, self.inertia, self.gravity);
             m.section("kick");
             let second = acceleration * m.uniform(self.half_dt_squared);
             if self.checked {
                 magnitude = magnitude + second.abs();
             }
             let mut q = row::<S, M>(m, freedom);
-            VelocityVerlet.correct(|value| m.uniform(value), &mut q, second);
+            kick(&mut q, second);
             m.store(Slot::<S>::new(STATE[freedom][1]), q[1]);
             m.store(Slot::<S>::new(STATE[freedom][2]), q[2]);
         }

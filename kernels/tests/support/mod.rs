@@ -2,7 +2,8 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Inertia, Predictor, STATE};
+use stripmine_kernels::integrator::Inertia;
+use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Predictor, STATE};
 use stripmine_kernels::isa::{Array, Memory, ProgramError, Slot};
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
 use stripmine_kernels::law::{Asked, Field, Law, Sum};

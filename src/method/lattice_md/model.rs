@@ -2,7 +2,8 @@
 
 use crate::domain::Domain;
 use crate::particles::longest_step;
-use stripmine_kernels::integrator::gear::{Acceleration, Inertia};
+use stripmine_kernels::integrator::Inertia;
+use stripmine_kernels::integrator::gear::Acceleration;
 use stripmine_kernels::isa::Storage;
 use stripmine_kernels::law::Asked;
 use stripmine_kernels::law::granular::{Contact, Disc};

@@ -2,8 +2,7 @@
 
 use crate::InstructionSet;
 use crate::backend::{Precision, Registers, Scalar};
-use crate::integrator::Scheme;
-use crate::integrator::gear::Inertia;
+use crate::integrator::{Context, Inertia, Scheme, acceleration};
 use crate::isa::{Element, Predicate, ProgramError, Vector, same};
 use crate::program::{Task, dispatch};
 use crate::threads::{on_threads, pieces};
@@ -24,6 +23,8 @@ pub struct Motion<C> {
     pub inertia: Inertia,
     /// Acceleration of gravity (length/time²).
     pub gravity: [f64; 2],
+    /// Seed of the random numbers, for a scheme that draws some.
+    pub seed: u64,
 }
 
 /// How far a disc may go before somebody must see to it.
@@ -66,20 +67,30 @@ impl<C: Scheme> Motion<C> {
     /// (dt²/2) a of one degree of freedom.
     #[inline(always)]
     fn second<V: Vector>(&self, uniform: &impl Fn(f64) -> V, freedom: usize, force: V, inverse: V) -> V {
-        let mut acceleration = force * inverse;
-        if freedom < 2 && self.gravity[freedom] != 0.0 {
-            acceleration = acceleration + uniform(self.gravity[freedom]);
-        }
-        acceleration * uniform(0.5 * self.dt * self.dt)
+        acceleration(uniform, self.gravity, freedom, force, inverse) * uniform(0.5 * self.dt * self.dt)
     }
 
-    /// The corrected row of one disc's degree of freedom, from the predicted one (its first [`Scheme::CARRIED`]
-    /// entries), the force and the inverse mass or moment of inertia.
-    pub fn corrected<S: Element>(&self, freedom: usize, predicted: [S; 6], force: S, inverse: S) -> [S; 6] {
-        let uniform = |value: f64| S::from_f64(value);
+    /// What the scheme may know of one degree of freedom of the discs `ids` in a step.
+    #[inline(always)]
+    fn context<'a, R>(&self, registers: R, step: u64, ids: &'a [u32], freedom: usize) -> Context<'a, R> {
+        Context { registers, dt: self.dt, seed: self.seed, step, ids, freedom }
+    }
+
+    /// The row of one degree of freedom of the disc `id`, corrected in the step numbered `step`: from the predicted one (its
+    /// first [`Scheme::CARRIED`] entries), the force and the inverse mass or moment of inertia.
+    pub fn corrected<S: Element>(
+        &self,
+        (step, id): (u64, u32),
+        freedom: usize,
+        predicted: [S; 6],
+        force: S,
+        inverse: S,
+    ) -> [S; 6] {
+        let ids = [id];
+        let context = self.context(Scalar::<S>::default(), step, &ids, freedom);
         let mut row = predicted;
-        let second = self.second(&uniform, freedom, force, inverse);
-        self.scheme.correct(uniform, &mut row, second);
+        let second = self.second(&|value| context.uniform(value), freedom, force, inverse);
+        self.scheme.correct(&context, &mut row, second);
         row
     }
 }
@@ -98,6 +109,10 @@ pub struct Advance<'a, S, P, C> {
     pub inverse: [&'a [S]; 2],
     /// Discs that move: the first ones.
     pub discs: usize,
+    /// Number of the step that is corrected; the next one is predicted.
+    pub step: u64,
+    /// The discs' ids, for a scheme that draws random numbers; an entry a disc that moves, or more.
+    pub ids: &'a [u32],
     /// Whether the state is corrected already, so that forces give no more than the acceleration: the first step.
     pub corrected: bool,
     /// Discs that move farther than this (length) in a step, at the velocity predicted, are listed.
@@ -118,7 +133,8 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
         copies: Option<Copies<'_>>,
         set: InstructionSet,
     ) -> Result<Passed, ProgramError> {
-        let Advance { motion, discs, corrected, longest_step, inverse, .. } = self;
+        let Advance { motion, discs, corrected, longest_step, inverse, step, ids, .. } = self;
+        assert!(!C::DRAWS || ids.len() >= discs, "an id for every disc that moves");
         let freedoms = self.state.len();
         assert!((2..=3).contains(&freedoms) && self.sums.len() == freedoms, "2 or 3 degrees of freedom");
         let vary = motion.inertia == Inertia::Varying;
@@ -146,6 +162,8 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
         let arrays = Arrays {
             columns,
             sums,
+            step,
+            ids,
             inverse: inverse.map(<[S]>::as_ptr),
             leash,
             cells: cells.as_ptr(),
@@ -182,6 +200,8 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
 struct Arrays<'a, S, P> {
     columns: [[*mut S; 6]; 3],
     sums: [*mut P; 3],
+    step: u64,
+    ids: &'a [u32],
     inverse: [*const S; 2],
     leash: Leash<'a, S>,
     cells: *const u32,
@@ -231,29 +251,30 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
         let Pass { motion, arrays, corrected, .. } = *self;
         let uniform = |value: f64| registers.splat(S::from_f64(value));
         let (mut place, mut step) = ([uniform(0.0); 2], [uniform(0.0); 2]);
+        let ids = if C::DRAWS { &arrays.ids[first..first + R::LANES] } else { &[] };
         for freedom in 0..FREEDOMS {
-            // SAFETY: Advance has checked the columns; this thread alone works on these discs. Here and below.
+            let context = |step: u64| motion.context(registers, step, ids, freedom);
+            // SAFETY: Advance has checked that every sum has an entry for every disc that moves; the discs of a register are
+            // such ones, and this thread alone works on them.
             let force = unsafe { take(registers, arrays.sums[freedom].add(first)) };
-            let inverse = match (motion.inertia, freedom) {
-                (Inertia::Equal { inverse_mass, .. }, 0 | 1) => uniform(inverse_mass),
-                (Inertia::Equal { inverse_inertia, .. }, _) => uniform(inverse_inertia),
-                // SAFETY: as above.
-                (Inertia::Varying, _) => unsafe { registers.load(arrays.inverse[freedom / 2].add(first)) },
-            };
+            let inverse = motion.inertia.inverse(freedom, uniform, || {
+                // SAFETY: where discs vary, Advance has checked that these columns have an entry for every disc that moves.
+                unsafe { registers.load(arrays.inverse[freedom / 2].add(first)) }
+            });
             let second = motion.second(&uniform, freedom, force, inverse);
             let mut row = [uniform(0.0); 6];
             for k in 0..C::CARRIED {
-                // SAFETY: as above.
+                // SAFETY: Advance has checked that every derivative that is carried has an entry for every disc that moves.
                 row[k] = unsafe { registers.load(arrays.columns[freedom][k].add(first)) };
             }
             if corrected {
                 row[2] = second;
             } else {
-                motion.scheme.correct(uniform, &mut row, second);
+                motion.scheme.correct(&context(arrays.step), &mut row, second);
             }
-            motion.scheme.predict(&mut row);
+            motion.scheme.predict(&context(arrays.step + 1), &mut row);
             for k in 0..C::CARRIED {
-                // SAFETY: as above.
+                // SAFETY: it was loaded from there, and this thread alone works on these discs.
                 unsafe { registers.store(arrays.columns[freedom][k].add(first), row[k]) };
             }
             if freedom < 2 {
@@ -267,7 +288,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 place[0].abs().less_equal(x).and(place[1].abs().less_equal(y))
             }
             Leash::From { places: [x, y], distance } => {
-                // SAFETY: as above.
+                // SAFETY: Advance has checked that there is a place for every disc that moves.
                 let (x, y) =
                     unsafe { (registers.load(x.as_ptr().add(first)), registers.load(y.as_ptr().add(first))) };
                 let (dx, dy) = (place[0] - x, place[1] - y);

@@ -151,7 +151,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             return row;
         }
         let force = S::from_f64(self.sums[freedom][disc].to_f64());
-        steps::corrected(&self.model, &self.state, freedom, disc, row, force)
+        steps::corrected(&self.model, &self.state, self.steps, freedom, disc, row, force)
     }
 }
 

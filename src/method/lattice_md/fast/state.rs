@@ -31,6 +31,9 @@ pub(super) struct State<S> {
     grains: usize,
 }
 
+/// What a pass moves: columns, inverse masses and moments of inertia, and which of the scene's discs each is.
+type Moved<'a, S> = (&'a mut [Vec<Vec<S>>], [&'a [S]; 2], &'a [u32]);
+
 impl<S: Precision> State<S> {
     pub(super) fn new(model: &Model, particles: &Particles) -> Self {
         let discs = particles.all();
@@ -113,9 +116,14 @@ impl<S: Precision> State<S> {
         &self.inverse[freedom / 2]
     }
 
-    /// The columns to be moved by a pass, and inverse masses and moments of inertia.
-    pub(super) fn for_advance(&mut self) -> (&mut [Vec<Vec<S>>], [&[S]; 2]) {
-        (&mut self.columns, [&self.inverse[0], &self.inverse[1]])
+    /// Which of the scene's discs each is.
+    pub(super) fn numbers(&self) -> &[u32] {
+        &self.numbers
+    }
+
+    /// What a pass moves.
+    pub(super) fn for_advance(&mut self) -> Moved<'_, S> {
+        (&mut self.columns, [&self.inverse[0], &self.inverse[1]], &self.numbers)
     }
 
     /// The discs as a sweep reads them.

@@ -3,7 +3,7 @@
 use super::state::{Move, State};
 use super::{FastMd, walls_at};
 use crate::domain::Domain;
-use crate::method::lattice_md::{Discs, GearValues, Model, Scheme};
+use crate::method::lattice_md::{GearValues, Model, Scheme};
 use crate::method::{Failure, Method};
 use crate::scene::WallMotion;
 use stripmine_kernels::backend::Precision;
@@ -39,24 +39,23 @@ macro_rules! with_motion {
 
 fn motion<C: integrator::Scheme>(model: &Model, scheme: C) -> Motion<C> {
     let Model { dt, gravity, .. } = *model;
-    Motion { scheme, dt, inertia: model.inertia(), gravity }
+    // None of these schemes draws random numbers.
+    Motion { scheme, dt, inertia: model.inertia(), gravity, seed: 0 }
 }
 
 /// One row at the end of the step, from the one that the pass left.
 pub(super) fn corrected<S: Precision>(
     model: &Model,
     state: &State<S>,
+    step: u64,
     freedom: usize,
     disc: usize,
     row: [S; 6],
     force: S,
 ) -> [S; 6] {
-    let inverse = match (model.discs, freedom) {
-        (Discs::Equal { disc, .. }, 0 | 1) => S::from_f64(disc.inverse_mass),
-        (Discs::Equal { inverse_inertia, .. }, _) => S::from_f64(inverse_inertia),
-        (Discs::Varying, _) => state.inverse(freedom)[disc],
-    };
-    with_motion!(model, |motion| motion.corrected(freedom, row, force, inverse))
+    let inverse = model.inertia().inverse(freedom, S::from_f64, || state.inverse(freedom)[disc]);
+    let who = (step, state.numbers()[disc]);
+    with_motion!(model, |motion| motion.corrected(who, freedom, row, force, inverse))
 }
 
 /// Corrects the last step, unless the first begins, and predicts the next; gives the discs that left their cells and those
@@ -65,17 +64,26 @@ pub(super) fn advance<S: Precision, P: Precision>(
     simulation: &mut FastMd<S, P>,
     first: bool,
 ) -> Result<Passed, ProgramError> {
-    let FastMd { model, state, sums, home, start, set, .. } = simulation;
+    let FastMd { model, state, sums, home, start, set, steps, .. } = simulation;
     let freedoms = model.freedoms();
-    let (columns, inverse) = state.for_advance();
+    let (columns, inverse, ids) = state.for_advance();
     let state = columns.iter_mut().map(|row| row.iter_mut().map(Vec::as_mut_slice).collect()).collect();
     let sums = sums.iter_mut().take(freedoms).map(Vec::as_mut_slice).collect();
     let discs = start.grain_count();
     let (leash, copies) = home.leash();
     let longest_step = model.watch.map_or(f64::INFINITY, |watch| watch.longest_step());
     with_motion!(model, |motion| {
-        let advance =
-            Advance { motion: &motion, state, sums, inverse, discs, corrected: first, longest_step };
+        let advance = Advance {
+            motion: &motion,
+            state,
+            sums,
+            inverse,
+            discs,
+            step: *steps,
+            ids,
+            corrected: first,
+            longest_step,
+        };
         advance.run(leash, copies, *set)
     })
 }
