@@ -209,7 +209,7 @@ impl Shared<'_, '_> {
     /// # Safety
     /// As there.
     unsafe fn part(&self) -> Memory<'_> {
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller promises that no element is written through one part and touched through another.
         unsafe { self.0.part() }
     }
 }

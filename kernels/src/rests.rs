@@ -46,7 +46,7 @@ pub(crate) fn heard() -> bool {
 
 /// Elements times operations between two rests: some dozens of microseconds.
 pub(crate) const SPAN: usize = 1 << 17;
-/// A pass over at least so many elements may end in a rest; passes over fewer are too short to be asked.
+/// A pass over at least this many elements may end in a rest; passes over fewer are too short to be asked.
 const LONG: usize = 4096;
 
 /// What an interpreted run has done since its last rest.
@@ -63,7 +63,7 @@ impl Rests {
         Rests { heard: heard(), done: 0 }
     }
 
-    /// Whether to ask after every pass over so many elements, and not only after all of a strip.
+    /// Whether to ask after every pass over this many elements, and not only after all of a strip.
     #[inline(always)]
     pub(crate) fn after_passes(&self, elements: usize) -> bool {
         self.heard && elements >= LONG

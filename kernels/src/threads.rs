@@ -61,8 +61,8 @@ fn locked<T>(slot: &Mutex<T>) -> MutexGuard<'_, T> {
 /// is still in its cache, and then takes what others have left.
 ///
 /// Who finds nothing left waits, awake, for those who are at their last parts: who falls asleep has to be woken for the
-/// next stage, or for the next call, and that takes longer. All that is waited for is being worked on, so that nobody
-/// waits for somebody who waits.
+/// next stage, or for the next call, and that takes longer. All that is waited for is being worked on, so that no
+/// thread waits for one that waits.
 fn each(stages: usize, parts: usize, work: &(dyn Fn(usize, usize) + Sync)) {
     release();
     let taken: Vec<AtomicBool> = (0..stages * parts).map(|_| AtomicBool::new(false)).collect();
@@ -121,8 +121,8 @@ impl Drop for Release {
 }
 
 /// What `work` gives, done by one thread while the others wait for the next parts, awake: to be woken would take them
-/// longer than `work` takes. Once `work` has parts for them itself, they wait no longer; else somebody who waited for his
-/// parts to be taken, and kept others awake meanwhile, could wait for somebody who does the same.
+/// longer than `work` takes. Once `work` has parts for them itself, they wait no longer; else a thread that waited for its
+/// parts to be taken, and kept others awake meanwhile, could wait for one that does the same.
 pub fn keep_awake<R>(work: impl FnOnce() -> R) -> R {
     let others = rayon::current_num_threads() - 1;
     if others == 0 {
@@ -191,8 +191,8 @@ mod tests {
         let (sender, finished) = std::sync::mpsc::channel();
         for _ in 0..others {
             let (both, sender) = (Arc::clone(&both), sender.clone());
-            // None of the pool's own threads, which all are kept awake once everybody has come here and some time has
-            // passed; then everybody has parts for them, as when lists are made anew.
+            // None of the pool's own threads, which all are kept awake once all have come here and some time has
+            // passed; then all have parts for them, as when lists are made again.
             std::thread::spawn(move || {
                 let parts = || {
                     both.wait();

@@ -300,7 +300,7 @@ fn gravity_costs_one_sum_a_component() {
     assert_eq!(sums([1.0, -9.81]), sums([0.0, 0.0]) + 2);
 }
 
-/// A disc in no cell (a stray) feels gravity and no force; nobody else's force is taken for its own.
+/// A disc in no cell (a stray) feels gravity and no force; no other disc's force is taken for its own.
 #[test]
 fn a_disc_in_no_cell_feels_no_force() {
     let mut discs = Discs::new(1e-2, 5, |_, _, _| 0.0);

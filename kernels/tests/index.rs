@@ -169,7 +169,7 @@ fn coordinates_on_the_lattice_are_the_places_of_the_discs() {
 }
 
 /// Outside a closed side, not a number, infinite, or more than a period away: no cell, counted as a stray and
-/// (its Index does not name it) as a conflict; nobody else is disturbed.
+/// (its Index does not name it) as a conflict; no other disc is disturbed.
 #[test]
 fn strays_belong_to_no_cell_and_are_counted() {
     let frame = Frame { origin: [-3.0, 2.0], edge: [1.5, 1.25] };

@@ -123,7 +123,7 @@ proptest! {
             }
         }
         assert_same(&found(&list, &places), &naive(&positions, sides, periodic, reach), reach);
-        // Numbered anew, lists made anew: the same pairs by their new numbers.
+        // Renumbered, lists made again: the same pairs by their new numbers.
         let Scattered { mut sectors, places, .. } = scattered(sides, periodic, reach, skin, discs, seed);
         let order = sectors.order();
         sectors.renumber(&order);

@@ -32,7 +32,7 @@ fn lattice(mask: &Mask) -> (LatticeShape, Frame) {
     (shape, Frame { origin: [0.0, 0.0], edge: [1.1, 1.2] })
 }
 
-/// What an instruction reads, told from its action alone.
+/// What an instruction reads, by its action alone.
 fn reads<L: Copy>(action: &Action<L>) -> Vec<RegisterName> {
     let register = |operand: &Operand<L>| match operand {
         Operand::Register(name) => Some(*name),
@@ -98,12 +98,12 @@ fn registers_are_sound<L: Element>(name: &str, tape: &Tape<L>) {
         if let Some(to) = instruction.to() {
             if let Some(before) = held.insert(to, last_read.len()) {
                 let (_, written, read) = last_read[before];
-                assert!(read > written, "{name}: {} overwrites {to}, which nobody read", at + 1);
+                assert!(read > written, "{name}: {} overwrites {to}, which was never read", at + 1);
             }
             last_read.push((to.file, at, at));
         }
     }
-    assert!(last_read.iter().all(|(_, written, read)| read > written), "{name}: results that nobody reads");
+    assert!(last_read.iter().all(|(_, written, read)| read > written), "{name}: results that are never read");
     for file in File::ALL {
         let alive = |at: usize| {
             last_read.iter().filter(|(of, written, read)| *of == file && *written <= at && at < *read).count()

@@ -242,7 +242,8 @@ pulp_element!(
 fn same_value<A: Copy + 'static, B: Copy + 'static>(value: A) -> Option<B> {
     let register = [TypeId::of::<pulp::m64x4>(), TypeId::of::<pulp::m32x8>()].contains(&TypeId::of::<A>());
     let same = TypeId::of::<A>() == TypeId::of::<B>() || (register && size_of::<A>() == size_of::<B>());
-    // SAFETY: one type, or a 256-bit register as plain data of the same size.
+    // SAFETY: A and B are one type, or A is a 256-bit register of truth values and B plain data of the same size, for which
+    // every pattern of bits is a value.
     (same && size_of::<A>() == size_of::<B>()).then(|| unsafe { std::mem::transmute_copy(&value) })
 }
 

@@ -108,10 +108,10 @@ impl<'m, R: Registers> Strip<'m, R> {
     pub(crate) fn load_from<T: Element>(self, column: Column<T>, shift: isize) -> R::V {
         let from = self.place(column, shift);
         if same::<T, R::Lane>() {
-            // SAFETY: T is Lane; LANES elements exist (footprint).
+            // SAFETY: T is Lane, and the admitted footprint covers the LANES elements from base + shift on.
             unsafe { self.registers.load(from.cast()) }
         } else {
-            // SAFETY: LANES elements exist (footprint).
+            // SAFETY: lane < LANES, and the admitted footprint covers the LANES elements from base + shift on.
             self.assemble(|lane| R::Lane::from_f64(unsafe { *from.add(lane) }.to_f64()))
         }
     }
@@ -121,10 +121,10 @@ impl<'m, R: Registers> Strip<'m, R> {
     pub(crate) fn store_to<T: Element>(self, column: Column<T>, value: R::V) {
         let to = self.place(column, 0);
         if same::<T, R::Lane>() {
-            // SAFETY: T is Lane; LANES elements exist and are writable (footprint).
+            // SAFETY: T is Lane, and the admitted footprint has the LANES elements from base on as written ones.
             unsafe { self.registers.store(to.cast(), value) };
         } else {
-            // SAFETY: LANES elements exist and are writable (footprint).
+            // SAFETY: lane < LANES, and the admitted footprint has the LANES elements from base on as written ones.
             self.disperse(value, |lane, number| unsafe { *to.add(lane) = T::from_f64(number.to_f64()) });
         }
     }
@@ -142,13 +142,13 @@ impl<'m, R: Registers> Strip<'m, R> {
             let number = index.lane(lane);
             let is_none = number == 0;
             let from = select_unpredictable(is_none, &raw const nothing, column.entry(number));
-            // SAFETY: an entry that there is, or the one above.
+            // SAFETY: `entry` has made sure that the number is an element's; where it is 0 the pointer is to `nothing`.
             let element = R::Lane::from_f64(unsafe { *from }.to_f64());
-            // SAFETY: written by the store above.
+            // SAFETY: lane < LANES, and the store of `elsewhere` has written LANES elements of the spill.
             let to = unsafe { &mut *spill.start().add(lane) };
             *to = select_unpredictable(is_none, *to, element);
         }
-        // SAFETY: all LANES elements were written.
+        // SAFETY: the store of `elsewhere` has written LANES elements of the spill.
         unsafe { self.registers.load(spill.start()) }
     }
 
@@ -158,7 +158,7 @@ impl<'m, R: Registers> Strip<'m, R> {
         let from = self.place(column, 0);
         let mut index = R::Index::none();
         for lane in 0..R::LANES {
-            // SAFETY: LANES elements exist (footprint).
+            // SAFETY: lane < LANES, and the admitted footprint covers the LANES elements from base on.
             index.set_lane(lane, unsafe { *from.add(lane) });
         }
         index
@@ -169,7 +169,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     pub(crate) fn store_index_to(self, column: Column<u32>, value: R::Index) {
         let to = self.place(column, 0);
         for lane in 0..R::LANES {
-            // SAFETY: LANES elements exist and are writable (footprint).
+            // SAFETY: lane < LANES, and the admitted footprint has the LANES elements from base on as written ones.
             unsafe { *to.add(lane) = value.lane(lane) };
         }
     }
@@ -203,10 +203,10 @@ impl<'m, R: Registers> Strip<'m, R> {
     fn assemble(self, mut number: impl FnMut(usize) -> R::Lane) -> R::V {
         let mut spill = Spill::<R::Lane>::new();
         for lane in 0..R::LANES {
-            // SAFETY: LANES <= MAX_LANES elements of the spill are written.
+            // SAFETY: lane < LANES <= MAX_LANES, the elements that the spill has room for.
             unsafe { spill.start().add(lane).write(number(lane)) };
         }
-        // SAFETY: those LANES elements were just written.
+        // SAFETY: the loop has written the spill's first LANES elements.
         unsafe { self.registers.load(spill.start()) }
     }
 
@@ -217,7 +217,7 @@ impl<'m, R: Registers> Strip<'m, R> {
         // SAFETY: the spill has room for MAX_LANES >= LANES elements, all of them written by the store.
         unsafe { self.registers.store(spill.start(), value) };
         for lane in 0..R::LANES {
-            // SAFETY: written above.
+            // SAFETY: lane < LANES, and the store of `value` has written LANES elements of the spill.
             take(lane, unsafe { spill.start().add(lane).read() });
         }
     }

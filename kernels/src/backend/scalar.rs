@@ -20,12 +20,12 @@ impl<T: Element> Registers for Scalar<T> {
     }
     #[inline(always)]
     unsafe fn load(self, from: *const T) -> T {
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller promises LANES = 1 number there.
         unsafe { *from }
     }
     #[inline(always)]
     unsafe fn store(self, to: *mut T, value: T) {
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller promises LANES = 1 number there that may be written.
         unsafe { *to = value }
     }
     #[inline(always)]

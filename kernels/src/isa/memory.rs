@@ -73,7 +73,7 @@ impl<T: Storage> Column<T> {
     #[inline(always)]
     pub(crate) unsafe fn at(&self, position: usize) -> *mut T {
         debug_assert!(position <= self.length, "element {position} of {}", self.length);
-        // SAFETY: the caller keeps the position within the slice the column was made from.
+        // SAFETY: the caller promises that the position is in the slice that the column was made from, or at its end.
         unsafe { self.origin.add(position) }
     }
 
@@ -84,7 +84,8 @@ impl<T: Storage> Column<T> {
     #[inline(always)]
     pub(crate) fn read(&self, position: usize) -> T {
         assert!(position < self.length, "gather from element {position} of {}", self.length);
-        // SAFETY: just checked; bound columns point to live slices.
+        // SAFETY: the position is below the length (asserted above), and a column points to a slice of that length which the
+        // memory borrows for as long as it lives.
         unsafe { *self.origin.add(position) }
     }
 
@@ -107,7 +108,8 @@ impl<T: Storage> Column<T> {
     #[inline(always)]
     pub(crate) fn write(&self, position: usize, value: T) {
         assert!(self.writable && position < self.length, "scatter to element {position} of {}", self.length);
-        // SAFETY: just checked; writable columns come from exclusive borrows.
+        // SAFETY: the position is below the length (asserted above), and a column is writable only if it was made from an
+        // exclusive borrow of that slice.
         unsafe { *self.origin.add(position) = value }
     }
 }

@@ -35,11 +35,11 @@ struct Pages {
 
 // SAFETY: the memory belongs to no thread; who may use which part of it is the rows' affair, and no two rows share any.
 unsafe impl Send for Pages {}
-// SAFETY: as above.
+// SAFETY: through a shared reference only `origin` and `length` are read, which never change.
 unsafe impl Sync for Pages {}
 
 impl Pages {
-    /// As many as so many bytes need.
+    /// As many as hold `bytes` bytes.
     fn holding(bytes: usize) -> Arc<Pages> {
         let length = bytes.next_multiple_of(LARGE);
         let failed = || -> ! { handle_alloc_error(Layout::new::<[u8; LARGE]>()) };
@@ -59,7 +59,7 @@ thread_local! {
     static SHARED: RefCell<Option<(Arc<Pages>, usize)>> = const { RefCell::new(None) };
 }
 
-/// Room for so many bytes that begin at a line of such a number.
+/// Room for `bytes` bytes that begins at the line of a row with this number.
 fn room(number: usize, bytes: usize) -> (Arc<Pages>, NonNull<u8>) {
     let line = number * APART * LINE % ALIKE;
     // The first place from `taken` on that looks like that line.
@@ -93,7 +93,7 @@ pub struct OnLines<X> {
 
 // SAFETY: a row owns its elements, as a vector does.
 unsafe impl<X: Send> Send for OnLines<X> {}
-// SAFETY: as above.
+// SAFETY: a shared row gives out shared references to its elements, and nothing else.
 unsafe impl<X: Sync> Sync for OnLines<X> {}
 
 impl<X: Clone> OnLines<X> {
@@ -102,7 +102,7 @@ impl<X: Clone> OnLines<X> {
         OnLines::from_vec(number, &values.into_iter().collect::<Vec<X>>())
     }
 
-    /// The same value so many times.
+    /// The same value `length` times.
     pub fn filled(number: usize, value: X, length: usize) -> OnLines<X> {
         OnLines::written(number, length, |_| value.clone())
     }
@@ -119,7 +119,7 @@ impl<X: Clone> OnLines<X> {
         let (pages, start) = room(number, length * size_of::<X>());
         let start = start.cast::<X>();
         for at in 0..length {
-            // SAFETY: there is room for so many, at a line's beginning, and nobody else has it.
+            // SAFETY: `room` has given `length` elements' bytes, at the beginning of a line, to this row alone.
             unsafe { start.add(at).write(value(at)) };
         }
         OnLines { number, start, length, _pages: Some(pages) }
@@ -156,7 +156,8 @@ impl<X> Deref for OnLines<X> {
 
 impl<X> DerefMut for OnLines<X> {
     fn deref_mut(&mut self) -> &mut [X] {
-        // SAFETY: as above.
+        // SAFETY: all `length` elements were written when the row was made, no other row has them, and this one is borrowed
+        // exclusively.
         unsafe { std::slice::from_raw_parts_mut(self.start.as_ptr(), self.length) }
     }
 }

@@ -123,7 +123,7 @@ enum Source<L> {
     Uniform(L),
 }
 
-/// The strip that instructions pass over: so many hardware registers from element `base` on.
+/// The strip that instructions pass over: `length` hardware registers from element `base` on.
 #[derive(Clone, Copy)]
 struct Span<'m, R> {
     hardware: R,
@@ -151,7 +151,7 @@ impl<'m, R: Registers> Span<'m, R> {
     /// `from` begins as many lanes as the span holds.
     #[inline(always)]
     unsafe fn read(self, from: *const R::Lane, register: usize) -> R::V {
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller promises `length` registers' worth of lanes from `from` on, and the register is one of these.
         unsafe { self.hardware.load(from.add(register * R::LANES)) }
     }
 
@@ -162,7 +162,7 @@ impl<'m, R: Registers> Span<'m, R> {
     #[inline(always)]
     unsafe fn lanes(self, source: Source<R::Lane>, register: usize) -> R::V {
         match source {
-            // SAFETY: the caller's promise.
+            // SAFETY: the caller promises that the source begins as many lanes as the span holds.
             Source::Lanes(from) => unsafe { self.read(from, register) },
             Source::Uniform(value) => self.hardware.splat(value),
         }
@@ -180,7 +180,7 @@ impl<'m, R: Registers> Span<'m, R> {
     #[inline(always)]
     fn unary<X: Copy>(self, to: &[Cell<X>], a: Source<R::Lane>, f: impl Fn(usize, R::V) -> X) {
         match a {
-            // SAFETY: sources have the span's lanes.
+            // SAFETY: a source is a register of the file or admitted memory, with all lanes of the span; i is below its length.
             Source::Lanes(a) => self.each(to, |i| f(i, unsafe { self.read(a, i) })),
             Source::Uniform(a) => {
                 let a = self.hardware.splat(a);
@@ -200,7 +200,7 @@ impl<'m, R: Registers> Span<'m, R> {
     ) {
         match (a, b) {
             (Source::Lanes(a), Source::Lanes(b)) => {
-                // SAFETY: sources have the span's lanes.
+                // SAFETY: sources are registers of the file or admitted memory, with all lanes of the span; i is below its length.
                 self.each(to, |i| f(i, unsafe { self.read(a, i) }, unsafe { self.read(b, i) }));
             }
             (a, Source::Uniform(b)) => {
@@ -342,7 +342,7 @@ impl<R: Registers> RegisterFiles<R> {
     ) {
         let (index, elsewhere) = (self.index(index), self.source(elsewhere, span));
         span.each(to, |i| {
-            // SAFETY: sources have the span's lanes.
+            // SAFETY: the source is a register of the file or admitted memory, with all lanes of the span; i is below its length.
             span.at(i).gather_from(column, index[i].get(), unsafe { span.lanes(elsewhere, i) })
         });
     }
@@ -414,7 +414,7 @@ impl<R: Registers> RegisterFiles<R> {
     fn store<T: Element>(&self, span: Span<'_, R>, column: Column<T>, value: &Operand<R::Lane>) {
         let value = self.source(value, span);
         for i in 0..span.length {
-            // SAFETY: sources have the span's lanes.
+            // SAFETY: the source is a register of the file or admitted memory, with all lanes of the span; i is below its length.
             let value = unsafe { span.lanes(value, i) };
             span.at(i).store_to(column, value);
         }

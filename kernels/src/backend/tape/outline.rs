@@ -25,7 +25,7 @@ pub enum Place {
 pub struct Outline {
     /// The operation.
     pub op: Op,
-    /// Whether numbers change their precision on the way ([`Op::Widen`] is counted besides).
+    /// Whether numbers change their precision on the way ([`Op::Widen`] is counted too).
     pub converts: bool,
     /// The vectors it reads; scalar operands are none.
     pub reads: Vec<Place>,

@@ -37,7 +37,7 @@ impl<X: Copy> RegisterFile<X> {
     /// A register.
     ///
     /// # Panics
-    /// If there are not so many.
+    /// If there is none of that number.
     #[inline(always)]
     pub(super) fn register(&self, number: u32) -> &[Cell<X>] {
         let start = self.stride * number as usize;
@@ -45,7 +45,7 @@ impl<X: Copy> RegisterFile<X> {
     }
 }
 
-/// Lines from one register of so many lines to the next: an odd number, so that registers spread over all of a cache, and
+/// Lines from one register of `lines` lines to the next: an odd number, so that registers spread over all of a cache, and
 /// those of long ones so that a pass does not write near what it reads as far as the processor sees.
 fn lines_apart(lines: usize) -> usize {
     let mut apart = lines | 1;

@@ -1,4 +1,22 @@
 //! Corrector and next predictor in one pass over the discs.
+//!
+//! ```text
+//! a step as written:   predict | find forces | correct
+//! as executed:                   find forces | correct, predict | find forces | correct, predict | ...
+//! ```
+//!
+//! The state that a pass leaves is that of the predictor; an observer, which wants the state at the end of the step, corrects a
+//! copy ([`Motion::corrected`]). So every column is read once and written once a step. On the way, while all is in registers:
+//!
+//! - the sums of forces are set to zero for the next sweep;
+//! - each disc's place is compared with how far it may go before the search must know: the rim of its cell, or half the skin
+//!   of a list. Few have gone so far; their numbers are collected from the bits of one comparison a register;
+//! - so is the length of its next step, which must not carry it past another disc unseen;
+//! - for a search on the lattice the place is copied to the disc's cell in single precision. That is a store to a cell of its
+//!   own for every disc, so it needs no order between threads. (Discs in a cell that is another's write to one spare place
+//!   behind the lattice, atomically, which is never read.)
+//!
+//! Derivatives that a scheme does not carry from step to step are not stored ([`Scheme::CARRIED`]).
 
 use crate::InstructionSet;
 use crate::backend::{Precision, Registers, Scalar};
@@ -27,7 +45,7 @@ pub struct Motion<C> {
     pub seed: u64,
 }
 
-/// How far a disc may go before somebody must see to it.
+/// How far a disc may go before the search must know.
 #[derive(Clone, Copy, Debug)]
 pub enum Leash<'a, S> {
     /// As far as the rim of its cell, of these sides (length).
@@ -52,7 +70,7 @@ pub struct Passed {
 
 /// Copies of the places for a search in single precision: written beside the state, while it is at hand.
 ///
-/// Only the lattice makes them, and every cell is one of `places`, of one disc or of nobody's.
+/// Only the lattice makes them, and every cell is one of `places`, of one disc or of none.
 #[derive(Debug)]
 pub struct Copies<'a> {
     /// Where in the copies the discs are.
@@ -311,7 +329,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
         let unit = uniform(self.unit);
         for axis in 0..2 {
             let mut along = [S::default(); 16];
-            // SAFETY: LANES <= 16.
+            // SAFETY: `along` has 16 entries, and no register has more lanes.
             unsafe { registers.store(along.as_mut_ptr(), place[axis] * unit) };
             // First all, then one by one: so they are converted at once.
             let along = along.map(|along| along.to_f64() as f32);
@@ -330,11 +348,11 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
 /// Loads sums and sets them to zero.
 ///
 /// # Safety
-/// There are as many as a register has lanes, at most 16, and nobody else touches them.
+/// There are as many as a register has lanes, at most 16, and no other thread touches them.
 #[inline(always)]
 unsafe fn take<R: Registers, P: Element>(registers: R, sums: *mut P) -> R::V {
     if same::<P, R::Lane>() {
-        // SAFETY: P is Lane; the rest is the caller's promise.
+        // SAFETY: P is Lane, and the caller promises LANES sums that are this thread's alone.
         return unsafe {
             let value = registers.load(sums.cast());
             registers.store(sums.cast(), registers.splat(R::Lane::default()));
@@ -343,11 +361,11 @@ unsafe fn take<R: Registers, P: Element>(registers: R, sums: *mut P) -> R::V {
     }
     let mut lanes = [R::Lane::default(); 16];
     for (lane, number) in lanes.iter_mut().enumerate().take(R::LANES) {
-        // SAFETY: the caller's promise.
+        // SAFETY: lane < LANES, and the caller promises LANES sums that are this thread's alone.
         let sum = unsafe { &mut *sums.add(lane) };
         *number = R::Lane::from_f64(sum.to_f64());
         *sum = P::default();
     }
-    // SAFETY: LANES <= 16 numbers.
+    // SAFETY: `lanes` has 16 entries, and no register has more lanes.
     unsafe { registers.load(lanes.as_ptr()) }
 }

@@ -1,9 +1,29 @@
 //! A sweep in bands of rows, on any number of threads.
+//!
+//! Pairs are found from the disc in the lower row (or to the left in the same one), so that a pair of a row adds to discs of
+//! that row and of at most `ahead` rows further up. Rows are cut into bands at least twice as high as that. With `ahead` = 2:
+//!
+//! ```text
+//!   row 11 ┐               stage 1   ─┐ adds to rows 10 to 13
+//!   row 10 │               stage 1   ─┘
+//!   row  9 │ band B        stage 0   ─┐
+//!    ...   │                ...       │ adds to rows 6 to 11
+//!   row  6 ┘               stage 0   ─┘
+//!   row  5 ┐               stage 1   ─┐ adds to rows 4 to 7
+//!   row  4 │               stage 1   ─┘
+//!   row  3 │ band A        stage 0   ─┐
+//!    ...   │                ...       │ adds to rows 0 to 5
+//!   row  0 ┘               stage 0   ─┘
+//! ```
+//!
+//! Within a stage no two bands add to the same row. So threads need no copies of the sums and no atomic additions, and as the
+//! bands are a function of the scene, the order of every sum is the same on any number of threads. The last band's partners
+//! beyond the last row are, on a periodic side, those of the first rows, which band A leaves alone in stage 1.
 
 use super::SENTINELS;
 use super::contacts::{Discs, Evaluate, Notes, SumColumns};
 use super::finder::{Cursor, Finder, Pairs, Rows};
-use super::sectors::Touches;
+use super::near::Touches;
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};

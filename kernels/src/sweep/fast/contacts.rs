@@ -1,4 +1,23 @@
-//! The law for the contacts found, gathered into registers.
+//! The law for the pairs found, a register of them at a time.
+//!
+//! ```text
+//! pairs      (3,7) (3,9) (5,8) (6,8)            as many as a register has lanes
+//! gather     own     x: x[3] x[3] x[5] x[6]     a load a lane; the law names the columns
+//!            partner x: x[7] x[9] x[8] x[8]
+//! law        one evaluation for all lanes       -> forces on own and on partner
+//! add        F[3] += lane 0, F[7] -= lane 0,    lane after lane, own before partner
+//!            F[3] += lane 1, F[9] -= lane 1, ...
+//! ```
+//!
+//! Why so:
+//!
+//! - *Gathers are loads a lane*, for no portable SIMD has an instruction for them.
+//! - *Sums are added lane after lane*: two lanes may add to one disc, as above to 3 and to 8, and the order of summation must
+//!   not depend on how many lanes there are.
+//! - *The last register is filled up with a pair of sentinels*, two discs behind the others that never touch. So the law needs
+//!   no second version for a part of a register.
+//! - *Reads are not checked against the columns' ends.* Columns are checked once a sweep, pairs are of discs by the
+//!   [`Finder`](super::Finder)'s promise, and a law has no other columns than those it states ([`Stated`]).
 
 use super::SENTINELS;
 use super::finder::Pairs;
@@ -48,15 +67,16 @@ impl<'a, S: Element> Discs<'a, S> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SumColumns<P>(pub(super) [*mut P; 3]);
 
-// SAFETY: the bands of a sweep see to what is touched.
+// SAFETY: a sweep gives each thread bands of rows, and in each stage no disc is of the rows or partners of two bands: what one
+// thread adds to, no other touches.
 unsafe impl<P: Send> Send for SumColumns<P> {}
-// SAFETY: as above.
+// SAFETY: a shared one gives out copies of the pointers only; for what is done with them the same holds.
 unsafe impl<P: Send> Sync for SumColumns<P> {}
 
 /// Two discs.
 pub(super) type Pair = [u32; 2];
 
-/// What came up besides the sums.
+/// What came up beside the sums.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Notes {
     /// Pairs deeper than the depth watched.
@@ -125,17 +145,17 @@ fn assemble<R: Registers>(registers: R, number: impl Fn(usize) -> R::Lane) -> R:
     let mut lanes = MaybeUninit::<Lanes<R::Lane>>::uninit();
     let first = lanes.as_mut_ptr().cast::<R::Lane>();
     for lane in 0..R::LANES {
-        // SAFETY: LANES <= GROUP.
+        // SAFETY: lane < LANES <= GROUP, the entries that `lanes` has room for.
         unsafe { first.add(lane).write(number(lane)) };
     }
-    // SAFETY: just written.
+    // SAFETY: the loop has written the first LANES entries.
     unsafe { registers.load(first) }
 }
 
 #[inline(always)]
 fn spill<R: Registers>(registers: R, value: R::V) -> Lanes<R::Lane> {
     let mut lanes = [R::Lane::default(); GROUP];
-    // SAFETY: LANES <= GROUP.
+    // SAFETY: `lanes` has GROUP entries, and LANES <= GROUP.
     unsafe { registers.store(lanes.as_mut_ptr(), value) };
     lanes
 }
@@ -241,7 +261,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
             ([own[lane], partner[lane]], [ways[0][lane], ways[1][lane]]) = self.pairs.pair(first + lane);
         }
         let zero = || Cell::new(registers.splat(P::default()));
-        // SAFETY: LANES <= GROUP.
+        // SAFETY: each array has GROUP entries, and LANES <= GROUP.
         let way = ways.map(|way| unsafe { registers.load(way.as_ptr()) });
         let gathered = Gathered {
             registers,

@@ -1,7 +1,7 @@
 //! What a sweep asks of whatever finds its pairs.
 
 use super::contacts::Pair;
-use super::sectors::Touches;
+use super::near::Touches;
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::ProgramError;
@@ -63,7 +63,7 @@ pub trait Pairs<P> {
     /// Two discs, and the way from where the first one's place is seen from to where the second one's is (length).
     ///
     /// # Panics
-    /// May, if there are not so many pairs.
+    /// May, if there is no pair of that number.
     fn pair(&self, number: usize) -> (Pair, [P; 2]);
 }
 

@@ -1,11 +1,30 @@
 //! The fast execution: each pair is met once, contacts are looked for first, and the law is asked about contacts only.
 //!
-//! A [`Finder`] finds pairs that may touch: whether two discs do is the law's to decide. On the [`lattice`] an
-//! [`Occupancy`](lattice::Occupancy) keeps which disc is in which cell, brought up to date by the discs that change
-//! cells, and beside it the discs' places inside their cells, in single precision, which are compared in registers of
-//! neighbouring cells. Its rivals are [`Sectors`], which hold any number of discs, and the [`VerletList`] with a skin.
-//! A [`Sweep`] evaluates the law, in full precision, for what was found, gathered. [`Advance`] is corrector and next
-//! predictor in one pass.
+//! ```text
+//! for every band of rows, in two stages:            Sweep      bands.rs
+//!     until the rows are searched:
+//!         find some 500 pairs that may touch        Finder     lattice/, sectors.rs, verlet.rs
+//!         law for a register of pairs at a time     Evaluate   contacts.rs
+//!         add to the sums, pair by pair
+//! for every disc:                                   Advance    advance.rs
+//!     correct with its sums, predict the next step, list it if it left its cell
+//! ```
+//!
+//! Why it is fast:
+//!
+//! - *Each pair once.* A pair is found from one of its discs only, the one that comes first, so half of the pairs are tried,
+//!   and the law is evaluated once for both discs.
+//! - *Found first, computed later.* Most pairs that are near are no contacts, and the law is costly (a root, two divisions,
+//!   velocities to load). The search compares distances only, on the lattice in single precision with a margin; the law
+//!   then sees registers nearly full of contacts, in full precision.
+//! - *Some 500 pairs at a time.* The pairs and the columns of their discs are still in the first-level cache when the law
+//!   reads them.
+//! - *One pass for corrector and predictor.* The state is read and written once a step.
+//!
+//! A [`Finder`] finds pairs that may touch: every pair that does, once, and some others; whether two discs touch is the law's
+//! to decide. On the [`lattice`] an [`Occupancy`](lattice::Occupancy) keeps which disc is in which cell, brought up to date
+//! by the discs that change cells. Its rivals are [`Sectors`], which hold any number of discs, and the [`VerletList`] with a
+//! skin.
 //!
 //! Sums are in the finder's order, one contact after the other, inside bands of rows that depend on the scene alone:
 //! instruction set, threads and the order of the discs in memory change no bit.
@@ -15,6 +34,7 @@ mod bands;
 mod contacts;
 mod finder;
 pub mod lattice;
+mod near;
 mod sectors;
 mod verlet;
 
@@ -22,7 +42,8 @@ pub use advance::{Advance, Copies, Leash, Motion, Passed};
 pub use bands::{Met, Sweep};
 pub use contacts::Discs;
 pub use finder::{Cursor, Finder, Pairs, Rows};
-pub use sectors::{Grid, GridError, Sectors, Touches};
+pub use near::Touches;
+pub use sectors::{Grid, GridError, Sectors};
 pub use verlet::VerletList;
 
 /// Elements behind the discs' own in every column that a sweep reads: two discs that never touch, which fill up

@@ -1,7 +1,25 @@
 //! Pairs in sectors: cells as wide as a contact reaches, which hold any number of discs.
+//!
+//! A disc's partners are in its own sector and in the eight around it. Each pair of sectors is met from one side:
+//!
+//! ```text
+//! row + 1     2  3  4        ways from a sector to those ahead of it; 0 is itself
+//! own row        0  1
+//! ```
+//!
+//! `members` holds the discs in order of their sectors, `starts` where each sector begins, so that the sectors 0 and 1 are one
+//! stretch of members, and 2, 3 and 4 another:
+//!
+//! ```text
+//! starts    0  2  2  5 ...           sector 1 is empty
+//! members   8  3  1  4  9 ...        within a sector in an order that does not depend on what went before
+//! ```
+//!
+//! Inside the box a disc is compared with two stretches, each in one loop; at the rim, where a stretch ends or goes on at the
+//! other side of the box, sector by sector.
 
-use super::SENTINELS;
-use super::finder::{AT_ONCE, Cursor, Finder, MARGIN, Pairs, Rows};
+use super::finder::{Cursor, Finder, Pairs, Rows};
+use super::near::{Near, Touches};
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};
@@ -107,7 +125,7 @@ impl Grid {
         Some([along(0, column, columns)?, along(1, row, rows)?])
     }
 
-    /// From the centre of a sector to the one that lies so many columns and rows from it (length).
+    /// From the centre of a sector to the one that lies `ahead` columns and rows from it (length).
     fn way(&self, ahead: [isize; 2]) -> [f64; 2] {
         [0, 1].map(|axis| ahead[axis] as f64 * self.frame.edge[axis])
     }
@@ -122,7 +140,7 @@ impl Grid {
     }
 }
 
-/// Who is in which sector. The discs of a sector are kept in an order that is told, so that no sum's order depends on
+/// Who is in which sector. The discs of a sector are kept in an order that the caller gives, so that no sum's order depends on
 /// what went before.
 #[derive(Clone, Debug)]
 pub struct Sectors {
@@ -185,7 +203,7 @@ impl Sectors {
         self.sector[disc] = NOWHERE;
     }
 
-    /// Makes everybody a member of the sector he is in, those of a sector in order of their `number`.
+    /// Makes every disc a member of the sector it is in, those of a sector in order of their `number`.
     pub fn arrange(&mut self, number: impl Fn(usize) -> usize) {
         let Sectors { sector, starts, members, .. } = self;
         starts.fill(0);
@@ -213,19 +231,19 @@ impl Sectors {
         self.members.clone()
     }
 
-    /// Numbers the discs anew: disc `n` is from now on what disc `order[n]` was.
+    /// Renumbers the discs: disc `n` is from now on what disc `order[n]` was.
     ///
     /// # Panics
     /// If `order` does not name every disc once.
     pub fn renumber(&mut self, order: &[u32]) {
         assert_eq!(order.len(), self.sector.len(), "an order of all discs");
-        let mut anew = vec![NOWHERE; order.len()];
+        let mut now = vec![NOWHERE; order.len()];
         for (disc, &before) in order.iter().enumerate() {
-            let first = std::mem::replace(&mut anew[before as usize], disc as u32) == NOWHERE;
+            let first = std::mem::replace(&mut now[before as usize], disc as u32) == NOWHERE;
             assert!(first, "disc {before} is named twice");
         }
         self.sector = order.iter().map(|&before| self.sector[before as usize]).collect();
-        self.members.iter_mut().for_each(|member| *member = anew[*member as usize]);
+        self.members.iter_mut().for_each(|member| *member = now[*member as usize]);
     }
 
     /// The members of a sector and those that follow in the row, up to `more` sectors on.
@@ -283,118 +301,7 @@ impl Sectors {
     }
 }
 
-/// Two discs that may touch, and the way between where their places are seen from (length).
-#[derive(Clone, Copy, Debug)]
-pub struct Touch<P> {
-    discs: [u32; 2],
-    way: [P; 2],
-}
-
-/// A list of pairs.
-#[derive(Clone, Debug, Default)]
-pub struct Touches<P>(Vec<Touch<P>>);
-
-impl<P: Precision> Touches<P> {
-    /// Appends a pair.
-    pub(super) fn push(&mut self, discs: [u32; 2], way: [f64; 2]) {
-        self.0.push(Touch { discs, way: way.map(P::from_f64) });
-    }
-}
-
-impl<P: Precision> Pairs<P> for &Touches<P> {
-    #[inline(always)]
-    fn count(&self) -> usize {
-        self.0.len()
-    }
-    #[inline(always)]
-    fn pair(&self, number: usize) -> ([u32; 2], [P; 2]) {
-        let Touch { discs, way } = self.0[number];
-        (discs, way)
-    }
-}
-
-/// Lists the pairs nearer than some distance among those it is told.
-pub(super) struct Near<'a, S, P> {
-    places: [&'a [S]; 2],
-    ways: [[f64; 2]; 5],
-    limit: f64,
-    touches: &'a mut Vec<Touch<P>>,
-}
-
-impl<'a, S: Element, P: Precision> Near<'a, S, P> {
-    /// For `discs` discs that touch at most at a distance `reach` (length).
-    ///
-    /// # Panics
-    /// If there are not so many places.
-    pub(super) fn new(
-        places: [&'a [S]; 2],
-        discs: usize,
-        grid: &Grid,
-        reach: f64,
-        touches: &'a mut Touches<P>,
-    ) -> Self {
-        assert!(places.iter().all(|place| place.len() == discs + SENTINELS), "a place for every disc");
-        touches.0.clear();
-        let limit = reach * reach * MARGIN;
-        Near { places, ways: grid.ways(), limit, touches: &mut touches.0 }
-    }
-
-    /// Goes on through rows, piece by piece of so many in each, until enough is listed.
-    #[inline(always)]
-    pub(super) fn search(
-        &mut self,
-        rows: Range<usize>,
-        cursor: &mut Cursor,
-        pieces: impl Fn(usize) -> usize,
-        piece: impl Fn(&mut Self, usize, usize),
-    ) {
-        while cursor.row < rows.end {
-            let there = pieces(cursor.row);
-            while cursor.along < there {
-                if self.touches.len() >= AT_ONCE {
-                    return;
-                }
-                piece(self, cursor.row, cursor.along);
-                cursor.along += 1;
-            }
-            *cursor = Cursor::at(cursor.row + 1);
-        }
-    }
-
-    /// Where a disc is.
-    ///
-    /// # Safety
-    /// It is one of the discs.
-    #[inline(always)]
-    pub(super) unsafe fn at(&self, disc: u32) -> [f64; 2] {
-        // SAFETY: there is a place for every disc, as `new` has made sure.
-        self.places.map(|place| unsafe { place.get_unchecked(disc as usize) }.to_f64())
-    }
-
-    /// Lists a pair if it is near enough.
-    ///
-    /// # Safety
-    /// `second` is one of the discs, and `way` below 5.
-    #[inline(always)]
-    pub(super) unsafe fn meet(&mut self, first: u32, at: [f64; 2], second: u32, way: usize) {
-        // SAFETY: the caller's promise.
-        let (there, way) = unsafe { (self.at(second), *self.ways.get_unchecked(way)) };
-        let (dx, dy) = ((at[0] - there[0]) - way[0], (at[1] - there[1]) - way[1]);
-        let length = self.touches.len();
-        if length == self.touches.capacity() {
-            self.touches.reserve(AT_ONCE);
-        }
-        // Written whether it is near or not: that spares a branch nobody can predict.
-        let touch = Touch { discs: [first, second], way: way.map(P::from_f64) };
-        // SAFETY: there is room for one more.
-        unsafe {
-            self.touches.as_mut_ptr().add(length).write(touch);
-            self.touches.set_len(length + usize::from(dx * dx + dy * dy < self.limit));
-        }
-    }
-}
-
-// SAFETY: members are discs; pairs are of sectors in the row and the next.
+// SAFETY: members are numbers of discs below the length of `sector`; a pair is of sectors in the row and in it or the next.
 unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
     type Found = Touches<P>;
 
@@ -426,7 +333,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
                     column..column + 1,
                     |_| {},
                     |first, second, way| {
-                        // SAFETY: members are discs, and so many are the ways.
+                        // SAFETY: `pairs_of_row` gives members of sectors, which are discs, and numbers of ways below 5.
                         unsafe {
                             if first != last {
                                 (last, at) = (first, near.at(first));

@@ -1,7 +1,22 @@
 //! Pairs from Verlet lists: of every disc the partners that were near when the lists were made.
+//!
+//! Lists hold every pair nearer than contact and skin. While no disc has moved by half the skin since, no other pair can
+//! touch. They are made from [`Sectors`] and lie one behind the other:
+//!
+//! ```text
+//! rows      0           2     3     4    where in `own` the discs of each row of sectors begin, and the end
+//! own       4     9     2     7          the discs in order of their sectors
+//! first     0     3     4     5     5    where in `partners` those of each begin, and the end
+//! partners  9 2 7 2     7                each with the number of the way in its upper three bits
+//! ```
+//!
+//! A pair is listed once, with the disc that comes first in the order of the sectors. The *way* is one of the five from a
+//! sector to those ahead of it (itself first), and stands for the difference of the places from which the two discs are seen;
+//! so a pair across a periodic side costs no more than any other, and no position is ever wrapped.
 
 use super::finder::{Cursor, Finder, Pairs, Rows};
-use super::sectors::{Grid, Near, Sectors, Touches};
+use super::near::{Near, Touches};
+use super::sectors::{Grid, Sectors};
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};
@@ -111,7 +126,8 @@ impl VerletList {
     }
 }
 
-// SAFETY: the lists are of the sectors' members, which are discs; pairs are of sectors in the row and the next.
+// SAFETY: the lists hold members of sectors, which are numbers of discs below `discs`; a pair is of sectors in the row and in it
+// or the next.
 unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
     type Found = Touches<P>;
 
@@ -141,11 +157,11 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
                 let number = discs_of(row).start + along;
                 let disc = self.own[number];
                 let partners = &self.partners[self.first[number] as usize..self.first[number + 1] as usize];
-                // SAFETY: the lists are of discs and ways.
+                // SAFETY: `own` holds numbers of discs: the lists were made of the sectors' members.
                 let at = unsafe { near.at(disc) };
                 for &partner in partners {
                     let (second, way) = (partner & ((1 << DISC) - 1), (partner >> DISC) as usize);
-                    // SAFETY: as above.
+                    // SAFETY: a partner is a member of a sector and so a disc, and `pairs_of_row` numbered its way, below 5.
                     unsafe { near.meet(disc, at, second, way) };
                 }
             },

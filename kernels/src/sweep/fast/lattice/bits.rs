@@ -31,7 +31,7 @@ impl Bits {
     #[inline(always)]
     pub(super) unsafe fn from(&self, position: usize) -> u64 {
         let (word, shift) = (position / 64, position % 64);
-        // SAFETY: the caller's promise: this word and the next exist.
+        // SAFETY: the position is below (words − 1)·64, by the caller's promise, so this word and the next exist.
         unsafe {
             (*self.0.get_unchecked(word) >> shift) | ((*self.0.get_unchecked(word + 1) << 1) << (63 - shift))
         }

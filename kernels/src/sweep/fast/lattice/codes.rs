@@ -53,6 +53,7 @@ pub(super) fn codes(half_width: usize) -> impl Iterator<Item = (usize, [isize; 2
 /// What candidates' codes stand for.
 #[derive(Clone, Debug)]
 pub struct Codes<P> {
+    stride: usize,
     /// From the group's first cell to the own cell and to the partner's.
     cells: Vec<[i32; 2]>,
     /// From the centre of the own cell to that of the partner's (length).
@@ -65,6 +66,7 @@ impl<P: Precision> Codes<P> {
         let stride = occupancy.shape().stride() as isize;
         let all = || codes(occupancy.half_width());
         Codes {
+            stride: occupancy.shape().stride(),
             cells: all()
                 .map(|(lane, [column, row])| [lane as i32, (lane as isize + row * stride + column) as i32])
                 .collect(),
@@ -74,11 +76,18 @@ impl<P: Precision> Codes<P> {
         }
     }
 
+    /// Whether they are of a lattice with rows as long and a mask as wide.
+    pub(super) fn are_of(&self, occupancy: &Occupancy) -> bool {
+        let codes = place_count(occupancy.half_width()) * GROUP;
+        self.stride == occupancy.shape().stride() && self.cells.len() == codes
+    }
+
     /// The two discs of a candidate and the way between their cells.
     #[inline(always)]
     pub(super) fn pair(&self, candidate: Candidate, index: &[u32]) -> ([u32; 2], [P; 2]) {
         let (base, code) = (candidate.base(), candidate.code());
-        // SAFETY: searches make codes below the tables' length, of cells of the padded lattice.
+        // SAFETY: a code is place·GROUP + lane, of which the tables have an entry each. The group and its places lie in the
+        // padded lattice or in the room of a register behind it, which the Index has too.
         unsafe {
             let cells = *self.cells.get_unchecked(code);
             let discs = cells.map(|cell| *index.get_unchecked(base.wrapping_add_signed(cell as isize)));

@@ -1,4 +1,24 @@
-//! Finding contacts: registers of cells against the same cells at every place of the half mask.
+//! Finding contacts where many cells are occupied: registers of cells against the same cells at every place of the half mask.
+//!
+//! ```text
+//! for every group of 16 cells of a row that has a disc:
+//!     for every place of the half mask:
+//!         dx = x[group] - x[group at the place] - way,  dy likewise        a register of cells at a time
+//!         16 bits: dx² + dy² < 1                                           in units of the largest contact distance;
+//!                                                                          (r_i + r_j)² in place of 1 where radii vary
+//!     and these bits with those of the occupied cells                      four places share a word of 64 bits
+//!     append a candidate for every bit that is left
+//! ```
+//!
+//! Why it is fast:
+//!
+//! - *Shifts, not gathers.* Cells of a row lie side by side, so all partners at a place are one load.
+//! - *Single precision.* Places inside cells are copied in single precision ([`Advance`](crate::sweep::fast::Advance)): twice as
+//!   many lanes. A margin of 2·10⁻⁵ covers the rounding, so no contact is missed; the law decides in full precision.
+//! - *No question whether the partner's cell is occupied.* An empty cell's x is so far away that nothing is near it.
+//! - *The way belongs to the own side.* The own place as seen from the columns and rows around is made once a register.
+//! - *Bits, not branches.* Results stay bits until the end, and candidates are appended four at a time, whether there are four
+//!   or not: how many there are cannot be predicted.
 
 use super::codes::{Candidate, place, place_count};
 use super::occupancy::Occupancy;
@@ -57,13 +77,14 @@ impl Search<'_> {
                 let column = cursor.along * GROUP;
                 let base = shape.position(column as isize, cursor.row as isize);
                 let inside = (1 << GROUP.min(shape.columns() - column)) - 1;
-                // SAFETY: the group begins before `end`.
+                // SAFETY: the group begins before `end`, for which there are bits (asserted above).
                 let own = unsafe { occupied.from(base) } & inside;
                 if own != 0 {
                     if found.len() >= full {
                         return;
                     }
-                    // SAFETY: the group's cells and those at its places lie before `end`.
+                    // SAFETY: the group's cells and those at its places, up to H columns and rows on, lie before `end`, and all
+                    // columns have as many entries (asserted above).
                     let near = unsafe {
                         compare::<R, H, VARY>(
                             registers,
@@ -101,9 +122,9 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
     let limit = registers.splat(MARGIN as f32);
     let mut part = 0;
     while part < GROUP {
-        // SAFETY: the caller's promise.
+        // SAFETY: part + LANES <= GROUP, and the caller promises the own cells of a group.
         let (own_x, own_y) = unsafe { (registers.load(x.add(part)), registers.load(y.add(part))) };
-        // SAFETY: as above.
+        // SAFETY: part + LANES <= GROUP, and there is a radius for every cell.
         let own_radius = unsafe { registers.load(radii.add(part)) };
         // The own position as seen from the centres of the columns and rows around.
         let column = |column: isize| own_x - registers.splat(edge[0] * column as f32);
@@ -116,7 +137,7 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
                 if $number < const { place_count(H) } {
                     let [column, row] = const { place(H, $number) };
                     let shift = row * stride as isize + column + part as isize;
-                    // SAFETY: as above.
+                    // SAFETY: the caller promises that all cells of the group exist at all places of the mask.
                     let (dx, dy) = unsafe {
                         (
                             columns[(column + 3) as usize] - registers.load(x.offset(shift)),
@@ -125,7 +146,7 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
                     };
                     let square = dx * dx + dy * dy;
                     let touch = if VARY {
-                        // SAFETY: as above.
+                        // SAFETY: there is a radius for every cell, and these cells exist at all places of the mask.
                         let reach = own_radius + unsafe { registers.load(radii.offset(shift)) };
                         square.less_than(reach * reach * limit)
                     } else {
@@ -158,13 +179,13 @@ pub(super) fn append_bits<T: Copy>(list: &mut Vec<T>, mut bits: u64, of: impl Fn
     let mut listed = 0;
     while {
         for i in 0..AT_ONCE {
-            // SAFETY: listed < 64 here, and there is room for 64 more and a few.
+            // SAFETY: listed < 64 here, and `reserve` has left room for 64 more and AT_ONCE.
             unsafe { list.as_mut_ptr().add(length + listed + i).write(of(bits.trailing_zeros().into())) };
             bits &= bits.wrapping_sub(1);
         }
         listed += AT_ONCE;
         listed < count
     } {}
-    // SAFETY: the first `count` were written.
+    // SAFETY: the loop has written `listed` >= `count` entries behind the first `length`.
     unsafe { list.set_len(length + count) };
 }

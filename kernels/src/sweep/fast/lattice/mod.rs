@@ -1,4 +1,18 @@
 //! Pairs on a lattice with at most one disc a cell: at the places of half the mask.
+//!
+//! A disc's partners lie at fixed shifts from its cell. Of every two opposite places one is looked at: those to the right in
+//! the own row and all of the rows above, numbered so (5×5 cells: 12 places):
+//!
+//! ```text
+//! row + 2     7  8  9 10 11
+//! row + 1     2  3  4  5  6
+//! own row           ·  0  1
+//! ```
+//!
+//! Two searches find the same pairs. Where many cells are occupied, registers of neighbouring cells are compared with the same
+//! cells at a shift, empty or not (`detection.rs`). Where few are ([`SPARSE`]), a bit for every cell tells which, and each disc
+//! asks for the bits around it (`sparse.rs`). Either gives candidates, a word each: the first cell of a group of 16, the place
+//! and the lane (`codes.rs`). From that two loads from tables give the two cells, and two from the Index the discs.
 
 mod bits;
 mod codes;
@@ -10,7 +24,8 @@ pub use codes::Codes;
 pub use occupancy::{Occupancy, SPARSE, Taken};
 
 use super::finder::{AT_ONCE, Cursor, Finder, Pairs, Rows};
-use super::sectors::{Grid, Touches};
+use super::near::Touches;
+use super::sectors::Grid;
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};
@@ -39,7 +54,8 @@ pub struct Candidates {
     cells: Vec<u64>,
 }
 
-// SAFETY: the Index numbers discs, and candidates are pairs of occupied cells, the partner's in the half mask.
+// SAFETY: the Index numbers discs where the bit of a cell is set, and candidates are pairs of such cells: the own one in the rows
+// searched, the partner's at most as many rows ahead as the mask is wide to one side.
 unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
     type Found = Candidates;
 
@@ -61,6 +77,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
     ) -> Result<(), ProgramError> {
         let Lattice { occupancy, codes } = *self;
         let Candidates { candidates: found, cells } = found;
+        assert!(codes.are_of(occupancy), "codes of this lattice");
         found.clear();
         if occupancy.is_sparse() {
             let reach = occupancy.reach();
@@ -73,7 +90,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
         }
     }
 
-    /// Guests with everybody around them, and with each other.
+    /// Guests with all discs around them, and with each other.
     fn find_beside_rows(&self, found: &mut Touches<P>) {
         let occupancy = self.occupancy;
         let (guests, shape) = (occupancy.guests(), occupancy.shape());
@@ -102,6 +119,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
     }
 
     fn pairs<'a>(&'a self, found: &'a Candidates) -> impl Pairs<P> + 'a {
+        assert!(self.codes.are_of(self.occupancy), "codes of this lattice");
         Packed { codes: self.codes, index: self.occupancy.index(), candidates: &found.candidates }
     }
 }

@@ -111,7 +111,7 @@ impl Occupancy {
         (cell != NOWHERE).then(|| self.column_and_row(cell as usize))
     }
 
-    /// Where the copies of a guest's place are written, and nobody reads them: behind the lattice.
+    /// Where the copies of a guest's place are written, where they are never read: behind the lattice.
     fn guest_room(&self) -> u32 {
         self.index.len() as u32 - 1
     }
@@ -244,25 +244,25 @@ impl Occupancy {
             .collect()
     }
 
-    /// Numbers the discs anew: disc `n` is from now on what disc `order[n]` was.
+    /// Renumbers the discs: disc `n` is from now on what disc `order[n]` was.
     ///
     /// # Panics
     /// If `order` does not name every disc once.
     pub fn renumber(&mut self, order: &[u32]) {
         let old = std::mem::replace(&mut self.cell, vec![NOWHERE; self.discs]);
         assert_eq!(order.len(), self.discs, "an order of all discs");
-        let mut anew = vec![NOWHERE; self.discs];
+        let mut now = vec![NOWHERE; self.discs];
         let guest_room = self.guest_room();
         for (disc, &before) in order.iter().enumerate() {
             let before = before as usize;
-            let first = std::mem::replace(&mut anew[before], disc as u32) == NOWHERE;
+            let first = std::mem::replace(&mut now[before], disc as u32) == NOWHERE;
             assert!(first, "disc {before} is named twice");
             self.cell[disc] = old[before];
             if old[before] != NOWHERE && old[before] != guest_room {
                 self.index[old[before] as usize] = disc as u32;
             }
         }
-        self.guests.iter_mut().for_each(|guest| guest.0 = anew[guest.0 as usize]);
+        self.guests.iter_mut().for_each(|guest| guest.0 = now[guest.0 as usize]);
         self.repeat_images();
     }
 

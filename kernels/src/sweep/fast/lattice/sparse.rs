@@ -1,4 +1,17 @@
 //! Finding contacts where few cells are occupied: disc by disc, through a bit for every cell.
+//!
+//! ```text
+//! for every row:
+//!     list the occupied cells                           64 bits at a time
+//!     for every one of them:
+//!         the bits at the places of the half mask       a word for each row of the mask, shifted together
+//!         append a candidate for every bit
+//!         keep those whose distance is that of a contact, but for a margin
+//! ```
+//!
+//! Comparing registers of cells would be for nothing at most cells here. The distance of every candidate is asked at once, for
+//! at this density most neighbours are no contacts. A candidate is written before it is known whether it stays: that spares a
+//! branch that cannot be predicted.
 
 use super::codes::{Candidate, Codes};
 use super::detection::append_bits;
@@ -42,7 +55,7 @@ impl<S: Element, P: Precision> Task<f32> for SparseSearch<'_, S, P> {
             cells.clear();
             for column in (0..shape.columns()).step_by(64) {
                 let inside = u64::MAX >> (64 - (shape.columns() - column).min(64));
-                // SAFETY: the row ends before `end`.
+                // SAFETY: the row ends before `end`, for which there are bits (asserted above).
                 let own = unsafe { occupied.from(first + column) } & inside;
                 if own != 0 {
                     append_bits(cells, own, |bit| (first + column) as u64 + bit);
@@ -53,7 +66,7 @@ impl<S: Element, P: Precision> Task<f32> for SparseSearch<'_, S, P> {
                 // SAFETY: the cell is in one of the rows, so that its places are before `end`.
                 let mut near = unsafe { occupied.from(position + 1) } & ahead;
                 for row in 1..=h {
-                    // SAFETY: as above.
+                    // SAFETY: the row is at most `h` on, so that the position is before `end` too.
                     let there = unsafe { occupied.from(position + row * shape.stride() - h) } & around;
                     near |= there << (h + (row - 1) * (2 * h + 1));
                 }

@@ -1,0 +1,119 @@
+//! Pairs written out: two discs and the way between them, listed if they are near.
+
+use super::SENTINELS;
+use super::finder::{AT_ONCE, Cursor, MARGIN, Pairs};
+use super::sectors::Grid;
+use crate::backend::Precision;
+use crate::isa::Element;
+use std::ops::Range;
+
+/// Two discs that may touch, and the way between where their places are seen from (length).
+#[derive(Clone, Copy, Debug)]
+pub struct Touch<P> {
+    discs: [u32; 2],
+    way: [P; 2],
+}
+
+/// A list of pairs.
+#[derive(Clone, Debug, Default)]
+pub struct Touches<P>(Vec<Touch<P>>);
+
+impl<P: Precision> Touches<P> {
+    /// Appends a pair.
+    pub(super) fn push(&mut self, discs: [u32; 2], way: [f64; 2]) {
+        self.0.push(Touch { discs, way: way.map(P::from_f64) });
+    }
+}
+
+impl<P: Precision> Pairs<P> for &Touches<P> {
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+    #[inline(always)]
+    fn pair(&self, number: usize) -> ([u32; 2], [P; 2]) {
+        let Touch { discs, way } = self.0[number];
+        (discs, way)
+    }
+}
+
+/// Lists those of the pairs it is given that are nearer than some distance.
+pub(super) struct Near<'a, S, P> {
+    places: [&'a [S]; 2],
+    ways: [[f64; 2]; 5],
+    limit: f64,
+    touches: &'a mut Vec<Touch<P>>,
+}
+
+impl<'a, S: Element, P: Precision> Near<'a, S, P> {
+    /// For `discs` discs that touch at most at a distance `reach` (length).
+    ///
+    /// # Panics
+    /// If there is not a place for every disc and sentinel.
+    pub(super) fn new(
+        places: [&'a [S]; 2],
+        discs: usize,
+        grid: &Grid,
+        reach: f64,
+        touches: &'a mut Touches<P>,
+    ) -> Self {
+        assert!(places.iter().all(|place| place.len() == discs + SENTINELS), "a place for every disc");
+        touches.0.clear();
+        let limit = reach * reach * MARGIN;
+        Near { places, ways: grid.ways(), limit, touches: &mut touches.0 }
+    }
+
+    /// Goes on through rows, piece by piece (`pieces` of a row), until enough is listed.
+    #[inline(always)]
+    pub(super) fn search(
+        &mut self,
+        rows: Range<usize>,
+        cursor: &mut Cursor,
+        pieces: impl Fn(usize) -> usize,
+        piece: impl Fn(&mut Self, usize, usize),
+    ) {
+        while cursor.row < rows.end {
+            let there = pieces(cursor.row);
+            while cursor.along < there {
+                if self.touches.len() >= AT_ONCE {
+                    return;
+                }
+                piece(self, cursor.row, cursor.along);
+                cursor.along += 1;
+            }
+            *cursor = Cursor::at(cursor.row + 1);
+        }
+    }
+
+    /// Where a disc is.
+    ///
+    /// # Safety
+    /// It is one of the discs.
+    #[inline(always)]
+    pub(super) unsafe fn at(&self, disc: u32) -> [f64; 2] {
+        // SAFETY: there is a place for every disc, as `new` has made sure.
+        self.places.map(|place| unsafe { place.get_unchecked(disc as usize) }.to_f64())
+    }
+
+    /// Lists a pair if it is near enough.
+    ///
+    /// # Safety
+    /// `second` is one of the discs, and `way` below 5.
+    #[inline(always)]
+    pub(super) unsafe fn meet(&mut self, first: u32, at: [f64; 2], second: u32, way: usize) {
+        // SAFETY: the caller promises that `second` is a disc and that `way` is below 5, the length of `ways`.
+        let (there, way) = unsafe { (self.at(second), *self.ways.get_unchecked(way)) };
+        let (dx, dy) = ((at[0] - there[0]) - way[0], (at[1] - there[1]) - way[1]);
+        let length = self.touches.len();
+        if length == self.touches.capacity() {
+            self.touches.reserve(AT_ONCE);
+        }
+        // Written whether it is near or not: that spares a branch that cannot be predicted.
+        let touch = Touch { discs: [first, second], way: way.map(P::from_f64) };
+        // SAFETY: `reserve` above has left room for one more, and it is written before the length covers it.
+        unsafe {
+            self.touches.as_mut_ptr().add(length).write(touch);
+            self.touches.set_len(length + usize::from(dx * dx + dy * dy < self.limit));
+        }
+    }
+}
