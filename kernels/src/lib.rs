@@ -51,5 +51,6 @@ pub mod rests;
 pub mod sweep;
 mod threads;
 
-pub use program::{Execution, GROUP, InstructionSet, Program, Runnable};
+pub use backend::{GROUP, InstructionSet};
+pub use program::{Execution, Program, Runnable};
 pub use threads::keep_awake;

@@ -1,11 +1,14 @@
 //! The machines a text runs on: register files (scalar, `pulp`, `wide`) and the tape.
 
+mod dispatch;
 mod pulp;
 mod registers;
 mod scalar;
 pub mod tape;
 mod wide;
 
+pub use dispatch::{GROUP, InstructionSet};
+pub(crate) use dispatch::{Task, dispatch};
 pub use pulp::{Pulp, PulpElement};
 pub(crate) use registers::Strip;
 pub use registers::{IndexLanes, Registers};

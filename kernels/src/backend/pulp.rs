@@ -1,7 +1,7 @@
 //! Registers of the processor at hand, chosen at run time: AVX-512, AVX2, NEON, or scalar, by the crate `pulp`.
 
 use super::registers::{IndexLanes, Registers};
-use crate::isa::op::for_each_op;
+use crate::isa::list::for_each_op;
 use crate::isa::{Element, Predicate, Vector};
 use pulp::Simd;
 #[cfg(target_arch = "x86_64")]

@@ -1,7 +1,7 @@
 //! Registers of a width fixed at compile time, by the crate `wide`: what a build without run-time dispatch gets.
 
 use super::registers::{IndexLanes, Registers};
-use crate::isa::op::for_each_op;
+use crate::isa::list::for_each_op;
 use crate::isa::{Element, Predicate, Vector};
 use ::wide::{f32x8, f64x4};
 use std::marker::PhantomData;

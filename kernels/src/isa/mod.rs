@@ -2,6 +2,7 @@
 
 mod element;
 mod footprint;
+pub(crate) mod list;
 mod machine;
 mod memory;
 pub mod on_lines;

@@ -1,6 +1,6 @@
 //! Values of the machine: vectors of numbers and vectors of truth values.
 
-use super::op::for_each_op;
+use super::list::for_each_op;
 
 macro_rules! define_vectors {
     (operator { $(($ov:ident, $om:literal, $oc:ident, $od:literal, $trait:ident $of:ident)),* $(,)? }

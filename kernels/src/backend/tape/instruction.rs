@@ -1,6 +1,7 @@
 //! What a tape records: one instruction a vector operation.
 
-use crate::isa::op::{BinaryOp, CompareOp, ConnectiveOp, NegationOp, UnaryOp, for_each_op};
+use crate::isa::list::for_each_op;
+use crate::isa::op::{BinaryOp, CompareOp, ConnectiveOp, NegationOp, UnaryOp};
 use crate::isa::{Array, Element, Op};
 
 /// The three register files of the machine.

@@ -6,9 +6,10 @@ use super::instruction::{Action, Effect, Indices, Instruction, Number, Operand, 
 use super::pool;
 use super::register_file::RegisterFile;
 use crate::backend::{IndexLanes, Precision, Registers, Scalar, Strip};
-use crate::isa::op::{BinaryOp, CompareOp, UnaryOp, for_each_op};
+use crate::backend::{InstructionSet, Task, dispatch};
+use crate::isa::list::for_each_op;
+use crate::isa::op::{BinaryOp, CompareOp, UnaryOp};
 use crate::isa::{Array, Column, Counter, Element, Machine, Memory, ProgramError, Slot, Storage, Vector};
-use crate::program::{InstructionSet, Task, dispatch};
 use crate::rests::Rests;
 use std::cell::Cell;
 use std::ops::Range;

@@ -4,9 +4,9 @@ use super::Tape;
 use super::instruction::{
     Action, Effect, File, Indices, Instruction, Number, Operand, Reference, RegisterName,
 };
+use crate::backend::{InstructionSet, Task, dispatch};
 use crate::backend::{Precision, Registers};
 use crate::isa::{Element, Op, ProgramError, Storage, Vector};
-use crate::program::{InstructionSet, Task, dispatch};
 use std::cell::Cell;
 
 /// Where a vector lies.

@@ -3,7 +3,8 @@
 use super::instruction::{
     Action, Effect, File, Indices, Instruction, Number, Operand, Reference, RegisterName, Truth,
 };
-use crate::isa::op::{BinaryOp, CompareOp, ConnectiveOp, NegationOp, UnaryOp, for_each_op};
+use crate::isa::list::for_each_op;
+use crate::isa::op::{BinaryOp, CompareOp, ConnectiveOp, NegationOp, UnaryOp};
 use crate::isa::{Counter, Element, Machine, Predicate, Slot, Storage, Vector};
 use std::cell::{Cell, RefCell};
 

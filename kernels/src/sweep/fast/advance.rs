@@ -20,9 +20,9 @@
 
 use crate::InstructionSet;
 use crate::backend::{Precision, Registers, Scalar};
+use crate::backend::{Task, dispatch};
 use crate::integrator::{Context, Inertia, Scheme, acceleration};
 use crate::isa::{Element, Predicate, ProgramError, Vector, same};
-use crate::program::{Task, dispatch};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};

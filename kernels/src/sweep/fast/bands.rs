@@ -26,9 +26,9 @@ use super::finder::{Cursor, Finder, Pairs, Rows};
 use super::near::Touches;
 use crate::InstructionSet;
 use crate::backend::Precision;
+use crate::backend::dispatch;
 use crate::isa::{Element, ProgramError};
 use crate::law::{self, Asked, Law};
-use crate::program::dispatch;
 use crate::threads::in_stages;
 use std::ops::Range;
 

@@ -21,10 +21,10 @@
 
 use super::SENTINELS;
 use super::finder::Pairs;
+use crate::backend::{GROUP, Task};
 use crate::backend::{Precision, Registers};
 use crate::isa::{Element, Vector};
 use crate::law::{Asked, Env, Field, Law, Stated, Sum};
-use crate::program::{GROUP, Task};
 use std::cell::Cell;
 use std::mem::MaybeUninit;
 

@@ -24,8 +24,8 @@ use super::codes::{Candidate, place, place_count};
 use super::occupancy::Occupancy;
 use crate::GROUP;
 use crate::backend::Registers;
+use crate::backend::Task;
 use crate::isa::Vector;
-use crate::program::Task;
 use crate::sweep::fast::finder::{Cursor, MARGIN};
 use std::ops::Range;
 

@@ -17,9 +17,9 @@ use super::codes::{Candidate, Codes};
 use super::detection::append_bits;
 use super::occupancy::Occupancy;
 use crate::GROUP;
+use crate::backend::Task;
 use crate::backend::{Precision, Registers};
 use crate::isa::Element;
-use crate::program::Task;
 use crate::sweep::fast::finder::{Cursor, MARGIN};
 use std::ops::Range;
 

@@ -1,0 +1,106 @@
+//! Instruction sets, and how work comes into a function compiled for one of them.
+
+use super::registers::MAX_LANES;
+use super::{Precision, Pulp, Registers, Scalar, Wide};
+use crate::isa::ProgramError;
+use pulp::{Simd, WithSimd};
+use std::marker::PhantomData;
+
+/// Lanes of the widest register. Lattice vectors, bands and spans begin and end at multiples of it, so that what they are
+/// depends on no instruction set and no precision.
+pub const GROUP: usize = MAX_LANES;
+
+macro_rules! define_instruction_sets {
+    ($(($variant:ident, $name:literal, $doc:literal)),* $(,)?) => {
+        /// The instructions a program is compiled to.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        pub enum InstructionSet {
+            $(#[doc = $doc] $variant,)*
+        }
+
+        impl InstructionSet {
+            /// Every set, in the order of the list.
+            pub const ALL: &'static [InstructionSet] = &[$(InstructionSet::$variant),*];
+
+            /// The name on the command line.
+            pub const fn name(self) -> &'static str {
+                match self { $(InstructionSet::$variant => $name),* }
+            }
+        }
+    };
+}
+
+define_instruction_sets! {
+    (Scalar, "scalar", "One lane, no SIMD: the oracle."),
+    (Wide, "wide", "256 bits, whatever the build's target offers."),
+    (Neon, "neon", "128 bits, 64-bit ARM."),
+    (Avx2, "avx2", "256 bits, x86-64-v3."),
+    (Avx512, "avx512", "512 bits, x86-64-v4."),
+}
+
+impl InstructionSet {
+    /// Whether this processor has it.
+    pub fn is_available(self) -> bool {
+        match self {
+            InstructionSet::Scalar | InstructionSet::Wide => true,
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 => pulp::x86::V3::is_available(),
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => pulp::x86::V4::is_available(),
+            #[cfg(target_arch = "aarch64")]
+            InstructionSet::Neon => pulp::aarch64::Neon::is_available(),
+            _ => false,
+        }
+    }
+
+    /// The sets this processor has, in the order of the list.
+    pub fn available() -> impl Iterator<Item = InstructionSet> {
+        Self::ALL.iter().copied().filter(|set| set.is_available())
+    }
+
+    /// The widest set this processor has.
+    pub fn best() -> InstructionSet {
+        Self::available().last().unwrap_or(InstructionSet::Scalar)
+    }
+}
+
+/// A task compiled once for each register file.
+pub(crate) trait Task<L: Precision> {
+    /// The task on one register file.
+    fn on<R: Registers<Lane = L>>(self, registers: R);
+}
+
+/// Carries a task into the function compiled for the instruction set.
+pub(crate) fn dispatch<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -> Result<(), ProgramError> {
+    let absent = ProgramError::NoSuchInstructionSet(set.name());
+    match set {
+        InstructionSet::Scalar => task.on(Scalar::default()),
+        InstructionSet::Wide => task.on(Wide::default()),
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Avx2 => {
+            Simd::vectorize(pulp::x86::V3::try_new().ok_or(absent)?, OnSimd(task, PhantomData))
+        }
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Avx512 => {
+            Simd::vectorize(pulp::x86::V4::try_new().ok_or(absent)?, OnSimd(task, PhantomData))
+        }
+        #[cfg(target_arch = "aarch64")]
+        InstructionSet::Neon => {
+            Simd::vectorize(pulp::aarch64::Neon::try_new().ok_or(absent)?, OnSimd(task, PhantomData));
+        }
+        #[allow(unreachable_patterns, reason = "which sets are left depends on the target")]
+        _ => return Err(absent),
+    }
+    Ok(())
+}
+
+/// A task as `pulp` wants it.
+struct OnSimd<T, L>(T, PhantomData<L>);
+
+impl<L: Precision, T: Task<L>> WithSimd for OnSimd<T, L> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.0.on(Pulp::<S, L>::new(simd));
+    }
+}
