@@ -4,7 +4,7 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Registers;
 use stripmine_kernels::integrator::{Context, Inertia, Scheme};
 use stripmine_kernels::noise::{Purpose, normals};
-use stripmine_kernels::sweep::fast::{Advance, Leash, Motion};
+use stripmine_kernels::sweep::fast::{Advance, DisplacementLimit, Motion};
 
 /// Moves discs by dt times noise, along x by the first number and along y by the second.
 #[derive(Clone, Copy, Debug)]
@@ -45,7 +45,7 @@ fn places(ids: &[u32], set: InstructionSet) -> Vec<[f64; 2]> {
             corrected: false,
             longest_step: f64::INFINITY,
         };
-        advance.run(Leash::Cell([1e9, 1e9]), None, set).unwrap();
+        advance.run(DisplacementLimit::Cell([1e9, 1e9]), None, set).unwrap();
     }
     let mut places = vec![[0.0; 2]; n];
     for (disc, &id) in ids.iter().enumerate() {

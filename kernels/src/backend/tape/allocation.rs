@@ -18,22 +18,22 @@ pub(super) fn allocate<L: Element>(instructions: &mut [Instruction<L>]) -> FileS
             last_use.insert(*name, at);
         });
     }
-    let mut homes = HashMap::new();
+    let mut renamed = HashMap::new();
     let mut free: [Vec<u32>; File::ALL.len()] = Default::default();
     let mut sizes: FileSizes = Default::default();
     for (at, instruction) in instructions.iter_mut().enumerate() {
         instruction.registers(|name| {
             let file = name.file as usize;
-            let home = *homes.entry(*name).or_insert_with(|| {
+            let number = *renamed.entry(*name).or_insert_with(|| {
                 free[file].pop().unwrap_or_else(|| {
                     sizes[file] += 1;
                     sizes[file] as u32 - 1
                 })
             });
-            if last_use[name] == at && !free[file].contains(&home) {
-                free[file].push(home);
+            if last_use[name] == at && !free[file].contains(&number) {
+                free[file].push(number);
             }
-            name.number = home;
+            name.number = number;
         });
     }
     sizes

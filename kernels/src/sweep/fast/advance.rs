@@ -47,7 +47,7 @@ pub struct Motion<C> {
 
 /// How far a disc may go before the search must know.
 #[derive(Clone, Copy, Debug)]
-pub enum Leash<'a, S> {
+pub enum DisplacementLimit<'a, S> {
     /// As far as the rim of its cell, of these sides (length).
     Cell([f64; 2]),
     /// So far from a place.
@@ -62,7 +62,7 @@ pub enum Leash<'a, S> {
 /// Discs that a pass has found.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Passed {
-    /// Those that strain at the leash, or have no finite place, in order.
+    /// Those that are beyond the limit, or have no finite place, in order.
     pub left: Vec<u32>,
     /// Those that are so fast that they move farther in a step than they may, or whose speed is no number, in order.
     pub far: Vec<u32>,
@@ -147,7 +147,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
     /// If a column is shorter than said.
     pub fn run(
         mut self,
-        leash: Leash<'_, S>,
+        limit: DisplacementLimit<'_, S>,
         copies: Option<Copies<'_>>,
         set: InstructionSet,
     ) -> Result<Passed, ProgramError> {
@@ -157,7 +157,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
         assert!((2..=3).contains(&freedoms) && self.sums.len() == freedoms, "2 or 3 degrees of freedom");
         let vary = motion.inertia == Inertia::Varying;
         assert!(!vary || inverse[..freedoms - 1].iter().all(|column| column.len() >= discs));
-        if let Leash::From { places, .. } = leash {
+        if let DisplacementLimit::From { places, .. } = limit {
             assert!(places.iter().all(|place| place.len() >= discs), "a place for every disc that moves");
         }
         let mut columns = [[std::ptr::null_mut(); 6]; 3];
@@ -170,22 +170,22 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             assert!(from.len() >= discs);
             *to = from.as_mut_ptr();
         }
-        let settles = copies.is_some();
+        let copies_places = copies.is_some();
         let mut none = [[]; 2];
         let Copies { cells, places, unit } = copies.unwrap_or_else(|| {
             let [x, y] = &mut none;
             Copies { cells: &[], places: [x, y], unit: 1.0 }
         });
-        assert!(!settles || cells.len() >= discs, "a cell for every disc that moves");
+        assert!(!copies_places || cells.len() >= discs, "a cell for every disc that moves");
         let arrays = Arrays {
             columns,
             sums,
             step,
             ids,
             inverse: inverse.map(<[S]>::as_ptr),
-            leash,
+            limit,
             cells: cells.as_ptr(),
-            settles,
+            copies_places,
             places: places.map(<[f32]>::as_mut_ptr),
         };
         let square = longest_step * longest_step;
@@ -221,10 +221,10 @@ struct Arrays<'a, S, P> {
     step: u64,
     ids: &'a [u32],
     inverse: [*const S; 2],
-    leash: Leash<'a, S>,
+    limit: DisplacementLimit<'a, S>,
     cells: *const u32,
     /// Whether places on the lattice are kept.
-    settles: bool,
+    copies_places: bool,
     places: [*mut f32; 2],
 }
 
@@ -300,12 +300,12 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 step[freedom] = row[1];
             }
         }
-        let stays = match arrays.leash {
-            Leash::Cell(edge) => {
+        let stays = match arrays.limit {
+            DisplacementLimit::Cell(edge) => {
                 let [x, y] = edge.map(|edge| uniform(0.5 * edge));
                 place[0].abs().less_equal(x).and(place[1].abs().less_equal(y))
             }
-            Leash::From { places: [x, y], distance } => {
+            DisplacementLimit::From { places: [x, y], distance } => {
                 // SAFETY: Advance has checked that there is a place for every disc that moves.
                 let (x, y) =
                     unsafe { (registers.load(x.as_ptr().add(first)), registers.load(y.as_ptr().add(first))) };
@@ -323,7 +323,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             list(registers.bits(stays.not()), &mut self.passed.left);
             list(registers.bits(creeps.not()), &mut self.passed.far);
         }
-        if !arrays.settles {
+        if !arrays.copies_places {
             return;
         }
         let unit = uniform(self.unit);

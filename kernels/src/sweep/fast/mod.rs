@@ -38,7 +38,7 @@ mod near;
 mod sectors;
 mod verlet;
 
-pub use advance::{Advance, Copies, Leash, Motion, Passed};
+pub use advance::{Advance, Copies, DisplacementLimit, Motion, Passed};
 pub use bands::{Met, Sweep};
 pub use contacts::Discs;
 pub use finder::{Cursor, Finder, Pairs, Rows};

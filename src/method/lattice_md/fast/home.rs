@@ -10,7 +10,7 @@ use stripmine_kernels::isa::{ProgramError, Storage};
 use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::lattice::{Candidates, Codes, Lattice, Occupancy, Taken};
 use stripmine_kernels::sweep::fast::{
-    Copies, Discs, Finder, Grid, GridError, Leash, Met, Rows, Sectors, Sweep, Touches, VerletList,
+    Copies, Discs, DisplacementLimit, Finder, Grid, GridError, Met, Rows, Sectors, Sweep, Touches, VerletList,
 };
 
 /// How the fast execution finds contacts.
@@ -227,13 +227,15 @@ impl<S: Precision, P: Precision> Home<S, P> {
     }
 
     /// How far discs may go, and what else is written when they do.
-    pub(super) fn leash(&mut self) -> (Leash<'_, S>, Option<Copies<'_>>) {
+    pub(super) fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<Copies<'_>>) {
         match self {
-            Home::Lattice { occupancy, .. } => (Leash::Cell(occupancy.grid().frame.edge), occupancy.copies()),
-            Home::Sectors { sectors, .. } => (Leash::Cell(sectors.grid().frame.edge), None),
+            Home::Lattice { occupancy, .. } => {
+                (DisplacementLimit::Cell(occupancy.grid().frame.edge), occupancy.copies())
+            }
+            Home::Sectors { sectors, .. } => (DisplacementLimit::Cell(sectors.grid().frame.edge), None),
             Home::Lists { lists, .. } => {
                 let [x, y] = &lists.made_at;
-                (Leash::From { places: [x, y], distance: 0.5 * lists.skin }, None)
+                (DisplacementLimit::From { places: [x, y], distance: 0.5 * lists.skin }, None)
             }
         }
     }

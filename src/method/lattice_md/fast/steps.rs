@@ -70,7 +70,7 @@ pub(super) fn advance<S: Precision, P: Precision>(
     let state = columns.iter_mut().map(|row| row.iter_mut().map(Vec::as_mut_slice).collect()).collect();
     let sums = sums.iter_mut().take(freedoms).map(Vec::as_mut_slice).collect();
     let discs = start.grain_count();
-    let (leash, copies) = home.leash();
+    let (limit, copies) = home.displacement_limit();
     let longest_step = model.watch.map_or(f64::INFINITY, |watch| watch.longest_step());
     with_motion!(model, |motion| {
         let advance = Advance {
@@ -84,7 +84,7 @@ pub(super) fn advance<S: Precision, P: Precision>(
             corrected: first,
             longest_step,
         };
-        advance.run(leash, copies, *set)
+        advance.run(limit, copies, *set)
     })
 }
 
@@ -127,7 +127,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
         Some(to)
     }
 
-    /// Brings the cells up to date after a pass: walls, the discs that strained at their leash, the halo, the lists.
+    /// Brings the cells up to date after a pass: walls, the discs beyond their limit, the halo, the lists.
     pub(super) fn keep_index(&mut self, left: &[u32]) -> Result<(), Failure> {
         let grains = self.start.grain_count();
         let mut walls = Vec::new();

@@ -41,7 +41,7 @@ pub struct Occupancy {
     /// Cells of the halo, each with the one it is an image of.
     images: Vec<[u32; 2]>,
     /// Discs that are in no cell.
-    homeless: usize,
+    outside: usize,
     /// Discs in cells that are another disc's, with these cells.
     guests: Vec<(u32, [usize; 2])>,
 }
@@ -80,7 +80,7 @@ impl Occupancy {
                 .iter()
                 .map(|image| [image.cell, image.source].map(|at| at as u32))
                 .collect(),
-            homeless: discs,
+            outside: discs,
             guests: vec![],
             shape,
         }
@@ -148,7 +148,7 @@ impl Occupancy {
             return Err(Taken(self.index[at] as usize));
         }
         self.cell[disc] = at as u32;
-        self.homeless -= 1;
+        self.outside -= 1;
         self.index[at] = disc as u32;
         if let Some(radii) = &mut self.radius {
             radii[at] = (radius * self.unit) as f32;
@@ -166,7 +166,7 @@ impl Occupancy {
         assert!(self.cell[disc] == NOWHERE, "disc {disc} is in a cell already");
         assert!(cell[0] < self.shape.columns() && cell[1] < self.shape.rows(), "no cell {cell:?}");
         self.cell[disc] = self.guest_room();
-        self.homeless -= 1;
+        self.outside -= 1;
         let own = number(disc);
         let before = self.guests.iter().take_while(|guest| number(guest.0 as usize) < own).count();
         self.guests.insert(before, (disc as u32, cell));
@@ -182,7 +182,7 @@ impl Occupancy {
         if self.cell[disc] == NOWHERE {
             return;
         }
-        self.homeless += 1;
+        self.outside += 1;
         if self.cell[disc] == self.guest_room() {
             self.cell[disc] = NOWHERE;
             return self.guests.retain(|guest| guest.0 as usize != disc);
@@ -306,7 +306,7 @@ impl Occupancy {
     /// # Panics
     /// If a disc is in no cell.
     pub fn copies(&mut self) -> Option<Copies<'_>> {
-        assert!(self.homeless == 0, "{} discs are in no cell", self.homeless);
+        assert!(self.outside == 0, "{} discs are in no cell", self.outside);
         let [x, y] = &mut self.place;
         (!self.sparse).then_some(Copies { cells: &self.cell, places: [x, y], unit: self.unit })
     }
