@@ -2,9 +2,13 @@
 
 use proptest::prelude::*;
 use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use stripmine_kernels::InstructionSet;
+use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::sweep::fast::lattice::{Candidates, Codes, Lattice, Occupancy};
 use stripmine_kernels::sweep::fast::{Cursor, Finder, Grid, Pairs, SENTINELS, Sectors, VerletList};
+use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
 
 /// Discs in a box: where they are, the sectors they are in, and their places there.
 struct Scattered {
@@ -143,4 +147,32 @@ proptest! {
             prop_assert!(expected.iter().all(|pair| found.binary_search(pair).is_ok()));
         }
     }
+}
+
+/// An empty lattice for discs that touch 1 apart, and what a search of it wants.
+fn lattice(columns: usize) -> (Occupancy, Frame) {
+    let shape = LatticeShape::new(columns, 20, &Mask::square(2), [false; 2]).unwrap();
+    let frame = Frame { origin: [0.0; 2], edge: [0.6, 0.6] };
+    (Occupancy::new(shape, frame, 1, 1.0, false), frame)
+}
+
+fn search(lattice: &Lattice<'_, f64>, entries: usize) -> Candidates {
+    let (column, mut cursor, mut found) = (vec![0.0; entries], Cursor::at(0), Candidates::default());
+    let places: [&[f64]; 2] = [&column, &column];
+    lattice.find(places, 0..20, &mut cursor, &mut found, InstructionSet::best()).unwrap();
+    found
+}
+
+/// Tables and columns that are too short for a lattice are refused before they are read unchecked.
+#[test]
+fn a_lattice_takes_only_its_own_codes_and_columns() {
+    let [(narrow, frame), (wide, _)] = [lattice(20), lattice(40)];
+    let [of_narrow, of_wide] = [&narrow, &wide].map(|occupancy| Codes::<f64>::new(occupancy, frame));
+    let refused = |codes, entries| {
+        let lattice = Lattice { occupancy: &narrow, codes };
+        catch_unwind(AssertUnwindSafe(|| search(&lattice, entries))).is_err()
+    };
+    assert!(!refused(&of_narrow, 1 + SENTINELS));
+    assert!(refused(&of_narrow, SENTINELS));
+    assert!(refused(&of_wide, 1 + SENTINELS));
 }

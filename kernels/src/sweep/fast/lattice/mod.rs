@@ -23,6 +23,7 @@ mod sparse;
 pub use codes::Codes;
 pub use occupancy::{Occupancy, SPARSE, Taken};
 
+use super::SENTINELS;
 use super::finder::{AT_ONCE, Cursor, Finder, Pairs, Rows};
 use super::near::Touches;
 use super::sectors::Grid;
@@ -30,6 +31,7 @@ use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::backend::dispatch;
 use crate::isa::{Element, ProgramError};
+use crate::sweep::lattice::LatticeShape;
 use codes::Candidate;
 use detection::Search;
 use sparse::SparseSearch;
@@ -52,6 +54,8 @@ pub struct Lattice<'a, P> {
 pub struct Candidates {
     candidates: Vec<Candidate>,
     cells: Vec<u64>,
+    /// The lattice that they were found on.
+    shape: Option<LatticeShape>,
 }
 
 // SAFETY: the Index numbers discs where the bit of a cell is set, and candidates are pairs of such cells: the own one in the rows
@@ -76,8 +80,11 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
         set: InstructionSet,
     ) -> Result<(), ProgramError> {
         let Lattice { occupancy, codes } = *self;
-        let Candidates { candidates: found, cells } = found;
+        let Candidates { candidates: found, cells, shape } = found;
         assert!(codes.are_of(occupancy), "codes of this lattice");
+        let entries = occupancy.discs() + SENTINELS;
+        assert!(places.iter().all(|place| place.len() == entries), "a place for every disc");
+        *shape = Some(*occupancy.shape());
         found.clear();
         if occupancy.is_sparse() {
             let reach = occupancy.reach();
@@ -120,6 +127,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
 
     fn pairs<'a>(&'a self, found: &'a Candidates) -> impl Pairs<P> + 'a {
         assert!(self.codes.are_of(self.occupancy), "codes of this lattice");
+        assert!(found.candidates.is_empty() || found.shape.as_ref() == Some(self.occupancy.shape()));
         Packed { codes: self.codes, index: self.occupancy.index(), candidates: &found.candidates }
     }
 }

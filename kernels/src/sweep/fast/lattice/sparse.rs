@@ -78,7 +78,7 @@ impl<S: Element, P: Precision> Task<f32> for SparseSearch<'_, S, P> {
                 for listed in before..found.len() {
                     let candidate = found[listed];
                     let ([own, partner], way) = codes.pair(candidate, index);
-                    // SAFETY: the Index numbers discs and sentinels, which the columns have (checked by Sweep).
+                    // SAFETY: the Index numbers discs and sentinels, which the columns have (asserted where the search begins).
                     let along = |column: &[S], way: P| unsafe {
                         let (own, partner) =
                             (column.get_unchecked(own as usize), column.get_unchecked(partner as usize));
