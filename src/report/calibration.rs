@@ -1,7 +1,7 @@
 //! A host model as a reader wants it.
 
 use super::{Cell, Table};
-use crate::model::host::{Amounts, Estimate, Factors, HostModel, Measured, ProgramCost, Transfer};
+use crate::model::host::{Amounts, Estimate, Factors, HostModel, Measured, Transfer};
 
 /// The tables of a host model.
 pub fn tables(model: &HostModel) -> Vec<Table> {
@@ -74,7 +74,6 @@ fn programs(model: &HostModel) -> Table {
         row.insert(0, Cell::Text(execution.to_owned()));
         let Factors { computing, waiting, .. } = seen.factors;
         row.extend([computing, waiting].map(|factor| Cell::Number(factor, 2)));
-        row.extend(unsaid(seen));
         row
     });
     Table {
@@ -84,15 +83,14 @@ fn programs(model: &HostModel) -> Table {
             &[
                 &["execution", "lanes", "program"],
                 TIMES.as_slice(),
-                &["computing", "waiting", "scenes", "off (%)", "most (%)"],
+                &["computing", "waiting"],
             ]
             .concat(),
         ),
         rows: rows.collect(),
         notes: vec![format!(
             "In the first-level cache; t0 of a strip, or of a chained loop. On whole vectors a program \
-             computes and waits for memory so many times as long as this and the levels say. On so many scenes it was off by so much \
-             even then, in the median and at most: what is near one of these is predicted with it. What is not among these is charged pass by pass, a \
+             computes and waits for memory so many times as long as this and the levels say. What is not among these is charged pass by pass, a \
              pass taking {:.2} times as long to begin as in a drill of nothing but itself, or, chained, by classes of operations, \
              which deviate from these by {:.0} % (the median). Of the shorter of computing and waiting for streams {:.0} % \
              hide behind the longer in a chained loop.",
@@ -101,14 +99,6 @@ fn programs(model: &HostModel) -> Table {
             100.0 * model.loops.overlap
         )],
     }
-}
-
-/// On how many scenes a program was seen, and how far off the levels were there: in the median, and at most.
-fn unsaid(seen: &ProgramCost) -> [Cell; 3] {
-    let mut off: Vec<f64> = seen.residuals.iter().map(|residual| (residual.ratio() - 1.0).abs()).collect();
-    off.sort_by(f64::total_cmp);
-    let percent = |at: Option<&f64>| at.map_or(Cell::Nothing, |off| Cell::Number(100.0 * off, 1));
-    [Cell::Count(off.len() as u64), percent(off.get(off.len() / 2)), percent(off.last())]
 }
 
 fn rates(model: &HostModel) -> Table {

@@ -61,14 +61,10 @@ fn percent(share: f64) -> Cell {
 }
 
 fn said(errors: &Errors) -> String {
-    let Errors { what, cases, median, ninth_tenth, worst, within, baseline_median, by_levels, repeated } =
+    let Errors { what, cases, median, ninth_tenth, worst, within, baseline_median, repeated } =
         errors;
     let baseline = baseline_median.map_or(String::new(), |median| {
         format!(" Time in proportion to the number of operations: median {:.0} %.", 100.0 * median)
-    });
-    let by_levels = by_levels.map_or(String::new(), |[median, ninth]| {
-        let [median, ninth] = [median, ninth].map(|share| 100.0 * share);
-        format!(" By the levels alone, without what they left unsaid of drill scenes: median {median:.1} %, nine of ten below {ninth:.1} %.")
     });
     let repeated = repeated.map_or(String::new(), |[median, ninth]| {
         let [median, ninth] = [median, ninth].map(|share| 100.0 * share);
@@ -76,7 +72,7 @@ fn said(errors: &Errors) -> String {
     });
     format!(
         "Executions {what}, {cases} phases of steps: median error {:.1} %, nine of ten below {:.1} %, the worst {:.0} %; {} \
-         within 5 %, {} within 10 %, {} within 20 %, {} within 30 %.{by_levels}{baseline}{repeated}",
+         within 5 %, {} within 10 %, {} within 20 %, {} within 30 %.{baseline}{repeated}",
         100.0 * median,
         100.0 * ninth_tenth,
         100.0 * worst,
@@ -115,15 +111,14 @@ fn errors(data: &ModelValidation) -> Table {
         ];
         row.extend(errors.within.map(|count| Cell::Count(count as u64)));
         row.push(errors.baseline_median.map_or(Cell::Nothing, percent));
-        row.extend([0, 1].map(|at| errors.by_levels.map_or(Cell::Nothing, |shares| percent(shares[at]))));
         row.extend([0, 1].map(|at| errors.repeated.map_or(Cell::Nothing, |shares| percent(shares[at]))));
         row
     });
     let mut notes = vec![
         format!("Host model: {}, {}.", data.host, data.instruction_set),
         "Measured: the lowest tenth of the samples in quiet moments, of long phases piece by piece; repeated: how far the rounds of \
-         even number and those of odd number lie apart, each laid out in memory anew. Levels alone: without what they leave \
-         unsaid, which drill scenes say. Baseline: operations times elements, at the cost of a sum in the cache."
+         even number and those of odd number lie apart, each laid out in memory anew. Baseline: operations times elements, at \
+         the cost of a sum in the cache."
             .to_owned(),
         pace(data),
         "Fast and lists: predicted from the numbers of candidates and contacts that the run itself had.".to_owned(),
@@ -159,8 +154,6 @@ fn errors(data: &ModelValidation) -> Table {
             "20 %",
             "30 %",
             "baseline (%)",
-            "levels alone, median (%)",
-            "levels alone, 90 % below (%)",
             "repeated, median (%)",
             "repeated, 90 % below (%)",
         ]),

@@ -176,11 +176,6 @@ impl Surroundings {
         around
     }
 
-    /// Bytes touched since the one of the program's arrays was that has waited longest.
-    pub fn farthest(&self) -> f64 {
-        self.arrays.values().map(|array| array.distance).fold(0.0, f64::max)
-    }
-
     /// The arrays.
     pub fn arrays(&self) -> impl Iterator<Item = (Array, &'static str)> {
         self.arrays.keys().copied()

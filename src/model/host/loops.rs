@@ -2,7 +2,6 @@
 //! from the operations it counts, so loops that a calibration has seen are charged what they took on short vectors; others
 //! by their classes of operations, fitted to those that were seen.
 
-use super::residuals::{self, Place, Residual};
 use super::{Estimate, Level, OutOfRange, PassCost, Transfer};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -24,8 +23,6 @@ pub struct ProgramCost {
     pub rest: PassCost,
     /// How it differs beyond the first-level cache.
     pub factors: Factors,
-    /// How far off all that is on drill scenes: distance (bytes), elements of a strip or nought, elements, ratio.
-    pub residuals: Vec<Residual>,
 }
 
 impl ProgramCost {
@@ -40,11 +37,6 @@ impl ProgramCost {
                 [begin + start.value, computing + n as f64 * element.value]
             },
         )
-    }
-
-    /// How many times as long as said the program takes.
-    pub fn off(&self, place: &Place) -> f64 {
-        residuals::ratio(&self.residuals, place)
     }
 }
 
@@ -134,7 +126,6 @@ impl LoopCosts {
             start,
             rest: PassCost { element: rest, start: begin },
             factors: Factors::default(),
-            residuals: vec![],
         })
     }
 

@@ -1,19 +1,17 @@
 //! Today's hosts: what a pass of the interpreter takes, `t = t0 + n (tau + e0 + sum of e_level)`, with the level of each
 //! operand found by reuse distance on the passes that are executed, and t0 and tau of a program's passes together where a
-//! calibration has seen it, with what the levels leave unsaid of it; what compiled loops take; and what a unit of the work takes whose amount hangs on the data.
+//! calibration has measured it; what compiled loops take; and what a unit of the work takes whose amount depends on the data.
 
 mod file;
 mod levels;
 mod loops;
 mod rates;
-mod residuals;
 mod reuse;
 
 pub use file::{BadEntry, FORMAT, HostFileError, default_model};
 pub use levels::{LINE, Level, Surroundings, Transfer, Wait, beyond, from_afar};
 pub use loops::{Factors, LoopCosts, ProgramCost, class_counts, overlapped};
 pub use rates::{Amounts, RatePoint, Rates};
-pub use residuals::{Place, Residual};
 pub use reuse::{Since, Touch, Vector, element_bytes, touched_arrays, touches};
 
 use serde::{Deserialize, Serialize};
@@ -186,15 +184,6 @@ fn measured_as(kind: &str) -> &str {
 }
 
 impl HostModel {
-    /// The same host by its levels alone, without what they leave unsaid.
-    #[must_use]
-    pub fn by_levels(&self) -> HostModel {
-        let mut model = self.clone();
-        let interpreted = model.lanes.values_mut().flat_map(|lane| lane.seen.values_mut());
-        interpreted.chain(model.loops.seen.values_mut()).for_each(|seen| seen.residuals.clear());
-        model
-    }
-
     /// The same host with every program of the interpreter charged pass by pass, as those are that were not seen.
     #[must_use]
     pub fn pass_by_pass(&self) -> HostModel {
@@ -292,8 +281,7 @@ impl HostModel {
             let parts = factors.scaled([near, wait, 0.0]);
             sum += strips as f64 * (parts.iter().sum::<f64>() + besides);
         }
-        let place = Place::new(around, strips, n);
-        Ok(sum * lane.seen.get(&outlines.signature()).map_or(1.0, |seen| seen.off(&place)))
+        Ok(sum)
     }
 
     /// Nanoseconds that a pass over `n` elements waits for what it touches.
@@ -328,7 +316,7 @@ impl HostModel {
         let [begin, computing] = cost.near(n, self.lane(outlines.lane)?.lanes);
         let wait = around.wait(&self.levels, &touched_arrays(outlines), n as f64, |level| level.loops);
         let parts = cost.factors.scaled([computing, wait.streamed, wait.indexed]);
-        Ok(cost.off(&Place::new(around, None, n)) * (begin + overlapped(self.loops.overlap, parts)))
+        Ok(begin + overlapped(self.loops.overlap, parts))
     }
 }
 
@@ -429,7 +417,6 @@ mod tests {
             start: of(7.0),
             rest: PassCost { element: of(1.5), start: of(3.0) },
             factors: Factors::default(),
-            residuals: vec![],
         };
         lane.seen.insert(outlines.signature(), seen);
         let near = [3, 8, 9].map(|n| lane.near(&outlines, n, 0.5).unwrap());

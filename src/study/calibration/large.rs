@@ -5,7 +5,7 @@ use super::levels::{Charged, Waiting};
 use super::loops::Step;
 use super::passes::Lane;
 use super::timing::Samples;
-use crate::model::host::{HostModel, LoopCosts, Place, Residual, Surroundings, touched_arrays};
+use crate::model::host::{LoopCosts, Surroundings, touched_arrays};
 use std::rc::Rc;
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
@@ -120,27 +120,5 @@ impl Ran {
             weight: 1.0,
             program: Some(self.outlines.signature()),
         })
-    }
-
-    /// How far off a model is that says nothing of it yet.
-    fn residual(&self, host: &HostModel) -> Option<Residual> {
-        let Ran { outlines, n, execution, around, ns } = self;
-        let said = host.program(outlines, *n, *execution, around).ok().filter(|said| *said > 0.0)?;
-        let strip = if let Execution::Strip(strip) = execution { Some(*strip) } else { None };
-        Some(Residual::new(Place::new(around, strip, *n), ns / said))
-    }
-}
-
-/// Tells a model how far off it is of everything that was run.
-pub(super) fn tell(host: &mut HostModel, all: &[Ran]) {
-    let residuals: Vec<Option<Residual>> = all.iter().map(|ran| ran.residual(host)).collect();
-    for (ran, residual) in all.iter().zip(residuals) {
-        let seen = match ran.is_loop() {
-            true => Some(&mut host.loops.seen),
-            false => host.lanes.get_mut(ran.outlines.lane).map(|lane| &mut lane.seen),
-        };
-        if let Some(seen) = seen.and_then(|seen| seen.get_mut(&ran.outlines.signature())) {
-            seen.residuals.extend(residual);
-        }
     }
 }

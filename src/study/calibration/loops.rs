@@ -393,7 +393,7 @@ impl Loops {
 
 /// A program of which nothing is known yet but what it takes in the first-level cache.
 fn seen_near(what: String, element: Estimate, start: Estimate, rest: PassCost) -> ProgramCost {
-    ProgramCost { what, element, start, rest, factors: Factors::default(), residuals: vec![] }
+    ProgramCost { what, element, start, rest, factors: Factors::default() }
 }
 
 #[cfg(test)]

@@ -222,7 +222,7 @@ impl Calibration {
             }
         }
         let samples = || lanes.iter().flat_map(Lane::samples).chain(loops.samples());
-        let mut host = HostModel {
+        HostModel {
             format: FORMAT,
             title,
             instruction_set: set.name().to_owned(),
@@ -246,8 +246,6 @@ impl Calibration {
             loops: LoopCosts { overlap, ..costs },
             lanes: lanes.into_iter().map(|lane| (lane.name.to_owned(), lane.costs)).collect(),
             rates: scenes.rates(yardstick),
-        };
-        large::tell(&mut host, &large);
-        host
+        }
     }
 }

@@ -44,9 +44,6 @@ pub struct Case {
     /// Nanoseconds by the trivial baseline: operations times elements, at the cost of a sum in the cache; none where
     /// what is executed hangs on the data.
     pub baseline: Option<f64>,
-    /// Nanoseconds predicted by the levels alone, without what drill scenes say that these leave unsaid; none where what is
-    /// executed hangs on the data.
-    pub by_levels: Option<f64>,
 }
 
 impl Case {
@@ -58,11 +55,6 @@ impl Case {
     /// The same of the baseline.
     pub fn baseline_error(&self) -> Option<f64> {
         Some((self.baseline? / self.measured - 1.0).abs())
-    }
-
-    /// The same of the levels alone.
-    pub fn error_by_levels(&self) -> Option<f64> {
-        Some((self.by_levels? / self.measured - 1.0).abs())
     }
 
     /// How far the two halves of the measurement differ, as a share: no prediction can be shown to be better than that.
@@ -99,8 +91,6 @@ pub struct Errors {
     pub within: [usize; 4],
     /// The median error of the trivial baseline; none where there is none.
     pub baseline_median: Option<f64>,
-    /// Of the levels alone: the median error, and what nine of ten lie below; none where there is none.
-    pub by_levels: Option<[f64; 2]>,
     /// How far the measurement differs from its own repetition: in the median, and what nine of ten stay below; none of one
     /// round.
     pub repeated: Option<[f64; 2]>,
@@ -130,7 +120,6 @@ impl Errors {
             within: [0.05, 0.1, 0.2, 0.3].map(|limit| errors.iter().filter(|&&error| error <= limit).count()),
             baseline_median: Some(quantile(&sorted(&Case::baseline_error), 0.5))
                 .filter(|median| median.is_finite()),
-            by_levels: both(&Case::error_by_levels),
             repeated: both(&Case::repeat_error),
         }
     }
@@ -181,7 +170,6 @@ mod tests {
             halves: Some([if execution == "eager" { 102.0 } else { 150.0 }, 100.0]),
             quiet: 1.0,
             baseline: (execution != LISTS).then_some(50.0),
-            by_levels: (execution != LISTS).then_some(90.0),
         }
     }
 
@@ -194,7 +182,6 @@ mod tests {
         assert_eq!((programs.cases, programs.within), (3, [1, 2, 2, 2]));
         assert!((programs.median - 0.08).abs() < 1e-9 && (programs.worst - 0.4).abs() < 1e-9);
         assert_eq!(programs.baseline_median, Some(0.5));
-        assert!((programs.by_levels.unwrap()[1] - 0.1).abs() < 1e-9);
         assert!((programs.repeated.unwrap()[0] - 0.02).abs() < 1e-9);
         assert_eq!(of(OF_DATA).baseline_median, None);
         assert_eq!((of(PROGRAMS_SETTLED).cases, of(PROGRAMS_SETTLED).within), (2, [1, 2, 2, 2]));

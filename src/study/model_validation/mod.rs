@@ -246,10 +246,9 @@ impl Measured {
     /// Beside what a model predicts.
     fn against(&self, host: &HostModel, calibrated: Calibrated) -> Result<ModelValidation, ValidationError> {
         let reference = self.pace.reference();
-        let levels = host.by_levels();
         let mut cases = vec![];
         for (scene, halves) in self.scenes.iter().zip(&self.times) {
-            cases.extend(scene.cases([host, &levels], halves, reference)?);
+            cases.extend(scene.cases(host, halves, reference)?);
         }
         Ok(ModelValidation {
             host: host.title.clone(),

@@ -70,11 +70,11 @@ impl Scene {
         Ok(())
     }
 
-    /// Every phase that it has, predicted by a model and by its levels alone, and as it was measured in the rounds of even and of odd number; `reference` is what
-    /// the yardstick takes in quiet moments (ns).
+    /// Every phase that it has, predicted by a model, and as it was measured in the rounds of even and of odd number;
+    /// `reference` is what the yardstick takes in quiet moments (ns).
     pub(super) fn cases(
         &self,
-        [host, levels]: [&HostModel; 2],
+        host: &HostModel,
         halves: &[Option<PhaseTimes>; 2],
         reference: f64,
     ) -> Result<Vec<Case>, ValidationError> {
@@ -85,18 +85,15 @@ impl Scene {
             [Some(even), Some(odd)] => Some([even, odd].map(|half| half.typical(phase, reference).0)),
             _ => None,
         };
-        let predicted: Vec<(f64, Option<[f64; 2]>)> = match (self.predicted(host)?, self.predicted(levels)?) {
-            (Some(all), Some(levels)) => {
-                let both = all.into_iter().zip(levels);
-                both.map(|([ns, baseline], [by_levels, _])| (ns, Some([baseline, by_levels]))).collect()
-            }
-            _ => {
+        let predicted: Vec<(f64, Option<f64>)> = match self.predicted(host)? {
+            Some(all) => all.into_iter().map(|[ns, baseline]| (ns, Some(baseline))).collect(),
+            None => {
                 let phases = rated(host, &self.run, &times).map_err(|cause| self.out(cause))?;
                 phases.into_iter().map(|ns| (ns, None)).collect()
             }
         };
         let Run { particles, occupancy, precision, execution } = self.run;
-        let cases = Phase::ALL.iter().zip(predicted).map(|(&phase, (predicted, simpler))| {
+        let cases = Phase::ALL.iter().zip(predicted).map(|(&phase, (predicted, baseline))| {
             let (measured, quartiles) = times.typical(phase, reference);
             Case {
                 particles,
@@ -109,8 +106,7 @@ impl Scene {
                 quartiles,
                 halves: of_halves(phase),
                 quiet: times.quiet(phase, reference),
-                baseline: simpler.map(|[baseline, _]| baseline),
-                by_levels: simpler.map(|[_, by_levels]| by_levels),
+                baseline,
             }
         });
         // Not every execution has every phase.
