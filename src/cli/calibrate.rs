@@ -3,7 +3,7 @@
 use super::{Common, Failure, output, print, print_json, say, warn};
 use crate::model::host::Measured;
 use crate::report;
-use crate::report::origin::host;
+use crate::origin::host;
 use crate::signals;
 use crate::study::calibration::{Effort, TOO_DIFFERENT, TOO_NOISY, TOO_RARE, calibrate};
 use clap::Args;

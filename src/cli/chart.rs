@@ -3,8 +3,8 @@
 use super::reproduce::{Folder, Made};
 use super::validate_model::host_model;
 use super::{Common, Failure, output, print, print_json, say};
-use crate::model::machine;
-use crate::report::origin::Provenance;
+use crate::model::machines;
+use crate::origin::Provenance;
 use crate::report::{self, Section};
 use crate::signals;
 use crate::study::break_even::atlas;
@@ -41,7 +41,7 @@ enum What {
 impl ChartVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
         let What::DensityCost = self.what;
-        let machine = machine::find(&self.machine)?;
+        let machine = machines::find(&self.machine)?;
         // Before anything takes its time.
         let folder = Folder::open(&self.out, &["cost", "measured", "atlas"], false)?;
         let (host, _) = host_model(self.host.as_deref(), common)?;

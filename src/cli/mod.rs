@@ -16,7 +16,7 @@ mod table;
 mod validate_model;
 
 use crate::model::host::HostFileError;
-use crate::model::machine::MachineError;
+use crate::model::machine_file::MachineError;
 use crate::run::RunError;
 use crate::signals::{self, End};
 use crate::study::StudyError;
@@ -90,7 +90,7 @@ pub(crate) enum Failure {
     Usage(#[from] crate::study::efficiency_table::QuestionError),
     /// A machine that there is not: exit code 2; a bad machine file: 3; one that cannot be read: 5.
     #[error(transparent)]
-    Machine(#[from] crate::model::machine::MachineError),
+    Machine(#[from] crate::model::machine_file::MachineError),
     /// A bad host file: exit code 3.
     #[error(transparent)]
     HostFile(#[from] crate::model::host::HostFileError),

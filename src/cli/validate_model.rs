@@ -5,7 +5,7 @@ use super::reproduce::{Folder, Made};
 use super::{Common, Failure, output, print, print_json, say, warn};
 use crate::model::host::{HostModel, default_model};
 use crate::report;
-use crate::report::origin::{self, Provenance};
+use crate::origin::{self, Provenance};
 use crate::signals;
 use crate::study::calibration;
 use crate::study::model_validation::{

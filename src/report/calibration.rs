@@ -80,12 +80,7 @@ fn programs(model: &HostModel) -> Table {
         name: "programs".into(),
         title: "Programs".into(),
         columns: headings(
-            &[
-                &["execution", "lanes", "program"],
-                TIMES.as_slice(),
-                &["computing", "waiting"],
-            ]
-            .concat(),
+            &[&["execution", "lanes", "program"], TIMES.as_slice(), &["computing", "waiting"]].concat(),
         ),
         rows: rows.collect(),
         notes: vec![format!(

@@ -61,8 +61,7 @@ fn percent(share: f64) -> Cell {
 }
 
 fn said(errors: &Errors) -> String {
-    let Errors { what, cases, median, ninth_tenth, worst, within, baseline_median, repeated } =
-        errors;
+    let Errors { what, cases, median, ninth_tenth, worst, within, baseline_median, repeated } = errors;
     let baseline = baseline_median.map_or(String::new(), |median| {
         format!(" Time in proportion to the number of operations: median {:.0} %.", 100.0 * median)
     });

@@ -2,7 +2,7 @@
 
 use super::Table;
 use super::figure::Figure;
-use super::origin::Provenance;
+use crate::origin::Provenance;
 use serde::{Deserialize, Serialize};
 
 /// One item of the page.

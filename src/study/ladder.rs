@@ -121,7 +121,7 @@ pub fn ladder(question: &Question, machine: &MachineModel) -> Result<Ladder, Que
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::machine::{names, preset};
+    use crate::model::machines::{names, preset};
 
     #[test]
     fn every_machine_has_every_rung_and_chaining_pays_where_there_are_units() {

@@ -7,7 +7,7 @@
 //! before, were tried: they take the same at all times, for a tenant on the same core takes what they leave. So was a
 //! stream from memory, for work beyond the caches: it varies more than that work does.
 
-use super::pieces::quantile;
+use super::statistics::quantile;
 use std::cell::RefCell;
 use std::hint::black_box;
 use std::time::Instant;

@@ -2,6 +2,7 @@
 //! pace; and of work that lasts longer than a quiet moment piece by piece.
 
 use super::pace::Timed;
+use super::statistics::quantile;
 
 /// So many quiet samples are enough.
 const FEW: usize = 2;
@@ -137,12 +138,6 @@ fn power(pieces: &[Vec<Timed>]) -> f64 {
     slopes.select_nth_unstable_by(middle, f64::total_cmp).1.clamp(0.0, HIGHEST)
 }
 
-/// The value below which a share of rising values lies; none of none.
-pub fn quantile(rising: &[f64], share: f64) -> Option<f64> {
-    let last = rising.len().checked_sub(1)?;
-    Some(rising[(share * last as f64).round() as usize])
-}
-
 /// The share of samples that lie below the one that counts: whatever disturbs makes them longer, and what others have left in
 /// the larger caches does so even in quiet moments; but the very shortest may be one that the clock cut short.
 pub const COUNTS: f64 = 0.1;
@@ -220,14 +215,5 @@ mod tests {
         let mut joined = all.every(2, 0);
         joined.join(&all.every(2, 1));
         assert_eq!((joined.typical(10.0), joined.runs()), (Some(45.0), 16));
-    }
-
-    #[test]
-    fn quantiles_are_values_that_were_there() {
-        assert_eq!(
-            [0.0, 0.25, 1.0].map(|share| quantile(&[1.0, 2.0, 3.0, 4.0, 5.0], share)),
-            [1.0, 2.0, 5.0].map(Some)
-        );
-        assert_eq!(quantile(&[], 0.5), None);
     }
 }

@@ -9,7 +9,7 @@ use crate::io::FileError;
 use crate::io::lock::{Lock, LockError, is_lock};
 use crate::io::replace::{is_temporary, listing, remove_if_there, replace, temporary};
 use crate::report::figure::{Figure, png, svg};
-use crate::report::origin::Provenance;
+use crate::origin::Provenance;
 use crate::report::{Section, csv, html, page};
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};

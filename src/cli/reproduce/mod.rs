@@ -4,7 +4,7 @@ mod folder;
 mod items;
 
 use super::{Common, Failure, output, print_json, say};
-use crate::report::origin::Provenance;
+use crate::origin::Provenance;
 use crate::signals;
 use clap::{Args, ValueEnum};
 pub(super) use folder::{Folder, FolderError};

@@ -1,6 +1,7 @@
 //! Host files: what `calibrate` writes, as TOML.
 
-use super::{HostModel, Transfer};
+use super::levels::Transfer;
+use super::model::HostModel;
 use crate::io::{FileError, regular_file};
 use crate::model::machine_file::{LONGEST, NAMED, Position};
 use crate::quoted::{message, one_line, quoted};

@@ -1,6 +1,6 @@
 //! The levels of memory: what it takes to bring the bytes of a vector from where they lie.
 
-use super::reuse::{Since, Touch, Vector, element_bytes};
+use super::reuse::{LINE, Since, Touch, Vector, element_bytes};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::Execution;
@@ -36,9 +36,6 @@ pub struct Transfer {
     /// Nanoseconds a line that is met through an index vector and that nothing announces: the line before it was not met.
     pub line: f64,
 }
-
-/// Bytes of a line, the least that moves between levels.
-pub const LINE: f64 = 64.0;
 
 /// How much of what lies `distance` bytes back a cache of so many bytes has lost; half an octave around a capacity belongs
 /// to both levels, for caches do not end sharply.

@@ -2,7 +2,8 @@
 //! from the operations it counts, so loops that a calibration has seen are charged what they took on short vectors; others
 //! by their classes of operations, fitted to those that were seen.
 
-use super::{Estimate, Level, OutOfRange, PassCost, Transfer};
+use super::cost::{Estimate, OutOfRange, PassCost};
+use super::levels::{Level, Transfer};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::collections::BTreeMap;

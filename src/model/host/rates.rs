@@ -1,7 +1,7 @@
 //! Work whose amount hangs on the data: so much for each disc, cell, candidate and contact, by the number of discs, for
 //! with it the level of memory changes.
 
-use super::{OutOfRange, interpolated};
+use super::cost::{OutOfRange, interpolated};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -1,6 +1,6 @@
 //! How large the levels of memory may be: what is tried when their costs are fitted.
 
-use super::levels::BEYOND;
+use super::point::BEYOND;
 
 /// Capacities that are tried (bytes): of the store buffer, which hands on what was written last before it is in any cache;
 /// and of the three levels of cache what the system says, or parts of it, for whoever shares the core or the last level takes

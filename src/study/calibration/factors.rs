@@ -2,7 +2,7 @@
 //! it does on short ones, and how long it waits, where they say what others do that touch as much.
 
 use super::fit;
-use super::levels::{BEYOND, Point};
+use super::point::{BEYOND, Point};
 use crate::model::host::Factors;
 use std::collections::BTreeMap;
 

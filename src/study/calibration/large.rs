@@ -1,9 +1,9 @@
 //! The larger drill scenes, whose arrays lie in the levels beyond the first: the programs of a step one after the other, by
 //! the interpreter and as compiled loops.
 
-use super::levels::{Charged, Waiting};
-use super::loops::Step;
 use super::passes::Lane;
+use super::point::{Charged, Waiting};
+use super::step::{INTERPRETED, Step};
 use super::timing::Samples;
 use crate::model::host::{LoopCosts, Surroundings, touched_arrays};
 use std::rc::Rc;
@@ -35,16 +35,6 @@ pub(super) const SCENES: [(usize, f64); 22] = [
     (28_000, 0.13),
     (14_000, 0.06),
     (24_000, 0.06),
-];
-
-/// How the interpreter runs them: in one strip, and in strips whose registers lie in the first and in the second level, among
-/// them the vectors of a CRAY, which most people will ask for. Powers of two, so that no strip leaves elements over.
-pub(super) const INTERPRETED: [Execution; 5] = [
-    Execution::Eager,
-    Execution::Strip(32),
-    Execution::Strip(64),
-    Execution::Strip(256),
-    Execution::Strip(1024),
 ];
 
 /// A program as it was run on one of the scenes.

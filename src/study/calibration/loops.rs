@@ -1,38 +1,21 @@
 //! Compiled loops: the programs of a step on vectors in the first-level cache, and their classes of operations.
 
 use super::fit;
-use super::large::{self, INTERPRETED, Ran, SCENES};
+use super::large::{self, Ran, SCENES};
 use super::passes::{Lane, estimate};
+use super::step::{ELEMENTS, INTERPRETED, Near, STRIPPED, STRIPS, Step, executions};
 use super::timing::{PARTS, Samples};
 use super::variants::{AT_REST, DRILL, VARIANTS, Variant};
-use crate::method::lattice_md::{Arrays, Lengths, StepProgram, programs};
+use crate::method::lattice_md::{Arrays, Lengths, programs};
 use crate::model::host::{Estimate, Factors, LoopCosts, PassCost, ProgramCost, class_counts};
 use crate::run::model;
 use crate::study::pace::Pace;
 use crate::study::phase_times::{QUIET, Run};
 use crate::study::throughput::MeasurementError;
 use std::collections::BTreeMap;
-use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::{Memory, OpClass};
 use stripmine_kernels::{Execution, InstructionSet};
-
-/// Elements of the short and of the longer runs of a loop: whole registers, and in the first-level cache.
-const ELEMENTS: [usize; 2] = [32, 96];
-/// Hardware registers of elements that the interpreter goes over, in strips of two lengths: far enough apart to tell what an
-/// element takes from what a pass takes to begin, and short enough that arrays and registers lie in the first-level cache.
-const STRIPPED: usize = 16;
-const STRIPS: [usize; 2] = [2, 8];
-/// How many elements are left over beyond whole registers of so many lanes, in runs that tell what these take.
-fn left_over(lanes: usize) -> [usize; 2] {
-    [1, lanes.saturating_sub(1).max(2)]
-}
-/// Least nanoseconds of a sample.
-const SHORTEST: f64 = 40_000.0;
-/// Elements of the longest vectors of a sample of the interpreter and of loops, about, and steps at most.
-const INTERPRETED_ELEMENTS: usize = 20_000;
-const LOOP_ELEMENTS: usize = 100_000;
-const MOST: usize = 8;
 
 /// Whole vectors whose halves of the samples are farther apart than this share are worth more of them.
 const UNSETTLED: f64 = 0.1;
@@ -48,128 +31,6 @@ fn turn(elements: usize) -> usize {
 
 /// Operations of each class of an element, and the nanoseconds it took.
 type Counted = (BTreeMap<&'static str, f64>, f64);
-
-/// The loops of one model in one precision.
-pub(super) struct Step {
-    name: String,
-    pub(super) programs: Vec<StepProgram>,
-    pub(super) ranges: Vec<Range<usize>>,
-    memory: usize,
-    large: bool,
-    loops: Vec<Near>,
-    /// The interpreter in short strips.
-    strips: Vec<Near>,
-    /// Whole vectors, one program after the other as in a step.
-    pub(super) whole: Vec<Samples>,
-    /// The same by the interpreter.
-    pub(super) interpreted: [Vec<Samples>; INTERPRETED.len()],
-}
-
-impl Step {
-    /// Elements of the longest vector.
-    fn longest(&self) -> usize {
-        self.ranges.iter().map(ExactSizeIterator::len).max().unwrap_or(1).max(1)
-    }
-
-    /// One more sample of the programs over whole vectors, one after the other as in a step, by the executions that are
-    /// wanted.
-    fn in_turns(
-        &mut self,
-        pace: &mut Pace,
-        set: InstructionSet,
-        memory: &Memory<'_>,
-        wanted: impl Fn(Execution) -> bool,
-    ) {
-        let longest = self.longest();
-        let Step { programs, ranges, whole, interpreted, .. } = self;
-        for (execution, samples, elements) in executions(whole, interpreted) {
-            if wanted(execution) {
-                Samples::take_in_turns(samples, pace, (elements / longest).clamp(1, MOST), |at| {
-                    run(&programs[at], memory, ranges[at].clone(), execution, set);
-                });
-            }
-        }
-    }
-
-    /// One more sample of every program in the first-level cache; `lanes` says how many elements of a type are in a hardware
-    /// register.
-    fn near(
-        &mut self,
-        pace: &mut Pace,
-        set: InstructionSet,
-        memory: &Memory<'_>,
-        lanes: &dyn Fn(&str) -> usize,
-    ) {
-        let Step { programs, ranges, loops, strips, .. } = self;
-        for (at, (loops, strips)) in loops.iter_mut().zip(strips).enumerate() {
-            let start = ranges[at].start;
-            let run = |n: usize, execution| run(&programs[at], memory, start..start + n, execution, set);
-            let lanes = lanes(programs[at].program.outlines().lane);
-            let left = left_over(lanes);
-            let [short, long] = ELEMENTS;
-            for (samples, n) in loops.all_mut().zip([short, long, short + left[0], short + left[1]]) {
-                samples.take(pace, SHORTEST, || run(n, Execution::Chained));
-            }
-            let whole = STRIPPED * lanes;
-            let [short, long] = STRIPS.map(|strip| strip * lanes);
-            let all = [(whole, short), (whole, long), (whole + left[0], long), (whole + left[1], long)];
-            for (samples, (n, strip)) in strips.all_mut().zip(all) {
-                samples.take(pace, SHORTEST, || run(n, Execution::Strip(strip)));
-            }
-        }
-    }
-}
-
-/// The samples of whole vectors by each execution, and how many elements a sample goes over, about.
-fn executions<'a>(
-    whole: &'a mut Vec<Samples>,
-    interpreted: &'a mut [Vec<Samples>; INTERPRETED.len()],
-) -> impl Iterator<Item = (Execution, &'a mut Vec<Samples>, usize)> {
-    let interpreted = INTERPRETED.into_iter().zip(interpreted);
-    let interpreted = interpreted.map(|(execution, samples)| (execution, samples, INTERPRETED_ELEMENTS));
-    interpreted.chain([(Execution::Chained, whole, LOOP_ELEMENTS)])
-}
-
-fn run(
-    step: &StepProgram,
-    memory: &Memory<'_>,
-    elements: Range<usize>,
-    execution: Execution,
-    set: InstructionSet,
-) {
-    let outcome = step.program.run(memory, elements, execution, set);
-    debug_assert!(outcome.is_ok(), "{outcome:?}");
-}
-
-/// Runs of a program in the first-level cache.
-#[derive(Clone, Default)]
-struct Near {
-    /// Over whole registers: short and longer.
-    whole: [Samples; 2],
-    /// With elements left over: few and many.
-    left: [Samples; 2],
-}
-
-impl Near {
-    fn all(&self) -> impl Iterator<Item = &Samples> {
-        self.whole.iter().chain(&self.left)
-    }
-
-    fn all_mut(&mut self) -> impl Iterator<Item = &mut Samples> {
-        self.whole.iter_mut().chain(&mut self.left)
-    }
-
-    /// What is left over takes, where `whole` runs without it.
-    fn rest(&self, lanes: usize, whole: usize) -> PassCost {
-        let [few, many] = left_over(lanes).map(|left| left as f64);
-        let element =
-            |of: &dyn Fn(&Samples) -> f64| ((of(&self.left[1]) - of(&self.left[0])) / (many - few)).max(1e-4);
-        let start = |of: &dyn Fn(&Samples) -> f64| {
-            (of(&self.left[0]) - of(&self.whole[whole]) - few * element(of)).max(0.0)
-        };
-        PassCost { element: estimate(self.all(), element), start: estimate(self.all(), start) }
-    }
-}
 
 /// Arrays of either precision.
 trait Laid {
@@ -399,6 +260,7 @@ fn seen_near(what: String, element: Estimate, start: Estimate, rest: PassCost) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::method::lattice_md::StepProgram;
     use crate::study::efficiency_table::{Question, step};
 
     #[test]

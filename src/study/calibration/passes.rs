@@ -2,7 +2,7 @@
 
 use super::drills::{Kind, LONGEST, ROUNDS, drill, mixture};
 use super::fit::{self, median};
-use super::levels::{Charged, Waiting};
+use super::point::{Charged, Waiting};
 use super::timing::{PARTS, Samples};
 use crate::model::host::{Change, Estimate, LaneCosts, PassCost, Surroundings, touches};
 use crate::study::pace::Pace;

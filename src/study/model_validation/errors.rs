@@ -1,6 +1,6 @@
 //! The cases of a validation, and how far off their predictions are.
 
-use super::{EXECUTIONS, PRECISIONS, UNSETTLED};
+use super::runs::{EXECUTIONS, PRECISIONS, UNSETTLED};
 use crate::method::Phase;
 use crate::study::phase_times::{FAST, FAST_LISTS, LISTS, QUIET};
 use serde::Serialize;

@@ -2,55 +2,23 @@
 //! discs, phase by phase.
 
 mod errors;
+mod runs;
 mod scene;
 
 pub use errors::{Case, Errors, OF_DATA, OF_DATA_SETTLED, PROGRAMS, PROGRAMS_SETTLED};
+pub use runs::{Effort, UNSETTLED, ValidationError};
 
-use super::calibration::{self, Calibration, CalibrationError};
+use super::calibration::{self, Calibration};
 use super::pace::Pace;
-use super::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run};
-use super::rounds::Bound;
+use super::phase_times::PhaseTimes;
 use super::throughput::MeasurementError;
 use crate::method::Phase;
-use crate::model::host::{HostModel, OutOfRange};
+use crate::model::host::HostModel;
 use rayon::ThreadPool;
+use runs::runs;
 use scene::{Scene, rated};
 use serde::Serialize;
-use stripmine_kernels::{Execution, InstructionSet};
-
-/// What is run.
-#[derive(Clone, Debug)]
-pub struct Effort {
-    /// NP.
-    pub particles: Vec<usize>,
-    /// ρ on cells as wide as the radius.
-    pub occupancies: Vec<f64>,
-    /// Rounds over all runs, each laid out in memory anew: who else is at work on the machine, and what of his lies in the larger
-    /// caches, is the same for a while.
-    pub rounds: Bound,
-    /// Rounds more, at most, over those runs alone that met no quiet moments or do not repeat themselves yet: two by two, as
-    /// those of even and of odd number are told apart.
-    pub further: usize,
-    /// Repeats of a run in a round.
-    pub repeats: usize,
-    /// Particle-steps of a repeat, about.
-    pub particle_steps: usize,
-}
-
-/// The executions, by the name that a scene gives them; the last three hang on the data. Strips as long as a CRAY's vectors
-/// are drilled on other lattices, the longer ones on none.
-const EXECUTIONS: [(&str, Option<Execution>); 8] = [
-    ("eager", Some(Execution::Eager)),
-    ("strip:64", Some(Execution::Strip(64))),
-    ("strip:128", Some(Execution::Strip(128))),
-    ("strip:512", Some(Execution::Strip(512))),
-    ("chained", Some(Execution::Chained)),
-    (FAST, None),
-    (FAST_LISTS, None),
-    (LISTS, None),
-];
-
-const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
+use stripmine_kernels::InstructionSet;
 
 /// Where the model comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -62,25 +30,6 @@ pub enum Calibrated {
     Before,
     /// From a calibration in turns with the runs.
     InTurns,
-}
-
-/// Why there is no validation.
-#[derive(Debug, thiserror::Error)]
-pub enum ValidationError {
-    /// A calibration broke.
-    #[error(transparent)]
-    Calibration(#[from] CalibrationError),
-    /// A run broke.
-    #[error(transparent)]
-    Measurement(#[from] MeasurementError),
-    /// A case that the model does not reach.
-    #[error("{case}: {cause}")]
-    OutOfRange {
-        /// The case.
-        case: String,
-        /// Why.
-        cause: OutOfRange,
-    },
 }
 
 /// The dataset.
@@ -177,8 +126,6 @@ pub fn calibrated_in_turns(
     })
 }
 
-/// Runs whose halves are farther apart than this share are run again; and those that met no quiet moments.
-pub const UNSETTLED: f64 = 0.1;
 /// The share of the time that is taken by the rounds over all runs, about.
 const BASE: f64 = 0.8;
 
@@ -270,19 +217,6 @@ fn is_settled(halves: &[Option<PhaseTimes>; 2], reference: f64) -> bool {
         a.max(b) <= (1.0 + UNSETTLED) * a.min(b)
     };
     Phase::ALL.iter().all(near) && [even, odd].iter().any(|half| half.is_quiet(reference))
-}
-
-/// Every run, in order.
-fn runs(effort: &Effort) -> impl Iterator<Item = Run> {
-    let places = effort
-        .particles
-        .iter()
-        .flat_map(|&particles| effort.occupancies.iter().map(move |&occupancy| (particles, occupancy)));
-    places.flat_map(|(particles, occupancy)| {
-        PRECISIONS.into_iter().flat_map(move |precision| {
-            EXECUTIONS.map(|(execution, _)| Run { particles, occupancy, precision, execution })
-        })
-    })
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! A run to be measured, and what is predicted of it.
 
-use super::{Case, EXECUTIONS, Effort, ValidationError};
+use super::errors::Case;
+use super::runs::{EXECUTIONS, Effort, ValidationError};
 use crate::method::Phase;
 use crate::method::lattice_md::Lengths;
 use crate::model::host::{HostModel, OutOfRange};

@@ -1,7 +1,8 @@
 //! Errors of the forces on one configuration, over the size of the box.
 
-use super::{Gas, PACKING_FRACTIONS, StudyError, place};
+use super::gas::{Gas, PACKING_FRACTIONS, place};
 use crate::observe::contacts;
+use crate::study::StudyError;
 use serde::Serialize;
 use stripmine_kernels::sweep::lattice::Coordinates;
 

@@ -1,6 +1,7 @@
 //! How fast trajectories of one start run apart when digits differ: collisions multiply whatever error there is.
 
-use super::{Gas, PACKING_FRACTIONS, SEEDS, StudyError, place};
+use super::gas::{Gas, PACKING_FRACTIONS, SEEDS, place};
+use crate::study::StudyError;
 use crate::study::statistics::{Spread, slope};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
