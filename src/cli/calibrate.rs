@@ -2,8 +2,8 @@
 
 use super::{Common, Failure, output, print, print_json, say, warn};
 use crate::model::host::Measured;
-use crate::report;
 use crate::origin::host;
+use crate::report;
 use crate::signals;
 use crate::study::calibration::{Effort, TOO_DIFFERENT, TOO_NOISY, TOO_RARE, calibrate};
 use clap::Args;

@@ -49,7 +49,7 @@ impl ChartVerb {
         let bar = output::progress(common, "chart");
         let show = |from: f64, share: f64| bar.set_position((1e3 * (from + 0.5 * share)) as u64);
         let write = |section: Section, data: &serde_json::Value, start: Instant| -> Result<(), Failure> {
-            let provenance = Provenance::here(again.clone(), start.elapsed().as_secs_f64());
+            let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
             let made = Made::new(section, data)?;
             let folder = signals::whole(|| folder.write(&made, &provenance))?;
             if !common.quiet {

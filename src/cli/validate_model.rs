@@ -4,8 +4,8 @@ use super::calibrate::noise;
 use super::reproduce::{Folder, Made};
 use super::{Common, Failure, output, print, print_json, say, warn};
 use crate::model::host::{HostModel, default_model};
-use crate::report;
 use crate::origin::{self, Provenance};
+use crate::report;
 use crate::signals;
 use crate::study::calibration;
 use crate::study::model_validation::{
@@ -91,8 +91,7 @@ impl ValidateModel {
             if let Some(model) = model {
                 made = made.with_file("host.toml", model.to_toml());
             }
-            let provenance =
-                Provenance::here("stripmine validate-model".to_owned(), start.elapsed().as_secs_f64());
+            let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
             let folder = signals::whole(|| folder.write(&made, &provenance))?;
             if !common.quiet {
                 say(format_args!("written: {}", folder.display()));
