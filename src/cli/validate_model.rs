@@ -24,7 +24,7 @@ pub(super) struct ValidateModel {
     /// Host file of `calibrate`; without one, the model that comes with the program
     #[arg(long)]
     host: Option<PathBuf>,
-    /// Calibrate in turns with the runs, so that both meet the same moments of a busy machine; the host file lies in the
+    /// Calibrate in turns with the runs, so that both see the same states of a busy machine; the host file lies in the
     /// folder of the result
     #[arg(long, conflicts_with = "host")]
     calibrate: bool,
@@ -42,7 +42,7 @@ pub(super) struct ValidateModel {
     /// Rounds over all runs
     #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
-    /// Rounds more, at most, over those runs alone that met no quiet moments, or whose rounds of even and of odd number lie
+    /// Rounds more, at most, over those runs alone that were always disturbed by other programs, or whose rounds of even and of odd number lie
     /// more than a tenth apart
     #[arg(long, default_value_t = 24)]
     further: u16,

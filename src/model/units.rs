@@ -10,7 +10,7 @@ use stripmine_kernels::isa::op::OpClass;
 pub struct Unit {
     /// The classes that they serve.
     pub serves: Vec<OpClass>,
-    /// How many there are: so many instructions of these classes run at once.
+    /// How many there are: the number of instructions of these classes that run at once.
     pub count: Quantity,
     /// Elements a clock period of each; 1 where nothing is said.
     pub rate: Option<Quantity>,

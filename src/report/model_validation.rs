@@ -22,13 +22,13 @@ pub fn section(data: &ModelValidation) -> Section {
         name: "validation".into(),
         title: "The timing model against wall time".into(),
         says: "BP93 predicts times and checks none of them. Aim: on runs that nothing was fitted to, a median error of at \
-               most 5 %, 90 % of the cases within 15 %, the worst 30 %; where the work hangs on the data, a median of 10 %."
+               most 5 %, 90 % of the cases within 15 %, the worst 30 %; where the work depends on the data, a median of 10 %."
             .into(),
         came_out: [programs, of_data, group(PROGRAMS_SETTLED), group(OF_DATA_SETTLED)]
             .into_iter()
             .flatten()
             .map(said)
-            .chain([pace(data)])
+            .chain([slowdown(data)])
             .collect::<Vec<_>>()
             .join(" "),
         verdict: if reached { Verdict::Reproduced } else { Verdict::Partly },
@@ -43,8 +43,8 @@ pub fn section(data: &ModelValidation) -> Section {
             .into_iter()
             .map(|execution| over_predicted(data, execution))
             .chain([
-                histogram(data, "histogram", "eager, strip-mined, chained", |case| !case.hangs_on_data()),
-                histogram(data, "histogram_of_data", "fast and lists", Case::hangs_on_data),
+                histogram(data, "histogram", "eager, strip-mined, chained", |case| !case.depends_on_data()),
+                histogram(data, "histogram_of_data", "fast and lists", Case::depends_on_data),
             ])
             .collect(),
         tables: tables(data),
@@ -82,11 +82,11 @@ fn said(errors: &Errors) -> String {
     )
 }
 
-fn pace(data: &ModelValidation) -> String {
+fn slowdown(data: &ModelValidation) -> String {
     format!(
-        "All times are those of quiet moments, when nobody else is on the core: a yardstick run beside every sample says when. It \
-         then took {:.2} times as long as in the calibration's quiet moments.",
-        data.pace
+        "All times are for an undisturbed core. A reference loop is timed beside every sample and shows disturbances by other \
+         programs; undisturbed, it took {:.2} times as long as in the calibration.",
+        data.slowdown
     )
 }
 
@@ -115,16 +115,16 @@ fn errors(data: &ModelValidation) -> Table {
     });
     let mut notes = vec![
         format!("Host model: {}, {}.", data.host, data.instruction_set),
-        "Measured: the lowest tenth of the samples in quiet moments, of long phases piece by piece; repeated: how far the rounds of \
-         even number and those of odd number lie apart, each laid out in memory anew. Baseline: operations times elements, at \
+        "Measured: the lowest tenth of the undisturbed samples, of long phases segment by segment; repeated: how far the rounds of \
+         even number and those of odd number lie apart, each laid out in memory again. Baseline: operations times elements, at \
          the cost of a sum in the cache."
             .to_owned(),
-        pace(data),
+        slowdown(data),
         "Fast and lists: predicted from the numbers of candidates and contacts that the run itself had.".to_owned(),
     ];
     let [rounds, further] = data.rounds;
     notes.push(format!(
-        "{rounds} rounds over all runs, and up to {further} more over those that met no quiet moments or whose halves lay \
+        "{rounds} rounds over all runs, and up to {further} more over those that were always disturbed or whose halves lay \
          more than {:.0} % apart: until they do not, whatever is predicted.",
         100.0 * UNSETTLED
     ));

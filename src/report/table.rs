@@ -84,7 +84,7 @@ pub struct Table {
     pub columns: Vec<String>,
     /// Rows, each as long as the headings.
     pub rows: Vec<Vec<Cell>>,
-    /// What a reader must know besides.
+    /// What a reader must also know.
     pub notes: Vec<String>,
 }
 

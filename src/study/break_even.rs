@@ -3,7 +3,7 @@
 
 use super::StudyError;
 use super::density_cost::{ListFigures, grid, list_figures};
-use super::pace::Pace;
+use super::noise_monitor::NoiseMonitor;
 use super::phase_times::{FAST, FAST_LISTS, HALF_MASK, LISTS, PhaseTimes, Run, Sampling, phase_times};
 use super::predicted_step::{Step, of_precision};
 use super::rounds::Bound;
@@ -114,7 +114,7 @@ pub enum AtlasError {
     OutOfRange(#[from] OutOfRange),
 }
 
-/// The atlas of some machines and a host; measured for these numbers of particles, in so many rounds over all of them, for
+/// The atlas of some machines and a host; measured for these numbers of particles, in this many rounds over all of them, for
 /// who else is at work on the machine is the same for a while. `progress` gets the share that is done.
 ///
 /// # Errors
@@ -166,7 +166,7 @@ pub fn atlas(
         methods: methods.clone(),
         places: predicted,
     });
-    let mut pace = Pace::default();
+    let mut monitor = NoiseMonitor::default();
     let mut times: Vec<(usize, f64, Vec<PhaseTimes>)> = vec![];
     for &particles in measured {
         times.extend(OCCUPANCIES.map(|occupancy| (particles, occupancy, vec![])));
@@ -176,14 +176,14 @@ pub fn atlas(
         for (at, (particles, occupancy, ways)) in times.iter_mut().enumerate() {
             let before = std::mem::take(ways).into_iter().map(Some).chain(std::iter::repeat(None));
             for (way, before) in WAYS.iter().zip(before) {
-                let more = alone.install(|| measure(*particles, *occupancy, way, &mut pace))?;
+                let more = alone.install(|| measure(*particles, *occupancy, way, &mut monitor))?;
                 ways.push(PhaseTimes::with(before, more));
             }
             progress(rounds.share((at + 1) as f64 / places));
         }
     }
     // When it was quiet is known once all is measured.
-    let reference = pace.reference();
+    let reference = monitor.reference();
     let step = |times: &PhaseTimes| Phase::ALL.iter().map(|&phase| times.typical(phase, reference).0).sum();
     let place = |(particles, occupancy, ways): (usize, f64, Vec<PhaseTimes>)| Place {
         particles,
@@ -210,7 +210,7 @@ fn run(particles: usize, occupancy: f64, (name, _): &(&'static str, Option<Execu
 fn fast_list_amounts(occupancy: f64) -> Result<Amounts, MeasurementError> {
     let checked = run(1000, occupancy, &(FAST_LISTS, None)).scene(&[])?;
     let sampling = Sampling { equilibration: 200, repeats: 2, particle_steps: 300_000, least_steps: 100 };
-    Ok(phase_times(&checked, &sampling, &mut Pace::default())?.amounts)
+    Ok(phase_times(&checked, &sampling, &mut NoiseMonitor::default())?.amounts)
 }
 
 /// Nanoseconds of a step by the model; candidates and contacts as in the run of about a thousand discs.
@@ -261,12 +261,12 @@ fn measure(
     particles: usize,
     occupancy: f64,
     way: &(&'static str, Option<Execution>),
-    pace: &mut Pace,
+    monitor: &mut NoiseMonitor,
 ) -> Result<PhaseTimes, MeasurementError> {
     let checked = run(particles, occupancy, way).scene(&[])?;
     let equilibration = (100_000 / particles).clamp(3, 30);
     let sampling = Sampling { equilibration, repeats: 1, particle_steps: 5_000, least_steps: 3 };
-    phase_times(&checked, &sampling, pace)
+    phase_times(&checked, &sampling, monitor)
 }
 
 #[cfg(test)]

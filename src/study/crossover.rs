@@ -18,7 +18,7 @@ pub struct Effort {
     pub particles: Vec<usize>,
     /// Packing fractions, falling.
     pub packing_fractions: Vec<f64>,
-    /// Steps of a repeat: enough for lists to be made anew.
+    /// Steps of a repeat: enough for lists to be rebuilt.
     pub steps: u64,
     /// Repeats.
     pub repeats: usize,

@@ -21,7 +21,7 @@ pub struct Ladder {
     pub clock_period_ns: f64,
     /// Numbers of the machine that are assumed.
     pub assumed: Vec<String>,
-    /// Of the clock periods of the last rung, the share that hangs on start-ups whose values are assumed.
+    /// Of the clock periods of the last rung, the share that depends on start-ups whose values are assumed.
     pub assumed_share: f64,
     /// The parts of the step, in their order.
     pub parts: Vec<&'static str>,

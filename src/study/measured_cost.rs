@@ -15,7 +15,7 @@ pub struct Way {
     pub kind: &'static str,
     /// `method.execution`, for the lattice.
     pub execution: Option<&'static str>,
-    /// How lists are made anew, for the lists.
+    /// How lists are rebuilt, for the lists.
     pub rebuild: Option<&'static str>,
 }
 

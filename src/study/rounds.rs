@@ -5,14 +5,14 @@ use std::time::{Duration, Instant};
 /// How many rounds.
 #[derive(Clone, Copy, Debug)]
 pub struct Bound {
-    /// At most so many, and one at least.
+    /// The largest number of rounds; one is made in any case.
     pub most: usize,
     /// None is begun that would end later, as long as those before it took; unbounded without.
     pub within: Option<Duration>,
 }
 
 impl Bound {
-    /// So many, however long they take.
+    /// A fixed number of rounds, without a limit of time.
     pub fn of(most: usize) -> Bound {
         Bound { most, within: None }
     }

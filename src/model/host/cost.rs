@@ -14,7 +14,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Without another, and as unsure as both; nothing takes less than nought.
+    /// Without another, and as unsure as both; nothing takes less than zero.
     #[must_use]
     pub fn less(self, other: Estimate) -> Estimate {
         Estimate { value: (self.value - other.value).max(0.0), interval: self.interval.hypot(other.interval) }
@@ -27,7 +27,7 @@ impl Estimate {
 pub struct PassCost {
     /// Nanoseconds an element, tau.
     pub element: Estimate,
-    /// Nanoseconds of a pass besides, t0.
+    /// Nanoseconds of a pass in addition, t0.
     pub start: Estimate,
 }
 

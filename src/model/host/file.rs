@@ -173,7 +173,7 @@ impl HostModel {
             ("clock", self.clock),
             ("loops.overlap", self.loops.overlap),
             ("measured.spread", self.measured.spread),
-            ("measured.yardstick", self.measured.yardstick),
+            ("measured.reference_loop", self.measured.reference_loop),
             ("measured.quiet", self.measured.quiet),
         ];
         let rest = rest.map(|(entry, value)| (entry.to_owned(), value));

@@ -15,10 +15,10 @@ pub struct LaneCosts {
     pub register_bytes: [f64; 3],
     /// Lanes of a hardware register.
     pub lanes: usize,
-    /// Nanoseconds an element of a pass, besides its tau, for each operand that is an array: its registers lie across
+    /// Nanoseconds an element of a pass, in addition to its tau, for each operand that is an array: its registers lie across
     /// lines.
     pub array_operand: f64,
-    /// Nanoseconds that a pass takes besides where the next one is of another kind, by the passes of the program.
+    /// Additional nanoseconds of a pass where the next one is of another kind, by the passes of the program.
     pub change: Vec<Change>,
     /// A pass, by the name of its kind.
     pub passes: BTreeMap<String, PassCost>,
@@ -98,7 +98,7 @@ impl LaneCosts {
         Ok(cost)
     }
 
-    /// Nanoseconds a pass of a program of so many, because the next one is of another kind.
+    /// Additional nanoseconds of a pass, in a program of `passes`, because the next one is of another kind.
     pub fn change(&self, passes: usize) -> f64 {
         let points: Vec<(f64, f64)> =
             self.change.iter().map(|change| (change.passes as f64, change.ns)).collect();

@@ -18,13 +18,13 @@ use stripmine_kernels::isa::Op;
 pub struct Measured {
     /// Smallest step of the timer seen (ns).
     pub timer: f64,
-    /// Nanoseconds that a yardstick took in quiet moments, a fixed piece of work run beside every sample: all times of this file
-    /// are told at this pace.
-    pub yardstick: f64,
-    /// How many times as long it took most of the time.
-    pub pace: f64,
-    /// The share of the points that were measured in quiet moments; what others would take then was found from how they
-    /// follow the yardstick.
+    /// Nanoseconds that the reference loop took on an undisturbed core, a fixed piece of work timed beside every sample. All
+    /// times of this file are for such a core.
+    pub reference_loop: f64,
+    /// How many times as long it took in the median.
+    pub slowdown: f64,
+    /// The share of the points that were measured on an undisturbed core; the others were corrected by how they depend on
+    /// the slowdown of the reference loop.
     pub quiet: f64,
     /// Median, over all points, of half the range of the middle half of those samples, as a share.
     pub spread: f64,
@@ -50,15 +50,15 @@ pub struct HostModel {
     pub instruction_set: String,
     /// How it was measured.
     pub measured: Measured,
-    /// Nanoseconds an element of a pass any of whose operands come from beyond the nearest level, besides what their bytes
-    /// take: e0.
+    /// Nanoseconds an element of a pass any of whose operands come from beyond the nearest level, in addition to what their
+    /// bytes take: e0.
     pub operand: f64,
     /// How long a pass of a program takes to begin, as a share of what it takes in a drill of nothing but that pass: the
     /// processor looks ahead from one to the next.
     pub begin: f64,
     /// Nanoseconds to bind an array to a program's memory.
     pub bind: f64,
-    /// Nanoseconds of a run of an interpreted program besides its passes.
+    /// Nanoseconds of a run of an interpreted program in addition to its passes.
     pub run: f64,
     /// Nanoseconds that timing a phase adds to it.
     pub clock: f64,
@@ -68,7 +68,7 @@ pub struct HostModel {
     pub lanes: BTreeMap<String, LaneCosts>,
     /// Compiled loops.
     pub loops: LoopCosts,
-    /// Work whose amount hangs on the data, by method.
+    /// Work whose amount depends on the data, by method.
     pub rates: BTreeMap<String, Rates>,
 }
 
@@ -163,12 +163,12 @@ impl HostModel {
             }
             let near = lane.near(outlines, length, self.begin)?;
             let wait = touched.iter().map(|touches| self.wait(touches, length, around)).sum();
-            let besides: f64 = touched
+            let extra: f64 = touched
                 .iter()
                 .map(|touches| around.wait(&own, touches, length as f64, |level| level.passes).sum())
                 .sum();
             let parts = factors.scaled([near, wait, 0.0]);
-            sum += strips as f64 * (parts.iter().sum::<f64>() + besides);
+            sum += strips as f64 * (parts.iter().sum::<f64>() + extra);
         }
         Ok(sum)
     }

@@ -23,7 +23,7 @@
 //! chaining = { value = true, provenance = "sourced", note = "where from" } # above the tables
 //! loop_overhead = { value = 15, provenance = "assumed", note = "why" } # clock periods a strip; above the tables
 //!
-//! [units.add] # so many instructions of these classes run at once, each at so many elements a clock period
+//! [units.add] # `count` instructions of these classes run at once, each at `rate` elements a clock period
 //! serves = ["add", "convert"]
 //! count = { value = 1, provenance = "sourced", note = "where from" }
 //! rate = { value = 2, provenance = "sourced", note = "where from" } # 1 where it is left out

@@ -12,7 +12,7 @@ pub struct Figure {
     pub name: String,
     /// What it shows, in one line.
     pub title: String,
-    /// What a reader must know besides.
+    /// What a reader must also know.
     pub caption: String,
     /// What is drawn.
     pub picture: Picture,

@@ -31,7 +31,7 @@ const SCRIPTS: [&str; 8] = [
     include_str!("player.js"),
 ];
 
-/// What the browser is told to refuse: anything that is not in the file itself.
+/// The content policy for the browser: nothing that is not in the file itself.
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 

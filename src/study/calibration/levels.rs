@@ -201,7 +201,7 @@ mod tests {
 
     const KIB: f64 = 1024.0;
 
-    /// A pass over a register that was touched so many bytes ago, beside one that is near.
+    /// A pass over a register that was touched `distance` bytes ago, and one that is near.
     fn charged(distance: f64, written: bool, wait: f64) -> Charged {
         let n = 1000.0;
         let register = |number, distance, written| Touch {

@@ -9,7 +9,7 @@ use super::variants::{AT_REST, DRILL, VARIANTS, Variant};
 use crate::method::lattice_md::{Arrays, Lengths, programs};
 use crate::model::host::{Estimate, Factors, LoopCosts, PassCost, ProgramCost, class_counts};
 use crate::run::model;
-use crate::study::pace::Pace;
+use crate::study::noise_monitor::NoiseMonitor;
 use crate::study::phase_times::{QUIET, Run};
 use crate::study::throughput::MeasurementError;
 use std::collections::BTreeMap;
@@ -20,7 +20,7 @@ use stripmine_kernels::{Execution, InstructionSet};
 /// Whole vectors whose halves of the samples are farther apart than this share are worth more of them.
 const UNSETTLED: f64 = 0.1;
 
-/// The interpreter is slow: of so many sweeps it takes part in one, over vectors of so many elements.
+/// The interpreter is slow: it takes part in every n-th sweep, by the number of elements of the vectors.
 fn turn(elements: usize) -> usize {
     match elements {
         0..=30_000 => 2,
@@ -36,8 +36,8 @@ type Counted = (BTreeMap<&'static str, f64>, f64);
 trait Laid {
     fn memory(&mut self) -> Memory<'_>;
 
-    /// Lays them out anew, at other addresses. Whether rows meet that lie in the first-level cache together hangs on these: of
-    /// some layouts the predictor took 256 ns, of most 160. Longer rows come from farther away in any case.
+    /// Lays them out again, at other addresses. Whether rows conflict in the first-level cache depends on these: with some
+    /// layouts the predictor took 256 ns, with most 160. Longer rows come from farther away in any case.
     fn elsewhere(&mut self);
 }
 
@@ -110,7 +110,7 @@ impl Loops {
     /// One more sample of every loop; `lanes` says how many elements of a type are in a hardware register.
     pub(super) fn sweep(
         &mut self,
-        pace: &mut Pace,
+        monitor: &mut NoiseMonitor,
         set: InstructionSet,
         lanes: &dyn Fn(&str) -> usize,
         number: usize,
@@ -120,18 +120,18 @@ impl Loops {
             arrays.elsewhere();
             let memory = arrays.memory();
             let takes_turn = step.large && number.is_multiple_of(turn(step.longest()));
-            step.in_turns(pace, set, &memory, |execution| execution == Execution::Chained || takes_turn);
+            step.in_turns(monitor, set, &memory, |execution| execution == Execution::Chained || takes_turn);
             // What is near is learned from the small ones.
             if !step.large {
-                step.near(pace, set, &memory, lanes);
+                step.near(monitor, set, &memory, lanes);
             }
         }
     }
 
-    /// Some more samples of whole vectors whose samples differ, or were taken in no quiet moments, at the pace of a reference.
+    /// Some more samples of whole vectors whose samples differ, or were always disturbed.
     /// Whether there were any.
-    pub(super) fn again(&mut self, pace: &mut Pace, set: InstructionSet, reference: f64) -> bool {
-        self.settle(reference);
+    pub(super) fn again(&mut self, monitor: &mut NoiseMonitor, set: InstructionSet, reference: f64) -> bool {
+        self.evaluate(reference);
         let mut any = false;
         for step in self.steps.iter_mut().filter(|step| step.large) {
             let mut unsettled = vec![];
@@ -145,19 +145,19 @@ impl Loops {
             for _ in 0..PARTS * usize::from(!unsettled.is_empty()) {
                 let arrays = &mut self.arrays[step.memory];
                 arrays.elsewhere();
-                step.in_turns(pace, set, &arrays.memory(), |execution| unsettled.contains(&execution));
+                step.in_turns(monitor, set, &arrays.memory(), |execution| unsettled.contains(&execution));
             }
             any |= !unsettled.is_empty();
         }
         any
     }
 
-    /// Tells all samples at the pace of a reference.
-    pub(super) fn settle(&mut self, reference: f64) {
+    /// Evaluates all samples for an undisturbed core.
+    pub(super) fn evaluate(&mut self, reference: f64) {
         for step in &mut self.steps {
             let near = step.loops.iter_mut().chain(&mut step.strips).flat_map(Near::all_mut);
             let samples = near.chain(&mut step.whole).chain(step.interpreted.iter_mut().flatten());
-            samples.for_each(|samples| samples.settle(reference));
+            samples.for_each(|samples| samples.evaluate(reference));
         }
     }
 
@@ -169,7 +169,7 @@ impl Loops {
             .flat_map(|step| step.loops.iter().chain(&step.strips).flat_map(Near::all))
     }
 
-    /// What the programs take in the interpreter, where a run takes so long besides: into the costs of their lanes. With how
+    /// What the programs take in the interpreter, where a run takes `run` nanoseconds in addition: into the costs of their lanes. With how
     /// many times as long as in drills of nothing but themselves their passes take to begin.
     pub(super) fn see(&self, lanes: &mut [Lane], run: f64) -> f64 {
         let mut begins = vec![];

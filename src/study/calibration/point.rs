@@ -130,9 +130,9 @@ impl Point {
     /// The point of a program that differs so.
     pub(super) fn with(&self, factors: &BTreeMap<String, Factors>) -> Point {
         let own = self.program.as_ref().and_then(|program| factors.get(program)).copied().unwrap_or_default();
-        let besides: f64 = self.bytes().iter().zip(own.beyond).map(|(bytes, cost)| bytes * cost).sum();
+        let extra: f64 = self.bytes().iter().zip(own.beyond).map(|(bytes, cost)| bytes * cost).sum();
         Point {
-            computing: own.computing * self.computing + besides,
+            computing: own.computing * self.computing + extra,
             features: self.features.map(|feature| own.waiting * feature),
             ..self.clone()
         }

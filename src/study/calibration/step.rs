@@ -4,7 +4,7 @@ use super::passes::estimate;
 use super::timing::Samples;
 use crate::method::lattice_md::StepProgram;
 use crate::model::host::PassCost;
-use crate::study::pace::Pace;
+use crate::study::noise_monitor::NoiseMonitor;
 use std::ops::Range;
 use stripmine_kernels::isa::Memory;
 use stripmine_kernels::{Execution, InstructionSet};
@@ -15,7 +15,7 @@ pub(super) const ELEMENTS: [usize; 2] = [32, 96];
 /// element takes from what a pass takes to begin, and short enough that arrays and registers lie in the first-level cache.
 pub(super) const STRIPPED: usize = 16;
 pub(super) const STRIPS: [usize; 2] = [2, 8];
-/// How many elements are left over beyond whole registers of so many lanes, in runs that tell what these take.
+/// How many elements are left over beyond whole registers of `lanes` elements, in runs that measure what these take.
 fn left_over(lanes: usize) -> [usize; 2] {
     [1, lanes.saturating_sub(1).max(2)]
 }
@@ -62,7 +62,7 @@ impl Step {
     /// wanted.
     pub(super) fn in_turns(
         &mut self,
-        pace: &mut Pace,
+        monitor: &mut NoiseMonitor,
         set: InstructionSet,
         memory: &Memory<'_>,
         wanted: impl Fn(Execution) -> bool,
@@ -71,7 +71,7 @@ impl Step {
         let Step { programs, ranges, whole, interpreted, .. } = self;
         for (execution, samples, elements) in executions(whole, interpreted) {
             if wanted(execution) {
-                Samples::take_in_turns(samples, pace, (elements / longest).clamp(1, MOST), |at| {
+                Samples::take_in_turns(samples, monitor, (elements / longest).clamp(1, MOST), |at| {
                     run(&programs[at], memory, ranges[at].clone(), execution, set);
                 });
             }
@@ -82,7 +82,7 @@ impl Step {
     /// register.
     pub(super) fn near(
         &mut self,
-        pace: &mut Pace,
+        monitor: &mut NoiseMonitor,
         set: InstructionSet,
         memory: &Memory<'_>,
         lanes: &dyn Fn(&str) -> usize,
@@ -95,13 +95,13 @@ impl Step {
             let left = left_over(lanes);
             let [short, long] = ELEMENTS;
             for (samples, n) in loops.all_mut().zip([short, long, short + left[0], short + left[1]]) {
-                samples.take(pace, SHORTEST, || run(n, Execution::Chained));
+                samples.take(monitor, SHORTEST, || run(n, Execution::Chained));
             }
             let whole = STRIPPED * lanes;
             let [short, long] = STRIPS.map(|strip| strip * lanes);
             let all = [(whole, short), (whole, long), (whole + left[0], long), (whole + left[1], long)];
             for (samples, (n, strip)) in strips.all_mut().zip(all) {
-                samples.take(pace, SHORTEST, || run(n, Execution::Strip(strip)));
+                samples.take(monitor, SHORTEST, || run(n, Execution::Strip(strip)));
             }
         }
     }

@@ -7,15 +7,14 @@ use serde::Serialize;
 
 /// The group of all executions of programs.
 pub const PROGRAMS: &str = "eager, strip-mined and chained";
-/// The group of all executions whose work hangs on the data.
+/// The group of all executions whose work depends on the data.
 pub const OF_DATA: &str = "fast and lists";
 
-/// Those among the first that were measured in quiet moments, and whose halves are no more than [`UNSETTLED`] apart: no
+/// Those among the first that were measured on an undisturbed core, and whose halves are no more than [`UNSETTLED`] apart: no
 /// prediction can be shown to be nearer than that.
-pub const PROGRAMS_SETTLED: &str =
-    "eager, strip-mined and chained, measured in quiet moments and within 10 %";
+pub const PROGRAMS_SETTLED: &str = "eager, strip-mined and chained, undisturbed and repeated within 10 %";
 /// Those among the second.
-pub const OF_DATA_SETTLED: &str = "fast and lists, measured in quiet moments and within 10 %";
+pub const OF_DATA_SETTLED: &str = "fast and lists, undisturbed and repeated within 10 %";
 
 /// A phase of a step of one run.
 #[derive(Clone, Debug, Serialize)]
@@ -32,17 +31,17 @@ pub struct Case {
     pub phase: &'static str,
     /// Nanoseconds predicted.
     pub predicted: f64,
-    /// Nanoseconds in quiet moments: of every piece a low quantile of the samples.
+    /// Nanoseconds on an undisturbed core: the sum over the segments of a low quantile of the samples.
     pub measured: f64,
-    /// A quarter of the samples of every piece lies below, a quarter above.
+    /// The sums over the segments of the lower and of the upper quartile of the samples.
     pub quartiles: [f64; 2],
     /// The same by the rounds of even number alone and by those of odd number; none of one round. Every round lays the run
-    /// out anew, in other pages of memory.
+    /// out again, in other pages of memory.
     pub halves: Option<[f64; 2]>,
-    /// The share that was measured in quiet moments, and not only told at their pace.
+    /// The share that was measured on an undisturbed core, and not corrected for a slowdown.
     pub quiet: f64,
     /// Nanoseconds by the trivial baseline: operations times elements, at the cost of a sum in the cache; none where
-    /// what is executed hangs on the data.
+    /// what is executed depends on the data.
     pub baseline: Option<f64>,
 }
 
@@ -62,8 +61,8 @@ impl Case {
         self.halves.map(|[even, odd]| even.max(odd) / even.min(odd) - 1.0)
     }
 
-    /// Whether what is executed hangs on the data.
-    pub fn hangs_on_data(&self) -> bool {
+    /// Whether what is executed depends on the data.
+    pub fn depends_on_data(&self) -> bool {
         [FAST, FAST_LISTS, LISTS].contains(&self.execution)
     }
 
@@ -134,19 +133,19 @@ pub(super) fn errors(cases: &[Case]) -> Vec<Errors> {
             errors.push(Errors::of(what.to_owned(), &kept));
         }
     };
-    group(PROGRAMS, &|case| !case.hangs_on_data());
-    group(OF_DATA, &Case::hangs_on_data);
+    group(PROGRAMS, &|case| !case.depends_on_data());
+    group(OF_DATA, &Case::depends_on_data);
     let settled =
         |case: &Case| case.quiet >= QUIET && case.repeat_error().is_some_and(|apart| apart <= UNSETTLED);
-    group(PROGRAMS_SETTLED, &|case| !case.hangs_on_data() && settled(case));
-    group(OF_DATA_SETTLED, &|case| case.hangs_on_data() && settled(case));
+    group(PROGRAMS_SETTLED, &|case| !case.depends_on_data() && settled(case));
+    group(OF_DATA_SETTLED, &|case| case.depends_on_data() && settled(case));
     EXECUTIONS.iter().for_each(|(name, _)| group(name, &|case| case.execution == *name));
-    let straight = |case: &Case| !case.hangs_on_data();
+    let straight = |case: &Case| !case.depends_on_data();
     Phase::ALL.iter().for_each(|phase| {
         group(&format!("{} of programs", phase.name()), &|case| straight(case) && case.phase == phase.name());
     });
     Phase::ALL.iter().for_each(|phase| {
-        let of_data = |case: &Case| case.hangs_on_data() && case.phase == phase.name();
+        let of_data = |case: &Case| case.depends_on_data() && case.phase == phase.name();
         group(&format!("{} of fast and lists", phase.name()), &of_data);
     });
     PRECISIONS.iter().for_each(|name| group(name, &|case| straight(case) && case.precision == *name));

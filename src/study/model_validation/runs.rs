@@ -14,11 +14,11 @@ pub struct Effort {
     pub particles: Vec<usize>,
     /// ρ on cells as wide as the radius.
     pub occupancies: Vec<f64>,
-    /// Rounds over all runs, each laid out in memory anew: who else is at work on the machine, and what of his lies in the larger
-    /// caches, is the same for a while.
+    /// Rounds over all runs, each laid out in memory again: within a round, the other programs on the machine and their data in
+    /// the larger caches change little.
     pub rounds: Bound,
-    /// Rounds more, at most, over those runs alone that met no quiet moments or do not repeat themselves yet: two by two, as
-    /// those of even and of odd number are told apart.
+    /// Further rounds, at most, over those runs alone that were always disturbed or do not repeat themselves yet: in pairs, as
+    /// rounds of even and of odd number are compared.
     pub further: usize,
     /// Repeats of a run in a round.
     pub repeats: usize,
@@ -26,7 +26,7 @@ pub struct Effort {
     pub particle_steps: usize,
 }
 
-/// The executions, by the name that a scene gives them; the last three hang on the data. Strips as long as a CRAY's vectors
+/// The executions, by the name that a scene gives them; the last three depend on the data. Strips as long as a CRAY's vectors
 /// are drilled on other lattices, the longer ones on none.
 pub(super) const EXECUTIONS: [(&str, Option<Execution>); 8] = [
     ("eager", Some(Execution::Eager)),
@@ -41,7 +41,7 @@ pub(super) const EXECUTIONS: [(&str, Option<Execution>); 8] = [
 
 pub(super) const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
 
-/// Runs whose halves are farther apart than this share are run again; and those that met no quiet moments.
+/// Runs whose halves are farther apart than this share are run again; and those that were always disturbed.
 pub const UNSETTLED: f64 = 0.1;
 /// Why there is no validation.
 #[derive(Debug, thiserror::Error)]

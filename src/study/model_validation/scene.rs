@@ -7,7 +7,7 @@ use crate::method::lattice_md::Lengths;
 use crate::model::host::{HostModel, OutOfRange};
 use crate::run::model;
 use crate::scene::Checked;
-use crate::study::pace::Pace;
+use crate::study::noise_monitor::NoiseMonitor;
 use crate::study::phase_times::{PhaseTimes, Run, Sampling, phase_times};
 use crate::study::predicted_step::{Step, of_precision};
 use crate::study::throughput::MeasurementError;
@@ -16,7 +16,7 @@ use stripmine_kernels::Execution;
 /// Steps after which the caches hold what the next one finds.
 const WARMED: usize = 3;
 
-/// A run, ready. What it does if that does not hang on the data: else the run must first say how much there was to do.
+/// A run, ready. `step` is known where the work does not depend on the data; else the amount of work comes from the run.
 pub(super) struct Scene {
     run: Run,
     checked: Checked,
@@ -36,7 +36,7 @@ impl Scene {
         Ok(Scene { run, checked, step })
     }
 
-    /// Nanoseconds of every phase, and the baseline's; none if they hang on the data.
+    /// Nanoseconds of every phase, and the baseline's; none if they depend on the data.
     pub(super) fn predicted(&self, host: &HostModel) -> Result<Option<Vec<[f64; 2]>>, ValidationError> {
         let Some((step, execution)) = &self.step else { return Ok(None) };
         let phases = Phase::ALL.iter().map(|&phase| step.phase(host, phase, *execution));
@@ -51,11 +51,11 @@ impl Scene {
     pub(super) fn measure(
         &self,
         effort: &Effort,
-        pace: &mut Pace,
+        monitor: &mut NoiseMonitor,
         times: &mut Option<PhaseTimes>,
     ) -> Result<(), MeasurementError> {
         let sampling = Sampling {
-            // What programs take does not hang on the data: the caches alone must have come to rest.
+            // What programs take does not depend on the data: only the caches must be in their steady state.
             equilibration: if self.step.is_some() {
                 WARMED
             } else {
@@ -63,16 +63,16 @@ impl Scene {
             },
             repeats: effort.repeats,
             particle_steps: effort.particle_steps,
-            // Lists are made anew every few steps only.
+            // Lists are rebuilt every few steps only.
             least_steps: if self.run.has_lists() { 6 } else { 2 },
         };
-        let more = phase_times(&self.checked, &sampling, pace)?;
+        let more = phase_times(&self.checked, &sampling, monitor)?;
         *times = Some(PhaseTimes::with(times.take(), more));
         Ok(())
     }
 
     /// Every phase that it has, predicted by a model, and as it was measured in the rounds of even and of odd number;
-    /// `reference` is what the yardstick takes in quiet moments (ns).
+    /// `reference` is what the reference loop takes undisturbed (ns).
     pub(super) fn cases(
         &self,
         host: &HostModel,
@@ -115,7 +115,7 @@ impl Scene {
     }
 }
 
-/// Nanoseconds of every phase of a run whose cost hangs on the data.
+/// Nanoseconds of every phase of a run whose cost depends on the data.
 pub(super) fn rated(host: &HostModel, run: &Run, times: &PhaseTimes) -> Result<Vec<f64>, OutOfRange> {
     let method = run.rates().unwrap_or_default();
     let rates = host.rates.get(method).ok_or_else(|| OutOfRange::NotMeasured(format!("method {method}")))?;

@@ -16,7 +16,7 @@ pub const STEPS: u64 = 8000;
 pub const LOOK: u64 = 100;
 /// Precision and execution of those that run beside the fast execution in f64.
 pub const RIVALS: [(&str, &str); 3] = [("f64", "chained"), ("mixed", "fast"), ("f32", "fast")];
-/// From so many times its first value on a distance grows because trajectories part, not because rounding goes on.
+/// From this multiple of its first value on a distance grows because trajectories part, not because rounding goes on.
 pub const PARTED: f64 = 10.0;
 /// Up to this distance (length) the growth is exponential: beyond it discs meet other partners.
 pub const LOST: f64 = 0.02;
