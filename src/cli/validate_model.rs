@@ -42,8 +42,8 @@ pub(super) struct ValidateModel {
     /// Rounds over all runs
     #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
-    /// Rounds more, at most, over those runs alone that were always disturbed by other programs, or whose rounds of even and of odd number lie
-    /// more than a tenth apart
+    /// Rounds more, at most, over those runs alone that were always disturbed by other programs, or whose rounds of even
+    /// and of odd number lie more than a tenth apart
     #[arg(long, default_value_t = 24)]
     further: u16,
     /// Repeats of each run in a round

@@ -64,7 +64,7 @@ mod tests {
             let machine = preset(name).unwrap();
             let entries = machine.entries();
             assert!(entries.iter().all(|entry| !entry.note.trim().is_empty()), "{name}");
-            // Whatever a program counts must end in classes with a start-up.
+            // Every operation that a program counts must end in classes with a start-up.
             let mut counts = OpCounts::default();
             Op::ALL.iter().for_each(|&op| counts.record(op));
             for class in machine.expand(&counts).into_keys() {

@@ -16,7 +16,7 @@ pub struct Unit {
     pub rate: Option<Quantity>,
 }
 
-/// The way to memory.
+/// The ports to memory.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MemoryPorts {

@@ -125,7 +125,7 @@ fn errors(data: &ModelValidation) -> Table {
     let [rounds, further] = data.rounds;
     notes.push(format!(
         "{rounds} rounds over all runs, and up to {further} more over those that were always disturbed or whose halves lay \
-         more than {:.0} % apart: until they do not, whatever is predicted.",
+         more than {:.0} % apart: until they do not. The predictions have no influence on this.",
         100.0 * UNSETTLED
     ));
     notes.push(match data.calibrated {

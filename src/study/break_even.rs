@@ -21,8 +21,8 @@ pub const OCCUPANCIES: [f64; 7] = [0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.25];
 /// NP of the atlas by models; at the lowest occupancy the lattice of the last is as large as calibrations go.
 pub const PARTICLES: [usize; 6] = [100, 300, 1000, 3000, 10_000, 30_000];
 
-/// Ways of a host, as scenes name them.
-const WAYS: [(&str, Option<Execution>); 6] = [
+/// Variants that are run on a host, as scenes name them.
+const VARIANTS: [(&str, Option<Execution>); 6] = [
     ("eager", Some(Execution::Eager)),
     ("strip:512", Some(Execution::Strip(512))),
     ("chained", Some(Execution::Chained)),
@@ -149,11 +149,11 @@ pub fn atlas(
                 .collect(),
         });
     }
-    let methods: Vec<String> = WAYS.iter().map(|(name, _)| (*name).to_owned()).collect();
+    let methods: Vec<String> = VARIANTS.iter().map(|(name, _)| (*name).to_owned()).collect();
     let mut predicted = vec![];
     for particles in PARTICLES {
         for figures in lists.iter().zip(&fast_lists) {
-            let costs = WAYS.iter().map(|way| predict(host, particles, figures, way));
+            let costs = VARIANTS.iter().map(|variant| predict(host, particles, figures, variant));
             let costs = costs.collect::<Result<_, AtlasError>>()?;
             predicted.push(Place { particles, occupancy: figures.0.occupancy, costs });
         }
@@ -173,11 +173,11 @@ pub fn atlas(
     }
     let (places, mut rounds) = (times.len() as f64, rounds.begin());
     while rounds.next().is_some() {
-        for (at, (particles, occupancy, ways)) in times.iter_mut().enumerate() {
-            let before = std::mem::take(ways).into_iter().map(Some).chain(std::iter::repeat(None));
-            for (way, before) in WAYS.iter().zip(before) {
-                let more = alone.install(|| measure(*particles, *occupancy, way, &mut monitor))?;
-                ways.push(PhaseTimes::with(before, more));
+        for (at, (particles, occupancy, variants)) in times.iter_mut().enumerate() {
+            let before = std::mem::take(variants).into_iter().map(Some).chain(std::iter::repeat(None));
+            for (variant, before) in VARIANTS.iter().zip(before) {
+                let more = alone.install(|| measure(*particles, *occupancy, variant, &mut monitor))?;
+                variants.push(PhaseTimes::with(before, more));
             }
             progress(rounds.share((at + 1) as f64 / places));
         }
@@ -185,10 +185,10 @@ pub fn atlas(
     // When it was quiet is known once all is measured.
     let reference = monitor.reference();
     let step = |times: &PhaseTimes| Phase::ALL.iter().map(|&phase| times.typical(phase, reference).0).sum();
-    let place = |(particles, occupancy, ways): (usize, f64, Vec<PhaseTimes>)| Place {
+    let place = |(particles, occupancy, variants): (usize, f64, Vec<PhaseTimes>)| Place {
         particles,
         occupancy,
-        costs: ways.iter().map(step).collect(),
+        costs: variants.iter().map(step).collect(),
     };
     let places = times.into_iter().map(place).collect();
     sheets.push(Sheet {
@@ -218,13 +218,13 @@ fn predict(
     host: &HostModel,
     particles: usize,
     (figures, fast_lists): (&ListFigures, &Amounts),
-    way: &(&'static str, Option<Execution>),
+    variant: &(&'static str, Option<Execution>),
 ) -> Result<f64, AtlasError> {
-    let run = run(particles, figures.occupancy, way);
+    let run = run(particles, figures.occupancy, variant);
     let checked = run.scene(&[])?;
     let (model, discs) = (model(&checked), checked.particles.grain_count());
     let lengths = Lengths::new(&model, discs, checked.particles.len());
-    if let Some(execution) = way.1 {
+    if let Some(execution) = variant.1 {
         let step = Step::new(&of_precision(&model, checked.scene.method.precision), &lengths);
         let phases = Phase::ALL.iter().map(|&phase| Ok(step.phase(host, phase, execution)?[0]));
         return phases.sum::<Result<f64, AtlasError>>();
@@ -260,10 +260,10 @@ fn predict(
 fn measure(
     particles: usize,
     occupancy: f64,
-    way: &(&'static str, Option<Execution>),
+    variant: &(&'static str, Option<Execution>),
     monitor: &mut NoiseMonitor,
 ) -> Result<PhaseTimes, MeasurementError> {
-    let checked = run(particles, occupancy, way).scene(&[])?;
+    let checked = run(particles, occupancy, variant).scene(&[])?;
     let equilibration = (100_000 / particles).clamp(3, 30);
     let sampling = Sampling { equilibration, repeats: 1, particle_steps: 5_000, least_steps: 3 };
     phase_times(&checked, &sampling, monitor)

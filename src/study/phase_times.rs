@@ -61,7 +61,7 @@ impl Run {
     }
 
     /// The name that a host model gives the rates of this run's method, if its work depends on the data: a lattice with few discs
-    /// is searched in another way.
+    /// is searched by another algorithm.
     pub fn rates(&self) -> Option<&'static str> {
         match self.execution {
             LISTS => Some("lists"),
@@ -204,7 +204,7 @@ pub fn phase_times(
     let discs = checked.particles.grain_count();
     let steps = sampling.repeats * (sampling.particle_steps / discs).clamp(sampling.least_steps, 2000);
     let mut timing = Timing::new(checked, monitor)?;
-    // The shortest: one that met a busy moment would have short steps timed as long ones.
+    // The shortest: a disturbed one would have short steps timed as long ones.
     let step = timing.unnoticed(sampling.equilibration.max(1))?;
     match ((SHORT / step).floor() as usize).min(steps) {
         0 | 1 => timing.one_by_one(steps, step)?,

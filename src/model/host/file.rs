@@ -101,7 +101,7 @@ impl HostModel {
             .map_err(|cause| HostFileError::Syntax { file: file.to_owned(), cause: Box::new(cause) })?;
         let mut defects = model.defects();
         if defects.is_empty() {
-            // The same once more, whatever an entry is called: so that no number slips through.
+            // Once more for every entry, so that no number is left unchecked.
             let written = text.parse::<toml::Table>().map(toml::Value::Table);
             written.iter().for_each(|value| infinite(value, String::new(), &mut defects));
         }

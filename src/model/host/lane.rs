@@ -22,7 +22,7 @@ pub struct LaneCosts {
     pub change: Vec<Change>,
     /// A pass, by the name of its kind.
     pub passes: BTreeMap<String, PassCost>,
-    /// All passes of a program over a strip, by the signature of its instructions: how passes that follow each other get on
+    /// All passes of a program over a strip, by the signature of its instructions: how passes that follow each other overlap
     /// is not in their kinds. Others are charged pass by pass.
     pub seen: BTreeMap<String, ProgramCost>,
 }
@@ -55,8 +55,8 @@ impl LaneCosts {
         if n < self.lanes || n.is_multiple_of(self.lanes.max(1)) { 1.0 } else { 2.0 }
     }
 
-    /// Nanoseconds of all passes of a program over a strip of `n` elements in the first-level cache, where a pass that was not
-    /// seen among others takes `begin` times as long to begin as in a drill.
+    /// Nanoseconds of all passes of a program over a strip of `n` elements in the first-level cache, where a pass
+    /// that was not measured among others takes `begin` times as long to begin as in a drill.
     ///
     /// # Errors
     /// [`OutOfRange::NotMeasured`] where a kind of pass was not measured.

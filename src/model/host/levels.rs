@@ -37,8 +37,8 @@ pub struct Transfer {
     pub line: f64,
 }
 
-/// The share that a cache of `capacity` bytes has lost of what was touched `distance` bytes ago; half an octave around a capacity belongs
-/// to both levels, for caches do not end sharply.
+/// The share that a cache of `capacity` bytes has lost of what was touched `distance` bytes ago. Half an octave around
+/// a capacity belongs to both levels, for caches do not end sharply.
 pub fn beyond(distance: f64, capacity: f64) -> f64 {
     ((distance / capacity).log2() + 0.5).clamp(0.0, 1.0)
 }

@@ -27,7 +27,8 @@ pub struct ProgramCost {
 }
 
 impl ProgramCost {
-    /// Nanoseconds to begin, and to compute, over `n` elements in the first-level cache, with `lanes` elements in a hardware register.
+    /// Nanoseconds to begin, and to compute, over `n` elements in the first-level cache, with `lanes` elements in a hardware
+    /// register.
     pub fn near(&self, n: usize, lanes: usize) -> [f64; 2] {
         let left = n % lanes.max(1);
         let whole = n - left;

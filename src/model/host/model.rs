@@ -81,7 +81,8 @@ impl HostModel {
         model
     }
 
-    /// The same host pass by pass with every operand in the first-level cache, and programs started and arrays bound for nothing.
+    /// The same host pass by pass with every operand in the first-level cache, and no cost of starting programs and of
+    /// binding arrays.
     #[must_use]
     pub fn in_cache(&self) -> HostModel {
         let mut model = HostModel { operand: 0.0, bind: 0.0, run: 0.0, clock: 0.0, ..self.pass_by_pass() };

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// How much there is to do in a step: measured in a run, or estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Amounts {
-    /// Steps, one: what a phase takes however little there is to do.
+    /// Steps, one: what a phase takes even without work.
     pub steps: f64,
     /// Discs.
     pub discs: f64,

@@ -2,7 +2,7 @@
 
 use super::point::BEYOND;
 
-/// Capacities that are tried (bytes): of the store buffer, which hands on what was written last before it is in any cache;
+/// Capacities that are tried (bytes): of the store buffer, which serves what was written last before it is in any cache;
 /// and of the three levels of cache what the system says, or parts of it, for programs that share the core or the last level
 /// use the rest; where it says nothing, what processors have.
 pub(super) fn candidates() -> Vec<[f64; BEYOND]> {

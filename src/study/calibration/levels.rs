@@ -142,7 +142,7 @@ fn fit_passes(points: &[Point]) -> Costs {
 }
 
 /// What lines cost passes that index vectors lead to, given all else: by what has such vectors alone, and all of that, for
-/// among everything it is too little to be heard.
+/// among all costs it is too small to be determined.
 fn fit_lines(points: &[Point], costs: &mut Costs) {
     costs[LINES..].fill(0.0);
     let rows = points.iter().filter_map(|point| {

@@ -81,7 +81,7 @@ pub fn calibrate(
     })
 }
 
-/// A calibration under way: it can be done bit by bit, in turns with something else.
+/// A calibration under way: it can be done in parts, alternating with other measurements.
 pub(super) struct Calibration {
     title: String,
     set: InstructionSet,

@@ -15,7 +15,7 @@ use stripmine_kernels::{Execution, InstructionSet, Runnable};
 pub(super) const SHORTEST_VECTOR: usize = 8;
 /// Vectors that stay in the first-level cache, in hardware registers.
 const SHORT: [usize; 6] = [1, 2, 4, 8, 16, 32];
-/// Elements of the longest of these, however wide the registers.
+/// Elements of the longest of these, for registers of any width.
 pub(super) const NEAR: usize = 32 * 64;
 /// Vectors that do not.
 const LONG: [usize; 8] = [520, 1600, 5200, 17_000, 52_000, 170_000, 540_000, LONGEST];
@@ -46,7 +46,7 @@ impl Point {
     }
 
     /// Whether the long drill took as much more than the short one as it must at least, and the halves of the measurement
-    /// agree: of the longest vectors there are few samples, and all of them may have met a busy moment.
+    /// agree: of the longest vectors there are few samples, and all of them may have been disturbed.
     fn is_settled(&self) -> bool {
         let longer = self.samples[0].typical() > 1.15 * self.samples[1].typical();
         longer && self.samples.iter().all(|samples| samples.disagreement() < 0.25)

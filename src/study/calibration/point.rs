@@ -149,7 +149,7 @@ impl Point {
     }
 
     /// How much it counts by its share in what it took, where it is so far off: what is far from the fit weighs less, so that
-    /// a busy moment does not count for more than it is.
+    /// a disturbed sample has little weight.
     pub(super) fn scale(&self, far: f64) -> f64 {
         (self.weight * 0.05 / (0.05 + far)).sqrt() / self.ns
     }

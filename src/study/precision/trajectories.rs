@@ -1,4 +1,4 @@
-//! How fast trajectories of one start run apart when digits differ: collisions multiply whatever error there is.
+//! How fast trajectories of one start run apart when digits differ: collisions multiply every error.
 
 use super::gas::{Gas, PACKING_FRACTIONS, SEEDS, place};
 use crate::study::StudyError;
