@@ -263,9 +263,13 @@ fn traceable(path: &Path, origin: &Origin) -> Result<(), FolderError> {
     }
 }
 
-/// Whether a folder holds files that git keeps; without git, or outside a checkout, none does.
+/// Whether git keeps files of a folder, which may have been removed; without git, or outside a checkout, it keeps none.
 fn is_committed(folder: &Path) -> bool {
-    let listed = Command::new("git").arg("-C").arg(folder).args(["ls-files", "--", "."]).output();
+    let there = folder.ancestors().find(|there| there.is_dir()).unwrap_or(Path::new(""));
+    // Git does not take empty paths.
+    let [at, below] =
+        [there, folder.strip_prefix(there).unwrap_or(folder)].map(|path| Path::new(".").join(path));
+    let listed = Command::new("git").arg("-C").arg(at).args(["ls-files", "--"]).arg(below).output();
     listed.is_ok_and(|listed| listed.status.success() && !listed.stdout.is_empty())
 }
 
@@ -382,6 +386,8 @@ mod tests {
         assert!(refused.to_string().contains("another --out"), "{refused}");
         assert_eq!(Failure::Results(refused).exit_code(), 2);
         assert!(traceable(&kept, &of(false)).is_ok());
+        fs::remove_dir_all(&kept).unwrap();
+        assert!(traceable(&kept, &of(true)).is_err());
         // Folders that git does not keep, and that are not there yet, may be written by any program.
         assert!(traceable(&scratch, &of(true)).is_ok());
         assert!(traceable(&checkout.path().join("new"), &of(true)).is_ok());
