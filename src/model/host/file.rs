@@ -97,25 +97,18 @@ impl HostModel {
     /// # Errors
     /// [`HostFileError`]: the grammar's first defect, or every entry that cannot be.
     pub fn parse(file: &str, text: &str) -> Result<HostModel, HostFileError> {
-        let model: HostModel = toml::from_str(text)
-            .map_err(|cause| HostFileError::Syntax { file: file.to_owned(), cause: Box::new(cause) })?;
+        let model: HostModel = toml::from_str(text).map_err(|cause| {
+            // A file of another format has entries of other names: its format is the mistake.
+            let syntax = HostFileError::Syntax { file: file.to_owned(), cause: Box::new(cause) };
+            other_format(text).map_or(syntax, |defect| content(file, text, vec![defect]))
+        })?;
         let mut defects = model.defects();
         if defects.is_empty() {
             // Once more for every entry, so that no number is left unchecked.
             let written = text.parse::<toml::Table>().map(toml::Value::Table);
             written.iter().for_each(|value| infinite(value, String::new(), &mut defects));
         }
-        let more = defects.len().saturating_sub(NAMED);
-        let entries: Vec<BadEntry> = defects
-            .into_iter()
-            .take(NAMED)
-            .map(|(entry, what)| BadEntry { position: Position::of(text, &entry), entry, what })
-            .collect();
-        if entries.is_empty() {
-            Ok(model)
-        } else {
-            Err(HostFileError::Content { file: file.to_owned(), entries, more })
-        }
+        if defects.is_empty() { Ok(model) } else { Err(content(file, text, defects)) }
     }
 
     /// The text of its file.
@@ -128,8 +121,7 @@ impl HostModel {
     fn defects(&self) -> Vec<(String, String)> {
         let mut defects = vec![];
         if self.format != FORMAT {
-            let what = format!("is {}, but this program reads {FORMAT}", self.format);
-            defects.push(("format".to_owned(), what));
+            defects.push(wrong_format(self.format.into()));
         }
         let lanes = self.lanes.iter().flat_map(|(lane, costs)| {
             let passes = costs.passes.iter().flat_map(move |(op, cost)| {
@@ -206,6 +198,25 @@ impl HostModel {
     }
 }
 
+fn content(file: &str, text: &str, defects: Vec<(String, String)>) -> HostFileError {
+    let more = defects.len().saturating_sub(NAMED);
+    let placed =
+        |(entry, what): (String, String)| BadEntry { position: Position::of(text, &entry), entry, what };
+    let entries = defects.into_iter().take(NAMED).map(placed).collect();
+    HostFileError::Content { file: file.to_owned(), entries, more }
+}
+
+fn wrong_format(found: i64) -> (String, String) {
+    ("format".to_owned(), format!("is {found}, but this program reads {FORMAT}: calibrate again"))
+}
+
+/// The defect of a text that states another format.
+fn other_format(text: &str) -> Option<(String, String)> {
+    let written = text.parse::<toml::Table>().ok()?;
+    let found = written.get("format")?.as_integer()?;
+    (found != i64::from(FORMAT)).then(|| wrong_format(found))
+}
+
 /// Every number below an entry that is not finite, or too large.
 fn infinite(value: &toml::Value, entry: String, found: &mut Vec<(String, String)>) {
     let below = |name: &str| if entry.is_empty() { name.to_owned() } else { format!("{entry}.{name}") };
@@ -257,6 +268,7 @@ mod tests {
             ("run = ", "runs = ", "unknown field `runs`"),
             ("overlap", "overlapp", "unknown field `overlapp`"),
             ("format = 12", "format = 13", "`format` is 13"),
+            ("format = 12", "format = 11\npace = 1.0", "`format` is 11, but this program reads 12"),
             ("format = 12\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
