@@ -1,4 +1,4 @@
-//! A host model as a reader wants it.
+//! A host model, as tables.
 
 use super::{Cell, Table};
 use crate::model::host::{Amounts, Estimate, Factors, HostModel, Measured, Transfer};

@@ -1,4 +1,4 @@
-//! The ladder of clocks as a reader wants it.
+//! The ladder of clocks: tables, figures and what came out.
 
 use super::{Cell, Section, Table, Verdict};
 use crate::method::Phase;

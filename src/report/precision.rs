@@ -1,4 +1,4 @@
-//! What fewer digits cost, as a reader wants it.
+//! What fewer digits cost: tables, figures and what came out.
 
 use super::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use super::{Cell, Section, Table, Verdict};

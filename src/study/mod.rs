@@ -1,4 +1,4 @@
-//! Studies: one file per question a user asks, each a function from parameters to a dataset.
+//! Studies: one file per question, each a function from parameters to a dataset.
 
 pub mod break_even;
 pub mod calibration;

@@ -77,7 +77,7 @@ impl Run {
         [LISTS, FAST_LISTS].contains(&self.execution)
     }
 
-    /// All that tells it from the others.
+    /// All that distinguishes it from the others.
     pub fn name(&self) -> String {
         let Run { particles, occupancy, precision, execution } = self;
         format!("{execution}, {precision}, NP = {particles}, ρ = {occupancy}")
@@ -364,7 +364,7 @@ impl PhaseTimes {
     }
 }
 
-/// What steps met that were looked at.
+/// Candidates and contacts of the steps that were counted.
 #[derive(Default)]
 struct Found {
     steps: u64,

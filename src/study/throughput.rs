@@ -191,7 +191,7 @@ impl Running {
     }
 }
 
-/// The most memory this process ever held, where the system tells (Linux: `VmHWM`).
+/// The peak memory of this process, where the system gives it (Linux: `VmHWM`).
 fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;

@@ -66,7 +66,7 @@ impl Case {
         [FAST, FAST_LISTS, LISTS].contains(&self.execution)
     }
 
-    /// All that tells it from the others.
+    /// All that distinguishes it from the others.
     pub fn name(&self) -> String {
         let Case { particles, occupancy, precision, execution, phase, .. } = self;
         format!("{phase}, {execution}, {precision}, NP = {particles}, ρ = {occupancy}")
