@@ -16,7 +16,7 @@ fn main() {
     println!("cargo::rustc-env=STRIPMINE_COMMIT={commit}");
     println!("cargo::rustc-env=STRIPMINE_DIRTY={dirty}");
     println!("cargo::rustc-env=STRIPMINE_TARGET={}", std::env::var("TARGET").unwrap_or_default());
-    for path in ["src", "kernels/src", "Cargo.toml", "Cargo.lock", ".git/HEAD", ".git/index"] {
+    for path in ["src", "kernels", "build.rs", "Cargo.toml", "Cargo.lock", ".git/HEAD", ".git/index"] {
         println!("cargo::rerun-if-changed={path}");
     }
 }

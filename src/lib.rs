@@ -25,10 +25,10 @@
 //! Ask what a step costs, by the source's count and by the programs that run:
 //!
 //! ```
-//! use stripmine::model::machine;
+//! use stripmine::model::machines;
 //! use stripmine::study::efficiency_table::{Question, efficiency_table};
 //!
-//! let table = efficiency_table(&Question::default(), &machine::preset("paper")?)?;
+//! let table = efficiency_table(&Question::default(), &machines::preset("paper")?)?;
 //! let forces = table.parts.iter().find(|row| row.part == "forces").expect("a step has forces");
 //! assert_eq!(forces.printed, Some(1656));
 //! assert!(forces.counted < 1656);
@@ -60,6 +60,7 @@ pub mod machine_memory;
 pub mod method;
 pub mod model;
 pub mod observe;
+pub mod origin;
 pub mod particles;
 pub mod placement;
 pub mod quoted;

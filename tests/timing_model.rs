@@ -98,5 +98,5 @@ fn the_shipped_host_model_is_used_and_said_so_and_bad_host_files_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = file(&folder, "format = 3\n");
     let out = stripmine(&["table", "--ladder", "--host", &path]).code(3);
-    assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("missing field"));
+    assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("`format` is 3, but"));
 }

@@ -1,7 +1,7 @@
 //! What does each phase of a fast step cost: corrector and predictor, the upkeep of the Index, contacts and their forces?
 //!
 //! The discs move: every iteration is a whole step of the bench scene, of which the method itself times the phases. A
-//! frozen configuration would flatter whatever predicts branches. Throughput is in discs; `cargo bench --bench lattice
+//! frozen configuration would favour branch prediction. Throughput is in discs; `cargo bench --bench lattice
 //! phases`.
 
 use criterion::{Criterion, SamplingMode, Throughput};

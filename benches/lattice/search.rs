@@ -1,6 +1,6 @@
 //! What does finding the contacts cost, before the law is asked: on the lattice, and in sectors?
 //!
-//! Nothing is moved here, but the configurations are of a gas that has moved, and large: nobody predicts their branches.
+//! Nothing is moved here, but the configurations are of a gas that has moved, and large: their branches cannot be predicted.
 //! Throughput is in discs; `cargo bench --bench lattice search`.
 
 use crate::phases::{EQUILIBRATION, advance, scene};

@@ -2,8 +2,8 @@
 
 use super::{Common, Failure, output, print, print_json, say, warn};
 use crate::model::host::Measured;
+use crate::origin::host;
 use crate::report;
-use crate::report::origin::host;
 use crate::signals;
 use crate::study::calibration::{Effort, TOO_DIFFERENT, TOO_NOISY, TOO_RARE, calibrate};
 use clap::Args;
@@ -21,7 +21,7 @@ pub(super) struct CalibrateVerb {
     /// Write the file even if the machine was too busy to be measured, or over one that is there
     #[arg(long)]
     force: bool,
-    /// Sweeps over all points: more of them find quiet moments
+    /// Sweeps over all points: with more of them, more points are measured undisturbed
     #[arg(long, default_value_t = Effort::default().sweeps as u16, value_parser = clap::value_parser!(u16).range(1..=100))]
     sweeps: u16,
 }
@@ -87,11 +87,11 @@ impl CalibrateVerb {
 
 /// What shows that the machine was too busy, if it was.
 pub(super) fn noise(measured: &Measured) -> Option<String> {
-    let Measured { spread, disagreement, pace, quiet, .. } = *measured;
+    let Measured { spread, disagreement, slowdown, quiet, .. } = *measured;
     (spread > TOO_NOISY || disagreement > TOO_DIFFERENT || quiet < TOO_RARE).then(|| {
         format!(
             "half of the samples lie within {:.0} % of the median one, the two halves of the measurement differ by {:.1} %, \
-             and {:.0} % of the points were measured in quiet moments: mostly the machine was {pace:.2} times as slow",
+             and {:.0} % of the points were measured undisturbed: in the median the machine was {slowdown:.2} times as slow",
             100.0 * spread,
             100.0 * disagreement,
             100.0 * quiet
@@ -107,8 +107,8 @@ mod tests {
     fn a_busy_machine_is_told_from_a_quiet_one() {
         let measured = |spread, disagreement, quiet| Measured {
             timer: 20.0,
-            yardstick: 3000.0,
-            pace: 1.3,
+            reference_loop: 3000.0,
+            slowdown: 1.3,
             quiet,
             spread,
             disagreement,

@@ -3,8 +3,8 @@
 use super::reproduce::{Folder, Made};
 use super::validate_model::host_model;
 use super::{Common, Failure, output, print, print_json, say};
-use crate::model::machine;
-use crate::report::origin::Provenance;
+use crate::model::machines;
+use crate::origin::Provenance;
 use crate::report::{self, Section};
 use crate::signals;
 use crate::study::break_even::atlas;
@@ -41,7 +41,7 @@ enum What {
 impl ChartVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
         let What::DensityCost = self.what;
-        let machine = machine::find(&self.machine)?;
+        let machine = machines::find(&self.machine)?;
         // Before anything takes its time.
         let folder = Folder::open(&self.out, &["cost", "measured", "atlas"], false)?;
         let (host, _) = host_model(self.host.as_deref(), common)?;
@@ -49,7 +49,7 @@ impl ChartVerb {
         let bar = output::progress(common, "chart");
         let show = |from: f64, share: f64| bar.set_position((1e3 * (from + 0.5 * share)) as u64);
         let write = |section: Section, data: &serde_json::Value, start: Instant| -> Result<(), Failure> {
-            let provenance = Provenance::here(again.clone(), start.elapsed().as_secs_f64());
+            let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
             let made = Made::new(section, data)?;
             let folder = signals::whole(|| folder.write(&made, &provenance))?;
             if !common.quiet {

@@ -16,7 +16,8 @@ mod table;
 mod validate_model;
 
 use crate::model::host::HostFileError;
-use crate::model::machine::MachineError;
+use crate::model::machine_file::MachineError;
+use crate::origin::command_line;
 use crate::run::RunError;
 use crate::signals::{self, End};
 use crate::study::StudyError;
@@ -56,6 +57,9 @@ struct Common {
     /// Threads, at most 1024; all cores by default
     #[arg(long, global = true, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     threads: Option<u16>,
+    /// The whole command line, for the record of where results come from.
+    #[arg(skip)]
+    command: String,
 }
 
 #[derive(Subcommand)]
@@ -90,7 +94,7 @@ pub(crate) enum Failure {
     Usage(#[from] crate::study::efficiency_table::QuestionError),
     /// A machine that there is not: exit code 2; a bad machine file: 3; one that cannot be read: 5.
     #[error(transparent)]
-    Machine(#[from] crate::model::machine::MachineError),
+    Machine(#[from] crate::model::machine_file::MachineError),
     /// A bad host file: exit code 3.
     #[error(transparent)]
     HostFile(#[from] crate::model::host::HostFileError),
@@ -242,7 +246,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     let outcome = signals::install(last_words)
         .map_err(Failure::writing("the handler of interruptions"))
         .and_then(|()| understood(&arguments))
-        .and_then(|line| line.map_or(Ok(()), carried_out));
+        .and_then(|line| line.map_or(Ok(()), |line| carried_out(line, command_line(&arguments))));
     output::clear_progress();
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -265,7 +269,8 @@ fn understood(arguments: &[OsString]) -> Result<Option<CommandLine>, Failure> {
     }
 }
 
-fn carried_out(CommandLine { verb, common }: CommandLine) -> Result<(), Failure> {
+fn carried_out(CommandLine { verb, common }: CommandLine, command: String) -> Result<(), Failure> {
+    let common = Common { command, ..common };
     // Without an answer the default pool has a thread for each core.
     let threads = common.threads.map_or(0, usize::from);
     rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(Failure::Threads)?;

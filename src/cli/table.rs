@@ -3,7 +3,7 @@
 use super::scene_choice::SceneChoice;
 use super::validate_model::host_model;
 use super::{Common, Failure, print, print_json};
-use crate::model::machine;
+use crate::model::machines;
 use crate::report;
 use crate::study::efficiency_table::efficiency_table;
 use crate::study::host_ladder::host_ladder;
@@ -29,7 +29,7 @@ pub(super) struct TableVerb {
 
 /// What `--machine` takes.
 pub(super) fn machine_help() -> String {
-    let names: Vec<_> = machine::names().collect();
+    let names: Vec<_> = machines::names().collect();
     format!("Machine whose clock is asked: {}, or the path of a machine file (.toml)", names.join(", "))
 }
 
@@ -43,7 +43,7 @@ impl TableVerb {
             }
             return print(&report::terminal::render(&report::ladder::of_host(&data)));
         }
-        let (question, machine) = (self.scene.question(), machine::find(&self.machine)?);
+        let (question, machine) = (self.scene.question(), machines::find(&self.machine)?);
         let tables = if self.ladder {
             let data = ladder(&question, &machine)?;
             if common.json {

@@ -4,8 +4,8 @@ use super::calibrate::noise;
 use super::reproduce::{Folder, Made};
 use super::{Common, Failure, output, print, print_json, say, warn};
 use crate::model::host::{HostModel, default_model};
+use crate::origin::{self, Provenance};
 use crate::report;
-use crate::report::origin::{self, Provenance};
 use crate::signals;
 use crate::study::calibration;
 use crate::study::model_validation::{
@@ -24,7 +24,7 @@ pub(super) struct ValidateModel {
     /// Host file of `calibrate`; without one, the model that comes with the program
     #[arg(long)]
     host: Option<PathBuf>,
-    /// Calibrate in turns with the runs, so that both meet the same moments of a busy machine; the host file lies in the
+    /// Calibrate in turns with the runs, so that both see the same states of a busy machine; the host file lies in the
     /// folder of the result
     #[arg(long, conflicts_with = "host")]
     calibrate: bool,
@@ -42,8 +42,8 @@ pub(super) struct ValidateModel {
     /// Rounds over all runs
     #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
-    /// Rounds more, at most, over those runs alone that met no quiet moments, or whose rounds of even and of odd number lie
-    /// more than a tenth apart
+    /// Rounds more, at most, over those runs alone that were always disturbed by other programs, or whose rounds of even
+    /// and of odd number lie more than a tenth apart
     #[arg(long, default_value_t = 24)]
     further: u16,
     /// Repeats of each run in a round
@@ -91,8 +91,7 @@ impl ValidateModel {
             if let Some(model) = model {
                 made = made.with_file("host.toml", model.to_toml());
             }
-            let provenance =
-                Provenance::here("stripmine validate-model".to_owned(), start.elapsed().as_secs_f64());
+            let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
             let folder = signals::whole(|| folder.write(&made, &provenance))?;
             if !common.quiet {
                 say(format_args!("written: {}", folder.display()));

@@ -1,58 +1,10 @@
-//! Machines of the timing model, and the presets that come with the program.
+//! A machine of the timing model.
 
-use super::machine_file::MachineFileError;
-use super::units::{MemoryPorts, Units};
-use crate::quoted::quoted;
+use super::quantity::{Fact, Provenance, Quantity};
+use super::units::{MemoryPorts, Occupied, Resource, Units};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use stripmine_kernels::isa::op::{OpClass, OpCounts};
-
-/// Where a number comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Provenance {
-    /// Printed in the source that the note names.
-    Sourced,
-    /// Follows from sourced facts, by the argument in the note.
-    Derived,
-    /// Our choice, for the reason in the note; no source we could point to.
-    Assumed,
-}
-
-impl Provenance {
-    /// The name in tables and machine files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Provenance::Sourced => "sourced",
-            Provenance::Derived => "derived",
-            Provenance::Assumed => "assumed",
-        }
-    }
-}
-
-/// A number with its provenance; the unit is that of the entry it stands for.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Quantity {
-    /// The number itself, positive and finite.
-    pub value: f64,
-    /// Whether it was printed somewhere, follows from something or is our choice.
-    pub provenance: Provenance,
-    /// The source, the derivation or the reason; never empty.
-    pub note: String,
-}
-
-/// A property that a machine has or has not, with its provenance.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Fact {
-    /// Whether it has it.
-    pub value: bool,
-    /// Whether it was printed somewhere, follows from something or is our choice.
-    pub provenance: Provenance,
-    /// The source, the derivation or the reason; never empty.
-    pub note: String,
-}
 
 /// The vector registers of one processor.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -223,6 +175,64 @@ impl MachineModel {
             .map(|entry| entry.name)
             .collect()
     }
+
+    /// Whether the machine says which operations can run at once.
+    pub fn has_units(&self) -> bool {
+        !self.units.is_empty()
+    }
+
+    /// Whether a result feeds the next instruction element by element.
+    pub fn chains(&self) -> bool {
+        self.chaining.as_ref().is_some_and(|chaining| chaining.value)
+    }
+
+    /// Clock periods of the loop around the strips; none where nothing is said.
+    pub fn loop_overhead(&self) -> Option<&Quantity> {
+        self.loop_overhead.as_ref()
+    }
+
+    /// What an instruction of `class` occupies; none where the machine says nothing of it.
+    pub fn unit(&self, class: OpClass) -> Option<Occupied<'_>> {
+        let number =
+            |quantity: &Option<Quantity>, otherwise| quantity.as_ref().map_or(otherwise, |q| q.value);
+        if !class.moves_data() {
+            let (name, unit) = self.units.iter().find(|(_, unit)| unit.serves.contains(&class))?;
+            let rate = number(&unit.rate, 1.0);
+            return Some(Occupied { resource: Resource::Unit(name), count: unit.count.value, rate });
+        }
+        let memory = self.memory.as_ref()?;
+        let rate = number(&memory.rate, 1.0);
+        let rate = match class {
+            OpClass::Gather | OpClass::Scatter => number(&memory.gather_rate, rate),
+            _ => rate,
+        };
+        Some(match (class, &memory.store_ports) {
+            (OpClass::Store | OpClass::Scatter, Some(ports)) => {
+                Occupied { resource: Resource::Stores, count: ports.value, rate }
+            }
+            _ => Occupied { resource: Resource::Loads, count: memory.load_ports.value, rate },
+        })
+    }
+
+    /// The numbers of units, ports and strips, by the names of their entries in a machine file.
+    pub(super) fn unit_quantities(&self) -> Vec<(String, &Quantity)> {
+        let mut quantities: Vec<(String, &Quantity)> = vec![];
+        quantities.extend(self.loop_overhead.iter().map(|quantity| ("loop_overhead".to_owned(), quantity)));
+        for (name, unit) in &self.units {
+            quantities.push((format!("units.{name}.count"), &unit.count));
+            quantities.extend(unit.rate.iter().map(|rate| (format!("units.{name}.rate"), rate)));
+        }
+        if let Some(memory) = &self.memory {
+            quantities.push(("memory.load_ports".to_owned(), &memory.load_ports));
+            let rest = [
+                ("memory.store_ports", &memory.store_ports),
+                ("memory.rate", &memory.rate),
+                ("memory.gather_rate", &memory.gather_rate),
+            ];
+            quantities.extend(rest.into_iter().filter_map(|(name, q)| Some((name.to_owned(), q.as_ref()?))));
+        }
+        quantities
+    }
 }
 
 /// Adds `times` executions of every step to `total`.
@@ -230,143 +240,5 @@ pub(super) fn add_scaled(total: &mut ClassCounts, steps: &ClassCounts, times: u6
     for (&class, &each) in steps {
         let count = total.entry(class).or_default();
         *count = count.saturating_add(each.saturating_mul(times));
-    }
-}
-
-macro_rules! embedded {
-    ($($name:literal),* $(,)?) => {
-        &[$(($name, include_str!(concat!("machines/", $name, ".toml")))),*]
-    };
-}
-
-/// The machines that come with the program: name and text of the file.
-const PRESETS: &[(&str, &str)] = embedded![
-    "paper",
-    "cray-1",
-    "cyber-205",
-    "cray-x-mp",
-    "cray-y-mp",
-    "nec-sx-3",
-    "cray-c90",
-    "cray-y-mp-el",
-    "cray-j90",
-    "sx-aurora",
-];
-
-/// Why there is no such machine.
-#[derive(Debug, thiserror::Error)]
-pub enum MachineError {
-    /// No preset has the name asked for, and it does not look like that of a file.
-    #[error(
-        "unknown machine `{}`; known are {}, and machine files by their path, which ends in .toml",
-        quoted(name),
-        known.join(", ")
-    )]
-    Unknown {
-        /// The name asked for.
-        name: String,
-        /// All names that would have done.
-        known: Vec<&'static str>,
-    },
-    /// A file that cannot be read.
-    #[error("machine file `{}`: {cause}", quoted(file))]
-    Read {
-        /// Name of the file.
-        file: String,
-        /// What the system said.
-        cause: std::io::Error,
-    },
-    /// A file that cannot be used.
-    #[error(transparent)]
-    File(#[from] MachineFileError),
-}
-
-/// The names of the presets, the paper's own machine first.
-pub fn names() -> impl Iterator<Item = &'static str> {
-    PRESETS.iter().map(|&(name, _)| name)
-}
-
-/// The machine called `name`: a preset, or the file at that path, if it ends in `.toml`.
-///
-/// # Errors
-/// [`MachineError`] where no preset has that name, or the file is bad.
-pub fn find(name: &str) -> Result<MachineModel, MachineError> {
-    if !name.ends_with(".toml") {
-        return preset(name);
-    }
-    MachineModel::load(name)
-}
-
-/// The preset called `name`.
-///
-/// # Errors
-/// [`MachineError::Unknown`] where no preset has that name.
-pub fn preset(name: &str) -> Result<MachineModel, MachineError> {
-    let (known, text) = PRESETS
-        .iter()
-        .find(|&&(known, _)| known == name)
-        .ok_or_else(|| MachineError::Unknown { name: name.to_owned(), known: names().collect() })?;
-    // The texts are part of the program and a test reads them all: no user can get here with a bad one.
-    Ok(MachineModel::parse(known, text)?)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use OpClass::{Add, Divide, Load, Logical, Multiply};
-    use stripmine_kernels::isa::op::Op;
-
-    #[test]
-    fn every_preset_parses_and_states_where_each_number_comes_from() {
-        for name in names() {
-            let machine = preset(name).unwrap();
-            let entries = machine.entries();
-            assert!(entries.iter().all(|entry| !entry.note.trim().is_empty()), "{name}");
-            // Whatever a program counts must end in classes with a start-up.
-            let mut counts = OpCounts::default();
-            Op::ALL.iter().for_each(|&op| counts.record(op));
-            for class in machine.expand(&counts).into_keys() {
-                assert!(machine.start_up(class) > 0.0, "{name}: {}", class.name());
-            }
-        }
-    }
-
-    #[test]
-    fn the_paper_machine_has_one_start_up_and_lacks_nothing() {
-        let machine = preset("paper").unwrap();
-        assert!(OpClass::ALL.iter().all(|&class| machine.start_up(class) == 20.0));
-        assert!(OpClass::ALL.iter().all(|&class| machine.expansion(class).is_none()));
-        assert_eq!(machine.vector_registers(), None);
-        assert_eq!(machine.assumed(), [""; 0]);
-    }
-
-    #[test]
-    fn expansions_nest_and_multiply() {
-        let machine = preset("cray-1").unwrap();
-        let mut counts = OpCounts::default();
-        (0..5).for_each(|_| counts.record(Op::SquareRoot));
-        (0..2).for_each(|_| counts.record(Op::Divide));
-        counts.record(Op::Load);
-        // A square root holds 3 quotients, 4 products, 4 sums and 4 bit operations; a quotient 3 products.
-        let expected =
-            [(Add, 5 * 4), (Multiply, 5 * (4 + 3 * 3) + 2 * 3), (Divide, 5 * 3 + 2), (Logical, 5 * 4)];
-        assert_eq!(machine.expand(&counts), expected.into_iter().chain([(Load, 1)]).collect());
-    }
-
-    #[test]
-    fn an_unknown_machine_is_answered_with_the_known_names() {
-        let error = preset("cray-3").unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "unknown machine `cray-3`; known are paper, cray-1, cyber-205, cray-x-mp, cray-y-mp, nec-sx-3, \
-             cray-c90, cray-y-mp-el, cray-j90, sx-aurora, and machine files by their path, which ends in .toml"
-        );
-    }
-
-    #[test]
-    fn assumed_entries_are_listed_by_name() {
-        let assumed = preset("cray-1").unwrap().assumed();
-        assert!(assumed.contains(&"expansions.square_root".to_owned()));
-        assert!(!assumed.contains(&"start_up.multiply".to_owned()));
     }
 }

@@ -10,4 +10,6 @@ pub mod clock;
 pub mod host;
 pub mod machine;
 pub mod machine_file;
+pub mod machines;
+pub mod quantity;
 pub mod units;

@@ -1,7 +1,7 @@
-//! A host model as a reader wants it.
+//! A host model, as tables.
 
 use super::{Cell, Table};
-use crate::model::host::{Amounts, Estimate, Factors, HostModel, Measured, ProgramCost, Transfer};
+use crate::model::host::{Amounts, Estimate, Factors, HostModel, Measured, Transfer};
 
 /// The tables of a host model.
 pub fn tables(model: &HostModel) -> Vec<Table> {
@@ -24,9 +24,9 @@ fn hockney(names: [&str; 2], element: Estimate, start: Estimate) -> Vec<Cell> {
     let mut row: Vec<Cell> = names.map(|name| Cell::Text(name.to_owned())).to_vec();
     row.extend(with(element, 4));
     row.extend(with(start, 1));
-    let told = |value: f64| if element.value < LEAST { Cell::Nothing } else { Cell::Number(value, 0) };
-    row.push(told(1e3 / element.value));
-    row.push(told(start.value / element.value));
+    let rate = |value: f64| if element.value < LEAST { Cell::Nothing } else { Cell::Number(value, 0) };
+    row.push(rate(1e3 / element.value));
+    row.push(rate(start.value / element.value));
     row
 }
 
@@ -36,7 +36,7 @@ fn operations(model: &HostModel) -> Table {
     let rows = model.lanes.iter().flat_map(|(lane, costs)| {
         costs.passes.iter().map(move |(op, cost)| hockney([lane, op], cost.element, cost.start))
     });
-    let Measured { timer, pace, quiet, spread, disagreement, shortest, longest, .. } = model.measured;
+    let Measured { timer, slowdown, quiet, spread, disagreement, shortest, longest, .. } = model.measured;
     let changes = model.lanes.iter().map(|(lane, costs)| {
         let each =
             costs.change.iter().map(|change| format!("{:.1} ns in {} passes", change.ns, change.passes));
@@ -50,9 +50,9 @@ fn operations(model: &HostModel) -> Table {
         notes: vec![
             format!(
                 "Passes over vectors in the first-level cache: t = t0 + n tau. Vectors of {shortest} to {longest} elements; \
-                 timer steps of {timer} ns. Times are those of quiet moments, when nobody else is on the core: a yardstick run beside every sample \
-                 says when; mostly it took {pace:.2} times as long. {:.0} % of the points were measured then, the others told by how each follows \
-                 the yardstick. Half of the samples lie within {:.1} % of the middle one; the two halves of the measurement differ by {:.1} %.",
+                 timer steps of {timer} ns. Times are for an undisturbed core: a reference loop, timed beside every sample, shows \
+                 disturbances by other programs; in the median it took {slowdown:.2} times as long. {:.0} % of the points were measured \
+                 undisturbed, the others corrected by how each depends on the slowdown. Half of the samples lie within {:.1} % of the middle one; the two halves of the measurement differ by {:.1} %.",
                 100.0 * quiet,
                 100.0 * spread,
                 100.0 * disagreement
@@ -74,25 +74,18 @@ fn programs(model: &HostModel) -> Table {
         row.insert(0, Cell::Text(execution.to_owned()));
         let Factors { computing, waiting, .. } = seen.factors;
         row.extend([computing, waiting].map(|factor| Cell::Number(factor, 2)));
-        row.extend(unsaid(seen));
         row
     });
     Table {
         name: "programs".into(),
         title: "Programs".into(),
         columns: headings(
-            &[
-                &["execution", "lanes", "program"],
-                TIMES.as_slice(),
-                &["computing", "waiting", "scenes", "off (%)", "most (%)"],
-            ]
-            .concat(),
+            &[&["execution", "lanes", "program"], TIMES.as_slice(), &["computing", "waiting"]].concat(),
         ),
         rows: rows.collect(),
         notes: vec![format!(
             "In the first-level cache; t0 of a strip, or of a chained loop. On whole vectors a program \
-             computes and waits for memory so many times as long as this and the levels say. On so many scenes it was off by so much \
-             even then, in the median and at most: what is near one of these is predicted with it. What is not among these is charged pass by pass, a \
+             computes and waits for memory this many times as long as the first-level cache and the levels give. What is not among these is charged pass by pass, a \
              pass taking {:.2} times as long to begin as in a drill of nothing but itself, or, chained, by classes of operations, \
              which deviate from these by {:.0} % (the median). Of the shorter of computing and waiting for streams {:.0} % \
              hide behind the longer in a chained loop.",
@@ -101,14 +94,6 @@ fn programs(model: &HostModel) -> Table {
             100.0 * model.loops.overlap
         )],
     }
-}
-
-/// On how many scenes a program was seen, and how far off the levels were there: in the median, and at most.
-fn unsaid(seen: &ProgramCost) -> [Cell; 3] {
-    let mut off: Vec<f64> = seen.residuals.iter().map(|residual| (residual.ratio() - 1.0).abs()).collect();
-    off.sort_by(f64::total_cmp);
-    let percent = |at: Option<&f64>| at.map_or(Cell::Nothing, |off| Cell::Number(100.0 * off, 1));
-    [Cell::Count(off.len() as u64), percent(off.get(off.len() / 2)), percent(off.last())]
 }
 
 fn rates(model: &HostModel) -> Table {
@@ -133,7 +118,7 @@ fn rates(model: &HostModel) -> Table {
     let units = Amounts::NAMES.map(|name| format!("ns a {name}"));
     Table {
         name: "rates".into(),
-        title: "Work whose amount hangs on the data".into(),
+        title: "Work whose amount depends on the data".into(),
         columns: headings(&["method", "precision", "phase", "discs"]).into_iter().chain(units).collect(),
         rows,
         notes: vec![],
@@ -171,7 +156,7 @@ fn levels(model: &HostModel) -> Table {
         ]),
         rows: rows.collect(),
         notes: vec![format!(
-            "A pass whose operands come from beyond the nearest level waits {:.3} ns an element besides. The passes and \
+            "A pass whose operands come from beyond the nearest level waits {:.3} ns an element in addition. The passes and \
              programs that this was fitted to deviate by {:.0} % (the median).",
             model.operand,
             100.0 * model.measured.residual

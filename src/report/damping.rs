@@ -1,11 +1,11 @@
-//! Waves over dissipation as a reader wants them.
+//! Waves over dissipation: tables, figures and what came out.
 
 use super::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use super::{Cell, Section, Table, Verdict};
 use crate::study::damping::{Case, Damping};
 use crate::study::statistics::Spread;
 
-/// The Fano factor that tells waves from none.
+/// The Fano factor above which there are waves.
 const EVEN: f64 = 1.0;
 
 /// What came out.

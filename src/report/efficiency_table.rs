@@ -1,4 +1,4 @@
-//! The efficiency table as a reader wants it.
+//! The efficiency table: tables, figures and what came out.
 
 use super::{Cell, Section, Table, Verdict};
 use crate::method::lattice_md::Part;

@@ -1,4 +1,4 @@
-//! The identity of lattice and lists as a reader wants it.
+//! The identity of lattice and lists: tables, figures and what came out.
 
 use super::{Cell, Section, Table, Verdict};
 use crate::study::identity::Identity;

@@ -1,4 +1,4 @@
-//! The ladder of clocks as a reader wants it.
+//! The ladder of clocks: tables, figures and what came out.
 
 use super::{Cell, Section, Table, Verdict};
 use crate::method::Phase;
@@ -11,7 +11,7 @@ pub fn section(ladders: &[Ladder]) -> Section {
         let [.., first, last] = data.rungs.as_slice() else { return String::new() };
         let paper = data.rungs.iter().find(|rung| rung.clock == "paper").map_or(f64::NAN, |rung| rung.clocks);
         format!(
-            "{}: {:.2} of the paper's clock chained, {:.2} with memory ports ({:.0} % of that hangs on assumed start-ups)",
+            "{}: {:.2} of the paper's clock chained, {:.2} with memory ports ({:.0} % of that depends on assumed start-ups)",
             data.machine,
             first.clocks / paper,
             last.clocks / paper,
@@ -67,7 +67,7 @@ fn rungs(data: &Ladder) -> Table {
     let mut notes: Vec<String> =
         data.rungs.iter().map(|rung| format!("{}: {}", rung.clock, rung.meaning)).collect();
     notes.push(format!(
-        "NP = {} discs on LMAX = {} cells; {} ns a clock period. Of the last rung {:.1} % hang on assumed start-ups.",
+        "NP = {} discs on LMAX = {} cells; {} ns a clock period. Of the last rung {:.1} % depend on assumed start-ups.",
         data.particles,
         data.cells,
         data.clock_period_ns,

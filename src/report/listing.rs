@@ -1,4 +1,4 @@
-//! The vector instructions of a step as a reader wants them.
+//! The vector instructions of a step, as text.
 
 use super::{Section, Verdict};
 

@@ -28,7 +28,7 @@ fn came_out(data: &MeasuredCost) -> String {
     let each = |samples: &[Sample]| -> String {
         let named = samples.iter().map(|sample| {
             let nanoseconds = 1e9 * sample.seconds / sample.particles as f64;
-            format!("{} {nanoseconds:.0}", data.ways[sample.way].name)
+            format!("{} {nanoseconds:.0}", data.variants[sample.variant].name)
         });
         named.collect::<Vec<_>>().join(", ")
     };
@@ -37,7 +37,9 @@ fn came_out(data: &MeasuredCost) -> String {
         data.over_particles.iter().filter(|sample| sample.particles == largest).cloned().collect();
     let fastest = |occupancy: f64| {
         let samples = data.over_density.iter().filter(|sample| sample.occupancy == occupancy);
-        samples.min_by(|a, b| a.seconds.total_cmp(&b.seconds)).map(|sample| data.ways[sample.way].name)
+        samples
+            .min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+            .map(|sample| data.variants[sample.variant].name)
     };
     let densities: Vec<f64> = data.over_density.iter().map(|sample| sample.occupancy).collect();
     let [lowest, highest] =
@@ -57,15 +59,20 @@ fn series(
     samples: &[Sample],
     point: impl Fn(&Sample) -> (f64, f64, f64),
 ) -> Vec<Series> {
-    let of_way = |way: usize| {
-        let of_way = samples.iter().filter(|sample| sample.way == way);
-        let points = of_way.map(|sample| {
+    let of_variant = |variant: usize| {
+        let of_variant = samples.iter().filter(|sample| sample.variant == variant);
+        let points = of_variant.map(|sample| {
             let (x, y, best) = point(sample);
             Point { x, y, spread: Some([y.min(best), y.max(best)]) }
         });
-        Series { name: data.ways[way].name.into(), style: Style::Joined, hue: way, points: points.collect() }
+        Series {
+            name: data.variants[variant].name.into(),
+            style: Style::Joined,
+            hue: variant,
+            points: points.collect(),
+        }
     };
-    (0..data.ways.len()).map(of_way).collect()
+    (0..data.variants.len()).map(of_variant).collect()
 }
 
 fn over_particles(data: &MeasuredCost) -> Figure {

@@ -17,7 +17,6 @@ pub mod mask;
 pub mod measured_cost;
 pub mod misprints;
 pub mod model_validation;
-pub mod origin;
 pub mod page;
 pub mod pipe_flow;
 pub mod precision;

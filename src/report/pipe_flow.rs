@@ -172,7 +172,7 @@ fn map(flow: &PipeFlow) -> Figure {
         .chunks(stride)
         .map(|looks| {
             let sum = |bin: usize| looks.iter().map(|counts| f64::from(counts[bin])).sum::<f64>();
-            (0..bins as usize).map(|bin| for_the_eye(sum(bin) / looks.len() as f64 / mean)).collect()
+            (0..bins as usize).map(|bin| rounded(sum(bin) / looks.len() as f64 / mean)).collect()
         })
         .collect();
     let look = flow.times.get(1).copied().unwrap_or(1.0);
@@ -275,8 +275,8 @@ fn table(flows: &[PipeFlow]) -> Table {
     }
 }
 
-/// A tenth of a millimetre, or of a millimetre a second: what is only looked at needs no more digits.
-fn for_the_eye(value: f64) -> f64 {
+/// A tenth of a millimetre, or of a millimetre a second: more digits are not visible.
+fn rounded(value: f64) -> f64 {
     (1e4 * value).round() / 1e4
 }
 

@@ -1,4 +1,4 @@
-//! What fewer digits cost, as a reader wants it.
+//! What fewer digits cost: tables, figures and what came out.
 
 use super::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use super::{Cell, Section, Table, Verdict};
@@ -37,8 +37,11 @@ pub fn section(data: &Precisions) -> Section {
 
 fn came_out(data: &Precisions) -> String {
     let rms = |name: &str| -> Vec<f64> {
-        let of_way = data.forces.iter().filter(|error| error.way.name == name);
-        of_way.filter(|error| error.packing_fraction == PACKING_FRACTIONS[0]).map(|error| error.rms).collect()
+        let of_variant = data.forces.iter().filter(|error| error.variant.name == name);
+        of_variant
+            .filter(|error| error.packing_fraction == PACKING_FRACTIONS[0])
+            .map(|error| error.rms)
+            .collect()
     };
     let over_boxes = |name: &str| match rms(name).as_slice() {
         [smallest, .., largest] => format!("{smallest:.1e} in the smallest and {largest:.1e} in the largest"),
@@ -84,14 +87,14 @@ const BESIDE: f64 = 1.06;
 fn force_figure(errors: &[ForceError]) -> Figure {
     let dense: Vec<&ForceError> = errors
         .iter()
-        .filter(|e| e.packing_fraction == PACKING_FRACTIONS[0] && e.way.precision != "f64")
+        .filter(|e| e.packing_fraction == PACKING_FRACTIONS[0] && e.variant.precision != "f64")
         .collect();
     let mut series: Vec<Series> = Vec::new();
     for error in dense {
-        let known = series.iter().position(|series| series.name == error.way.name);
+        let known = series.iter().position(|series| series.name == error.variant.name);
         let at = known.unwrap_or(series.len());
         if known.is_none() {
-            let name = error.way.name.into();
+            let name = error.variant.name.into();
             series.push(Series { name, style: Style::Joined, hue: at, points: vec![] });
         }
         // Equally good ones stand beside each other, not on each other.
@@ -152,8 +155,8 @@ fn energy_figure(cases: &[EnergyCase], dt: f64) -> Figure {
 
 fn trajectory_figure(rivals: &[Divergence]) -> Figure {
     let hue = |rival: &Divergence| {
-        let way = (rival.precision, rival.execution);
-        trajectories::RIVALS.iter().position(|&other| other == way).unwrap_or(0)
+        let variant = (rival.precision, rival.execution);
+        trajectories::RIVALS.iter().position(|&other| other == variant).unwrap_or(0)
     };
     let series = rivals.iter().map(|rival| Series {
         name: format!("{}, packing fraction {}", named(rival), rival.packing_fraction),
@@ -197,7 +200,7 @@ fn force_table(errors: &[ForceError]) -> Table {
             Cell::Count(error.particles as u64),
             Cell::Number(error.side, 0),
             Cell::Number(error.contacts, 3),
-            error.way.name.into(),
+            error.variant.name.into(),
             scientific(error.rms),
             scientific(error.largest),
         ]
@@ -210,7 +213,7 @@ fn force_table(errors: &[ForceError]) -> Table {
             "discs",
             "side (diameters)",
             "contacts a disc",
-            "way",
+            "variant",
             "rms error",
             "largest error",
         ]
@@ -270,7 +273,7 @@ fn trajectory_table(rivals: &[Divergence]) -> Table {
         title: "How fast trajectories part from those of the fast execution in f64".into(),
         columns: [
             "packing fraction".to_owned(),
-            "way".to_owned(),
+            "variant".to_owned(),
             format!("distance after {} steps (diameters)", trajectories::LOOK),
             "rate of growth (1/time)".to_owned(),
             format!("time until {} diameters", trajectories::LOST),

@@ -2,7 +2,7 @@
 
 use super::Table;
 use super::figure::Figure;
-use super::origin::Provenance;
+use crate::origin::Provenance;
 use serde::{Deserialize, Serialize};
 
 /// One item of the page.
@@ -28,7 +28,7 @@ pub struct Section {
     pub excerpt: Option<(String, String)>,
     /// Moving pictures.
     pub film: Option<Film>,
-    /// Seeds of whatever was random.
+    /// Seeds of the random numbers.
     pub seeds: Vec<u64>,
     /// Whether anything in it depends on the host (times), and is therefore not the same everywhere.
     pub depends_on_host: bool,
@@ -65,7 +65,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// In a word.
+    /// As one word.
     pub const fn word(self) -> &'static str {
         match self {
             Verdict::Reproduced => "reproduced",

@@ -9,7 +9,7 @@ pub enum Cell {
     Text(String),
     /// A count.
     Count(u64),
-    /// A measured or computed number, and how many decimals a reader wants to see.
+    /// A measured or computed number, and the number of decimals that are shown.
     Number(f64, usize),
     /// Nothing: the source has no such entry.
     Nothing,
@@ -84,7 +84,7 @@ pub struct Table {
     pub columns: Vec<String>,
     /// Rows, each as long as the headings.
     pub rows: Vec<Vec<Cell>>,
-    /// What a reader must know besides.
+    /// What a reader must also know.
     pub notes: Vec<String>,
 }
 

@@ -4,10 +4,10 @@ use super::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use super::{Cell, Section, Table, Verdict};
 use crate::study::threads::{Scaling, Threads};
 
-/// The ways to use threads, in the order of a row.
-const WAYS: [&str; 3] = ["one thread", "all threads on one scene", "a scene on each thread"];
+/// How threads are used, in the order of a row.
+const VARIANTS: [&str; 3] = ["one thread", "all threads on one scene", "a scene on each thread"];
 
-fn ways(scene: &Scaling) -> [&[f64]; 3] {
+fn variants(scene: &Scaling) -> [&[f64]; 3] {
     [&scene.alone, &scene.together, &scene.side_by_side]
 }
 
@@ -64,7 +64,7 @@ fn middle(rates: &[f64]) -> [f64; 3] {
 }
 
 fn figure(data: &Threads, packing_fraction: f64) -> Figure {
-    let series = WAYS.into_iter().enumerate().map(|(hue, name)| Series {
+    let series = VARIANTS.into_iter().enumerate().map(|(hue, name)| Series {
         name: name.into(),
         style: Style::Joined,
         hue,
@@ -73,7 +73,7 @@ fn figure(data: &Threads, packing_fraction: f64) -> Figure {
             .iter()
             .filter(|scene| scene.packing_fraction == packing_fraction)
             .map(|scene| {
-                let [lowest, median, highest] = middle(ways(scene)[hue]);
+                let [lowest, median, highest] = middle(variants(scene)[hue]);
                 Point { x: scene.particles as f64, y: median, spread: Some([lowest, highest]) }
             })
             .collect(),
@@ -95,13 +95,13 @@ fn figure(data: &Threads, packing_fraction: f64) -> Figure {
 fn table(data: &Threads) -> Table {
     let rows = data.scenes.iter().map(|scene| {
         let mut row = vec![Cell::Number(scene.particles as f64, 0), Cell::Number(scene.packing_fraction, 2)];
-        row.extend(ways(scene).map(|rates| Cell::Number(middle(rates)[1], 1)));
+        row.extend(variants(scene).map(|rates| Cell::Number(middle(rates)[1], 1)));
         row.extend(
             [scene.speedup(), scene.ceiling(), scene.efficiency()].map(|ratio| Cell::Number(ratio, 2)),
         );
         row
     });
-    let columns = ["discs", "packing fraction"].into_iter().chain(WAYS).chain([
+    let columns = ["discs", "packing fraction"].into_iter().chain(VARIANTS).chain([
         "speed-up",
         "speed-up of scenes side by side",
         "reached of that",

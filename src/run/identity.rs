@@ -2,8 +2,8 @@
 
 use super::RunError;
 use crate::io::checkpoint::{Checkpoint, Counter};
+use crate::origin::Origin;
 use crate::particles::{Kind, Particle, Particles};
-use crate::report::origin::Origin;
 use crate::scene::{Checked, Start};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;

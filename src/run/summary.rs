@@ -4,7 +4,7 @@ use super::work::Balance;
 use crate::method::lattice_md::{self, Discs, Lengths, Model, programs};
 use crate::method::{Failure, Method};
 use crate::observe::{Observation, Scenery};
-use crate::report::origin::{Origin, host};
+use crate::origin::{Origin, host};
 use crate::scene::{Checked, Start};
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -3,7 +3,7 @@
 
 use super::StudyError;
 use super::density_cost::{ListFigures, grid, list_figures};
-use super::pace::Pace;
+use super::noise_monitor::NoiseMonitor;
 use super::phase_times::{FAST, FAST_LISTS, HALF_MASK, LISTS, PhaseTimes, Run, Sampling, phase_times};
 use super::predicted_step::{Step, of_precision};
 use super::rounds::Bound;
@@ -21,8 +21,8 @@ pub const OCCUPANCIES: [f64; 7] = [0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.25];
 /// NP of the atlas by models; at the lowest occupancy the lattice of the last is as large as calibrations go.
 pub const PARTICLES: [usize; 6] = [100, 300, 1000, 3000, 10_000, 30_000];
 
-/// Ways of a host, as scenes name them.
-const WAYS: [(&str, Option<Execution>); 6] = [
+/// Variants that are run on a host, as scenes name them.
+const VARIANTS: [(&str, Option<Execution>); 6] = [
     ("eager", Some(Execution::Eager)),
     ("strip:512", Some(Execution::Strip(512))),
     ("chained", Some(Execution::Chained)),
@@ -114,7 +114,7 @@ pub enum AtlasError {
     OutOfRange(#[from] OutOfRange),
 }
 
-/// The atlas of some machines and a host; measured for these numbers of particles, in so many rounds over all of them, for
+/// The atlas of some machines and a host; measured for these numbers of particles, in this many rounds over all of them, for
 /// who else is at work on the machine is the same for a while. `progress` gets the share that is done.
 ///
 /// # Errors
@@ -149,11 +149,11 @@ pub fn atlas(
                 .collect(),
         });
     }
-    let methods: Vec<String> = WAYS.iter().map(|(name, _)| (*name).to_owned()).collect();
+    let methods: Vec<String> = VARIANTS.iter().map(|(name, _)| (*name).to_owned()).collect();
     let mut predicted = vec![];
     for particles in PARTICLES {
         for figures in lists.iter().zip(&fast_lists) {
-            let costs = WAYS.iter().map(|way| predict(host, particles, figures, way));
+            let costs = VARIANTS.iter().map(|variant| predict(host, particles, figures, variant));
             let costs = costs.collect::<Result<_, AtlasError>>()?;
             predicted.push(Place { particles, occupancy: figures.0.occupancy, costs });
         }
@@ -166,29 +166,29 @@ pub fn atlas(
         methods: methods.clone(),
         places: predicted,
     });
-    let mut pace = Pace::default();
+    let mut monitor = NoiseMonitor::default();
     let mut times: Vec<(usize, f64, Vec<PhaseTimes>)> = vec![];
     for &particles in measured {
         times.extend(OCCUPANCIES.map(|occupancy| (particles, occupancy, vec![])));
     }
     let (places, mut rounds) = (times.len() as f64, rounds.begin());
     while rounds.next().is_some() {
-        for (at, (particles, occupancy, ways)) in times.iter_mut().enumerate() {
-            let before = std::mem::take(ways).into_iter().map(Some).chain(std::iter::repeat(None));
-            for (way, before) in WAYS.iter().zip(before) {
-                let more = alone.install(|| measure(*particles, *occupancy, way, &mut pace))?;
-                ways.push(PhaseTimes::with(before, more));
+        for (at, (particles, occupancy, variants)) in times.iter_mut().enumerate() {
+            let before = std::mem::take(variants).into_iter().map(Some).chain(std::iter::repeat(None));
+            for (variant, before) in VARIANTS.iter().zip(before) {
+                let more = alone.install(|| measure(*particles, *occupancy, variant, &mut monitor))?;
+                variants.push(PhaseTimes::with(before, more));
             }
             progress(rounds.share((at + 1) as f64 / places));
         }
     }
     // When it was quiet is known once all is measured.
-    let reference = pace.reference();
+    let reference = monitor.reference();
     let step = |times: &PhaseTimes| Phase::ALL.iter().map(|&phase| times.typical(phase, reference).0).sum();
-    let place = |(particles, occupancy, ways): (usize, f64, Vec<PhaseTimes>)| Place {
+    let place = |(particles, occupancy, variants): (usize, f64, Vec<PhaseTimes>)| Place {
         particles,
         occupancy,
-        costs: ways.iter().map(step).collect(),
+        costs: variants.iter().map(step).collect(),
     };
     let places = times.into_iter().map(place).collect();
     sheets.push(Sheet {
@@ -210,7 +210,7 @@ fn run(particles: usize, occupancy: f64, (name, _): &(&'static str, Option<Execu
 fn fast_list_amounts(occupancy: f64) -> Result<Amounts, MeasurementError> {
     let checked = run(1000, occupancy, &(FAST_LISTS, None)).scene(&[])?;
     let sampling = Sampling { equilibration: 200, repeats: 2, particle_steps: 300_000, least_steps: 100 };
-    Ok(phase_times(&checked, &sampling, &mut Pace::default())?.amounts)
+    Ok(phase_times(&checked, &sampling, &mut NoiseMonitor::default())?.amounts)
 }
 
 /// Nanoseconds of a step by the model; candidates and contacts as in the run of about a thousand discs.
@@ -218,13 +218,13 @@ fn predict(
     host: &HostModel,
     particles: usize,
     (figures, fast_lists): (&ListFigures, &Amounts),
-    way: &(&'static str, Option<Execution>),
+    variant: &(&'static str, Option<Execution>),
 ) -> Result<f64, AtlasError> {
-    let run = run(particles, figures.occupancy, way);
+    let run = run(particles, figures.occupancy, variant);
     let checked = run.scene(&[])?;
     let (model, discs) = (model(&checked), checked.particles.grain_count());
     let lengths = Lengths::new(&model, discs, checked.particles.len());
-    if let Some(execution) = way.1 {
+    if let Some(execution) = variant.1 {
         let step = Step::new(&of_precision(&model, checked.scene.method.precision), &lengths);
         let phases = Phase::ALL.iter().map(|&phase| Ok(step.phase(host, phase, execution)?[0]));
         return phases.sum::<Result<f64, AtlasError>>();
@@ -260,13 +260,13 @@ fn predict(
 fn measure(
     particles: usize,
     occupancy: f64,
-    way: &(&'static str, Option<Execution>),
-    pace: &mut Pace,
+    variant: &(&'static str, Option<Execution>),
+    monitor: &mut NoiseMonitor,
 ) -> Result<PhaseTimes, MeasurementError> {
-    let checked = run(particles, occupancy, way).scene(&[])?;
+    let checked = run(particles, occupancy, variant).scene(&[])?;
     let equilibration = (100_000 / particles).clamp(3, 30);
     let sampling = Sampling { equilibration, repeats: 1, particle_steps: 5_000, least_steps: 3 };
-    phase_times(&checked, &sampling, pace)
+    phase_times(&checked, &sampling, monitor)
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ pub struct Effort {
     pub particles: Vec<usize>,
     /// Packing fractions, falling.
     pub packing_fractions: Vec<f64>,
-    /// Steps of a repeat: enough for lists to be made anew.
+    /// Steps of a repeat: enough for lists to be rebuilt.
     pub steps: u64,
     /// Repeats.
     pub repeats: usize,
@@ -91,7 +91,7 @@ pub fn crossover(effort: &Effort, progress: impl Fn(f64) + Sync) -> Result<Cross
     Ok(Crossover { instruction_set: InstructionSet::best().name(), crossings: crossings.collect(), samples })
 }
 
-/// All methods on one case, repeat by repeat in turns, so that a busy moment of the machine meets them alike.
+/// All methods on one case, repeat by repeat in turns, so that a disturbance affects them alike.
 fn case_samples(
     case @ (precision, particles, packing_fraction): (&'static str, usize, f64),
     effort: &Effort,

@@ -21,7 +21,7 @@ pub struct Ladder {
     pub clock_period_ns: f64,
     /// Numbers of the machine that are assumed.
     pub assumed: Vec<String>,
-    /// Of the clock periods of the last rung, the share that hangs on start-ups whose values are assumed.
+    /// Of the clock periods of the last rung, the share that depends on start-ups whose values are assumed.
     pub assumed_share: f64,
     /// The parts of the step, in their order.
     pub parts: Vec<&'static str>,
@@ -121,7 +121,7 @@ pub fn ladder(question: &Question, machine: &MachineModel) -> Result<Ladder, Que
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::machine::{names, preset};
+    use crate::model::machines::{names, preset};
 
     #[test]
     fn every_machine_has_every_rung_and_chaining_pays_where_there_are_units() {

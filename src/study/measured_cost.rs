@@ -6,26 +6,26 @@ use serde::Serialize;
 use std::f64::consts::PI;
 use stripmine_kernels::InstructionSet;
 
-/// A way to run the bench scene.
+/// Method and execution that the bench scene is run with.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Way {
+pub struct Variant {
     /// Its name in a legend.
     pub name: &'static str,
     /// `method.kind`.
     pub kind: &'static str,
     /// `method.execution`, for the lattice.
     pub execution: Option<&'static str>,
-    /// How lists are made anew, for the lists.
+    /// How lists are rebuilt, for the lists.
     pub rebuild: Option<&'static str>,
 }
 
-/// The ways that are compared.
-pub const WAYS: [Way; 5] = [
-    Way { name: "eager (unchained)", kind: "lattice", execution: Some("eager"), rebuild: None },
-    Way { name: "strips of 256", kind: "lattice", execution: Some("strip:256"), rebuild: None },
-    Way { name: "chained", kind: "lattice", execution: Some("chained"), rebuild: None },
-    Way { name: "lists, all pairs", kind: "neighbor-list", execution: None, rebuild: Some("all-pairs") },
-    Way { name: "lists, by cells", kind: "neighbor-list", execution: None, rebuild: Some("cells") },
+/// The variants that are compared.
+pub const VARIANTS: [Variant; 5] = [
+    Variant { name: "eager (unchained)", kind: "lattice", execution: Some("eager"), rebuild: None },
+    Variant { name: "strips of 256", kind: "lattice", execution: Some("strip:256"), rebuild: None },
+    Variant { name: "chained", kind: "lattice", execution: Some("chained"), rebuild: None },
+    Variant { name: "lists, all pairs", kind: "neighbor-list", execution: None, rebuild: Some("all-pairs") },
+    Variant { name: "lists, by cells", kind: "neighbor-list", execution: None, rebuild: Some("cells") },
 ];
 
 /// How much is measured.
@@ -64,8 +64,8 @@ pub const PARTICLES: usize = 1000;
 /// A measurement.
 #[derive(Clone, Debug, Serialize)]
 pub struct Sample {
-    /// Index into [`WAYS`].
-    pub way: usize,
+    /// Index into [`VARIANTS`].
+    pub variant: usize,
     /// NP.
     pub particles: usize,
     /// ρ on cells as wide as the radius.
@@ -81,8 +81,8 @@ pub struct Sample {
 pub struct MeasuredCost {
     /// Instructions.
     pub instruction_set: &'static str,
-    /// The ways.
-    pub ways: [Way; WAYS.len()],
+    /// The variants.
+    pub variants: [Variant; VARIANTS.len()],
     /// Over NP at [`OCCUPANCY`].
     pub over_particles: Vec<Sample>,
     /// Over ρ with [`PARTICLES`].
@@ -106,23 +106,28 @@ pub fn measured_cost(
         .collect();
     let mut samples = Vec::new();
     for (done, &(particles, occupancy)) in cases.iter().enumerate() {
-        // The ways of a case one after the other, so that a busy moment of the machine meets them alike.
-        for way in 0..WAYS.len() {
-            samples.push(alone.install(|| sample(way, particles, occupancy, effort))?);
-            progress((done * WAYS.len() + way + 1) as f64 / (cases.len() * WAYS.len()) as f64);
+        // The variants of a case one after the other, so that a disturbance affects them alike.
+        for variant in 0..VARIANTS.len() {
+            samples.push(alone.install(|| sample(variant, particles, occupancy, effort))?);
+            progress((done * VARIANTS.len() + variant + 1) as f64 / (cases.len() * VARIANTS.len()) as f64);
         }
     }
-    let over_density = samples.split_off(effort.particles.len() * WAYS.len());
+    let over_density = samples.split_off(effort.particles.len() * VARIANTS.len());
     Ok(MeasuredCost {
         instruction_set: InstructionSet::best().name(),
-        ways: WAYS,
+        variants: VARIANTS,
         over_particles: samples,
         over_density,
     })
 }
 
-fn sample(way: usize, particles: usize, occupancy: f64, effort: &Effort) -> Result<Sample, MeasurementError> {
-    let Way { kind, execution, rebuild, .. } = WAYS[way];
+fn sample(
+    variant: usize,
+    particles: usize,
+    occupancy: f64,
+    effort: &Effort,
+) -> Result<Sample, MeasurementError> {
+    let Variant { kind, execution, rebuild, .. } = VARIANTS[variant];
     let mut overrides = vec![
         format!("particles.count={particles}"),
         format!("particles.packing_fraction={}", PI * occupancy),
@@ -144,7 +149,7 @@ fn sample(way: usize, particles: usize, occupancy: f64, effort: &Effort) -> Resu
             repeats: effort.repeats,
         })?;
     Ok(Sample {
-        way,
+        variant,
         particles,
         occupancy,
         seconds: particles as f64 / particle_steps_per_second_median,

@@ -1,4 +1,4 @@
-//! Studies: one file per question a user asks, each a function from parameters to a dataset.
+//! Studies: one file per question, each a function from parameters to a dataset.
 
 pub mod break_even;
 pub mod calibration;
@@ -12,13 +12,13 @@ pub mod ladder;
 pub mod measured_cost;
 pub mod misprints;
 pub mod model_validation;
-pub mod pace;
+pub mod noise_monitor;
 pub mod phase_times;
-pub mod pieces;
 pub mod pipe_flow;
 pub mod precision;
 pub mod predicted_step;
 pub mod rounds;
+pub mod segment_times;
 pub mod statistics;
 pub mod threads;
 pub mod throughput;

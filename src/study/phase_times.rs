@@ -1,7 +1,7 @@
 //! How long is each phase of a step, and how much was there to do? Runs of the bench scene, timed phase by phase.
 
-use super::pace::{Pace, Timed};
-use super::pieces::{COUNTS, Pieces};
+use super::noise_monitor::{NoiseMonitor, Timed};
+use super::segment_times::{COUNTS, SegmentTimes};
 use super::throughput::MeasurementError;
 use crate::method::lattice_md::Lengths;
 use crate::method::{Failure, Method, Phase};
@@ -60,8 +60,8 @@ impl Run {
         Ok(Document::load("bench", &overrides)?.check()?)
     }
 
-    /// The name that a host model gives the rates of this run's method, if they hang on the data: a lattice with few discs
-    /// is searched in another way.
+    /// The name that a host model gives the rates of this run's method, if its work depends on the data: a lattice with few discs
+    /// is searched by another algorithm.
     pub fn rates(&self) -> Option<&'static str> {
         match self.execution {
             LISTS => Some("lists"),
@@ -77,7 +77,7 @@ impl Run {
         [LISTS, FAST_LISTS].contains(&self.execution)
     }
 
-    /// All that tells it from the others.
+    /// All that distinguishes it from the others.
     pub fn name(&self) -> String {
         let Run { particles, occupancy, precision, execution } = self;
         format!("{execution}, {precision}, NP = {particles}, ρ = {occupancy}")
@@ -90,25 +90,25 @@ pub struct PhaseTimes {
     /// What there was to do in a step, on average.
     pub amounts: Amounts,
     /// Nanoseconds a step of every phase; without the making of lists.
-    samples: [Pieces; Phase::ALL.len()],
+    samples: [SegmentTimes; Phase::ALL.len()],
     /// Nanoseconds of each making of lists.
-    makings: Pieces,
+    makings: SegmentTimes,
     /// Makings a step.
     made: f64,
 }
 
 impl PhaseTimes {
-    /// Of so many discs, nothing measured yet.
+    /// Nothing measured yet, of `discs` discs.
     pub fn none(discs: usize) -> PhaseTimes {
         PhaseTimes {
             amounts: Amounts { steps: 1.0, discs: discs as f64, ..Amounts::default() },
             samples: Default::default(),
-            makings: Pieces::default(),
+            makings: SegmentTimes::default(),
             made: 0.0,
         }
     }
 
-    /// Of one phase, so many steps of it timed.
+    /// Of one phase, with these times of its steps.
     #[cfg(test)]
     pub(super) fn of(phase: Phase, all: &[Timed]) -> PhaseTimes {
         let mut times = PhaseTimes::none(1);
@@ -139,8 +139,8 @@ impl PhaseTimes {
         self
     }
 
-    /// Nanoseconds of a phase a step in quiet moments, and the quartiles of the samples: makings of lists are as often as they
-    /// were. `reference` is what the yardstick takes then.
+    /// Nanoseconds of a phase a step on an undisturbed core, and the quartiles of the samples, with lists rebuilt as often as
+    /// they were. `reference` is what the reference loop takes on such a core.
     pub fn typical(&self, phase: Phase, reference: f64) -> (f64, [f64; 2]) {
         let making =
             if phase == Phase::Index { self.made * self.making(reference).unwrap_or(0.0) } else { 0.0 };
@@ -149,19 +149,19 @@ impl PhaseTimes {
         (typical, [low, high])
     }
 
-    /// The share of a phase's time that was measured in quiet moments, and not only told at their pace.
+    /// The share of a phase's time that was measured on an undisturbed core, and not corrected for a slowdown.
     pub fn quiet(&self, phase: Phase, reference: f64) -> f64 {
         self.samples[phase as usize].quiet(reference)
     }
 
-    /// Whether every phase that it has was measured in quiet moments.
+    /// Whether every phase that it has was measured on an undisturbed core.
     pub fn is_quiet(&self, reference: f64) -> bool {
         let had = Phase::ALL.iter().filter(|&&phase| self.samples[phase as usize].runs() > 0);
         had.copied()
             .all(|phase| self.quiet(phase, reference) >= QUIET || self.upkeep(phase, reference) <= 0.0)
     }
 
-    /// Nanoseconds of a phase in quiet moments, without the making of lists.
+    /// Nanoseconds of a phase on an undisturbed core, without the rebuilding of lists.
     pub fn upkeep(&self, phase: Phase, reference: f64) -> f64 {
         self.samples[phase as usize].typical(reference).unwrap_or(0.0)
     }
@@ -172,11 +172,11 @@ impl PhaseTimes {
     }
 }
 
-/// What was measured in quiet moments for at least such a share of the time needs no more rounds.
+/// What was measured on an undisturbed core for at least this share of the time needs no more rounds.
 pub const QUIET: f64 = 0.9;
 
-/// Nanoseconds of a sample of several steps, about: quiet moments last no longer. Longer steps are timed one by one, from rest
-/// to rest.
+/// Nanoseconds of a sample of several steps, about: a core is seldom undisturbed for longer. Longer steps are timed one by
+/// one, segment by segment.
 const SHORT: f64 = 100_000.0;
 
 /// How much of a run is timed.
@@ -199,12 +199,12 @@ pub struct Sampling {
 pub fn phase_times(
     checked: &Checked,
     sampling: &Sampling,
-    pace: &mut Pace,
+    monitor: &mut NoiseMonitor,
 ) -> Result<PhaseTimes, MeasurementError> {
     let discs = checked.particles.grain_count();
     let steps = sampling.repeats * (sampling.particle_steps / discs).clamp(sampling.least_steps, 2000);
-    let mut timing = Timing::new(checked, pace)?;
-    // The shortest: one that met a busy moment would have short steps timed as long ones.
+    let mut timing = Timing::new(checked, monitor)?;
+    // The shortest: a disturbed one would have short steps timed as long ones.
     let step = timing.unnoticed(sampling.equilibration.max(1))?;
     match ((SHORT / step).floor() as usize).min(steps) {
         0 | 1 => timing.one_by_one(steps, step)?,
@@ -217,7 +217,7 @@ pub fn phase_times(
 /// A run that is being timed.
 struct Timing<'a> {
     method: Box<dyn Method>,
-    pace: &'a mut Pace,
+    monitor: &'a mut NoiseMonitor,
     times: PhaseTimes,
     found: Found,
     /// Steps so far, and how often lists were made in them.
@@ -226,15 +226,15 @@ struct Timing<'a> {
 }
 
 impl Timing<'_> {
-    fn new<'a>(checked: &Checked, pace: &'a mut Pace) -> Result<Timing<'a>, MeasurementError> {
+    fn new<'a>(checked: &Checked, monitor: &'a mut NoiseMonitor) -> Result<Timing<'a>, MeasurementError> {
         let times = PhaseTimes::none(checked.particles.grain_count());
-        Ok(Timing { method: assemble(checked)?, pace, times, found: Found::default(), steps: 0, made: 0 })
+        Ok(Timing { method: assemble(checked)?, monitor, times, found: Found::default(), steps: 0, made: 0 })
     }
 
     /// Steps of which only the makings of lists count, for these are rare. Nanoseconds of the shortest.
     fn unnoticed(&mut self, count: usize) -> Result<f64, Failure> {
         let method = self.method.as_mut();
-        let (ran, around) = self.pace.around(&mut 0, || Ran::some(method, count, &mut Found::default()));
+        let (ran, around) = self.monitor.around(&mut 0, || Ran::some(method, count, &mut Found::default()));
         let ran = ran?;
         self.times.take_makings(&ran, around);
         self.count(count, ran.makings.len());
@@ -246,16 +246,16 @@ impl Timing<'_> {
         self.made += made;
     }
 
-    /// So many steps, timed group by group.
+    /// `steps` steps, timed in groups.
     fn in_groups(&mut self, steps: usize, group: usize) -> Result<(), Failure> {
         let (mut left, mut quiet) = (steps, 0);
         while left > 0 {
             let count = group.min(left);
-            if self.pace.wait(quiet, SHORT) {
+            if self.monitor.wait(quiet, SHORT) {
                 self.unnoticed(1)?;
             }
             let (method, found) = (self.method.as_mut(), &mut self.found);
-            let (ran, around) = self.pace.around(&mut quiet, || Ran::some(method, count, found));
+            let (ran, around) = self.monitor.around(&mut quiet, || Ran::some(method, count, found));
             let ran = ran?;
             self.times.take_group(self.method.as_ref(), count, &ran, around);
             self.count(count, ran.makings.len());
@@ -264,23 +264,23 @@ impl Timing<'_> {
         Ok(())
     }
 
-    /// So many steps, each timed from rest to rest, that last about so many nanoseconds.
+    /// `steps` steps, each timed segment by segment, that take about `lasting` nanoseconds.
     fn one_by_one(&mut self, steps: usize, lasting: f64) -> Result<(), Failure> {
         let mut quiet = 0;
         for _ in 0..steps {
-            if self.pace.wait(quiet, lasting) {
+            if self.monitor.wait(quiet, lasting) {
                 self.unnoticed(1)?;
             }
             let (method, found) = (self.method.as_mut(), &mut self.found);
-            let (ran, pieces) = self.pace.from_rest_to_rest(&mut quiet, || Ran::some(method, 1, found));
-            let made_anew = !ran?.makings.is_empty();
-            self.times.take_step(&pieces, made_anew);
-            self.count(1, usize::from(made_anew));
+            let (ran, segments) = self.monitor.in_segments(&mut quiet, || Ran::some(method, 1, found));
+            let rebuilt = !ran?.makings.is_empty();
+            self.times.take_step(&segments, rebuilt);
+            self.count(1, usize::from(rebuilt));
         }
         Ok(())
     }
 
-    /// What came out, on a lattice of so many cells if there is one.
+    /// The times and amounts, on a lattice of `cells` cells if there is one.
     fn done(self, cells: usize) -> PhaseTimes {
         let Timing { method, mut times, found, steps, made, .. } = self;
         let lists = method.lists().is_some();
@@ -310,7 +310,7 @@ struct Ran {
 }
 
 impl Ran {
-    /// So many more, each of which is looked at.
+    /// Runs `count` steps and counts what each of them had to do.
     fn some(method: &mut dyn Method, count: usize, found: &mut Found) -> Result<Ran, Failure> {
         let made = |method: &dyn Method| method.lists().map_or(0, |(_, made)| made);
         let (mut makings, mut shortest) = (vec![], f64::INFINITY);
@@ -351,20 +351,20 @@ impl PhaseTimes {
         }
     }
 
-    /// The times of one step from rest to rest, in which lists may have been made anew.
-    fn take_step(&mut self, pieces: &[(usize, Timed)], made_anew: bool) {
+    /// The times of one step by segments, in which lists may have been rebuilt.
+    fn take_step(&mut self, segments: &[(usize, Timed)], rebuilt: bool) {
         for &phase in Phase::ALL {
-            let own = pieces.iter().filter(|(number, _)| *number == phase as usize);
+            let own = segments.iter().filter(|(number, _)| *number == phase as usize);
             let own: Vec<Timed> = own.map(|(_, timed)| *timed).collect();
             match phase {
-                Phase::Index if made_anew => self.makings.push(&own),
+                Phase::Index if rebuilt => self.makings.push(&own),
                 _ => self.samples[phase as usize].push(&own),
             }
         }
     }
 }
 
-/// What steps met that were looked at.
+/// Candidates and contacts of the steps that were counted.
 #[derive(Default)]
 struct Found {
     steps: u64,

@@ -54,7 +54,7 @@ impl Step {
             // Only the fast execution has it, which has no programs.
             Phase::CorrectPredict => &[],
         };
-        // Every part binds the arrays of the step anew.
+        // Every part binds all arrays of the step.
         let mut sum = parts.len() as f64 * (host.clock + self.arrays as f64 * host.bind);
         let mut baseline = 0.0;
         let cycle: Vec<(&Outlines, usize)> =

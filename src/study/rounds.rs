@@ -5,14 +5,14 @@ use std::time::{Duration, Instant};
 /// How many rounds.
 #[derive(Clone, Copy, Debug)]
 pub struct Bound {
-    /// At most so many, and one at least.
+    /// The largest number of rounds; one is made in any case.
     pub most: usize,
     /// None is begun that would end later, as long as those before it took; unbounded without.
     pub within: Option<Duration>,
 }
 
 impl Bound {
-    /// So many, however long they take.
+    /// A fixed number of rounds, without a limit of time.
     pub fn of(most: usize) -> Bound {
         Bound { most, within: None }
     }
@@ -31,7 +31,7 @@ pub struct Rounds {
 }
 
 impl Rounds {
-    /// The share that is done once such a share of the round is: by their number or by the time, whichever ends them sooner.
+    /// The share that is done once such a share of the round is: by their number or by the time, of which the sooner ends them.
     pub fn share(&self, of_round: f64) -> f64 {
         let by_number = (self.begun.saturating_sub(1) as f64 + of_round) / self.bound.most.max(1) as f64;
         let by_time = self.bound.within.map_or(0.0, |within| {

@@ -40,6 +40,12 @@ pub fn median(values: impl Iterator<Item = f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
+/// The value below which a share of rising values lies; none of none.
+pub fn quantile(rising: &[f64], share: f64) -> Option<f64> {
+    let last = rising.len().checked_sub(1)?;
+    Some(rising[(share * last as f64).round() as usize])
+}
+
 /// Slope of the straight line of least squares through points; 0 through fewer than two.
 pub fn slope(x: &[f64], y: &[f64]) -> f64 {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
@@ -67,5 +73,14 @@ mod tests {
         assert_eq!(Spread::of(&[3.0]).error, None);
         let spread = Spread::of(&[1.0, 3.0]);
         assert_eq!((spread.mean, spread.error, spread.lowest, spread.highest), (2.0, Some(1.0), 1.0, 3.0));
+    }
+
+    #[test]
+    fn quantiles_are_values_that_were_there() {
+        assert_eq!(
+            [0.0, 0.25, 1.0].map(|share| quantile(&[1.0, 2.0, 3.0, 4.0, 5.0], share)),
+            [1.0, 2.0, 5.0].map(Some)
+        );
+        assert_eq!(quantile(&[], 0.5), None);
     }
 }

@@ -16,7 +16,7 @@ pub struct Effort {
     pub particles: Vec<usize>,
     /// Packing fractions.
     pub packing_fractions: Vec<f64>,
-    /// Rounds: in each of them every way once, so that a busy moment of the machine meets them alike.
+    /// Rounds: each of them runs every variant once, so that a disturbance affects them alike.
     pub rounds: usize,
     /// Particle-steps that one thread does in a round, about.
     pub particle_steps: usize,

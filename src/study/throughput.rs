@@ -3,7 +3,7 @@
 use crate::method::{Failure, Method, Timings};
 use crate::observe::{Observation, Scenery};
 use crate::run::assemble;
-use crate::scene::{Checked, Document, Execution, MethodKind, Precision, SceneErrors, Scheme};
+use crate::scene::{Checked, Document, MethodKind, Precision, SceneErrors, Scheme};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use stripmine_kernels::InstructionSet;
@@ -48,7 +48,7 @@ pub struct Throughput {
     pub precision: &'static str,
     /// The integrator.
     pub integrator: String,
-    /// How instructions meet elements.
+    /// How the step is executed, as the scene names it. Lists meet their pairs one by one in every execution of programs.
     pub execution: String,
     /// Whether there is friction, and with it rotation.
     pub friction: bool,
@@ -171,11 +171,7 @@ impl Running {
                 Scheme::Gear { values } => format!("gear{values}"),
                 Scheme::VelocityVerlet => "velocity-verlet".to_owned(),
             },
-            execution: match (scene.method.kind, scene.method.execution) {
-                (_, Execution::Fast) => Execution::Fast.name(),
-                (MethodKind::NeighborList { .. }, _) => "scalar".to_owned(),
-                (_, execution) => execution.name(),
-            },
+            execution: scene.method.execution.name(),
             friction: scene.law.has_friction(),
             cell_edge: scene.method.needs_lattice().then_some(checked.geometry.frame.edge),
             threads: rayon::current_num_threads(),
@@ -195,9 +191,35 @@ impl Running {
     }
 }
 
-/// The most memory this process ever held, where the system tells (Linux: `VmHWM`).
+/// The peak memory of this process, where the system gives it (Linux: `VmHWM`).
 fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
     Some(line.split_whitespace().nth(1)?.parse::<u64>().ok()? * 1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_search_is_said_to_run_in_the_execution_that_was_asked_for() {
+        for (search, executions) in [
+            ("lattice", ["fast", "chained", "eager", "strip:64"].as_slice()),
+            ("neighbor-list", &["fast", "chained", "eager", "strip:64"]),
+            ("sectors", &["fast"]),
+        ] {
+            for execution in executions {
+                let overrides = [
+                    "particles.count=60".to_owned(),
+                    format!("method.kind=\"{search}\""),
+                    format!("method.execution=\"{execution}\""),
+                ];
+                let document = Document::load("bench", &overrides).unwrap();
+                let measured =
+                    throughput(Measurement { document, equilibration: 1, steps: 2, repeats: 1 }).unwrap();
+                assert_eq!((measured.what, measured.execution.as_str()), (search, *execution));
+            }
+        }
+    }
 }

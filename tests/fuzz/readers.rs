@@ -6,7 +6,8 @@ use std::io::Cursor;
 use stripmine::io::checkpoint::{Checkpoint, Column, Counter};
 use stripmine::io::extxyz::{self, Frames};
 use stripmine::model::host::{HostModel, default_model};
-use stripmine::model::machine::{MachineModel, names};
+use stripmine::model::machine::MachineModel;
+use stripmine::model::machines::names;
 use stripmine::scene::{Document, KEYS, PRESETS};
 
 const MEGABYTE: u64 = 1 << 20;

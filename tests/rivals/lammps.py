@@ -24,6 +24,7 @@ import itertools
 import json
 import pathlib
 import platform
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -34,6 +35,8 @@ from tables import write
 
 PACKING_FRACTIONS = [0.84, 0.80, 0.6, 0.3, 0.1, 0.03]
 PARTICLES = [10_000, 100_000, 1_000_000]
+# What the results depend on, from the top of the checkout.
+SOURCES = [f":/{name}" for name in ("src", "kernels", "build.rs", "Cargo.toml", "Cargo.lock", "tests/rivals")]
 
 
 def arguments():
@@ -53,22 +56,37 @@ def arguments():
     return parser.parse_args()
 
 
-def provenance():
-    """Where results come from: the commit of this checkout, the call, the processor."""
-    call = ["git", "-C", str(pathlib.Path(__file__).parent), "describe", "--always", "--dirty", "--abbrev=12"]
+def git(folder, *arguments):
+    """What git says in a folder; nothing where there is no git, or no checkout."""
     try:
-        commit = subprocess.run(call, capture_output=True, text=True).stdout.strip() or None
+        done = subprocess.run(["git", "-C", str(folder), *arguments], capture_output=True, text=True)
     except OSError:
-        commit = None
+        return ""
+    return done.stdout.strip() if done.returncode == 0 else ""
+
+
+def is_traceable(out):
+    """Whether results may go there: over committed ones only those of a committed source."""
+    changed = git(pathlib.Path(__file__).parent, "status", "--porcelain", "--", *SOURCES)
+    return not (changed and git(out, "ls-files", "--", "."))
+
+
+def provenance():
+    """Where results come from: the commit of this checkout, the whole command line, the processor."""
+    commit = git(pathlib.Path(__file__).parent, "describe", "--always", "--dirty", "--abbrev=12") or None
     listed = pathlib.Path("/proc/cpuinfo")
     lines = listed.read_text().splitlines() if listed.exists() else []
     names = [line.split(":")[1].strip() for line in lines if line.startswith("model name")]
     host = names[0] if names else platform.processor()
-    return {"commit": commit, "command": " ".join(["python3", *sys.argv]), "host": host}
+    return {"commit": commit, "command": shlex.join(["python3", *sys.argv]), "host": host}
 
 
 def main():
     asked = arguments()
+    if asked.out and not is_traceable(asked.out):
+        print(f"error: the results in {asked.out} are committed, but this checkout has changes that are in no commit", file=sys.stderr)
+        print("  help: commit them and build again, or choose another --out", file=sys.stderr)
+        return 2
     if not pathlib.Path(asked.stripmine).exists():
         print(f"skipped: there is no {asked.stripmine}: cargo build --release")
         return 0

@@ -8,14 +8,15 @@ use crate::cli::{Failure, to_json};
 use crate::io::FileError;
 use crate::io::lock::{Lock, LockError, is_lock};
 use crate::io::replace::{is_temporary, listing, remove_if_there, replace, temporary};
+use crate::origin::{Origin, Provenance};
 use crate::report::figure::{Figure, png, svg};
-use crate::report::origin::Provenance;
 use crate::report::{Section, csv, html, page};
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use tempfile::TempDir;
 
 /// What a page needs of an item that is not its data.
@@ -47,6 +48,13 @@ pub(crate) enum FolderError {
     /// A page of that name that is another's.
     #[error("{} was not written by this command: move it away, or choose another --out", .0.display())]
     InTheWay(PathBuf),
+    /// Results that are committed would be written over by those of a source that is not.
+    #[error(
+        "the results in {} are committed, but this program was built from changes that are in no commit\n  help: \
+         commit them and build again, or choose another --out",
+        .0.display()
+    )]
+    Uncommitted(PathBuf),
     /// Another process writes there.
     #[error(transparent)]
     Lock(#[from] LockError),
@@ -56,10 +64,10 @@ pub(crate) enum FolderError {
 }
 
 impl FolderError {
-    /// Whether the folder is another's, or another process writes there.
+    /// Whether the folder is another's, or must not be written by this program, or another process writes there.
     pub(crate) fn is_refusal(&self) -> bool {
         match self {
-            FolderError::NotOurs { .. } | FolderError::InTheWay(_) => true,
+            FolderError::NotOurs { .. } | FolderError::InTheWay(_) | FolderError::Uncommitted(_) => true,
             FolderError::Lock(error) => error.is_refusal(),
             FolderError::File(_) => false,
         }
@@ -92,8 +100,10 @@ impl Folder {
     /// written there.
     ///
     /// # Errors
-    /// If what stands there is not ours, or another process writes there.
+    /// If what stands there is not ours, is committed while the source of this program is not, or another process writes
+    /// there.
     pub(in crate::cli) fn open(path: &Path, items: &[&str], pages: bool) -> Result<Folder, FolderError> {
+        traceable(path, &Origin::here())?;
         let admits = || {
             judge(path)?;
             for name in items {
@@ -245,6 +255,24 @@ fn entries(folder: &Path) -> Result<Option<Vec<String>>, FileError> {
     Ok(Some(names))
 }
 
+/// Refuses to write over committed results what no commit can make again.
+fn traceable(path: &Path, origin: &Origin) -> Result<(), FolderError> {
+    match !origin.is_committed() && is_committed(path) {
+        true => Err(FolderError::Uncommitted(path.to_owned())),
+        false => Ok(()),
+    }
+}
+
+/// Whether git keeps files of a folder, which may have been removed; without git, or outside a checkout, it keeps none.
+fn is_committed(folder: &Path) -> bool {
+    let there = folder.ancestors().find(|there| there.is_dir()).unwrap_or(Path::new(""));
+    // Git does not take empty paths.
+    let [at, below] =
+        [there, folder.strip_prefix(there).unwrap_or(folder)].map(|path| Path::new(".").join(path));
+    let listed = Command::new("git").arg("-C").arg(at).args(["ls-files", "--"]).arg(below).output();
+    listed.is_ok_and(|listed| listed.status.success() && !listed.stdout.is_empty())
+}
+
 fn not_ours(folder: &Path, foreign: &[String]) -> FolderError {
     FolderError::NotOurs { folder: folder.to_owned(), names: listing(foreign) }
 }
@@ -332,4 +360,36 @@ fn remove_leftovers(path: &Path) -> Result<(), FolderError> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn committed_results_are_refused_to_a_source_that_is_not_committed() {
+        let checkout = tempfile::tempdir().unwrap();
+        let git = |arguments: &[&str]| {
+            let done = Command::new("git").arg("-C").arg(checkout.path()).args(arguments).output().unwrap();
+            assert!(done.status.success(), "{done:?}");
+        };
+        let [kept, scratch] = ["reports", "scratch"].map(|name| checkout.path().join(name));
+        for folder in [&kept, &scratch] {
+            fs::create_dir(folder).unwrap();
+            fs::write(folder.join("README.md"), page::MARK).unwrap();
+        }
+        git(&["init", "--quiet"]);
+        git(&["add", "reports"]);
+        let of = |dirty| Origin { commit: "1234567890ab".to_owned(), dirty, ..Origin::here() };
+        let refused = traceable(&kept, &of(true)).unwrap_err();
+        assert!(matches!(&refused, FolderError::Uncommitted(folder) if *folder == kept));
+        assert!(refused.to_string().contains("another --out"), "{refused}");
+        assert_eq!(Failure::Results(refused).exit_code(), 2);
+        assert!(traceable(&kept, &of(false)).is_ok());
+        fs::remove_dir_all(&kept).unwrap();
+        assert!(traceable(&kept, &of(true)).is_err());
+        // Folders that git does not keep, and that are not there yet, may be written by any program.
+        assert!(traceable(&scratch, &of(true)).is_ok());
+        assert!(traceable(&checkout.path().join("new"), &of(true)).is_ok());
+    }
 }

@@ -3,8 +3,8 @@
 use crate::cli::{Failure, listing};
 use crate::method::lattice_md::Part;
 use crate::model::host::default_model;
-use crate::model::machine;
-use crate::report::origin;
+use crate::model::machines;
+use crate::origin;
 use crate::report::pipe_flow::Showing;
 use crate::report::{self, Section};
 use crate::study::calibration;
@@ -98,13 +98,13 @@ impl Item {
         match self {
             Item::Table => {
                 let data =
-                    efficiency_table::efficiency_table(&Question::default(), &machine::preset("paper")?)?;
+                    efficiency_table::efficiency_table(&Question::default(), &machines::preset("paper")?)?;
                 made(report::efficiency_table::section(&data), &data)
             }
             Item::Ladder => {
                 let ladders: Vec<_> = ["cray-y-mp-el", "cray-1", "cray-c90", "sx-aurora"]
                     .into_iter()
-                    .map(|name| Ok(ladder::ladder(&Question::default(), &machine::preset(name)?)?))
+                    .map(|name| Ok(ladder::ladder(&Question::default(), &machines::preset(name)?)?))
                     .collect::<Result<_, Failure>>()?;
                 let host = host_ladder::host_ladder(&Question::default(), &default_model()?)?;
                 let mut section = report::ladder::section(&ladders);
@@ -118,7 +118,7 @@ impl Item {
                 made(report::misprints::section(&data), &data)
             }
             Item::Cost => {
-                let data = density_cost::density_cost(&machine::preset("paper")?)?;
+                let data = density_cost::density_cost(&machines::preset("paper")?)?;
                 made(report::density_cost::section(&data), &data)
             }
             Item::UsefulWork => {
@@ -228,7 +228,7 @@ fn bound(most: usize, seconds: u64) -> Bound {
 
 /// The machine of the source, the CRAY of the application, and this host, by the model that comes with the program.
 fn atlas(effort: Effort, progress: &(dyn Fn(f64) + Sync)) -> Result<Made, Failure> {
-    let machines = [machine::preset("paper")?, machine::preset("cray-y-mp-el")?];
+    let machines = [machines::preset("paper")?, machines::preset("cray-y-mp-el")?];
     let host = default_model()?;
     let (measured, rounds): (&[usize], Bound) = match effort {
         Effort::Quick => (&[300], Bound::of(2)),

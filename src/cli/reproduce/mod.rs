@@ -4,7 +4,7 @@ mod folder;
 mod items;
 
 use super::{Common, Failure, output, print_json, say};
-use crate::report::origin::Provenance;
+use crate::origin::Provenance;
 use crate::signals;
 use clap::{Args, ValueEnum};
 pub(super) use folder::{Folder, FolderError};
@@ -58,9 +58,8 @@ impl Reproduce {
             before += share;
             bar.set_position(ticks(before));
             let seconds = start.elapsed().as_secs_f64();
-            let command = format!("stripmine reproduce{}", if self.quick { " --quick" } else { "" });
             // Finished items are on the disk, and on the page, before the next one starts, and before a signal ends it all.
-            let provenance = Provenance::here(command, seconds);
+            let provenance = Provenance::here(common.command.clone(), seconds);
             let path = signals::whole(|| {
                 let path = folder.write(&made, &provenance)?;
                 folder.write_page().map(|()| path)

@@ -1,7 +1,8 @@
 //! Golden values of the sources, and what every clock promises.
 
 use super::*;
-use crate::model::machine::{MachineModel, names, preset};
+use crate::model::machine::MachineModel;
+use crate::model::machines::{names, preset};
 use stripmine_kernels::backend::tape::{File, Outline, Place, Reference, RegisterName};
 use stripmine_kernels::isa::Array;
 use stripmine_kernels::isa::OpCounts;

@@ -1,13 +1,14 @@
 //! Host files: what `calibrate` writes, as TOML.
 
-use super::{HostModel, Residual, Transfer};
+use super::levels::Transfer;
+use super::model::HostModel;
 use crate::io::{FileError, regular_file};
 use crate::model::machine_file::{LONGEST, NAMED, Position};
 use crate::quoted::{message, one_line, quoted};
 use std::path::Path;
 
 /// The version of the file format that this program reads.
-pub const FORMAT: u32 = 11;
+pub const FORMAT: u32 = 12;
 
 /// Why a host file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -96,25 +97,18 @@ impl HostModel {
     /// # Errors
     /// [`HostFileError`]: the grammar's first defect, or every entry that cannot be.
     pub fn parse(file: &str, text: &str) -> Result<HostModel, HostFileError> {
-        let model: HostModel = toml::from_str(text)
-            .map_err(|cause| HostFileError::Syntax { file: file.to_owned(), cause: Box::new(cause) })?;
+        let model: HostModel = toml::from_str(text).map_err(|cause| {
+            // A file of another format has entries of other names: its format is the mistake.
+            let syntax = HostFileError::Syntax { file: file.to_owned(), cause: Box::new(cause) };
+            other_format(text).map_or(syntax, |defect| content(file, text, vec![defect]))
+        })?;
         let mut defects = model.defects();
         if defects.is_empty() {
-            // The same once more, whatever an entry is called: so that no number slips through.
+            // Once more for every entry, so that no number is left unchecked.
             let written = text.parse::<toml::Table>().map(toml::Value::Table);
             written.iter().for_each(|value| infinite(value, String::new(), &mut defects));
         }
-        let more = defects.len().saturating_sub(NAMED);
-        let entries: Vec<BadEntry> = defects
-            .into_iter()
-            .take(NAMED)
-            .map(|(entry, what)| BadEntry { position: Position::of(text, &entry), entry, what })
-            .collect();
-        if entries.is_empty() {
-            Ok(model)
-        } else {
-            Err(HostFileError::Content { file: file.to_owned(), entries, more })
-        }
+        if defects.is_empty() { Ok(model) } else { Err(content(file, text, defects)) }
     }
 
     /// The text of its file.
@@ -127,8 +121,7 @@ impl HostModel {
     fn defects(&self) -> Vec<(String, String)> {
         let mut defects = vec![];
         if self.format != FORMAT {
-            let what = format!("is {}, but this program reads {FORMAT}", self.format);
-            defects.push(("format".to_owned(), what));
+            defects.push(wrong_format(self.format.into()));
         }
         let lanes = self.lanes.iter().flat_map(|(lane, costs)| {
             let passes = costs.passes.iter().flat_map(move |(op, cost)| {
@@ -160,13 +153,6 @@ impl HostModel {
                 .map(|(what, value)| (format!("{name}.{what}"), value))
             })
         });
-        let lists = self.lanes.iter().map(|(lane, costs)| (format!("lanes.{lane}"), &costs.seen));
-        let unsound = lists.chain([("loops".to_owned(), &self.loops.seen)]).flat_map(|(of, seen)| {
-            let bad = seen.iter().filter(|(_, seen)| !seen.residuals.iter().all(Residual::is_sound));
-            bad.map(move |(name, _)| format!("{of}.seen.{name}.residuals"))
-        });
-        let what = "holds a number that is not finite, a negative one or a ratio of nought";
-        defects.extend(unsound.map(|entry| (entry, what.to_owned())));
         let rates = self.rates.iter().flat_map(|(method, rates)| {
             let points = rates.0.values().flat_map(|phases| phases.values()).flatten();
             points.flat_map(|point| point.ns.values()).map(move |&ns| (format!("rates.{method}"), ns))
@@ -179,7 +165,7 @@ impl HostModel {
             ("clock", self.clock),
             ("loops.overlap", self.loops.overlap),
             ("measured.spread", self.measured.spread),
-            ("measured.yardstick", self.measured.yardstick),
+            ("measured.reference_loop", self.measured.reference_loop),
             ("measured.quiet", self.measured.quiet),
         ];
         let rest = rest.map(|(entry, value)| (entry.to_owned(), value));
@@ -210,6 +196,25 @@ impl HostModel {
         }
         defects
     }
+}
+
+fn content(file: &str, text: &str, defects: Vec<(String, String)>) -> HostFileError {
+    let more = defects.len().saturating_sub(NAMED);
+    let placed =
+        |(entry, what): (String, String)| BadEntry { position: Position::of(text, &entry), entry, what };
+    let entries = defects.into_iter().take(NAMED).map(placed).collect();
+    HostFileError::Content { file: file.to_owned(), entries, more }
+}
+
+fn wrong_format(found: i64) -> (String, String) {
+    ("format".to_owned(), format!("is {found}, but this program reads {FORMAT}: calibrate again"))
+}
+
+/// The defect of a text that states another format.
+fn other_format(text: &str) -> Option<(String, String)> {
+    let written = text.parse::<toml::Table>().ok()?;
+    let found = written.get("format")?.as_integer()?;
+    (found != i64::from(FORMAT)).then(|| wrong_format(found))
 }
 
 /// Every number below an entry that is not finite, or too large.
@@ -262,9 +267,9 @@ mod tests {
             ("run = ", "run = -", "`run` is -"),
             ("run = ", "runs = ", "unknown field `runs`"),
             ("overlap", "overlapp", "unknown field `overlapp`"),
-            ("residuals = [[", "residuals = [[-1.0, 1.0, 1.0, 1.0], [", "residuals` holds a number"),
-            ("format = 11", "format = 12", "`format` is 12"),
-            ("format = 11\n", "", "missing field `format`"),
+            ("format = 12", "format = 13", "`format` is 13"),
+            ("format = 12", "format = 11\npace = 1.0", "`format` is 11, but this program reads 12"),
+            ("format = 12\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
             assert!(said.contains(expected) && said.contains("line "), "{said}");

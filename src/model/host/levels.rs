@@ -1,6 +1,6 @@
 //! The levels of memory: what it takes to bring the bytes of a vector from where they lie.
 
-use super::reuse::{Since, Touch, Vector, element_bytes};
+use super::reuse::{LINE, Since, Touch, Vector, element_bytes};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::Execution;
@@ -27,9 +27,9 @@ pub struct Level {
 pub struct Transfer {
     /// Nanoseconds a byte of a vector that is read or written comes from there.
     pub fetch: f64,
-    /// The same of an array that other programs have used since, and that begins anew: nothing has announced it.
+    /// The same for an array that other programs have used since: no prefetcher follows it yet.
     pub fetch_array: f64,
-    /// Nanoseconds a byte besides where the vector is written: it must go back.
+    /// Additional nanoseconds a byte where the vector is written, for it must be written back.
     pub write_back: f64,
     /// Nanoseconds until a pass over an array has the first of it.
     pub first: f64,
@@ -37,16 +37,13 @@ pub struct Transfer {
     pub line: f64,
 }
 
-/// Bytes of a line, the least that moves between levels.
-pub const LINE: f64 = 64.0;
-
-/// How much of what lies `distance` bytes back a cache of so many bytes has lost; half an octave around a capacity belongs
-/// to both levels, for caches do not end sharply.
+/// The share that a cache of `capacity` bytes has lost of what was touched `distance` bytes ago. Half an octave around
+/// a capacity belongs to both levels, for caches do not end sharply.
 pub fn beyond(distance: f64, capacity: f64) -> f64 {
     ((distance / capacity).log2() + 0.5).clamp(0.0, 1.0)
 }
 
-/// What something costs that was last touched so many bytes ago.
+/// What something costs that was last touched `distance` bytes ago.
 pub fn from_afar(levels: &[Level], distance: f64, cost: impl Fn(&Level) -> f64) -> f64 {
     let nearest = levels.first().map_or(0.0, &cost);
     let farther = levels
@@ -65,7 +62,7 @@ struct Lines {
 }
 
 impl Lines {
-    /// Of elements that fall upon lines at random, so many a line: Poisson's law says how many lines are met at all, and of
+    /// Of elements that lie on lines at random, `elements` a line: Poisson's law says how many lines are met at all, and of
     /// how many the line before is not. Where they come `in_order`, all are foreseen.
     fn met(elements: f64, in_order: bool) -> Lines {
         let passed_over = (-elements).exp();
@@ -112,7 +109,7 @@ struct Neighbourhood {
 
 impl Surroundings {
     /// Of each of some programs, run one after the other over vectors of these lengths again and again, each of which
-    /// touches so many bytes of registers besides.
+    /// touches `registers` bytes of registers in addition.
     ///
     /// Eager execution goes over one array after the other; every other one over all of a program's at once, so that what
     /// it has touched last are the ends of all of them.
@@ -174,11 +171,6 @@ impl Surroundings {
             }
         }
         around
-    }
-
-    /// Bytes touched since the one of the program's arrays was that has waited longest.
-    pub fn farthest(&self) -> f64 {
-        self.arrays.values().map(|array| array.distance).fold(0.0, f64::max)
     }
 
     /// The arrays.

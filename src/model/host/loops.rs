@@ -2,8 +2,8 @@
 //! from the operations it counts, so loops that a calibration has seen are charged what they took on short vectors; others
 //! by their classes of operations, fitted to those that were seen.
 
-use super::residuals::{self, Place, Residual};
-use super::{Estimate, Level, OutOfRange, PassCost, Transfer};
+use super::cost::{Estimate, OutOfRange, PassCost};
+use super::levels::{Level, Transfer};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -18,18 +18,17 @@ pub struct ProgramCost {
     pub what: String,
     /// Nanoseconds an element.
     pub element: Estimate,
-    /// Nanoseconds besides: of a run, or of a strip of the interpreter.
+    /// Nanoseconds in addition, for each run, or each strip of the interpreter.
     pub start: Estimate,
     /// The same of what is left beyond whole hardware registers, which goes element by element.
     pub rest: PassCost,
     /// How it differs beyond the first-level cache.
     pub factors: Factors,
-    /// How far off all that is on drill scenes: distance (bytes), elements of a strip or nought, elements, ratio.
-    pub residuals: Vec<Residual>,
 }
 
 impl ProgramCost {
-    /// Nanoseconds to begin, and to compute, over `n` elements in the first-level cache, so many in a hardware register.
+    /// Nanoseconds to begin, and to compute, over `n` elements in the first-level cache, with `lanes` elements in a hardware
+    /// register.
     pub fn near(&self, n: usize, lanes: usize) -> [f64; 2] {
         let left = n % lanes.max(1);
         let whole = n - left;
@@ -41,11 +40,6 @@ impl ProgramCost {
             },
         )
     }
-
-    /// How many times as long as said the program takes.
-    pub fn off(&self, place: &Place) -> f64 {
-        residuals::ratio(&self.residuals, place)
-    }
 }
 
 /// How a program differs from what is said of all.
@@ -56,7 +50,7 @@ pub struct Factors {
     pub computing: f64,
     /// How many times as long it waits as the levels say.
     pub waiting: f64,
-    /// Nanoseconds that a byte from beyond each level takes it besides: in the interpreter, where passes wait that others do
+    /// Additional nanoseconds for a byte from beyond each level: in the interpreter, where passes wait that others do
     /// not meet.
     pub beyond: [f64; 4],
 }
@@ -68,7 +62,7 @@ impl Default for Factors {
 }
 
 impl Factors {
-    /// The levels as they cost this program besides.
+    /// The additional costs of the levels for this program.
     pub fn levels(&self, levels: &[Level]) -> Vec<Level> {
         let mut fetch = 0.0;
         let each = |(at, level): (usize, &Level)| {
@@ -125,7 +119,7 @@ impl LoopCosts {
         };
         let interval = |value: f64| Estimate { value, interval: self.residual * value };
         let [element, start] = [value, mean(|seen| seen.start.value)].map(interval);
-        // What is left over takes so many times as long as in registers, as it does in the loops that were seen.
+        // The ratio of elements that are left over to those in registers is that of the loops that were measured.
         let longer = mean(|seen| seen.rest.element.value) / mean(|seen| seen.element.value).max(1e-6);
         let [rest, begin] = [longer * value, mean(|seen| seen.rest.start.value)].map(interval);
         Some(ProgramCost {
@@ -134,7 +128,6 @@ impl LoopCosts {
             start,
             rest: PassCost { element: rest, start: begin },
             factors: Factors::default(),
-            residuals: vec![],
         })
     }
 

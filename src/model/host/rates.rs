@@ -1,14 +1,14 @@
-//! Work whose amount hangs on the data: so much for each disc, cell, candidate and contact, by the number of discs, for
-//! with it the level of memory changes.
+//! Work whose amount depends on the data: a time for each disc, cell, candidate and contact, by the number of discs, for
+//! the level of memory depends on it.
 
-use super::{OutOfRange, interpolated};
+use super::cost::{OutOfRange, interpolated};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// How much there is to do in a step: measured in a run, or estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Amounts {
-    /// Steps, one: what a phase takes however little there is to do.
+    /// Steps, one: what a phase takes even without work.
     pub steps: f64,
     /// Discs.
     pub discs: f64,
@@ -18,9 +18,9 @@ pub struct Amounts {
     pub candidates: f64,
     /// Pairs that the law is asked about.
     pub contacts: f64,
-    /// Discs whose lists are made anew, on average.
+    /// Discs whose lists are rebuilt, on average.
     pub remade: f64,
-    /// Entries of the lists that are made anew, on average.
+    /// Entries of the lists that are rebuilt, on average.
     pub relisted: f64,
 }
 

@@ -1,8 +1,10 @@
 //! Reuse distances: how much is touched between two passes over the same vector.
 
-use super::LINE;
 use stripmine_kernels::backend::tape::{Outline, Outlines, Place, RegisterName};
 use stripmine_kernels::isa::Array;
+
+/// Bytes of a line, the least that moves between levels.
+pub const LINE: f64 = 64.0;
 
 /// A vector that a pass reads, writes or both.
 #[derive(Clone, Copy, Debug, PartialEq)]

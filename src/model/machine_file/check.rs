@@ -1,7 +1,8 @@
 //! What a machine file must fulfil beyond its grammar.
 
-use super::Defect;
-use crate::model::machine::{ClassCounts, Expansion, MachineModel, Quantity, add_scaled};
+use super::error::Defect;
+use crate::model::machine::{ClassCounts, Expansion, MachineModel, add_scaled};
+use crate::model::quantity::Quantity;
 use std::collections::BTreeMap;
 use stripmine_kernels::isa::op::OpClass;
 

@@ -1,6 +1,7 @@
 //! What can be wrong with a machine file.
 
-use super::{FORMAT, Position};
+use super::limits::FORMAT;
+use super::position::Position;
 use crate::quoted::{message, one_line, quoted};
 use stripmine_kernels::isa::op::OpClass;
 
@@ -46,6 +47,34 @@ fn lines(file: &str, defects: &[(Option<Position>, Defect)], more: usize) -> Str
         lines.push(format!("machine file `{file}`: {more} more defects"));
     }
     lines.join("\n")
+}
+
+/// Why there is no such machine.
+#[derive(Debug, thiserror::Error)]
+pub enum MachineError {
+    /// No preset has the name asked for, and it does not look like that of a file.
+    #[error(
+        "unknown machine `{}`; known are {}, and machine files by their path, which ends in .toml",
+        quoted(name),
+        known.join(", ")
+    )]
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// All names that would have done.
+        known: Vec<&'static str>,
+    },
+    /// A file that cannot be read.
+    #[error("machine file `{}`: {cause}", quoted(file))]
+    Read {
+        /// Name of the file.
+        file: String,
+        /// What the system said.
+        cause: std::io::Error,
+    },
+    /// A file that cannot be used.
+    #[error(transparent)]
+    File(#[from] MachineFileError),
 }
 
 /// What is wrong with an entry.

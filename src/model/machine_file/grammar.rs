@@ -1,7 +1,7 @@
 //! The grammar of machine files, as a list: what may stand where. Reading stops at the first defect; this finds all.
 
-use super::Defect;
 use super::check::class;
+use super::error::Defect;
 use toml::de::{DeTable, DeValue};
 
 /// What stands at a place.

@@ -23,7 +23,7 @@
 //! chaining = { value = true, provenance = "sourced", note = "where from" } # above the tables
 //! loop_overhead = { value = 15, provenance = "assumed", note = "why" } # clock periods a strip; above the tables
 //!
-//! [units.add] # so many instructions of these classes run at once, each at so many elements a clock period
+//! [units.add] # `count` instructions of these classes run at once, each at `rate` elements a clock period
 //! serves = ["add", "convert"]
 //! count = { value = 1, provenance = "sourced", note = "where from" }
 //! rate = { value = 2, provenance = "sourced", note = "where from" } # 1 where it is left out
@@ -38,25 +38,20 @@
 mod check;
 mod error;
 mod grammar;
+mod limits;
 mod position;
 
-pub use error::{Defect, MachineFileError};
+pub use error::{Defect, MachineError, MachineFileError};
+pub use limits::FORMAT;
+pub(crate) use limits::{LONGEST, NAMED};
 pub use position::Position;
 
-use super::machine::{Expansion, Fact, MachineError, MachineModel, Provenance, Quantity, VectorRegisters};
+use super::machine::{Expansion, MachineModel, VectorRegisters};
+use super::quantity::{Fact, Provenance, Quantity};
 use super::units::{MemoryPorts, Unit, Units};
 use crate::io::regular_file;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-
-/// The version of the file format that this program reads.
-pub const FORMAT: u32 = 1;
-
-/// Longest machine or host file (bytes).
-pub(crate) const LONGEST: u64 = 4 << 20;
-
-/// So many defects are named, each with its place, which is looked for in the whole text.
-pub(crate) const NAMED: usize = 20;
 
 /// The file as it is written, names of classes still unchecked.
 #[derive(Deserialize)]

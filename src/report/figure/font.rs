@@ -38,7 +38,7 @@ pub fn wrap(words: &str, size: f64, most: f64) -> Vec<String> {
 }
 
 /// Draws the outline of each letter: `place` makes a pen for a letter that begins so far to the right of the first,
-/// with so many pixels to a unit of the font.
+/// with this many pixels to a unit of the font.
 pub fn outline<Pen: OutlineBuilder>(
     words: &str,
     size: f64,

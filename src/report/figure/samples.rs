@@ -11,7 +11,7 @@ fn figure(name: &str, title: &str, picture: Picture) -> Figure {
     Figure {
         name: name.into(),
         title: title.into(),
-        caption: "What a reader must know besides.".into(),
+        caption: "What a reader must also know.".into(),
         picture,
     }
 }

@@ -1,6 +1,7 @@
 //! One item of the page.
 
-use super::{badge, data, film, prose};
+use super::words::{badge, prose};
+use super::{data, film};
 use crate::report::figure::{Figure, Picture};
 use crate::report::section::Film;
 use crate::report::{Cell, Section, Table};

@@ -1,4 +1,4 @@
-//! What the scripts are told of how series look.
+//! How series look, as the scripts read it.
 
 use crate::report::figure::Chart;
 use crate::report::figure::Style;
@@ -8,7 +8,7 @@ use serde::Serialize;
 
 /// How a series looks, in the words of the scripts.
 #[derive(Debug, PartialEq, Serialize)]
-pub struct Told {
+pub struct SeriesLook {
     colour: String,
     /// Lengths of dashes and gaps, empty for an unbroken line; none without a line.
     dash: Option<&'static [f64]>,
@@ -19,14 +19,14 @@ pub struct Told {
 }
 
 /// The looks of a chart's series, as in the pictures.
-pub fn looks(chart: &Chart) -> Vec<Told> {
-    let told = |look: Look| Told {
+pub fn looks(chart: &Chart) -> Vec<SeriesLook> {
+    let written = |look: Look| SeriesLook {
         colour: look.colour.to_string(),
         dash: (look.style != Style::Points).then_some(look.dash),
         marker: look.has_markers().then(|| name(look.marker)),
         hollow: look.has_markers() && look.hollow,
     };
-    look::looks(chart).into_iter().map(told).collect()
+    look::looks(chart).into_iter().map(written).collect()
 }
 
 /// A marker's name in the scripts.

@@ -5,10 +5,12 @@ mod film;
 mod item;
 mod look;
 mod quantised;
+mod words;
 
 use super::figure::Figure;
 use super::{Section, Verdict};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use words::{badge, kind, prose, sign};
 
 /// uPlot, the charting library: its version is in its first line, its licence beside it.
 const UPLOT: &str = include_str!("uplot/uPlot.iife.min.js");
@@ -29,7 +31,7 @@ const SCRIPTS: [&str; 8] = [
     include_str!("player.js"),
 ];
 
-/// What the browser is told to refuse: anything that is not in the file itself.
+/// The content policy for the browser: nothing that is not in the file itself.
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 
@@ -141,48 +143,6 @@ fn tally(sections: &[Section]) -> String {
         0 => "Nothing was made yet.".to_owned(),
         1 => format!("1 item: {}.", counts.join(", ")),
         number => format!("{number} items: {}.", counts.join(", ")),
-    }
-}
-
-/// A verdict as colour, sign and word.
-fn badge(verdict: Verdict) -> Markup {
-    html! {
-        span class={ "badge " (kind(verdict)) } { (sign(verdict)) " " (verdict.word()) }
-    }
-}
-
-/// A verdict's name in the style sheet.
-fn kind(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Reproduced => "reproduced",
-        Verdict::Partly => "partly",
-        Verdict::Failed => "failed",
-        Verdict::Shown => "shown",
-    }
-}
-
-/// A verdict as a sign that needs no colour.
-fn sign(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Reproduced => "✓",
-        Verdict::Partly => "◐",
-        Verdict::Failed => "✗",
-        Verdict::Shown => "○",
-    }
-}
-
-/// A sentence in which backquotes set apart what a machine reads, as in the page in Markdown.
-fn prose(text: &str) -> Markup {
-    let pieces: Vec<&str> = text.split('`').collect();
-    let paired = pieces.len() % 2 == 1;
-    html! {
-        @if paired {
-            @for (i, piece) in pieces.iter().enumerate() {
-                @if i % 2 == 1 { code { (piece) } } @else { (piece) }
-            }
-        } @else {
-            (text)
-        }
     }
 }
 

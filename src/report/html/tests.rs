@@ -1,8 +1,8 @@
 //! The page as a whole.
 
 use super::*;
+use crate::origin::{Origin, Provenance};
 use crate::report::figure::{Axis, Chart, Drawing, Picture, Point, Series, Style};
-use crate::report::origin::{Origin, Provenance};
 use crate::report::section::{Film, Frame};
 use crate::report::{Cell, Table};
 

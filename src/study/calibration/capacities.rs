@@ -1,10 +1,10 @@
 //! How large the levels of memory may be: what is tried when their costs are fitted.
 
-use super::levels::BEYOND;
+use super::point::BEYOND;
 
-/// Capacities that are tried (bytes): of the store buffer, which hands on what was written last before it is in any cache;
-/// and of the three levels of cache what the system says, or parts of it, for whoever shares the core or the last level takes
-/// theirs; where it says nothing, what processors have.
+/// Capacities that are tried (bytes): of the store buffer, which serves what was written last before it is in any cache;
+/// and of the three levels of cache what the system says, or parts of it, for programs that share the core or the last level
+/// use the rest; where it says nothing, what processors have.
 pub(super) fn candidates() -> Vec<[f64; BEYOND]> {
     const KIB: f64 = 1024.0;
     let known: Vec<f64> = (1..BEYOND).filter_map(cache_size).collect();

@@ -70,7 +70,7 @@ impl Kind {
         Kind::Shifted,
     ];
 
-    /// Whether it is one of those by which the levels of memory are told apart: operands in place, from afar, written over, stored.
+    /// Whether it is one of those that tell the levels of memory from each other: operands in place, from afar, written over, stored.
     pub(super) fn moves(self) -> bool {
         matches!(self, Kind::Plain(Op::Add | Op::Absolute | Op::Store) | Kind::Shifted)
     }
@@ -259,7 +259,7 @@ pub(super) fn drill<L: Precision, O: Precision>(kind: Kind) -> [Box<dyn Runnable
     })
 }
 
-/// A mixture of so many passes.
+/// A mixture of `passes` passes.
 pub(super) fn mixture<L: Precision, O: Precision>(passes: usize) -> Box<dyn Runnable> {
     Box::new(Program::new(Mixture::<L, O> { passes, precisions: PhantomData }))
 }

@@ -2,21 +2,21 @@
 //! it does on short ones, and how long it waits, where they say what others do that touch as much.
 
 use super::fit;
-use super::levels::{BEYOND, Point};
+use super::point::{BEYOND, Point};
 use crate::model::host::Factors;
 use std::collections::BTreeMap;
 
-/// Factors that are tried: steps of the logarithm, and so many to either side.
+/// Factors that are tried: the step of the logarithm, and the number of steps to either side.
 const COMPUTING: (f64, i32) = (0.025, 15);
 const WAITING: (f64, i32) = (0.04, 30);
-/// A factor is as bad as the deviation of so many points that are as far off as it is from 1.
-const BEFOREHAND: f64 = 1.0;
+/// Prior weight of a factor of 1, in points that deviate as much as the factor does from 1.
+const PRIOR: f64 = 1.0;
 
-/// The factors of every program, by its signature: those that bring what `told` says of computing, streams and lines (ns)
+/// The factors of every program, by its signature: those that bring what `predicted` gives for computing, streams and lines (ns)
 /// nearest to what was measured.
 pub(super) fn fit_factors<'a>(
     points: impl Iterator<Item = (&'a Point, [f64; 3])>,
-    told: impl Fn(f64, [f64; 3]) -> f64,
+    predicted: impl Fn(f64, [f64; 3]) -> f64,
 ) -> BTreeMap<String, Factors> {
     let steps = |(step, most): (f64, i32)| (-most..=most).map(move |at| step * f64::from(at));
     let fitted = |points: &[(&Point, [f64; 3])]| {
@@ -26,8 +26,8 @@ pub(super) fn fit_factors<'a>(
                 Factors { computing: computing.exp(), waiting: waiting.exp(), ..Factors::default() };
             let deviations = points
                 .iter()
-                .map(|(point, parts)| point.deviation(told(point.start, factors.scaled(*parts))));
-            let far = deviations.sum::<f64>() + BEFOREHAND * (computing.abs() + waiting.abs());
+                .map(|(point, parts)| point.deviation(predicted(point.start, factors.scaled(*parts))));
+            let far = deviations.sum::<f64>() + PRIOR * (computing.abs() + waiting.abs());
             if far < best.0 {
                 best = (far, factors);
             }
@@ -38,10 +38,12 @@ pub(super) fn fit_factors<'a>(
 }
 
 /// A point, and what is said of its computing, streams and lines (ns).
-type Told<'a> = (&'a Point, [f64; 3]);
+type Parts<'a> = (&'a Point, [f64; 3]);
 
-fn by_program<'a>(points: impl Iterator<Item = Told<'a>>) -> impl Iterator<Item = (&'a str, Vec<Told<'a>>)> {
-    let mut programs: BTreeMap<&str, Vec<Told>> = BTreeMap::new();
+fn by_program<'a>(
+    points: impl Iterator<Item = Parts<'a>>,
+) -> impl Iterator<Item = (&'a str, Vec<Parts<'a>>)> {
+    let mut programs: BTreeMap<&str, Vec<Parts>> = BTreeMap::new();
     for (point, parts) in points {
         if let Some(program) = point.program.as_deref() {
             programs.entry(program).or_default().push((point, parts));
@@ -50,31 +52,31 @@ fn by_program<'a>(points: impl Iterator<Item = Told<'a>>) -> impl Iterator<Item 
     programs.into_iter()
 }
 
-/// What is fitted of a program in the interpreter: computing, waiting, and what bytes from beyond each level take besides.
+/// What is fitted of a program in the interpreter: computing, waiting, and the additional cost of bytes from beyond each level.
 const COSTS: usize = 2 + BEYOND;
-/// What is known beforehand counts as much as so many points.
-const KNOWN: f64 = 0.3;
+/// Prior weight of the costs of all programs, in points.
+const PRIOR_COSTS: f64 = 0.3;
 /// Rounds in which what is far from the fit weighs less and less.
 const ROUNDS: usize = 6;
 
-/// The same of programs in the interpreter, which do one thing after the other: with what bytes from beyond each level take
-/// them besides.
-pub(super) fn fit_costs<'a>(points: impl Iterator<Item = Told<'a>>) -> BTreeMap<String, Factors> {
-    let fitted = |points: &[Told]| {
-        let features = |(point, [computing, streams, lines]): &Told| {
+/// The same of programs in the interpreter, which do one thing after the other: with the additional cost of bytes from beyond
+/// each level.
+pub(super) fn fit_costs<'a>(points: impl Iterator<Item = Parts<'a>>) -> BTreeMap<String, Factors> {
+    let fitted = |points: &[Parts]| {
+        let features = |(point, [computing, streams, lines]): &Parts| {
             let mut features = [*computing, streams + lines, 0.0, 0.0, 0.0, 0.0];
             features[2..].copy_from_slice(&point.bytes());
             features
         };
         // As large as they are in the median where they are at all.
         let usual: [f64; COSTS] = std::array::from_fn(|at| {
-            let shares = points.iter().map(|told| features(told)[at] / told.0.ns);
+            let shares = points.iter().map(|parts| features(parts)[at] / parts.0.ns);
             fit::median(shares.filter(|share| *share > 0.0))
         });
         let mut costs = [1.0, 1.0, 0.0, 0.0, 0.0, 0.0];
         for _ in 0..ROUNDS {
-            let told = points.iter().map(|told| {
-                let (point, features) = (told.0, features(told));
+            let measured = points.iter().map(|parts| {
+                let (point, features) = (parts.0, features(parts));
                 let ns = point.start
                     + features.iter().zip(costs).map(|(feature, cost)| feature * cost).sum::<f64>();
                 let scale = point.scale(point.deviation(ns));
@@ -82,10 +84,10 @@ pub(super) fn fit_costs<'a>(points: impl Iterator<Item = Told<'a>>) -> BTreeMap<
             });
             let known = (0..COSTS).map(|at| {
                 let mut row = [0.0; COSTS];
-                row[at] = KNOWN * usual[at].max(0.01);
+                row[at] = PRIOR_COSTS * usual[at].max(0.01);
                 (row, if at < 2 { row[at] } else { 0.0 })
             });
-            costs = fit::non_negative(&told.chain(known).collect::<Vec<_>>());
+            costs = fit::non_negative(&measured.chain(known).collect::<Vec<_>>());
         }
         let [computing, waiting, beyond @ ..] = costs;
         Factors { computing, waiting, beyond }
@@ -99,21 +101,21 @@ mod tests {
 
     #[test]
     fn factors_that_went_in_come_out() {
-        let told = |start: f64, parts: [f64; 3]| start + parts.iter().sum::<f64>();
+        let predicted = |start: f64, parts: [f64; 3]| start + parts.iter().sum::<f64>();
         let truth = Factors { computing: 0.8, waiting: 1.5, ..Factors::default() };
         let parts = |at: i32| [100.0, 20.0 * f64::from(at), 5.0 * f64::from(at)];
         let point = |at: i32, program: &str| {
-            let ns = told(7.0, truth.scaled(parts(at)));
+            let ns = predicted(7.0, truth.scaled(parts(at)));
             Point { start: 7.0, ns, program: Some(program.to_owned()), ..Point::default() }
         };
         // One was disturbed; of the other program there is one alone, and of a drill none is asked for.
         let mut all: Vec<Point> = (0..12).map(|at| point(at, "one")).collect();
         all[3].ns *= 4.0;
-        all.push(Point { ns: told(7.0, parts(12)), ..point(12, "other") });
+        all.push(Point { ns: predicted(7.0, parts(12)), ..point(12, "other") });
         all.push(Point { program: None, ..point(13, "") });
-        let found = fit_factors(all.iter().zip((0..).map(parts)), told);
+        let found = fit_factors(all.iter().zip((0..).map(parts)), predicted);
         let one = found["one"];
-        // To a step: what is known beforehand draws them towards 1.
+        // To a step: the prior draws them towards 1.
         let off = [(one.computing / 0.8, COMPUTING.0), (one.waiting / 1.5, WAITING.0)];
         assert!(off.iter().all(|(ratio, step)| ratio.ln().abs() < *step), "{one:?}");
         assert_eq!((found["other"], found.len()), (Factors::default(), 2));
@@ -134,8 +136,8 @@ mod tests {
         let points: Vec<_> = (0..20).map(point).collect();
         let found = fit_costs(points.iter().map(|(point, parts)| (point, *parts)))["one"];
         for (point, parts) in &points {
-            let besides: f64 = point.bytes().iter().zip(found.beyond).map(|(bytes, cost)| bytes * cost).sum();
-            let ns = point.start + found.scaled(*parts).iter().sum::<f64>() + besides;
+            let extra: f64 = point.bytes().iter().zip(found.beyond).map(|(bytes, cost)| bytes * cost).sum();
+            let ns = point.start + found.scaled(*parts).iter().sum::<f64>() + extra;
             assert!(point.deviation(ns) < 0.03, "{found:?}: {ns} {}", point.ns);
         }
     }

@@ -1,11 +1,11 @@
 //! The larger drill scenes, whose arrays lie in the levels beyond the first: the programs of a step one after the other, by
 //! the interpreter and as compiled loops.
 
-use super::levels::{Charged, Waiting};
-use super::loops::Step;
 use super::passes::Lane;
+use super::point::{Charged, Waiting};
+use super::step::{INTERPRETED, Step};
 use super::timing::Samples;
-use crate::model::host::{HostModel, LoopCosts, Place, Residual, Surroundings, touched_arrays};
+use crate::model::host::{LoopCosts, Surroundings, touched_arrays};
 use std::rc::Rc;
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
@@ -35,16 +35,6 @@ pub(super) const SCENES: [(usize, f64); 22] = [
     (28_000, 0.13),
     (14_000, 0.06),
     (24_000, 0.06),
-];
-
-/// How the interpreter runs them: in one strip, and in strips whose registers lie in the first and in the second level, among
-/// them the vectors of a CRAY, which most people will ask for. Powers of two, so that no strip leaves elements over.
-pub(super) const INTERPRETED: [Execution; 5] = [
-    Execution::Eager,
-    Execution::Strip(32),
-    Execution::Strip(64),
-    Execution::Strip(256),
-    Execution::Strip(1024),
 ];
 
 /// A program as it was run on one of the scenes.
@@ -120,27 +110,5 @@ impl Ran {
             weight: 1.0,
             program: Some(self.outlines.signature()),
         })
-    }
-
-    /// How far off a model is that says nothing of it yet.
-    fn residual(&self, host: &HostModel) -> Option<Residual> {
-        let Ran { outlines, n, execution, around, ns } = self;
-        let said = host.program(outlines, *n, *execution, around).ok().filter(|said| *said > 0.0)?;
-        let strip = if let Execution::Strip(strip) = execution { Some(*strip) } else { None };
-        Some(Residual::new(Place::new(around, strip, *n), ns / said))
-    }
-}
-
-/// Tells a model how far off it is of everything that was run.
-pub(super) fn tell(host: &mut HostModel, all: &[Ran]) {
-    let residuals: Vec<Option<Residual>> = all.iter().map(|ran| ran.residual(host)).collect();
-    for (ran, residual) in all.iter().zip(residuals) {
-        let seen = match ran.is_loop() {
-            true => Some(&mut host.loops.seen),
-            false => host.lanes.get_mut(ran.outlines.lane).map(|lane| &mut lane.seen),
-        };
-        if let Some(seen) = seen.and_then(|seen| seen.get_mut(&ran.outlines.signature())) {
-            seen.residuals.extend(residual);
-        }
     }
 }

@@ -1,43 +1,26 @@
 //! Compiled loops: the programs of a step on vectors in the first-level cache, and their classes of operations.
 
 use super::fit;
-use super::large::{self, INTERPRETED, Ran, SCENES};
+use super::large::{self, Ran, SCENES};
 use super::passes::{Lane, estimate};
+use super::step::{ELEMENTS, INTERPRETED, Near, STRIPPED, STRIPS, Step, executions};
 use super::timing::{PARTS, Samples};
 use super::variants::{AT_REST, DRILL, VARIANTS, Variant};
-use crate::method::lattice_md::{Arrays, Lengths, StepProgram, programs};
+use crate::method::lattice_md::{Arrays, Lengths, programs};
 use crate::model::host::{Estimate, Factors, LoopCosts, PassCost, ProgramCost, class_counts};
 use crate::run::model;
-use crate::study::pace::Pace;
+use crate::study::noise_monitor::NoiseMonitor;
 use crate::study::phase_times::{QUIET, Run};
 use crate::study::throughput::MeasurementError;
 use std::collections::BTreeMap;
-use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::{Memory, OpClass};
 use stripmine_kernels::{Execution, InstructionSet};
 
-/// Elements of the short and of the longer runs of a loop: whole registers, and in the first-level cache.
-const ELEMENTS: [usize; 2] = [32, 96];
-/// Hardware registers of elements that the interpreter goes over, in strips of two lengths: far enough apart to tell what an
-/// element takes from what a pass takes to begin, and short enough that arrays and registers lie in the first-level cache.
-const STRIPPED: usize = 16;
-const STRIPS: [usize; 2] = [2, 8];
-/// How many elements are left over beyond whole registers of so many lanes, in runs that tell what these take.
-fn left_over(lanes: usize) -> [usize; 2] {
-    [1, lanes.saturating_sub(1).max(2)]
-}
-/// Least nanoseconds of a sample.
-const SHORTEST: f64 = 40_000.0;
-/// Elements of the longest vectors of a sample of the interpreter and of loops, about, and steps at most.
-const INTERPRETED_ELEMENTS: usize = 20_000;
-const LOOP_ELEMENTS: usize = 100_000;
-const MOST: usize = 8;
-
 /// Whole vectors whose halves of the samples are farther apart than this share are worth more of them.
 const UNSETTLED: f64 = 0.1;
 
-/// The interpreter is slow: of so many sweeps it takes part in one, over vectors of so many elements.
+/// The interpreter is slow: it takes part in every n-th sweep, by the number of elements of the vectors.
 fn turn(elements: usize) -> usize {
     match elements {
         0..=30_000 => 2,
@@ -49,134 +32,12 @@ fn turn(elements: usize) -> usize {
 /// Operations of each class of an element, and the nanoseconds it took.
 type Counted = (BTreeMap<&'static str, f64>, f64);
 
-/// The loops of one model in one precision.
-pub(super) struct Step {
-    name: String,
-    pub(super) programs: Vec<StepProgram>,
-    pub(super) ranges: Vec<Range<usize>>,
-    memory: usize,
-    large: bool,
-    loops: Vec<Near>,
-    /// The interpreter in short strips.
-    strips: Vec<Near>,
-    /// Whole vectors, one program after the other as in a step.
-    pub(super) whole: Vec<Samples>,
-    /// The same by the interpreter.
-    pub(super) interpreted: [Vec<Samples>; INTERPRETED.len()],
-}
-
-impl Step {
-    /// Elements of the longest vector.
-    fn longest(&self) -> usize {
-        self.ranges.iter().map(ExactSizeIterator::len).max().unwrap_or(1).max(1)
-    }
-
-    /// One more sample of the programs over whole vectors, one after the other as in a step, by the executions that are
-    /// wanted.
-    fn in_turns(
-        &mut self,
-        pace: &mut Pace,
-        set: InstructionSet,
-        memory: &Memory<'_>,
-        wanted: impl Fn(Execution) -> bool,
-    ) {
-        let longest = self.longest();
-        let Step { programs, ranges, whole, interpreted, .. } = self;
-        for (execution, samples, elements) in executions(whole, interpreted) {
-            if wanted(execution) {
-                Samples::take_in_turns(samples, pace, (elements / longest).clamp(1, MOST), |at| {
-                    run(&programs[at], memory, ranges[at].clone(), execution, set);
-                });
-            }
-        }
-    }
-
-    /// One more sample of every program in the first-level cache; `lanes` says how many elements of a type are in a hardware
-    /// register.
-    fn near(
-        &mut self,
-        pace: &mut Pace,
-        set: InstructionSet,
-        memory: &Memory<'_>,
-        lanes: &dyn Fn(&str) -> usize,
-    ) {
-        let Step { programs, ranges, loops, strips, .. } = self;
-        for (at, (loops, strips)) in loops.iter_mut().zip(strips).enumerate() {
-            let start = ranges[at].start;
-            let run = |n: usize, execution| run(&programs[at], memory, start..start + n, execution, set);
-            let lanes = lanes(programs[at].program.outlines().lane);
-            let left = left_over(lanes);
-            let [short, long] = ELEMENTS;
-            for (samples, n) in loops.all_mut().zip([short, long, short + left[0], short + left[1]]) {
-                samples.take(pace, SHORTEST, || run(n, Execution::Chained));
-            }
-            let whole = STRIPPED * lanes;
-            let [short, long] = STRIPS.map(|strip| strip * lanes);
-            let all = [(whole, short), (whole, long), (whole + left[0], long), (whole + left[1], long)];
-            for (samples, (n, strip)) in strips.all_mut().zip(all) {
-                samples.take(pace, SHORTEST, || run(n, Execution::Strip(strip)));
-            }
-        }
-    }
-}
-
-/// The samples of whole vectors by each execution, and how many elements a sample goes over, about.
-fn executions<'a>(
-    whole: &'a mut Vec<Samples>,
-    interpreted: &'a mut [Vec<Samples>; INTERPRETED.len()],
-) -> impl Iterator<Item = (Execution, &'a mut Vec<Samples>, usize)> {
-    let interpreted = INTERPRETED.into_iter().zip(interpreted);
-    let interpreted = interpreted.map(|(execution, samples)| (execution, samples, INTERPRETED_ELEMENTS));
-    interpreted.chain([(Execution::Chained, whole, LOOP_ELEMENTS)])
-}
-
-fn run(
-    step: &StepProgram,
-    memory: &Memory<'_>,
-    elements: Range<usize>,
-    execution: Execution,
-    set: InstructionSet,
-) {
-    let outcome = step.program.run(memory, elements, execution, set);
-    debug_assert!(outcome.is_ok(), "{outcome:?}");
-}
-
-/// Runs of a program in the first-level cache.
-#[derive(Clone, Default)]
-struct Near {
-    /// Over whole registers: short and longer.
-    whole: [Samples; 2],
-    /// With elements left over: few and many.
-    left: [Samples; 2],
-}
-
-impl Near {
-    fn all(&self) -> impl Iterator<Item = &Samples> {
-        self.whole.iter().chain(&self.left)
-    }
-
-    fn all_mut(&mut self) -> impl Iterator<Item = &mut Samples> {
-        self.whole.iter_mut().chain(&mut self.left)
-    }
-
-    /// What is left over takes, where `whole` runs without it.
-    fn rest(&self, lanes: usize, whole: usize) -> PassCost {
-        let [few, many] = left_over(lanes).map(|left| left as f64);
-        let element =
-            |of: &dyn Fn(&Samples) -> f64| ((of(&self.left[1]) - of(&self.left[0])) / (many - few)).max(1e-4);
-        let start = |of: &dyn Fn(&Samples) -> f64| {
-            (of(&self.left[0]) - of(&self.whole[whole]) - few * element(of)).max(0.0)
-        };
-        PassCost { element: estimate(self.all(), element), start: estimate(self.all(), start) }
-    }
-}
-
 /// Arrays of either precision.
 trait Laid {
     fn memory(&mut self) -> Memory<'_>;
 
-    /// Lays them out anew, at other addresses. Whether rows meet that lie in the first-level cache together hangs on these: of
-    /// some layouts the predictor took 256 ns, of most 160. Longer rows come from farther away in any case.
+    /// Lays them out again, at other addresses. Whether rows conflict in the first-level cache depends on these: with some
+    /// layouts the predictor took 256 ns, with most 160. Longer rows come from farther away in any case.
     fn elsewhere(&mut self);
 }
 
@@ -249,7 +110,7 @@ impl Loops {
     /// One more sample of every loop; `lanes` says how many elements of a type are in a hardware register.
     pub(super) fn sweep(
         &mut self,
-        pace: &mut Pace,
+        monitor: &mut NoiseMonitor,
         set: InstructionSet,
         lanes: &dyn Fn(&str) -> usize,
         number: usize,
@@ -259,18 +120,18 @@ impl Loops {
             arrays.elsewhere();
             let memory = arrays.memory();
             let takes_turn = step.large && number.is_multiple_of(turn(step.longest()));
-            step.in_turns(pace, set, &memory, |execution| execution == Execution::Chained || takes_turn);
+            step.in_turns(monitor, set, &memory, |execution| execution == Execution::Chained || takes_turn);
             // What is near is learned from the small ones.
             if !step.large {
-                step.near(pace, set, &memory, lanes);
+                step.near(monitor, set, &memory, lanes);
             }
         }
     }
 
-    /// Some more samples of whole vectors whose samples differ, or were taken in no quiet moments, at the pace of a reference.
+    /// Some more samples of whole vectors whose samples differ, or were always disturbed.
     /// Whether there were any.
-    pub(super) fn again(&mut self, pace: &mut Pace, set: InstructionSet, reference: f64) -> bool {
-        self.settle(reference);
+    pub(super) fn again(&mut self, monitor: &mut NoiseMonitor, set: InstructionSet, reference: f64) -> bool {
+        self.evaluate(reference);
         let mut any = false;
         for step in self.steps.iter_mut().filter(|step| step.large) {
             let mut unsettled = vec![];
@@ -284,19 +145,19 @@ impl Loops {
             for _ in 0..PARTS * usize::from(!unsettled.is_empty()) {
                 let arrays = &mut self.arrays[step.memory];
                 arrays.elsewhere();
-                step.in_turns(pace, set, &arrays.memory(), |execution| unsettled.contains(&execution));
+                step.in_turns(monitor, set, &arrays.memory(), |execution| unsettled.contains(&execution));
             }
             any |= !unsettled.is_empty();
         }
         any
     }
 
-    /// Tells all samples at the pace of a reference.
-    pub(super) fn settle(&mut self, reference: f64) {
+    /// Evaluates all samples for an undisturbed core.
+    pub(super) fn evaluate(&mut self, reference: f64) {
         for step in &mut self.steps {
             let near = step.loops.iter_mut().chain(&mut step.strips).flat_map(Near::all_mut);
             let samples = near.chain(&mut step.whole).chain(step.interpreted.iter_mut().flatten());
-            samples.for_each(|samples| samples.settle(reference));
+            samples.for_each(|samples| samples.evaluate(reference));
         }
     }
 
@@ -308,7 +169,7 @@ impl Loops {
             .flat_map(|step| step.loops.iter().chain(&step.strips).flat_map(Near::all))
     }
 
-    /// What the programs take in the interpreter, where a run takes so long besides: into the costs of their lanes. With how
+    /// What the programs take in the interpreter, where a run takes `run` nanoseconds in addition: into the costs of their lanes. With how
     /// many times as long as in drills of nothing but themselves their passes take to begin.
     pub(super) fn see(&self, lanes: &mut [Lane], run: f64) -> f64 {
         let mut begins = vec![];
@@ -393,12 +254,13 @@ impl Loops {
 
 /// A program of which nothing is known yet but what it takes in the first-level cache.
 fn seen_near(what: String, element: Estimate, start: Estimate, rest: PassCost) -> ProgramCost {
-    ProgramCost { what, element, start, rest, factors: Factors::default(), residuals: vec![] }
+    ProgramCost { what, element, start, rest, factors: Factors::default() }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::method::lattice_md::StepProgram;
     use crate::study::efficiency_table::{Question, step};
 
     #[test]

@@ -9,18 +9,21 @@ mod large;
 mod levels;
 mod loops;
 mod passes;
+mod point;
 mod scenes;
+mod step;
 mod timing;
 mod variants;
 
-use super::pace::Pace;
+use super::noise_monitor::NoiseMonitor;
 use super::throughput::MeasurementError;
 use crate::method::{Phase, Timings};
 use crate::model::host::{FORMAT, HostModel, LoopCosts, Measured, OutOfRange};
 use drills::{Arrays, LONGEST};
-use levels::{Charged, Levels, fit_levels};
+use levels::{Levels, fit_levels};
 use loops::Loops;
 use passes::{Lane, NEAR, SHORTEST_VECTOR};
+use point::Charged;
 use scenes::Scenes;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::isa::ProgramError;
@@ -29,7 +32,7 @@ use timing::{Samples, timer_resolution};
 /// How much is measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Sweeps over all points: the more, the surer every point meets quiet moments.
+    /// Sweeps over all points: with more of them, more points are measured undisturbed.
     pub sweeps: usize,
 }
 
@@ -39,11 +42,11 @@ impl Default for Effort {
     }
 }
 
-/// More than this half range of samples told at one pace, and the machine was too busy to be measured.
+/// With a larger half range of the samples, corrected for slowdowns, the machine was too busy to be measured.
 pub const TOO_NOISY: f64 = 0.1;
-/// More than this between the measurement's halves, and it was too busy as well.
+/// With a larger difference between the measurement's halves, it was too busy as well.
 pub const TOO_DIFFERENT: f64 = 0.05;
-/// Less than this share of the points measured in quiet moments, and somebody else was at work beside it all the time.
+/// With a smaller share of the points measured undisturbed, other programs were running all the time.
 pub const TOO_RARE: f64 = 0.5;
 
 /// Why there is no calibration.
@@ -57,7 +60,7 @@ pub enum CalibrationError {
     Measurement(#[from] MeasurementError),
 }
 
-/// The drill scenes are run at the first of so many sweeps, and take as long as these do.
+/// The drill scenes are run once for this many sweeps, and take as long as these do.
 const SCENES_EVERY: usize = 3;
 
 /// Measures this host, called `title`, on one thread, and fits its model. `progress` gets the share that is done.
@@ -78,7 +81,7 @@ pub fn calibrate(
     })
 }
 
-/// A calibration under way: it can be done bit by bit, in turns with something else.
+/// A calibration under way: it can be done in parts, alternating with other measurements.
 pub(super) struct Calibration {
     title: String,
     set: InstructionSet,
@@ -86,7 +89,7 @@ pub(super) struct Calibration {
     /// Sweeps done.
     sweeps: usize,
     timer: f64,
-    pace: Pace,
+    monitor: NoiseMonitor,
     lanes: [Lane; 2],
     arrays: (Arrays<f64, f32>, Arrays<f32, f64>),
     loops: Loops,
@@ -104,7 +107,7 @@ impl Calibration {
             effort,
             sweeps: 0,
             timer: timer_resolution(),
-            pace: Pace::default(),
+            monitor: NoiseMonitor::default(),
             lanes: [Lane::new::<f64, f32>(set)?, Lane::new::<f32, f64>(set)?],
             arrays: (Arrays::new(LONGEST), Arrays::new(LONGEST)),
             loops: Loops::new()?,
@@ -114,7 +117,7 @@ impl Calibration {
         })
     }
 
-    /// Whether runs of so many discs lie within what is measured.
+    /// Whether runs of `discs` discs lie within what is measured.
     ///
     /// # Errors
     /// [`OutOfRange`] where they do not.
@@ -138,7 +141,7 @@ impl Calibration {
             if self.sweeps.is_multiple_of(SCENES_EVERY) {
                 let before = self.done(parts);
                 let part = self.done(parts + 1) - before;
-                self.scenes.sweep(&mut self.pace, |share| progress(before + part * share))?;
+                self.scenes.sweep(&mut self.monitor, |share| progress(before + part * share))?;
             }
             self.sweep();
             progress(self.done(self.sweeps.div_ceil(SCENES_EVERY)));
@@ -148,12 +151,12 @@ impl Calibration {
 
     /// Some more samples of what does not repeat itself yet, beyond the sweeps. Whether there was any.
     pub(super) fn again(&mut self) -> Result<bool, MeasurementError> {
-        let reference = self.pace.reference();
-        let scenes = self.scenes.again(&mut self.pace, reference)?;
-        Ok(scenes | self.loops.again(&mut self.pace, self.set, reference))
+        let reference = self.monitor.reference();
+        let scenes = self.scenes.again(&mut self.monitor, reference)?;
+        Ok(scenes | self.loops.again(&mut self.monitor, self.set, reference))
     }
 
-    /// The share that is done, after so many runs of the drill scenes.
+    /// The share that is done, after `scenes` runs of the drill scenes.
     fn done(&self, scenes: usize) -> f64 {
         let all = self.effort.sweeps + SCENES_EVERY * self.effort.sweeps.div_ceil(SCENES_EVERY);
         (self.sweeps + SCENES_EVERY * scenes) as f64 / all as f64
@@ -161,20 +164,20 @@ impl Calibration {
 
     /// One sample of every point.
     fn sweep(&mut self) {
-        let Calibration { set, sweeps, pace, lanes, arrays, loops, binding, clock, .. } = self;
+        let Calibration { set, sweeps, monitor, lanes, arrays, loops, binding, clock, .. } = self;
         let mut timings = Timings::default();
-        clock.take(pace, 20_000.0, || timings.time(Phase::Predict, || ()));
-        binding.take(pace, 20_000.0, || _ = std::hint::black_box(arrays.0.memory()));
-        // At other addresses each time: whether rows meet in the first-level cache hangs on these.
+        clock.take(monitor, 20_000.0, || timings.time(Phase::Predict, || ()));
+        binding.take(monitor, 20_000.0, || _ = std::hint::black_box(arrays.0.memory()));
+        // At other addresses each time: whether rows conflict in the first-level cache depends on these.
         let (mut wide, mut narrow) = (Arrays::<f64, f32>::new(NEAR), Arrays::<f32, f64>::new(NEAR));
         let near = [wide.memory(), narrow.memory()];
         let far = [arrays.0.memory(), arrays.1.memory()];
         for (lane, (near, far)) in lanes.iter_mut().zip(near.iter().zip(&far)) {
-            lane.sweep(pace, [near, far], *set, *sweeps);
+            lane.sweep(monitor, [near, far], *set, *sweeps);
         }
         let in_register =
             |name: &str| lanes.iter().find(|lane| lane.name == name).map_or(1, |lane| lane.costs.lanes);
-        loops.sweep(pace, *set, &in_register, *sweeps);
+        loops.sweep(monitor, *set, &in_register, *sweeps);
         *sweeps += 1;
     }
 
@@ -184,7 +187,7 @@ impl Calibration {
             title,
             set,
             timer,
-            pace,
+            monitor,
             mut lanes,
             arrays,
             mut loops,
@@ -193,11 +196,11 @@ impl Calibration {
             mut clock,
             ..
         } = self;
-        let yardstick = pace.reference();
-        loops.settle(yardstick);
-        [&mut binding, &mut clock].into_iter().for_each(|samples| samples.settle(yardstick));
+        let reference_loop = monitor.reference();
+        loops.evaluate(reference_loop);
+        [&mut binding, &mut clock].into_iter().for_each(|samples| samples.evaluate(reference_loop));
         for lane in &mut lanes {
-            lane.settle(yardstick);
+            lane.evaluate(reference_loop);
             lane.fit();
         }
         // Half of the two looks at the clock lies between them.
@@ -222,14 +225,14 @@ impl Calibration {
             }
         }
         let samples = || lanes.iter().flat_map(Lane::samples).chain(loops.samples());
-        let mut host = HostModel {
+        HostModel {
             format: FORMAT,
             title,
             instruction_set: set.name().to_owned(),
             measured: Measured {
                 timer,
-                yardstick,
-                pace: pace.mostly(),
+                reference_loop,
+                slowdown: monitor.usual_slowdown(),
                 spread: fit::median(samples().map(Samples::spread)),
                 disagreement: fit::median(samples().map(Samples::disagreement)),
                 quiet: samples().map(Samples::quiet).sum::<f64>() / samples().count() as f64,
@@ -245,9 +248,7 @@ impl Calibration {
             levels,
             loops: LoopCosts { overlap, ..costs },
             lanes: lanes.into_iter().map(|lane| (lane.name.to_owned(), lane.costs)).collect(),
-            rates: scenes.rates(yardstick),
-        };
-        large::tell(&mut host, &large);
-        host
+            rates: scenes.rates(reference_loop),
+        }
     }
 }

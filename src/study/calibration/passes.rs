@@ -2,10 +2,10 @@
 
 use super::drills::{Kind, LONGEST, ROUNDS, drill, mixture};
 use super::fit::{self, median};
-use super::levels::{Charged, Waiting};
+use super::point::{Charged, Waiting};
 use super::timing::{PARTS, Samples};
 use crate::model::host::{Change, Estimate, LaneCosts, PassCost, Surroundings, touches};
-use crate::study::pace::Pace;
+use crate::study::noise_monitor::NoiseMonitor;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::backend::tape::{Outline, Outlines, register_shape};
 use stripmine_kernels::isa::{Memory, ProgramError};
@@ -15,7 +15,7 @@ use stripmine_kernels::{Execution, InstructionSet, Runnable};
 pub(super) const SHORTEST_VECTOR: usize = 8;
 /// Vectors that stay in the first-level cache, in hardware registers.
 const SHORT: [usize; 6] = [1, 2, 4, 8, 16, 32];
-/// Elements of the longest of these, however wide the registers.
+/// Elements of the longest of these, for registers of any width.
 pub(super) const NEAR: usize = 32 * 64;
 /// Vectors that do not.
 const LONG: [usize; 8] = [520, 1600, 5200, 17_000, 52_000, 170_000, 540_000, LONGEST];
@@ -46,14 +46,14 @@ impl Point {
     }
 
     /// Whether the long drill took as much more than the short one as it must at least, and the halves of the measurement
-    /// agree: of the longest vectors there are few samples, and all of them may have met a busy moment.
+    /// agree: of the longest vectors there are few samples, and all of them may have been disturbed.
     fn is_settled(&self) -> bool {
         let longer = self.samples[0].typical() > 1.15 * self.samples[1].typical();
         longer && self.samples.iter().all(|samples| samples.disagreement() < 0.25)
     }
 }
 
-/// Of so many sweeps one is over vectors of this length: the longest would take all the time.
+/// Vectors of this length take part in every n-th sweep only: the longest would take most of the time.
 fn turn(n: usize) -> usize {
     match n {
         0..=40_000 => 1,
@@ -99,7 +99,7 @@ impl Lane {
     /// the short ones, `far` for all.
     pub(super) fn sweep(
         &mut self,
-        pace: &mut Pace,
+        monitor: &mut NoiseMonitor,
         [near, far]: [&Memory<'_>; 2],
         set: InstructionSet,
         number: usize,
@@ -112,19 +112,19 @@ impl Lane {
         let takes_turn = |point: &&mut Point| number.is_multiple_of(turn(point.n));
         for point in self.points.iter_mut().filter(takes_turn) {
             for (samples, program) in point.samples.iter_mut().zip(&self.programs[point.kind]) {
-                samples.take(pace, SHORTEST, || run(program.as_ref(), point.n));
+                samples.take(monitor, SHORTEST, || run(program.as_ref(), point.n));
             }
         }
         for (at, n, samples) in &mut self.mixed {
-            samples.take(pace, SHORTEST, || run(self.mixtures[*at].as_ref(), *n));
+            samples.take(monitor, SHORTEST, || run(self.mixtures[*at].as_ref(), *n));
         }
     }
 
-    /// Tells all samples at the pace of a reference.
-    pub(super) fn settle(&mut self, reference: f64) {
+    /// Evaluates all samples for an undisturbed core.
+    pub(super) fn evaluate(&mut self, reference: f64) {
         let mixed = self.mixed.iter_mut().map(|(_, _, samples)| samples);
         let points = self.points.iter_mut().flat_map(|point| &mut point.samples);
-        points.chain(mixed).for_each(|samples| samples.settle(reference));
+        points.chain(mixed).for_each(|samples| samples.evaluate(reference));
     }
 
     /// All samples.
@@ -180,7 +180,7 @@ impl Lane {
         Change { passes, ns: median(each).max(0.0) }
     }
 
-    /// Nanoseconds of a run besides its passes.
+    /// Nanoseconds of a run in addition to its passes.
     pub(super) fn run(&self) -> f64 {
         let shortest = self.points.iter().filter(|point| point.n == SHORT[0] * self.costs.lanes);
         median(shortest.map(|point| {
@@ -257,8 +257,8 @@ impl Lane {
     }
 }
 
-/// A number made of some samples, and how sure it is: by their parts, and by a hundredth of each of them besides, for what all
-/// parts of a measurement share and the next one does not.
+/// A number made of some samples, and its uncertainty: from their parts, and a hundredth of each of them for errors that are
+/// common to all parts of a measurement.
 pub(super) fn estimate<'a>(
     all: impl IntoIterator<Item = &'a Samples>,
     of: impl Fn(&dyn Fn(&Samples) -> f64) -> f64,
@@ -280,12 +280,12 @@ const SHARED: f64 = 0.01;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::pace::Timed;
+    use crate::study::noise_monitor::Timed;
 
     fn samples(ns: f64) -> Samples {
         let mut samples = Samples::default();
         (0..2 * PARTS).for_each(|_| samples.push(Timed { ns, around: [1.0; 2] }));
-        samples.settle(1.0);
+        samples.evaluate(1.0);
         samples
     }
 

@@ -1,10 +1,10 @@
-//! Work whose amount hangs on the data: the fast execution and the neighbour lists, on drill scenes of their own.
+//! Work whose amount depends on the data: the fast execution and the neighbour lists, on drill scenes of their own.
 
 use super::fit;
 use crate::method::Phase;
 use crate::model::host::{Amounts, RatePoint, Rates};
 use crate::scene::Checked;
-use crate::study::pace::Pace;
+use crate::study::noise_monitor::NoiseMonitor;
 use crate::study::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampling, phase_times};
 use crate::study::throughput::MeasurementError;
 use std::collections::BTreeMap;
@@ -15,7 +15,7 @@ pub(super) const PARTICLES: [usize; 8] = [60, 160, 420, 1100, 3000, 8000, 16_000
 const OCCUPANCIES: [[f64; 4]; 2] = [[0.03, 0.12, 0.17, 0.26], [0.07, 0.1, 0.18, 0.22]];
 const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
 
-/// Steps before the clock starts, and those that are timed: fewer of many discs, but enough for lists to be made anew.
+/// Steps before the clock starts, and those that are timed: fewer of many discs, but enough for lists to be rebuilt.
 fn sampling(run: &Run) -> Sampling {
     let discs = if run.has_lists() { 250_000 } else { 100_000 };
     let equilibration = (discs / run.particles).clamp(3, 60);
@@ -25,8 +25,8 @@ fn sampling(run: &Run) -> Sampling {
 /// A drill scene, and what was measured of it.
 type Scene = (Run, Checked, Option<PhaseTimes>);
 
-fn once_more((run, checked, times): &mut Scene, pace: &mut Pace) -> Result<(), MeasurementError> {
-    let more = phase_times(checked, &sampling(run), pace)?;
+fn once_more((run, checked, times): &mut Scene, monitor: &mut NoiseMonitor) -> Result<(), MeasurementError> {
+    let more = phase_times(checked, &sampling(run), monitor)?;
     *times = Some(PhaseTimes::with(times.take(), more));
     Ok(())
 }
@@ -52,28 +52,36 @@ impl Scenes {
     }
 
     /// Runs every scene once more. `progress` gets the share that is done.
-    pub(super) fn sweep(&mut self, pace: &mut Pace, progress: impl Fn(f64)) -> Result<(), MeasurementError> {
+    pub(super) fn sweep(
+        &mut self,
+        monitor: &mut NoiseMonitor,
+        progress: impl Fn(f64),
+    ) -> Result<(), MeasurementError> {
         let all = self.0.len() as f64;
         for (at, scene) in self.0.iter_mut().enumerate() {
-            once_more(scene, pace)?;
+            once_more(scene, monitor)?;
             progress((at + 1) as f64 / all);
         }
         Ok(())
     }
 
-    /// Runs once more what met no quiet moments yet. Whether there was any.
-    pub(super) fn again(&mut self, pace: &mut Pace, reference: f64) -> Result<bool, MeasurementError> {
+    /// Runs once more what was always disturbed so far. Whether there was any.
+    pub(super) fn again(
+        &mut self,
+        monitor: &mut NoiseMonitor,
+        reference: f64,
+    ) -> Result<bool, MeasurementError> {
         let mut any = false;
         for scene in &mut self.0 {
             if !scene.2.as_ref().is_some_and(|times| times.is_quiet(reference)) {
-                once_more(scene, pace)?;
+                once_more(scene, monitor)?;
                 any = true;
             }
         }
         Ok(any)
     }
 
-    /// The rates of the methods, at the pace of a reference.
+    /// The rates of the methods on an undisturbed core.
     pub(super) fn rates(&self, reference: f64) -> BTreeMap<String, Rates> {
         let measured = self.0.iter().filter_map(|(run, _, times)| Some((*run, times.as_ref()?)));
         rates(&measured.collect::<Vec<_>>(), reference)
@@ -133,7 +141,7 @@ fn points(alike: &[Vec<&PhaseTimes>], phase: Phase, reference: f64) -> Vec<RateP
     points.collect()
 }
 
-/// Nanoseconds of each unit that costs some, from what was done with so many discs and so many.
+/// Nanoseconds of each unit that costs some, from the work at each number of discs.
 ///
 /// How the units stand to each other is fitted to all of them together: of many discs alone there are too few steps with too
 /// few contacts to tell. How much slower everything is with more discs, which lie farther away, is each number's own.
@@ -176,8 +184,8 @@ fn sum(amounts: &Amounts, units: &Units) -> f64 {
     amounts.values().iter().zip(units).map(|(amount, unit)| amount * unit).sum()
 }
 
-/// How much a run counts that is predicted so many times as long as it took: what is far from the fit was a bad moment, and
-/// above all what took too little time must not draw everything down.
+/// The weight of a run by the ratio of its prediction to its time: what is far from the fit was disturbed, and a run that
+/// took too little time must not lower all others.
 fn trust(ratio: f64) -> f64 {
     let far = ratio.max(f64::MIN_POSITIVE).ln().abs();
     0.1 / (0.1 + far)
@@ -202,7 +210,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn units_are_told_apart_by_all_and_slower_by_each_number_of_discs() {
+    fn units_are_fitted_to_all_and_a_slowdown_to_each_number_of_discs() {
         let done = |discs: f64, contacts: f64, slower: f64| {
             let amounts = Amounts { discs, contacts, ..Amounts::default() };
             (amounts, slower * (2.0 * discs + 5.0 * contacts))

@@ -1,9 +1,9 @@
-//! Timing: many short samples of every point, in quiet moments if these come, taken in turns over the whole measurement, so
-//! that a busy moment of the machine meets each of them alike and none of them always; a reading of the yardstick between any
-//! two of them.
+//! Timing: many short samples of every point, on an undisturbed core if there is one, taken in turns over the whole
+//! measurement, so that a disturbance affects all points alike and none of them always. The reference loop is timed between
+//! any two samples.
 
-use crate::study::pace::{ENOUGH, Pace, Timed};
-use crate::study::pieces::{COUNTS, Pieces};
+use crate::study::noise_monitor::{ENOUGH, NoiseMonitor, Timed};
+use crate::study::segment_times::{COUNTS, SegmentTimes};
 use std::time::Instant;
 use stripmine_kernels::rests::{Rest, rest};
 
@@ -21,14 +21,14 @@ pub(super) fn timer_resolution() -> f64 {
     (0..200).map(step).fold(f64::INFINITY, f64::min)
 }
 
-/// The times of some works that are done one after the other, each from rest to rest.
+/// The times of some works that are done one after the other, each segment by segment.
 fn long_runs(
-    pace: &mut Pace,
+    monitor: &mut NoiseMonitor,
     quiet: &mut usize,
     works: usize,
     mut work: impl FnMut(usize),
 ) -> Vec<Vec<Timed>> {
-    let ((), pieces) = pace.from_rest_to_rest(quiet, || {
+    let ((), segments) = monitor.in_segments(quiet, || {
         for at in 0..works {
             rest(Rest::Begins(at));
             work(at);
@@ -36,14 +36,14 @@ fn long_runs(
         }
     });
     let mut times = vec![vec![]; works];
-    pieces.into_iter().for_each(|(at, timed)| times[at].push(timed));
+    segments.into_iter().for_each(|(at, timed)| times[at].push(timed));
     times
 }
 
-/// A run of so many nanoseconds is timed from rest to rest: quiet moments are shorter.
+/// A longer run (ns) is timed segment by segment: a core is seldom undisturbed for as long.
 const LONG: f64 = 150_000.0;
 
-/// Parts that samples are told apart in, each as long as the whole measurement: how far they differ says how sure a number is.
+/// Parts of the samples, each spread over the whole measurement: how far they differ is the uncertainty of a number.
 pub(super) const PARTS: usize = 4;
 
 /// The samples of one point.
@@ -52,32 +52,37 @@ pub(super) struct Samples {
     /// Runs of a sample: as many as the timer needs. Known after the first; and how long a run is, about (ns).
     runs: usize,
     once: f64,
-    /// Samples in quiet moments.
+    /// Samples on an undisturbed core.
     quiet: usize,
     /// Nanoseconds of a run, sample by sample.
-    each: Pieces,
-    /// What they say of quiet moments, once it is known when these were.
-    told: Told,
+    each: SegmentTimes,
+    /// Their evaluation, once the reference is known.
+    evaluated: Evaluated,
 }
 
-/// What samples say.
+/// What follows from samples for an undisturbed core.
 #[derive(Clone, Copy, Debug)]
-struct Told {
+struct Evaluated {
     typical: f64,
     parts: [f64; PARTS],
     quartiles: [f64; 2],
     quiet: f64,
 }
 
-impl Default for Told {
-    fn default() -> Told {
-        Told { typical: f64::INFINITY, parts: [f64::INFINITY; PARTS], quartiles: [f64::NAN; 2], quiet: 0.0 }
+impl Default for Evaluated {
+    fn default() -> Evaluated {
+        Evaluated {
+            typical: f64::INFINITY,
+            parts: [f64::INFINITY; PARTS],
+            quartiles: [f64::NAN; 2],
+            quiet: 0.0,
+        }
     }
 }
 
 impl Samples {
-    /// Takes one more sample, at least `shortest` nanoseconds long, unless there are enough of quiet moments.
-    pub(super) fn take(&mut self, pace: &mut Pace, shortest: f64, mut work: impl FnMut()) {
+    /// Takes one more sample, at least `shortest` nanoseconds long, unless there are enough undisturbed ones.
+    pub(super) fn take(&mut self, monitor: &mut NoiseMonitor, shortest: f64, mut work: impl FnMut()) {
         let mut time = |times: usize| {
             let start = Instant::now();
             (0..times).for_each(|_| work());
@@ -92,28 +97,28 @@ impl Samples {
             return;
         }
         if self.once > LONG {
-            if pace.wait(self.quiet, self.once) {
+            if monitor.wait(self.quiet, self.once) {
                 work();
             }
-            let runs = long_runs(pace, &mut self.quiet, 1, |_| work());
+            let runs = long_runs(monitor, &mut self.quiet, 1, |_| work());
             runs.iter().for_each(|run| self.each.push(run));
             return;
         }
         let runs = self.runs;
-        pace.wait(self.quiet, shortest);
-        let (ns, around) = pace.around(&mut self.quiet, || {
-            // Something else was in the caches before.
+        monitor.wait(self.quiet, shortest);
+        let (ns, around) = monitor.around(&mut self.quiet, || {
+            // The first run fills the caches.
             time(1);
             time(runs) / runs as f64
         });
         self.each.push(&[Timed { ns, around }]);
     }
 
-    /// Takes one more sample of each of some works that are done one after the other, so many times in a row, as the parts
-    /// of a step are: each finds what the others have left. Done once before, for something else was in the caches.
+    /// Takes one more sample of each of some works that are done one after the other, `times` times in a row, as the parts
+    /// of a step are: each finds the caches as the others leave them. A first round fills the caches.
     pub(super) fn take_in_turns(
         all: &mut [Samples],
-        pace: &mut Pace,
+        monitor: &mut NoiseMonitor,
         times: usize,
         mut work: impl FnMut(usize),
     ) {
@@ -123,7 +128,7 @@ impl Samples {
         }
         let start = Instant::now();
         (0..all.len()).for_each(&mut work);
-        // The shortest so far: one that met a busy moment would have short works timed as long ones.
+        // The shortest so far: a disturbed one would have short works timed as long ones.
         let mut lasting = start.elapsed().as_nanos() as f64;
         if let Some(first) = all.first_mut() {
             lasting = if first.once > 0.0 { lasting.min(first.once) } else { lasting };
@@ -131,10 +136,10 @@ impl Samples {
         }
         if lasting > LONG {
             for _ in 0..times {
-                if pace.wait(quiet, lasting) {
+                if monitor.wait(quiet, lasting) {
                     (0..all.len()).for_each(&mut work);
                 }
-                let runs = long_runs(pace, &mut quiet, all.len(), &mut work);
+                let runs = long_runs(monitor, &mut quiet, all.len(), &mut work);
                 for (samples, run) in all.iter_mut().zip(runs) {
                     samples.quiet = quiet;
                     samples.each.push(&run);
@@ -142,11 +147,11 @@ impl Samples {
             }
             return;
         }
-        if pace.wait(quiet, lasting) {
+        if monitor.wait(quiet, lasting) {
             (0..all.len()).for_each(&mut work);
         }
         let mut ns = vec![0.0; all.len()];
-        let ((), around) = pace.around(&mut quiet, || {
+        let ((), around) = monitor.around(&mut quiet, || {
             for _ in 0..times {
                 for (at, ns) in ns.iter_mut().enumerate() {
                     let start = Instant::now();
@@ -161,7 +166,7 @@ impl Samples {
         }
     }
 
-    /// However many there are of quiet moments, more are wanted of works done in turns.
+    /// Forgets how many were undisturbed, so that more samples of works done in turns are taken.
     pub(super) fn go_on(all: &mut [Samples]) {
         all.iter_mut().for_each(|samples| samples.quiet = 0);
     }
@@ -172,11 +177,11 @@ impl Samples {
         self.each.push(&[timed]);
     }
 
-    /// Tells the samples at the pace of quiet moments, where the yardstick takes `reference`.
-    pub(super) fn settle(&mut self, reference: f64) {
+    /// Evaluates the samples for an undisturbed core, on which the reference loop takes `reference`.
+    pub(super) fn evaluate(&mut self, reference: f64) {
         let Some([low, typical, high]) = self.each.quantiles(reference, [0.25, COUNTS, 0.75]) else { return };
         let part = |from| self.each.every(PARTS, from).typical(reference).unwrap_or(typical);
-        self.told = Told {
+        self.evaluated = Evaluated {
             typical,
             parts: std::array::from_fn(part),
             quartiles: [low, high],
@@ -186,30 +191,30 @@ impl Samples {
 
     /// The sample that counts; infinite before there is one.
     pub(super) fn typical(&self) -> f64 {
-        self.told.typical
+        self.evaluated.typical
     }
 
     /// The same of every [`PARTS`]th sample, from this one on.
     pub(super) fn of_part(&self, part: usize) -> f64 {
-        self.told.parts[part]
+        self.evaluated.parts[part]
     }
 
     /// Half the range between the quartiles, as a share of the sample that counts.
     pub(super) fn spread(&self) -> f64 {
-        let [low, high] = self.told.quartiles;
+        let [low, high] = self.evaluated.quartiles;
         0.5 * (high - low) / self.typical()
     }
 
     /// How far the two halves differ, as a share: the even parts and the odd ones.
     pub(super) fn disagreement(&self) -> f64 {
-        let half = |from: usize| self.told.parts.iter().skip(from).step_by(2).sum::<f64>();
+        let half = |from: usize| self.evaluated.parts.iter().skip(from).step_by(2).sum::<f64>();
         let [a, b] = [half(0), half(1)];
         (a - b).abs() / a.min(b)
     }
 
-    /// The share that was measured in quiet moments, and not only told at their pace.
+    /// The share that was measured on an undisturbed core, and not corrected for a slowdown.
     pub(super) fn quiet(&self) -> f64 {
-        self.told.quiet
+        self.evaluated.quiet
     }
 }
 
@@ -218,13 +223,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_low_sample_counts_and_parts_are_told_apart() {
+    fn a_low_sample_counts_and_parts_are_evaluated_apart() {
         let mut samples = Samples::default();
         for ns in [3.0, 2.0, 4.0, 6.0, 5.0, 3.0, 4.0, 6.0] {
             samples.each.push(&[Timed { ns, around: [1.0; 2] }]);
         }
         assert!(samples.typical().is_infinite());
-        samples.settle(1.0);
+        samples.evaluate(1.0);
         assert_eq!((samples.typical(), samples.of_part(0), samples.of_part(1)), (3.0, 3.0, 2.0));
         assert_eq!((samples.spread(), samples.quiet()), (1.0 / 3.0, 1.0));
         assert!(samples.disagreement() > 0.0);
@@ -232,30 +237,30 @@ mod tests {
 
     #[test]
     fn a_sample_is_as_long_as_the_timer_needs() {
-        let (mut samples, mut pace) = (Samples::default(), Pace::default());
-        samples.take(&mut pace, 20_000.0, || drop(std::hint::black_box(vec![0_u8; 64])));
-        samples.settle(pace.reference());
+        let (mut samples, mut monitor) = (Samples::default(), NoiseMonitor::default());
+        samples.take(&mut monitor, 20_000.0, || drop(std::hint::black_box(vec![0_u8; 64])));
+        samples.evaluate(monitor.reference());
         assert!(samples.runs > 10 && samples.typical() > 0.0);
     }
 
     #[test]
     fn works_in_turns_are_done_once_before_and_timed_each_by_itself() {
-        let (mut all, mut pace) = (vec![Samples::default(); 2], Pace::default());
+        let (mut all, mut monitor) = (vec![Samples::default(); 2], NoiseMonitor::default());
         let mut order = vec![];
-        Samples::take_in_turns(&mut all, &mut pace, 2, |at| order.push(at));
+        Samples::take_in_turns(&mut all, &mut monitor, 2, |at| order.push(at));
         assert_eq!(order, [0, 1, 0, 1, 0, 1]);
         assert!(all.iter().all(|samples| samples.each.runs() >= 1));
     }
 
     #[test]
-    fn long_works_are_timed_from_rest_to_rest() {
-        let (mut all, mut pace) = (vec![Samples::default(); 2], Pace::default());
+    fn long_works_are_timed_in_segments() {
+        let (mut all, mut monitor) = (vec![Samples::default(); 2], NoiseMonitor::default());
         let at_rest = |_| {
             std::thread::sleep(std::time::Duration::from_micros(300));
             rest(Rest::Within);
         };
-        Samples::take_in_turns(&mut all, &mut pace, 1, at_rest);
+        Samples::take_in_turns(&mut all, &mut monitor, 1, at_rest);
         assert!(all.iter().all(|samples| samples.each.runs() == 1));
-        assert!(pace.mostly() >= 1.0);
+        assert!(monitor.usual_slowdown() >= 1.0);
     }
 }

@@ -38,5 +38,5 @@ pub(super) const VARIANTS: [Variant; 4] = [
     },
 ];
 
-/// Discs that rest: no drill hangs on what the one before has left.
+/// Discs at rest: no drill depends on what the one before has left.
 pub(super) const AT_REST: [&str; 2] = ["particles.temperature=0", "particles.seed=7"];

@@ -1,21 +1,20 @@
 //! The cases of a validation, and how far off their predictions are.
 
-use super::{EXECUTIONS, PRECISIONS, UNSETTLED};
+use super::runs::{EXECUTIONS, PRECISIONS, UNSETTLED};
 use crate::method::Phase;
 use crate::study::phase_times::{FAST, FAST_LISTS, LISTS, QUIET};
 use serde::Serialize;
 
 /// The group of all executions of programs.
 pub const PROGRAMS: &str = "eager, strip-mined and chained";
-/// The group of all executions whose work hangs on the data.
+/// The group of all executions whose work depends on the data.
 pub const OF_DATA: &str = "fast and lists";
 
-/// Those among the first that were measured in quiet moments, and whose halves are no more than [`UNSETTLED`] apart: no
+/// Those among the first that were measured on an undisturbed core, and whose halves are no more than [`UNSETTLED`] apart: no
 /// prediction can be shown to be nearer than that.
-pub const PROGRAMS_SETTLED: &str =
-    "eager, strip-mined and chained, measured in quiet moments and within 10 %";
+pub const PROGRAMS_SETTLED: &str = "eager, strip-mined and chained, undisturbed and repeated within 10 %";
 /// Those among the second.
-pub const OF_DATA_SETTLED: &str = "fast and lists, measured in quiet moments and within 10 %";
+pub const OF_DATA_SETTLED: &str = "fast and lists, undisturbed and repeated within 10 %";
 
 /// A phase of a step of one run.
 #[derive(Clone, Debug, Serialize)]
@@ -32,21 +31,18 @@ pub struct Case {
     pub phase: &'static str,
     /// Nanoseconds predicted.
     pub predicted: f64,
-    /// Nanoseconds in quiet moments: of every piece a low quantile of the samples.
+    /// Nanoseconds on an undisturbed core: the sum over the segments of a low quantile of the samples.
     pub measured: f64,
-    /// A quarter of the samples of every piece lies below, a quarter above.
+    /// The sums over the segments of the lower and of the upper quartile of the samples.
     pub quartiles: [f64; 2],
     /// The same by the rounds of even number alone and by those of odd number; none of one round. Every round lays the run
-    /// out anew, in other pages of memory.
+    /// out again, in other pages of memory.
     pub halves: Option<[f64; 2]>,
-    /// The share that was measured in quiet moments, and not only told at their pace.
+    /// The share that was measured on an undisturbed core, and not corrected for a slowdown.
     pub quiet: f64,
     /// Nanoseconds by the trivial baseline: operations times elements, at the cost of a sum in the cache; none where
-    /// what is executed hangs on the data.
+    /// what is executed depends on the data.
     pub baseline: Option<f64>,
-    /// Nanoseconds predicted by the levels alone, without what drill scenes say that these leave unsaid; none where what is
-    /// executed hangs on the data.
-    pub by_levels: Option<f64>,
 }
 
 impl Case {
@@ -60,22 +56,17 @@ impl Case {
         Some((self.baseline? / self.measured - 1.0).abs())
     }
 
-    /// The same of the levels alone.
-    pub fn error_by_levels(&self) -> Option<f64> {
-        Some((self.by_levels? / self.measured - 1.0).abs())
-    }
-
     /// How far the two halves of the measurement differ, as a share: no prediction can be shown to be better than that.
     pub fn repeat_error(&self) -> Option<f64> {
         self.halves.map(|[even, odd]| even.max(odd) / even.min(odd) - 1.0)
     }
 
-    /// Whether what is executed hangs on the data.
-    pub fn hangs_on_data(&self) -> bool {
+    /// Whether what is executed depends on the data.
+    pub fn depends_on_data(&self) -> bool {
         [FAST, FAST_LISTS, LISTS].contains(&self.execution)
     }
 
-    /// All that tells it from the others.
+    /// All that distinguishes it from the others.
     pub fn name(&self) -> String {
         let Case { particles, occupancy, precision, execution, phase, .. } = self;
         format!("{phase}, {execution}, {precision}, NP = {particles}, ρ = {occupancy}")
@@ -99,8 +90,6 @@ pub struct Errors {
     pub within: [usize; 4],
     /// The median error of the trivial baseline; none where there is none.
     pub baseline_median: Option<f64>,
-    /// Of the levels alone: the median error, and what nine of ten lie below; none where there is none.
-    pub by_levels: Option<[f64; 2]>,
     /// How far the measurement differs from its own repetition: in the median, and what nine of ten stay below; none of one
     /// round.
     pub repeated: Option<[f64; 2]>,
@@ -130,7 +119,6 @@ impl Errors {
             within: [0.05, 0.1, 0.2, 0.3].map(|limit| errors.iter().filter(|&&error| error <= limit).count()),
             baseline_median: Some(quantile(&sorted(&Case::baseline_error), 0.5))
                 .filter(|median| median.is_finite()),
-            by_levels: both(&Case::error_by_levels),
             repeated: both(&Case::repeat_error),
         }
     }
@@ -145,19 +133,19 @@ pub(super) fn errors(cases: &[Case]) -> Vec<Errors> {
             errors.push(Errors::of(what.to_owned(), &kept));
         }
     };
-    group(PROGRAMS, &|case| !case.hangs_on_data());
-    group(OF_DATA, &Case::hangs_on_data);
+    group(PROGRAMS, &|case| !case.depends_on_data());
+    group(OF_DATA, &Case::depends_on_data);
     let settled =
         |case: &Case| case.quiet >= QUIET && case.repeat_error().is_some_and(|apart| apart <= UNSETTLED);
-    group(PROGRAMS_SETTLED, &|case| !case.hangs_on_data() && settled(case));
-    group(OF_DATA_SETTLED, &|case| case.hangs_on_data() && settled(case));
+    group(PROGRAMS_SETTLED, &|case| !case.depends_on_data() && settled(case));
+    group(OF_DATA_SETTLED, &|case| case.depends_on_data() && settled(case));
     EXECUTIONS.iter().for_each(|(name, _)| group(name, &|case| case.execution == *name));
-    let straight = |case: &Case| !case.hangs_on_data();
+    let straight = |case: &Case| !case.depends_on_data();
     Phase::ALL.iter().for_each(|phase| {
         group(&format!("{} of programs", phase.name()), &|case| straight(case) && case.phase == phase.name());
     });
     Phase::ALL.iter().for_each(|phase| {
-        let of_data = |case: &Case| case.hangs_on_data() && case.phase == phase.name();
+        let of_data = |case: &Case| case.depends_on_data() && case.phase == phase.name();
         group(&format!("{} of fast and lists", phase.name()), &of_data);
     });
     PRECISIONS.iter().for_each(|name| group(name, &|case| straight(case) && case.precision == *name));
@@ -181,7 +169,6 @@ mod tests {
             halves: Some([if execution == "eager" { 102.0 } else { 150.0 }, 100.0]),
             quiet: 1.0,
             baseline: (execution != LISTS).then_some(50.0),
-            by_levels: (execution != LISTS).then_some(90.0),
         }
     }
 
@@ -194,7 +181,6 @@ mod tests {
         assert_eq!((programs.cases, programs.within), (3, [1, 2, 2, 2]));
         assert!((programs.median - 0.08).abs() < 1e-9 && (programs.worst - 0.4).abs() < 1e-9);
         assert_eq!(programs.baseline_median, Some(0.5));
-        assert!((programs.by_levels.unwrap()[1] - 0.1).abs() < 1e-9);
         assert!((programs.repeated.unwrap()[0] - 0.02).abs() < 1e-9);
         assert_eq!(of(OF_DATA).baseline_median, None);
         assert_eq!((of(PROGRAMS_SETTLED).cases, of(PROGRAMS_SETTLED).within), (2, [1, 2, 2, 2]));

@@ -2,55 +2,23 @@
 //! discs, phase by phase.
 
 mod errors;
+mod runs;
 mod scene;
 
 pub use errors::{Case, Errors, OF_DATA, OF_DATA_SETTLED, PROGRAMS, PROGRAMS_SETTLED};
+pub use runs::{Effort, UNSETTLED, ValidationError};
 
-use super::calibration::{self, Calibration, CalibrationError};
-use super::pace::Pace;
-use super::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run};
-use super::rounds::Bound;
+use super::calibration::{self, Calibration};
+use super::noise_monitor::NoiseMonitor;
+use super::phase_times::PhaseTimes;
 use super::throughput::MeasurementError;
 use crate::method::Phase;
-use crate::model::host::{HostModel, OutOfRange};
+use crate::model::host::HostModel;
 use rayon::ThreadPool;
+use runs::runs;
 use scene::{Scene, rated};
 use serde::Serialize;
-use stripmine_kernels::{Execution, InstructionSet};
-
-/// What is run.
-#[derive(Clone, Debug)]
-pub struct Effort {
-    /// NP.
-    pub particles: Vec<usize>,
-    /// ρ on cells as wide as the radius.
-    pub occupancies: Vec<f64>,
-    /// Rounds over all runs, each laid out in memory anew: who else is at work on the machine, and what of his lies in the larger
-    /// caches, is the same for a while.
-    pub rounds: Bound,
-    /// Rounds more, at most, over those runs alone that met no quiet moments or do not repeat themselves yet: two by two, as
-    /// those of even and of odd number are told apart.
-    pub further: usize,
-    /// Repeats of a run in a round.
-    pub repeats: usize,
-    /// Particle-steps of a repeat, about.
-    pub particle_steps: usize,
-}
-
-/// The executions, by the name that a scene gives them; the last three hang on the data. Strips as long as a CRAY's vectors
-/// are drilled on other lattices, the longer ones on none.
-const EXECUTIONS: [(&str, Option<Execution>); 8] = [
-    ("eager", Some(Execution::Eager)),
-    ("strip:64", Some(Execution::Strip(64))),
-    ("strip:128", Some(Execution::Strip(128))),
-    ("strip:512", Some(Execution::Strip(512))),
-    ("chained", Some(Execution::Chained)),
-    (FAST, None),
-    (FAST_LISTS, None),
-    (LISTS, None),
-];
-
-const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
+use stripmine_kernels::InstructionSet;
 
 /// Where the model comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -64,25 +32,6 @@ pub enum Calibrated {
     InTurns,
 }
 
-/// Why there is no validation.
-#[derive(Debug, thiserror::Error)]
-pub enum ValidationError {
-    /// A calibration broke.
-    #[error(transparent)]
-    Calibration(#[from] CalibrationError),
-    /// A run broke.
-    #[error(transparent)]
-    Measurement(#[from] MeasurementError),
-    /// A case that the model does not reach.
-    #[error("{case}: {cause}")]
-    OutOfRange {
-        /// The case.
-        case: String,
-        /// Why.
-        cause: OutOfRange,
-    },
-}
-
 /// The dataset.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelValidation {
@@ -92,11 +41,11 @@ pub struct ModelValidation {
     pub instruction_set: String,
     /// Where it comes from.
     pub calibrated: Calibrated,
-    /// Rounds over all runs, and how many more there were over those that met no quiet moments, or did not repeat themselves
+    /// Rounds over all runs, and how many more there were over those that were always disturbed, or did not repeat themselves
     /// within [`UNSETTLED`].
     pub rounds: [usize; 2],
-    /// How many times as long as in the calibration's quiet moments the yardstick took in those of the runs.
-    pub pace: f64,
+    /// How many times as long as in the calibration the reference loop took in the runs, undisturbed in both.
+    pub slowdown: f64,
     /// Every case.
     pub cases: Vec<Case>,
     /// The errors of all, of every execution and of every phase.
@@ -139,13 +88,13 @@ pub fn model_validation(
         while rounds.next().is_some() {
             measured.round(&|share| progress(BASE * rounds.share(share)))?;
         }
-        measured.settle(|| Ok(false), &progress)?;
+        measured.repeat_unsettled(|| Ok(false), &progress)?;
         measured.against(host, calibrated)
     })
 }
 
-/// The same with a calibration of this host, called `title`, in turns with the runs, so that both meet the same moments of
-/// it: a host that others share has more than one pace. Nothing that is validated is calibrated on. With the model.
+/// The same with a calibration of this host, called `title`, in turns with the runs, so that both see the same
+/// states of it: the speed of a shared host changes. Nothing that is validated is calibrated on. With the model.
 ///
 /// # Errors
 /// As [`model_validation`]; and [`ValidationError::Calibration`] if the processor lacks the instruction set.
@@ -170,15 +119,13 @@ pub fn calibrated_in_turns(
             calibration.measure(upto, &|all| progress(BASE * rounds.share(0.5 * most * (all - before))))?;
             measured.round(&|share| progress(BASE * rounds.share(0.5 * (1.0 + share))))?;
         }
-        measured.settle(|| calibration.again(), &progress)?;
+        measured.repeat_unsettled(|| calibration.again(), &progress)?;
         let host = calibration.model();
         let data = measured.against(&host, Calibrated::InTurns)?;
         Ok((host, data))
     })
 }
 
-/// Runs whose halves are farther apart than this share are run again; and those that met no quiet moments.
-pub const UNSETTLED: f64 = 0.1;
 /// The share of the time that is taken by the rounds over all runs, about.
 const BASE: f64 = 0.8;
 
@@ -195,7 +142,7 @@ struct Measured {
     times: Vec<[Option<PhaseTimes>; 2]>,
     /// Rounds over all, and over some.
     rounds: [usize; 2],
-    pace: Pace,
+    monitor: NoiseMonitor,
 }
 
 impl Measured {
@@ -203,14 +150,20 @@ impl Measured {
     fn new(effort: &Effort) -> Result<Measured, MeasurementError> {
         let scenes = runs(effort).map(Scene::new).collect::<Result<Vec<_>, _>>()?;
         let times = scenes.iter().map(|_| [None, None]).collect();
-        Ok(Measured { effort: effort.clone(), scenes, times, rounds: [0; 2], pace: Pace::default() })
+        Ok(Measured {
+            effort: effort.clone(),
+            scenes,
+            times,
+            rounds: [0; 2],
+            monitor: NoiseMonitor::default(),
+        })
     }
 
     /// Runs everything once more. `progress` gets the share that is done.
     fn round(&mut self, progress: &dyn Fn(f64)) -> Result<(), MeasurementError> {
         let all = self.scenes.len() as f64;
         for (at, (scene, times)) in self.scenes.iter().zip(&mut self.times).enumerate() {
-            scene.measure(&self.effort, &mut self.pace, &mut times[self.rounds[0] % 2])?;
+            scene.measure(&self.effort, &mut self.monitor, &mut times[self.rounds[0] % 2])?;
             progress((at + 1) as f64 / all);
         }
         self.rounds[0] += 1;
@@ -219,19 +172,19 @@ impl Measured {
 
     /// Runs once more, for the rounds of even and for those of odd number, what is not settled yet; in turns with
     /// `other`, which says whether it was of use, as long as either is. What is predicted has no say in it.
-    fn settle(
+    fn repeat_unsettled(
         &mut self,
         mut other: impl FnMut() -> Result<bool, MeasurementError>,
         progress: &dyn Fn(f64),
     ) -> Result<(), MeasurementError> {
         while self.rounds[1] + 2 <= self.effort.further {
-            let reference = self.pace.reference();
+            let reference = self.monitor.reference();
             let unsettled: Vec<bool> =
                 self.times.iter().map(|halves| !is_settled(halves, reference)).collect();
             for half in 0..2 {
                 let all = self.scenes.iter().zip(&mut self.times).zip(&unsettled);
                 for ((scene, times), _) in all.filter(|(_, unsettled)| **unsettled) {
-                    scene.measure(&self.effort, &mut self.pace, &mut times[half])?;
+                    scene.measure(&self.effort, &mut self.monitor, &mut times[half])?;
                 }
             }
             if !(other()? | unsettled.contains(&true)) {
@@ -245,25 +198,24 @@ impl Measured {
 
     /// Beside what a model predicts.
     fn against(&self, host: &HostModel, calibrated: Calibrated) -> Result<ModelValidation, ValidationError> {
-        let reference = self.pace.reference();
-        let levels = host.by_levels();
+        let reference = self.monitor.reference();
         let mut cases = vec![];
         for (scene, halves) in self.scenes.iter().zip(&self.times) {
-            cases.extend(scene.cases([host, &levels], halves, reference)?);
+            cases.extend(scene.cases(host, halves, reference)?);
         }
         Ok(ModelValidation {
             host: host.title.clone(),
             instruction_set: host.instruction_set.clone(),
             calibrated,
             rounds: self.rounds,
-            pace: reference / host.measured.yardstick,
+            slowdown: reference / host.measured.reference_loop,
             errors: errors::errors(&cases),
             cases,
         })
     }
 }
 
-/// Whether a run was measured in quiet moments, and each of its phases repeats itself within [`UNSETTLED`].
+/// Whether a run was measured on an undisturbed core, and each of its phases repeats itself within [`UNSETTLED`].
 fn is_settled(halves: &[Option<PhaseTimes>; 2], reference: f64) -> bool {
     let [Some(even), Some(odd)] = halves else { return true };
     let near = |phase: &Phase| {
@@ -273,26 +225,13 @@ fn is_settled(halves: &[Option<PhaseTimes>; 2], reference: f64) -> bool {
     Phase::ALL.iter().all(near) && [even, odd].iter().any(|half| half.is_quiet(reference))
 }
 
-/// Every run, in order.
-fn runs(effort: &Effort) -> impl Iterator<Item = Run> {
-    let places = effort
-        .particles
-        .iter()
-        .flat_map(|&particles| effort.occupancies.iter().map(move |&occupancy| (particles, occupancy)));
-    places.flat_map(|(particles, occupancy)| {
-        PRECISIONS.into_iter().flat_map(move |precision| {
-            EXECUTIONS.map(|(execution, _)| Run { particles, occupancy, precision, execution })
-        })
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::pace::Timed;
+    use crate::study::noise_monitor::Timed;
 
     #[test]
-    fn a_run_is_settled_that_met_quiet_moments_and_repeats_itself() {
+    fn a_run_is_settled_that_was_undisturbed_and_repeats_itself() {
         let half = |ns: f64, reading: f64| {
             let all = vec![Timed { ns, around: [reading; 2] }; 4];
             Some(PhaseTimes::of(Phase::Forces, &all))
@@ -302,7 +241,7 @@ mod tests {
         assert!(
             !settled(half(100.0, 10.0), half(112.0, 10.0)) && !settled(half(112.0, 10.0), half(100.0, 10.0))
         );
-        // Never quiet, however alike; and one round alone says nothing.
+        // Always disturbed, though alike; and one round alone, which cannot be compared.
         assert!(!settled(half(100.0, 15.0), half(100.0, 15.0)));
         assert!(settled(half(100.0, 15.0), None));
     }

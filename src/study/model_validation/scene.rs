@@ -1,12 +1,13 @@
 //! A run to be measured, and what is predicted of it.
 
-use super::{Case, EXECUTIONS, Effort, ValidationError};
+use super::errors::Case;
+use super::runs::{EXECUTIONS, Effort, ValidationError};
 use crate::method::Phase;
 use crate::method::lattice_md::Lengths;
 use crate::model::host::{HostModel, OutOfRange};
 use crate::run::model;
 use crate::scene::Checked;
-use crate::study::pace::Pace;
+use crate::study::noise_monitor::NoiseMonitor;
 use crate::study::phase_times::{PhaseTimes, Run, Sampling, phase_times};
 use crate::study::predicted_step::{Step, of_precision};
 use crate::study::throughput::MeasurementError;
@@ -15,7 +16,7 @@ use stripmine_kernels::Execution;
 /// Steps after which the caches hold what the next one finds.
 const WARMED: usize = 3;
 
-/// A run, ready. What it does if that does not hang on the data: else the run must first say how much there was to do.
+/// A run, ready. `step` is known where the work does not depend on the data; else the amount of work comes from the run.
 pub(super) struct Scene {
     run: Run,
     checked: Checked,
@@ -35,7 +36,7 @@ impl Scene {
         Ok(Scene { run, checked, step })
     }
 
-    /// Nanoseconds of every phase, and the baseline's; none if they hang on the data.
+    /// Nanoseconds of every phase, and the baseline's; none if they depend on the data.
     pub(super) fn predicted(&self, host: &HostModel) -> Result<Option<Vec<[f64; 2]>>, ValidationError> {
         let Some((step, execution)) = &self.step else { return Ok(None) };
         let phases = Phase::ALL.iter().map(|&phase| step.phase(host, phase, *execution));
@@ -50,11 +51,11 @@ impl Scene {
     pub(super) fn measure(
         &self,
         effort: &Effort,
-        pace: &mut Pace,
+        monitor: &mut NoiseMonitor,
         times: &mut Option<PhaseTimes>,
     ) -> Result<(), MeasurementError> {
         let sampling = Sampling {
-            // What programs take does not hang on the data: the caches alone must have come to rest.
+            // What programs take does not depend on the data: only the caches must be in their steady state.
             equilibration: if self.step.is_some() {
                 WARMED
             } else {
@@ -62,19 +63,19 @@ impl Scene {
             },
             repeats: effort.repeats,
             particle_steps: effort.particle_steps,
-            // Lists are made anew every few steps only.
+            // Lists are rebuilt every few steps only.
             least_steps: if self.run.has_lists() { 6 } else { 2 },
         };
-        let more = phase_times(&self.checked, &sampling, pace)?;
+        let more = phase_times(&self.checked, &sampling, monitor)?;
         *times = Some(PhaseTimes::with(times.take(), more));
         Ok(())
     }
 
-    /// Every phase that it has, predicted by a model and by its levels alone, and as it was measured in the rounds of even and of odd number; `reference` is what
-    /// the yardstick takes in quiet moments (ns).
+    /// Every phase that it has, predicted by a model, and as it was measured in the rounds of even and of odd number;
+    /// `reference` is what the reference loop takes undisturbed (ns).
     pub(super) fn cases(
         &self,
-        [host, levels]: [&HostModel; 2],
+        host: &HostModel,
         halves: &[Option<PhaseTimes>; 2],
         reference: f64,
     ) -> Result<Vec<Case>, ValidationError> {
@@ -85,18 +86,15 @@ impl Scene {
             [Some(even), Some(odd)] => Some([even, odd].map(|half| half.typical(phase, reference).0)),
             _ => None,
         };
-        let predicted: Vec<(f64, Option<[f64; 2]>)> = match (self.predicted(host)?, self.predicted(levels)?) {
-            (Some(all), Some(levels)) => {
-                let both = all.into_iter().zip(levels);
-                both.map(|([ns, baseline], [by_levels, _])| (ns, Some([baseline, by_levels]))).collect()
-            }
-            _ => {
+        let predicted: Vec<(f64, Option<f64>)> = match self.predicted(host)? {
+            Some(all) => all.into_iter().map(|[ns, baseline]| (ns, Some(baseline))).collect(),
+            None => {
                 let phases = rated(host, &self.run, &times).map_err(|cause| self.out(cause))?;
                 phases.into_iter().map(|ns| (ns, None)).collect()
             }
         };
         let Run { particles, occupancy, precision, execution } = self.run;
-        let cases = Phase::ALL.iter().zip(predicted).map(|(&phase, (predicted, simpler))| {
+        let cases = Phase::ALL.iter().zip(predicted).map(|(&phase, (predicted, baseline))| {
             let (measured, quartiles) = times.typical(phase, reference);
             Case {
                 particles,
@@ -109,8 +107,7 @@ impl Scene {
                 quartiles,
                 halves: of_halves(phase),
                 quiet: times.quiet(phase, reference),
-                baseline: simpler.map(|[baseline, _]| baseline),
-                by_levels: simpler.map(|[_, by_levels]| by_levels),
+                baseline,
             }
         });
         // Not every execution has every phase.
@@ -118,7 +115,7 @@ impl Scene {
     }
 }
 
-/// Nanoseconds of every phase of a run whose cost hangs on the data.
+/// Nanoseconds of every phase of a run whose cost depends on the data.
 pub(super) fn rated(host: &HostModel, run: &Run, times: &PhaseTimes) -> Result<Vec<f64>, OutOfRange> {
     let method = run.rates().unwrap_or_default();
     let rates = host.rates.get(method).ok_or_else(|| OutOfRange::NotMeasured(format!("method {method}")))?;

@@ -1,7 +1,8 @@
 //! The energy of undamped discs without friction: what is lost or gained is the integrator's or the digits' doing.
 
-use super::{Gas, SEEDS, StudyError, place};
+use super::gas::{Gas, SEEDS, place};
 use crate::observe::Observation;
+use crate::study::StudyError;
 use crate::study::statistics::{Spread, slope};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;

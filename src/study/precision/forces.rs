@@ -1,13 +1,14 @@
 //! Errors of the forces on one configuration, over the size of the box.
 
-use super::{Gas, PACKING_FRACTIONS, StudyError, place};
+use super::gas::{Gas, PACKING_FRACTIONS, place};
 use crate::observe::contacts;
+use crate::study::StudyError;
 use serde::Serialize;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
-/// A way to compute forces.
+/// A precision, execution and choice of coordinates that forces are computed with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Way {
+pub struct Variant {
     /// Its name in a legend.
     pub name: &'static str,
     /// `method.precision`.
@@ -18,30 +19,40 @@ pub struct Way {
     pub coordinates: &'static str,
 }
 
-/// The ways that are held against the fast execution in f64.
-pub const WAYS: [Way; 7] = [
-    Way { name: "mixed, fast", precision: "mixed", execution: "fast", coordinates: "cell-relative" },
-    Way { name: "f32, fast", precision: "f32", execution: "fast", coordinates: "cell-relative" },
-    Way {
+/// The variants that are compared with the fast execution in f64.
+pub const VARIANTS: [Variant; 7] = [
+    Variant { name: "mixed, fast", precision: "mixed", execution: "fast", coordinates: "cell-relative" },
+    Variant { name: "f32, fast", precision: "f32", execution: "fast", coordinates: "cell-relative" },
+    Variant {
         name: "mixed, faithful, from the cell",
         precision: "mixed",
         execution: "chained",
         coordinates: "cell-relative",
     },
-    Way {
+    Variant {
         name: "f32, faithful, from the cell",
         precision: "f32",
         execution: "chained",
         coordinates: "cell-relative",
     },
-    Way {
+    Variant {
         name: "mixed, faithful, absolute",
         precision: "mixed",
         execution: "chained",
         coordinates: "absolute",
     },
-    Way { name: "f32, faithful, absolute", precision: "f32", execution: "chained", coordinates: "absolute" },
-    Way { name: "f64, faithful, absolute", precision: "f64", execution: "chained", coordinates: "absolute" },
+    Variant {
+        name: "f32, faithful, absolute",
+        precision: "f32",
+        execution: "chained",
+        coordinates: "absolute",
+    },
+    Variant {
+        name: "f64, faithful, absolute",
+        precision: "f64",
+        execution: "chained",
+        coordinates: "absolute",
+    },
 ];
 
 /// Numbers of discs.
@@ -51,7 +62,7 @@ pub const PARTICLES: [usize; 3] = [1000, 10_000, 100_000];
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ForceError {
     /// How the forces were computed.
-    pub way: Way,
+    pub variant: Variant,
     /// Packing fraction.
     pub packing_fraction: f64,
     /// Discs.
@@ -66,7 +77,7 @@ pub struct ForceError {
     pub largest: f64,
 }
 
-/// Every way on every configuration. `progress` gets the share that is done.
+/// Every variant on every configuration. `progress` gets the share that is done.
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks.
@@ -76,7 +87,7 @@ pub fn force_errors(progress: impl Fn(f64)) -> Result<Vec<ForceError>, StudyErro
     for packing_fraction in PACKING_FRACTIONS {
         for particles in PARTICLES {
             errors.extend(on_one_configuration(packing_fraction, particles)?);
-            progress(errors.len() as f64 / (cases * WAYS.len()) as f64);
+            progress(errors.len() as f64 / (cases * VARIANTS.len()) as f64);
         }
     }
     Ok(errors)
@@ -85,25 +96,25 @@ pub fn force_errors(progress: impl Fn(f64)) -> Result<Vec<ForceError>, StudyErro
 fn on_one_configuration(packing_fraction: f64, count: usize) -> Result<Vec<ForceError>, StudyError> {
     let overrides = place(count, packing_fraction, 1);
     let discs = Gas::equilibrated(&overrides)?;
-    let computed = |way: Way| -> Result<Gas, StudyError> {
-        let method = [("precision", way.precision), ("execution", way.execution)];
+    let computed = |variant: Variant| -> Result<Gas, StudyError> {
+        let method = [("precision", variant.precision), ("execution", variant.execution)];
         let method = method.map(|(key, value)| format!("method.{key}=\"{value}\""));
-        let coordinates = match way.coordinates {
+        let coordinates = match variant.coordinates {
             "absolute" => Coordinates::Absolute,
             _ => Coordinates::CellRelative,
         };
         Gas::seen_from(coordinates, &[overrides.as_slice(), &method].concat(), Some(&discs))
     };
-    let reference = computed(Way { precision: "f64", ..WAYS[0] })?;
+    let reference = computed(Variant { precision: "f64", ..VARIANTS[0] })?;
     let exact = reference.method.forces();
     let domain = reference.scenery.domain;
     let contacts = contacts(&discs, &domain).len() as f64 / discs.len() as f64;
-    let ways = WAYS.into_iter().map(|way| {
-        let [rms, largest] = errors(&exact, &computed(way)?.method.forces());
+    let variants = VARIANTS.into_iter().map(|variant| {
+        let [rms, largest] = errors(&exact, &computed(variant)?.method.forces());
         let side = domain.sides[0].max(domain.sides[1]);
-        Ok(ForceError { way, packing_fraction, particles: discs.len(), side, contacts, rms, largest })
+        Ok(ForceError { variant, packing_fraction, particles: discs.len(), side, contacts, rms, largest })
     });
-    ways.collect()
+    variants.collect()
 }
 
 /// Root of the mean square of the errors of forces, and the largest, over that of the exact ones.
@@ -126,12 +137,12 @@ mod tests {
         assert!((largest - 0.1).abs() < 1e-15 && (rms - 0.1 / 2f64.sqrt()).abs() < 1e-15, "{rms} {largest}");
     }
 
-    /// In fewer digits errors are those of the digits, whatever the box; from the box's corner they grow with it.
+    /// In fewer digits the errors are those of the digits, in any box; from the box's corner they grow with it.
     #[test]
     fn errors_do_not_depend_on_the_box_but_from_its_corner() {
         let [small, large] = [400, 6400].map(|count| on_one_configuration(0.84, count).unwrap());
         let rms = |errors: &[ForceError], name: &str| {
-            errors.iter().find(|error| error.way.name == name).map(|error| error.rms).unwrap()
+            errors.iter().find(|error| error.variant.name == name).map(|error| error.rms).unwrap()
         };
         for name in ["mixed, fast", "f32, fast", "mixed, faithful, from the cell"] {
             let ratio = rms(&large, name) / rms(&small, name);

@@ -1,6 +1,7 @@
-//! How fast trajectories of one start run apart when digits differ: collisions multiply whatever error there is.
+//! How fast trajectories of one start run apart when digits differ: collisions multiply every error.
 
-use super::{Gas, PACKING_FRACTIONS, SEEDS, StudyError, place};
+use super::gas::{Gas, PACKING_FRACTIONS, SEEDS, place};
+use crate::study::StudyError;
 use crate::study::statistics::{Spread, slope};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
@@ -15,7 +16,7 @@ pub const STEPS: u64 = 8000;
 pub const LOOK: u64 = 100;
 /// Precision and execution of those that run beside the fast execution in f64.
 pub const RIVALS: [(&str, &str); 3] = [("f64", "chained"), ("mixed", "fast"), ("f32", "fast")];
-/// From so many times its first value on a distance grows because trajectories part, not because rounding goes on.
+/// From this multiple of its first value on a distance grows because trajectories part, not because rounding goes on.
 pub const PARTED: f64 = 10.0;
 /// Up to this distance (length) the growth is exponential: beyond it discs meet other partners.
 pub const LOST: f64 = 0.02;

@@ -1,4 +1,4 @@
-//! What of a line lies in a box.
+//! The part of a line inside a box.
 
 use super::super::sheet::{Area, Place};
 

@@ -3,7 +3,7 @@
 use super::super::look::{Look, looks};
 use super::super::sheet::{Anchor, Area, Mark, Place};
 use super::super::{Chart, font, style};
-use super::chart::band;
+use super::band::band;
 use super::title;
 
 /// From the chart to the legend.

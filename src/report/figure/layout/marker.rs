@@ -4,7 +4,7 @@ use super::super::sheet::{Mark, Paint, Place, Stroke};
 use super::super::style::{self, Colour, Marker};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// A marker at a place. A hollow one tells series of the same hue apart; both have a rim, so that markers upon each
+/// A marker at a place. A hollow one distinguishes series of the same hue; both have a rim, so that markers upon each
 /// other can be counted.
 pub fn mark(shape: Marker, centre: Place, colour: Colour, hollow: bool) -> Mark {
     let [fill, rim, width] =

@@ -1,8 +1,10 @@
 //! Where everything of a picture lies on its sheet.
 
+mod band;
 mod chart;
 mod clip;
 mod colour_bar;
+mod curve;
 mod drawing;
 mod edge;
 mod frame;

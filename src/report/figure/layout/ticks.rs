@@ -85,7 +85,7 @@ fn count_of(decades: &std::ops::RangeInclusive<i32>, stride: i32) -> usize {
     decades.clone().filter(|power| power.rem_euclid(stride) == 0).count()
 }
 
-/// So many steps of a power of ten.
+/// A multiple of a power of ten.
 fn steps(count: i64, power: i32) -> f64 {
     let size = libm::pow(10.0, f64::from(power.abs()));
     if power < 0 { count as f64 / size } else { count as f64 * size }

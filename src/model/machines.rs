@@ -1,0 +1,114 @@
+//! The machines that come with the program.
+
+use super::machine::MachineModel;
+use super::machine_file::MachineError;
+
+macro_rules! embedded {
+    ($($name:literal),* $(,)?) => {
+        &[$(($name, include_str!(concat!("machines/", $name, ".toml")))),*]
+    };
+}
+
+/// The machines that come with the program: name and text of the file.
+const PRESETS: &[(&str, &str)] = embedded![
+    "paper",
+    "cray-1",
+    "cyber-205",
+    "cray-x-mp",
+    "cray-y-mp",
+    "nec-sx-3",
+    "cray-c90",
+    "cray-y-mp-el",
+    "cray-j90",
+    "sx-aurora",
+];
+
+/// The names of the presets, the paper's own machine first.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    PRESETS.iter().map(|&(name, _)| name)
+}
+
+/// The machine called `name`: a preset, or the file at that path, if it ends in `.toml`.
+///
+/// # Errors
+/// [`MachineError`] where no preset has that name, or the file is bad.
+pub fn find(name: &str) -> Result<MachineModel, MachineError> {
+    if !name.ends_with(".toml") {
+        return preset(name);
+    }
+    MachineModel::load(name)
+}
+
+/// The preset called `name`.
+///
+/// # Errors
+/// [`MachineError::Unknown`] where no preset has that name.
+pub fn preset(name: &str) -> Result<MachineModel, MachineError> {
+    let (known, text) = PRESETS
+        .iter()
+        .find(|&&(known, _)| known == name)
+        .ok_or_else(|| MachineError::Unknown { name: name.to_owned(), known: names().collect() })?;
+    // The texts are part of the program and a test reads them all: no user can get here with a bad one.
+    Ok(MachineModel::parse(known, text)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use OpClass::{Add, Divide, Load, Logical, Multiply};
+    use stripmine_kernels::isa::op::{Op, OpClass, OpCounts};
+
+    #[test]
+    fn every_preset_parses_and_states_where_each_number_comes_from() {
+        for name in names() {
+            let machine = preset(name).unwrap();
+            let entries = machine.entries();
+            assert!(entries.iter().all(|entry| !entry.note.trim().is_empty()), "{name}");
+            // Every operation that a program counts must end in classes with a start-up.
+            let mut counts = OpCounts::default();
+            Op::ALL.iter().for_each(|&op| counts.record(op));
+            for class in machine.expand(&counts).into_keys() {
+                assert!(machine.start_up(class) > 0.0, "{name}: {}", class.name());
+            }
+        }
+    }
+
+    #[test]
+    fn the_paper_machine_has_one_start_up_and_lacks_nothing() {
+        let machine = preset("paper").unwrap();
+        assert!(OpClass::ALL.iter().all(|&class| machine.start_up(class) == 20.0));
+        assert!(OpClass::ALL.iter().all(|&class| machine.expansion(class).is_none()));
+        assert_eq!(machine.vector_registers(), None);
+        assert_eq!(machine.assumed(), [""; 0]);
+    }
+
+    #[test]
+    fn expansions_nest_and_multiply() {
+        let machine = preset("cray-1").unwrap();
+        let mut counts = OpCounts::default();
+        (0..5).for_each(|_| counts.record(Op::SquareRoot));
+        (0..2).for_each(|_| counts.record(Op::Divide));
+        counts.record(Op::Load);
+        // A square root holds 3 quotients, 4 products, 4 sums and 4 bit operations; a quotient 3 products.
+        let expected =
+            [(Add, 5 * 4), (Multiply, 5 * (4 + 3 * 3) + 2 * 3), (Divide, 5 * 3 + 2), (Logical, 5 * 4)];
+        assert_eq!(machine.expand(&counts), expected.into_iter().chain([(Load, 1)]).collect());
+    }
+
+    #[test]
+    fn an_unknown_machine_is_answered_with_the_known_names() {
+        let error = preset("cray-3").unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "unknown machine `cray-3`; known are paper, cray-1, cyber-205, cray-x-mp, cray-y-mp, nec-sx-3, \
+             cray-c90, cray-y-mp-el, cray-j90, sx-aurora, and machine files by their path, which ends in .toml"
+        );
+    }
+
+    #[test]
+    fn assumed_entries_are_listed_by_name() {
+        let assumed = preset("cray-1").unwrap().assumed();
+        assert!(assumed.contains(&"expansions.square_root".to_owned()));
+        assert!(!assumed.contains(&"start_up.multiply".to_owned()));
+    }
+}
