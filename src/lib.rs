@@ -4,34 +4,17 @@
 //! crate is the laboratory around that machine: methods that step particles, the model that predicts what a step
 //! costs, studies that answer a user's question, and reports that show the answer.
 //!
-//! Step a scene and look at it:
+//! Run a scene and look at it:
 //!
 //! ```
-//! use stripmine::method::Method;
-//! use stripmine::observe::{Observation, Scenery};
-//! use stripmine::run::{assemble, model};
-//! use stripmine::scene::Document;
+//! use std::sync::atomic::AtomicBool;
+//! use stripmine::method::{METHODS, Purpose, load};
 //!
-//! let checked = Document::load("two-discs", &["run.steps=100".to_owned()])?.check()?;
-//! let mut method = assemble(&checked)?;
-//! for _ in 0..checked.scene.run.steps {
-//!     method.step()?;
-//! }
-//! let seen = Observation::of(method.steps(), method.time(), &method.particles(), &Scenery::of(&model(&checked)));
-//! assert!((seen.momentum_x - 1.0).abs() < 1e-12);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
-//!
-//! Ask what a step costs, by the source's count and by the programs that run:
-//!
-//! ```
-//! use stripmine::model::machines;
-//! use stripmine::study::efficiency_table::{Question, efficiency_table};
-//!
-//! let table = efficiency_table(&Question::default(), &machines::preset("paper")?)?;
-//! let forces = table.parts.iter().find(|row| row.part == "forces").expect("a step has forces");
-//! assert_eq!(forces.printed, Some(1656));
-//! assert!(forces.counted < 1656);
+//! let (prepared, method) = load("two-discs", &["run.steps=100".to_owned()], METHODS)?;
+//! let mut simulation = prepared.start(Purpose::Run)?;
+//! simulation.advance(&[prepared.schedule().until], &AtomicBool::new(false))?;
+//! let momentum = method.quantities.iter().position(|quantity| quantity.name == "momentum_x");
+//! assert!((simulation.observe()[momentum.expect("it is observed")] - 1.0).abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -53,10 +36,11 @@
 //! ```
 
 pub mod cli;
+pub mod console;
 pub mod domain;
 pub mod grid;
 pub mod io;
-pub mod machine_memory;
+pub mod memory;
 pub mod method;
 pub mod model;
 pub mod observe;
@@ -65,7 +49,11 @@ pub mod particles;
 pub mod placement;
 pub mod quoted;
 pub mod report;
+pub mod reported;
+pub mod results;
 pub mod run;
 pub mod scene;
-mod signals;
-pub mod study;
+pub mod signals;
+pub mod start;
+pub mod statistics;
+pub mod words;

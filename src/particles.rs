@@ -72,6 +72,19 @@ impl Particles {
         self.0.is_empty()
     }
 
+    /// CRC-32 of the bits of positions, velocities and spins, by id: equal states have equal checksums.
+    pub fn checksum(&self) -> String {
+        let mut discs: Vec<_> = self.0.iter().collect();
+        discs.sort_by_key(|disc| disc.id);
+        let mut hasher = crc32fast::Hasher::new();
+        for disc in discs {
+            let numbers =
+                [disc.position[0], disc.position[1], disc.velocity[0], disc.velocity[1], disc.omega];
+            numbers.iter().for_each(|number| hasher.update(&number.to_bits().to_le_bytes()));
+        }
+        format!("{:08x}", hasher.finalize())
+    }
+
     /// The smallest and the largest radius, wall discs included; none without discs.
     pub fn radii(&self) -> Option<[f64; 2]> {
         let radii = || self.0.iter().map(|disc| disc.radius);

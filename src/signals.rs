@@ -2,8 +2,8 @@
 //!
 //! Interruption (Ctrl-C) and termination end the process with exit code 130, from the thread of their handler: at once, whatever
 //! is being computed. Nothing computed has to ask whether it should stop, so that no loop can forget to. What must not be cut in
-//! half says so instead: files that belong together are written in [`whole`], after which the process ends; a run is in
-//! [`hold`] from its first file on, looks at [`asked`] after every step, and leaves a checkpoint. A second signal ends the
+//! half says so instead: files that belong together are written in `whole`, after which the process ends; a run is in
+//! `hold` from its first file on, looks at `asked` after every step, and leaves a checkpoint. A second signal ends the
 //! process at once, whatever is held.
 //!
 //! A file that reaches the limit of its size is an error of writing, not a signal. A program that uses the library
@@ -22,7 +22,7 @@ const PATIENCE: Duration = Duration::from_millis(300);
 
 /// How the process ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum End {
+pub enum End {
     /// Nothing is half written.
     Whole,
     /// At a second signal: what was being written may be incomplete.

@@ -14,12 +14,12 @@ fn stripmine(folder: &Path, arguments: &[&str]) -> Output {
 fn prepare(folder: &Path) {
     let write = |name: &str, bytes: &[u8]| std::fs::write(folder.join(name), bytes).unwrap();
     write("file", b"mine");
-    write("latin.toml", b"format = 1\nunits = \"\xe9\"\n");
+    write("latin.toml", b"format = 2\nmethod.kind = \"lattice-md\"\nunits = \"\xe9\"\n");
     let columns = "species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
     let head = format!("1\nProperties={columns} Lattice=\"9 0 0 0 9 0 0 0 1\" pbc=\"F F F\"\nAr 1 ");
     write("frame.xyz", &[head.as_bytes(), b"\xff 0 1 0 0 0 0.5 1 0 0 0\n"].concat());
     let scene = String::from_utf8(stripmine(folder, &["scene", "show", "two-discs"]).stdout).unwrap();
-    write("scene.toml", scene.replace("format = 1", "format = 99").as_bytes());
+    write("scene.toml", scene.replace("format = 2", "format = 99").as_bytes());
 }
 
 /// Arguments, exit code, kind of the failure as data, and words of the message.
@@ -40,7 +40,7 @@ const CASES: &[(&[&str], i32, &str, &[&str])] = &[
     (&["table", "--ladder", "--machine", "scene.toml"], 3, "input", &["scene.toml"]),
     (&["table", "--ladder", "--host", "none.toml"], 5, "input-output", &["none.toml"]),
     (&["table", "--ladder", "--host", "."], 5, "input-output", &["folder"]),
-    (&["table", "--ladder", "--host", "latin.toml"], 3, "input", &["line 2", "UTF-8"]),
+    (&["table", "--ladder", "--host", "latin.toml"], 3, "input", &["line 3", "UTF-8"]),
     (&["table", "--ladder", "--host", "scene.toml"], 3, "input", &["scene.toml"]),
     (&["listing"], 2, "usage", &["PART"]),
     (&["listing", "foces"], 2, "usage", &["forces"]),
@@ -49,7 +49,7 @@ const CASES: &[(&[&str], i32, &str, &[&str])] = &[
     (&["scene", "show", "three-discs"], 2, "usage", &["two-discs"]),
     (&["scene", "check"], 2, "usage", &["SCENE"]),
     (&["scene", "check", "none.toml"], 3, "input", &["none.toml"]),
-    (&["scene", "check", "latin.toml"], 3, "input", &["latin.toml:2:", "UTF-8"]),
+    (&["scene", "check", "latin.toml"], 3, "input", &["latin.toml:3:", "UTF-8"]),
     (&["scene", "check", "scene.toml"], 3, "input", &["scene.toml:", "99"]),
     (&["scene", "check", "pipe", "--set", "law.friction=-1"], 3, "input", &["friction", "-1"]),
     (&["scene", "check", "pipe", "--set", "nothing"], 3, "input", &["nothing"]),

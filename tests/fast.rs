@@ -3,13 +3,16 @@
 
 mod support;
 
+use stripmine::io::checkpoint::Column;
+use stripmine::method::Failure;
+use stripmine::method::lattice_md::Document;
+use stripmine::method::lattice_md::Engine;
 use stripmine::method::lattice_md::{
     Contacts, GearValues, Machine, Model, OnConflict, Scheme, Search, Watch,
 };
-use stripmine::method::{Failure, Method, StateColumn};
 use stripmine::observe::{Observation, Scenery};
 use stripmine::particles::{Kind, Particles};
-use stripmine::scene::{Document, Precision, WallMotion};
+use stripmine::scene::{Precision, WallMotion};
 use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::sweep::lattice::LatticeShape;
 use stripmine_kernels::{Execution, InstructionSet};
@@ -27,10 +30,12 @@ const SCHEMES: [Scheme; 4] = [
     Scheme::Gear(GearValues::Six),
 ];
 
-fn bits(method: &dyn Method) -> Vec<(String, Vec<u64>)> {
-    let bits = |column: StateColumn| match column {
-        StateColumn::F64(values) => values.into_iter().map(f64::to_bits).collect(),
-        StateColumn::F32(values) => values.into_iter().map(|x| u64::from(x.to_bits())).collect(),
+fn bits(method: &dyn Engine) -> Vec<(String, Vec<u64>)> {
+    let bits = |column: Column| match column {
+        Column::F64(values) => values.into_iter().map(f64::to_bits).collect(),
+        Column::F32(values) => values.into_iter().map(|x| u64::from(x.to_bits())).collect(),
+        Column::U32(values) => values.into_iter().map(u64::from).collect(),
+        Column::U64(values) => values,
     };
     method.state().into_iter().map(|(name, column)| (name, bits(column))).collect()
 }
@@ -216,7 +221,7 @@ fn wide_sizes_are_for_sectors_and_lists() {
     };
     let few = ["domain.sides=[20, 18]", "particles.packing_fraction=0.3"];
     let checked = load(&few).unwrap_or_else(|errors| panic!("{errors}"));
-    let (model, dt) = (stripmine::run::model(&checked), 0.002);
+    let (model, dt) = (stripmine::method::lattice_md::model(&checked), 0.002);
     let mut expected = checked.particles.clone();
     let radii = expected.radii().unwrap();
     assert!(radii[1] / radii[0] > 5.0, "{radii:?}");
@@ -237,14 +242,14 @@ fn wide_sizes_are_for_sectors_and_lists() {
     let moved = differences(&model, &checked.particles, &expected);
     assert!(moved[0] > 0.5 && moved[1] > 0.1, "the discs must have moved and met: {moved:?}");
     for kind in ["sectors", "neighbor-list"] {
-        let checked = load(&[&few[..], &[&format!("method.kind={kind}")]].concat()).unwrap();
-        let mut method = stripmine::run::assemble(&checked).unwrap();
+        let checked = load(&[&few[..], &[&format!("search.by={kind}")]].concat()).unwrap();
+        let mut method = stripmine::method::lattice_md::assemble(&checked).unwrap();
         advance(method.as_mut(), STEPS);
         let off = differences(&model, &expected, &method.particles());
         assert!(off[0] < 1e-9 && off[1] < 1e-8, "{kind}: {off:?}");
     }
-    let refused = load(&["method.kind=lattice"]).unwrap_err().to_string();
-    assert!(refused.contains("or let method.kind = \"sectors\""), "{refused}");
+    let refused = load(&["search.by=lattice"]).unwrap_err().to_string();
+    assert!(refused.contains("or let search.by = \"sectors\""), "{refused}");
 }
 
 #[test]
@@ -253,7 +258,7 @@ fn momentum_is_conserved_to_rounding() {
     start.0.scheme = Scheme::VelocityVerlet;
     let mut gas = simulate(Precision::F64, &start, Contacts::Fast(LATTICE), fast());
     let observe =
-        |gas: &dyn Method| Observation::of(gas.steps(), 0.0, &gas.particles(), &Scenery::of(&start.0));
+        |gas: &dyn Engine| Observation::of(gas.steps(), 0.0, &gas.particles(), &Scenery::of(&start.0));
     let first = observe(gas.as_ref());
     advance(gas.as_mut(), 2000);
     let seen = observe(gas.as_ref());
@@ -270,7 +275,7 @@ fn energy_is_kept_over_ten_thousand_steps() {
         start.0.contact = Contact { normal_damping: 0.0, shear_damping: 0.0, friction: 0.0, ..CONTACT };
         (start.0.friction, start.0.scheme) = (false, scheme);
         let mut gas = simulate(Precision::F64, &start, contacts, fast());
-        let energy = |gas: &dyn Method| {
+        let energy = |gas: &dyn Engine| {
             Observation::of(gas.steps(), 0.0, &gas.particles(), &Scenery::of(&start.0)).energy()
         };
         let first = energy(gas.as_ref());

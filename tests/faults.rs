@@ -13,10 +13,10 @@ use stripmine_kernels::noise::{Purpose, Stream};
 
 /// Small scenes of every method with a state of its own kind.
 const SCENES: [&[&str]; 4] = [
-    &["two-discs", "--set", "method.execution=chained"],
-    &["two-discs", "--set", "method.kind=neighbor-list", "--set", "method.execution=chained"],
-    &["pipe-small", "--set", "method.execution=fast"],
-    &["pipe-small", "--set", "method.kind=neighbor-list", "--set", "method.execution=fast"],
+    &["two-discs", "--set", "machine.execution=chained"],
+    &["two-discs", "--set", "search.by=neighbor-list", "--set", "machine.execution=chained"],
+    &["pipe-small", "--set", "machine.engine=fast", "--set", "search.by=lattice"],
+    &["pipe-small", "--set", "search.by=neighbor-list", "--set", "machine.engine=fast"],
 ];
 
 /// The files that the physics alone decides.

@@ -201,9 +201,15 @@ fn a_list_of_other_names_is_refused() {
     }
 }
 
+/// No disc leaves a box that is periodic.
+const PERIODIC: &str = "domain.periodic=[true, true]";
+
 /// A run that lasts until it is killed.
 fn endless(folder: &Path) -> Child {
-    let mut command = run(folder, &["--set", "run.steps=1000000000", "--set", "run.checkpoint_every=100"]);
+    let mut command = run(
+        folder,
+        &["--set", "run.steps=1000000000", "--set", "run.checkpoint_every=100", "--set", PERIODIC],
+    );
     let child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     while !folder.join("run.checkpoint").exists() {
         std::thread::sleep(std::time::Duration::from_millis(5));
@@ -222,7 +228,7 @@ fn one_process_writes_into_a_folder() {
     }
     child.kill().unwrap();
     child.wait().unwrap();
-    let longer = &["--resume", "--set", "run.steps=1000000000"];
+    let longer = &["--resume", "--set", "run.steps=1000000000", "--set", PERIODIC];
     let mut child = run(&out, longer).stdout(Stdio::null()).spawn().unwrap();
     std::thread::sleep(std::time::Duration::from_millis(300));
     assert!(child.try_wait().unwrap().is_none(), "the lock of the killed process is still there");

@@ -7,11 +7,11 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::f64::consts::SQRT_2;
 use std::fmt::Write;
 use std::sync::LazyLock;
+use stripmine::method::lattice_md::Document;
+use stripmine::method::lattice_md::{assemble, model};
 use stripmine::observe::{Observation, Scenery, contacts, waves};
 use stripmine::particles::Particles;
-use stripmine::run::{assemble, model};
-use stripmine::scene::Document;
-use stripmine::study::statistics::Spread;
+use stripmine::statistics::Spread;
 
 const SEEDS: u64 = 6;
 /// Mean radius (m).

@@ -35,13 +35,13 @@ fn no_message_carries_what_a_terminal_obeys() {
     let escaped = |text: &str| text.chars().map(|c| format!("\\U{:08X}", c as u32)).collect::<String>();
     for nasty in NASTY {
         let key = escaped(nasty);
-        let scene = "format = 1\nunits = \"SI\"\n[domain]\nsides = [10.0, 8.0]\n[particles]\nfile = \"FILE\"\n[law]\nstiffness = 1\n\
+        let scene = "format = 2\nmethod.kind = \"lattice-md\"\nunits = \"SI\"\n[domain]\nsides = [10.0, 8.0]\n[particles]\nfile = \"FILE\"\n[law]\nstiffness = 1\n\
                      [integrator]\ndt = 1e-3\n[run]\nsteps = 1\n";
         let files = [
-            ("syntax.toml", format!("format = 1\nx = {nasty}")),
+            ("syntax.toml", format!("format = 2\nx = {nasty}")),
             (
                 "key.toml",
-                format!("format = 1\n\"{key}\" = 1\n[\"{key}\"]\n[law]\n\"{key}\" = 2\nkind = \"{key}\"\n"),
+                format!("format = 2\n\"{key}\" = 1\n[\"{key}\"]\n[law]\n\"{key}\" = 2\nkind = \"{key}\"\n"),
             ),
             ("file.toml", scene.replace("FILE", &key)),
             ("species.toml", scene.replace("FILE", "species.xyz")),
@@ -124,7 +124,7 @@ fn what_is_no_ordinary_file_is_refused() {
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
     std::os::unix::fs::symlink("/dev/zero", folder.path().join("zero.toml")).unwrap();
     std::fs::create_dir(folder.path().join("folder.toml")).unwrap();
-    let scene = "format = 1\nunits = \"SI\"\n[domain]\nsides = [10.0, 8.0]\n[particles]\nfile = \"FILE\"\n[law]\nstiffness = 1\n\
+    let scene = "format = 2\nmethod.kind = \"lattice-md\"\nunits = \"SI\"\n[domain]\nsides = [10.0, 8.0]\n[particles]\nfile = \"FILE\"\n[law]\nstiffness = 1\n\
                  [integrator]\ndt = 1e-3\n[run]\nsteps = 1\n";
     for (name, words) in [
         ("pipe.toml", "it is a pipe; expected an ordinary file"),
@@ -152,15 +152,16 @@ fn what_is_no_ordinary_file_is_refused() {
 /// Files of other kinds and broken ones may hold mistakes without end: the first are named, the rest counted.
 #[test]
 fn many_mistakes_are_counted() {
-    use stripmine::scene::{Reason, Scene};
+    use stripmine::method::lattice_md::Scene;
+    use stripmine::scene::Reason;
     let keys: String = (0..100_000).map(|i| format!("key{i} = 1\n")).collect();
     let positions = format!("[particles]\npositions = [{}]", "[1.0, 2.0, 3.0], ".repeat(40_000));
     for (text, more) in [
-        (format!("format = 1\n[law]\n{keys}"), Some("more mistakes, not named")),
-        (format!("format = 1\n{keys}"), Some("more mistakes, not named")),
-        (format!("format = 1\n{}", "x\n".repeat(100_000)), Some("more mistakes, not named")),
-        (format!("format = 1\n{positions}"), None),
-        (format!("format = 1\n[law]\n{} = 1", "k".repeat(1_000_000)), None),
+        (format!("format = 2\n[law]\n{keys}"), Some("more mistakes, not named")),
+        (format!("format = 2\n{keys}"), Some("more mistakes, not named")),
+        (format!("format = 2\n{}", "x\n".repeat(100_000)), Some("more mistakes, not named")),
+        (format!("format = 2\n{positions}"), None),
+        (format!("format = 2\n[law]\n{} = 1", "k".repeat(1_000_000)), None),
     ] {
         let errors = Scene::parse("scene.toml", &text).unwrap_err();
         assert!(errors.0.len() <= 60, "{}", errors.0.len());
@@ -175,7 +176,7 @@ fn many_mistakes_are_counted() {
 /// The column of an item is found without counting from the beginning of its line.
 #[test]
 fn a_long_line_is_read_in_time_that_grows_with_its_length() {
-    use stripmine::scene::Document;
+    use stripmine::method::lattice_md::Document;
     let text = Document::load("two-discs", &[]).unwrap().scene.to_toml();
     let list =
         |count: usize| (0..count).map(|i| format!("[{}.0, 1.0]", i % 9)).collect::<Vec<_>>().join(", ");
@@ -208,7 +209,7 @@ fn a_heap_of_discs_is_refused_without_counting_it_out() {
     let header = "Lattice=\"10.0 0 0 0 8.0 0 0 0 1\" Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
     let rows: String = (1..=8000).map(|id| format!("Si 5 5 0 {id} 0 0 0 0.5 1 0 0 0\n")).collect();
     std::fs::write(folder.path().join("heap.xyz"), format!("8000\n{header}\n{rows}")).unwrap();
-    let scene = "format = 1\nunits = \"SI\"\n[domain]\nsides = [10.0, 8.0]\n[particles]\nfile = \"heap.xyz\"\n[law]\nstiffness = 1\n\
+    let scene = "format = 2\nmethod.kind = \"lattice-md\"\nunits = \"SI\"\n[domain]\nsides = [10.0, 8.0]\n[particles]\nfile = \"heap.xyz\"\n[law]\nstiffness = 1\n\
                  [integrator]\ndt = 1e-3\n[run]\nsteps = 1\n";
     std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
     let (code, text) = said(&["scene", "check", "scene.toml"], folder.path());

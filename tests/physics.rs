@@ -3,8 +3,10 @@
 
 mod support;
 
+use stripmine::io::checkpoint::Column;
+use stripmine::method::Failure;
+use stripmine::method::lattice_md::Engine;
 use stripmine::method::lattice_md::{Contacts, GearValues, Machine, Model, Scheme, Watch};
-use stripmine::method::{Failure, Method, StateColumn};
 use stripmine::observe::{Observation, Scenery};
 use stripmine::particles::{Particle, Particles};
 use stripmine::scene::Precision;
@@ -12,11 +14,11 @@ use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, advance, arena, fast, gas, grain, simulate};
 
-fn lattice(start: &(Model, Particles)) -> Box<dyn Method> {
+fn lattice(start: &(Model, Particles)) -> Box<dyn Engine> {
     simulate(Precision::F64, start, Contacts::Lattice, fast())
 }
 
-fn observe(method: &dyn Method, model: &Model) -> Observation {
+fn observe(method: &dyn Engine, model: &Model) -> Observation {
     Observation::of(method.steps(), method.time(), &method.particles(), &Scenery::of(model))
 }
 
@@ -323,10 +325,12 @@ fn friction_is_coulombs_where_surfaces_slide_and_less_where_they_roll() {
 
 // ---- the same bits --------------------------------------------------------------------------------------
 
-fn bits(method: &dyn Method) -> Vec<(String, Vec<u64>)> {
-    let bits = |column: StateColumn| match column {
-        StateColumn::F64(values) => values.into_iter().map(f64::to_bits).collect(),
-        StateColumn::F32(values) => values.into_iter().map(|x| u64::from(x.to_bits())).collect(),
+fn bits(method: &dyn Engine) -> Vec<(String, Vec<u64>)> {
+    let bits = |column: Column| match column {
+        Column::F64(values) => values.into_iter().map(f64::to_bits).collect(),
+        Column::F32(values) => values.into_iter().map(|x| u64::from(x.to_bits())).collect(),
+        Column::U32(values) => values.into_iter().map(u64::from).collect(),
+        Column::U64(values) => values,
     };
     method.state().into_iter().map(|(name, column)| (name, bits(column))).collect()
 }

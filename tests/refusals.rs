@@ -1,19 +1,20 @@
 //! What a method cannot do right is refused or said: every way of finding contacts, in every precision, against what is known
 //! of the motion.
 
-use stripmine::method::{Failure, Method, Totals};
+use stripmine::method::Failure;
+use stripmine::method::lattice_md::{Checked, Document};
+use stripmine::method::lattice_md::{Engine, Totals};
+use stripmine::method::lattice_md::{assemble, assemble_following_energy, model};
 use stripmine::observe::{Observation, Scenery};
-use stripmine::run::{assemble, assemble_following_energy, model};
-use stripmine::scene::{Checked, Document};
 
 /// Every engine by the overrides that choose it.
 const ENGINES: [(&str, &[&str]); 6] = [
-    ("chained lattice", &["method.execution=chained"]),
-    ("eager lattice", &["method.execution=eager"]),
-    ("fast lattice", &["method.execution=fast"]),
-    ("sectors", &["method.kind=sectors", "method.execution=fast"]),
-    ("chained lists", &["method.kind=neighbor-list", "method.execution=chained"]),
-    ("fast lists", &["method.kind=neighbor-list", "method.execution=fast"]),
+    ("chained lattice", &["machine.execution=chained"]),
+    ("eager lattice", &["machine.execution=eager"]),
+    ("fast lattice", &["machine.engine=fast", "search.by=lattice"]),
+    ("sectors", &["search.by=sectors", "machine.engine=fast"]),
+    ("chained lists", &["search.by=neighbor-list", "machine.execution=chained"]),
+    ("fast lists", &["search.by=neighbor-list", "machine.engine=fast"]),
 ];
 
 fn checked(scene: &str, overrides: &[&[&str]]) -> Checked {
@@ -34,21 +35,39 @@ fn refused(scene: &str, overrides: &[&str]) -> String {
     document.and_then(Document::check).expect_err("must be refused").to_string()
 }
 
-fn observe(checked: &Checked, method: &dyn Method) -> Observation {
+fn observe(checked: &Checked, method: &dyn Engine) -> Observation {
     Observation::of(method.steps(), method.time(), &method.particles(), &Scenery::of(&model(checked)))
 }
 
-fn advance(method: &mut dyn Method, steps: u64) {
+fn advance(method: &mut dyn Engine, steps: u64) {
     (0..steps).for_each(|_| method.step().unwrap_or_else(|failure| panic!("{failure}")));
 }
 
 /// Discs of radius 0.5 and mass 1 in a box with periodic sides.
 fn discs(sides: [f64; 2], positions: &str, velocities: &str, dt: f64) -> String {
     format!(
-        "format = 1\nunits = \"reduced\"\n[domain]\nsides = {sides:?}\n[particles]\ngenerate = \"list\"\n\
+        "format = 2\nmethod.kind = \"lattice-md\"\nunits = \"reduced\"\n[domain]\nsides = {sides:?}\n[particles]\ngenerate = \"list\"\n\
          positions = {positions}\nvelocities = {velocities}\nradius = 0.5\nmass = 1.0\n[law]\nstiffness = 100.0\n\
          stop_penetration = 0.99\n[integrator]\nkind = \"velocity-verlet\"\ndt = {dt:?}\n[run]\nsteps = 1\n"
     )
+}
+
+/// The box is the scene's, also where no whole number of cells fills it: every engine finds a disc beyond the same side, in
+/// the same step.
+#[test]
+fn a_thin_box_ends_where_the_scene_says() {
+    let scene = discs([6.0, 0.9], "[[1.0, 0.45], [4.0, 0.45]]", "[[0.0, 0.5], [0.0, 0.0]]", 1e-2);
+    let mut found = Vec::new();
+    for (name, engine) in ENGINES {
+        let checked = checked(&scene, &[engine, &["domain.periodic=[true, false]"]]);
+        let mut method = assemble(&checked).unwrap();
+        let failure =
+            (0..200).find_map(|_| method.step().err()).unwrap_or_else(|| panic!("{name}: never left"));
+        let Failure::OutOfBox { step, count: 1, first } = failure else { panic!("{name}: {failure}") };
+        assert!(first.id == 1 && (0.9..0.906).contains(&first.position[1]), "{name}: {first}");
+        found.push(step);
+    }
+    assert!(found.iter().all(|step| *step == found[0]), "{found:?}");
 }
 
 /// Two discs so soft that they come into one cell of the lattice, which lists do not mind.
@@ -112,7 +131,7 @@ fn single_precision_loses_no_motion() {
             } else {
                 100
             };
-            let checked = checked(&scene, &[engine, &["method.precision=f32"]]);
+            let checked = checked(&scene, &[engine, &["machine.precision=f32"]]);
             let mut method = assemble(&checked).unwrap();
             let start = method.particles();
             advance(method.as_mut(), steps);
@@ -135,7 +154,7 @@ fn single_precision_crosses_sides_as_double_does() {
             advance(method.as_mut(), 6000);
             method.particles()
         };
-        for (a, b) in run("method.precision=f64").all().iter().zip(run("method.precision=f32").all()) {
+        for (a, b) in run("machine.precision=f64").all().iter().zip(run("machine.precision=f32").all()) {
             for axis in 0..2 {
                 let side = [12.0, 9.0][axis];
                 let off = (a.position[axis] - b.position[axis] + 1.5 * side).rem_euclid(side) - 0.5 * side;
@@ -153,7 +172,7 @@ fn collisions_in_empty_boxes_keep_their_energy_in_single_precision() {
         let (length, x) = if *name == "chained lists" { (200.0, 90.3) } else { (20_000.0, 9000.3) };
         let positions = format!("[[{x:?}, 9.0], [{:?}, 9.4]]", x + 2.0);
         let scene = discs([length, 20.0], &positions, "[[0.3, 0.0], [-0.3, 0.0]]", 0.005);
-        for (precision, bound) in [("method.precision=f32", 2e-3), ("method.precision=mixed", 2e-3)] {
+        for (precision, bound) in [("machine.precision=f32", 2e-3), ("machine.precision=mixed", 2e-3)] {
             let checked = checked(&scene, &[engine, &[precision]]);
             let mut method = assemble(&checked).unwrap();
             let before = observe(&checked, method.as_ref()).kinetic;
@@ -169,15 +188,15 @@ fn collisions_in_empty_boxes_keep_their_energy_in_single_precision() {
 
 #[test]
 fn single_precision_from_the_origin_is_refused_where_it_loses_motion() {
-    let absolute = ["method.precision=f32", "method.coordinates=absolute"];
+    let absolute = ["machine.precision=f32", "machine.coordinates=absolute"];
     let scene = discs([1000.0, 4.0], "[[700.0, 2.0]]", "[[0.01, 0.0]]", 0.005);
     let said = refused(&scene, &absolute);
     assert!(said.contains("cell-relative") && said.contains("6.0e-5"), "{said}");
     let near = discs([5.0, 4.0], "[[1.0, 2.0]]", "[[1.0, 0.0]]", 0.005);
-    assert!(checked(&near, &[&absolute]).warnings.iter().all(|warning| warning.key != "method.precision"));
+    assert!(checked(&near, &[&absolute]).warnings.iter().all(|warning| warning.key != "machine.precision"));
     // Cells help no longer where discs hardly move.
     let slow = discs([5.0, 4.0], "[[1.0, 2.0]]", "[[1e-5, 0.0]]", 0.005);
-    assert!(refused(&slow, &["method.precision=f32"]).contains("single precision"));
+    assert!(refused(&slow, &["machine.precision=f32"]).contains("single precision"));
 }
 
 /// What contacts dissipate is counted where it happens: rare rows change nothing, and every engine counts the same.
@@ -188,7 +207,7 @@ fn dissipation_is_counted_and_the_balance_closes() {
             ["particles.count=100", "law.normal_damping=0.3", "law.shear_damping=0.2", "law.friction=0.4"];
         let checked = checked("dense-gas", &[&more, engine]);
         let mut method = assemble_following_energy(&checked).unwrap();
-        let energy = |method: &dyn Method| {
+        let energy = |method: &dyn Engine| {
             let seen = observe(&checked, method);
             seen.kinetic + seen.rotational + seen.elastic
         };
@@ -218,7 +237,7 @@ fn work_of_gravity_and_walls_is_counted() {
             let checked = checked(scene, &[engine]);
             let mut method = assemble_following_energy(&checked).unwrap();
             let start = method.particles();
-            let inner = |method: &dyn Method| {
+            let inner = |method: &dyn Engine| {
                 let seen = observe(&checked, method);
                 seen.kinetic + seen.rotational + seen.elastic
             };
@@ -257,7 +276,7 @@ fn a_disc_that_returns_has_left() {
         (0..200).find_map(|_| method.step().err()).expect("it left the box")
     };
     let Failure::OutOfBox { step, .. } = failure(ENGINES[3].1, &[]) else { panic!("another failure") };
-    for skin in ["method.skin=0.15", "method.skin=0.6", "method.skin=1.0"] {
+    for skin in ["search.skin=0.15", "search.skin=0.6", "search.skin=1.0"] {
         let Failure::OutOfBox { step: at, first, .. } = failure(ENGINES[5].1, &[skin]) else {
             panic!("{skin}")
         };
@@ -307,19 +326,19 @@ fn too_few_steps_a_contact_are_refused() {
 /// Cells so wide that the search would miss contacts, for its single precision.
 #[test]
 fn cells_too_wide_for_the_search_are_refused() {
-    let resolve = ["method.execution=fast", "method.on_conflict=resolve"];
+    let resolve = ["machine.engine=fast", "search.by=lattice", "search.on_conflict=resolve"];
     let scene = discs([1e5, 1e5], "[[4.0, 5.0], [7.0, 5.0]]", "[[1.0, 0.0], [0.0, 0.0]]", 1e-3);
-    let said = refused(&scene, &[&resolve[..], &["method.cell_edge=1e4"]].concat());
+    let said = refused(&scene, &[&resolve[..], &["search.cell_edge=1e4"]].concat());
     assert!(said.contains("single precision") && said.contains("at most 8"), "{said}");
     // The widest that is allowed finds every contact.
-    let packed = ["particles.count=400", "particles.temperature=0.05", "method.precision=f64"];
+    let packed = ["particles.count=400", "particles.temperature=0.05", "machine.precision=f64"];
     let run = |engine: &[&str]| {
         let checked = checked("dense-gas", &[&packed, engine]);
         let mut method = assemble(&checked).unwrap();
         advance(method.as_mut(), 200);
         observe(&checked, method.as_ref())
     };
-    let (wide, sectors) = (run(&[&resolve[..], &["method.cell_edge=4"]].concat()), run(ENGINES[3].1));
+    let (wide, sectors) = (run(&[&resolve[..], &["search.cell_edge=4"]].concat()), run(ENGINES[3].1));
     assert_eq!(wide.contacts, sectors.contacts);
     assert!((wide.energy() / sectors.energy() - 1.0).abs() < 1e-9);
 }
@@ -335,10 +354,10 @@ fn positions_too_coarse_for_their_distance_are_refused() {
 /// Lists in boxes that are narrow, and skins for which a box has no room: found when a scene is checked.
 #[test]
 fn boxes_without_room_for_lists_are_refused_when_checked() {
-    let lists = ["method.kind=neighbor-list", "method.execution=fast"];
-    let mut method = assemble(&checked("two-discs", &[&lists, &["method.skin=7.4"]])).unwrap();
+    let lists = ["search.by=neighbor-list", "machine.engine=fast"];
+    let mut method = assemble(&checked("two-discs", &[&lists, &["search.skin=7.4"]])).unwrap();
     advance(method.as_mut(), 50);
-    let said = refused("dense-gas", &[&lists[..], &["particles.count=64", "method.skin=4.0"]].concat());
+    let said = refused("dense-gas", &[&lists[..], &["particles.count=64", "search.skin=4.0"]].concat());
     assert!(said.contains("no room for three sectors"), "{said}");
     // Where no skin is asked for, the box decides.
     let small = discs([4.0, 3.2], "[[1.0, 1.0]]", "[[0.1, 0.0]]", 0.005);
@@ -368,7 +387,7 @@ fn velocities_of_wall_discs_are_not_dropped_in_silence() {
     std::fs::write(&file, format!("3\n{head}\n{rows}")).unwrap();
     // Without pbc the scene alone decides which sides are periodic.
     let scene = format!(
-        "format = 1\nunits = \"reduced\"\n[domain]\nsides = [10.0, 8.0]\nperiodic = [true, false]\n[particles]\nfile = {:?}\n\
+        "format = 2\nmethod.kind = \"lattice-md\"\nunits = \"reduced\"\n[domain]\nsides = [10.0, 8.0]\nperiodic = [true, false]\n[particles]\nfile = {:?}\n\
          [law]\nstiffness = 100.0\n[integrator]\ndt = 0.005\n[run]\nsteps = 1\n",
         file.display().to_string()
     );

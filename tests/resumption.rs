@@ -114,7 +114,7 @@ fn the_contents_of_the_start_file_belong_to_a_run() {
     fs::write(&start, discs("1.0")).unwrap();
     fs::write(
         &scene,
-        "format = 1\nunits = \"reduced\"\n[domain]\nsides = [10.0, 8.0]\n[particles]\nfile = \"two.xyz\"\n[law]\n\
+        "format = 2\nmethod.kind = \"lattice-md\"\nunits = \"reduced\"\n[domain]\nsides = [10.0, 8.0]\n[particles]\nfile = \"two.xyz\"\n[law]\n\
          stiffness = 187.0\n[integrator]\ndt = 0.005\n[run]\nsteps = 50\n",
     )
     .unwrap();
@@ -166,7 +166,7 @@ fn fewer_steps_than_done_are_refused() {
     let path = folder.path().join("run");
     succeed(&run(&path, 60, &[]));
     let before = (bits(&path), summary(&path));
-    refused(&run(&path, 50, &["--resume"]), 2, &["60 steps", "50 are asked for"]);
+    refused(&run(&path, 50, &["--resume"]), 2, &["run.steps=60", "run.steps=50 is asked for"]);
     assert!((bits(&path), summary(&path)) == before);
 }
 
@@ -269,18 +269,18 @@ fn files_removed_meanwhile_are_missed() {
 fn every_method_has_the_same_summary_after_going_on() {
     let folder = tempfile::tempdir().unwrap();
     for (i, method) in [
-        &["--set", "method.execution=chained"][..],
-        &["--set", "method.kind=neighbor-list", "--set", "method.execution=chained"],
+        &["--set", "machine.execution=chained"][..],
+        &["--set", "search.by=neighbor-list", "--set", "machine.execution=chained"],
         &[
             "--set",
-            "method.kind=neighbor-list",
+            "search.by=neighbor-list",
             "--set",
-            "method.execution=chained",
+            "machine.execution=chained",
             "--set",
-            "method.precision=f32",
+            "machine.precision=f32",
         ],
-        &["--set", "method.kind=neighbor-list", "--set", "method.execution=fast"],
-        &["--set", "method.kind=sectors", "--set", "method.execution=fast"],
+        &["--set", "search.by=neighbor-list", "--set", "machine.engine=fast"],
+        &["--set", "search.by=sectors", "--set", "machine.engine=fast"],
     ]
     .into_iter()
     .enumerate()
@@ -303,4 +303,15 @@ fn every_method_has_the_same_summary_after_going_on() {
         };
         assert_eq!(of_physics(&whole), of_physics(&parts), "{method:?}");
     }
+}
+
+/// What was chosen when a run began stays chosen, also where another choice would be made today.
+#[test]
+fn a_choice_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run");
+    succeed(&run(&path, 20, &["--set", "search.by=sectors", "--set", "machine.engine=fast"]));
+    succeed(&run(&path, 40, &["--resume", "--set", "search.by=auto", "--set", "machine.engine=auto"]));
+    let scene = std::fs::read_to_string(path.join("scene.toml")).unwrap();
+    assert!(scene.contains("by = \"sectors\"") && scene.contains("engine = \"fast\""), "{scene}");
 }

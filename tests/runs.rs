@@ -65,16 +65,18 @@ fn a_run_is_the_same_for_threads_and_executions() {
     let folder = tempfile::tempdir().unwrap();
     let with = |name: &str, more: &[&str]| -> PathBuf {
         let path = folder.path().join(name);
-        succeed(pipe(&path, &[&["--set", "run.steps=200"], more].concat()));
+        let programs =
+            ["--set", "run.steps=200", "--set", "machine.engine=programs", "--set", "search.by=lattice"];
+        succeed(pipe(&path, &[&programs[..], more].concat()));
         path
     };
     let one = with("one", &["--threads", "1"]);
     for (name, more) in [
         ("three", &["--threads", "3"][..]),
-        ("eager", &["--set", "method.execution=\"eager\""]),
-        ("strip", &["--set", "method.execution=\"strip:100\""]),
-        ("scalar", &["--set", "method.instruction_set=\"scalar\""]),
-        ("list", &["--set", "method.kind=\"neighbor-list\""]),
+        ("eager", &["--set", "machine.execution=\"eager\""]),
+        ("strip", &["--set", "machine.execution=\"strip:100\""]),
+        ("scalar", &["--set", "machine.instruction_set=\"scalar\""]),
+        ("list", &["--set", "search.by=\"neighbor-list\""]),
     ] {
         let other = with(name, more);
         for file in ["thermo.csv", "trajectory.xyz"] {
@@ -89,13 +91,20 @@ fn a_fast_run_is_the_same_for_threads_and_instructions_and_goes_on() {
     let folder = tempfile::tempdir().unwrap();
     let with = |name: &str, more: &[&str]| -> PathBuf {
         let path = folder.path().join(name);
-        let fast = ["--set", "method.execution=fast", "--set", "integrator.kind=velocity-verlet"];
+        let fast = [
+            "--set",
+            "machine.engine=fast",
+            "--set",
+            "search.by=lattice",
+            "--set",
+            "integrator.kind=velocity-verlet",
+        ];
         succeed(pipe(&path, &[&fast[..], &["--set", "run.steps=400"], more].concat()));
         path
     };
     let one = with("one", &["--threads", "1"]);
     for (name, more) in
-        [("three", &["--threads", "3"][..]), ("scalar", &["--set", "method.instruction_set=\"scalar\""])]
+        [("three", &["--threads", "3"][..]), ("scalar", &["--set", "machine.instruction_set=\"scalar\""])]
     {
         let other = with(name, more);
         for file in ["thermo.csv", "trajectory.xyz"] {
@@ -207,7 +216,7 @@ fn bench_prints_what_it_promises() {
         let measured = output(&[
             "bench",
             what,
-            "--execution",
+            if execution == "fast" { "--engine" } else { "--execution" },
             execution,
             "--integrator",
             integrator,

@@ -2,8 +2,9 @@
 
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};
+use stripmine::method::lattice_md::{Document, ENTRY, GearValues, Scene, Scheme};
 use stripmine::particles;
-use stripmine::scene::{Document, KEYS, Kind, PRESETS, Reason, Scene, Scheme, Start};
+use stripmine::scene::{Kind, Reason, Start};
 
 fn stripmine(arguments: &[&str]) -> std::process::Output {
     Command::cargo_bin("stripmine").unwrap().args(arguments).output().unwrap()
@@ -62,14 +63,14 @@ fn bad_scenes_are_refused_as_they_say() {
 /// Presets stand up to the check; the one that is there to fail is warned about, for its softness.
 #[test]
 fn presets_pass_the_check() {
-    for preset in PRESETS {
+    for preset in ENTRY.vocabulary.presets {
         let checked = Document::load(preset.name, &[]).and_then(Document::check);
         let checked = checked.unwrap_or_else(|errors| panic!("{}: {errors}", preset.name));
         let soft = checked.warnings.iter().filter(|warning| warning.key == "law.stiffness").count();
         assert_eq!(checked.warnings.len(), soft, "{}", preset.name);
         assert_eq!(soft > 0, preset.name == "pipe-as-printed", "{}", preset.name);
         assert!(preset.title().len() > 20 && !checked.particles.is_empty());
-        if checked.scene.method.needs_lattice() {
+        if checked.scene.needs_lattice() {
             assert!((0.0..0.5).contains(&checked.geometry.occupancy));
             let [dx, dy] = checked.geometry.frame.edge;
             let [smallest, largest] = checked.geometry.radii;
@@ -115,7 +116,7 @@ fn the_pipe_is_built_as_tried() {
 /// The source's own cells, d = R_max, are 736 × 8.
 #[test]
 fn the_cells_of_the_source_can_be_asked_for() {
-    let scene = Scene::load("pipe").unwrap().with_overrides(&["method.cell_edge=0.011"]).unwrap();
+    let scene = Scene::load("pipe").unwrap().with_overrides(&["search.cell_edge=0.011"]).unwrap();
     let geometry = scene.check().unwrap().geometry;
     assert_eq!((geometry.shape.columns(), geometry.shape.rows()), (736, 8));
     let fewest = Scene::load("pipe").unwrap().check().unwrap().geometry;
@@ -128,18 +129,21 @@ fn scenes_survive_being_written() {
     let two = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/bad/two.xyz");
     let file = format!("particles.file=\"{}\"", two.display());
     let variants: Vec<(&str, Vec<&str>)> = vec![
-        ("pipe", vec!["method.kind=neighbor-list", "method.skin=0.003", "method.rebuild=all-pairs"]),
-        ("pipe", vec!["method.mask=7", "method.cell_edge=0.0112", "particles.count=10", "run.steps=7"]),
+        ("pipe", vec!["search.by=neighbor-list", "search.skin=0.003", "search.rebuild=all-pairs"]),
+        ("pipe", vec!["search.mask=7", "search.cell_edge=0.0112", "particles.count=10", "run.steps=7"]),
         (
             "bench",
             vec![
-                "method.execution=strip:64",
-                "method.precision=mixed",
+                "machine.execution=strip:64",
+                "machine.precision=mixed",
                 "particles.seed=18446744073709551615",
             ],
         ),
-        ("bench", vec!["method.execution=fast", "integrator.kind=velocity-verlet"]),
-        ("bench", vec!["method.execution=eager", "method.instruction_set=scalar", "law.contact_arm=overlap"]),
+        ("bench", vec!["machine.engine=fast", "search.by=lattice", "integrator.kind=velocity-verlet"]),
+        (
+            "bench",
+            vec!["machine.execution=eager", "machine.instruction_set=scalar", "law.contact_arm=overlap"],
+        ),
         ("two-discs", vec!["particles.radii=[0.5, 0.45]", "particles.wall_positions=[[1.0, 1.0]]"]),
         ("two-discs", vec!["units=\"quotes \\\" and \\\\\"", "law.cohesionless=false", "law.inertia=sphere"]),
         (
@@ -148,11 +152,11 @@ fn scenes_survive_being_written() {
         ),
         (
             "shaken-box",
-            vec!["particles.wall_motion=fixed", "method.coordinates=absolute", "output.lammps_dump=true"],
+            vec!["particles.wall_motion=fixed", "machine.coordinates=absolute", "output.lammps_dump=true"],
         ),
         ("two-discs", vec![&file, "domain.sides=[10.0, 8.0]", "domain.periodic=[true, true]"]),
     ];
-    let presets = PRESETS.iter().map(|preset| (preset.name, Vec::new()));
+    let presets = ENTRY.vocabulary.presets.iter().map(|preset| (preset.name, Vec::new()));
     for (name, overrides) in presets.chain(variants) {
         let scene = Scene::load(name).unwrap();
         let scene = scene.with_overrides(&overrides).unwrap_or_else(|e| panic!("{name} {overrides:?}: {e}"));
@@ -181,12 +185,12 @@ fn overrides_take_the_place_of_rivals() {
     // A hexagonal start needs both, so that they are no rivals there.
     let bench = load("bench", &["particles.count=500", "integrator.values=6"]).unwrap();
     let Start::Hexagonal { count, packing_fraction, .. } = bench.start else { panic!() };
-    assert_eq!((count, packing_fraction, bench.integrator.scheme), (500, 0.6, Scheme::Gear { values: 6 }));
+    assert_eq!((count, packing_fraction, bench.integrator.scheme), (500, 0.6, Scheme::Gear(GearValues::Six)));
     // Numbers, words with and without quotes.
-    let scene = load("pipe", &["method.precision=f32", "method.coordinates=\"absolute\""]).unwrap();
-    assert_eq!(scene.method.precision, stripmine::scene::Precision::F32);
+    let scene = load("pipe", &["machine.precision=f32", "machine.coordinates=\"absolute\""]).unwrap();
+    assert_eq!(scene.machine.precision, stripmine::scene::Precision::F32);
     // An override mends a mistake of the file.
-    let preset = PRESETS.iter().find(|preset| preset.name == "two-discs").unwrap();
+    let preset = ENTRY.vocabulary.presets.iter().find(|preset| preset.name == "two-discs").unwrap();
     let broken = preset.text.replace("dt = 1e-3", "dt = -1");
     assert!(Scene::parse("broken", &broken).is_err());
 }
@@ -209,7 +213,7 @@ fn start_files_are_read_beside_the_scene() {
 /// Whatever is cut off or flipped in a scene, the answer is a scene or errors, never a panic.
 #[test]
 fn damaged_scenes_never_panic() {
-    for preset in PRESETS {
+    for preset in ENTRY.vocabulary.presets {
         let bytes = preset.text.as_bytes();
         for at in (0..bytes.len()).step_by(7) {
             let _ = Scene::parse("cut", &String::from_utf8_lossy(&bytes[..at]));
@@ -245,7 +249,7 @@ fn extreme_numbers_never_panic() {
         ("dense-gas", "particles.count=64"),
         ("two-discs", "run.steps=1"),
     ] {
-        for key in KEYS {
+        for key in ENTRY.vocabulary.keys.keys() {
             let shapes: &[&str] = match key.kind {
                 Kind::Number(_) | Kind::Whole(..) => &["{}"],
                 Kind::Pair(_) => &["[{}, 1.0]", "[1.0, {}]"],
@@ -272,13 +276,13 @@ fn extreme_numbers_never_panic() {
 fn scenes_that_cannot_be_read_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let binary = folder.path().join("binary.toml");
-    std::fs::write(&binary, b"format = 1\nunits = \"\xff\xfe\"\n").unwrap();
+    std::fs::write(&binary, b"format = 2\nmethod.kind = \"lattice-md\"\nunits = \"\xff\xfe\"\n").unwrap();
     let (folder, binary) = (folder.path().to_str().unwrap(), binary.to_str().unwrap());
     for (scene, words) in [
         ("pipe-smal", &["pipe-smal", "no such preset", "did you mean pipe-small?", "shaken-box"][..]),
         ("no/such/file.toml", &["no/such/file.toml", "no such file", "two-discs"]),
         (folder, &[folder, "cannot be read"]),
-        (binary, &["binary.toml:2:", "UTF-8"]),
+        (binary, &["binary.toml:3:", "UTF-8"]),
     ] {
         let output = stripmine(&["scene", "check", scene]);
         let said = String::from_utf8_lossy(&output.stderr);
@@ -297,15 +301,24 @@ fn the_verbs_print_presets_keys_and_checks() {
         serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{arguments:?}"))
     };
     let list = json(&["scene", "list", "--json"]);
-    assert_eq!(list.as_array().unwrap().len(), PRESETS.len());
+    assert_eq!(list.as_array().unwrap().len(), ENTRY.vocabulary.presets.len());
     let shown = stripmine(&["scene", "show", "two-discs"]);
     assert!(Scene::parse("shown", &String::from_utf8(shown.stdout).unwrap()).is_ok());
     assert_eq!(stripmine(&["scene", "show", "three-discs"]).status.code(), Some(2));
     let keys = json(&["scene", "keys", "--json"]);
-    assert_eq!(keys.as_array().unwrap().len(), KEYS.len());
+    assert_eq!(keys.as_array().unwrap().len(), ENTRY.vocabulary.keys.keys().count());
     let table = String::from_utf8(stripmine(&["scene", "keys"]).stdout).unwrap();
-    assert!(KEYS.iter().all(|key| table.contains(key.name)));
-    let found = json(&["scene", "check", "pipe-small", "--json", "--set", "particles.seed=4"]);
+    assert!(ENTRY.vocabulary.keys.keys().all(|key| table.contains(key.name)));
+    let found = json(&[
+        "scene",
+        "check",
+        "pipe-small",
+        "--json",
+        "--set",
+        "particles.seed=4",
+        "--set",
+        "search.by=lattice",
+    ]);
     assert_eq!((found["grains"].as_u64(), found["rows"].as_u64()), (Some(238), Some(8)));
     let warned = stripmine(&["scene", "check", "pipe-as-printed"]);
     assert!(warned.status.success());
@@ -320,7 +333,7 @@ fn the_verbs_print_presets_keys_and_checks() {
         (&["integrator.dt=2e-4"], &["steps"]),
         (&["law.shear_damping=0"], &["law.friction: "]),
         (&["law.friction=0"], &["law.shear_damping has no effect"]),
-        (&["method.precision=f32", "method.coordinates=absolute"], &["absolute coordinates in f32"]),
+        (&["machine.precision=f32", "machine.coordinates=absolute"], &["absolute coordinates in f32"]),
     ] {
         let mut arguments = vec!["scene", "check", "pipe-small"];
         overrides.iter().for_each(|text| arguments.extend(["--set", text]));

@@ -6,16 +6,16 @@
 
 use criterion::{Criterion, SamplingMode, Throughput};
 use std::time::Duration;
-use stripmine::method::{Method, Phase};
-use stripmine::run::assemble;
-use stripmine::scene::{Checked, Document};
+use stripmine::method::lattice_md::assemble;
+use stripmine::method::lattice_md::{Checked, Document};
+use stripmine::method::lattice_md::{Engine, Phase};
 
 /// Steps before anything is timed: the start on a lattice has no contacts.
 pub const EQUILIBRATION: u64 = 400;
 /// The phases, and how long each is to be timed (ms). The rest of its steps comes on top, so a short phase gets little.
 const PHASES: [(Phase, u64); 3] = [(Phase::CorrectPredict, 300), (Phase::Index, 50), (Phase::Forces, 1000)];
 
-pub fn advance(gas: &mut dyn Method, steps: u64) {
+pub fn advance(gas: &mut dyn Engine, steps: u64) {
     (0..steps).for_each(|_| gas.step().expect("the bench scene runs on"));
 }
 
@@ -24,8 +24,9 @@ pub fn scene(packing_fraction: f64, count: usize, precision: &str) -> Checked {
     let overrides = [
         format!("particles.count={count}"),
         format!("particles.packing_fraction={packing_fraction}"),
-        format!("method.precision=\"{precision}\""),
-        "method.execution=\"fast\"".to_owned(),
+        format!("machine.precision=\"{precision}\""),
+        "machine.engine=fast".to_owned(),
+        "search.by=lattice".to_owned(),
         "integrator.kind=\"velocity-verlet\"".to_owned(),
     ];
     Document::load("bench", &overrides).expect("a preset").check().expect("a good scene")
@@ -34,7 +35,7 @@ pub fn scene(packing_fraction: f64, count: usize, precision: &str) -> Checked {
 fn of_one_gas(criterion: &mut Criterion, packing_fraction: f64, count: usize, precision: &str) {
     let scene = scene(packing_fraction, count, precision);
     // Made when first asked for: most calls ask for few of the benches.
-    let mut moving: Option<Box<dyn Method>> = None;
+    let mut moving: Option<Box<dyn Engine>> = None;
     let mut group = criterion.benchmark_group(format!("phases/{precision}/{packing_fraction}/{count}"));
     group.throughput(Throughput::Elements(scene.particles.grain_count() as u64));
     group.sample_size(10).sampling_mode(SamplingMode::Flat);

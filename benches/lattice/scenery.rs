@@ -30,6 +30,7 @@ pub fn dense<P: Precision>(cells: usize, friction: bool) -> (Model, Particles, A
     let model = Model {
         shape: LatticeShape::new(counts[0], counts[1], &mask, [true; 2]).expect("large enough"),
         frame: Frame { origin: [0.0; 2], edge },
+        sides: [0, 1].map(|axis| counts[axis] as f64 * edge[axis]),
         mask,
         coordinates: Coordinates::CellRelative,
         contact: CONTACT,

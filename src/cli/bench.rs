@@ -1,31 +1,35 @@
 //! `stripmine bench`: one throughput measurement of moving particles.
 
-use super::{Common, Failure, print, print_json};
-use crate::scene::{Document, SceneErrors};
-use crate::study::throughput::{Measurement, MeasurementError, Throughput, throughput};
-use clap::{Args, ValueEnum};
+use crate::console::{Common, Failure, print, print_json};
+use crate::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
+use crate::method::{Bench, Entry, Methods};
+use crate::scene::{SceneErrors, Values};
+use clap::Args;
+use serde_json::Value;
 
 /// One throughput measurement of moving particles
 #[derive(Args)]
 pub(super) struct BenchVerb {
     /// What to measure
-    #[arg(value_enum)]
-    what: What,
+    what: String,
     /// Number of particles, at least
-    #[arg(long, default_value_t = 10_000)]
-    particles: usize,
+    #[arg(long)]
+    particles: Option<u64>,
     /// Area of the discs over that of the box
-    #[arg(long, default_value_t = 0.84, allow_negative_numbers = true)]
-    packing_fraction: f64,
+    #[arg(long, allow_negative_numbers = true)]
+    packing_fraction: Option<f64>,
     /// Precision of state and forces
-    #[arg(long, default_value = "f64", value_parser = ["f64", "f32", "mixed"])]
-    precision: String,
-    /// Integrator
-    #[arg(long, default_value = "gear5", value_parser = ["gear4", "gear5", "gear6", "velocity-verlet"])]
-    integrator: String,
-    /// eager, strip:N, chained or fast
-    #[arg(long, default_value = "fast")]
-    execution: String,
+    #[arg(long, value_parser = ["f64", "f32", "mixed"])]
+    precision: Option<String>,
+    /// Integrator, such as gear4, gear5, gear6 or velocity-verlet
+    #[arg(long)]
+    integrator: Option<String>,
+    /// What steps the particles; the fastest by default
+    #[arg(long, value_parser = ["auto", "fast", "programs"])]
+    engine: Option<String>,
+    /// How programs are executed: eager, strip:N or chained; implies programs
+    #[arg(long)]
+    execution: Option<String>,
     /// Leave out friction, and with it rotation
     #[arg(long)]
     frictionless: bool,
@@ -39,109 +43,132 @@ pub(super) struct BenchVerb {
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
     /// scalar, avx2, avx512, wide, or auto for the widest there is
-    #[arg(long, default_value = "auto", value_parser = ["scalar", "avx2", "avx512", "wide", "auto"])]
-    instruction_set: String,
+    #[arg(long, value_parser = ["scalar", "avx2", "avx512", "wide", "auto"])]
+    instruction_set: Option<String>,
 }
 
-/// What can be measured so far.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum What {
-    /// BP93's lattice method
-    Lattice,
-    /// Neighbour lists: the source's rival of it
-    NeighborList,
-    /// Sectors that hold any number of discs
-    Sectors,
+/// An override, and the option that it stands for.
+struct Told {
+    override_: String,
+    option: String,
 }
 
 impl BenchVerb {
-    pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
-        let method = match self.what {
-            What::Lattice => "lattice",
-            What::NeighborList => "neighbor-list",
-            What::Sectors => "sectors",
-        };
-        // What the scene is told, and the option that says so.
-        let mut told = vec![
-            (format!("particles.count={}", self.particles), format!("--particles {}", self.particles)),
-            (
-                format!("particles.packing_fraction={}", self.packing_fraction),
-                format!("--packing-fraction {}", self.packing_fraction),
-            ),
-            (format!("method.kind=\"{method}\""), method.to_owned()),
-            (format!("method.precision=\"{}\"", self.precision), format!("--precision {}", self.precision)),
-        ];
-        let integrator = match self.integrator.strip_prefix("gear") {
-            Some(values) => format!("integrator.values={values}"),
-            None => format!("integrator.kind=\"{}\"", self.integrator),
-        };
-        told.push((integrator, format!("--integrator {}", self.integrator)));
-        told.push((
-            format!("method.execution=\"{}\"", self.execution),
-            format!("--execution {}", self.execution),
-        ));
-        if self.instruction_set != "auto" {
-            told.push((
-                format!("method.instruction_set=\"{}\"", self.instruction_set),
-                format!("--instruction-set {}", self.instruction_set),
-            ));
+    /// The options given, by name, with their values; those without a value are there or not.
+    fn given(&self) -> Vec<(&'static str, Option<String>)> {
+        vec![
+            ("particles", self.particles.map(|count| count.to_string())),
+            ("packing-fraction", self.packing_fraction.map(|fraction| fraction.to_string())),
+            ("precision", self.precision.clone()),
+            ("integrator", self.integrator.clone()),
+            ("engine", self.engine.clone()),
+            ("execution", self.execution.clone()),
+            ("instruction-set", self.instruction_set.clone()),
+            ("frictionless", self.frictionless.then(String::new)),
+            ("cell-edge", self.cell_edge.map(|edge| edge.to_string())),
+        ]
+    }
+
+    /// What the options say in a scene, defaults included.
+    fn told(&self, bench: &Bench) -> Result<Vec<Told>, Failure> {
+        let mut told: Vec<Told> = bench
+            .overrides
+            .iter()
+            .map(|text| Told { override_: (*text).to_owned(), option: bench.name.to_owned() })
+            .collect();
+        for (name, given) in self.given() {
+            let default = bench.defaults.iter().find(|(known, _)| *known == name);
+            let Some(value) = given.or_else(|| default.map(|(_, value)| (*value).to_owned())) else {
+                continue;
+            };
+            let Some(known) = bench.options.iter().find(|known| known.name == name) else {
+                return Err(Failure::NoSuchOption { bench: bench.name, option: name });
+            };
+            if !known.values.is_empty() && !known.values.contains(&value.as_str()) {
+                return Err(Failure::NoSuchValue { option: name, value, values: known.values });
+            }
+            let option = format!("--{name} {value}").trim_end().to_owned();
+            let overrides = (known.overrides)(&value).into_iter();
+            told.extend(overrides.map(|override_| Told { override_, option: option.clone() }));
         }
-        if self.frictionless {
-            told.push(("law.friction=0".to_owned(), "--frictionless".to_owned()));
-        }
-        told.extend(
-            self.cell_edge.map(|edge| (format!("method.cell_edge={edge}"), format!("--cell-edge {edge}"))),
-        );
-        let overrides: Vec<String> = told.iter().map(|(told, _)| told.clone()).collect();
-        // About 10⁷ particle-steps a second, to the order of magnitude.
-        let steps =
-            self.steps.unwrap_or_else(|| (10_000_000 / self.particles.max(1) as u64).clamp(20, 20_000));
-        let measurement = Measurement {
-            document: Document::load("bench", &overrides)
-                .map_err(|mistakes| Failure::Options(in_options(mistakes, &told)))?,
-            equilibration: 200.max(steps / 10),
-            steps,
-            repeats: self.repeats.into(),
+        Ok(told)
+    }
+
+    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
+        let benches = methods.iter().flat_map(|&entry| entry.benches.iter().map(move |it| (entry, it)));
+        let found = benches.into_iter().find(|(_, bench)| bench.name == self.what);
+        let Some((entry, bench)) = found else {
+            return Err(Failure::NoSuchOption { bench: "bench", option: "what" });
         };
-        let result = throughput(measurement).map_err(|error| match error {
+        let told = self.told(bench)?;
+        let result = self.measured(entry, bench, &told).map_err(|error| match error {
             MeasurementError::Scene(mistakes) => Failure::Options(in_options(mistakes, &told)),
             error => error.into(),
         })?;
         if common.json { print_json(&result) } else { print(&text(&result)) }
     }
+
+    fn measured(
+        &self,
+        entry: &'static Entry,
+        bench: &'static Bench,
+        told: &[Told],
+    ) -> Result<Throughput, MeasurementError> {
+        let overrides: Vec<String> = told.iter().map(|told| told.override_.clone()).collect();
+        let values = Values::load(bench.preset, &overrides, &[entry.vocabulary])?;
+        let prepared = (entry.prepare)(values)?;
+        let steps = self.steps.unwrap_or_else(|| (bench.amount)(prepared.particles().grain_count() as u64));
+        let repeats = self.repeats.into();
+        throughput(Measurement { bench, prepared, equilibration: 200.max(steps / 10), steps, repeats })
+    }
 }
 
 /// Mistakes of the scene as those of the options that it was made of.
-fn in_options(SceneErrors(mut mistakes): SceneErrors, told: &[(String, String)]) -> SceneErrors {
+fn in_options(SceneErrors(mut mistakes): SceneErrors, told: &[Told]) -> SceneErrors {
     for mistake in &mut mistakes {
-        let option = told.iter().find(|(told, _)| mistake.file == format!("--set {told}"));
-        if let Some((_, option)) = option {
-            mistake.file.clone_from(option);
+        let option = told.iter().find(|told| mistake.file == format!("--set {}", told.override_));
+        if let Some(told) = option {
+            mistake.file.clone_from(&told.option);
         }
     }
     SceneErrors(mistakes)
 }
 
+/// A setting as a person reads it: numbers to four digits.
+fn brief(value: &Value) -> String {
+    match value {
+        Value::Number(number) if number.is_f64() => format!("{:.4}", number.as_f64().unwrap_or(f64::NAN)),
+        Value::String(word) => word.clone(),
+        Value::Bool(yes) => if *yes { "yes" } else { "no" }.to_owned(),
+        Value::Null => "none".to_owned(),
+        Value::Array(items) => items.iter().map(brief).collect::<Vec<_>>().join(" × "),
+        other => other.to_string(),
+    }
+}
+
 fn text(result: &Throughput) -> String {
-    let Throughput { what, particles, packing_fraction, precision, integrator, execution, .. } = result;
+    let Throughput { what, particles, settings, .. } = result;
     let each = |seconds: f64| 1e9 * seconds / (*particles as f64 * result.steps as f64);
     let phases: Vec<String> =
         result.phases.iter().map(|(phase, &seconds)| format!("{phase} {:.1}", each(seconds))).collect();
+    let settings: Vec<String> =
+        settings.iter().map(|(name, value)| format!("{} {}", name.replace('_', " "), brief(value))).collect();
+    let compared = result.compared.iter().map(|(name, [from, to])| format!("{name} {from:.5} to {to:.5}"));
+    let at_end = result.at_end.iter().map(|(name, value)| format!("{name} {value}"));
+    let observed: Vec<String> = compared.chain(at_end).collect();
     format!(
-        "{what}: {particles} discs at packing fraction {packing_fraction:.2}, {precision}, {integrator}, {execution} on {}, \
-         {} threads\n{:.2} million particle-steps a second (median {:.2}) over {} repeats of {} steps\nnanoseconds a \
-         particle and step: {:.1} in all; {}\ntemperature {:.5} to {:.5}, {} contacts, checksum {}\n",
-        result.instruction_set,
+        "{what}: {particles} particles, {}, {} threads\n{:.2} million a second (median {:.2}) over {} repeats of {} steps: \
+         {}\nnanoseconds a particle and step: {:.1} in all; {}\n{}\nchecksum {}\n",
+        settings.join(", "),
         result.threads,
-        result.particle_steps_per_second * 1e-6,
-        result.particle_steps_per_second_median * 1e-6,
+        result.rate * 1e-6,
+        result.median_rate * 1e-6,
         result.repeats,
         result.steps,
+        result.rate_name,
         each(result.seconds),
         phases.join(", "),
-        result.temperature[0],
-        result.temperature[1],
-        result.contacts,
+        observed.join(", "),
         result.checksum
     )
 }

@@ -1,7 +1,9 @@
 //! `stripmine completions`: what a shell needs to complete the command.
 
-use super::{CommandLine, Failure, print};
-use clap::{Args, CommandFactory};
+use super::command;
+use crate::console::{Failure, print};
+use crate::method::Methods;
+use clap::Args;
 use clap_complete::{Shell, generate};
 
 /// Shell completion, to standard output
@@ -13,9 +15,9 @@ pub(super) struct Completions {
 }
 
 impl Completions {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self, methods: Methods) -> Result<(), Failure> {
         let mut text = Vec::new();
-        generate(self.shell, &mut CommandLine::command(), "stripmine", &mut text);
+        generate(self.shell, &mut command(methods), "stripmine", &mut text);
         print(&String::from_utf8_lossy(&text))
     }
 }

@@ -1,7 +1,9 @@
 //! `stripmine man`: the manual page.
 
-use super::{CommandLine, Failure, print};
-use clap::{Args, CommandFactory};
+use super::command;
+use crate::console::{Failure, print};
+use crate::method::Methods;
+use clap::Args;
 use clap_mangen::Man;
 
 /// The manual page, in roff, to standard output: stripmine man | man -l -
@@ -12,9 +14,9 @@ pub(super) struct ManVerb {
 }
 
 impl ManVerb {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self, methods: Methods) -> Result<(), Failure> {
         // Built, so that every verb knows the options that all share.
-        let mut command = CommandLine::command();
+        let mut command = command(methods);
         command.build();
         let page = match &self.verb {
             None => command,

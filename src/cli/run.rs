@@ -1,8 +1,9 @@
 //! `stripmine run`: one simulation into a folder.
 
-use super::{Common, Failure, output, print, print_json, warn};
-use crate::run::{Ending, Existing, Summary, run};
-use crate::scene::Document;
+use crate::console::{Common, Failure, bar, clear_progress, print, print_json, warn};
+use crate::method::{Methods, prepare, vocabularies};
+use crate::run::{Ending, Existing, Summary, chosen_otherwise, run};
+use crate::scene::Values;
 use crate::signals;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -30,29 +31,39 @@ pub(super) struct RunVerb {
 }
 
 impl RunVerb {
-    pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
-        let document = Document::load(&self.scene, &self.overrides)?;
+    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
         let folder = self.out.clone().unwrap_or_else(|| {
             let stem = Path::new(&self.scene).file_stem().unwrap_or_default();
             PathBuf::from(format!("{}.run", stem.to_string_lossy()))
         });
+        let vocabularies = vocabularies(methods);
+        let values = Values::load(&self.scene, &self.overrides, &vocabularies)?;
+        let (mut prepared, entry) = prepare(values.clone(), methods)?;
+        if self.resume {
+            let chosen = chosen_otherwise(&values, entry.vocabulary, &prepared.scene(), &folder);
+            if !chosen.is_empty() {
+                let overrides = [self.overrides.as_slice(), &chosen].concat();
+                (prepared, _) = prepare(Values::load(&self.scene, &overrides, &vocabularies)?, methods)?;
+            }
+        }
         let existing = match (self.resume, self.overwrite) {
             (true, _) => Existing::Resume { other_version: self.other_version },
             (_, true) => Existing::Overwrite,
             _ => Existing::Refuse,
         };
-        let bar = output::bar(common, 0, "{wide_bar} step {pos}/{len} [{elapsed}, ETA {eta}]");
-        let progress = |step, steps| {
-            bar.set_length(steps);
-            bar.set_position(step);
+        let bar = bar(common, 0, "{wide_bar} {pos}/{len} [{elapsed}, ETA {eta}]");
+        let progress = |done, all| {
+            bar.set_length(all);
+            bar.set_position(done);
         };
         let notice = |note: &str| {
             if !common.quiet {
                 warn(note);
             }
         };
-        let ending = run(document, &folder, existing, signals::asked(), progress, notice);
-        output::clear_progress();
+        let ending =
+            run(prepared.as_ref(), entry.quantities, &folder, existing, signals::asked(), progress, notice);
+        clear_progress();
         match ending? {
             Ending::Done(summary) if common.json => print_json(&summary),
             Ending::Done(summary) => {
@@ -61,30 +72,19 @@ impl RunVerb {
                 }
                 print(&text(&summary, &folder))
             }
-            Ending::Interrupted { step } => Err(Failure::Interrupted { step, folder }),
+            Ending::Interrupted { clock } => Err(Failure::Interrupted { step: clock.steps, folder }),
         }
     }
 }
 
 fn text(summary: &Summary, folder: &Path) -> String {
-    let Summary { discs: [grains, walls], lattice, occupancy, steps, seconds, last, .. } = summary;
-    let mut text = format!("{grains} grains and {walls} wall discs");
-    if let (Some([columns, rows]), Some(occupancy)) = (lattice, occupancy) {
-        text.push_str(&format!(" on {columns}×{rows} cells, occupancy {occupancy:.3}"));
+    let Summary { steps, time, seconds, in_words, .. } = summary;
+    let mut text = format!("{steps} steps in {seconds:.2} s, time {time:.6}: {in_words}\n");
+    for choice in &summary.choices {
+        text.push_str(&format!("chosen: {choice}\n"));
     }
-    text.push_str(&format!(
-        "\n{steps} steps in {seconds:.2} s; time {:.6}, temperature {:.4e}, flow {:.4e}, contacts {}, deepest penetration \
-         {:.4}\n",
-        last.time, last.temperature, last.flow, last.contacts, last.deepest_penetration
-    ));
     for reason in &summary.left_out {
         text.push_str(&format!("left out: {reason}\n"));
-    }
-    if let Some(share) = summary.work_relative_to_everything.filter(|&share| share < 1.0) {
-        let saved = 100.0 * (1.0 - share);
-        text.push_str(&format!(
-            "saved: {saved:.1} % of a step's operations with friction and different discs\n"
-        ));
     }
     text.push_str(&format!("results in {}\n", folder.display()));
     text

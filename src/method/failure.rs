@@ -1,5 +1,6 @@
 //! What stops a method, with what a user needs to find out why.
 
+use crate::reported::{Class, Reported};
 use std::fmt;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::sweep::fast::GridError;
@@ -123,4 +124,10 @@ pub enum Failure {
     /// The machine refused a program.
     #[error(transparent)]
     Machine(#[from] ProgramError),
+}
+
+impl Reported for Failure {
+    fn class(&self) -> Class {
+        Class::Precondition
+    }
 }

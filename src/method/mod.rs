@@ -1,79 +1,15 @@
-//! The methods: one folder or file a source.
+//! The methods: one folder a source, and one line in the [list](METHODS).
 
+mod clock;
+mod entry;
 pub mod failure;
 pub mod lattice_md;
-pub mod timings;
-pub mod totals;
+mod list;
+pub mod throughput;
 
+pub use clock::{Clock, Every, Schedule, Until};
+pub use entry::{
+    Bench, BenchOption, Entry, Fact, Item, Prepared, Progress, Purpose, Quantity, Simulation, Snapshot, Verb,
+};
 pub use failure::{Culprit, Failure};
-pub use timings::{Phase, Timings};
-pub use totals::{Total, Totals};
-
-use crate::particles::Particles;
-use stripmine_kernels::ledger::{Ledger, Length};
-
-/// One named column of a method's state, for a checkpoint.
-#[derive(Clone, Debug, PartialEq)]
-pub enum StateColumn {
-    /// Double precision.
-    F64(Vec<f64>),
-    /// Single precision.
-    F32(Vec<f32>),
-}
-
-/// A method that steps particles. It never prints and never writes a file.
-pub trait Method: Send {
-    /// Advances by one time step.
-    ///
-    /// # Errors
-    /// [`Failure`] says what broke, which particles, where, and what to do; the state is that of the failing step.
-    fn step(&mut self) -> Result<(), Failure>;
-
-    /// Steps done since the start of the scene.
-    fn steps(&self) -> u64;
-
-    /// Time since the start of the scene.
-    fn time(&self) -> f64;
-
-    /// The particles as they stand, positions inside the box.
-    fn particles(&self) -> Particles;
-
-    /// Force along x and y and torque on every particle, as of the last step.
-    fn forces(&self) -> Vec<[f64; 3]>;
-
-    /// What has been counted and summed up since the start.
-    fn totals(&self) -> Totals;
-
-    /// How many periods each particle has moved along x and y since the start, in the order of
-    /// [`particles`](Self::particles); empty where that is not followed.
-    fn crossings(&self) -> Vec<[f64; 2]>;
-
-    /// Everything that the next step depends on, by name.
-    fn state(&self) -> Vec<(String, StateColumn)>;
-
-    /// Takes a state up again.
-    ///
-    /// # Errors
-    /// A sentence, if the columns are not those of this method and scene.
-    fn restore(
-        &mut self,
-        steps: u64,
-        totals: Totals,
-        columns: Vec<(String, StateColumn)>,
-    ) -> Result<(), String>;
-
-    /// What a step executes.
-    fn ledger(&self) -> Ledger;
-
-    /// How long vectors of a symbolic length are, or were in the last step.
-    fn length(&self, length: Length) -> u64;
-
-    /// Entries of the neighbour lists, and how often they were made anew; none where there are no lists.
-    fn lists(&self) -> Option<(usize, u64)>;
-
-    /// Seconds spent in each phase.
-    fn timings(&self) -> &Timings;
-
-    /// Forgets the seconds spent so far.
-    fn reset_timings(&mut self);
-}
+pub use list::{METHODS, Methods, load, method, prepare, vocabularies};

@@ -4,7 +4,6 @@ pub mod waves;
 
 use crate::domain::Domain;
 use crate::grid::Bins;
-use crate::method::lattice_md::Model;
 use crate::particles::{Kind, Particles};
 use serde::Serialize;
 use stripmine_kernels::law::granular::Contact;
@@ -20,18 +19,6 @@ pub struct Scenery {
     pub gravity: [f64; 2],
     /// Moment of inertia of a disc of mass and radius 1; 0 without rotation.
     pub inertia_factor: f64,
-}
-
-impl Scenery {
-    /// Of a model.
-    pub fn of(model: &Model) -> Scenery {
-        Scenery {
-            domain: model.domain(),
-            contact: model.contact,
-            gravity: model.gravity,
-            inertia_factor: if model.friction { model.inertia_factor } else { 0.0 },
-        }
-    }
 }
 
 /// One observation. Energies in mass · length²/time².

@@ -9,6 +9,7 @@ use crate::io::FileError;
 use crate::io::checkpoint::NAME as CHECKPOINT;
 use crate::io::lock::{Lock, LockError, is_lock};
 use crate::io::replace::{is_temporary, listing, remove_if_there, replace};
+use crate::reported::Class;
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Read, Write};
@@ -84,12 +85,13 @@ pub enum FolderError {
 }
 
 impl FolderError {
-    /// Whether the folder is another's, or another process writes there.
-    pub fn is_refusal(&self) -> bool {
+    /// Whether the folder is another's, another process writes there, its list is damaged, or the system refuses.
+    pub(super) fn class(&self) -> Class {
         match self {
-            FolderError::NotOurs { .. } | FolderError::InTheWay(_) => true,
-            FolderError::Lock(error) => error.is_refusal(),
-            FolderError::List { .. } | FolderError::File(_) => false,
+            FolderError::NotOurs { .. } | FolderError::InTheWay(_) => Class::Usage,
+            FolderError::Lock(error) if error.is_refusal() => Class::Usage,
+            FolderError::List { .. } => Class::Checkpoint,
+            FolderError::Lock(_) | FolderError::File(_) => Class::InputOutput,
         }
     }
 }

@@ -1,10 +1,12 @@
 //! What a run was begun with: its scene, its discs, and the program, as far as that decides the bits.
 
 use super::RunError;
+use super::folder::SCENE;
 use crate::io::checkpoint::{Checkpoint, Counter};
+use crate::method::Prepared;
 use crate::origin::Origin;
 use crate::particles::{Kind, Particle, Particles};
-use crate::scene::{Checked, Start};
+use crate::scene::{Values, Vocabulary};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -25,12 +27,9 @@ pub(super) struct Identity {
 }
 
 impl Identity {
-    pub(super) fn of(checked: &Checked) -> Identity {
-        let file = match &checked.scene.start {
-            Start::File(file) => Some(file.display().to_string()),
-            _ => None,
-        };
-        Identity { scene: checked.scene.to_toml(), discs: digest(&checked.particles), file }
+    pub(super) fn of(prepared: &dyn Prepared) -> Identity {
+        let file = prepared.start_file().map(|file| file.display().to_string());
+        Identity { scene: prepared.scene(), discs: digest(prepared.particles()), file }
     }
 
     /// What a checkpoint keeps of it.
@@ -121,6 +120,27 @@ fn digest(particles: &Particles) -> String {
             .for_each(|value| sum.update(value.to_bits().to_le_bytes()));
     }
     sum.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// What the run in `folder` chose otherwise than `ours`, the resolved scene, where a scene says `auto`; as overrides, for going
+/// on the choice stays.
+pub fn chosen_otherwise(
+    values: &Values,
+    vocabulary: &'static Vocabulary,
+    ours: &str,
+    folder: &Path,
+) -> Vec<String> {
+    let file = folder.join(SCENE).display().to_string();
+    let known = [vocabulary];
+    // A scene that cannot be read is refused when it is held against this one.
+    let (Ok(theirs), Ok(ours)) =
+        (Values::load(&file, &[], &known), Values::parse("scene", ours, &[], &known))
+    else {
+        return vec![];
+    };
+    let open = vocabulary.keys.keys().filter(|key| values.choice(key).as_deref() == Some("auto"));
+    let otherwise = open.filter(|key| theirs.choice(key) != ours.choice(key));
+    otherwise.filter_map(|key| theirs.choice(key).map(|word| format!("{}={word}", key.path()))).collect()
 }
 
 /// Refuses a scene that differs from the run's in more than how long and what is written.

@@ -2,26 +2,23 @@
 //! `scene.toml`, `thermo.csv`, `trajectory.xyz`, `summary.json`, `run.checkpoint`, a list of all this (`run.files`) and, on
 //! request, LAMMPS files.
 
-mod assemble;
 mod folder;
 mod frames;
 mod identity;
-pub mod memory;
 mod recorder;
 mod summary;
-mod work;
 
-pub use assemble::{assemble, assemble_following_energy, model};
 pub use folder::FolderError;
+pub use identity::chosen_otherwise;
 pub use summary::Summary;
-pub use work::Balance;
 
 use crate::io::FileError;
 use crate::io::checkpoint::{CheckpointError, WriteError};
 use crate::io::growing_file::GrowingFileError;
 use crate::io::table_file::TableFileError;
-use crate::method::{Failure, Method};
-use crate::scene::{Checked, Document, SceneErrors};
+use crate::method::{Clock, Failure, Prepared, Purpose, Quantity, Until};
+use crate::reported::{Class, FilePlace, Reported};
+use crate::scene::SceneErrors;
 use crate::signals;
 use recorder::Recorder;
 use std::path::{Path, PathBuf};
@@ -54,18 +51,18 @@ pub enum RunError {
     /// The folder is another's, or another process writes there.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// More steps are done than asked for.
+    /// More is done than asked for.
     #[error(
-        "the run in {} has done {done} steps already, and {asked} are asked for: ask for run.steps={done} or more",
+        "the run in {} has come to {done} already, and {asked} is asked for: ask for {done} or more",
         folder.display()
     )]
     FewerSteps {
         /// The folder.
         folder: PathBuf,
-        /// Steps done.
-        done: u64,
-        /// Steps of the scene.
-        asked: u64,
+        /// How far the run has come.
+        done: Until,
+        /// The end of the scene.
+        asked: Until,
     },
     /// The discs at the start are not those of the run.
     #[error(
@@ -148,29 +145,55 @@ pub enum RunError {
     Frames(#[from] GrowingFileError),
 }
 
-impl RunError {
-    /// Whether what lies in the folder has been damaged since it was written.
-    pub fn is_damage(&self) -> bool {
+impl Reported for RunError {
+    fn class(&self) -> Class {
         match self {
-            RunError::Checkpoint(error) => error.is_corrupt(),
-            RunError::Table(error) => error.is_damage(),
-            RunError::Frames(error) => error.is_damage(),
-            RunError::Folder(error) => matches!(error, FolderError::List { .. }),
-            RunError::Foreign { .. } => true,
-            _ => false,
-        }
-    }
-
-    /// Whether the request is refused, for what lies in the folder already or for who else writes there.
-    pub fn is_refusal(&self) -> bool {
-        match self {
-            RunError::Folder(error) => error.is_refusal(),
+            RunError::Scene(errors) => errors.class(),
+            RunError::Physics { failure, .. } | RunError::Start(failure) => failure.class(),
             RunError::Exists(_)
             | RunError::FewerSteps { .. }
             | RunError::OtherScene { .. }
             | RunError::OtherDiscs { .. }
-            | RunError::OtherVersion { .. } => true,
-            _ => false,
+            | RunError::OtherVersion { .. } => Class::Usage,
+            RunError::Foreign { .. } => Class::Checkpoint,
+            RunError::Folder(error) => error.class(),
+            RunError::Checkpoint(error) if error.is_corrupt() => Class::Checkpoint,
+            RunError::Table(error) if error.is_damage() => Class::Checkpoint,
+            RunError::Frames(error) if error.is_damage() => Class::Checkpoint,
+            RunError::Checkpoint(_)
+            | RunError::Table(_)
+            | RunError::Frames(_)
+            | RunError::CheckpointWriting(_)
+            | RunError::File(_) => Class::InputOutput,
+        }
+    }
+
+    fn mistakes(&self) -> Option<&SceneErrors> {
+        match self {
+            RunError::Scene(errors) => Some(errors),
+            _ => None,
+        }
+    }
+
+    fn place(&self) -> Option<FilePlace> {
+        match self {
+            RunError::Exists(folder)
+            | RunError::FewerSteps { folder, .. }
+            | RunError::OtherDiscs { folder, .. }
+            | RunError::OtherVersion { folder, .. }
+            | RunError::OtherScene { folder, .. } => Some(FilePlace::at(folder)),
+            RunError::Checkpoint(CheckpointError { file, .. }) | RunError::Foreign { file, .. } => {
+                Some(FilePlace::at(file))
+            }
+            RunError::File(error) => Some(FilePlace::at(&error.file)),
+            _ => None,
+        }
+    }
+
+    fn remedy(&self) -> Option<String> {
+        match self {
+            RunError::Exists(_) => Some("--resume, --overwrite or another --out".to_owned()),
+            _ => None,
         }
     }
 }
@@ -182,68 +205,70 @@ pub enum Ending {
     Done(Box<Summary>),
     /// Interrupted; a checkpoint was written.
     Interrupted {
-        /// Steps done.
-        step: u64,
+        /// How far it has come.
+        clock: Clock,
     },
 }
 
-/// Runs a scene into `folder`. `interrupted` is looked at after every step; `progress(step, steps)` now and then; `notice`
-/// hears what is out of the ordinary about going on with a run.
+/// At most this part of a run goes by without a word of its progress.
+const STRIDES: u64 = 1000;
+
+/// Runs a scene into `folder`. `interrupted` is looked at after every step; `progress(done, all)` hears now and then how much
+/// of the way is done; `notice` hears what is out of the ordinary about going on with a run.
 ///
 /// # Errors
 /// [`RunError`]; where the physics broke, the folder holds the state of that step and a summary that says so.
 pub fn run(
-    document: Document,
+    prepared: &dyn Prepared,
+    quantities: &'static [Quantity],
     folder: &Path,
     existing: Existing,
     interrupted: &AtomicBool,
     mut progress: impl FnMut(u64, u64),
     notice: impl FnMut(&str),
 ) -> Result<Ending, RunError> {
-    let checked = document.check()?;
-    memory::foreseen(&checked).fits("scene")?;
+    prepared.memory().fits("scene")?;
     // What would be refused in the end is refused before anything takes its time.
     folder::listed(folder)?;
-    let mut method = assemble_following_energy(&checked).map_err(RunError::Start)?;
+    let mut simulation = prepared.start(Purpose::Run).map_err(RunError::Start)?;
     // A beginning that is cut off would leave a folder without a checkpoint; a run that is resumed has one.
     let held = (!matches!(existing, Existing::Resume { .. })).then(signals::hold);
-    let mut recorder = Recorder::open(folder, existing, &checked, method.as_mut())?;
+    let mut recorder = Recorder::open(folder, existing, prepared, quantities, simulation.as_mut())?;
     let _held = held.unwrap_or_else(signals::hold);
     recorder.new_notes().iter().map(String::as_str).for_each(notice);
-    let steps = checked.scene.run.steps;
-    let stride = (steps / 1000).max(1);
+    let until = prepared.schedule().until;
     let start = std::time::Instant::now();
-    while method.steps() < steps {
+    while !until.has_come(&simulation.clock()) {
         if interrupted.load(Ordering::Relaxed) {
-            recorder.checkpoint(method.as_ref())?;
-            return Ok(Ending::Interrupted { step: method.steps() });
+            recorder.checkpoint(simulation.as_ref())?;
+            return Ok(Ending::Interrupted { clock: simulation.clock() });
         }
-        let failed = match method.step() {
-            Ok(()) => recorder.after_step(method.as_ref())?,
+        let mut moments = vec![until, stride(until).after(&simulation.clock())];
+        moments.extend(recorder.due());
+        let failed = match simulation.advance(&moments, interrupted) {
+            Ok(()) => recorder.write_what_is_due(simulation.as_ref())?,
             Err(failure) => Some(failure),
         };
         if let Some(failure) = failed {
-            let energy = recorder.balance(method.as_ref());
-            let summary = summarize(&checked, method.as_ref(), energy, start, Some(&failure));
-            recorder.fail(method.as_ref(), summary)?;
+            let seconds = start.elapsed().as_secs_f64();
+            let summary = Summary::of(prepared, simulation.as_ref(), seconds, Some(&failure));
+            recorder.fail(simulation.as_ref(), summary)?;
             return Err(RunError::Physics { failure, snapshot: recorder.trajectory_path() });
         }
-        if method.steps().is_multiple_of(stride) {
-            progress(method.steps(), steps);
-        }
+        let (done, all) = until.progress(&simulation.clock());
+        progress(done, all);
     }
-    let energy = recorder.balance(method.as_ref());
-    let summary = summarize(&checked, method.as_ref(), energy, start, None);
-    let summary = recorder.finish(method.as_ref(), summary)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let summary = Summary::of(prepared, simulation.as_ref(), seconds, None);
+    let summary = recorder.finish(simulation.as_ref(), summary)?;
     Ok(Ending::Done(Box::new(summary)))
 }
 
-fn summarize(
-    checked: &Checked,
-    method: &dyn Method,
-    energy: Balance,
-    start: std::time::Instant,
-    failure: Option<&Failure>,
-) -> Summary {
-    Summary::of(checked, method, energy, start.elapsed().as_secs_f64(), failure)
+/// How far a run goes between two words of its progress.
+fn stride(until: Until) -> Until {
+    match until {
+        Until::Steps(steps) => Until::Steps((steps / STRIDES).max(1)),
+        Until::Time(time) => Until::Time(time / STRIDES as f64),
+        Until::Events(events) => Until::Events((events / STRIDES).max(1)),
+    }
 }

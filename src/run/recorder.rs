@@ -3,60 +3,43 @@
 use super::folder::{DATA, DUMP, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY};
 use super::frames::Frames;
 use super::identity::{BITS, Identity, same_scene};
-use super::work::{Balance, Work};
 use super::{Existing, RunError, Summary};
-use crate::io::checkpoint::{Checkpoint, Column, Counter, Latest, NAME, read_latest};
+use crate::domain::Domain;
+use crate::io::checkpoint::{Checkpoint, Counter, Latest, NAME, read_latest};
 use crate::io::extxyz::{self, Frame};
 use crate::io::growing_file::Mark;
 use crate::io::table_file::TableFile;
 use crate::io::{FileError, lammps};
-use crate::method::{Failure, Method, StateColumn, Total, Totals};
-use crate::observe::{Observation, Scenery};
-use crate::scene::{Checked, Output, Run};
+use crate::method::{Clock, Failure, Prepared, Quantity, Schedule, Simulation, Snapshot, Until};
+use crate::scene::Output;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-/// The columns of `thermo.csv` after the step.
-const COLUMNS: [&str; 17] = [
-    "time",
-    "kinetic",
-    "rotational",
-    "elastic",
-    "gravitational",
-    "dissipated",
-    "gravity_work",
-    "wall_work",
-    "balance_error",
-    "momentum_x",
-    "momentum_y",
-    "temperature",
-    "flow",
-    "deepest_penetration",
-    "contacts",
-    "deep_disc_steps",
-    "long_steps",
-];
+/// The counter of events in a checkpoint.
+const EVENTS: &str = "events";
 
 /// Writes the files of a run.
 pub(super) struct Recorder {
     folder: RunFolder,
     identity: Identity,
-    run: Run,
+    schedule: Schedule,
     output: Output,
     seed: Option<u64>,
-    scenery: Scenery,
+    domain: Domain,
+    quantities: &'static [Quantity],
+    /// When the next row, the next snapshot and the next checkpoint are due.
+    due: [Option<Until>; 3],
     thermo: TableFile,
     trajectory: Frames,
     dump: Option<Frames>,
-    work: Work,
     /// What was out of the ordinary, in the order of the run's sessions.
     notes: Vec<String>,
     /// Which of them are of this session.
     new_notes: usize,
-    /// Step of the newest checkpoint, if it says all that there is to say.
-    checkpointed: Option<u64>,
+    /// When the newest checkpoint was written, if it says all that there is to say.
+    checkpointed: Option<Clock>,
 }
 
 /// The growing files of a run, verified but not yet cut.
@@ -74,8 +57,9 @@ impl Recorder {
     pub(super) fn open(
         path: &Path,
         existing: Existing,
-        checked: &Checked,
-        method: &mut dyn Method,
+        prepared: &dyn Prepared,
+        quantities: &'static [Quantity],
+        simulation: &mut dyn Simulation,
     ) -> Result<Recorder, RunError> {
         let folder = RunFolder::open(path)?;
         let mut notes = Vec::new();
@@ -88,63 +72,69 @@ impl Recorder {
         match existing {
             Existing::Refuse if folder.is_run() => Err(RunError::Exists(path.to_owned())),
             Existing::Resume { other_version } if folder.is_run() => match read_latest(path)? {
-                Some(latest) => Recorder::resume(folder, latest, checked, method, other_version, notes),
+                Some(latest) => {
+                    let scene = (prepared, quantities);
+                    Recorder::resume(folder, latest, scene, simulation, other_version, notes)
+                }
                 None => {
-                    begun_with(&folder, &checked.scene.to_toml())?;
+                    begun_with(&folder, &prepared.scene())?;
                     notes.push("begun again: there was no checkpoint yet".to_owned());
-                    Recorder::begin(folder, checked, method, notes)
+                    Recorder::begin(folder, (prepared, quantities), simulation, notes)
                 }
             },
-            _ => Recorder::begin(folder, checked, method, notes),
+            _ => Recorder::begin(folder, (prepared, quantities), simulation, notes),
         }
     }
 
     /// Begins the files with the state at the start.
     fn begin(
         mut folder: RunFolder,
-        checked: &Checked,
-        method: &dyn Method,
+        (prepared, quantities): (&dyn Prepared, &'static [Quantity]),
+        simulation: &dyn Simulation,
         notes: Vec<String>,
     ) -> Result<Recorder, RunError> {
         folder.clear()?;
-        let output = checked.scene.output;
+        let output = prepared.output();
         folder.claim(&on_request(&output))?;
-        let thermo = TableFile::create(folder.file(THERMO), &COLUMNS)?;
+        let thermo = TableFile::create(folder.file(THERMO), &columns(quantities))?;
         let trajectory = Frames::create(folder.file(TRAJECTORY), extxyz::write)?;
         let dump = match output.lammps_dump {
             true => Some(Frames::create(folder.file(DUMP), lammps::write_dump)?),
             false => None,
         };
-        let work = work_from(checked, method);
         let growing = Growing { thermo, trajectory, dump };
-        let mut recorder = Recorder::with(folder, checked, growing, work, notes);
+        let mut recorder =
+            Recorder::with(folder, (prepared, quantities), growing, &simulation.clock(), notes);
         recorder.new_notes = recorder.notes.len();
         recorder.write_scene()?;
-        if let Some(failure) = recorder.thermo(method)? {
+        if let Some(failure) = recorder.thermo(simulation)? {
             return Err(RunError::Start(failure));
         }
-        recorder.snapshot(method)?;
+        recorder.snapshot(simulation)?;
         Ok(recorder)
     }
 
     fn with(
         folder: RunFolder,
-        checked: &Checked,
+        (prepared, quantities): (&dyn Prepared, &'static [Quantity]),
         Growing { thermo, trajectory, dump }: Growing,
-        work: Work,
+        clock: &Clock,
         notes: Vec<String>,
     ) -> Recorder {
+        let schedule = prepared.schedule();
+        let due = [schedule.rows, schedule.snapshots, schedule.checkpoints].map(|every| every.next(clock));
         Recorder {
             folder,
-            identity: Identity::of(checked),
-            run: checked.scene.run,
-            output: checked.scene.output,
-            seed: super::summary::seed(&checked.scene.start),
-            scenery: Scenery::of(&super::model(checked)),
+            identity: Identity::of(prepared),
+            schedule,
+            output: prepared.output(),
+            seed: prepared.seed(),
+            domain: prepared.domain(),
+            quantities,
+            due,
             thermo,
             trajectory,
             dump,
-            work,
             notes,
             new_notes: 0,
             checkpointed: None,
@@ -155,8 +145,8 @@ impl Recorder {
     fn resume(
         mut folder: RunFolder,
         latest: Latest,
-        checked: &Checked,
-        method: &mut dyn Method,
+        (prepared, quantities): (&dyn Prepared, &'static [Quantity]),
+        simulation: &mut dyn Simulation,
         other_version: bool,
         session: Vec<String>,
     ) -> Result<Recorder, RunError> {
@@ -164,7 +154,7 @@ impl Recorder {
         let foreign = |reason: String| RunError::Foreign { file: latest.file.clone(), reason };
         let mut checkpoint = latest.checkpoint;
         let said = checkpoint.origin.get("notes").map_or(0, |notes| notes.lines().count());
-        let mut notes = Identity::of(checked).check(folder.path(), &checkpoint, other_version)?;
+        let mut notes = Identity::of(prepared).check(folder.path(), &checkpoint, other_version)?;
         notes.extend(session);
         if latest.file != newest {
             notes.push(format!(
@@ -173,19 +163,24 @@ impl Recorder {
                 checkpoint.step
             ));
         }
-        let (done, asked) = (checkpoint.step, checked.scene.run.steps);
-        if done > asked {
+        let events = match checkpoint.counters.remove(EVENTS) {
+            Some(Counter::Count(events)) => events,
+            _ => 0,
+        };
+        let clock = Clock { steps: checkpoint.step, time: checkpoint.time, events };
+        let asked = prepared.schedule().until;
+        if asked.has_passed(&clock) {
+            let done = match asked {
+                Until::Steps(_) => Until::Steps(clock.steps),
+                Until::Time(_) => Until::Time(clock.time),
+                Until::Events(_) => Until::Events(clock.events),
+            };
             return Err(RunError::FewerSteps { folder: folder.path().to_owned(), done, asked });
         }
         let count = |name: &str| match checkpoint.counters.get(name) {
             Some(Counter::Count(count)) => Ok(*count),
             _ => Err(foreign(format!("the counter {name} is missing"))),
         };
-        let totals = Totals::from_entries(|name| match checkpoint.counters.get(name)? {
-            Counter::Count(count) => Some(Total::Count(*count)),
-            Counter::Sum(sum) => Some(Total::Sum(*sum)),
-        });
-        let totals = totals.map_err(|name| foreign(format!("the total {name} is missing")))?;
         let mark = |file: &str| -> Result<Mark, RunError> {
             let checksum = count(&format!("{file} checksum"))?;
             let checksum = u32::try_from(checksum)
@@ -194,7 +189,7 @@ impl Recorder {
         };
         let last_frame = |file: &str| count(&format!("{file} last")).ok();
         let mut growing = Growing {
-            thermo: TableFile::resume(folder.file(THERMO), &COLUMNS, mark(THERMO)?)?,
+            thermo: TableFile::resume(folder.file(THERMO), &columns(quantities), mark(THERMO)?)?,
             trajectory: Frames::resume(
                 folder.file(TRAJECTORY),
                 extxyz::write,
@@ -208,19 +203,13 @@ impl Recorder {
                 Err(_) => None,
             },
         };
-        let mut state = Vec::new();
-        for (name, column) in std::mem::take(&mut checkpoint.columns) {
-            match column {
-                Column::F64(values) => state.push((name, StateColumn::F64(values))),
-                Column::F32(values) => state.push((name, StateColumn::F32(values))),
-                _ => return Err(foreign(format!("the column {name} is of no state"))),
-            }
-        }
-        // The method is at the start still, as it was when the run began.
-        let work = work_from(checked, method);
-        method.restore(checkpoint.step, totals, state).map_err(foreign)?;
+        let snapshot = Snapshot {
+            counters: std::mem::take(&mut checkpoint.counters),
+            columns: std::mem::take(&mut checkpoint.columns),
+        };
+        simulation.restore(clock, snapshot).map_err(foreign)?;
 
-        let output = checked.scene.output;
+        let output = prepared.output();
         folder.claim(&on_request(&output))?;
         growing.thermo.cut()?;
         growing.trajectory.cut()?;
@@ -235,9 +224,9 @@ impl Recorder {
         // They speak of an end that is not reached yet.
         folder.remove_own(SUMMARY)?;
         folder.remove_own(DATA)?;
-        let mut recorder = Recorder::with(folder, checked, growing, work, notes);
+        let mut recorder = Recorder::with(folder, (prepared, quantities), growing, &clock, notes);
         recorder.new_notes = recorder.notes.len() - said;
-        recorder.checkpointed = (recorder.new_notes == 0).then_some(checkpoint.step);
+        recorder.checkpointed = (recorder.new_notes == 0).then_some(clock);
         recorder.write_scene()?;
         Ok(recorder)
     }
@@ -251,77 +240,64 @@ impl Recorder {
         Ok(self.folder.write(SCENE, |out| out.write_all(self.identity.scene.as_bytes()))?)
     }
 
-    /// What is due after a step; gives the failure that only sums over all discs show.
-    pub(super) fn after_step(&mut self, method: &dyn Method) -> Result<Option<Failure>, RunError> {
-        let due = |every: u64| every > 0 && method.steps().is_multiple_of(every);
-        if due(self.run.thermo_every)
-            && let Some(failure) = self.thermo(method)?
-        {
-            return Ok(Some(failure));
-        }
-        if due(self.run.snapshot_every) {
-            self.snapshot(method)?;
-        }
-        if due(self.run.checkpoint_every) {
-            self.checkpoint(method)?;
-        }
-        Ok(None)
+    /// The moments at which something is to be written.
+    pub(super) fn due(&self) -> impl Iterator<Item = Until> {
+        self.due.into_iter().flatten()
     }
 
-    /// The balance of energy as it stands.
-    pub(super) fn balance(&self, method: &dyn Method) -> Balance {
-        let particles = method.particles();
-        let seen = Observation::of(method.steps(), method.time(), &particles, &self.scenery);
-        self.work.balance(&seen, &particles, method)
+    /// Writes what is due; gives the failure that only sums over all particles show.
+    pub(super) fn write_what_is_due(
+        &mut self,
+        simulation: &dyn Simulation,
+    ) -> Result<Option<Failure>, RunError> {
+        let clock = simulation.clock();
+        let [rows, snapshots, checkpoints] =
+            self.due.map(|due| due.is_some_and(|moment| moment.has_come(&clock)));
+        let Schedule { rows: row, snapshots: snapshot, checkpoints: checkpoint, .. } = self.schedule;
+        if rows {
+            self.due[0] = row.next(&clock);
+            if let Some(failure) = self.thermo(simulation)? {
+                return Ok(Some(failure));
+            }
+        }
+        if snapshots {
+            self.due[1] = snapshot.next(&clock);
+            self.snapshot(simulation)?;
+        }
+        if checkpoints {
+            self.due[2] = checkpoint.next(&clock);
+            self.checkpoint(simulation)?;
+        }
+        Ok(None)
     }
 
     /// A row of observables, unless one of them is no finite number.
-    fn thermo(&mut self, method: &dyn Method) -> Result<Option<Failure>, RunError> {
-        let particles = method.particles();
-        let seen = Observation::of(method.steps(), method.time(), &particles, &self.scenery);
-        let (balance, totals) = (self.work.balance(&seen, &particles, method), method.totals());
-        let row = [
-            seen.time,
-            seen.kinetic,
-            seen.rotational,
-            seen.elastic,
-            seen.gravitational,
-            balance.dissipated,
-            balance.gravity_work,
-            balance.wall_work,
-            balance.balance_error,
-            seen.momentum_x,
-            seen.momentum_y,
-            seen.temperature,
-            seen.flow,
-            seen.deepest_penetration,
-            seen.contacts as f64,
-            totals.deep_disc_steps as f64,
-            totals.long_steps as f64,
-        ];
-        if let Some((&quantity, &value)) = COLUMNS.iter().zip(&row).find(|(_, value)| !value.is_finite()) {
-            return Ok(Some(Failure::Overflow { step: seen.step, quantity, value }));
+    fn thermo(&mut self, simulation: &dyn Simulation) -> Result<Option<Failure>, RunError> {
+        let (step, row) = (simulation.clock().steps, simulation.observe());
+        let named = self.quantities.iter().zip(&row);
+        if let Some((quantity, &value)) = named.into_iter().find(|(_, value)| !value.is_finite()) {
+            return Ok(Some(Failure::Overflow { step, quantity: quantity.name, value }));
         }
-        self.thermo.append(seen.step, &row)?;
+        self.thermo.append(step, &row)?;
         Ok(None)
     }
 
-    fn frame(&self, method: &dyn Method) -> Frame {
-        let domain = self.scenery.domain;
+    fn frame(&self, simulation: &dyn Simulation) -> Frame {
+        let (domain, clock) = (self.domain, simulation.clock());
         Frame {
-            particles: method.particles(),
+            particles: simulation.particles(),
             cell: domain.sides,
             origin: domain.origin,
             periodic: Some(domain.periodic),
-            time: method.time(),
-            step: method.steps(),
+            time: clock.time,
+            step: clock.steps,
             seed: self.seed,
         }
     }
 
     /// A frame in each of the files that are asked for and do not have it yet.
-    fn snapshot(&mut self, method: &dyn Method) -> Result<(), RunError> {
-        let frame = self.frame(method);
+    fn snapshot(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
+        let frame = self.frame(simulation);
         if self.output.trajectory {
             self.trajectory.add(&frame)?;
         }
@@ -332,8 +308,8 @@ impl Recorder {
     }
 
     /// The state of a failed step, whether snapshots are due or not, and what there is to say of it.
-    pub(super) fn fail(&mut self, method: &dyn Method, summary: Summary) -> Result<(), RunError> {
-        self.trajectory.add(&self.frame(method))?;
+    pub(super) fn fail(&mut self, simulation: &dyn Simulation, summary: Summary) -> Result<(), RunError> {
+        self.trajectory.add(&self.frame(simulation))?;
         self.sync()?;
         self.summary(summary).map(drop)
     }
@@ -362,43 +338,42 @@ impl Recorder {
     }
 
     /// The complete state, after everything before it is on the disk.
-    pub(super) fn checkpoint(&mut self, method: &dyn Method) -> Result<(), RunError> {
-        if self.checkpointed == Some(method.steps()) {
+    pub(super) fn checkpoint(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
+        let clock = simulation.clock();
+        if self.checkpointed == Some(clock) {
             return Ok(());
         }
         let mut counters = self.sync()?;
         counters.insert("bits".to_owned(), Counter::Count(BITS));
-        counters.extend(method.totals().entries().into_iter().map(|(name, total)| match total {
-            Total::Count(count) => (name.to_owned(), Counter::Count(count)),
-            Total::Sum(sum) => (name.to_owned(), Counter::Sum(sum)),
-        }));
-        let state = method.state().into_iter().map(|(name, column)| match column {
-            StateColumn::F64(values) => (name, Column::F64(values)),
-            StateColumn::F32(values) => (name, Column::F32(values)),
-        });
-        let columns: Vec<(String, Column)> = state.collect();
+        counters.insert(EVENTS.to_owned(), Counter::Count(clock.events));
+        let snapshot = simulation.snapshot();
+        counters.extend(snapshot.counters);
         let checkpoint = Checkpoint {
-            step: method.steps(),
-            time: method.time(),
+            step: clock.steps,
+            time: clock.time,
             scene: self.identity.scene.clone(),
             origin: self.identity.origin(&self.notes),
             counters,
-            columns,
+            columns: snapshot.columns,
         };
         checkpoint.write_atomically(self.folder.file(NAME))?;
-        self.checkpointed = Some(method.steps());
+        self.checkpointed = Some(clock);
         // Later than the checkpoint, so that what is still there can be gone on with.
         Ok(self.folder.check(true)?)
     }
 
     /// The end: a last checkpoint, the last state in every file that is asked for, and what there is to say. The frame comes
     /// after the checkpoint, so that it is cut off again where a run goes on to more steps.
-    pub(super) fn finish(&mut self, method: &dyn Method, summary: Summary) -> Result<Summary, RunError> {
-        self.checkpoint(method)?;
-        self.snapshot(method)?;
+    pub(super) fn finish(
+        &mut self,
+        simulation: &dyn Simulation,
+        summary: Summary,
+    ) -> Result<Summary, RunError> {
+        self.checkpoint(simulation)?;
+        self.snapshot(simulation)?;
         self.sync()?;
         if self.output.lammps_data {
-            let frame = self.frame(method);
+            let frame = self.frame(simulation);
             self.folder.write(DATA, |out| lammps::write_data(&frame, out))?;
         }
         self.summary(summary)
@@ -416,12 +391,9 @@ impl Recorder {
     }
 }
 
-/// The balance of energy of a run whose method is at the start.
-fn work_from(checked: &Checked, method: &dyn Method) -> Work {
-    let scenery = Scenery::of(&super::model(checked));
-    let particles = method.particles();
-    let first = Observation::of(method.steps(), method.time(), &particles, &scenery);
-    Work::begin(&first, &particles, scenery.domain, scenery.gravity)
+/// The names of the columns of `thermo.csv` after the step.
+fn columns(quantities: &'static [Quantity]) -> Vec<&'static str> {
+    quantities.iter().map(|quantity| quantity.name).collect()
 }
 
 /// The files that a scene asks for beyond what every run writes.

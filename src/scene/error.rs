@@ -109,7 +109,7 @@ pub(super) struct Mistakes {
 }
 
 impl Mistakes {
-    /// So many mistakes are named: a file of another kind may hold millions.
+    /// At most as many mistakes are named: a file of another kind may hold millions.
     pub(super) const NAMED: usize = 50;
 
     /// Whether a mistake would be named; where not, there is no need to find words for it.
@@ -161,7 +161,7 @@ impl SceneErrors {
     ///
     /// # Errors
     /// If there is any mistake.
-    pub(super) fn none_of(mut errors: Vec<SceneError>) -> Result<(), SceneErrors> {
+    pub fn none_of(mut errors: Vec<SceneError>) -> Result<(), SceneErrors> {
         if errors.is_empty() {
             return Ok(());
         }
@@ -205,14 +205,17 @@ pub struct Warning {
 }
 
 /// Where a value comes from, to be said in an error.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Spot {
-    pub(super) file: String,
-    pub(super) place: Option<Place>,
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Spot {
+    /// The file, the preset, or the option of the command line.
+    pub file: String,
+    /// Where in the file.
+    pub place: Option<Place>,
 }
 
 impl Spot {
-    pub(super) fn error(&self, reason: Reason, message: impl Into<String>) -> SceneError {
+    /// A mistake at this place.
+    pub fn error(&self, reason: Reason, message: impl Into<String>) -> SceneError {
         SceneError {
             file: self.file.clone(),
             place: self.place,

@@ -148,6 +148,14 @@ impl Kind {
         }
     }
 
+    /// Whether a word may stand there: any, where words are not chosen from some.
+    pub(super) fn admits(self, word: &str) -> bool {
+        match self {
+            Kind::Choice(words) => words.iter().any(|choice| is_choice(choice, word)),
+            _ => true,
+        }
+    }
+
     /// Reads a value, with every fault of it.
     pub(super) fn read(self, value: &Spanned<DeValue<'_>>) -> Read<Value> {
         Ok(match self {
@@ -247,15 +255,19 @@ fn text(value: &Spanned<DeValue<'_>>) -> Read<String> {
     }
 }
 
-fn choice(value: &Spanned<DeValue<'_>>, words: &'static [&'static str]) -> Read<String> {
-    let Some(text) = value.get_ref().as_str() else { return wrong_type(value) };
-    let matches = |word: &&str| match word.strip_suffix("N") {
+/// Whether a text is one of the choices that a word stands for.
+fn is_choice(word: &str, text: &str) -> bool {
+    match word.strip_suffix("N") {
         Some(stem) if stem.ends_with(':') => {
             text.strip_prefix(stem).is_some_and(|count| matches!(count.parse::<u32>(), Ok(1..)))
         }
-        _ => *word == text,
-    };
-    if words.iter().any(matches) {
+        _ => word == text,
+    }
+}
+
+fn choice(value: &Spanned<DeValue<'_>>, words: &'static [&'static str]) -> Read<String> {
+    let Some(text) = value.get_ref().as_str() else { return wrong_type(value) };
+    if words.iter().any(|choice| is_choice(choice, text)) {
         return Ok(text.to_owned());
     }
     let nearest = nearest(text, words.iter().copied());
@@ -310,21 +322,8 @@ pub enum Fallback {
     Otherwise(&'static str),
 }
 
-/// A key by whose value it is decided which other keys are used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Selector {
-    /// `particles.generate`; a start file counts as the choice `file`.
-    Start,
-    /// `method.kind`.
-    Method,
-    /// `particles.wall_motion`.
-    WallMotion,
-    /// `integrator.kind`.
-    Integrator,
-}
-
-/// Where a key is used: everywhere, or with some choices of a selector.
-pub type Use = Option<(Selector, &'static [&'static str])>;
+/// Where a key is used: everywhere, or with some choices of another key.
+pub type Use = Option<(&'static Key, &'static [&'static str])>;
 
 /// A key of a scene file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -341,6 +340,8 @@ pub struct Key {
     pub fallback: Fallback,
     /// Where it is used.
     pub used: Use,
+    /// The choice of another key that giving this one makes.
+    pub implies: Option<(&'static Key, &'static str)>,
     /// What it means.
     pub doc: &'static str,
 }
@@ -357,7 +358,45 @@ impl Key {
         format!("{} = {}{unit}", self.name, self.kind.words())
     }
 
-    pub(super) fn id(&self) -> (&'static str, &'static str) {
+    /// Section and name.
+    pub fn id(&self) -> (&'static str, &'static str) {
         (self.section, self.name)
     }
 }
+
+/// Defines keys as statics, each with its documentation, and the list of them in the order in which they are written.
+macro_rules! define_keys {
+    (
+        $(#[$meta:meta])* $vis:vis static $list:ident;
+        $($constant:ident = $section:literal $name:literal, $kind:expr, $unit:literal, $fallback:expr, $used:expr, $doc:literal
+            $(, implies $implied:expr)?;)*
+    ) => {
+        $(
+            #[doc = $doc]
+            pub static $constant: $crate::scene::Key = $crate::scene::Key {
+                section: $section,
+                name: $name,
+                kind: $kind,
+                unit: $unit,
+                fallback: $fallback,
+                used: $used,
+                implies: $crate::scene::keys::implied!($($implied)?),
+                doc: $doc,
+            };
+        )*
+
+        $(#[$meta])*
+        $vis static $list: &[&$crate::scene::Key] = &[$(&$constant),*];
+    };
+}
+
+macro_rules! implied {
+    () => {
+        None
+    };
+    ($implied:expr) => {
+        Some($implied)
+    };
+}
+
+pub(crate) use {define_keys, implied};

@@ -5,15 +5,15 @@ use crc32fast::Hasher;
 use std::io::Cursor;
 use stripmine::io::checkpoint::{Checkpoint, Column, Counter};
 use stripmine::io::extxyz::{self, Frames};
+use stripmine::method::lattice_md::{Document, ENTRY};
 use stripmine::model::host::{HostModel, default_model};
 use stripmine::model::machine::MachineModel;
 use stripmine::model::machines::names;
-use stripmine::scene::{Document, KEYS, PRESETS};
 
 const MEGABYTE: u64 = 1 << 20;
 
 pub(crate) fn scenes() -> Vec<Vec<u8>> {
-    let presets = PRESETS.iter().map(|preset| preset.text.as_bytes().to_vec());
+    let presets = ENTRY.vocabulary.presets.iter().map(|preset| preset.text.as_bytes().to_vec());
     presets.chain(corpus("scene")).collect()
 }
 
@@ -35,7 +35,7 @@ fn scenes_are_read_or_refused() {
 #[test]
 fn overrides_are_read_or_refused() {
     let seeds: Vec<Vec<u8>> =
-        KEYS.iter().map(|key| format!("{}=[1.0, 2.0]", key.path()).into_bytes()).collect();
+        ENTRY.vocabulary.keys.keys().map(|key| format!("{}=[1.0, 2.0]", key.path()).into_bytes()).collect();
     fuzz(&seeds, cases(3000), 16 * MEGABYTE, |bytes| {
         let set = String::from_utf8_lossy(bytes).into_owned();
         if let Ok(document) = Document::load("two-discs", &[set]) {

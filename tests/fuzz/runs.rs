@@ -4,8 +4,8 @@ use crate::mutation::gentle;
 use crate::readers::scenes;
 use crate::{cases, fuzz_with};
 use std::cell::Cell;
-use stripmine::run::{assemble, memory};
-use stripmine::scene::{Amount, Document, Grains, Lining, Scene, Start};
+use stripmine::method::lattice_md::{Document, Scene, assemble, memory};
+use stripmine::scene::{Amount, Grains, Lining, Start};
 
 /// Whether a scene has few discs and few cells, so that a case takes no time.
 fn is_small(scene: &Scene) -> bool {
@@ -55,13 +55,13 @@ fn small_scenes() -> Vec<Vec<u8>> {
     let mut scenes = Vec::new();
     for preset in ["pipe-small", "shaken-box", "dense-gas", "two-discs", "bench"] {
         for method in [
-            &["method.execution=fast"][..],
-            &["method.execution=fast", "method.on_conflict=resolve"],
-            &["method.execution=chained"],
-            &["method.execution=eager", "method.precision=f32"],
-            &["method.kind=sectors", "method.execution=fast"],
-            &["method.kind=neighbor-list", "method.execution=fast", "method.precision=mixed"],
-            &["method.kind=neighbor-list", "method.rebuild=all-pairs"],
+            &["machine.engine=fast", "search.by=lattice"][..],
+            &["machine.engine=fast", "search.by=lattice", "search.on_conflict=resolve"],
+            &["machine.execution=chained"],
+            &["machine.execution=eager", "machine.precision=f32"],
+            &["search.by=sectors", "machine.engine=fast"],
+            &["search.by=neighbor-list", "machine.engine=fast", "machine.precision=mixed"],
+            &["search.by=neighbor-list", "search.rebuild=all-pairs"],
         ] {
             let count = if preset == "two-discs" { "run.steps=3" } else { "particles.count=30" };
             let sets: Vec<String> = method.iter().chain(&[count]).map(|set| (*set).to_owned()).collect();

@@ -44,7 +44,7 @@ class Contest:
         scene = {
             "particles.count": self.particles,
             "particles.packing_fraction": self.fraction,
-            "method.execution": '"fast"',
+            "machine.engine": '"fast"',
             "integrator.kind": '"velocity-verlet"',
             "run.steps": steps,
             "output.trajectory": "false",
@@ -60,10 +60,12 @@ class Contest:
         return json.loads(run(call, self.variables).strip().splitlines()[-1])
 
     def ours(self, what, precision, integrator):
+        execution = self.asked.execution
+        engine = ["--engine", "fast"] if execution == "fast" else ["--execution", execution]
         call = [
             self.asked.stripmine, "bench", what, "--json", "--threads", "1", "--repeats", "1",
             "--packing-fraction", str(self.fraction), "--particles", str(self.particles), "--steps", str(self.steps),
-            "--precision", precision, "--integrator", integrator, "--execution", self.asked.execution,
+            "--precision", precision, "--integrator", integrator, *engine,
         ]
         return json.loads(run(call))
 

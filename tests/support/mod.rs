@@ -1,7 +1,7 @@
 //! Small systems for the tests of the lattice method.
 #![allow(dead_code, reason = "each test file uses its part")]
 
-use stripmine::method::Method;
+use stripmine::method::lattice_md::Engine;
 use stripmine::method::lattice_md::{Contacts, Discs, GearValues, Machine, Model, Scheme, Watch, start};
 use stripmine::particles::{Kind, Particle, Particles};
 use stripmine::placement::hexagonal;
@@ -41,6 +41,7 @@ pub fn gas(least: usize, packing_fraction: f64, seed: u64) -> (Model, Particles)
     let model = Model {
         shape: LatticeShape::new(counts[0], counts[1], &mask, [true; 2]).unwrap(),
         frame: Frame { origin: [0.0; 2], edge },
+        sides: [0, 1].map(|axis| counts[axis] as f64 * edge[axis]),
         mask,
         coordinates: Coordinates::CellRelative,
         contact: CONTACT,
@@ -61,11 +62,11 @@ pub fn simulate(
     (model, particles): &(Model, Particles),
     contacts: Contacts,
     machine: Machine,
-) -> Box<dyn Method> {
+) -> Box<dyn Engine> {
     start(precision, model.clone(), contacts, machine, WallMotion::Fixed, particles.clone()).unwrap()
 }
 
-pub fn advance(method: &mut dyn Method, steps: u64) {
+pub fn advance(method: &mut dyn Engine, steps: u64) {
     for _ in 0..steps {
         method.step().unwrap();
     }
@@ -76,6 +77,7 @@ pub fn arena(cells: [usize; 2], periodic: bool, discs: &[Particle]) -> (Model, P
     let (mut model, _) = gas(12, 0.5, 1);
     model.shape = LatticeShape::new(cells[0], cells[1], &model.mask, [periodic; 2]).unwrap();
     model.frame = Frame { origin: [0.0; 2], edge: [0.5; 2] };
+    model.sides = cells.map(|count| 0.5 * count as f64);
     model.contact = Contact { normal_damping: 0.0, shear_damping: 0.0, friction: 0.0, ..CONTACT };
     model.friction = false;
     (model, Particles::new(discs.to_vec()))

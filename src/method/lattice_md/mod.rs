@@ -1,20 +1,74 @@
 //! Lattice molecular dynamics of granular discs, BP93: every step is a sequence of vector programs over the discs and
 //! over a lattice with at most one disc a cell. Beside it, on the same state and with the same law, the rival that the
 //! source compares with: scalar neighbour lists.
+//!
+//! Step discs one by one:
+//!
+//! ```
+//! use stripmine::method::lattice_md::{Document, assemble};
+//!
+//! let checked = Document::load("two-discs", &["machine.engine=programs".to_owned()])?.check()?;
+//! let mut engine = assemble(&checked)?;
+//! engine.step()?;
+//! assert_eq!(engine.particles().len(), 2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Ask what a step costs, by the source's count and by the programs that run:
+//!
+//! ```
+//! use stripmine::method::lattice_md::study::efficiency_table::{Question, efficiency_table};
+//! use stripmine::model::machines;
+//!
+//! let table = efficiency_table(&Question::default(), &machines::preset("paper")?)?;
+//! let forces = table.parts.iter().find(|row| row.part == "forces").expect("a step has forces");
+//! assert_eq!(forces.printed, Some(1656));
+//! assert!(forces.counted < 1656);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod arrays;
+mod assemble;
+mod balance;
+mod benches;
+mod check;
+mod choice;
 mod crossings;
+mod document;
+mod engine;
+mod entry;
 mod fast;
+mod items;
+mod keys;
+pub mod memory;
 mod model;
 mod neighbor_list;
+mod options;
+mod prepared;
+mod presets;
 mod programs;
+pub mod scene;
+pub mod sections;
 mod simulation;
+pub mod study;
+mod timings;
+mod totals;
+mod verbs;
 mod walls;
 mod watch;
 
 pub use arrays::{Arrays, Lengths};
+pub use assemble::{assemble, assemble_following_energy, model};
+pub use balance::Balance;
+pub use check::{Checked, Estimates, Geometry};
+pub use document::Document;
+pub use engine::Engine;
+pub use entry::ENTRY;
 pub use fast::{OnConflict, Search};
 pub use model::{Discs, GearValues, Model, OnLongStep, Scheme, Watch};
 pub use neighbor_list::{ListOptions, Rebuild};
 pub use programs::{Part, StepProgram, execute, ledger, programs, rival_ledger};
+pub use scene::{Inertia, Scene};
 pub use simulation::{Contacts, LatticeMd, Machine, start};
+pub use timings::{Phase, Timings};
+pub use totals::{Total, Totals};

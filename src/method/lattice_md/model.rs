@@ -1,7 +1,9 @@
 //! What is modelled: no more than a scene needs.
 
 use crate::domain::Domain;
+use crate::observe::Scenery;
 use crate::particles::longest_step;
+use crate::words::define_words;
 use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::integrator::gear::Acceleration;
 use stripmine_kernels::isa::Storage;
@@ -45,6 +47,16 @@ pub enum Scheme {
 }
 
 impl Scheme {
+    /// The name in reports: `gear4`, `gear5`, `gear6` or `velocity-verlet`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Scheme::Gear(GearValues::Four) => "gear4",
+            Scheme::Gear(GearValues::Five) => "gear5",
+            Scheme::Gear(GearValues::Six) => "gear6",
+            Scheme::VelocityVerlet => "velocity-verlet",
+        }
+    }
+
     /// Scaled derivatives of a degree of freedom: position, velocity, acceleration and what is carried beyond.
     pub const fn values(self) -> usize {
         match self {
@@ -84,14 +96,14 @@ pub struct Watch {
     pub energy: bool,
 }
 
-/// What becomes of a disc that moves farther in a step than contacts can be seen.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum OnLongStep {
-    /// The run stops.
-    #[default]
-    Stop,
-    /// It is counted.
-    Count,
+define_words! {
+    /// What becomes of a disc that moves farther in a step than contacts can be seen.
+    pub enum OnLongStep {
+        /// The run stops.
+        Stop = "stop",
+        /// It is counted.
+        Count = "count",
+    }
 }
 
 impl Watch {
@@ -115,6 +127,18 @@ impl Watch {
     }
 }
 
+/// Sides of what a lattice fills (length).
+pub fn filled(shape: &LatticeShape, frame: &Frame) -> [f64; 2] {
+    let counts = [shape.columns(), shape.rows()];
+    [0, 1].map(|axis| counts[axis] as f64 * frame.edge[axis])
+}
+
+/// Sides of a box (length) as steps see them: along periodic sides exactly what the lattice fills.
+pub fn sides_of(domain: &Domain, shape: &LatticeShape, frame: &Frame) -> [f64; 2] {
+    let filled = filled(shape, frame);
+    [0, 1].map(|axis| if domain.periodic[axis] { filled[axis] } else { domain.sides[axis] })
+}
+
 /// What is modelled, on which lattice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
@@ -122,6 +146,8 @@ pub struct Model {
     pub shape: LatticeShape,
     /// Where it lies.
     pub frame: Frame,
+    /// Sides of the box (length). The lattice fills periodic ones, and may reach beyond closed ones.
+    pub sides: [f64; 2],
     /// The neighbourhood, met from both sides.
     pub mask: Mask,
     /// What positions on the lattice are measured from.
@@ -188,14 +214,15 @@ impl Model {
         })
     }
 
-    /// The box that the lattice fills.
+    /// The box.
     pub fn domain(&self) -> Domain {
-        let counts = [self.shape.columns(), self.shape.rows()];
-        Domain {
-            origin: self.frame.origin,
-            sides: [0, 1].map(|axis| counts[axis] as f64 * self.frame.edge[axis]),
-            periodic: self.shape.periodic(),
-        }
+        Domain { origin: self.frame.origin, sides: self.sides, periodic: self.shape.periodic() }
+    }
+
+    /// Whether a disc may be outside the box and yet on the lattice.
+    pub fn reaches_beyond_box(&self) -> bool {
+        let [x, y] = filled(&self.shape, &self.frame);
+        x > self.sides[0] * (1.0 + 1e-12) || y > self.sides[1] * (1.0 + 1e-12)
     }
 
     /// Whether contacts turn energy into heat, and that is followed.
@@ -230,6 +257,18 @@ impl Model {
                 Inertia::Equal { inverse_mass: disc.inverse_mass, inverse_inertia }
             }
             Discs::Varying => Inertia::Varying,
+        }
+    }
+}
+
+impl Scenery {
+    /// Of a model.
+    pub fn of(model: &Model) -> Scenery {
+        Scenery {
+            domain: model.domain(),
+            contact: model.contact,
+            gravity: model.gravity,
+            inertia_factor: if model.friction { model.inertia_factor } else { 0.0 },
         }
     }
 }

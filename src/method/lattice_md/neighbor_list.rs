@@ -4,19 +4,21 @@ use super::programs::{WithLaw, with_law};
 use super::{Arrays, Discs, Model};
 use crate::domain::Domain;
 use crate::grid::Bins;
+use crate::words::define_words;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Array;
 use stripmine_kernels::law::Law;
 use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::sweep::neighbor_list::{self, Lists, Met, Ways, walk};
 
-/// How lists are made anew.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rebuild {
-    /// By trying every pair: O(N²), as in the source.
-    AllPairs,
-    /// By looking into the cells around each disc: O(N).
-    Cells,
+define_words! {
+    /// How neighbour lists are made.
+    pub enum Rebuild {
+        /// By looking into the cells around each disc.
+        Cells = "cells",
+        /// By trying every pair, as in the source.
+        AllPairs = "all-pairs",
+    }
 }
 
 /// The choices of the rival.

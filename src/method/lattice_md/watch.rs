@@ -51,6 +51,15 @@ impl<S: Precision, P: Precision> Names<'_, S, P> {
         Some(Failure::OutOfBox { step: self.step, count, first })
     }
 
+    /// Grains outside the box, where the lattice reaches beyond it.
+    pub(super) fn beyond_box(&self) -> Option<Failure> {
+        let domain = self.model.domain();
+        let grains = 0..self.arrays.lengths().grains;
+        let beyond = || grains.clone().filter(|&disc| !domain.contains(self.position(disc)));
+        let first = self.culprit(beyond().next()?);
+        Some(Failure::OutOfBox { step: self.step, count: beyond().count() as u64, first })
+    }
+
     /// Discs whose cell another one took.
     pub(super) fn conflict(&self) -> Option<Failure> {
         let cell = self.arrays.cell();

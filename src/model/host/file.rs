@@ -5,6 +5,7 @@ use super::model::HostModel;
 use crate::io::{FileError, regular_file};
 use crate::model::machine_file::{LONGEST, NAMED, Position};
 use crate::quoted::{message, one_line, quoted};
+use crate::reported::{Class, FilePlace, Reported};
 use std::path::Path;
 
 /// The version of the file format that this program reads.
@@ -244,6 +245,30 @@ fn infinite(value: &toml::Value, entry: String, found: &mut Vec<(String, String)
 /// [`HostFileError`] never, as a test of the shipped text holds.
 pub fn default_model() -> Result<HostModel, HostFileError> {
     HostModel::parse("the shipped host model", include_str!("default.toml"))
+}
+
+impl Reported for HostFileError {
+    fn class(&self) -> Class {
+        match self {
+            HostFileError::Read(_) => Class::InputOutput,
+            _ => Class::Input,
+        }
+    }
+
+    fn place(&self) -> Option<FilePlace> {
+        Some(match self {
+            HostFileError::Read(error) => FilePlace::at(&error.file),
+            HostFileError::NotText { file, line } => {
+                FilePlace { file: file.clone(), line: Some(*line), column: None }
+            }
+            HostFileError::Syntax { file, .. } => FilePlace { file: file.clone(), line: None, column: None },
+            HostFileError::Content { file, entries, .. } => {
+                let position = entries.first().and_then(|entry| entry.position);
+                let (line, column) = (position.map(|at| at.line), position.map(|at| at.column));
+                FilePlace { file: file.clone(), line, column }
+            }
+        })
+    }
 }
 
 #[cfg(test)]

@@ -3,6 +3,8 @@
 use super::limits::FORMAT;
 use super::position::Position;
 use crate::quoted::{message, one_line, quoted};
+use crate::reported::{Class, FilePlace, Reported};
+use std::io::ErrorKind;
 use stripmine_kernels::isa::op::OpClass;
 
 /// Why a machine file cannot be used.
@@ -214,4 +216,42 @@ impl Defect {
 
 fn class_names() -> String {
     OpClass::ALL.iter().map(|class| class.name()).collect::<Vec<_>>().join(", ")
+}
+
+impl Reported for MachineError {
+    fn class(&self) -> Class {
+        match self {
+            MachineError::Unknown { .. } => Class::Usage,
+            MachineError::File(_) => Class::Input,
+            // Bytes that are no text.
+            MachineError::Read { cause, .. } if cause.kind() == ErrorKind::InvalidData => Class::Input,
+            MachineError::Read { .. } => Class::InputOutput,
+        }
+    }
+
+    fn place(&self) -> Option<FilePlace> {
+        let (file, position) = match self {
+            MachineError::Unknown { .. } => return None,
+            MachineError::File(MachineFileError::NotText { file, line }) => {
+                return Some(FilePlace { file: file.clone(), line: Some(*line), column: None });
+            }
+            MachineError::Read { file, .. } | MachineError::File(MachineFileError::Syntax { file, .. }) => {
+                (file, None)
+            }
+            MachineError::File(MachineFileError::Content { file, defects, .. }) => {
+                (file, defects.first().and_then(|(position, _)| *position))
+            }
+        };
+        let (line, column) = (position.map(|at| at.line), position.map(|at| at.column));
+        Some(FilePlace { file: file.clone(), line, column })
+    }
+
+    fn remedy(&self) -> Option<String> {
+        match self {
+            MachineError::Unknown { .. } => {
+                Some("take one of the known machines, or write a file".to_owned())
+            }
+            _ => None,
+        }
+    }
 }

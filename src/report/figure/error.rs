@@ -1,5 +1,7 @@
 //! What can be wrong with a figure.
 
+use crate::reported::{Class, Reported};
+
 /// A figure that cannot be drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("figure `{figure}`: {fault}")]
@@ -70,5 +72,12 @@ impl Fault {
     /// The fault of a figure with this name.
     pub(super) fn of(self, figure: &str) -> FigureError {
         FigureError { figure: figure.to_owned(), fault: self }
+    }
+}
+
+impl Reported for FigureError {
+    // A picture that cannot be drawn is a mistake of ours.
+    fn class(&self) -> Class {
+        Class::InputOutput
     }
 }

@@ -31,6 +31,23 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
         }
     }
 
+    /// Grains outside the box, where the lattice reaches beyond it.
+    pub(super) fn refuse_beyond_box(&self) -> Result<(), Failure> {
+        if !self.model.reaches_beyond_box() {
+            return Ok(());
+        }
+        let domain = self.model.domain();
+        let is_beyond = |disc: &usize| !domain.contains(self.position(*disc, self.state.place(*disc)));
+        let beyond: Vec<usize> = (0..self.start.grain_count()).filter(is_beyond).collect();
+        match beyond.iter().copied().min_by_key(|&disc| self.state.number(disc)) {
+            Some(first) => {
+                let (step, count) = (self.steps, beyond.len() as u64);
+                Err(Failure::OutOfBox { step, count, first: self.culprit(first) })
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Two discs that want one cell, with where they go if they are moving.
     pub(super) fn conflict(&self, discs: [(usize, Option<&Move>); 2]) -> Failure {
         let frame = self.home.grid().frame;

@@ -4,6 +4,7 @@ use super::state::{Move, State};
 use crate::grid::sectors_of;
 use crate::method::lattice_md::Model;
 use crate::particles::Particles;
+use crate::words::define_words;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::{ProgramError, Storage};
@@ -27,13 +28,14 @@ pub enum Search {
     },
 }
 
-/// What becomes of a disc whose cell is another's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OnConflict {
-    /// The run stops.
-    Stop,
-    /// It is kept in a list beside the lattice, and every such disc and step counted.
-    Resolve,
+define_words! {
+    /// What becomes of a disc whose lattice cell is another's.
+    pub enum OnConflict {
+        /// The run stops.
+        Stop = "stop",
+        /// It is kept in a list beside the lattice, and every such disc and step counted.
+        Resolve = "resolve",
+    }
 }
 
 /// Cells and who is in them. A disc's place is seen from the centre of its cell.

@@ -10,8 +10,10 @@ mod steps;
 use super::crossings::Crossings;
 use super::programs::{WithLaw, with_law};
 use super::walls::walls_at;
+use super::{Engine, Phase, Timings, Totals};
 use super::{Model, Scheme};
-use crate::method::{Failure, Method, Phase, StateColumn, Timings, Totals};
+use crate::io::checkpoint::Column;
+use crate::method::Failure;
 use crate::particles::Particles;
 use crate::scene::WallMotion;
 use home::Home;
@@ -168,7 +170,7 @@ impl<S: Precision, P: Precision> WithLaw for Sweeping<'_, S, P> {
     }
 }
 
-impl<S: Precision, P: Precision> Method for FastMd<S, P> {
+impl<S: Precision, P: Precision> Engine for FastMd<S, P> {
     fn step(&mut self) -> Result<(), Failure> {
         let first = self.steps == 0;
         let mut timings = self.timings;
@@ -237,16 +239,11 @@ impl<S: Precision, P: Precision> Method for FastMd<S, P> {
         self.crossings.counts().to_vec()
     }
 
-    fn state(&self) -> Vec<(String, StateColumn)> {
+    fn state(&self) -> Vec<(String, Column)> {
         self.columns()
     }
 
-    fn restore(
-        &mut self,
-        steps: u64,
-        totals: Totals,
-        columns: Vec<(String, StateColumn)>,
-    ) -> Result<(), String> {
+    fn restore(&mut self, steps: u64, totals: Totals, columns: Vec<(String, Column)>) -> Result<(), String> {
         self.take_up(columns)?;
         self.steps = steps;
         self.totals = totals;

@@ -1,7 +1,7 @@
 //! The discs of a fast simulation: columns in the order of their cells, positions seen from the cells' centres.
 
 use super::{FastMd, carried};
-use crate::method::StateColumn;
+use crate::io::checkpoint::Column;
 use crate::method::lattice_md::{Discs, Model};
 use crate::particles::{Kind, Particle, Particles};
 use stripmine_kernels::backend::Precision;
@@ -154,12 +154,12 @@ impl<S: Precision> State<S> {
 }
 
 /// A column in its precision, in the order of the scene's discs.
-fn to_column<T: Element>(numbers: &[u32], value: impl Fn(usize) -> T) -> StateColumn {
+fn to_column<T: Element>(numbers: &[u32], value: impl Fn(usize) -> T) -> Column {
     let mut column = vec![0.0; numbers.len()];
     numbers.iter().enumerate().for_each(|(disc, &number)| column[number as usize] = value(disc).to_f64());
     match T::NAME {
-        f64::NAME => StateColumn::F64(column),
-        _ => StateColumn::F32(column.into_iter().map(|x| x as f32).collect()),
+        f64::NAME => Column::F64(column),
+        _ => Column::F32(column.into_iter().map(|x| x as f32).collect()),
     }
 }
 
@@ -176,7 +176,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
     }
 
     /// All columns, in the order of the scene's discs.
-    pub(super) fn columns(&self) -> Vec<(String, StateColumn)> {
+    pub(super) fn columns(&self) -> Vec<(String, Column)> {
         let numbers = &self.state.numbers;
         let mut columns = Vec::new();
         for (names, rows) in STATE.iter().zip(&self.state.columns) {
@@ -198,12 +198,12 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             }
         }
         let crossings = self.crossings.columns().into_iter();
-        columns.extend(crossings.map(|(name, counts)| (name.to_owned(), StateColumn::F64(counts))));
+        columns.extend(crossings.map(|(name, counts)| (name.to_owned(), Column::F64(counts))));
         columns
     }
 
     /// Takes up columns that [`columns`](Self::columns) gave.
-    pub(super) fn take_up(&mut self, columns: Vec<(String, StateColumn)>) -> Result<(), String> {
+    pub(super) fn take_up(&mut self, columns: Vec<(String, Column)>) -> Result<(), String> {
         let numbers = self.state.numbers.clone();
         let find = |name: &str, precision: &str| -> Result<Vec<f64>, String> {
             let (_, column) = columns
@@ -211,8 +211,9 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
                 .find(|(there, _)| there == name)
                 .ok_or_else(|| format!("the column {name} is missing"))?;
             let (found, values) = match column {
-                StateColumn::F64(values) => (f64::NAME, values.clone()),
-                StateColumn::F32(values) => (f32::NAME, values.iter().map(|&x| x.into()).collect()),
+                Column::F64(values) => (f64::NAME, values.clone()),
+                Column::F32(values) => (f32::NAME, values.iter().map(|&x| x.into()).collect()),
+                Column::U32(_) | Column::U64(_) => ("whole numbers", vec![]),
             };
             if found != precision {
                 return Err(format!("the column {name} has another precision"));
@@ -244,7 +245,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             None => None,
         };
         self.crossings.take_up(|name| match columns.iter().find(|(known, _)| known == name) {
-            Some((_, StateColumn::F64(values))) => Ok(values.clone()),
+            Some((_, Column::F64(values))) => Ok(values.clone()),
             _ => Err(format!("the column {name} is missing")),
         })?;
         (0..numbers.len()).for_each(|disc| self.home.leave(disc));

@@ -3,8 +3,9 @@
 use super::state::{Move, State};
 use super::{FastMd, walls_at};
 use crate::domain::Domain;
+use crate::method::Failure;
+use crate::method::lattice_md::Engine;
 use crate::method::lattice_md::{GearValues, Model, Scheme};
-use crate::method::{Failure, Method};
 use crate::scene::WallMotion;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::Gear;
@@ -145,7 +146,8 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
         let mut moves = self.settle_all(left.iter().map(|&disc| disc as usize))?;
         self.changes += moves.len();
         moves.extend(walls);
-        self.rehouse(&moves)
+        self.rehouse(&moves)?;
+        self.refuse_beyond_box()
     }
 
     /// Discs in the cells that their places lie in.

@@ -1,9 +1,10 @@
 //! What a step is judged and accounted by, beside its forces: steps that are too long, periods crossed, powers.
 
 use super::LatticeMd;
+use crate::method::Failure;
+use crate::method::lattice_md::Engine;
 use crate::method::lattice_md::OnLongStep;
 use crate::method::lattice_md::walls::walls_at;
-use crate::method::{Failure, Method};
 use crate::scene::WallMotion;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::Array;

@@ -10,7 +10,9 @@ use super::programs::rival_ledger;
 use super::walls::walls_at;
 use super::watch::Names;
 use super::{Arrays, ListOptions, Model, Part, StepProgram, execute, ledger, programs};
-use crate::method::{Failure, Method, Phase, StateColumn, Timings, Totals};
+use super::{Engine, Phase, Timings, Totals};
+use crate::io::checkpoint::Column;
+use crate::method::Failure;
 use crate::particles::Particles;
 use crate::scene::{Precision, WallMotion};
 use stripmine_kernels::backend;
@@ -53,7 +55,7 @@ pub fn start(
     machine: Machine,
     walls: WallMotion,
     particles: Particles,
-) -> Result<Box<dyn Method>, Failure> {
+) -> Result<Box<dyn Engine>, Failure> {
     if let Contacts::Fast(search) = contacts {
         let set = machine.set;
         return Ok(match precision {
@@ -223,6 +225,11 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             return Err(failure);
         }
         self.count_crossings();
+        if self.model.reaches_beyond_box()
+            && let Some(failure) = self.names().beyond_box()
+        {
+            return Err(failure);
+        }
         // From now on discs are seen from the cells that they are in.
         self.anchor.clear();
         if counted[CONFLICTS.0 as usize] > 0
@@ -262,7 +269,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
     }
 }
 
-impl<S: backend::Precision, P: backend::Precision> Method for LatticeMd<S, P> {
+impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
     fn step(&mut self) -> Result<(), Failure> {
         self.steps += 1;
         let mut timings = self.timings;
@@ -334,16 +341,11 @@ impl<S: backend::Precision, P: backend::Precision> Method for LatticeMd<S, P> {
         self.crossings.counts().to_vec()
     }
 
-    fn state(&self) -> Vec<(String, StateColumn)> {
+    fn state(&self) -> Vec<(String, Column)> {
         self.columns()
     }
 
-    fn restore(
-        &mut self,
-        steps: u64,
-        totals: Totals,
-        columns: Vec<(String, StateColumn)>,
-    ) -> Result<(), String> {
+    fn restore(&mut self, steps: u64, totals: Totals, columns: Vec<(String, Column)>) -> Result<(), String> {
         self.take_up(&columns)?;
         self.steps = steps;
         self.totals = totals;

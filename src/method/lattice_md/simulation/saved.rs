@@ -1,7 +1,7 @@
 //! The state of a simulation as columns, for checkpoints.
 
 use super::LatticeMd;
-use crate::method::StateColumn;
+use crate::io::checkpoint::Column;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::{Array, Storage};
 
@@ -12,33 +12,33 @@ const LIST_COUNTS: &str = "listed.counts";
 
 impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
     /// Everything that the next step depends on, by name.
-    pub(super) fn columns(&self) -> Vec<(String, StateColumn)> {
+    pub(super) fn columns(&self) -> Vec<(String, Column)> {
         let column = |values: &[S]| match S::NAME {
-            f64::NAME => StateColumn::F64(values.iter().map(|x| x.to_f64()).collect()),
-            _ => StateColumn::F32(values.iter().map(|x| x.to_f64() as f32).collect()),
+            f64::NAME => Column::F64(values.iter().map(|x| x.to_f64()).collect()),
+            _ => Column::F32(values.iter().map(|x| x.to_f64() as f32).collect()),
         };
         let arrays = self.arrays.states().map(|(array, values)| (array.label(), column(values)));
         let crossings =
-            self.crossings.columns().into_iter().map(|(name, counts)| (name, StateColumn::F64(counts)));
+            self.crossings.columns().into_iter().map(|(name, counts)| (name, Column::F64(counts)));
         let cells = self.model.is_anchored::<S>().then(|| {
             let cells = self.arrays.cell().iter().map(|&cell| f64::from(cell)).collect();
-            (Array::DiscCell.label(), StateColumn::F64(cells))
+            (Array::DiscCell.label(), Column::F64(cells))
         });
         let state = arrays.chain(cells).chain(crossings).map(|(name, column)| (name.to_owned(), column));
-        let mut columns: Vec<(String, StateColumn)> = state.collect();
+        let mut columns: Vec<(String, Column)> = state.collect();
         if let Some(rival) = &self.rival {
             for (name, values) in MADE_AT.into_iter().zip(rival.made_at()) {
-                columns.push((name.to_owned(), StateColumn::F64(values)));
+                columns.push((name.to_owned(), Column::F64(values)));
             }
             // Whole numbers up to 2⁵³: far more than there will ever be.
             let counts = vec![rival.rebuilds as f64, rival.met.pairs as f64];
-            columns.push((LIST_COUNTS.to_owned(), StateColumn::F64(counts)));
+            columns.push((LIST_COUNTS.to_owned(), Column::F64(counts)));
         }
         columns
     }
 
     /// Takes up columns that [`columns`](Self::columns) gave.
-    pub(super) fn take_up(&mut self, columns: &[(String, StateColumn)]) -> Result<(), String> {
+    pub(super) fn take_up(&mut self, columns: &[(String, Column)]) -> Result<(), String> {
         let expected: Vec<Array> = self.arrays.states().map(|(array, _)| array).collect();
         for array in expected {
             let (_, column) = columns
@@ -46,10 +46,10 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
                 .find(|(name, _)| name == array.label())
                 .ok_or_else(|| format!("the column {} is missing", array.label()))?;
             let values: Vec<S> = match column {
-                StateColumn::F64(values) if S::NAME == f64::NAME => {
+                Column::F64(values) if S::NAME == f64::NAME => {
                     values.iter().map(|&x| S::from_f64(x)).collect()
                 }
-                StateColumn::F32(values) if S::NAME == f32::NAME => {
+                Column::F32(values) if S::NAME == f32::NAME => {
                     values.iter().map(|&x| S::from_f64(x.into())).collect()
                 }
                 _ => return Err(format!("the column {} has another precision", array.label())),
@@ -66,7 +66,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             let cells = columns.iter().find(|(name, _)| name == label).map(|(_, column)| column);
             let most = self.model.shape.padded() as f64;
             match cells {
-                Some(StateColumn::F64(cells))
+                Some(Column::F64(cells))
                     if cells.len() == self.arrays.cell().len()
                         && cells.iter().all(|cell| (1.0..=most).contains(cell)) =>
                 {
@@ -81,13 +81,13 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             }
         }
         self.crossings.take_up(|name| match columns.iter().find(|(known, _)| known == name) {
-            Some((_, StateColumn::F64(values))) => Ok(values.clone()),
+            Some((_, Column::F64(values))) => Ok(values.clone()),
             _ => Err(format!("the column {name} is missing")),
         })?;
         if let Some(rival) = &mut self.rival {
             let find = |name: &str, length: usize| -> Result<Vec<f64>, String> {
                 match columns.iter().find(|(there, _)| there == name) {
-                    Some((_, StateColumn::F64(values)))
+                    Some((_, Column::F64(values)))
                         if values.len() == length && values.iter().all(|x| x.is_finite()) =>
                     {
                         Ok(values.clone())

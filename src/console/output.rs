@@ -1,0 +1,104 @@
+//! What a user sees: data on standard output; messages and progress on standard error, which may fail without changing what
+//! the command does.
+
+use super::{Common, Failure};
+use crate::quoted;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::fmt::Display;
+use std::io::{self, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Whether anything was written to standard output.
+static BEGUN: AtomicBool = AtomicBool::new(false);
+
+/// The bar on the screen.
+static BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
+
+fn shown() -> MutexGuard<'static, Option<ProgressBar>> {
+    BAR.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Writes a line to standard error, above the progress.
+pub fn say(message: impl Display) {
+    let line = || {
+        // Where standard error is full or closed there is nowhere to say so.
+        let _ = writeln!(io::stderr().lock(), "{}", quoted::message(&message.to_string()));
+    };
+    let bar = shown().clone();
+    match bar {
+        Some(bar) => bar.suspend(line),
+        None => line(),
+    }
+}
+
+/// Writes a warning to standard error.
+pub fn warn(message: impl Display) {
+    say(format_args!("warning: {message}"));
+}
+
+/// Progress with ETA, on a terminal; nothing elsewhere.
+pub fn bar(common: &Common, length: u64, template: &str) -> ProgressBar {
+    let target = if common.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let bar = ProgressBar::with_draw_target(Some(length), target);
+    bar.set_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()));
+    *shown() = Some(bar.clone());
+    bar
+}
+
+/// The template of a bar over shares, with a message.
+pub const SHARES: &str = "{wide_bar} {msg} {percent}% [{elapsed}, ETA {eta}]";
+
+/// Progress in thousandths.
+pub fn progress(common: &Common, what: &'static str) -> ProgressBar {
+    let bar = bar(common, 1000, SHARES);
+    bar.set_message(what);
+    bar
+}
+
+/// Takes the progress off the screen.
+pub fn clear_progress() {
+    if let Some(bar) = shown().take() {
+        bar.finish_and_clear();
+    }
+}
+
+/// Writes to standard output.
+fn write(text: impl FnOnce() -> io::Result<()>) -> Result<(), Failure> {
+    BEGUN.store(true, Ordering::SeqCst);
+    text().and_then(|()| io::stdout().flush()).map_err(Failure::StandardOutput)
+}
+
+/// Whether standard output is still empty.
+pub fn is_untouched() -> bool {
+    !BEGUN.load(Ordering::SeqCst)
+}
+
+/// Writes data to standard output.
+///
+/// # Errors
+/// [`Failure::StandardOutput`], if it takes no more.
+pub fn print(text: &str) -> Result<(), Failure> {
+    write(|| io::stdout().write_all(text.as_bytes()))
+}
+
+/// Writes what the reader of arguments answers, help or version, to standard output.
+pub fn print_answer(answer: &clap::Error) -> Result<(), Failure> {
+    write(|| answer.print())
+}
+
+/// Writes data to standard output as one JSON document.
+///
+/// # Errors
+/// [`Failure::StandardOutput`], if it takes no more.
+pub fn print_json(data: &impl serde::Serialize) -> Result<(), Failure> {
+    print(&(to_json(data)? + "\n"))
+}
+
+/// Data as JSON, floats in shortest round-trip form.
+///
+/// # Errors
+/// If it is nothing that JSON can hold.
+pub fn to_json(data: &impl serde::Serialize) -> Result<String, Failure> {
+    serde_json::to_string_pretty(data).map_err(|cause| Failure::writing("JSON")(cause.into()))
+}

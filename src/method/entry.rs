@@ -1,0 +1,265 @@
+//! What a method states of itself: its entry in the list of methods, and what its scenes become.
+
+use super::clock::{Clock, Schedule, Until};
+use super::failure::Failure;
+use crate::console;
+use crate::domain::Domain;
+use crate::io::checkpoint::{Column, Counter};
+use crate::memory::Foreseen;
+use crate::particles::Particles;
+use crate::results::{Effort, Made};
+use crate::scene::{Output, SceneErrors, Values, Vocabulary, Warning};
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// A method, as everything else knows it.
+#[derive(Debug)]
+pub struct Entry {
+    /// Name, keys and presets of its scenes.
+    pub vocabulary: &'static Vocabulary,
+    /// Where it comes from.
+    pub source: &'static str,
+    /// What it simulates, in a line.
+    pub doc: &'static str,
+    /// What it observes: the columns of thermo.csv after the step.
+    pub quantities: &'static [Quantity],
+    /// Holds a scene against every precondition and makes its particles; every mistake at once.
+    pub prepare: fn(Values) -> Result<Box<dyn Prepared>, SceneErrors>,
+    /// What `bench` can measure of it.
+    pub benches: &'static [Bench],
+    /// What `reproduce` makes of it, in the order of the page.
+    pub items: &'static [Item],
+    /// Verbs of its own.
+    pub verbs: &'static [Verb],
+}
+
+/// Where the share of a piece of work that is done is heard.
+pub type Progress<'p> = &'p (dyn Fn(f64) + Sync);
+
+/// A table or figure of the source, reproduced.
+#[derive(Debug)]
+pub struct Item {
+    /// The name on the command line.
+    pub name: &'static str,
+    /// What it shows.
+    pub doc: &'static str,
+    /// Seconds that it takes about, quick and in full.
+    pub seconds: [f64; 2],
+    /// Whether it is made where only little time is given and it is not asked for by name.
+    pub is_quick: bool,
+    /// Makes it.
+    pub make: fn(Effort, Progress<'_>) -> Result<Made, console::Failure>,
+}
+
+impl Item {
+    /// Seconds that it takes about.
+    pub fn seconds(&self, effort: Effort) -> f64 {
+        self.seconds[usize::from(effort == Effort::Full)]
+    }
+}
+
+/// A verb of the command that a method brings.
+#[derive(Debug)]
+pub struct Verb {
+    /// The name.
+    pub name: &'static str,
+    /// Its help and arguments.
+    pub command: fn(clap::Command) -> clap::Command,
+    /// Carries it out.
+    pub run: fn(&clap::ArgMatches, &console::Common) -> Result<(), console::Failure>,
+}
+
+/// Something observed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quantity {
+    /// The name of its column.
+    pub name: &'static str,
+    /// The unit, empty for pure numbers.
+    pub unit: &'static str,
+    /// What it is.
+    pub doc: &'static str,
+}
+
+/// A measurement of throughput.
+#[derive(Debug)]
+pub struct Bench {
+    /// The name after `bench`.
+    pub name: &'static str,
+    /// What is measured.
+    pub doc: &'static str,
+    /// The scene.
+    pub preset: &'static str,
+    /// The name of the rate, such as `particle_steps_per_second`.
+    pub rate: &'static str,
+    /// Moments of a repeat, of a number of steps or events.
+    pub until: fn(u64) -> Until,
+    /// How many steps or events make about a second, for a number of particles.
+    pub amount: fn(u64) -> u64,
+    /// What options stand for that are not given.
+    pub defaults: &'static [(&'static str, &'static str)],
+    /// The options that it takes, each with the overrides that a value makes.
+    pub options: &'static [BenchOption],
+    /// Overrides that make the bench.
+    pub overrides: &'static [&'static str],
+    /// What the method observes.
+    pub quantities: &'static [Quantity],
+    /// Quantities that are said as they were at the start and at the end of the measurement.
+    pub compared: &'static [&'static str],
+    /// Quantities that are said as they were at the end.
+    pub at_end: &'static [&'static str],
+}
+
+/// An option of `bench`.
+#[derive(Debug)]
+pub struct BenchOption {
+    /// The name.
+    pub name: &'static str,
+    /// The values that it may have; none where the scene judges them.
+    pub values: &'static [&'static str],
+    /// The overrides that a value makes.
+    pub overrides: fn(&str) -> Vec<String>,
+}
+
+/// Something to be said of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fact {
+    /// Name and value, as data.
+    pub data: Option<(&'static str, Value)>,
+    /// Label and value in words, where a person is to read it.
+    pub words: Option<(&'static str, String)>,
+}
+
+impl Fact {
+    /// For programs only.
+    pub fn data(name: &'static str, value: impl Into<Value>) -> Fact {
+        Fact { data: Some((name, value.into())), words: None }
+    }
+
+    /// For people only.
+    pub fn words(label: &'static str, words: impl Into<String>) -> Fact {
+        Fact { data: None, words: Some((label, words.into())) }
+    }
+
+    /// For programs and, in words, for people.
+    pub fn new(
+        name: &'static str,
+        value: impl Into<Value>,
+        label: &'static str,
+        words: impl Into<String>,
+    ) -> Fact {
+        Fact { data: Some((name, value.into())), words: Some((label, words.into())) }
+    }
+}
+
+/// What a simulation is started for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// A run, which is observed: whatever observation needs is followed.
+    Run,
+    /// A measurement of speed: nothing is followed that the motion does not need.
+    Measurement,
+}
+
+/// A scene that may run: its particles are made, and every precondition holds.
+pub trait Prepared: Send {
+    /// The scene as TOML, every value spelled out and every choice made.
+    fn scene(&self) -> String;
+
+    /// How long it runs, and how often something is written.
+    fn schedule(&self) -> Schedule;
+
+    /// Which files are written.
+    fn output(&self) -> Output;
+
+    /// The box.
+    fn domain(&self) -> Domain;
+
+    /// The particles at the start.
+    fn particles(&self) -> &Particles;
+
+    /// Seed of the random numbers that made the start; none where it was read or listed.
+    fn seed(&self) -> Option<u64>;
+
+    /// The file that the start was read from.
+    fn start_file(&self) -> Option<&Path>;
+
+    /// What there is to be said of the scene.
+    fn facts(&self) -> Vec<Fact>;
+
+    /// What seldom ends well.
+    fn warnings(&self) -> &[Warning];
+
+    /// What the scene left open and has been chosen, with the reason.
+    fn choices(&self) -> &[String];
+
+    /// What the scene has no need of, with the reason.
+    fn left_out(&self) -> &[String];
+
+    /// The memory that a run takes.
+    fn memory(&self) -> Foreseen;
+
+    /// How it is run: precision, integrator and the like, by the names that `bench --json` gives them.
+    fn settings(&self) -> Map<String, Value>;
+
+    /// Begins.
+    ///
+    /// # Errors
+    /// [`Failure`] if the start breaks a precondition, or the processor lacks what is asked for.
+    fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure>;
+}
+
+/// Everything that the future of a simulation depends on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Snapshot {
+    /// Counts and sums, by name.
+    pub counters: BTreeMap<String, Counter>,
+    /// Columns, by name.
+    pub columns: Vec<(String, Column)>,
+}
+
+/// A simulation under way. It never prints and never writes a file.
+pub trait Simulation: Send {
+    /// Goes on until the first of some moments has come, or `interrupted` is set; soon after that in either case.
+    ///
+    /// # Errors
+    /// [`Failure`] says what broke, which particles, where, and what to do; the state is that of the failing step.
+    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure>;
+
+    /// How far it has come.
+    fn clock(&self) -> Clock;
+
+    /// The particles as they stand, positions inside the box.
+    fn particles(&self) -> Particles;
+
+    /// A value for each of the method's quantities.
+    fn observe(&self) -> Vec<f64>;
+
+    /// Everything that the future depends on.
+    fn snapshot(&self) -> Snapshot;
+
+    /// Takes up a snapshot that was made when the clock showed `clock`.
+    ///
+    /// # Errors
+    /// A sentence, if the snapshot is not one of this method and scene.
+    fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String>;
+
+    /// Seconds spent in each phase since the start or the last reset, by name.
+    fn phases(&self) -> BTreeMap<&'static str, f64>;
+
+    /// Forgets the seconds spent so far.
+    fn reset_phases(&mut self);
+
+    /// How much has been done, in the unit of the rates that `bench` gives.
+    fn work(&self) -> f64;
+
+    /// What there is to be said at the end: the method's own entries of `summary.json`.
+    fn summary(&self) -> Map<String, Value>;
+
+    /// What happened on the way that seldom means well.
+    fn warnings(&self) -> Vec<String>;
+
+    /// The last state, in a line.
+    fn in_words(&self) -> String;
+}

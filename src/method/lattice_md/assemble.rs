@@ -1,0 +1,87 @@
+//! From a checked scene to the engine that steps its discs.
+
+use super::check::Checked;
+use super::model::sides_of;
+use super::scene::By;
+use super::{Contacts, Discs, Engine, ListOptions, Machine, Model, Search, Watch, start};
+use crate::method::Failure;
+use stripmine_kernels::law::granular::Disc;
+
+/// What a checked scene models: no more than it needs.
+pub fn model(checked: &Checked) -> Model {
+    let Checked { scene, domain, particles, alike, geometry, .. } = checked;
+    let factor = scene.law.inertia.factor();
+    let discs = match particles.grains().first() {
+        Some(disc) if *alike => Discs::Equal {
+            disc: Disc { radius: disc.radius, inverse_mass: 1.0 / disc.mass },
+            inverse_inertia: 1.0 / (factor * disc.mass * disc.radius * disc.radius),
+        },
+        _ => Discs::Varying,
+    };
+    Model {
+        shape: geometry.shape,
+        frame: geometry.frame,
+        sides: sides_of(domain, &geometry.shape, &geometry.frame),
+        mask: geometry.mask.clone(),
+        coordinates: scene.machine.coordinates,
+        contact: scene.law.contact,
+        friction: scene.law.has_friction(),
+        discs,
+        inertia_factor: factor,
+        scheme: scene.integrator.scheme,
+        dt: scene.integrator.dt,
+        gravity: scene.domain.gravity,
+        watch: Some(Watch {
+            max_penetration: scene.law.max_penetration,
+            stop_penetration: scene.law.stop_penetration,
+            smallest_radius: geometry.radii[0],
+            on_long_step: scene.integrator.on_long_step,
+            energy: false,
+        }),
+    }
+}
+
+/// How a checked scene has its contacts found.
+pub(super) fn contacts(checked: &Checked) -> Contacts {
+    let Checked { scene, geometry, .. } = checked;
+    let (search, skin) = (&scene.search, geometry.skin);
+    match search.by {
+        By::Auto | By::Lattice if scene.machine.is_fast() => {
+            Contacts::Fast(Search::Lattice(search.on_conflict))
+        }
+        By::Auto | By::Lattice => Contacts::Lattice,
+        By::Sectors => Contacts::Fast(Search::Sectors),
+        By::NeighborList if scene.machine.is_fast() => Contacts::Fast(Search::Lists { skin }),
+        By::NeighborList => Contacts::Lists(ListOptions { rebuild: search.rebuild, skin }),
+    }
+}
+
+/// The engine of a checked scene, at the start.
+///
+/// # Errors
+/// [`Failure`] if the start breaks a precondition, or the processor lacks the instruction set asked for.
+pub fn assemble(checked: &Checked) -> Result<Box<dyn Engine>, Failure> {
+    start_of(checked, model(checked))
+}
+
+/// The same, with energy followed: what contacts dissipate, what walls put in, periods that discs cross along gravity.
+///
+/// # Errors
+/// As [`assemble`].
+pub fn assemble_following_energy(checked: &Checked) -> Result<Box<dyn Engine>, Failure> {
+    start_of(checked, model_following_energy(checked))
+}
+
+/// What a checked scene models where energy is followed.
+pub(super) fn model_following_energy(checked: &Checked) -> Model {
+    let mut model = model(checked);
+    model.watch = model.watch.map(|watch| Watch { energy: true, ..watch });
+    model
+}
+
+fn start_of(checked: &Checked, model: Model) -> Result<Box<dyn Engine>, Failure> {
+    let Checked { scene, particles, .. } = checked;
+    let contacts = contacts(checked);
+    let machine = Machine { execution: scene.machine.execution, set: scene.machine.instructions() };
+    start(scene.machine.precision, model, contacts, machine, scene.walls, particles.clone())
+}

@@ -1,0 +1,369 @@
+//! The lattice that serves the discs: at most one centre a cell, and no contact beyond the mask.
+
+use crate::domain::Domain;
+use crate::grid::sectors_of;
+use crate::method::lattice_md::document::Document;
+use crate::method::lattice_md::fast::OnConflict;
+use crate::method::lattice_md::keys::{CELL_EDGE, MASK, SEARCH, SKIN};
+use crate::method::lattice_md::model::sides_of;
+use crate::method::lattice_md::scene::By;
+use crate::scene::{
+    COUNT, FILE, Key, Precision, RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, Reason, SIDES, SceneError, Spot,
+    Start, WALL_RADIUS,
+};
+use crate::start::readable;
+use stripmine_kernels::mask::Mask;
+use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
+
+/// The lattice of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Geometry {
+    /// Columns, rows, halo.
+    pub shape: LatticeShape,
+    /// Lower left corner and sides of a cell (length).
+    pub frame: Frame,
+    /// The neighbourhood.
+    pub mask: Mask,
+    /// Smallest and largest radius, walls included (length).
+    pub radii: [f64; 2],
+    /// What the side of a square cell may be at this mask (length): 2 R_max/h and d_min/√2.
+    pub edge_bounds: [f64; 2],
+    /// Discs for each cell.
+    pub occupancy: f64,
+    /// Listed pairs are up to this far from contact (length), where there are lists.
+    pub skin: f64,
+    /// Sides of the cells or sectors from whose centres positions are measured, where they are not measured from the origin
+    /// (length).
+    pub widest_cell: [f64; 2],
+}
+
+/// Rounding must not forbid what the bounds just allow.
+const SLACK: f64 = 1.0 + 1e-12;
+
+/// Counts on either side of the wanted one that are tried for each axis.
+const WINDOW: f64 = 64.0;
+
+/// Widest cells, in largest diameters, in which contacts are found: the search compares squares of distances in single
+/// precision, with a margin of 2e-5, seen from the centres of cells up to three and a half cells away.
+const WIDEST: f64 = 8.0;
+
+/// What bounds the cells.
+#[derive(Clone, Copy)]
+struct Bounds {
+    half_width: u32,
+    /// 2 R_max/h: shorter sides let contacts escape the mask.
+    least: f64,
+    /// d_min: a longer diagonal lets two centres share a cell.
+    diagonal: f64,
+}
+
+impl Bounds {
+    fn new(half_width: u32, radii: [f64; 2], max_penetration: f64) -> Self {
+        let [smallest, largest] = radii;
+        Bounds {
+            half_width,
+            least: 2.0 * largest / f64::from(half_width),
+            diagonal: (1.0 - max_penetration) * 2.0 * smallest,
+        }
+    }
+
+    fn most(&self) -> f64 {
+        self.diagonal / std::f64::consts::SQRT_2
+    }
+
+    /// The longest side of a cell whose other side is as short as may be.
+    fn longest(&self) -> f64 {
+        (self.diagonal * self.diagonal - self.least * self.least).max(0.0).sqrt()
+    }
+}
+
+/// How many cells cover an axis, and how long they are.
+#[derive(Clone, Copy)]
+struct Cut {
+    count: f64,
+    edge: f64,
+}
+
+/// The cuts of an axis near the wanted edge that keep the bounds.
+fn cuts(side: f64, periodic: bool, bounds: &Bounds, wanted: f64) -> Vec<Cut> {
+    let fewest = (side / (bounds.longest() * SLACK)).ceil().max(1.0);
+    let (fewest, most) = if periodic {
+        let needed = f64::from(2 * bounds.half_width + 1);
+        (fewest.max(needed), (side / bounds.least * SLACK).floor())
+    } else {
+        (fewest, (side / bounds.least).ceil().max(1.0))
+    };
+    let target = (side / wanted).round();
+    let (from, to) = (fewest.max(target - WINDOW), most.min(target + WINDOW));
+    let counts = std::iter::successors(Some(from), |count| Some(count + 1.0)).take_while(move |n| *n <= to);
+    counts
+        .map(|count| {
+            // On an open side cells may reach beyond the box.
+            let edge = if periodic { side / count } else { (side / count).max(bounds.least) };
+            Cut { count, edge }
+        })
+        .collect()
+}
+
+/// Finds the lattice of a scene.
+///
+/// # Errors
+/// Every reason why there is none.
+pub(super) fn fit(
+    document: &Document,
+    domain: &Domain,
+    radii: [f64; 2],
+    discs: usize,
+) -> Result<Geometry, Vec<SceneError>> {
+    let scene = &document.scene;
+    let bounds = |half_width| {
+        let exclusive = Bounds::new(half_width, radii, scene.law.max_penetration);
+        // Where no disc must have a cell to itself, any cell will do.
+        let shared = scene.search.on_conflict == OnConflict::Resolve && scene.search.cell_edge.is_some();
+        let exclusively = scene.needs_lattice() && !shared;
+        let diagonal = if exclusively { exclusive.diagonal } else { f64::INFINITY };
+        Bounds { diagonal, ..exclusive }
+    };
+    let tries: Vec<Bounds> = match scene.search.mask {
+        Some(7) => vec![bounds(3)],
+        Some(_) => vec![bounds(2)],
+        None => vec![bounds(2), bounds(3)],
+    };
+    let roomy: Vec<Bounds> =
+        tries.iter().copied().filter(|bounds| bounds.least <= bounds.most() * SLACK).collect();
+    if roomy.is_empty() {
+        return Err(vec![ratio_error(document, radii)]);
+    }
+    let mut errors = Vec::new();
+    for bounds in &roomy {
+        match lattice(document, domain, bounds) {
+            Ok((shape, frame, mask)) => {
+                let occupancy = discs as f64 / shape.cells() as f64;
+                let edge_bounds = [bounds.least, bounds.most()];
+                let seen = Domain { sides: sides_of(domain, &shape, &frame), ..*domain };
+                let (skin, widest_cell) = search(document, [domain, &seen], radii[1], discs, frame.edge)
+                    .map_err(|error| vec![error])?;
+                return Ok(Geometry { shape, frame, mask, radii, edge_bounds, occupancy, skin, widest_cell });
+            }
+            // The smaller mask's reason is the plainer one, but a wrong edge is wrong for the larger one too.
+            Err(more) if errors.is_empty() || scene.search.cell_edge.is_some() => errors = more,
+            Err(_) => {}
+        }
+    }
+    Err(errors)
+}
+
+/// Skin of neighbour lists where the scene gives none, in largest radii.
+const LEAST_SKIN: f64 = 0.3;
+
+/// The skin of lists, and the sides of the cells from which positions are measured (length), in the scene's box and in
+/// the box as steps see it.
+fn search(
+    document: &Document,
+    [domain, seen]: [&Domain; 2],
+    largest: f64,
+    discs: usize,
+    lattice_cell: [f64; 2],
+) -> Result<(f64, [f64; 2]), SceneError> {
+    let (asked, machine) = (&document.scene.search, &document.scene.machine);
+    let by_fast_lists = asked.by == By::NeighborList && machine.is_fast();
+    let skin = match asked.skin {
+        Some(skin) if asked.by == By::NeighborList => skin,
+        _ if by_fast_lists => roomy_skin(domain, largest, discs),
+        _ => LEAST_SKIN * largest,
+    };
+    let (reach, key) = match asked.by {
+        By::NeighborList if by_fast_lists => (2.0 * largest + skin, &SKIN),
+        By::Sectors => (2.0 * largest, &SEARCH),
+        _ => return Ok((skin, lattice_cell)),
+    };
+    let single = machine.precision != Precision::F64;
+    match sectors_of(seen, reach, single, discs) {
+        Ok(grid) => Ok((skin, grid.frame.edge)),
+        Err(cause) => {
+            let spot =
+                if document.values.gives(key) { document.values.spot(key) } else { box_spot(document) };
+            let error = spot.error(Reason::Geometry, cause.to_string());
+            Err(error.advising("make the box larger, lower search.skin, or set search.by = \"lattice\""))
+        }
+    }
+}
+
+/// Skin of the fast lists (length) where the scene gives none: half of the gap between the discs, were they spread evenly,
+/// within bounds, and not more than the box has room for. The wider the skin, the longer the lists, and the longer they last.
+fn roomy_skin(domain: &Domain, largest: f64, discs: usize) -> f64 {
+    let area = domain.sides[0] * domain.sides[1] / discs.max(1) as f64;
+    // Neighbours on a hexagonal lattice are so far apart.
+    let spacing = (area * 2.0 / 3f64.sqrt()).sqrt();
+    let wanted = (0.5 * (spacing - 2.0 * largest)).clamp(LEAST_SKIN * largest, largest);
+    // Three sectors fill a periodic side.
+    let periodic = (0..2).filter(|&axis| domain.periodic[axis]);
+    let room = periodic.map(|axis| domain.sides[axis] / 3.0 - 2.0 * largest).fold(f64::INFINITY, f64::min);
+    if room > 0.0 { wanted.min(room * (1.0 - 1e-12)) } else { wanted }
+}
+
+fn lattice(
+    document: &Document,
+    domain: &Domain,
+    bounds: &Bounds,
+) -> Result<(LatticeShape, Frame, Mask), Vec<SceneError>> {
+    let asked = document.scene.search.cell_edge;
+    let wanted = asked.unwrap_or(bounds.most());
+    let widest = WIDEST * f64::from(bounds.half_width) * bounds.least;
+    if let Some(edge) = asked.filter(|&edge| edge > widest) {
+        let message = format!(
+            "`search.cell_edge` = {edge} is too large: contacts are looked for in single precision from the centres of the \
+             cells, and would be missed in cells wider than {WIDEST} of the largest diameter"
+        );
+        let error = document.values.spot(&CELL_EDGE).error(Reason::Geometry, message);
+        return Err(vec![error.expecting(format!("an edge of at most {} (length)", readable(widest)))]);
+    }
+    if wanted * SLACK < bounds.least || wanted > bounds.most() * SLACK {
+        let width = 2 * bounds.half_width + 1;
+        let (message, why) = if wanted < bounds.least {
+            let reach = readable(f64::from(bounds.half_width) * wanted);
+            (
+                format!("`search.cell_edge` = {wanted} is too small: a {width}×{width} mask sees to {reach}"),
+                format!("but contacts reach to {}", readable(f64::from(bounds.half_width) * bounds.least)),
+            )
+        } else {
+            (
+                format!(
+                    "`search.cell_edge` = {wanted} is too large: the diagonal of a cell is {}",
+                    readable(wanted * std::f64::consts::SQRT_2)
+                ),
+                format!("but centres may come as close as {}", readable(bounds.diagonal)),
+            )
+        };
+        let error = document.values.spot(&CELL_EDGE).error(Reason::Geometry, format!("{message}, {why}"));
+        let range =
+            format!("an edge from {} to {} (length)", readable(bounds.least), readable(bounds.most()));
+        return Err(vec![error.expecting(range)]);
+    }
+    // No index numbers that many, and beyond 2^53 counting stops.
+    if let Some(axis) = (0..2)
+        .find(|&axis| domain.sides[axis] / bounds.least >= 2f64.powi(32) || !domain.sides[axis].is_finite())
+    {
+        let message = format!(
+            "the side along {}, {:e} long, takes more cells of {:e} than the 2^32 − 1 that an index numbers",
+            ["x", "y"][axis],
+            domain.sides[axis],
+            bounds.most()
+        );
+        let error = box_spot(document).error(Reason::Geometry, message);
+        return Err(vec![error.advising("make the box smaller, or the discs larger")]);
+    }
+    let axes = [0, 1].map(|axis| cuts(domain.sides[axis], domain.periodic[axis], bounds, wanted));
+    let short: Vec<SceneError> = (0..2)
+        .filter(|&axis| axes[axis].is_empty())
+        .map(|axis| short_side(document, domain, axis, bounds))
+        .collect();
+    if !short.is_empty() {
+        return Err(short);
+    }
+    // The fewest cells, or those nearest to the wanted edge; then the squarest.
+    let cost = |x: &Cut, y: &Cut| match asked {
+        None => (x.count * y.count, (x.edge - y.edge).abs()),
+        Some(_) => ((x.edge - wanted).abs() + (y.edge - wanted).abs(), x.count * y.count),
+    };
+    let square = bounds.diagonal * bounds.diagonal * SLACK;
+    let pairs = axes[0].iter().flat_map(|x| axes[1].iter().map(move |y| (x, y)));
+    let best = pairs
+        .filter(|(x, y)| x.edge * x.edge + y.edge * y.edge <= square)
+        .min_by(|a, b| cost(a.0, a.1).partial_cmp(&cost(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal));
+    let Some((x, y)) = best else {
+        let message = format!(
+            "no whole numbers of cells fill the sides {} and {}: a cell must have sides of at least {} and a diagonal \
+             of at most {}",
+            domain.sides[0],
+            domain.sides[1],
+            readable(bounds.least),
+            readable(bounds.diagonal)
+        );
+        let error = box_spot(document).error(Reason::Geometry, message);
+        return Err(vec![error.advising("make the box a little larger, or lower law.max_penetration")]);
+    };
+    let mask = Mask::square(bounds.half_width);
+    let shape = LatticeShape::new(x.count as usize, y.count as usize, &mask, domain.periodic)
+        .map_err(|cause| vec![box_spot(document).error(Reason::Geometry, cause.to_string())])?;
+    Ok((shape, Frame { origin: domain.origin, edge: [x.edge, y.edge] }, mask))
+}
+
+/// What decides how large the box is.
+fn box_spot(document: &Document) -> Spot {
+    match document.scene.start {
+        Start::Hexagonal { .. } => document.values.spot(&COUNT),
+        _ => document.values.spot(&SIDES),
+    }
+}
+
+fn short_side(document: &Document, domain: &Domain, axis: usize, bounds: &Bounds) -> SceneError {
+    let (side, name) = (domain.sides[axis], ["x", "y"][axis]);
+    let needed = 2 * bounds.half_width + 1;
+    let fit = (side / bounds.least * SLACK).floor();
+    let error = if domain.periodic[axis] && fit < f64::from(needed) {
+        let message = format!(
+            "the periodic side along {name} is {side} long and takes {fit} cells of at least {}; a {needed}×{needed} \
+             mask needs {needed} of them, or a pair would be met twice",
+            readable(bounds.least)
+        );
+        let least = readable(f64::from(needed) * bounds.least);
+        box_spot(document).error(Reason::Geometry, message).expecting(format!("a side of at least {least}"))
+    } else {
+        let message = format!(
+            "no whole number of cells fills the side along {name}, {side} long: a cell must be {} to {} long",
+            readable(bounds.least),
+            readable(bounds.longest())
+        );
+        box_spot(document).error(Reason::Geometry, message)
+    };
+    error.advising("make the box larger, or the discs smaller")
+}
+
+/// The radii differ too much for the masks there are, or for the one asked for.
+fn ratio_error(document: &Document, radii: [f64; 2]) -> SceneError {
+    let scene = &document.scene;
+    let [smallest, largest] = radii.map(readable);
+    let penetration = scene.law.max_penetration;
+    // 2 R_max/h ≤ (1 − p)·2 R_min/√2.
+    let limit = |half_width: f64| half_width * (1.0 - penetration) / std::f64::consts::SQRT_2;
+    let ratio = radii[1] / radii[0];
+    let [five, seven] = [limit(2.0), limit(3.0)];
+    let said = format!("the largest radius, {largest}, is {ratio:.4} times the smallest, {smallest}");
+    let error = match scene.search.mask {
+        Some(7) | None => ratio_spot(document).error(
+            Reason::Geometry,
+            format!(
+                "{said}; at law.max_penetration = {penetration} a 7×7 mask allows {seven:.4}, 5×5 {five:.4}"
+            ),
+        ),
+        Some(_) => document.values.spot(&MASK).error(
+            Reason::Geometry,
+            format!("{said}; at law.max_penetration = {penetration} a 5×5 mask allows {five:.4}"),
+        ),
+    };
+    let instead = "let search.by = \"sectors\" or \"neighbor-list\" find the contacts";
+    let help = if scene.search.mask == Some(5) && ratio <= seven {
+        format!("use mask = 7, which allows {seven:.4}")
+    } else if ratio <= limit(3.0) / (1.0 - penetration) {
+        let allowed = 1.0 - ratio * std::f64::consts::SQRT_2 / 3.0;
+        format!("bring the radii closer together, lower law.max_penetration below {allowed:.4}, or {instead}")
+    } else {
+        format!("bring the radii closer together, or {instead}")
+    };
+    error.expecting(format!("a ratio of at most {seven:.4}")).advising(help)
+}
+
+fn ratio_spot(document: &Document) -> Spot {
+    let keys: &[&Key] = match &document.scene.start {
+        Start::File(_) => &[&FILE],
+        Start::List(list) if list.wall_positions.is_empty() => &[&RADII, &RADIUS],
+        Start::Random { .. } | Start::Hexagonal { .. } => &[&RADIUS_CUT, &RADIUS_SPREAD, &RADIUS],
+        Start::Pipe { grains, .. } | Start::Box { grains, .. } if grains.cut > 0.2 => {
+            &[&RADIUS_CUT, &WALL_RADIUS, &RADIUS]
+        }
+        _ => &[&WALL_RADIUS, &RADII, &RADIUS_CUT, &RADIUS],
+    };
+    let given = keys.iter().find(|key| document.values.gives(key)).unwrap_or(&keys[0]);
+    document.values.spot(given)
+}

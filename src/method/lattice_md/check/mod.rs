@@ -1,0 +1,180 @@
+//! What a scene must hold before it runs, with the numbers.
+
+mod geometry;
+mod motion;
+
+pub use geometry::Geometry;
+pub use motion::Estimates;
+
+use super::choice::{self, Choice};
+use super::document::Document;
+use super::keys::{SEARCH, VOCABULARY};
+use super::scene::{By, Scene};
+use crate::domain::Domain;
+use crate::particles::{Kind, Particle, Particles};
+use crate::scene::{RADIUS, Reason, SceneError, SceneErrors, Values, Warning};
+use crate::start::{self, Made, Stated};
+use crate::words::Words;
+
+/// A scene that may run: its discs, its lattice, and what is to be said about it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checked {
+    /// The scene.
+    pub scene: Scene,
+    /// The box.
+    pub domain: Domain,
+    /// The discs at the start, inside the box.
+    pub particles: Particles,
+    /// Whether all discs have one radius and one mass, and there are no walls.
+    pub alike: bool,
+    /// The lattice.
+    pub geometry: Geometry,
+    /// What is to be expected of the motion.
+    pub estimates: Estimates,
+    /// What was left open and has been chosen, with the reason.
+    pub choices: Vec<String>,
+    /// What the scene has no need of, with the reason.
+    pub left_out: Vec<String>,
+    /// What seldom ends well.
+    pub warnings: Vec<Warning>,
+}
+
+impl Document {
+    /// Makes the discs and holds the scene against what the method demands.
+    ///
+    /// # Errors
+    /// [`SceneErrors`]: every precondition that does not hold.
+    pub fn check(self) -> Result<Checked, SceneErrors> {
+        check(self)
+    }
+}
+
+impl Scene {
+    /// Makes the discs and holds the scene against what the method demands.
+    ///
+    /// # Errors
+    /// [`SceneErrors`]: every precondition that does not hold.
+    pub fn check(&self) -> Result<Checked, SceneErrors> {
+        check(Document { scene: self.clone(), values: Values::of_no_text(&VOCABULARY.keys) })
+    }
+}
+
+/// Makes the discs of a scene and holds it against every precondition.
+fn check(mut document: Document) -> Result<Checked, SceneErrors> {
+    let mut errors = Vec::new();
+    let mut choices: Vec<String> = choice::engine(&mut document.scene).into_iter().collect();
+    let Document { scene, values } = &document;
+    let stated = Stated { values, domain: &scene.domain, start: &scene.start, walls: scene.walls };
+    let made = match start::make(&stated) {
+        Ok(made) => Some(made),
+        Err(error) => {
+            errors.push(error);
+            None
+        }
+    };
+    if let Some(Made { domain, particles, .. }) = &made {
+        errors.extend(start::outside(&stated, domain, particles));
+        let limit = document.scene.law.max_penetration;
+        errors.extend(start::overlaps(&stated, domain, particles, limit));
+    }
+    let radii = made.as_ref().and_then(|made| made.particles.radii());
+    let radii = start::radii(&document.scene.start, radii);
+    let domain = made.as_ref().map(|made| made.domain).or_else(|| document.scene.domain.stated());
+    let count = made.as_ref().map_or(0, |made| made.particles.len());
+    let geometry = match (domain, radii) {
+        (Some(domain), Some(radii)) => {
+            let tried = match &made {
+                Some(made) => fitted(&mut document, &domain, radii, &made.particles, &mut choices),
+                None => geometry::fit(&document, &domain, radii, count),
+            };
+            tried.map_err(|more| errors.extend(more)).ok()
+        }
+        _ => None,
+    };
+    errors.extend(motion::instability(&document));
+    if let (Some(Made { domain, particles, .. }), Some(geometry)) = (&made, &geometry) {
+        errors.extend(numbered(&document, particles));
+        errors.extend(motion::long_steps(&document, domain, particles, geometry));
+    }
+    SceneErrors::none_of(errors)?;
+    let (Some(Made { domain, particles, mut warnings }), Some(geometry)) = (made, geometry) else {
+        // Whatever is not there has left an error above.
+        let error = document.values.spot(&RADIUS).error(Reason::Geometry, "there is nothing to simulate");
+        return Err(error.into());
+    };
+    let scene = document.scene;
+    let estimates = Estimates::of(&scene, &particles);
+    warnings.extend(motion::warnings(&scene, &domain, &particles, &geometry, &estimates));
+    let alike = all_alike(&particles);
+    let left_out = left_out(&scene, &particles, alike);
+    Ok(Checked { scene, domain, particles, alike, geometry, estimates, choices, left_out, warnings })
+}
+
+/// The geometry of a scene; where it leaves open how contacts are found, of the fastest way for which there is one.
+fn fitted(
+    document: &mut Document,
+    domain: &Domain,
+    radii: [f64; 2],
+    particles: &Particles,
+    choices: &mut Vec<String>,
+) -> Result<Geometry, Vec<SceneError>> {
+    if document.scene.search.by != By::Auto {
+        return geometry::fit(document, domain, radii, particles.len());
+    }
+    let mut first: Option<Vec<SceneError>> = None;
+    for Choice { by, reason } in choice::searches(&document.scene, domain, particles) {
+        document.scene.search.by = by;
+        match geometry::fit(document, domain, radii, particles.len()) {
+            Ok(geometry) => {
+                choices.push(format!("search.by = \"{}\": {reason}", by.word()));
+                return Ok(geometry);
+            }
+            Err(errors) => first = first.or(Some(errors)),
+        }
+    }
+    Err(first.unwrap_or_default())
+}
+
+fn all_alike(particles: &Particles) -> bool {
+    let Some(first) = particles.all().first() else { return false };
+    let same =
+        |disc: &Particle| disc.kind == Kind::Grain && disc.radius == first.radius && disc.mass == first.mass;
+    particles.all().iter().all(same)
+}
+
+/// More discs than the partners in a fast method's lists have bits for.
+fn numbered(document: &Document, particles: &Particles) -> Option<SceneError> {
+    const MOST: usize = (1 << 29) - 3;
+    let Scene { search, machine, .. } = &document.scene;
+    let listed = machine.is_fast() && search.by != By::Lattice;
+    (listed && particles.len() > MOST).then(|| {
+        let message = format!("{} discs; sectors and fast lists number at most {MOST}", particles.len());
+        document
+            .values
+            .spot(&SEARCH)
+            .error(Reason::Placement, message)
+            .advising("search.by = \"lattice\" numbers more")
+    })
+}
+
+/// What is not modelled because the scene has no need of it.
+fn left_out(scene: &Scene, particles: &Particles, alike: bool) -> Vec<String> {
+    let contact = &scene.law.contact;
+    let mut left_out = Vec::new();
+    let mut leave = |condition: bool, what: &str| {
+        if condition {
+            left_out.push(what.to_owned());
+        }
+    };
+    leave(contact.friction == 0.0, "friction, spin and torque: law.friction is 0");
+    leave(
+        contact.friction > 0.0 && contact.shear_damping == 0.0,
+        "friction, spin and torque: law.shear_damping is 0",
+    );
+    leave(contact.normal_damping == 0.0, "normal damping: law.normal_damping is 0");
+    leave(alike, "radius and mass of each disc: all are alike, so they are numbers, not vectors");
+    leave(scene.domain.gravity == [0.0; 2], "gravity: domain.gravity is 0");
+    leave(particles.grain_count() == particles.len(), "walls: there are no wall discs");
+    leave(scene.domain.periodic == [false; 2], "periodic images: both sides are open");
+    left_out
+}

@@ -1,0 +1,353 @@
+//! Whether the integrator follows the motion: damping, contacts, depths.
+
+use super::Geometry;
+use crate::domain::Domain;
+use crate::method::lattice_md::document::Document;
+use crate::method::lattice_md::keys::{COORDINATES, FRICTION, SHEAR_DAMPING, STIFFNESS};
+use crate::method::lattice_md::model::{GearValues, OnLongStep, Scheme};
+use crate::method::lattice_md::scene::{Inertia, Integrator, Scene};
+use crate::particles::{Particle, Particles, longest_step};
+use crate::scene::{
+    DT, GRAVITY, INSTRUCTION_SET, Key, PRECISION, Precision, Reason, SceneError, WallMotion, Warning,
+};
+use crate::start::noun;
+use serde::Serialize;
+use stripmine_kernels::sweep::lattice::Coordinates;
+
+/// What is to be expected of the motion, from the start alone.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Estimates {
+    /// Typical speed of approach (length/time): √2 of the root mean square speed, that of a fall through a diameter, or
+    /// that of the walls.
+    pub approach_speed: f64,
+    /// Duration of an undamped Hertz contact at that speed (time); none if nothing moves.
+    pub contact_duration: Option<f64>,
+    /// The same in time steps.
+    pub steps_per_contact: Option<f64>,
+    /// Depth of such a contact, as a fraction of the sum of the radii.
+    pub impact_penetration: f64,
+    /// Depth to which a grain sinks into another by its own weight, as a fraction of its radius.
+    pub resting_depth: f64,
+    /// γ_N dt: what the damping of a single contact asks of the integrator.
+    pub damping: f64,
+    /// 3 γ_N dt: what the damping of a dense network of contacts asks.
+    pub network_damping: f64,
+    /// What the integrator bears.
+    pub damping_limit: f64,
+}
+
+/// Largest γ dt for which a scheme is stable for pure drag.
+fn damping_limit(scheme: Scheme) -> f64 {
+    match scheme {
+        Scheme::Gear(GearValues::Four) => 0.55,
+        Scheme::Gear(GearValues::Five) => 0.31,
+        Scheme::Gear(GearValues::Six) => 0.17,
+        // v is multiplied by 1 − γ dt: below 1 it does not even change its sign.
+        Scheme::VelocityVerlet => 1.0,
+    }
+}
+
+fn scheme_in_words(scheme: Scheme) -> String {
+    match scheme {
+        Scheme::Gear(values) => format!("Gear's scheme of {} values", values.count()),
+        Scheme::VelocityVerlet => "velocity Verlet".to_owned(),
+    }
+}
+
+/// A disc in a dense network of contacts feels up to this many times γ_N.
+const NETWORK: f64 = 3.0;
+
+/// Fewer steps a contact follow it badly: `pipe` has 17, and half its dt changes no statistics.
+const LEAST_STEPS: f64 = 15.0;
+
+/// With fewer steps a contact a collision changes the energy by tens of percent: 15 (Gear of 4 values), 18 (5), 9 (6) and 1 %
+/// (velocity Verlet) with this number.
+const FEWEST_STEPS: f64 = 3.0;
+
+/// How much faster than typical the fastest approach is.
+const FASTEST: f64 = 3.0;
+
+/// Deepest that a grain may rest in another, as a fraction of its radius, for columns of grains to stay within
+/// `max_penetration` of 0.1.
+const DEEPEST_REST: f64 = 0.003;
+
+impl Estimates {
+    /// For a scene and its discs.
+    pub(super) fn of(scene: &Scene, particles: &Particles) -> Estimates {
+        let grains = particles.grains();
+        let number = grains.len().max(1) as f64;
+        let square: f64 =
+            grains.iter().map(|disc| disc.velocity.iter().map(|v| v * v).sum::<f64>()).sum::<f64>() / number;
+        let mass = grains.iter().map(|disc| disc.mass).fold(f64::INFINITY, f64::min);
+        let heaviest = grains.iter().map(|disc| disc.mass).fold(0.0, f64::max);
+        let radius = grains.iter().map(|disc| disc.radius).fold(f64::INFINITY, f64::min);
+        let [gx, gy] = scene.domain.gravity;
+        let gravity = gx.hypot(gy);
+        let walls = match scene.walls {
+            WallMotion::Fixed => 0.0,
+            WallMotion::Oscillating { amplitude: [ax, ay], frequency } => {
+                std::f64::consts::TAU * frequency * ax.hypot(ay)
+            }
+        };
+        let fall = (2.0 * gravity * radius).sqrt();
+        let speed = (2.0 * square).sqrt().max(fall).max(walls);
+        let stiffness = scene.law.contact.stiffness;
+        let effective = 0.5 * mass;
+        // Undamped Hertz contact.
+        let duration = (speed > 0.0)
+            .then(|| 3.218 * (effective * effective / (stiffness * stiffness * speed)).powf(0.2));
+        let depth = (1.25 * effective * speed * speed / stiffness).powf(0.4);
+        let damping = scene.law.contact.normal_damping * scene.integrator.dt;
+        Estimates {
+            approach_speed: speed,
+            contact_duration: duration,
+            steps_per_contact: duration.map(|duration| duration / scene.integrator.dt),
+            impact_penetration: depth / (2.0 * radius),
+            resting_depth: (heaviest * gravity / stiffness).powf(2.0 / 3.0) / radius,
+            damping,
+            network_damping: NETWORK * damping,
+            damping_limit: damping_limit(scene.integrator.scheme),
+        }
+    }
+}
+
+/// A damping at which even a single contact is unstable.
+pub(super) fn instability(document: &Document) -> Option<SceneError> {
+    let scene = &document.scene;
+    let Integrator { dt, scheme, .. } = scene.integrator;
+    let (gamma, limit) = (scene.law.contact.normal_damping, damping_limit(scheme));
+    let name = scheme_in_words(scheme);
+    (gamma * dt > limit).then(|| {
+        let message = format!(
+            "unstable: normal_damping·dt = {gamma}·{dt} = {:.4} for a single contact, but {name} is stable below \
+             about {limit}",
+            gamma * dt
+        );
+        let error = document.values.spot(&DT).error(Reason::Stability, message);
+        error
+            .expecting(format!("dt below {:.4e} (time), {:.4e} where packings are dense", limit / gamma, {
+                limit / (NETWORK * gamma)
+            }))
+            .advising(match scheme {
+                Scheme::Gear(GearValues::Four) | Scheme::VelocityVerlet => "lower dt or law.normal_damping",
+                _ => "lower dt or law.normal_damping, or use fewer Gear values",
+            })
+    })
+}
+
+/// Steps too long for the discs at the start: they would pass each other unseen, collide in too few steps, or be lost in the
+/// precision of their positions.
+pub(super) fn long_steps(
+    document: &Document,
+    domain: &Domain,
+    particles: &Particles,
+    geometry: &Geometry,
+) -> Vec<SceneError> {
+    let scene = &document.scene;
+    let dt = scene.integrator.dt;
+    let estimates = Estimates::of(scene, particles);
+    let mut errors = Vec::new();
+    let speed = |disc: &Particle| disc.velocity[0].hypot(disc.velocity[1]);
+    let fastest = particles.all().iter().max_by(|a, b| speed(a).total_cmp(&speed(b)));
+    let limit = longest_step(geometry.radii[0], scene.law.max_penetration);
+    if let Some(disc) = fastest
+        && scene.integrator.on_long_step == OnLongStep::Stop
+        && speed(disc) * dt > limit
+    {
+        let (what, speed) = (noun(disc.kind), speed(disc));
+        let message = format!(
+            "{what} {} moves at {speed:.4e}, {:.4e} in a step; beyond {limit:.4e} contacts deeper than law.max_penetration = {} \
+             could pass unseen between two steps",
+            disc.id,
+            speed * dt,
+            scene.law.max_penetration
+        );
+        let error = document.values.spot(&DT).error(Reason::Stability, message);
+        errors.push(error.expecting(format!("dt below {:.4e} (time)", limit / speed)).advising(
+            "lower dt, slow the discs, or count such steps instead: integrator.on_long_step = \"count\"",
+        ));
+    }
+    if let (Some(steps), Some(duration)) = (estimates.steps_per_contact, estimates.contact_duration)
+        && steps < FEWEST_STEPS
+    {
+        let message = format!(
+            "a contact at speed {:.4e} lasts {duration:.4e}, {steps:.2} steps: with fewer than {FEWEST_STEPS} a collision \
+             changes the energy by tens of percent, up or down",
+            estimates.approach_speed
+        );
+        let error = document.values.spot(&DT).error(Reason::Stability, message);
+        errors.push(error.expecting(format!(
+            "dt below {:.4e} (time), and below {:.4e} for {LEAST_STEPS} steps a contact",
+            duration / FEWEST_STEPS,
+            duration / LEAST_STEPS
+        )));
+    }
+    if let Some((rounding, step)) = lost_motion(scene, domain, geometry, &estimates)
+        && rounding > MOST_LOST * step
+    {
+        let absolute = are_absolute(scene);
+        let message = format!(
+            "positions in single precision, {}, are rounded by up to {rounding:.1e}, but a typical step is {step:.1e}: \
+             discs would move by wrong distances or not at all",
+            if absolute { "measured from the origin" } else { "measured from the cells' centres" }
+        );
+        let error = document.values.spot(&PRECISION).error(Reason::Geometry, message);
+        errors.push(error.expecting(format!("steps longer than {:.1e} (length)", rounding / MOST_LOST)).advising(
+            match absolute {
+                true => "set machine.coordinates = \"cell-relative\", or machine.precision = \"mixed\" or \"f64\"",
+                false => "set machine.precision = \"mixed\" or \"f64\"",
+            },
+        ));
+    }
+    errors
+}
+
+/// Part of a step that rounding a position may take: more is refused.
+const MOST_LOST: f64 = 1e-2;
+
+/// Part of a step that rounding a position may take: more is warned of.
+const MUCH_LOST: f64 = 1e-3;
+
+/// Whether the state's positions are measured from the origin.
+fn are_absolute(scene: &Scene) -> bool {
+    !scene.machine.is_fast() && scene.machine.coordinates == Coordinates::Absolute
+}
+
+/// By how much a position is rounded in a step at most, and how long a typical step is (length), where the state is in single
+/// precision and anything moves.
+fn lost_motion(
+    scene: &Scene,
+    domain: &Domain,
+    geometry: &Geometry,
+    estimates: &Estimates,
+) -> Option<(f64, f64)> {
+    let typical = estimates.approach_speed / std::f64::consts::SQRT_2 * scene.integrator.dt;
+    if scene.machine.precision != Precision::F32 || typical == 0.0 {
+        return None;
+    }
+    let farthest = |axis: usize| match are_absolute(scene) {
+        true => domain.origin[axis].abs() + domain.sides[axis],
+        false => 0.5 * geometry.widest_cell[axis],
+    };
+    Some((0.5 * f64::from(f32::EPSILON) * farthest(0).max(farthest(1)), typical))
+}
+
+/// What seldom ends well.
+pub(super) fn warnings(
+    scene: &Scene,
+    domain: &Domain,
+    particles: &Particles,
+    geometry: &Geometry,
+    estimates: &Estimates,
+) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let mut warn = |key: &Key, message: String, suggestion: String| {
+        warnings.push(Warning { key: key.path(), message, suggestion });
+    };
+    let contact = &scene.law.contact;
+    let Integrator { dt, scheme, .. } = scene.integrator;
+    let limit = estimates.damping_limit;
+    if estimates.network_damping > limit {
+        warn(
+            &DT,
+            format!(
+                "3·normal_damping·dt = {:.4} in a dense packing, but {} is stable below about {limit}",
+                estimates.network_damping,
+                scheme_in_words(scheme)
+            ),
+            format!("dt below {:.4e}, or fewer Gear values", limit / (NETWORK * contact.normal_damping)),
+        );
+    }
+    if scene.law.has_friction() {
+        // Both surfaces of a pair slow down: M_eff (1/m + 1/m + R²/I + R²/I).
+        let rate = contact.shear_damping * (1.0 + 1.0 / scene.law.inertia.factor());
+        if rate * dt > limit {
+            let words = if scene.law.inertia == Inertia::Disc { "3" } else { "3.5" };
+            warn(
+                &SHEAR_DAMPING,
+                format!(
+                    "{words}·shear_damping·dt = {:.4} for a contact that rolls, stable below about {limit}",
+                    rate * dt
+                ),
+                format!("dt below {:.4e}, or a smaller shear_damping", limit / rate),
+            );
+        }
+    } else if contact.friction > 0.0 {
+        let why = "law.friction bounds a shear force that law.shear_damping = 0 makes zero".to_owned();
+        warn(&FRICTION, why, "raise law.shear_damping, or set law.friction = 0".to_owned());
+    } else if contact.shear_damping > 0.0 {
+        let why = "law.shear_damping has no effect while law.friction is 0".to_owned();
+        warn(&SHEAR_DAMPING, why, "raise law.friction, or set law.shear_damping = 0".to_owned());
+    }
+    if let (Some(steps), Some(duration)) = (estimates.steps_per_contact, estimates.contact_duration)
+        && steps < LEAST_STEPS
+    {
+        warn(
+            &DT,
+            format!(
+                "a contact at speed {:.4e} lasts {duration:.4e}, {steps:.1} steps",
+                estimates.approach_speed
+            ),
+            format!("dt below {:.4e} for {LEAST_STEPS} steps a contact", duration / LEAST_STEPS),
+        );
+    }
+    depth_warnings(scene, estimates, &mut warn);
+    let [gx, gy] = scene.domain.gravity;
+    if (gx != 0.0 || gy != 0.0) && particles.grain_count() == particles.len() {
+        let why =
+            "there is gravity but there are no walls: discs fall for ever, or out of the box".to_owned();
+        warn(&GRAVITY, why, "add walls, or set domain.gravity = [0, 0]".to_owned());
+    }
+    if scene.machine.precision != Precision::F64 && are_absolute(scene) {
+        let why = "absolute coordinates in f32: forces are right to 3e-4 at best, to 1e-2 in large boxes"
+            .to_owned();
+        warn(&COORDINATES, why, "use cell-relative coordinates, right to 4e-6".to_owned());
+    }
+    if let Some((rounding, step)) = lost_motion(scene, domain, geometry, estimates)
+        && rounding > MUCH_LOST * step
+    {
+        let message = format!(
+            "positions in single precision are rounded by up to {rounding:.1e}, {:.1e} of a typical step",
+            rounding / step
+        );
+        warn(&PRECISION, message, "use \"mixed\" or \"f64\"".to_owned());
+    }
+    if let Some(set) = scene.machine.instruction_set.filter(|set| !set.is_available()) {
+        let message = format!("this processor has no {}", set.name());
+        warn(&INSTRUCTION_SET, message, "use \"auto\"".to_owned());
+    }
+    warnings
+}
+
+fn depth_warnings(scene: &Scene, estimates: &Estimates, warn: &mut impl FnMut(&Key, String, String)) {
+    let most = scene.law.max_penetration;
+    // Depth grows with the 4/5th power of the speed.
+    let deepest = estimates.impact_penetration * FASTEST.powf(0.8);
+    if deepest > most {
+        warn(
+            &STIFFNESS,
+            format!(
+                "approaches {FASTEST} times as fast as {:.4e} reach a penetration of {deepest:.3}, above \
+                 law.max_penetration = {most}",
+                estimates.approach_speed
+            ),
+            format!("a stiffness above {:.4e}, with a smaller dt, or slower discs", {
+                scene.law.contact.stiffness * (deepest / most).powf(2.5)
+            }),
+        );
+    }
+    let rest = DEEPEST_REST * most / 0.1;
+    if estimates.resting_depth > rest {
+        warn(
+            &STIFFNESS,
+            format!(
+                "a grain sinks {:.4} of its radius into another by its own weight; above {rest:.4} columns of grains \
+                 press each other deeper than law.max_penetration = {most}",
+                estimates.resting_depth
+            ),
+            format!("a stiffness above {:.4e}, or lighter grains", {
+                scene.law.contact.stiffness * (estimates.resting_depth / rest).powf(1.5)
+            }),
+        );
+    }
+}

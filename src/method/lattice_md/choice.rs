@@ -1,0 +1,120 @@
+//! What `auto` becomes: the fastest way of finding contacts that a scene allows, by what was measured.
+//!
+//! The choice depends on the scene alone, never on the machine or its threads, so that a run is the same everywhere.
+
+use super::OnConflict;
+use super::scene::{By, EngineChoice, Scene};
+use crate::domain::Domain;
+use crate::particles::Particles;
+use crate::scene::Precision;
+use crate::words::Words;
+use stripmine_kernels::Execution;
+use stripmine_kernels::sweep::lattice::Coordinates;
+
+/// Where the lattice and the lists were equally fast, with what was measured and where.
+const MEASURED: &str = include_str!("choice.csv");
+
+/// A measured crossing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Crossing {
+    precision: Precision,
+    discs: f64,
+    packing_fraction: f64,
+}
+
+/// The rows of the table; lines that begin with # say where it comes from.
+fn crossings() -> Vec<Crossing> {
+    let rows = MEASURED.lines().filter(|line| !line.starts_with('#')).skip(1);
+    let row = |line: &str| {
+        let mut fields = line.split(',');
+        Some(Crossing {
+            precision: Precision::parse(fields.next()?)?,
+            discs: fields.next()?.parse().ok()?,
+            packing_fraction: fields.next()?.parse().ok()?,
+        })
+    };
+    rows.filter_map(row).collect()
+}
+
+/// The packing fraction above which the lattice is the faster: that of the measured number of discs nearest by its logarithm.
+fn crossing(precision: Precision, discs: usize) -> f64 {
+    let away = |crossing: &Crossing| (crossing.discs / discs.max(1) as f64).ln().abs();
+    let of_precision = crossings().into_iter().filter(|crossing| crossing.precision == precision);
+    of_precision.min_by(|a, b| away(a).total_cmp(&away(b))).map_or(1.0, |crossing| crossing.packing_fraction)
+}
+
+/// A way of finding contacts, with the reason for it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Choice {
+    pub(super) by: By,
+    pub(super) reason: String,
+}
+
+/// Decides which engine steps the discs, where the scene leaves it open; gives the reason.
+pub(super) fn engine(scene: &mut Scene) -> Option<String> {
+    if scene.machine.engine != EngineChoice::Auto {
+        return None;
+    }
+    let machine = &scene.machine;
+    let of_programs = machine.execution != Execution::Chained
+        || machine.coordinates != Coordinates::CellRelative
+        || scene.search.rebuild == super::Rebuild::AllPairs;
+    let (engine, reason) = match of_programs {
+        true => (EngineChoice::Programs, "a key that only programs have is given"),
+        false => {
+            (EngineChoice::Fast, "exact, and several times as fast as programs wherever both were measured")
+        }
+    };
+    scene.machine.engine = engine;
+    Some(format!("machine.engine = \"{}\": {reason}", engine.word()))
+}
+
+/// The ways of finding contacts to be tried for a scene, the fastest first.
+pub(super) fn searches(scene: &Scene, domain: &Domain, particles: &Particles) -> Vec<Choice> {
+    let choice = |by: By, reason: String| Choice { by, reason };
+    if !scene.machine.is_fast() {
+        return vec![choice(By::Lattice, "the source's programs run on it".to_owned())];
+    }
+    let search = &scene.search;
+    if search.cell_edge.is_some() || search.mask.is_some() || search.on_conflict == OnConflict::Resolve {
+        return vec![choice(By::Lattice, "a key that only the lattice has is given".to_owned())];
+    }
+    let area: f64 = particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius * disc.radius).sum();
+    let (packing_fraction, discs) = (area / (domain.sides[0] * domain.sides[1]), particles.len());
+    let crossing = crossing(scene.machine.precision, discs);
+    let on_lattice = choice(By::Lattice, {
+        format!("the packing fraction {packing_fraction:.3} is above {crossing:.3}, where lists are as fast")
+    });
+    let by_lists = choice(By::NeighborList, {
+        format!(
+            "the packing fraction {packing_fraction:.3} is not above {crossing:.3}, where the lattice is as fast"
+        )
+    });
+    let in_sectors =
+        choice(By::Sectors, "neither the lattice nor lists serve these discs in this box".to_owned());
+    let lists_instead = choice(By::NeighborList, "no lattice serves these discs in this box".to_owned());
+    let lattice_instead = choice(By::Lattice, "the box has no room for lists".to_owned());
+    if packing_fraction > crossing {
+        vec![on_lattice, lists_instead, in_sectors]
+    } else {
+        vec![by_lists, lattice_instead, in_sectors]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_precision_has_crossings_between_thin_and_dense() {
+        for (precision, _) in Precision::ALL {
+            for discs in [1, 10_000, 100_000, 10_000_000] {
+                assert!((0.5..0.85).contains(&crossing(*precision, discs)), "{precision:?}");
+            }
+        }
+        assert_eq!(
+            crossings().len(),
+            MEASURED.lines().filter(|line| line.starts_with('f') || line.starts_with('m')).count()
+        );
+    }
+}

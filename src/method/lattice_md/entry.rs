@@ -1,0 +1,20 @@
+//! The entry of lattice molecular dynamics in the list of methods.
+
+use super::benches::{BENCHES, QUANTITIES};
+use super::document::Document;
+use super::items::ITEMS;
+use super::keys::VOCABULARY;
+use super::verbs::VERBS;
+use crate::method::Entry;
+
+/// Lattice molecular dynamics of granular discs.
+pub static ENTRY: Entry = Entry {
+    vocabulary: &VOCABULARY,
+    source: "Buchholtz and Pöschel 1993 (BP93)",
+    doc: "granular discs with soft contacts, on a lattice with at most one disc a cell, in sectors, or by lists",
+    quantities: QUANTITIES,
+    prepare: |values| Document::read(values)?.prepare(),
+    benches: BENCHES,
+    items: ITEMS,
+    verbs: VERBS,
+};

@@ -1,0 +1,165 @@
+//! The keys that are this method's own: law, search, integrator, machine; and what they demand of each other.
+
+use super::fast::OnConflict;
+use super::model::OnLongStep;
+use super::neighbor_list::Rebuild;
+use super::options::{By, EngineChoice, Inertia, IntegratorKind};
+use crate::scene::Bounds::{NonNegative, Positive, Within};
+use crate::scene::Fallback::{Is, Otherwise, Required};
+use crate::scene::Kind::{Choice, Number, OneOf, Switch};
+use crate::scene::keys::define_keys;
+use crate::scene::{
+    ARITHMETIC, DISC_RIVALS, DISCS, DURATION, HEADING, Key, KeySet, OUTPUT, PLANAR_DOMAIN, Reason, Renamed,
+    STEP, STEPPED_RUN, SceneError, Use, Values, Vocabulary, disagreements, too_many_steps,
+};
+use crate::words::Words;
+use stripmine_kernels::law::granular::ContactArm;
+use stripmine_kernels::sweep::lattice::Coordinates;
+
+const ALWAYS: Use = None;
+const GEAR: Use = Some((&INTEGRATOR, &["gear"]));
+const ON_LATTICE: Use = Some((&SEARCH, &["auto", "lattice"]));
+const ON_CELLS: Use = Some((&SEARCH, &["auto", "lattice", "neighbor-list"]));
+const LISTS: Use = Some((&SEARCH, &["neighbor-list"]));
+const PROGRAMS: Use = Some((&ENGINE, &["auto", "programs"]));
+
+define_keys! {
+    /// Law, search, machine and integrator.
+    static OWN;
+    LAW = "law" "kind", Choice(&["granular"]), "", Is("\"granular\""), ALWAYS,
+        "The contact law: Hertz contacts, viscous damping, Coulomb friction, rotation (BP93).";
+    STIFFNESS = "law" "stiffness", Number(Positive), "force/length^1.5", Required, ALWAYS,
+        "Hertz stiffness k_N.";
+    NORMAL_DAMPING = "law" "normal_damping", Number(NonNegative), "1/time", Is("0.0"), ALWAYS,
+        "Normal damping γ_N; multiplied by the effective mass, which with a wall disc is the grain's own, twice that of two equal grains.";
+    SHEAR_DAMPING = "law" "shear_damping", Number(NonNegative), "1/time", Is("0.0"), ALWAYS,
+        "Tangential damping γ_S; multiplied by the effective mass, as normal_damping.";
+    FRICTION = "law" "friction", Number(NonNegative), "", Is("0.0"), ALWAYS,
+        "Coulomb friction coefficient μ.";
+    COHESIONLESS = "law" "cohesionless", Switch, "", Is("true"), ALWAYS,
+        "Whether the normal force is never negative, so that separating discs do not pull; false leaves the damping as the source has it, which pulls at the end of a contact.";
+    INERTIA = "law" "inertia", Choice(Inertia::WORDS), "", Is("\"disc\""), ALWAYS,
+        "Moment of inertia: disc ½ m R², sphere ⅖ m R².";
+    CONTACT_ARM = "law" "contact_arm", Choice(ContactArm::WORDS), "", Is("\"radius\""), ALWAYS,
+        "Where the tangential force acts, seen from a centre: at R, as the source has it; at R − ξ/2, which shortens both the torque and the velocity of the surface; or, as in LAMMPS, the torque at R − ξ/2 and the velocity at R.";
+    MAX_PENETRATION = "law" "max_penetration", Number(Within(0.5)), "", Is("0.1"), ALWAYS,
+        "Penetration, as a fraction of the sum of the radii, up to which the lattice is exact; deeper contacts are counted.";
+    STOP_PENETRATION = "law" "stop_penetration", Number(Within(1.0)), "", Is("0.3"), ALWAYS,
+        "Penetration that stops the run.";
+
+    SEARCH = "search" "by", Choice(By::WORDS), "", Is("\"auto\""), ALWAYS,
+        "How contacts are found: on the exclusive lattice of BP93, in sectors that hold any number of discs (by the fast engine only), or by lists of neighbours; auto takes the fastest that the scene allows.";
+    CELL_EDGE = "search" "cell_edge", Number(Positive), "length", Otherwise("the fewest cells"), ON_CELLS,
+        "Side d of a lattice cell; fitted to periodic sides. The source has d = R_max.";
+    MASK = "search" "mask", OneOf(&[5, 7]), "", Otherwise("the smallest that serves"), ON_CELLS,
+        "Width of the neighbourhood in cells: 5×5 or 7×7.";
+    ON_CONFLICT = "search" "on_conflict", Choice(OnConflict::WORDS), "", Is("\"stop\""), ON_LATTICE,
+        "What becomes of a disc whose lattice cell is another's: the run stops, or the disc is kept in a list beside the lattice and counted (by the fast engine only; a cell_edge may then be too large for one disc a cell).";
+    REBUILD = "search" "rebuild", Choice(Rebuild::WORDS), "", Is("\"cells\""), LISTS,
+        "How neighbour lists are made: by cells, or by all pairs as in the source (by programs only).";
+    SKIN = "search" "skin", Number(Positive), "length", Otherwise("0.3 R_max; for the fast engine half of the mean gap, from there to R_max"), LISTS,
+        "Listed pairs are up to this far from contact.";
+
+    INTEGRATOR = "integrator" "kind", Choice(IntegratorKind::WORDS), "", Is("\"gear\""), ALWAYS,
+        "Gear's predictor-corrector, or velocity Verlet, whose velocity-dependent forces are those after half a kick.";
+    VALUES = "integrator" "values", OneOf(&[4, 5, 6]), "", Is("4"), GEAR,
+        "Derivatives carried, from the position on; fewer are stabler with damping, more are more accurate without.";
+    ON_LONG_STEP = "integrator" "on_long_step", Choice(OnLongStep::WORDS), "", Is("\"stop\""), ALWAYS,
+        "What becomes of a disc that moves so far in a step that a contact deeper than law.max_penetration may pass unseen: the run stops, or the disc is counted.";
+
+    ENGINE = "machine" "engine", Choice(EngineChoice::WORDS), "", Is("\"auto\""), ALWAYS,
+        "What steps the discs: fast, each pair once and the law for contacts only; or the source's vector programs over the whole lattice, equal but for rounding. auto is fast, unless a key of the programs is given.";
+    EXECUTION = "machine" "execution", Choice(&["chained", "eager", "strip:N"]), "", Is("\"chained\""), PROGRAMS,
+        "How programs are executed: instructions register by register, one whole-lattice pass each, or by strips of N, all to the same bits.";
+    COORDINATES = "machine" "coordinates", Choice(Coordinates::WORDS), "", Is("\"cell-relative\""), PROGRAMS,
+        "What positions on the lattice are measured from by programs.";
+}
+
+/// What the scenes of this method may say.
+pub(super) static VOCABULARY: Vocabulary = Vocabulary {
+    keys: KeySet {
+        method: "lattice-md",
+        groups: &[HEADING, PLANAR_DOMAIN, DISCS, OWN, STEP, ARITHMETIC, STEPPED_RUN, OUTPUT],
+        rivals: &[DISC_RIVALS, DURATION],
+    },
+    rules: &[disagreements, too_many_steps, own_rules],
+    presets: super::presets::PRESETS,
+    renamed: RENAMED,
+};
+
+macro_rules! renamed {
+    ($($old:literal => $new:literal,)*) => {
+        &[$(Renamed { old: $old, new: $new }),*]
+    };
+}
+
+/// The keys of format 1 that are others now.
+const RENAMED: &[Renamed] = renamed! {
+    "method.kind" => "[search] by = \"lattice\", \"sectors\" or \"neighbor-list\", whichever it was; [method] kind = \"lattice-md\"",
+    "method.cell_edge" => "the same in [search]",
+    "method.mask" => "the same in [search]",
+    "method.on_conflict" => "the same in [search]",
+    "method.rebuild" => "the same in [search]",
+    "method.skin" => "the same in [search]",
+    "method.execution" => "[machine] engine = \"fast\" where it was \"fast\"; else engine = \"programs\", and execution as it was",
+    "method.coordinates" => "the same in [machine]",
+    "method.precision" => "the same in [machine]",
+    "method.instruction_set" => "the same in [machine]",
+};
+
+/// Contradictions between the keys of law, search and machine.
+fn own_rules(values: &Values) -> Vec<SceneError> {
+    let mut errors = Vec::new();
+    let [low, high] = [&MAX_PENETRATION, &STOP_PENETRATION];
+    if let (Some(a), Some(b)) = (values.number(low), values.number(high))
+        && a > b
+    {
+        let later = if values.gives(low) { low } else { high };
+        let message = format!(
+            "`{}` = {a} is above `{}` = {b}, but a run warns before it stops",
+            low.path(),
+            high.path()
+        );
+        errors.push(values.spot(later).error(Reason::Contradiction, message));
+    }
+    errors.extend(search_and_engine(values));
+    errors
+}
+
+/// Whether a scene asks for programs: by name, or by a key that only they have.
+pub(super) fn asks_for_programs(values: &Values) -> bool {
+    let is = |key: &Key, word: &str| values.choice(key).as_deref() == Some(word);
+    is(&ENGINE, "programs")
+        || is(&ENGINE, "auto")
+            && (values.gives(&EXECUTION) || values.gives(&COORDINATES) || is(&REBUILD, "all-pairs"))
+}
+
+/// Pairs that one of the engines cannot find as asked.
+fn search_and_engine(values: &Values) -> Option<SceneError> {
+    let is = |key: &Key, word: &str| values.choice(key).as_deref() == Some(word);
+    if values.is_faulty(&ENGINE) || values.is_faulty(&SEARCH) {
+        return None;
+    }
+    let given = |keys: &[&'static Key]| keys.iter().copied().find(|key| values.gives(key));
+    let refused = |key: &Key, message: &str| values.spot(key).error(Reason::Contradiction, message);
+    if asks_for_programs(values) {
+        let by = given(&[&ENGINE, &EXECUTION, &COORDINATES, &REBUILD]).unwrap_or(&ENGINE);
+        if is(&SEARCH, "sectors") {
+            let message = "sectors have no vector programs: only the fast engine searches them";
+            return Some(refused(by, message).expecting("engine = \"fast\", and no key of programs"));
+        }
+        if is(&ON_CONFLICT, "resolve") {
+            let message =
+                "the source's programs know one disc a cell: only the fast engine resolves conflicts";
+            return Some(
+                refused(&ON_CONFLICT, message).expecting("engine = \"fast\", and no key of programs"),
+            );
+        }
+        None
+    } else if is(&REBUILD, "all-pairs") {
+        let error = refused(&REBUILD, "the fast engine makes its lists by cells");
+        Some(error.advising("leave it out, or choose engine = \"programs\""))
+    } else {
+        None
+    }
+}

@@ -1,0 +1,192 @@
+//! The memory that a run needs, before it is taken.
+//!
+//! Formulas follow the allocations, term by term: `method/lattice_md/{arrays,neighbor_list}`, `fast/{state,home}` and the
+//! sweeps below them for what a method keeps, `observe` and `io/checkpoint` for what comes and goes. What does not grow with
+//! the discs or the cells is one number.
+
+use super::assemble::{contacts, model_following_energy};
+use super::check::Checked;
+use super::{Contacts, Discs, Model, Scheme, Search};
+use crate::memory::{Foreseen, available};
+use crate::particles::Particle;
+use crate::scene::Precision;
+use stripmine_kernels::sweep::fast::lattice::SPARSE;
+use stripmine_kernels::sweep::lattice::Coordinates;
+
+/// Bytes of the program itself: its text, its threads, its files.
+const PROGRAM: f64 = 11.5e6;
+/// Bytes of a large page, of which long arrays of the programs are made.
+const LARGE: f64 = (1 << 21) as f64;
+/// Bytes of the programs themselves, and of the large page that their short arrays share.
+const SHARED: f64 = 3.5e6;
+/// Bytes of a scene's disc.
+const DISC: f64 = size_of::<Particle>() as f64;
+/// Bytes of a list in a bin of linked cells, and of what the allocator gives to the few numbers in it.
+const BIN: [f64; 2] = [24.0, 32.0];
+
+/// The memory that a run of a checked scene takes at most.
+pub fn foreseen(checked: &Checked) -> Foreseen {
+    let of = Sizes::of(checked);
+    let kept = PROGRAM + 2.0 * DISC * of.discs + 16.0 * of.grains + of.followed();
+    let (engine, columns) = match contacts(checked) {
+        Contacts::Fast(search) => of.fast(search),
+        Contacts::Lattice => of.programs(false),
+        Contacts::Lists(options) => {
+            let (programs, columns) = of.programs(true);
+            (programs + of.rival(options.skin), columns)
+        }
+    };
+    // Either is gone before the other comes, but for what was in the bins, which the allocator keeps.
+    let [bins, few] = of.bins();
+    let observing = DISC * of.discs + bins;
+    let writing = columns + of.followed();
+    Foreseen {
+        needed: (kept + engine + few + observing.max(writing)) as u64,
+        available: available(),
+        what: format!("{} discs in {} cells", checked.particles.len(), checked.geometry.shape.cells()),
+        remedy: "take fewer discs, a smaller box or machine.precision = \"f32\"; where most cells are empty, search.by = \
+                 \"sectors\" has no lattice",
+    }
+}
+
+/// What the formulas are of.
+struct Sizes {
+    model: Model,
+    sides: [f64; 2],
+    /// Sides of a sector, where there are some (length).
+    widest_cell: [f64; 2],
+    /// Largest distance of two discs in contact (length).
+    reach: f64,
+    /// Whether radii differ.
+    vary: bool,
+    discs: f64,
+    grains: f64,
+    /// Bytes of a number of the state, and of one of the forces.
+    state: f64,
+    force: f64,
+}
+
+impl Sizes {
+    fn of(checked: &Checked) -> Sizes {
+        let Checked { scene, domain, particles, .. } = checked;
+        let [smallest, largest] = particles.radii().unwrap_or([1.0; 2]);
+        let (state, force) = match scene.machine.precision {
+            Precision::F64 => (8.0, 8.0),
+            Precision::F32 => (4.0, 4.0),
+            Precision::Mixed => (8.0, 4.0),
+        };
+        Sizes {
+            model: model_following_energy(checked),
+            sides: domain.sides,
+            widest_cell: checked.geometry.widest_cell,
+            reach: 2.0 * largest,
+            vary: smallest != largest,
+            discs: particles.len() as f64,
+            grains: particles.grain_count() as f64,
+            state,
+            force,
+        }
+    }
+
+    fn freedoms(&self) -> f64 {
+        self.model.freedoms() as f64
+    }
+
+    fn varying(&self) -> f64 {
+        f64::from(u8::from(self.model.discs == Discs::Varying))
+    }
+
+    /// Bytes of the periods that discs cross, where these are followed.
+    fn followed(&self) -> f64 {
+        if self.model.counts_crossings().contains(&true) { 16.0 * self.discs } else { 0.0 }
+    }
+
+    fn friction(&self) -> f64 {
+        f64::from(u8::from(self.model.friction))
+    }
+
+    /// Others within a distance of a disc, were the discs spread evenly.
+    fn neighbours(&self, distance: f64) -> f64 {
+        let density = self.discs / (self.sides[0] * self.sides[1]);
+        (density * std::f64::consts::PI * distance * distance).min(self.discs)
+    }
+
+    /// Linked cells for everything in contact: the bins, and what is in them.
+    fn bins(&self) -> [f64; 2] {
+        let share = self.sides[0] * self.sides[1] / (self.discs + 1.0);
+        let wide = self.reach.max(share.sqrt());
+        let [columns, rows] = self.sides.map(|side| (side / wide).clamp(1.0, f64::from(u16::MAX)).floor());
+        let bins = columns * rows;
+        [BIN[0] * bins, BIN[1] * bins * -(-self.discs / bins).exp_m1()]
+    }
+
+    /// Bytes that a fast method keeps, and of the columns of its checkpoints.
+    fn fast(&self, search: Search) -> (f64, f64) {
+        let carried = match self.model.scheme {
+            Scheme::Gear(values) => values.count(),
+            Scheme::VelocityVerlet => 2,
+        };
+        let derivatives = self.freedoms() * carried as f64;
+        let columns = self.state * (derivatives + 3.0 * self.varying()) + 4.0 + 3.0 * self.force;
+        let sectors = || {
+            let [columns, rows] = [0, 1].map(|axis| (self.sides[axis] / self.widest_cell[axis]).ceil());
+            4.0 * columns * rows + 8.0 * self.discs
+        };
+        let mut written = self.state * derivatives + 3.0 * self.force + 2.0 * 8.0;
+        let home = match search {
+            Search::Lattice(_) => {
+                let shape = &self.model.shape;
+                let padded = shape.padded() as f64;
+                let sparse = self.discs < SPARSE * shape.cells() as f64;
+                let copies = if sparse { 0.0 } else { 8.0 + if self.vary { 4.0 } else { 0.0 } };
+                4.0 * self.discs + (4.0 + copies + 0.125) * padded
+            }
+            Search::Sectors => sectors(),
+            Search::Lists { skin } => {
+                written += 2.0 * self.state;
+                let pairs = 0.5 * self.neighbours(self.reach + skin);
+                sectors() + (2.0 * self.state + 8.0 + 4.0 * pairs) * self.discs
+            }
+        };
+        (columns * self.discs + home, written * self.discs)
+    }
+
+    /// Bytes of the arrays of the programs, and of the columns of their checkpoints.
+    fn programs(&self, lists: bool) -> (f64, f64) {
+        let Sizes { model, discs, state, force, .. } = self;
+        let (varying, friction) = (self.varying(), self.friction());
+        let padded = model.shape.padded() as f64;
+        let derivatives = self.freedoms() * model.scheme.values() as f64;
+        let watched = f64::from(u8::from(model.watch.is_some()));
+        let absolute = f64::from(u8::from(model.coordinates == Coordinates::Absolute));
+        let power = f64::from(u8::from(model.counts_dissipation()));
+        // Lists keep forces disc by disc, with the numbers of the discs in place of the cells'.
+        let (forces, numbers) = if lists { (*discs, 2.0) } else { (padded, 1.0) };
+        let of_state = derivatives + varying * (1.0 + friction);
+        let kinds = [
+            // How many columns of how many elements of how many bytes.
+            (of_state, *discs, *state),
+            (4.0 + friction + 2.0 * varying, *discs, *force),
+            (1.0 + 2.0 * absolute + 4.0 + friction + 2.0 * varying + 2.0 * watched + power, padded, *force),
+            (2.0 + friction, forces, *force),
+            (numbers, *discs, 4.0),
+            (1.0, padded, 4.0),
+        ];
+        let arrays: f64 =
+            kinds.iter().map(|(columns, elements, bytes)| columns * row(elements * bytes)).sum();
+        // The cells as they were, where they are asked for.
+        let before = if self.state == 4.0 || self.followed() > 0.0 { 4.0 * discs } else { 0.0 };
+        (SHARED + arrays + before + 4.0 * discs, of_state * state * discs)
+    }
+
+    /// Bytes of the chained neighbour lists beside those arrays.
+    fn rival(&self, skin: f64) -> f64 {
+        let listed = self.neighbours(self.reach + skin);
+        (4.0 + 4.0 * listed + 16.0 + self.varying() * self.force) * self.discs
+    }
+}
+
+/// Bytes of a row of the programs: a long one has large pages to itself.
+fn row(bytes: f64) -> f64 {
+    if bytes > LARGE / 4.0 { (bytes / LARGE).ceil() * LARGE } else { bytes }
+}

@@ -1,0 +1,397 @@
+//! A checked scene and its simulation, as every method offers them.
+
+use super::balance::{Balance, Work};
+use super::check::Checked;
+use super::document::Document;
+use super::engine::Engine;
+use super::{
+    Lengths, Model, Total, Totals, assemble, assemble_following_energy, ledger, memory, model, programs,
+};
+use crate::domain::Domain;
+use crate::io::checkpoint::Counter;
+use crate::memory::{Foreseen, in_words};
+use crate::method::{Clock, Every, Fact, Failure, Prepared, Purpose, Schedule, Simulation, Snapshot, Until};
+use crate::observe::{Observation, Scenery};
+use crate::particles::Particles;
+use crate::scene::{Output, SceneErrors, Warning};
+use crate::words::Words;
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A checked scene of granular discs.
+struct Discs(Checked);
+
+impl Document {
+    /// Makes the discs and holds the scene against what the method demands, as every method does.
+    ///
+    /// # Errors
+    /// As [`check`](Self::check).
+    pub fn prepare(self) -> Result<Box<dyn Prepared>, SceneErrors> {
+        Ok(Box::new(Discs(self.check()?)))
+    }
+}
+
+impl Prepared for Discs {
+    fn scene(&self) -> String {
+        self.0.scene.to_toml()
+    }
+
+    fn schedule(&self) -> Schedule {
+        let run = self.0.scene.run;
+        Schedule {
+            until: Until::Steps(run.steps),
+            rows: Every::steps(run.thermo_every),
+            snapshots: Every::steps(run.snapshot_every),
+            checkpoints: Every::steps(run.checkpoint_every),
+        }
+    }
+
+    fn output(&self) -> Output {
+        self.0.scene.output
+    }
+
+    fn domain(&self) -> Domain {
+        self.0.domain
+    }
+
+    fn particles(&self) -> &Particles {
+        &self.0.particles
+    }
+
+    fn seed(&self) -> Option<u64> {
+        self.0.scene.start.seed()
+    }
+
+    fn start_file(&self) -> Option<&Path> {
+        self.0.scene.start.file()
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        facts(&self.0)
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.0.warnings
+    }
+
+    fn choices(&self) -> &[String] {
+        &self.0.choices
+    }
+
+    fn left_out(&self) -> &[String] {
+        &self.0.left_out
+    }
+
+    fn memory(&self) -> Foreseen {
+        memory::foreseen(&self.0)
+    }
+
+    fn settings(&self) -> Map<String, Value> {
+        let Checked { scene, domain, particles, geometry, .. } = &self.0;
+        let discs: f64 = particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius.powi(2)).sum();
+        let cell_edge = scene.needs_lattice().then_some(geometry.frame.edge);
+        let settings = [
+            ("packing_fraction", json!(discs / (domain.sides[0] * domain.sides[1]))),
+            ("precision", json!(scene.machine.precision.word())),
+            ("integrator", json!(scene.integrator.scheme.name())),
+            ("execution", json!(scene.machine.execution_name())),
+            ("friction", json!(scene.law.has_friction())),
+            ("cell_edge", json!(cell_edge)),
+            ("instruction_set", json!(scene.machine.instructions().name())),
+        ];
+        settings.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
+    }
+
+    fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
+        let engine = match purpose {
+            Purpose::Run => assemble_following_energy(&self.0)?,
+            Purpose::Measurement => assemble(&self.0)?,
+        };
+        Ok(Box::new(Running::new(&self.0, engine)))
+    }
+}
+
+fn facts(checked: &Checked) -> Vec<Fact> {
+    let Checked { scene, domain, particles, alike, geometry, estimates: e, .. } = checked;
+    let sides = |[x, y]: [f64; 2]| format!("{x:.6} × {y:.6}");
+    let or_none = |value: Option<f64>, words: fn(f64) -> String| value.map_or("nothing moves".into(), words);
+    let (grains, walls) = (particles.grain_count(), particles.len() - particles.grain_count());
+    let memory = memory::foreseen(checked);
+    let left = memory.available.map(|bytes| format!(" of {} left", in_words(bytes)));
+    let mut facts = vec![
+        Fact::new("units", scene.units.as_str(), "units", scene.units.as_str()),
+        Fact::new("grains", grains, "grains", grains.to_string()),
+        Fact::new("wall_discs", walls, "wall discs", walls.to_string()),
+        Fact::data("discs_alike", *alike),
+        Fact::new("radii", json!(geometry.radii), "radii", {
+            format!("{:.6} to {:.6}", geometry.radii[0], geometry.radii[1])
+        }),
+        Fact::data("origin", json!(domain.origin)),
+        Fact::new("sides", json!(domain.sides), "box", sides(domain.sides)),
+        Fact::data("periodic", json!(domain.periodic)),
+        Fact::data("search", scene.search.by.word()),
+        Fact::data("engine", scene.machine.engine.word()),
+    ];
+    if scene.needs_lattice() {
+        facts.extend(lattice_facts(checked));
+    }
+    facts.extend([
+        Fact::data("dt", scene.integrator.dt),
+        Fact::new("steps", scene.run.steps, "steps", {
+            format!("{} of {} are {:.6}", scene.run.steps, scene.integrator.dt, scene.duration())
+        }),
+        Fact::data("duration", scene.duration()),
+        Fact::new("estimates", json!(e), "approach speed", format!("{:.4e}", e.approach_speed)),
+        Fact::words("steps per contact", or_none(e.steps_per_contact, |steps| format!("{steps:.1}"))),
+        Fact::words("penetration of an impact", format!("{:.4}", e.impact_penetration)),
+        Fact::new("memory", json!(memory), "memory of a run", {
+            in_words(memory.needed) + &left.unwrap_or_default()
+        }),
+        Fact::words("damping γ dt, dense 3 γ dt, limit", {
+            format!("{:.4}, {:.4}, {}", e.damping, e.network_damping, e.damping_limit)
+        }),
+    ]);
+    facts
+}
+
+/// What there is to be said of the lattice of a scene that needs one.
+fn lattice_facts(checked: &Checked) -> Vec<Fact> {
+    let geometry = &checked.geometry;
+    let sides = |[x, y]: [f64; 2]| format!("{x:.6} × {y:.6}");
+    let [columns, rows] = [geometry.shape.columns(), geometry.shape.rows()];
+    let mask = 2 * geometry.mask.half_width() + 1;
+    let [shortest, longest] = geometry.edge_bounds;
+    vec![
+        Fact::data("columns", columns),
+        Fact::data("rows", rows),
+        Fact::new("cells", columns * rows, "cells", format!("{columns} × {rows} = {}", columns * rows)),
+        Fact::new("cell_edges", json!(geometry.frame.edge), "cell", sides(geometry.frame.edge)),
+        Fact::new("cell_edge_bounds", json!(geometry.edge_bounds), "cell edge allowed", {
+            format!("{shortest:.6} to {longest:.6}")
+        }),
+        Fact::new("mask", mask, "mask", format!("{mask} × {mask}")),
+        Fact::new("occupancy", geometry.occupancy, "occupancy", format!("{:.4}", geometry.occupancy)),
+    ]
+}
+
+/// A simulation of granular discs, observed.
+struct Running {
+    engine: Box<dyn Engine>,
+    model: Model,
+    scenery: Scenery,
+    max_penetration: f64,
+    /// The balance of energy since the start.
+    work: Work,
+    /// Columns and rows of the lattice, where the scene needs one, and discs for each cell.
+    lattice: Option<([usize; 2], f64)>,
+    discs: [usize; 2],
+}
+
+impl Running {
+    fn new(checked: &Checked, engine: Box<dyn Engine>) -> Running {
+        let Checked { scene, particles, geometry, .. } = checked;
+        let model = model(checked);
+        let scenery = Scenery::of(&model);
+        let seen = Observation::of(engine.steps(), engine.time(), &engine.particles(), &scenery);
+        let work = Work::begin(&seen, &engine.particles(), scenery.domain, scenery.gravity);
+        let grains = particles.grain_count();
+        let cells = [geometry.shape.columns(), geometry.shape.rows()];
+        Running {
+            engine,
+            model,
+            scenery,
+            max_penetration: scene.law.max_penetration,
+            work,
+            lattice: scene.needs_lattice().then_some((cells, geometry.occupancy)),
+            discs: [grains, particles.len() - grains],
+        }
+    }
+
+    fn seen(&self) -> (Observation, Balance) {
+        let (engine, particles) = (self.engine.as_ref(), self.engine.particles());
+        let seen = Observation::of(engine.steps(), engine.time(), &particles, &self.scenery);
+        let balance = self.work.balance(&seen, &particles, engine);
+        (seen, balance)
+    }
+
+    /// What leaving out saves: the programs as they are against those of the fullest model, on the same lattice; none where
+    /// a step is no fixed program.
+    fn relative_work(&self) -> Option<f64> {
+        if self.engine.ledger().parts().is_empty() {
+            return None;
+        }
+        let [grains, walls] = self.discs;
+        let lengths = Lengths::new(&self.model, grains, grains + walls);
+        let work = |model: &Model| -> u64 {
+            let parts = ledger(&programs::<f64, f64>(model)).parts();
+            let cost = parts.iter();
+            cost.map(|(_, length, counts)| counts.total() * lengths.range(*length).len() as u64).sum()
+        };
+        let everything = Model { friction: true, discs: super::Discs::Varying, ..self.model.clone() };
+        Some(work(&self.model) as f64 / work(&everything) as f64)
+    }
+}
+
+/// Part of a step.
+#[derive(Serialize)]
+struct LedgerRow {
+    /// The part.
+    part: &'static str,
+    /// Vector length, as a symbol.
+    length: &'static str,
+    /// Vector length in the last step.
+    n: u64,
+    /// Operations on each element.
+    operations: u64,
+}
+
+fn ledger_rows(engine: &dyn Engine) -> Vec<LedgerRow> {
+    let parts = engine.ledger().parts();
+    let rows = parts.iter().map(|(part, length, counts)| LedgerRow {
+        part,
+        length: length.symbol(),
+        n: engine.length(*length),
+        operations: counts.total(),
+    });
+    rows.collect()
+}
+
+impl Simulation for Running {
+    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure> {
+        while !until.iter().any(|moment| moment.has_come(&self.clock())) {
+            if interrupted.load(Ordering::Relaxed) {
+                break;
+            }
+            self.engine.step()?;
+        }
+        Ok(())
+    }
+
+    fn clock(&self) -> Clock {
+        Clock { steps: self.engine.steps(), time: self.engine.time(), events: 0 }
+    }
+
+    fn particles(&self) -> Particles {
+        self.engine.particles()
+    }
+
+    fn observe(&self) -> Vec<f64> {
+        let (seen, balance) = self.seen();
+        let totals = self.engine.totals();
+        vec![
+            seen.time,
+            seen.kinetic,
+            seen.rotational,
+            seen.elastic,
+            seen.gravitational,
+            balance.dissipated,
+            balance.gravity_work,
+            balance.wall_work,
+            balance.balance_error,
+            seen.momentum_x,
+            seen.momentum_y,
+            seen.temperature,
+            seen.flow,
+            seen.deepest_penetration,
+            seen.contacts as f64,
+            totals.deep_disc_steps as f64,
+            totals.long_steps as f64,
+        ]
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        let counters = self.engine.totals().entries().into_iter().map(|(name, total)| match total {
+            Total::Count(count) => (name.to_owned(), Counter::Count(count)),
+            Total::Sum(sum) => (name.to_owned(), Counter::Sum(sum)),
+        });
+        Snapshot { counters: counters.collect(), columns: self.engine.state() }
+    }
+
+    fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
+        let totals = Totals::from_entries(|name| match snapshot.counters.get(name)? {
+            Counter::Count(count) => Some(Total::Count(*count)),
+            Counter::Sum(sum) => Some(Total::Sum(*sum)),
+        });
+        let totals = totals.map_err(|name| format!("the total {name} is missing"))?;
+        self.engine.restore(clock.steps, totals, snapshot.columns)
+    }
+
+    fn phases(&self) -> BTreeMap<&'static str, f64> {
+        self.engine.timings().named()
+    }
+
+    fn reset_phases(&mut self) {
+        self.engine.reset_timings();
+    }
+
+    fn work(&self) -> f64 {
+        self.discs[0] as f64 * self.engine.steps() as f64
+    }
+
+    fn summary(&self) -> Map<String, Value> {
+        let ((seen, balance), totals) = (self.seen(), self.engine.totals());
+        let entries = [
+            ("discs", json!(self.discs)),
+            ("lattice", json!(self.lattice.map(|(cells, _)| cells))),
+            ("occupancy", json!(self.lattice.map(|(_, occupancy)| occupancy))),
+            ("energy", json!(balance)),
+            ("long_steps", json!(totals.long_steps)),
+            ("deep_disc_steps", json!(totals.deep_disc_steps)),
+            ("resolved_conflicts", json!(totals.shared_cells)),
+            ("deepest_watched", json!(totals.deepest)),
+            ("ledger", json!(ledger_rows(self.engine.as_ref()))),
+            ("work_relative_to_everything", json!(self.relative_work())),
+            ("last", json!(seen)),
+        ];
+        entries.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let totals = self.engine.totals();
+        let mut warnings = Vec::new();
+        if totals.deep_disc_steps > 0 {
+            warnings.push(format!(
+                "contacts were deeper than law.max_penetration = {}: {} disc-steps, the deepest {:.4} at step {}; the \
+                 contact law and the lattice are exact only for shallow contacts: stiffen them or slow the discs",
+                self.max_penetration, totals.deep_disc_steps, totals.deepest, totals.deepest_step
+            ));
+        }
+        if totals.long_steps > 0 {
+            warnings.push(format!(
+                "{} times a disc moved so far in a step that contacts deeper than law.max_penetration may have passed unseen: \
+                 lower dt, or slow the discs",
+                totals.long_steps
+            ));
+        }
+        if totals.shared_cells > 0 {
+            warnings.push(format!(
+                "{} times a disc was in a lattice cell that was another's, and was kept beside the lattice: exact, but \
+                 slower the more there are",
+                totals.shared_cells
+            ));
+        }
+        warnings
+    }
+
+    fn in_words(&self) -> String {
+        let ([grains, walls], (seen, _)) = (self.discs, self.seen());
+        let mut text = format!("{grains} grains and {walls} wall discs");
+        if let Some(([columns, rows], occupancy)) = self.lattice {
+            text.push_str(&format!(" on {columns}×{rows} cells, occupancy {occupancy:.3}"));
+        }
+        text.push_str(&format!(
+            "; temperature {:.4e}, flow {:.4e}, contacts {}, deepest penetration {:.4}",
+            seen.temperature, seen.flow, seen.contacts, seen.deepest_penetration
+        ));
+        if let Some(share) = self.relative_work().filter(|&share| share < 1.0) {
+            let saved = 100.0 * (1.0 - share);
+            text.push_str(&format!(
+                "\nsaved: {saved:.1} % of a step's operations with friction and different discs"
+            ));
+        }
+        text
+    }
+}

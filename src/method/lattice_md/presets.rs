@@ -1,0 +1,22 @@
+//! Scenes to start from.
+
+use crate::scene::Preset;
+
+macro_rules! define_presets {
+    ($($name:literal),* $(,)?) => {
+        /// Every preset of this method.
+        pub(super) const PRESETS: &[Preset] =
+            &[$(Preset { name: $name, text: include_str!(concat!("presets/", $name, ".toml")) }),*];
+    };
+}
+
+define_presets![
+    "pipe",
+    "pipe-small",
+    "pipe-as-printed",
+    "dense-gas",
+    "two-discs",
+    "shaken-box",
+    "wide-sizes",
+    "bench"
+];

@@ -1,0 +1,266 @@
+//! What a scene of this method says, as plain data.
+
+use super::fast::OnConflict;
+use super::keys::*;
+use super::model::{GearValues, OnLongStep, Scheme};
+use super::neighbor_list::Rebuild;
+pub use super::options::{By, EngineChoice, Inertia, IntegratorKind};
+use crate::scene::{
+    Binding, DT, Domain, Output, Precision, Run, Start, WallMotion, Write, bind_arithmetic, bind_heading,
+};
+use crate::words::Words;
+use stripmine_kernels::law::granular::{Contact, ContactArm};
+use stripmine_kernels::sweep::lattice::Coordinates;
+use stripmine_kernels::{Execution, InstructionSet};
+
+/// What is simulated. Units are the scene's own; `units` names them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// The unit system: a label.
+    pub units: String,
+    /// The box.
+    pub domain: Domain,
+    /// The discs at the start.
+    pub start: Start,
+    /// The motion of wall discs.
+    pub walls: WallMotion,
+    /// What discs in contact do to each other.
+    pub law: Law,
+    /// How contacts are found.
+    pub search: Search,
+    /// How motion follows from forces.
+    pub integrator: Integrator,
+    /// How the arithmetic is done.
+    pub machine: Machine,
+    /// How long, and how often something is written.
+    pub run: Run,
+    /// Which files are written.
+    pub output: Output,
+}
+
+/// The granular contact law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Law {
+    /// Stiffness, dampings, friction, clamp and arm.
+    pub contact: Contact,
+    /// How mass is distributed in a disc.
+    pub inertia: Inertia,
+    /// Penetration, as a fraction of the sum of the radii, up to which the lattice is exact.
+    pub max_penetration: f64,
+    /// Penetration that stops the run.
+    pub stop_penetration: f64,
+}
+
+impl Default for Law {
+    fn default() -> Self {
+        let contact = Contact {
+            stiffness: 0.0,
+            normal_damping: 0.0,
+            shear_damping: 0.0,
+            friction: 0.0,
+            cohesionless: true,
+            arm: ContactArm::Radius,
+        };
+        Law { contact, inertia: Inertia::Disc, max_penetration: 0.0, stop_penetration: 0.0 }
+    }
+}
+
+impl Law {
+    /// Whether there is a tangential force, and with it rotation.
+    pub fn has_friction(&self) -> bool {
+        self.contact.friction > 0.0 && self.contact.shear_damping > 0.0
+    }
+
+    fn bind(&mut self, binding: &mut dyn Binding) {
+        binding.word(&LAW, &mut "granular".to_owned());
+        binding.number(&STIFFNESS, &mut self.contact.stiffness);
+        binding.number(&NORMAL_DAMPING, &mut self.contact.normal_damping);
+        binding.number(&SHEAR_DAMPING, &mut self.contact.shear_damping);
+        binding.number(&FRICTION, &mut self.contact.friction);
+        binding.switch(&COHESIONLESS, &mut self.contact.cohesionless);
+        binding.choice(&INERTIA, &mut self.inertia);
+        binding.choice(&CONTACT_ARM, &mut self.contact.arm);
+        binding.number(&MAX_PENETRATION, &mut self.max_penetration);
+        binding.number(&STOP_PENETRATION, &mut self.stop_penetration);
+    }
+}
+
+/// How contacts are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Search {
+    /// Lattice or a rival.
+    pub by: By,
+    /// Side of a lattice cell (length); none: the fewest cells.
+    pub cell_edge: Option<f64>,
+    /// Width of the mask in cells, 5 or 7; none: the smallest that serves.
+    pub mask: Option<u64>,
+    /// What becomes of a disc whose lattice cell is another's.
+    pub on_conflict: OnConflict,
+    /// How lists are made.
+    pub rebuild: Rebuild,
+    /// Listed pairs are up to this far from contact (length); none: as the engine finds best.
+    pub skin: Option<f64>,
+}
+
+impl Search {
+    fn bind(&mut self, binding: &mut dyn Binding) {
+        binding.choice(&SEARCH, &mut self.by);
+        if self.by != By::Sectors {
+            binding.number_if_any(&CELL_EDGE, &mut self.cell_edge);
+            binding.whole_if_any(&MASK, &mut self.mask);
+        }
+        if matches!(self.by, By::Auto | By::Lattice) {
+            binding.choice(&ON_CONFLICT, &mut self.on_conflict);
+        }
+        if self.by == By::NeighborList {
+            binding.choice(&REBUILD, &mut self.rebuild);
+            binding.number_if_any(&SKIN, &mut self.skin);
+        }
+    }
+}
+
+/// How the arithmetic is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Machine {
+    /// What steps the discs.
+    pub engine: EngineChoice,
+    /// How programs are executed.
+    pub execution: Execution,
+    /// What positions are measured from by programs.
+    pub coordinates: Coordinates,
+    /// Precision of state and forces.
+    pub precision: Precision,
+    /// The SIMD instructions; none: the widest there are.
+    pub instruction_set: Option<InstructionSet>,
+}
+
+impl Default for Machine {
+    fn default() -> Self {
+        Machine {
+            engine: EngineChoice::Auto,
+            execution: Execution::Chained,
+            coordinates: Coordinates::CellRelative,
+            precision: Precision::F64,
+            instruction_set: None,
+        }
+    }
+}
+
+impl Machine {
+    /// Whether the fast engine steps the discs.
+    pub fn is_fast(&self) -> bool {
+        self.engine != EngineChoice::Programs
+    }
+
+    /// What executes a step, in a word: `fast`, or how programs are executed.
+    pub fn execution_name(&self) -> String {
+        if self.is_fast() { EngineChoice::Fast.word().to_owned() } else { execution_name(self.execution) }
+    }
+
+    /// The instructions that are used.
+    pub fn instructions(&self) -> InstructionSet {
+        self.instruction_set.unwrap_or_else(InstructionSet::best)
+    }
+
+    fn bind(&mut self, binding: &mut dyn Binding) {
+        binding.choice(&ENGINE, &mut self.engine);
+        // What auto becomes has no such keys, unless one of them is given.
+        let is_open = self.engine == EngineChoice::Auto && binding.reads();
+        if self.engine == EngineChoice::Programs || is_open {
+            let mut execution = execution_name(self.execution);
+            binding.word(&EXECUTION, &mut execution);
+            self.execution = match execution.strip_prefix("strip:").map(str::parse) {
+                Some(Ok(length)) => Execution::Strip(length),
+                _ if execution == "eager" => Execution::Eager,
+                _ => Execution::Chained,
+            };
+            binding.choice(&COORDINATES, &mut self.coordinates);
+        }
+        bind_arithmetic(binding, &mut self.precision, &mut self.instruction_set);
+    }
+}
+
+/// The name of a way to execute programs, in scenes and on the command line.
+pub fn execution_name(execution: Execution) -> String {
+    match execution {
+        Execution::Chained => "chained".to_owned(),
+        Execution::Eager => "eager".to_owned(),
+        Execution::Strip(length) => format!("strip:{length}"),
+    }
+}
+
+/// The integrator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Integrator {
+    /// How motion follows from forces.
+    pub scheme: Scheme,
+    /// Time step (time).
+    pub dt: f64,
+    /// What becomes of a disc that moves farther in a step than contacts can be seen.
+    pub on_long_step: OnLongStep,
+}
+
+impl Default for Integrator {
+    fn default() -> Self {
+        Integrator { scheme: Scheme::VelocityVerlet, dt: 0.0, on_long_step: OnLongStep::Stop }
+    }
+}
+
+impl Integrator {
+    fn bind(&mut self, binding: &mut dyn Binding) {
+        let (mut kind, mut values) = match self.scheme {
+            Scheme::Gear(values) => (IntegratorKind::Gear, values),
+            Scheme::VelocityVerlet => (IntegratorKind::VelocityVerlet, GearValues::Four),
+        };
+        binding.choice(&INTEGRATOR, &mut kind);
+        self.scheme = match kind {
+            IntegratorKind::VelocityVerlet => Scheme::VelocityVerlet,
+            IntegratorKind::Gear => {
+                let mut count = values.count() as u64;
+                binding.whole(&VALUES, &mut count);
+                let asked = GearValues::ALL.into_iter().find(|values| values.count() as u64 == count);
+                values = asked.unwrap_or(values);
+                Scheme::Gear(values)
+            }
+        };
+        binding.number(&DT, &mut self.dt);
+        binding.choice(&ON_LONG_STEP, &mut self.on_long_step);
+    }
+}
+
+impl Scene {
+    /// Meets every key of the method.
+    pub(super) fn bind(&mut self, binding: &mut dyn Binding) {
+        bind_heading(binding, &mut self.units, VOCABULARY.keys.method);
+        self.domain.bind(binding);
+        self.start.bind(binding);
+        self.walls.bind(binding, &self.start);
+        self.law.bind(binding);
+        self.search.bind(binding);
+        self.integrator.bind(binding);
+        self.machine.bind(binding);
+        self.run.bind(binding, self.integrator.dt);
+        self.output.bind(binding);
+    }
+
+    /// The whole scene as TOML, defaults written out. Parsing it gives an equal scene.
+    pub fn to_toml(&self) -> String {
+        let mut write = Write::default();
+        self.clone().bind(&mut write);
+        write.to_toml(&VOCABULARY.keys)
+    }
+
+    /// Whether discs must have a cell of the exclusive lattice to themselves, or be seen through its mask.
+    pub fn needs_lattice(&self) -> bool {
+        match self.search.by {
+            By::Auto | By::Lattice => true,
+            By::Sectors => false,
+            By::NeighborList => !self.machine.is_fast(),
+        }
+    }
+
+    /// The simulated time (time).
+    pub fn duration(&self) -> f64 {
+        self.run.steps as f64 * self.integrator.dt
+    }
+}

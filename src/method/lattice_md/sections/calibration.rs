@@ -1,0 +1,165 @@
+//! A host model, as tables.
+
+use crate::model::host::{Amounts, Estimate, Factors, HostModel, Measured, Transfer};
+use crate::report::{Cell, Table};
+
+/// The tables of a host model.
+pub fn tables(model: &HostModel) -> Vec<Table> {
+    vec![operations(model), programs(model), levels(model), rates(model)]
+}
+
+fn with(estimate: Estimate, decimals: usize) -> [Cell; 2] {
+    [Cell::Number(estimate.value, decimals), Cell::Number(estimate.interval, decimals)]
+}
+
+fn headings(words: &[&str]) -> Vec<String> {
+    words.iter().map(|&word| word.to_owned()).collect()
+}
+
+/// What takes less (ns an element) takes nothing that was measured.
+const LEAST: f64 = 1e-3;
+
+/// The row of something that starts and goes on, with Hockney's pair.
+fn hockney(names: [&str; 2], element: Estimate, start: Estimate) -> Vec<Cell> {
+    let mut row: Vec<Cell> = names.map(|name| Cell::Text(name.to_owned())).to_vec();
+    row.extend(with(element, 4));
+    row.extend(with(start, 1));
+    let rate = |value: f64| if element.value < LEAST { Cell::Nothing } else { Cell::Number(value, 0) };
+    row.push(rate(1e3 / element.value));
+    row.push(rate(start.value / element.value));
+    row
+}
+
+const TIMES: [&str; 6] = ["tau (ns)", "± 95 %", "t0 (ns)", "± 95 %", "r_inf (million/s)", "n_half"];
+
+fn operations(model: &HostModel) -> Table {
+    let rows = model.lanes.iter().flat_map(|(lane, costs)| {
+        costs.passes.iter().map(move |(op, cost)| hockney([lane, op], cost.element, cost.start))
+    });
+    let Measured { timer, slowdown, quiet, spread, disagreement, shortest, longest, .. } = model.measured;
+    let changes = model.lanes.iter().map(|(lane, costs)| {
+        let each =
+            costs.change.iter().map(|change| format!("{:.1} ns in {} passes", change.ns, change.passes));
+        format!("{lane}: {}", each.collect::<Vec<_>>().join(", "))
+    });
+    Table {
+        name: "operations".into(),
+        title: format!("Operations of {}, {}", model.title, model.instruction_set),
+        columns: headings(&[&["lanes", "operation"], TIMES.as_slice()].concat()),
+        rows: rows.collect(),
+        notes: vec![
+            format!(
+                "Passes over vectors in the first-level cache: t = t0 + n tau. Vectors of {shortest} to {longest} elements; \
+                 timer steps of {timer} ns. Times are for an undisturbed core: a reference loop, timed beside every sample, shows \
+                 disturbances by other programs; in the median it took {slowdown:.2} times as long. {:.0} % of the points were measured \
+                 undisturbed, the others corrected by how each depends on the slowdown. Half of the samples lie within {:.1} % of the middle one; the two halves of the measurement differ by {:.1} %.",
+                100.0 * quiet,
+                100.0 * spread,
+                100.0 * disagreement
+            ),
+            format!(
+                "A pass before one of another kind takes longer. {}.",
+                changes.collect::<Vec<_>>().join("; ")
+            ),
+        ],
+    }
+}
+
+fn programs(model: &HostModel) -> Table {
+    let interpreted = model.lanes.values().flat_map(|lane| &lane.seen).map(|seen| ("in strips", seen));
+    let loops = model.loops.seen.iter().map(|seen| ("chained", seen));
+    let rows = interpreted.chain(loops).map(|(execution, (signature, seen))| {
+        let lane = signature.split('-').next().unwrap_or_default();
+        let mut row = hockney([lane, &seen.what], seen.element, seen.start);
+        row.insert(0, Cell::Text(execution.to_owned()));
+        let Factors { computing, waiting, .. } = seen.factors;
+        row.extend([computing, waiting].map(|factor| Cell::Number(factor, 2)));
+        row
+    });
+    Table {
+        name: "programs".into(),
+        title: "Programs".into(),
+        columns: headings(
+            &[&["execution", "lanes", "program"], TIMES.as_slice(), &["computing", "waiting"]].concat(),
+        ),
+        rows: rows.collect(),
+        notes: vec![format!(
+            "In the first-level cache; t0 of a strip, or of a chained loop. On whole vectors a program \
+             computes and waits for memory this many times as long as the first-level cache and the levels give. What is not among these is charged pass by pass, a \
+             pass taking {:.2} times as long to begin as in a drill of nothing but itself, or, chained, by classes of operations, \
+             which deviate from these by {:.0} % (the median). Of the shorter of computing and waiting for streams {:.0} % \
+             hide behind the longer in a chained loop.",
+            model.begin,
+            100.0 * model.loops.residual,
+            100.0 * model.loops.overlap
+        )],
+    }
+}
+
+fn rates(model: &HostModel) -> Table {
+    let mut rows = vec![];
+    for (method, rates) in &model.rates {
+        for (precision, phases) in &rates.0 {
+            for (phase, points) in phases {
+                for point in points {
+                    let mut row: Vec<Cell> =
+                        [method, precision, phase].map(|name| Cell::Text(name.clone())).to_vec();
+                    row.push(Cell::Count(point.discs as u64));
+                    row.extend(
+                        Amounts::NAMES
+                            .iter()
+                            .map(|&name| point.ns.get(name).map_or(Cell::Nothing, |&ns| Cell::Number(ns, 2))),
+                    );
+                    rows.push(row);
+                }
+            }
+        }
+    }
+    let units = Amounts::NAMES.map(|name| format!("ns a {name}"));
+    Table {
+        name: "rates".into(),
+        title: "Work whose amount depends on the data".into(),
+        columns: headings(&["method", "precision", "phase", "discs"]).into_iter().chain(units).collect(),
+        rows,
+        notes: vec![],
+    }
+}
+
+fn levels(model: &HostModel) -> Table {
+    let rows = model.levels.iter().flat_map(|level| {
+        [("passes", level.passes), ("chained loops", level.loops)].map(|(what, transfer)| {
+            let Transfer { fetch, fetch_array, write_back, first, line } = transfer;
+            vec![
+                Cell::Text(level.name.clone()),
+                level.capacity.map_or(Cell::Nothing, |bytes| Cell::Number(bytes / 1024.0, 0)),
+                Cell::Text(what.to_owned()),
+                Cell::Number(fetch, 5),
+                Cell::Number(fetch_array, 5),
+                Cell::Number(write_back, 5),
+                Cell::Number(first, 2),
+                Cell::Number(line, 2),
+            ]
+        })
+    });
+    Table {
+        name: "levels".into(),
+        title: "Levels of memory".into(),
+        columns: headings(&[
+            "level",
+            "up to a reuse distance of (KiB)",
+            "for",
+            "ns a byte fetched",
+            "ns a byte of an array fetched",
+            "ns a byte written back",
+            "ns the first of an array",
+            "ns a line through an index",
+        ]),
+        rows: rows.collect(),
+        notes: vec![format!(
+            "A pass whose operands come from beyond the nearest level waits {:.3} ns an element in addition. The passes and \
+             programs that this was fitted to deviate by {:.0} % (the median).",
+            model.operand,
+            100.0 * model.measured.residual
+        )],
+    }
+}

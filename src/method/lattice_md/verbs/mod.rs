@@ -1,0 +1,44 @@
+//! The verbs that are this method's own: what its programs cost, by count, by clock and by measurement.
+
+mod calibrate;
+mod chart;
+mod listing;
+mod scene_choice;
+mod table;
+mod validate_model;
+
+use crate::console::{Common, Failure};
+use crate::method::Verb;
+use calibrate::CalibrateVerb;
+use chart::ChartVerb;
+use clap::{Args, FromArgMatches};
+use listing::ListingVerb;
+use table::TableVerb;
+use validate_model::ValidateModel;
+
+macro_rules! verbs {
+    ($($name:literal $arguments:ident,)*) => {
+        &[$(Verb {
+            name: $name,
+            command: |command| $arguments::augment_args(command),
+            run: |matches, common| carried_out::<$arguments>(matches, common, $arguments::run),
+        }),*]
+    };
+}
+
+/// Every verb, in the order of the help.
+pub(super) const VERBS: &[Verb] = verbs! {
+    "table" TableVerb,
+    "listing" ListingVerb,
+    "calibrate" CalibrateVerb,
+    "validate-model" ValidateModel,
+    "chart" ChartVerb,
+};
+
+fn carried_out<A: Args + FromArgMatches>(
+    matches: &clap::ArgMatches,
+    common: &Common,
+    run: fn(&A, &Common) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    run(&A::from_arg_matches(matches).map_err(Failure::Arguments)?, common)
+}

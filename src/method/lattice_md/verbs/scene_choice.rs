@@ -1,0 +1,47 @@
+//! The options by which a verb is told what is modelled.
+
+use crate::method::lattice_md::study::efficiency_table::{Choice, Question};
+use clap::Args;
+
+/// How many particles, how dense, and what is modelled.
+#[derive(Args, Clone, Debug)]
+pub(super) struct SceneChoice {
+    /// Number of particles NP
+    #[arg(long, default_value_t = 1000)]
+    particles: usize,
+    /// Occupancy of the lattice: particles for each cell, above 0 and at most 1
+    #[arg(long, default_value_t = 0.25)]
+    occupancy: f64,
+    /// Leave out friction, and with it rotation
+    #[arg(long)]
+    frictionless: bool,
+    /// All discs alike: radius and mass are numbers, not vectors
+    #[arg(long)]
+    equal_discs: bool,
+    /// Values of Gear's scheme
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(4..=6))]
+    gear_values: u8,
+    /// Width of the mask: 5 (24 places) or 7 (48)
+    #[arg(long, default_value = "5", value_parser = ["5", "7"])]
+    mask: String,
+    /// Positions relative to the cell instead of the origin
+    #[arg(long)]
+    cell_relative: bool,
+}
+
+impl SceneChoice {
+    /// The question these options ask.
+    pub(super) fn question(&self) -> Question {
+        Question {
+            particles: self.particles,
+            occupancy: self.occupancy,
+            choice: Choice {
+                friction: !self.frictionless,
+                varying_discs: !self.equal_discs,
+                gear_values: self.gear_values.into(),
+                mask_half_width: if self.mask == "7" { 3 } else { 2 },
+                cell_relative: self.cell_relative,
+            },
+        }
+    }
+}

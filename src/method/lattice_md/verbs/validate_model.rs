@@ -1,0 +1,133 @@
+//! `stripmine validate-model`: the host model against wall time.
+
+use super::calibrate::noise;
+use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
+use crate::method::lattice_md::sections;
+use crate::method::lattice_md::study::calibration;
+use crate::method::lattice_md::study::model_validation::{
+    Calibrated, Effort, ModelValidation, calibrated_in_turns, model_validation,
+};
+use crate::method::lattice_md::study::rounds::Bound;
+use crate::model::host::{HostModel, default_model};
+use crate::origin::{self, Provenance};
+use crate::report::terminal;
+use crate::results::{Folder, Made};
+use crate::signals;
+use clap::Args;
+use clap::builder::RangedU64ValueParser;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use stripmine_kernels::InstructionSet;
+
+/// Predicts runs that nothing was fitted to, measures them, and says how far off each prediction was
+#[derive(Args)]
+pub(super) struct ValidateModel {
+    /// Host file of `calibrate`; without one, the model that comes with the program
+    #[arg(long)]
+    host: Option<PathBuf>,
+    /// Calibrate in turns with the runs, so that both see the same states of a busy machine; the host file lies in the
+    /// folder of the result
+    #[arg(long, conflicts_with = "host")]
+    calibrate: bool,
+    /// Sweeps of that calibration
+    #[arg(long, requires = "calibrate", default_value_t = 30,
+          value_parser = clap::value_parser!(u16).range(1..=200))]
+    sweeps: u16,
+    /// Numbers of particles
+    #[arg(long, value_delimiter = ',', default_values_t = [560, 2050, 9500, 17_000],
+          value_parser = RangedU64ValueParser::<usize>::new().range(1..))]
+    particles: Vec<usize>,
+    /// Occupancies, on cells as wide as the radius
+    #[arg(long, value_delimiter = ',', default_values_t = [0.072, 0.125, 0.168, 0.235])]
+    occupancies: Vec<f64>,
+    /// Rounds over all runs
+    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u16).range(1..))]
+    rounds: u16,
+    /// Rounds more, at most, over those runs alone that were always disturbed by other programs, or whose rounds of even
+    /// and of odd number lie more than a tenth apart
+    #[arg(long, default_value_t = 24)]
+    further: u16,
+    /// Repeats of each run in a round
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    repeats: u16,
+    /// Folder for the result as data, tables and figures
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// The model of a host file, or the one that comes with the program; whether it is the latter.
+pub(super) fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, bool), Failure> {
+    let Some(file) = file else {
+        let model = default_model()?;
+        if !common.quiet {
+            say(format_args!(
+                "no --host: using the model that comes with the program, of {}; see calibrate",
+                model.title
+            ));
+        }
+        return Ok((model, true));
+    };
+    Ok((HostModel::load(file)?, false))
+}
+
+impl ValidateModel {
+    pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
+        let effort = Effort {
+            particles: self.particles.clone(),
+            occupancies: self.occupancies.clone(),
+            rounds: Bound::of(self.rounds.into()),
+            further: self.further.into(),
+            repeats: self.repeats.into(),
+            particle_steps: 10_000,
+        };
+        // Before anything takes its time.
+        let folder = match &self.out {
+            Some(out) => Some(Folder::open(out, &["validation"], false)?),
+            None => None,
+        };
+        let start = Instant::now();
+        let (data, model) = self.validated(&effort, common)?;
+        if let Some(folder) = folder {
+            let mut made = Made::new(sections::model_validation::section(&data), &data)?;
+            if let Some(model) = model {
+                made = made.with_file("host.toml", model.to_toml());
+            }
+            let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
+            let folder = signals::whole(|| folder.write(&made, &provenance))?;
+            if !common.quiet {
+                say(format_args!("written: {}", folder.display()));
+            }
+        }
+        if common.json {
+            return print_json(&data);
+        }
+        let tables = sections::model_validation::tables(&data);
+        let drawn: Vec<String> = tables.iter().take(2).map(terminal::render).collect();
+        print(&drawn.join("\n"))
+    }
+
+    /// What came out, and the model if it was calibrated here.
+    fn validated(
+        &self,
+        effort: &Effort,
+        common: &Common,
+    ) -> Result<(ModelValidation, Option<HostModel>), Failure> {
+        let bar = progress(common, "validate-model");
+        let show = |share: f64| bar.set_position((1e3 * share) as u64);
+        if self.calibrate {
+            let sweeps = calibration::Effort { sweeps: self.sweeps.into() };
+            let (model, data) =
+                calibrated_in_turns(origin::host(), InstructionSet::best(), sweeps, effort, show)?;
+            clear_progress();
+            if let Some(noise) = noise(&model.measured) {
+                warn(format_args!("{noise}: the machine is busy"));
+            }
+            return Ok((data, Some(model)));
+        }
+        let (model, shipped) = host_model(self.host.as_deref(), common)?;
+        let calibrated = if shipped { Calibrated::Shipped } else { Calibrated::Before };
+        let data = model_validation(&model, calibrated, effort, show)?;
+        clear_progress();
+        Ok((data, None))
+    }
+}

@@ -1,0 +1,44 @@
+//! The methods. Each is a folder beside this file and a line of this list.
+
+use super::entry::{Entry, Prepared};
+use super::lattice_md;
+use crate::scene::{METHOD, Reason, SceneErrors, Values, Vocabulary};
+
+/// Methods that scenes may name.
+pub type Methods = &'static [&'static Entry];
+
+/// Every method of this program.
+pub static METHODS: Methods = &[&lattice_md::ENTRY];
+
+/// What the scenes of some methods may say.
+pub fn vocabularies(methods: Methods) -> Vec<&'static Vocabulary> {
+    methods.iter().map(|method| method.vocabulary).collect()
+}
+
+/// The method of a name.
+pub fn method(methods: Methods, name: &str) -> Option<&'static Entry> {
+    methods.iter().copied().find(|method| method.vocabulary.keys.method == name)
+}
+
+/// The scene that is a preset's name or a file's path, with overrides `section.key=value`, ready to run; and its method.
+///
+/// # Errors
+/// [`SceneErrors`]: every mistake of the text, or every precondition that does not hold.
+pub fn load(
+    what: &str,
+    overrides: &[String],
+    methods: Methods,
+) -> Result<(Box<dyn Prepared>, &'static Entry), SceneErrors> {
+    prepare(Values::load(what, overrides, &vocabularies(methods))?, methods)
+}
+
+/// A scene that was read, ready to run; and its method.
+///
+/// # Errors
+/// [`SceneErrors`]: every precondition that does not hold.
+pub fn prepare(values: Values, methods: Methods) -> Result<(Box<dyn Prepared>, &'static Entry), SceneErrors> {
+    // A scene is read as one of a method of the list.
+    let unlisted = || values.spot(&METHOD).error(Reason::Unknown, "there is no such method");
+    let entry = method(methods, values.method()).ok_or_else(unlisted)?;
+    Ok(((entry.prepare)(values)?, entry))
+}

@@ -1,0 +1,226 @@
+//! How fast is a method? Moving particles, timed.
+
+use crate::method::{Bench, Failure, Prepared, Purpose, Simulation};
+use crate::reported::{Class, Reported};
+use crate::scene::SceneErrors;
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
+
+/// What is measured.
+pub struct Measurement {
+    /// The bench: what a repeat and the rate are.
+    pub bench: &'static Bench,
+    /// The scene.
+    pub prepared: Box<dyn Prepared>,
+    /// Steps or events before the clock starts; a start on a lattice is kinder than a gas.
+    pub equilibration: u64,
+    /// Steps or events of each repeat.
+    pub steps: u64,
+    /// Repeats.
+    pub repeats: usize,
+}
+
+/// Why there is no measurement.
+#[derive(Debug, thiserror::Error)]
+pub enum MeasurementError {
+    /// The scene.
+    #[error(transparent)]
+    Scene(#[from] SceneErrors),
+    /// The physics.
+    #[error(transparent)]
+    Physics(#[from] Failure),
+    /// No thread to measure on.
+    #[error("no thread to measure on: {0}")]
+    Threads(rayon::ThreadPoolBuildError),
+}
+
+/// The result.
+#[derive(Clone, Debug)]
+pub struct Throughput {
+    /// What was measured.
+    pub what: &'static str,
+    /// Particles that move.
+    pub particles: usize,
+    /// How: precision, integrator and the like.
+    pub settings: Map<String, Value>,
+    /// Threads.
+    pub threads: usize,
+    /// Repeats.
+    pub repeats: usize,
+    /// Steps or events of each repeat.
+    pub steps: u64,
+    /// Wall seconds of the best repeat.
+    pub seconds: f64,
+    /// Processor seconds of the best repeat, over all threads.
+    pub cpu_seconds: f64,
+    /// Most memory the process ever held; none where the platform does not say.
+    pub peak_memory_bytes: Option<u64>,
+    /// CRC-32 of the bits of the final state, by id.
+    pub checksum: String,
+    /// The name of the rate.
+    pub rate_name: &'static str,
+    /// The rate: the best repeat.
+    pub rate: f64,
+    /// The rate: the median repeat.
+    pub median_rate: f64,
+    /// Seconds of the best repeat in each phase.
+    pub phases: BTreeMap<&'static str, f64>,
+    /// Quantities at the start and at the end of the measurement, where the bench compares them.
+    pub compared: Vec<(&'static str, [f64; 2])>,
+    /// Quantities at the end.
+    pub at_end: Vec<(&'static str, f64)>,
+}
+
+/// With the names that outside programs rely on.
+impl Serialize for Throughput {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut data = Map::new();
+        let mut say = |name: &str, value: Value| data.insert(name.to_owned(), value);
+        say("what", json!(self.what));
+        say("particles", json!(self.particles));
+        self.settings.iter().for_each(|(name, value)| drop(say(name, value.clone())));
+        say("threads", json!(self.threads));
+        say("repeats", json!(self.repeats));
+        say("steps", json!(self.steps));
+        say("seconds", json!(self.seconds));
+        say("cpu_seconds", json!(self.cpu_seconds));
+        say("peak_memory_bytes", json!(self.peak_memory_bytes));
+        say("checksum", json!(self.checksum));
+        say(self.rate_name, json!(self.rate));
+        say(&format!("{}_median", self.rate_name), json!(self.median_rate));
+        say("phases", json!(self.phases));
+        self.compared.iter().for_each(|(name, values)| drop(say(name, json!(values))));
+        self.at_end.iter().for_each(|(name, value)| drop(say(name, json!(value))));
+        data.serialize(serializer)
+    }
+}
+
+/// Measures.
+///
+/// # Errors
+/// [`MeasurementError`] if the scene is bad or breaks while running.
+pub fn throughput(measurement: Measurement) -> Result<Throughput, MeasurementError> {
+    let Measurement { bench, prepared, equilibration, steps, repeats } = measurement;
+    let mut running = Running::begin(bench, prepared, equilibration, steps)?;
+    (0..repeats).try_for_each(|_| running.repeat())?;
+    Ok(running.measured())
+}
+
+/// Wall seconds, processor seconds, work, and seconds in each phase of a repeat.
+struct Repeat {
+    wall: f64,
+    cpu: f64,
+    work: f64,
+    phases: BTreeMap<&'static str, f64>,
+}
+
+/// A scene that runs, and is timed again and again.
+pub struct Running {
+    bench: &'static Bench,
+    prepared: Box<dyn Prepared>,
+    simulation: Box<dyn Simulation>,
+    steps: u64,
+    before: Vec<f64>,
+    repeats: Vec<Repeat>,
+}
+
+impl Running {
+    /// Lets the scene run for `equilibration` steps or events. Repeats have `steps`.
+    ///
+    /// # Errors
+    /// [`MeasurementError`] if the scene is bad or breaks while running.
+    pub fn begin(
+        bench: &'static Bench,
+        prepared: Box<dyn Prepared>,
+        equilibration: u64,
+        steps: u64,
+    ) -> Result<Self, MeasurementError> {
+        let simulation = prepared.start(Purpose::Measurement)?;
+        let mut running = Running { bench, prepared, simulation, steps, before: vec![], repeats: vec![] };
+        running.advance(equilibration)?;
+        running.before = running.simulation.observe();
+        Ok(running)
+    }
+
+    /// Times the steps of a repeat.
+    ///
+    /// # Errors
+    /// [`MeasurementError::Physics`] if the scene breaks.
+    pub fn repeat(&mut self) -> Result<(), MeasurementError> {
+        self.simulation.reset_phases();
+        let done = self.simulation.work();
+        let (wall, cpu) = (std::time::Instant::now(), cpu_time::ProcessTime::now());
+        self.advance(self.steps)?;
+        let (wall, cpu) = (wall.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64());
+        let work = self.simulation.work() - done;
+        self.repeats.push(Repeat { wall, cpu, work, phases: self.simulation.phases() });
+        Ok(())
+    }
+
+    fn advance(&mut self, steps: u64) -> Result<(), Failure> {
+        let moment = (self.bench.until)(steps).after(&self.simulation.clock());
+        self.simulation.advance(&[moment], &AtomicBool::new(false))
+    }
+
+    /// What came out.
+    ///
+    /// # Panics
+    /// If there was no repeat.
+    pub fn measured(mut self) -> Throughput {
+        self.repeats.sort_by(|a, b| a.wall.total_cmp(&b.wall));
+        let after = self.simulation.observe();
+        let Running { bench, prepared, simulation, steps, before, repeats } = self;
+        let (best, median) = (&repeats[0], &repeats[repeats.len() / 2]);
+        let observed = |name: &str, values: &[f64]| {
+            let place = bench.quantities.iter().position(|quantity| quantity.name == name);
+            place.and_then(|place| values.get(place)).copied().unwrap_or(f64::NAN)
+        };
+        let compared = bench.compared.iter();
+        Throughput {
+            what: bench.name,
+            particles: prepared.particles().grain_count(),
+            settings: prepared.settings(),
+            threads: rayon::current_num_threads(),
+            repeats: repeats.len(),
+            steps,
+            seconds: best.wall,
+            cpu_seconds: best.cpu,
+            peak_memory_bytes: peak_memory(),
+            checksum: simulation.particles().checksum(),
+            rate_name: bench.rate,
+            rate: best.work / best.wall,
+            median_rate: median.work / median.wall,
+            phases: best.phases.clone(),
+            compared: compared
+                .map(|&name| (name, [observed(name, &before), observed(name, &after)]))
+                .collect(),
+            at_end: bench.at_end.iter().map(|&name| (name, observed(name, &after))).collect(),
+        }
+    }
+}
+
+/// The peak memory of this process, where the system gives it (Linux: `VmHWM`).
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    Some(line.split_whitespace().nth(1)?.parse::<u64>().ok()? * 1024)
+}
+
+impl Reported for MeasurementError {
+    fn class(&self) -> Class {
+        match self {
+            MeasurementError::Scene(errors) => errors.class(),
+            MeasurementError::Physics(failure) => failure.class(),
+            MeasurementError::Threads(_) => Class::InputOutput,
+        }
+    }
+
+    fn mistakes(&self) -> Option<&SceneErrors> {
+        match self {
+            MeasurementError::Scene(errors) => Some(errors),
+            MeasurementError::Physics(_) | MeasurementError::Threads(_) => None,
+        }
+    }
+}

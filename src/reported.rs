@@ -1,0 +1,92 @@
+//! What a user hears of an error, whatever it is of: its class, its place, and what to do.
+
+use crate::scene::SceneErrors;
+use std::path::Path;
+
+/// The classes of errors; each has an exit code of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// The request cannot be understood, or is refused.
+    Usage,
+    /// A scene or another input file is wrong.
+    Input,
+    /// The physics broke a precondition, or a prediction lies outside what was calibrated.
+    Precondition,
+    /// The system does not let something be read or written.
+    InputOutput,
+    /// What was written before has been damaged.
+    Checkpoint,
+}
+
+impl Class {
+    /// The name in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Class::Usage => "usage",
+            Class::Input => "input",
+            Class::Precondition => "precondition",
+            Class::InputOutput => "input-output",
+            Class::Checkpoint => "checkpoint",
+        }
+    }
+
+    /// The exit code.
+    pub fn exit_code(self) -> u8 {
+        match self {
+            Class::Usage => 2,
+            Class::Input => 3,
+            Class::Precondition => 4,
+            Class::InputOutput => 5,
+            Class::Checkpoint => 6,
+        }
+    }
+}
+
+/// A place in a file, as far as it is known.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct FilePlace {
+    /// The file.
+    pub file: String,
+    /// Line, from 1.
+    pub line: Option<usize>,
+    /// Column, from 1.
+    pub column: Option<usize>,
+}
+
+impl FilePlace {
+    /// A file as a whole.
+    pub fn at(file: &Path) -> FilePlace {
+        FilePlace { file: file.display().to_string(), line: None, column: None }
+    }
+}
+
+/// An error that a user hears of.
+pub trait Reported: std::error::Error + Send + Sync {
+    /// Its class.
+    fn class(&self) -> Class;
+
+    /// The mistakes of a scene, where it is of one.
+    fn mistakes(&self) -> Option<&SceneErrors> {
+        None
+    }
+
+    /// Where, if it has a place.
+    fn place(&self) -> Option<FilePlace> {
+        None
+    }
+
+    /// What to do, where its words do not say so in a paragraph of their own.
+    fn remedy(&self) -> Option<String> {
+        None
+    }
+}
+
+impl Reported for SceneErrors {
+    fn class(&self) -> Class {
+        Class::Input
+    }
+
+    fn mistakes(&self) -> Option<&SceneErrors> {
+        Some(self)
+    }
+}

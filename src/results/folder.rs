@@ -1,0 +1,402 @@
+//! The folder that results go to: a folder for each item, and the pages over all of them.
+//!
+//! Only what this program wrote is written over. An item's folder is its own if `provenance.json` there lists every file in
+//! it; a page, if it bears the mark of ours; the whole folder, if it is empty or holds one of these.
+
+use super::Made;
+use crate::console::{Failure, to_json};
+use crate::io::FileError;
+use crate::io::lock::{Lock, LockError, is_lock};
+use crate::io::replace::{is_temporary, listing, remove_if_there, replace, temporary};
+use crate::origin::{Origin, Provenance};
+use crate::report::figure::{Figure, png, svg};
+use crate::report::{Section, csv, html, page};
+use crate::reported::{Class, Reported};
+use serde::{Deserialize, Serialize};
+use std::fs::{self, File};
+use std::io::{ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+/// What a page needs of an item that is not its data.
+const SECTION: &str = "section.json";
+/// Where an item comes from, and its files; the one file of an item that differs from run to run.
+const PROVENANCE: &str = "provenance.json";
+/// Keeps other processes out.
+const LOCK: &str = ".stripmine.lock";
+/// Where the items lie that depend on the host.
+const HOST: &str = "host";
+/// The pages over all items, and the mark by which each is known.
+const PAGES: [(&str, &str); 2] = [("README.md", page::MARK), ("index.html", html::MARK)];
+/// Where in a page its mark is looked for (bytes from the beginning).
+const START: u64 = 1000;
+/// Why results are not written.
+#[derive(Debug, thiserror::Error)]
+pub enum FolderError {
+    /// Something else stands there.
+    #[error(
+        "{} was not written by this command, or not by it alone: it holds {names}; move this away, or choose another --out",
+        folder.display()
+    )]
+    NotOurs {
+        /// The folder.
+        folder: PathBuf,
+        /// What is not ours.
+        names: String,
+    },
+    /// A page of that name that is another's.
+    #[error("{} was not written by this command: move it away, or choose another --out", .0.display())]
+    InTheWay(PathBuf),
+    /// Results that are committed would be written over by those of a source that is not.
+    #[error(
+        "the results in {} are committed, but this program was built from changes that are in no commit\n  help: \
+         commit them and build again, or choose another --out",
+        .0.display()
+    )]
+    Uncommitted(PathBuf),
+    /// Another process writes there.
+    #[error(transparent)]
+    Lock(#[from] LockError),
+    /// The system.
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+impl Reported for FolderError {
+    fn class(&self) -> Class {
+        match self {
+            FolderError::NotOurs { .. } | FolderError::InTheWay(_) | FolderError::Uncommitted(_) => {
+                Class::Usage
+            }
+            FolderError::Lock(error) if error.is_refusal() => Class::Usage,
+            FolderError::Lock(_) | FolderError::File(_) => Class::InputOutput,
+        }
+    }
+}
+
+/// What `provenance.json` holds: where an item comes from, and the names of its files.
+#[derive(Serialize)]
+struct Listed<'a> {
+    #[serde(flatten)]
+    provenance: &'a Provenance,
+    files: Vec<&'a str>,
+}
+
+/// The names alone.
+#[derive(Deserialize)]
+struct Names {
+    #[serde(default)]
+    files: Vec<String>,
+}
+
+/// The folder, while this process writes into it.
+pub struct Folder {
+    path: PathBuf,
+    _lock: Lock,
+}
+
+impl Folder {
+    /// Makes the folder if it is not there, and keeps other processes out. `items` and, if asked for, the pages will be
+    /// written there.
+    ///
+    /// # Errors
+    /// If what stands there is not ours, is committed while the source of this program is not, or another process writes
+    /// there.
+    pub fn open(path: &Path, items: &[&str], pages: bool) -> Result<Folder, FolderError> {
+        traceable(path, &Origin::here())?;
+        let admits = || {
+            judge(path)?;
+            for name in items {
+                Section::folders(name)
+                    .iter()
+                    .try_for_each(|folder| own_files(&path.join(folder)).map(drop))?;
+            }
+            match pages {
+                true => PAGES.iter().try_for_each(|&(name, mark)| own_page(&path.join(name), mark).map(drop)),
+                false => Ok(()),
+            }
+        };
+        admits()?;
+        fs::create_dir_all(path).map_err(FileError::at(path, "creating the folder"))?;
+        let lock = Lock::take(&path.join(LOCK))?;
+        // Once more, now that it stays so.
+        admits()?;
+        remove_leftovers(path)?;
+        Ok(Folder { path: path.to_owned(), _lock: lock })
+    }
+
+    /// Writes an item's files: all of them, or, where that fails, none.
+    ///
+    /// # Errors
+    /// If what is there is not ours, or the system does not let the files be written.
+    pub fn write(&self, made: &Made, provenance: &Provenance) -> Result<PathBuf, Failure> {
+        let files = files_of(made)?;
+        let folder = self.path.join(made.section.folder());
+        let own = own_files(&folder)?;
+        let mut listed = vec![PROVENANCE];
+        listed.extend(files.iter().map(|(name, _)| name.as_str()));
+        // The list first: whatever becomes of this process, what is here is known as ours.
+        let list = to_json(&Listed { provenance, files: listed })? + "\n";
+        let part = self.temporary_folder()?;
+        let all = std::iter::once((PROVENANCE, list.as_bytes()))
+            .chain(files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())));
+        for (name, bytes) in all {
+            let path = part.path().join(name);
+            fs::write(&path, bytes).map_err(FileError::at(&path, "writing")).map_err(FolderError::from)?;
+        }
+        self.exchange(&part, &folder, own.as_deref())?;
+        // It has another name now.
+        let _ = part.keep();
+        Ok(folder)
+    }
+
+    /// Puts a new folder in the place of an item's, whose files are `own`.
+    fn exchange(&self, part: &TempDir, folder: &Path, own: Option<&[String]>) -> Result<(), FolderError> {
+        let at = || FileError::at(folder, "replacing");
+        let parent = folder.parent().unwrap_or(&self.path);
+        fs::create_dir_all(parent).map_err(FileError::at(parent, "creating the folder"))?;
+        let Some(own) = own else { return Ok(fs::rename(part.path(), folder).map_err(at())?) };
+        let aside = self.temporary_folder()?.keep();
+        let old = aside.join("item");
+        fs::rename(folder, &old).map_err(at())?;
+        fs::rename(part.path(), folder).map_err(at())?;
+        remove_own(&old, own)?;
+        Ok(fs::remove_dir(&aside).map_err(FileError::at(&aside, "removing"))?)
+    }
+
+    fn temporary_folder(&self) -> Result<TempDir, FolderError> {
+        let mut names = temporary();
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // As for any other folder: what the user's mask leaves of it.
+            names.permissions(fs::Permissions::from_mode(0o777));
+        }
+        Ok(names.tempdir_in(&self.path).map_err(FileError::at(&self.path, "creating a folder in it"))?)
+    }
+
+    /// Writes the pages over every item that the folder holds.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub fn write_page(&self, items: &[&str]) -> Result<(), Failure> {
+        let mut sections = Vec::new();
+        for item in items {
+            sections.extend(self.read(item)?);
+        }
+        // A picture that is gone leaves a gap in the page, and is there again with the item's next making.
+        let drawn = |section: &Section, figure: &Figure| {
+            let file = self.path.join(section.folder()).join(format!("{}.svg", figure.name));
+            fs::read_to_string(file).unwrap_or_default()
+        };
+        let texts = [page::render(&sections), html::render(&sections, &drawn)];
+        for ((name, mark), text) in PAGES.into_iter().zip(texts) {
+            let path = self.path.join(name);
+            own_page(&path, mark)?;
+            replace(&path, |out| out.write_all(text.as_bytes())).map_err(FolderError::from)?;
+        }
+        Ok(())
+    }
+
+    /// The item's section, if the folder has it.
+    fn read(&self, name: &str) -> Result<Option<Section>, Failure> {
+        let Some(folder) = Section::folders(name)
+            .map(|folder| self.path.join(folder))
+            .into_iter()
+            .find(|f| f.join(SECTION).exists())
+        else {
+            return Ok(None);
+        };
+        let parsed = |file: &str| -> Result<String, Failure> {
+            let path = folder.join(file);
+            fs::read_to_string(&path).map_err(Failure::writing(path.display().to_string()))
+        };
+        let foreign = |cause: serde_json::Error| Failure::writing(folder.display().to_string())(cause.into());
+        let mut section: Section = serde_json::from_str(&parsed(SECTION)?).map_err(foreign)?;
+        section.provenance = Some(serde_json::from_str(&parsed(PROVENANCE)?).map_err(foreign)?);
+        Ok(Some(section))
+    }
+}
+
+/// The files of an item but its provenance, name and contents.
+fn files_of(made: &Made) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+    let Made { section, data, files } = made;
+    let mut all = Vec::new();
+    if !data.is_null() {
+        all.push(("data.json".to_owned(), compact(data)?.into_bytes()));
+    }
+    for table in &section.tables {
+        let mut bytes = Vec::new();
+        csv::write(table, &mut bytes).map_err(Failure::writing("CSV"))?;
+        all.push((format!("{}.csv", table.name), bytes));
+    }
+    for figure in &section.figures {
+        all.push((format!("{}.svg", figure.name), svg(figure)?.into_bytes()));
+        all.push((format!("{}.png", figure.name), png(figure)?));
+    }
+    all.extend(files.iter().map(|(name, text)| (name.clone(), text.clone().into_bytes())));
+    all.push((SECTION.to_owned(), compact(section)?.into_bytes()));
+    Ok(all)
+}
+
+/// JSON without blanks: datasets are for programs.
+fn compact(data: &impl Serialize) -> Result<String, Failure> {
+    let text = serde_json::to_string(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
+    Ok(text + "\n")
+}
+
+/// Names of all entries of a folder, sorted; none if it is not there.
+fn entries(folder: &Path) -> Result<Option<Vec<String>>, FileError> {
+    let at = || FileError::at(folder, "reading the folder");
+    let entries = match fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(cause) if cause.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(cause) => return Err(at()(cause)),
+    };
+    let mut names = Vec::new();
+    for entry in entries {
+        names.push(entry.map_err(at())?.file_name().to_string_lossy().into_owned());
+    }
+    names.sort();
+    Ok(Some(names))
+}
+
+/// Refuses to write over committed results what no commit can make again.
+fn traceable(path: &Path, origin: &Origin) -> Result<(), FolderError> {
+    match !origin.is_committed() && is_committed(path) {
+        true => Err(FolderError::Uncommitted(path.to_owned())),
+        false => Ok(()),
+    }
+}
+
+/// Whether git keeps files of a folder, which may have been removed; without git, or outside a checkout, it keeps none.
+fn is_committed(folder: &Path) -> bool {
+    let there = folder.ancestors().find(|there| there.is_dir()).unwrap_or(Path::new(""));
+    // Git does not take empty paths.
+    let [at, below] =
+        [there, folder.strip_prefix(there).unwrap_or(folder)].map(|path| Path::new(".").join(path));
+    let listed = Command::new("git").arg("-C").arg(at).args(["ls-files", "--"]).arg(below).output();
+    listed.is_ok_and(|listed| listed.status.success() && !listed.stdout.is_empty())
+}
+
+fn not_ours(folder: &Path, foreign: &[String]) -> FolderError {
+    FolderError::NotOurs { folder: folder.to_owned(), names: listing(foreign) }
+}
+
+fn is_folder(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|there| there.is_dir())
+}
+
+fn is_file(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|there| there.is_file())
+}
+
+/// The files in the folder of an item, all of them ours; none if there is no folder.
+fn own_files(folder: &Path) -> Result<Option<Vec<String>>, FolderError> {
+    if fs::symlink_metadata(folder).is_ok_and(|there| !there.is_dir()) {
+        return Err(FolderError::InTheWay(folder.to_owned()));
+    }
+    let Some(names) = entries(folder)? else { return Ok(None) };
+    let list = folder.join(PROVENANCE);
+    let listed = match is_file(&list) {
+        true => fs::read(&list).map_err(FileError::at(&list, "reading"))?,
+        false => vec![],
+    };
+    let listed = serde_json::from_slice::<Names>(&listed).map_or(vec![], |names| names.files);
+    let foreign: Vec<String> =
+        names.iter().filter(|name| !listed.contains(name) || !is_file(&folder.join(name))).cloned().collect();
+    if foreign.is_empty() { Ok(Some(names)) } else { Err(not_ours(folder, &foreign)) }
+}
+
+/// Removes files and the folder, if nothing else is in it; the list goes last.
+fn remove_own(folder: &Path, own: &[String]) -> Result<(), FolderError> {
+    let (list, rest): (Vec<&String>, Vec<&String>) = own.iter().partition(|&name| name == PROVENANCE);
+    rest.into_iter().chain(list).try_for_each(|name| remove_if_there(&folder.join(name)))?;
+    Ok(fs::remove_dir(folder).map_err(FileError::at(folder, "removing"))?)
+}
+
+/// Whether a page is there; if so, it is ours.
+fn own_page(path: &Path, mark: &str) -> Result<bool, FolderError> {
+    if fs::symlink_metadata(path).is_err_and(|cause| cause.kind() == ErrorKind::NotFound) {
+        return Ok(false);
+    }
+    let mut start = Vec::new();
+    if is_file(path) {
+        let read = File::open(path).and_then(|file| file.take(START).read_to_end(&mut start));
+        read.map_err(FileError::at(path, "reading"))?;
+    }
+    if String::from_utf8_lossy(&start).contains(mark) {
+        Ok(true)
+    } else {
+        Err(FolderError::InTheWay(path.to_owned()))
+    }
+}
+
+/// Refuses a folder that holds something, but nothing of ours.
+fn judge(path: &Path) -> Result<(), FolderError> {
+    let Some(mut names) = entries(path)? else { return Ok(()) };
+    names.retain(|name| !(is_temporary(name) || name == LOCK && is_lock(&path.join(LOCK))));
+    let host = path.join(HOST);
+    let of_host = if is_folder(&host) { entries(&host)?.unwrap_or_default() } else { vec![] };
+    if of_host.is_empty() && is_folder(&host) {
+        names.retain(|name| name != HOST);
+    }
+    let items = names.iter().map(|name| path.join(name)).chain(of_host.iter().map(|name| host.join(name)));
+    let is_item = |folder: PathBuf| is_file(&folder.join(SECTION)) && own_files(&folder).is_ok();
+    let (page, mark) = PAGES[0];
+    let ours = names.is_empty()
+        || own_page(&path.join(page), mark).is_ok_and(|there| there)
+        || items.into_iter().any(is_item);
+    if ours { Ok(()) } else { Err(not_ours(path, &names)) }
+}
+
+/// What sessions that were killed left of their temporary files and folders, as far as it is ours.
+fn remove_leftovers(path: &Path) -> Result<(), FolderError> {
+    for name in entries(path)?.unwrap_or_default().into_iter().filter(|name| is_temporary(name)) {
+        let left = path.join(name);
+        if !is_folder(&left) {
+            remove_if_there(&left)?;
+            continue;
+        }
+        let aside = left.join("item");
+        for folder in [aside, left].iter().filter(|folder| is_folder(folder)) {
+            if let Ok(Some(own)) = own_files(folder) {
+                remove_own(folder, &own)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn committed_results_are_refused_to_a_source_that_is_not_committed() {
+        let checkout = tempfile::tempdir().unwrap();
+        let git = |arguments: &[&str]| {
+            let done = Command::new("git").arg("-C").arg(checkout.path()).args(arguments).output().unwrap();
+            assert!(done.status.success(), "{done:?}");
+        };
+        let [kept, scratch] = ["reports", "scratch"].map(|name| checkout.path().join(name));
+        for folder in [&kept, &scratch] {
+            fs::create_dir(folder).unwrap();
+            fs::write(folder.join("README.md"), page::MARK).unwrap();
+        }
+        git(&["init", "--quiet"]);
+        git(&["add", "reports"]);
+        let of = |dirty| Origin { commit: "1234567890ab".to_owned(), dirty, ..Origin::here() };
+        let refused = traceable(&kept, &of(true)).unwrap_err();
+        assert!(matches!(&refused, FolderError::Uncommitted(folder) if *folder == kept));
+        assert!(refused.to_string().contains("another --out"), "{refused}");
+        assert_eq!(Failure::from(refused).exit_code(), 2);
+        assert!(traceable(&kept, &of(false)).is_ok());
+        fs::remove_dir_all(&kept).unwrap();
+        assert!(traceable(&kept, &of(true)).is_err());
+        // Folders that git does not keep, and that are not there yet, may be written by any program.
+        assert!(traceable(&scratch, &of(true)).is_ok());
+        assert!(traceable(&checkout.path().join("new"), &of(true)).is_ok());
+    }
+}

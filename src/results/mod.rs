@@ -1,0 +1,46 @@
+//! Results: what a finished item holds, and the folder that items are written to.
+
+mod folder;
+
+pub use folder::{Folder, FolderError};
+
+use crate::console::Failure;
+use crate::report::Section;
+use serde::Serialize;
+
+/// How much is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// Under a minute in all.
+    Quick,
+    /// As much as the sources show.
+    Full,
+}
+
+/// A finished item.
+pub struct Made {
+    /// What is shown of it.
+    pub section: Section,
+    /// The dataset.
+    pub data: serde_json::Value,
+    /// Further files: name and contents.
+    pub files: Vec<(String, String)>,
+}
+
+impl Made {
+    /// Of a section and its dataset.
+    ///
+    /// # Errors
+    /// If the dataset is none that JSON can hold.
+    pub fn new(section: Section, data: &impl Serialize) -> Result<Made, Failure> {
+        let data = serde_json::to_value(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
+        Ok(Made { section, data, files: vec![] })
+    }
+
+    /// With one more file.
+    #[must_use]
+    pub fn with_file(mut self, name: &str, text: String) -> Made {
+        self.files.push((name.to_owned(), text));
+        self
+    }
+}

@@ -1,0 +1,161 @@
+//! One function for a section both ways: what it binds to keys is read from values, and written as values.
+
+use super::error::{Reason, SceneError, SceneErrors};
+use super::key_set::{KeySet, SECTIONS};
+use super::keys::{Fallback, Key, Value};
+use super::rules::is_used;
+use super::values::Values;
+use crate::words::Words;
+
+/// What meets the fields of a section: reads them from a text, or writes them down.
+pub trait Binding {
+    /// A field of this value is bound to a key; gives the value that it is to have from now on, if it is to have another.
+    fn meet(&mut self, key: &'static Key, value: Option<Value>) -> Option<Value>;
+
+    /// Whether fields take their values from a text.
+    fn reads(&self) -> bool {
+        false
+    }
+
+    /// The scene file, beside which other files are looked for; empty where none is read.
+    fn file(&self) -> &str {
+        ""
+    }
+}
+
+macro_rules! define_bindings {
+    ($($method:ident, $optional:ident, $variant:ident, $ty:ty;)*) => {
+        impl dyn Binding + '_ {
+            $(
+                /// A field that always has a value.
+                pub fn $method(&mut self, key: &'static Key, field: &mut $ty) {
+                    if let Some(Value::$variant(value)) = self.meet(key, Some(Value::$variant(field.clone()))) {
+                        *field = value;
+                    }
+                }
+
+                /// A field that may have none.
+                pub fn $optional(&mut self, key: &'static Key, field: &mut Option<$ty>) {
+                    match self.meet(key, field.clone().map(Value::$variant)) {
+                        Some(Value::$variant(value)) => *field = Some(value),
+                        _ => {}
+                    }
+                }
+            )*
+        }
+    };
+}
+
+define_bindings! {
+    number, number_if_any, Number, f64;
+    whole, whole_if_any, Whole, u64;
+    switch, switch_if_any, Switch, bool;
+    word, word_if_any, Word, String;
+    pair, pair_if_any, Pair, [f64; 2];
+    switches, switches_if_any, Switches, [bool; 2];
+    pairs, pairs_if_any, Pairs, Vec<[f64; 2]>;
+    numbers, numbers_if_any, Numbers, Vec<f64>;
+}
+
+impl dyn Binding + '_ {
+    /// A field that is one of some words.
+    pub fn choice<W: Words>(&mut self, key: &'static Key, field: &mut W) {
+        let mut word = field.word().to_owned();
+        self.word(key, &mut word);
+        if let Some(value) = W::parse(&word) {
+            *field = value;
+        }
+    }
+
+    /// A count that fits the memory.
+    pub fn count(&mut self, key: &'static Key, field: &mut usize) {
+        let mut count = *field as u64;
+        self.whole(key, &mut count);
+        *field = count as usize;
+    }
+}
+
+/// Reads fields from values.
+pub struct Read<'v> {
+    values: &'v Values,
+    missing: Vec<SceneError>,
+}
+
+impl<'v> Read<'v> {
+    /// From values that have passed their rules.
+    pub fn new(values: &'v Values) -> Self {
+        Read { values, missing: Vec::new() }
+    }
+
+    /// That every field had its value.
+    ///
+    /// # Errors
+    /// The keys that have neither a value nor a default.
+    pub fn done(self) -> Result<(), SceneErrors> {
+        SceneErrors::none_of(self.missing)
+    }
+}
+
+impl Binding for Read<'_> {
+    fn meet(&mut self, key: &'static Key, _: Option<Value>) -> Option<Value> {
+        let implied = self.values.implying(key).any(|other| self.values.gives(other));
+        if implied {
+            return self.values.choice(key).map(Value::Word);
+        }
+        let value = self.values.value(key);
+        if value.is_none()
+            && key.fallback == Fallback::Required
+            && is_used(self.values, key.used) != Some(false)
+        {
+            let error = self.values.spot(key).error(Reason::Missing, format!("`{}` is missing", key.path()));
+            self.missing.push(error.expecting(key.expected()));
+        }
+        value
+    }
+
+    fn reads(&self) -> bool {
+        true
+    }
+
+    fn file(&self) -> &str {
+        self.values.file()
+    }
+}
+
+/// Writes fields as values.
+#[derive(Default)]
+pub struct Write(Vec<(&'static Key, Value)>);
+
+impl Binding for Write {
+    fn meet(&mut self, key: &'static Key, value: Option<Value>) -> Option<Value> {
+        // A choice that another key makes by being given is said by that one.
+        let is_said = !matches!((&value, key.kind), (Some(Value::Word(word)), kind) if !kind.admits(word));
+        self.0.extend(value.filter(|_| is_said).map(|value| (key, value)));
+        None
+    }
+}
+
+impl Write {
+    /// As TOML, every key with its value and unit, in the order of its keys.
+    pub fn to_toml(&self, keys: &KeySet) -> String {
+        let mut text = String::new();
+        let sections = std::iter::once("").chain(SECTIONS.iter().map(|(name, _)| *name));
+        for section in sections {
+            let mut lines = String::new();
+            for key in keys.section(section) {
+                let Some((_, value)) = self.0.iter().find(|(written, _)| written.id() == key.id()) else {
+                    continue;
+                };
+                let unit = if key.unit.is_empty() { String::new() } else { format!(" # {}", key.unit) };
+                lines.push_str(&format!("{} = {}{unit}\n", key.name, value.to_toml()));
+            }
+            if !lines.is_empty() {
+                if !section.is_empty() {
+                    text.push_str(&format!("\n[{section}]\n"));
+                }
+                text.push_str(&lines);
+            }
+        }
+        text
+    }
+}

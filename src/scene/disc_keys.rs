@@ -1,0 +1,91 @@
+//! The keys of the discs at the start.
+
+use super::key_set::Rivals;
+use super::keys::Bounds::{Finite, NonNegative, Positive, UpTo, Within};
+use super::keys::Fallback::{Is, Otherwise, Required};
+use super::keys::Kind::{Choice, Number, Numbers, Pair, Pairs, Text, Whole};
+use super::keys::{Use, define_keys};
+use crate::words::{Words, define_words};
+
+const ALWAYS: Use = None;
+const GENERATED: Use = Some((&GENERATE, &["random", "hexagonal", "pipe", "box", "list"]));
+const DRAWN: Use = Some((&GENERATE, &["random", "hexagonal", "pipe", "box"]));
+const PLACED: Use = Some((&GENERATE, &["random", "pipe", "box"]));
+pub(super) const SIDED: Use = Some((&GENERATE, &["random", "pipe", "box", "list", "file"]));
+const WALLED: Use = Some((&GENERATE, &["pipe", "box", "list"]));
+const LINED: Use = Some((&GENERATE, &["pipe", "box"]));
+const HOLDING: Use = Some((&GENERATE, &["pipe", "box", "list", "file"]));
+const PIPE: Use = Some((&GENERATE, &["pipe"]));
+const BOX: Use = Some((&GENERATE, &["box"]));
+const LIST: Use = Some((&GENERATE, &["list"]));
+const OSCILLATING: Use = Some((&WALL_MOTION, &["oscillating"]));
+
+define_keys! {
+    /// The discs of a scene in the plane.
+    pub static DISCS;
+    GENERATE = "particles" "generate", Choice(&["random", "hexagonal", "pipe", "box", "list"]), "",
+        Otherwise("read `file`"), ALWAYS,
+        "How discs are made: at random without overlap; on a shaken hexagonal lattice; in a pipe along x between two rows of wall discs; above a floor of wall discs; as listed.";
+    FILE = "particles" "file", Text, "", Otherwise("generated"), ALWAYS,
+        "Start file, extended XYZ with id, pos, velo, radius, mass, omega; relative to the scene file.",
+        implies (&GENERATE, "file");
+    SEED = "particles" "seed", Whole(0, u64::MAX), "", Is("1"), DRAWN,
+        "Seed of radii, positions and velocities.";
+    COUNT = "particles" "count", Whole(1, 2_147_483_647), "", Otherwise("from `packing_fraction`"), DRAWN,
+        "Number of grains; a hexagonal lattice may take a few more, to close.";
+    PACKING_FRACTION = "particles" "packing_fraction", Number(Within(0.907)), "", Otherwise("from `count`"), DRAWN,
+        "N π radius² over the area that is open to grains: the box, the clear channel of a pipe, the fill height of a box.";
+    RADIUS = "particles" "radius", Number(Positive), "length", Required, GENERATED,
+        "Radius of a grain; with a spread, the mean.";
+    RADIUS_SPREAD = "particles" "radius_spread", Number(UpTo(1.0)), "", Is("0.0"), PLACED,
+        "Standard deviation of the Gaussian radii, relative to `radius`.";
+    RADIUS_CUT = "particles" "radius_cut", Number(UpTo(1.0)), "", Otherwise("2 `radius_spread`, at most 0.12"), PLACED,
+        "Largest deviation of a radius, relative to `radius`.";
+    MASS = "particles" "mass", Number(Positive), "mass", Required, GENERATED,
+        "Mass of a disc of radius `radius`; others have it times (their radius/`radius`)².";
+    TEMPERATURE = "particles" "temperature", Number(NonNegative), "mass·length²/time²", Otherwise("see `speed`"), DRAWN,
+        "kT of Maxwell velocities; no spin.";
+    SPEED = "particles" "speed", Number(NonNegative), "length/time", Otherwise("at rest"), DRAWN,
+        "Standard deviation of each component of Gaussian velocities; no spin.";
+    CLEAR_WIDTH = "particles" "clear_width", Number(Positive), "length", Required, PIPE,
+        "Width of the pipe between the surfaces of its wall discs; its axis is the middle of the box.";
+    FILL_HEIGHT = "particles" "fill_height", Number(Positive), "length", Required, BOX,
+        "Height above the floor up to which grains are placed.";
+    POSITIONS = "particles" "positions", Pairs, "length", Required, LIST,
+        "Centres of the grains; ids are 1, 2, …";
+    VELOCITIES = "particles" "velocities", Pairs, "length/time", Otherwise("at rest"), LIST,
+        "Velocities of the grains.";
+    OMEGAS = "particles" "omegas", Numbers(Finite), "1/time", Otherwise("no spin"), LIST,
+        "Angular velocities of the grains, counter-clockwise.";
+    RADII = "particles" "radii", Numbers(Positive), "length", Otherwise("all `radius`"), LIST,
+        "Radii of the grains.";
+    WALL_POSITIONS = "particles" "wall_positions", Pairs, "length", Otherwise("no walls"), LIST,
+        "Centres of wall discs; nothing moves a wall disc but wall_motion: its mass in a contact is infinite.";
+    WALL_RADIUS = "particles" "wall_radius", Number(Positive), "length", Otherwise("0.9 `radius`"), WALLED,
+        "Radius of the wall discs.";
+    WALL_SPACING = "particles" "wall_spacing", Number(Positive), "length", Otherwise("3 `wall_radius`"), LINED,
+        "Distance of the centres of neighbouring wall discs; the nearest that divides the length is taken.";
+    WALL_MOTION = "particles" "wall_motion", Choice(Motion::WORDS), "", Is("\"fixed\""), HOLDING,
+        "Motion of the wall discs, all together.";
+    WALL_AMPLITUDE = "particles" "wall_amplitude", Pair(Finite), "length", Required, OSCILLATING,
+        "Amplitude a of the walls' motion r(0) + a sin(2π f t).";
+    WALL_FREQUENCY = "particles" "wall_frequency", Number(Positive), "1/time", Required, OSCILLATING,
+        "Frequency f of the walls' motion.";
+}
+
+/// Keys of discs that exclude each other.
+pub static DISC_RIVALS: &[Rivals] = &[
+    Rivals { keys: &[&GENERATE, &FILE], used: ALWAYS, needed: true },
+    Rivals { keys: &[&COUNT, &PACKING_FRACTION], used: PLACED, needed: true },
+    Rivals { keys: &[&TEMPERATURE, &SPEED], used: ALWAYS, needed: false },
+];
+
+define_words! {
+    /// Whether wall discs move.
+    pub(super) enum Motion {
+        /// Not at all.
+        Fixed = "fixed",
+        /// As a sine.
+        Oscillating = "oscillating",
+    }
+}

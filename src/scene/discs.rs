@@ -1,0 +1,408 @@
+//! The discs at the start of a scene: generated, listed or read; and the motion of wall discs.
+
+use super::binding::Binding;
+use super::disc_keys::*;
+use super::domain::periodic_as;
+use super::error::{Reason, SceneError};
+use super::keys::{Key, Value};
+use super::values::Values;
+use crate::words::define_words;
+use std::path::{Path, PathBuf};
+
+define_words! {
+    /// How the discs at the start come about.
+    enum Origin {
+        /// At random.
+        Random = "random",
+        /// On a hexagonal lattice.
+        Hexagonal = "hexagonal",
+        /// In a pipe.
+        Pipe = "pipe",
+        /// Above a floor.
+        Box = "box",
+        /// As listed.
+        List = "list",
+        /// From a file.
+        File = "file",
+    }
+}
+
+/// The discs at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Start {
+    /// Read from an extended XYZ file.
+    File(PathBuf),
+    /// As listed.
+    List(List),
+    /// On a hexagonal lattice, each shifted at random by at most 0.45 of the gap; the box is made to fit.
+    Hexagonal {
+        /// Number of discs, at least.
+        count: usize,
+        /// N π R² over the area of the box.
+        packing_fraction: f64,
+        /// The discs.
+        grains: Grains,
+    },
+    /// At random in the box, without overlap.
+    Random {
+        /// How many.
+        amount: Amount,
+        /// The discs.
+        grains: Grains,
+    },
+    /// At random in a pipe along x between two rows of wall discs, the upper row shifted by half a spacing.
+    Pipe {
+        /// How many; the packing fraction is that of the clear channel.
+        amount: Amount,
+        /// The discs.
+        grains: Grains,
+        /// The wall discs.
+        lining: Lining,
+        /// Width between the surfaces of the wall discs (length).
+        clear_width: f64,
+    },
+    /// At random above a floor of wall discs.
+    Box {
+        /// How many; the packing fraction is that of the fill height.
+        amount: Amount,
+        /// The discs.
+        grains: Grains,
+        /// The floor.
+        lining: Lining,
+        /// Height above the floor up to which discs are placed (length).
+        fill_height: f64,
+    },
+}
+
+impl Default for Start {
+    fn default() -> Self {
+        Start::Random { amount: Amount::default(), grains: Grains::default() }
+    }
+}
+
+/// How many discs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Amount {
+    /// This many.
+    Count(usize),
+    /// As many as make N π R² this part of the area that is open to them.
+    PackingFraction(f64),
+}
+
+impl Default for Amount {
+    fn default() -> Self {
+        Amount::Count(0)
+    }
+}
+
+/// Discs to be generated.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Grains {
+    /// Mean radius (length).
+    pub radius: f64,
+    /// Standard deviation of the Gaussian radii, relative to the mean.
+    pub spread: f64,
+    /// Largest deviation of a radius, relative to the mean.
+    pub cut: f64,
+    /// Mass of a disc of the mean radius (mass); others have it times (R/mean)².
+    pub mass: f64,
+    /// Velocities.
+    pub speed: Speed,
+    /// Seed of radii, positions and velocities.
+    pub seed: u64,
+}
+
+/// Velocities at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Speed {
+    /// Gaussian, of this standard deviation for each component (length/time); 0 is rest.
+    Deviation(f64),
+    /// Maxwell, of this kT (mass·length²/time²).
+    Temperature(f64),
+}
+
+impl Default for Speed {
+    fn default() -> Self {
+        Speed::Deviation(0.0)
+    }
+}
+
+/// Wall discs in a row.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lining {
+    /// Radius (length).
+    pub radius: f64,
+    /// Distance of neighbouring centres (length).
+    pub spacing: f64,
+}
+
+/// Discs one by one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct List {
+    /// Centres of the grains (length).
+    pub positions: Vec<[f64; 2]>,
+    /// Velocities (length/time).
+    pub velocities: Vec<[f64; 2]>,
+    /// Angular velocities (1/time).
+    pub omegas: Vec<f64>,
+    /// Radii (length).
+    pub radii: Vec<f64>,
+    /// Radius (length) of a disc of mass `mass`.
+    pub radius: f64,
+    /// Mass of a disc of radius `radius`; others have it times (R/radius)².
+    pub mass: f64,
+    /// Centres of the wall discs (length).
+    pub wall_positions: Vec<[f64; 2]>,
+    /// Radius of the wall discs (length).
+    pub wall_radius: f64,
+}
+
+/// How wall discs move, all together.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum WallMotion {
+    /// Not at all.
+    #[default]
+    Fixed,
+    /// r(t) = r(0) + a sin(2π f t).
+    Oscillating {
+        /// a (length).
+        amplitude: [f64; 2],
+        /// f (1/time).
+        frequency: f64,
+    },
+}
+
+impl WallMotion {
+    /// Meets its keys, where a start may have walls.
+    pub fn bind(&mut self, binding: &mut dyn Binding, start: &Start) {
+        if matches!(start, Start::Random { .. } | Start::Hexagonal { .. }) {
+            return;
+        }
+        let (mut motion, mut amplitude, mut frequency) = match *self {
+            WallMotion::Fixed => (Motion::Fixed, [0.0; 2], 0.0),
+            WallMotion::Oscillating { amplitude, frequency } => (Motion::Oscillating, amplitude, frequency),
+        };
+        binding.choice(&WALL_MOTION, &mut motion);
+        *self = match motion {
+            Motion::Fixed => WallMotion::Fixed,
+            Motion::Oscillating => {
+                binding.pair(&WALL_AMPLITUDE, &mut amplitude);
+                binding.number(&WALL_FREQUENCY, &mut frequency);
+                WallMotion::Oscillating { amplitude, frequency }
+            }
+        };
+    }
+}
+
+impl Start {
+    fn origin(&self) -> Origin {
+        match self {
+            Start::Random { .. } => Origin::Random,
+            Start::Hexagonal { .. } => Origin::Hexagonal,
+            Start::Pipe { .. } => Origin::Pipe,
+            Start::Box { .. } => Origin::Box,
+            Start::List(_) => Origin::List,
+            Start::File(_) => Origin::File,
+        }
+    }
+
+    fn empty(origin: Origin) -> Start {
+        let (amount, grains, lining) = (Amount::default(), Grains::default(), Lining::default());
+        match origin {
+            Origin::Random => Start::Random { amount, grains },
+            Origin::Hexagonal => Start::Hexagonal { count: 0, packing_fraction: 0.0, grains },
+            Origin::Pipe => Start::Pipe { amount, grains, lining, clear_width: 0.0 },
+            Origin::Box => Start::Box { amount, grains, lining, fill_height: 0.0 },
+            Origin::List => Start::List(List::default()),
+            Origin::File => Start::File(PathBuf::new()),
+        }
+    }
+
+    /// Meets its keys.
+    pub fn bind(&mut self, binding: &mut dyn Binding) {
+        let mut origin = self.origin();
+        binding.choice(&GENERATE, &mut origin);
+        if origin != self.origin() {
+            *self = Start::empty(origin);
+        }
+        match self {
+            Start::File(path) => {
+                let mut name = path.to_string_lossy().into_owned();
+                binding.word(&FILE, &mut name);
+                *path = beside(binding.file(), &name);
+            }
+            Start::List(list) => list.bind(binding),
+            Start::Hexagonal { count, packing_fraction, grains } => {
+                binding.count(&COUNT, count);
+                binding.number(&PACKING_FRACTION, packing_fraction);
+                grains.bind(binding, false);
+            }
+            Start::Random { amount, grains } => {
+                amount.bind(binding);
+                grains.bind(binding, true);
+            }
+            Start::Pipe { amount, grains, lining, clear_width } => {
+                amount.bind(binding);
+                grains.bind(binding, true);
+                lining.bind(binding, grains.radius);
+                binding.number(&CLEAR_WIDTH, clear_width);
+            }
+            Start::Box { amount, grains, lining, fill_height } => {
+                amount.bind(binding);
+                grains.bind(binding, true);
+                lining.bind(binding, grains.radius);
+                binding.number(&FILL_HEIGHT, fill_height);
+            }
+        }
+    }
+
+    /// Seed of the random numbers that make it; none where it is read or listed.
+    pub fn seed(&self) -> Option<u64> {
+        match self {
+            Start::File(_) | Start::List(_) => None,
+            Start::Hexagonal { grains, .. }
+            | Start::Random { grains, .. }
+            | Start::Pipe { grains, .. }
+            | Start::Box { grains, .. } => Some(grains.seed),
+        }
+    }
+
+    /// The file that it is read from.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Start::File(path) => Some(path),
+            _ => None,
+        }
+    }
+}
+
+impl Amount {
+    fn bind(&mut self, binding: &mut dyn Binding) {
+        let (mut count, mut fraction) = match *self {
+            Amount::Count(count) => (Some(count as u64), None),
+            Amount::PackingFraction(fraction) => (None, Some(fraction)),
+        };
+        binding.whole_if_any(&COUNT, &mut count);
+        binding.number_if_any(&PACKING_FRACTION, &mut fraction);
+        *self = match (fraction, count) {
+            (Some(fraction), _) => Amount::PackingFraction(fraction),
+            (None, count) => Amount::Count(count.unwrap_or_default() as usize),
+        };
+    }
+}
+
+impl Grains {
+    fn bind(&mut self, binding: &mut dyn Binding, spread: bool) {
+        binding.number(&RADIUS, &mut self.radius);
+        binding.number(&MASS, &mut self.mass);
+        binding.whole(&SEED, &mut self.seed);
+        let (mut speed, mut temperature) = match self.speed {
+            Speed::Deviation(speed) => (Some(speed), None),
+            Speed::Temperature(kt) => (None, Some(kt)),
+        };
+        binding.number_if_any(&SPEED, &mut speed);
+        binding.number_if_any(&TEMPERATURE, &mut temperature);
+        self.speed = match temperature {
+            Some(kt) => Speed::Temperature(kt),
+            None => Speed::Deviation(speed.unwrap_or(0.0)),
+        };
+        if spread {
+            binding.number(&RADIUS_SPREAD, &mut self.spread);
+            or_else(binding, &RADIUS_CUT, &mut self.cut, (2.0 * self.spread).min(0.12));
+        }
+    }
+}
+
+/// A number that has a value of its own kind where it is not given.
+fn or_else(binding: &mut dyn Binding, key: &'static Key, field: &mut f64, otherwise: f64) {
+    match binding.meet(key, Some(Value::Number(*field))) {
+        Some(Value::Number(value)) => *field = value,
+        _ if binding.reads() => *field = otherwise,
+        _ => {}
+    }
+}
+
+impl Lining {
+    fn bind(&mut self, binding: &mut dyn Binding, grain: f64) {
+        or_else(binding, &WALL_RADIUS, &mut self.radius, 0.9 * grain);
+        or_else(binding, &WALL_SPACING, &mut self.spacing, 3.0 * self.radius);
+    }
+}
+
+impl List {
+    fn bind(&mut self, binding: &mut dyn Binding) {
+        binding.number(&RADIUS, &mut self.radius);
+        binding.number(&MASS, &mut self.mass);
+        binding.pairs(&POSITIONS, &mut self.positions);
+        if binding.reads() {
+            let count = self.positions.len();
+            (self.velocities, self.omegas) = (vec![[0.0; 2]; count], vec![0.0; count]);
+            self.radii = vec![self.radius; count];
+        }
+        binding.pairs(&VELOCITIES, &mut self.velocities);
+        binding.numbers(&OMEGAS, &mut self.omegas);
+        binding.numbers(&RADII, &mut self.radii);
+        binding.pairs(&WALL_POSITIONS, &mut self.wall_positions);
+        or_else(binding, &WALL_RADIUS, &mut self.wall_radius, 0.9 * self.radius);
+    }
+}
+
+/// A start file's path: as it is, or beside the scene file.
+fn beside(scene_file: &str, path: &str) -> PathBuf {
+    let folder = Path::new(scene_file).parent().unwrap_or(Path::new(""));
+    let path = folder.join(path);
+    std::path::absolute(&path).unwrap_or(path)
+}
+
+/// What the keys of a start demand of each other.
+pub fn disagreements(values: &Values) -> Vec<SceneError> {
+    let mut errors = Vec::new();
+    let choice = values.choice(&GENERATE);
+    match choice.as_deref() {
+        Some("hexagonal") => {
+            let why = "a hexagonal lattice closes on both sides";
+            errors.extend(periodic_as(values, [true, true], why));
+            for key in [&COUNT, &PACKING_FRACTION] {
+                if !values.gives(key) && !values.is_faulty(key) {
+                    let error =
+                        values.spot(key).error(Reason::Missing, format!("`{}` is missing", key.path()));
+                    errors.push(error.expecting(key.expected()).advising(key.doc));
+                }
+            }
+        }
+        Some("pipe") => {
+            let why = "a pipe is periodic along x and walled along y";
+            errors.extend(periodic_as(values, [true, false], why));
+        }
+        Some("box") => {
+            errors.extend(periodic_as(values, [true, false], "a box is periodic along x and has a floor"));
+        }
+        _ => {}
+    }
+    errors.extend(lengths_of_lists(values));
+    errors
+}
+
+/// Lists that do not have a value for each grain.
+fn lengths_of_lists(values: &Values) -> Vec<SceneError> {
+    let mut errors = Vec::new();
+    let Some(Value::Pairs(positions)) = values.given(&POSITIONS) else { return errors };
+    if positions.is_empty() {
+        errors.push(values.spot(&POSITIONS).error(Reason::Range, "`particles.positions` lists no disc"));
+    }
+    for key in [&VELOCITIES, &OMEGAS, &RADII] {
+        let length = match values.given(key) {
+            Some(Value::Pairs(list)) => list.len(),
+            Some(Value::Numbers(list)) => list.len(),
+            _ => continue,
+        };
+        let count = positions.len();
+        if length != count {
+            let message =
+                format!("`{}` lists {length} values, but `particles.positions` lists {count}", key.path());
+            let error = values.spot(key).error(Reason::Contradiction, message);
+            errors.push(error.expecting(format!("{count} values, one for each grain")));
+        }
+    }
+    errors
+}

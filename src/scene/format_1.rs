@@ -1,0 +1,40 @@
+//! Scenes of format 1, which are refused with what to change, key by key.
+
+use super::error::{Place, Reason, SceneError, SceneErrors, Spot};
+use super::general::{FORMAT, FORMAT_VERSION};
+use super::vocabulary::Vocabulary;
+use toml::de::{DeTable, DeValue};
+
+/// Refuses a scene of format 1.
+///
+/// # Errors
+/// If it is one: every key that says something else in format 2, or something under another name.
+pub(super) fn refuse(
+    file: &str,
+    table: &DeTable<'_>,
+    place: impl Fn(usize) -> Place,
+    methods: &[&'static Vocabulary],
+) -> Result<(), SceneErrors> {
+    let Some(format) = table.get(FORMAT.name) else { return Ok(()) };
+    let DeValue::Integer(number) = format.get_ref() else { return Ok(()) };
+    if number.as_str() != "1" {
+        return Ok(());
+    }
+    let spot = |offset: usize| Spot { file: file.to_owned(), place: Some(place(offset)) };
+    let (line, names) = (spot(format.span().start), methods.iter().map(|method| method.keys.method));
+    let names: Vec<String> = names.map(|name| format!("kind = \"{name}\"")).collect();
+    let mut errors: Vec<SceneError> = vec![
+        line.error(Reason::Format, "this program reads format 2; the file is of format 1")
+            .expecting(format!("format = {}", FORMAT_VERSION))
+            .advising(format!("in [method], name the method: {}", names.join(" or "))),
+    ];
+    for renamed in methods.iter().flat_map(|method| method.renamed) {
+        let Some((section, name)) = renamed.old.split_once('.') else { continue };
+        let section = table.get(section).and_then(|section| section.get_ref().as_table());
+        let Some((key, value)) = section.and_then(|section| section.get_key_value(name)) else { continue };
+        let text = value.get_ref().as_str().map(|text| format!(" = \"{}\"", crate::quoted::quoted(text)));
+        let message = format!("`{}{}` is of format 1", renamed.old, text.unwrap_or_default());
+        errors.push(spot(key.span().start).error(Reason::Format, message).expecting(renamed.new));
+    }
+    SceneErrors::none_of(errors)
+}

@@ -1,0 +1,128 @@
+//! What every scene says, whatever its method: format and units, box, duration, files.
+
+use super::binding::Binding;
+use super::error::{Reason, SceneError};
+use super::key_set::Rivals;
+use super::keys::Bounds::{NonNegative, Positive};
+use super::keys::Fallback::{Is, Otherwise, Required};
+use super::keys::Kind::{Number, OneOf, Switch, Text, Whole};
+use super::keys::{Use, define_keys};
+use super::values::Values;
+
+/// The version of the scene format that this program reads.
+pub const FORMAT_VERSION: u64 = 2;
+
+const ALWAYS: Use = None;
+/// As many steps as a run may have.
+const MOST_STEPS: u64 = 1_000_000_000_000;
+
+define_keys! {
+    /// The top of the file, and the method's name.
+    pub static HEADING;
+    FORMAT = "" "format", OneOf(&[FORMAT_VERSION]), "", Required, ALWAYS,
+        "Version of the scene format.";
+    UNITS = "" "units", Text, "", Required, ALWAYS,
+        "The unit system, stated once: \"SI\", \"reduced\", … A label; nothing is converted.";
+    METHOD = "method" "kind", Text, "", Required, ALWAYS,
+        "The method by its name; the other keys of the scene are that method's.";
+}
+
+define_keys! {
+    /// Duration and output of a method that takes steps.
+    pub static STEPPED_RUN;
+    STEPS = "run" "steps", Whole(0, MOST_STEPS), "", Otherwise("from `time`"), ALWAYS,
+        "Number of steps.";
+    TIME = "run" "time", Number(NonNegative), "time", Otherwise("from `steps`"), ALWAYS,
+        "Duration; the nearest whole number of steps.";
+    THERMO_EVERY = "run" "thermo_every", Whole(0, MOST_STEPS), "steps", Is("100"), ALWAYS,
+        "Steps between rows of thermo.csv; 0 for none.";
+    SNAPSHOT_EVERY = "run" "snapshot_every", Whole(0, MOST_STEPS), "steps", Is("1000"), ALWAYS,
+        "Steps between snapshots; 0 for none but the first and the last.";
+    CHECKPOINT_EVERY = "run" "checkpoint_every", Whole(0, MOST_STEPS), "steps", Is("10000"), ALWAYS,
+        "Steps between checkpoints; 0 for one at the end only.";
+}
+
+define_keys! {
+    /// Files on request.
+    pub static OUTPUT;
+    TRAJECTORY = "output" "trajectory", Switch, "", Is("true"), ALWAYS,
+        "Snapshots as trajectory.xyz, extended XYZ.";
+    LAMMPS_DUMP = "output" "lammps_dump", Switch, "", Is("false"), ALWAYS,
+        "Snapshots as a LAMMPS dump.";
+    LAMMPS_DATA = "output" "lammps_data", Switch, "", Is("false"), ALWAYS,
+        "The final state as a LAMMPS data file.";
+}
+
+define_keys! {
+    /// The step of a method that takes steps.
+    pub static STEP;
+    DT = "integrator" "dt", Number(Positive), "time", Required, ALWAYS,
+        "Time step.";
+}
+
+/// A run that takes steps lasts for a number of them, or for a time.
+pub static DURATION: &[Rivals] = &[Rivals { keys: &[&STEPS, &TIME], used: ALWAYS, needed: true }];
+
+/// How long a run takes, and how often something is written (steps; 0 is never).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Run {
+    /// Steps to do.
+    pub steps: u64,
+    /// Steps between rows of observables.
+    pub thermo_every: u64,
+    /// Steps between snapshots.
+    pub snapshot_every: u64,
+    /// Steps between checkpoints.
+    pub checkpoint_every: u64,
+}
+
+impl Run {
+    /// Meets its keys; a time becomes the nearest number of steps of `dt` (time).
+    pub fn bind(&mut self, binding: &mut dyn Binding, dt: f64) {
+        let mut time = None;
+        binding.number_if_any(&TIME, &mut time);
+        match time {
+            Some(time) => self.steps = (time / dt).round() as u64,
+            None => binding.whole(&STEPS, &mut self.steps),
+        }
+        binding.whole(&THERMO_EVERY, &mut self.thermo_every);
+        binding.whole(&SNAPSHOT_EVERY, &mut self.snapshot_every);
+        binding.whole(&CHECKPOINT_EVERY, &mut self.checkpoint_every);
+    }
+}
+
+/// That a duration is no more steps than can be counted.
+pub fn too_many_steps(values: &Values) -> Vec<SceneError> {
+    let given = values.given(&TIME).and_then(|_| Some((values.number(&TIME)?, values.number(&DT)?)));
+    let Some((time, dt)) = given.filter(|(time, dt)| time / dt > MOST_STEPS as f64) else { return vec![] };
+    let message = format!("`run.time` = {time} takes {:.3e} steps of dt = {dt}", time / dt);
+    let error = values.spot(&TIME).error(Reason::Range, message);
+    vec![error.expecting(format!("at most {:.0e} steps", MOST_STEPS as f64))]
+}
+
+/// Which files are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Output {
+    /// Extended XYZ snapshots.
+    pub trajectory: bool,
+    /// LAMMPS dump snapshots.
+    pub lammps_dump: bool,
+    /// The final state as a LAMMPS data file.
+    pub lammps_data: bool,
+}
+
+impl Output {
+    /// Meets its keys.
+    pub fn bind(&mut self, binding: &mut dyn Binding) {
+        binding.switch(&TRAJECTORY, &mut self.trajectory);
+        binding.switch(&LAMMPS_DUMP, &mut self.lammps_dump);
+        binding.switch(&LAMMPS_DATA, &mut self.lammps_data);
+    }
+}
+
+/// Format, units and method at the head of a scene.
+pub fn bind_heading(binding: &mut dyn Binding, units: &mut String, method: &'static str) {
+    binding.whole(&FORMAT, &mut { FORMAT_VERSION });
+    binding.word(&UNITS, units);
+    binding.word(&METHOD, &mut method.to_owned());
+}

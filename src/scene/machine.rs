@@ -1,0 +1,42 @@
+//! How the arithmetic is done, as far as methods share it.
+
+use super::binding::Binding;
+use super::keys::Fallback::Is;
+use super::keys::Kind::Choice;
+use super::keys::define_keys;
+use crate::words::{Words, define_words};
+use stripmine_kernels::InstructionSet;
+
+define_words! {
+    /// Precision of a run.
+    pub enum Precision {
+        /// State and forces in f64.
+        F64 = "f64",
+        /// State and forces in f32.
+        F32 = "f32",
+        /// State in f64, forces in f32.
+        Mixed = "mixed",
+    }
+}
+
+define_keys! {
+    /// Precision and instructions.
+    pub static ARITHMETIC;
+    PRECISION = "machine" "precision", Choice(Precision::WORDS), "", Is("\"f64\""), None,
+        "Precision; mixed keeps the state in f64 and computes forces in f32.";
+    INSTRUCTION_SET = "machine" "instruction_set", Choice(&["auto", "scalar", "wide", "neon", "avx2", "avx512"]), "",
+        Is("\"auto\""), None,
+        "The SIMD instructions; auto takes the widest that the processor has.";
+}
+
+/// Meets the keys of precision and instructions; no instruction set is the widest there is.
+pub fn bind_arithmetic(
+    binding: &mut dyn Binding,
+    precision: &mut Precision,
+    instruction_set: &mut Option<InstructionSet>,
+) {
+    binding.choice(&PRECISION, precision);
+    let mut name = instruction_set.map_or("auto", InstructionSet::name).to_owned();
+    binding.word(&INSTRUCTION_SET, &mut name);
+    *instruction_set = InstructionSet::ALL.iter().copied().find(|set| set.name() == name);
+}

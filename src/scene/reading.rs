@@ -1,0 +1,66 @@
+//! From a preset's name, a file or a text to values that have passed every rule.
+
+use super::error::{Place, Reason, SceneErrors, Spot};
+use super::keys::nearest;
+use super::values::Values;
+use super::vocabulary::{Preset, Vocabulary};
+use super::{rules, text};
+use crate::io::regular_file;
+use std::path::Path;
+
+/// Longest scene file (bytes); a list of positions may be long.
+const LONGEST: u64 = 64 << 20;
+
+impl Values {
+    /// Reads the text of a scene for one of some methods, with overrides `section.key=value`; `file` is the name that errors
+    /// give it.
+    ///
+    /// # Errors
+    /// [`SceneErrors`]: every mistake of text and overrides.
+    pub fn parse(
+        file: &str,
+        text: &str,
+        overrides: &[String],
+        methods: &[&'static Vocabulary],
+    ) -> Result<Values, SceneErrors> {
+        let (mut values, vocabulary) = text::read(file, text, overrides, methods)?;
+        rules::apply(&mut values, vocabulary.rules);
+        std::mem::take(&mut values.errors).none_of(file)?;
+        Ok(values)
+    }
+
+    /// Reads the scene that is a preset's name or a file's path, with overrides.
+    ///
+    /// # Errors
+    /// [`SceneErrors`]: neither preset nor readable file, or every mistake of the text.
+    pub fn load(
+        what: &str,
+        overrides: &[String],
+        methods: &[&'static Vocabulary],
+    ) -> Result<Values, SceneErrors> {
+        let presets = || methods.iter().flat_map(|method| method.presets);
+        if let Some(Preset { text, .. }) = presets().find(|preset| preset.name == what) {
+            return Values::parse(what, text, overrides, methods);
+        }
+        let nowhere = Spot { file: what.to_owned(), place: None };
+        let names: Vec<&str> = presets().map(|preset| preset.name).collect();
+        let bytes = regular_file::read(Path::new(what), LONGEST).map_err(|cause| {
+            let message = match cause.kind() {
+                std::io::ErrorKind::NotFound => "there is no such preset and no such file".to_owned(),
+                _ => format!("cannot be read: {cause}"),
+            };
+            let error = nowhere.error(Reason::Unreadable, message);
+            let error = error.expecting(format!("a file, or one of {}", names.join(", ")));
+            match nearest(what, presets().map(|preset| preset.name)) {
+                Some(name) => error.advising(format!("did you mean {name}?")),
+                None => error,
+            }
+        })?;
+        let text = String::from_utf8(bytes).map_err(|cause| {
+            let line = regular_file::line_that_is_not_text(cause.as_bytes()).unwrap_or(1);
+            let spot = Spot { file: what.to_owned(), place: Some(Place { line: line as u32, column: 1 }) };
+            spot.error(Reason::Syntax, "this line is not UTF-8 text").expecting("a TOML file in UTF-8")
+        })?;
+        Values::parse(what, &text, overrides, methods)
+    }
+}

@@ -1,0 +1,144 @@
+//! Whether the discs at the start lie in the box, and do not overlap.
+
+use super::Stated;
+use crate::domain::Domain;
+use crate::particles::{Kind, Particles};
+use crate::placement::{Near, distance, wrapped};
+use crate::scene::{
+    FILE, GENERATE, POSITIONS, Reason, SceneError, Spot, Start, WALL_AMPLITUDE, WALL_POSITIONS, WallMotion,
+};
+
+/// At most this many overlaps or strays are named one by one.
+const NAMED: usize = 5;
+
+/// Discs that are not in the box.
+pub fn outside(stated: &Stated<'_>, domain: &Domain, particles: &Particles) -> Vec<SceneError> {
+    let [[left, bottom], [right, top]] =
+        [domain.origin, [domain.origin[0] + domain.sides[0], domain.origin[1] + domain.sides[1]]];
+    let sweep = match stated.walls {
+        WallMotion::Fixed => [0.0; 2],
+        WallMotion::Oscillating { amplitude, .. } => amplitude.map(f64::abs),
+    };
+    let leaves = |position: [f64; 2]| {
+        (0..2).any(|axis| {
+            let (low, high) = (position[axis] - sweep[axis], position[axis] + sweep[axis]);
+            let end = domain.origin[axis] + domain.sides[axis];
+            !domain.periodic[axis] && (low < domain.origin[axis] || high >= end)
+        })
+    };
+    let mut errors = Vec::new();
+    for (number, disc) in particles.all().iter().enumerate() {
+        let ([x, y], what) = (disc.position.map(readable), noun(disc.kind));
+        let spot = spot_of(stated, particles, number);
+        if !domain.contains(disc.position) {
+            let message = format!("{what} {} at ({x}, {y}) is outside the box", disc.id);
+            let inside = format!("a position from ({left}, {bottom}) to below ({right}, {top})");
+            errors.push(spot.error(Reason::Outside, message).expecting(inside));
+        } else if disc.kind == Kind::Wall && leaves(disc.position) {
+            let message = format!(
+                "{what} {} at ({x}, {y}) swings by ({}, {}) out of the box, which reaches from ({left}, {bottom}) to \
+                 ({right}, {top})",
+                disc.id, sweep[0], sweep[1]
+            );
+            let error = stated.spot(&WALL_AMPLITUDE).error(Reason::Outside, message);
+            errors.push(error.advising("lower the amplitude, or put the walls farther inside"));
+        }
+        if errors.len() == NAMED {
+            break;
+        }
+    }
+    errors
+}
+
+/// A disc of a kind, in a word.
+pub fn noun(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Grain => "disc",
+        Kind::Wall => "wall disc",
+    }
+}
+
+/// A number to nine digits: the last ones of a sum say nothing.
+pub fn readable(number: f64) -> f64 {
+    format!("{number:.8e}").parse().unwrap_or(number)
+}
+
+/// Where a disc is listed, or what made it.
+fn spot_of(stated: &Stated<'_>, particles: &Particles, number: usize) -> Spot {
+    match *stated.start {
+        Start::List(_) => match number.checked_sub(particles.grain_count()) {
+            None => stated.item_spot(&POSITIONS, number),
+            Some(number) => stated.item_spot(&WALL_POSITIONS, number),
+        },
+        Start::File(_) => stated.spot(&FILE),
+        _ => stated.spot(&GENERATE),
+    }
+}
+
+/// Pairs that overlap too deep: how many, and the deepest of them, in the order of their depth.
+#[derive(Default)]
+struct Deep {
+    worst: Vec<(usize, usize, f64)>,
+    count: usize,
+}
+
+/// At most as many pairs are counted: where all discs lie on a heap there are as many as the square of their number.
+const COUNTED: usize = 1_000_000;
+
+impl Deep {
+    fn add(&mut self, pair: (usize, usize, f64)) {
+        self.count += 1;
+        let at = self.worst.partition_point(|(_, _, penetration)| *penetration >= pair.2);
+        if at < NAMED {
+            self.worst.insert(at, pair);
+            self.worst.truncate(NAMED);
+        }
+    }
+}
+
+/// Pairs that overlap deeper than `limit`, a fraction of the sum of the radii.
+pub fn overlaps(stated: &Stated<'_>, domain: &Domain, particles: &Particles, limit: f64) -> Vec<SceneError> {
+    let Some([_, largest]) = particles.radii() else { return Vec::new() };
+    let mut near = Near::new(*domain, 2.0 * largest);
+    let discs = particles.all();
+    let mut deep = Deep::default();
+    'all: for (number, disc) in discs.iter().enumerate() {
+        let position = wrapped(domain, disc.position);
+        for (other, there) in near.of(position) {
+            let reach = disc.radius + discs[other as usize].radius;
+            let penetration = 1.0 - distance(domain, position, there) / reach;
+            if penetration > limit {
+                deep.add((other as usize, number, penetration));
+            }
+            if deep.count == COUNTED {
+                break 'all;
+            }
+        }
+        near.add(number as u32, position);
+    }
+    let Deep { worst, count } = deep;
+    let mut errors: Vec<SceneError> = Vec::new();
+    for (first, second, penetration) in worst {
+        let [a, b] = [first, second].map(|number| {
+            let disc = &discs[number];
+            let [x, y] = disc.position.map(readable);
+            format!("{} {} at ({x}, {y})", noun(disc.kind), disc.id)
+        });
+        let reach = discs[first].radius + discs[second].radius;
+        let message = format!(
+            "{a} and {b} overlap at the start by {penetration:.4} of the sum of their radii, {:.4e}; the limit is \
+             law.max_penetration = {limit}",
+            penetration * reach
+        );
+        let least = format!("centres at least {:.6e} apart", (1.0 - limit) * reach);
+        errors.push(spot_of(stated, particles, second).error(Reason::Overlap, message).expecting(least));
+    }
+    if let (Some(last), true) = (errors.last_mut(), count > NAMED) {
+        let more = count - NAMED;
+        last.suggestion = Some(match count {
+            COUNTED => format!("at least {more} more pairs overlap; the search ended there"),
+            _ => format!("{more} more pairs overlap, no deeper"),
+        });
+    }
+    errors
+}

@@ -1,0 +1,371 @@
+//! The discs of a scene.
+
+use super::{Stated, readable};
+use crate::domain::Domain;
+use crate::io::extxyz;
+use crate::memory;
+use crate::particles::{Kind, Particle, Particles};
+use crate::placement::{Filling, Row, hexagonal, random, row, stir, wrapped};
+use crate::quoted;
+use crate::scene::{
+    Amount, CLEAR_WIDTH, COUNT, FILE, FILL_HEIGHT, GENERATE, Grains, Key, Lining, List, ORIGIN,
+    PACKING_FRACTION, PERIODIC, Reason, SIDES, SceneError, Speed, Start, WALL_SPACING, WallMotion, Warning,
+};
+use std::f64::consts::PI;
+
+/// Most discs of one kind, grains or walls: with those of the other their ids must be numbers of 32 bits.
+const MOST: f64 = (u32::MAX / 2) as f64;
+
+/// Whether the machine has the memory to place so many discs and to look for overlaps: each disc, and its entry in a map of
+/// squares whose number is a power of two. Asked before anything is placed.
+fn placeable(stated: &Stated<'_>, count: f64, key: &Key) -> Result<(), SceneError> {
+    /// Bytes of an entry of the map, and of a disc in its square.
+    const SQUARE: [f64; 2] = [25.0, 40.0];
+    let squares = (count * 8.0 / 7.0).log2().ceil().exp2();
+    let needed = count * (size_of::<Particle>() as f64 + SQUARE[1]) + squares * SQUARE[0];
+    match memory::available() {
+        Some(available) if needed > available as f64 => {
+            let message = format!(
+                "to place {count:.4e} discs takes {needed:.3e} bytes of memory; this machine has {:.3e} left",
+                available as f64
+            );
+            Err(stated.spot(key).error(Reason::Memory, message).advising("take fewer discs"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Smallest and largest radius: those that the scene admits, and those that there are.
+pub fn radii(start: &Start, found: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    let spread = |grains: &Grains| {
+        let cut = if grains.spread > 0.0 { grains.cut } else { 0.0 };
+        [grains.radius * (1.0 - cut), grains.radius * (1.0 + cut)]
+    };
+    let with = |[low, high]: [f64; 2], radius: f64| [low.min(radius), high.max(radius)];
+    match start {
+        Start::Random { grains, .. } => Some(spread(grains)),
+        Start::Pipe { grains, lining, .. } | Start::Box { grains, lining, .. } => {
+            Some(with(spread(grains), lining.radius))
+        }
+        Start::Hexagonal { grains, .. } => Some([grains.radius; 2]),
+        Start::List(_) | Start::File(_) => found,
+    }
+}
+
+/// What a scene starts with.
+pub struct Made {
+    /// The box.
+    pub domain: Domain,
+    /// The discs, wrapped into the box, walls with the velocity that their motion starts with.
+    pub particles: Particles,
+    /// What is to be said of how they were read.
+    pub warnings: Vec<Warning>,
+}
+
+/// The box and the discs at the start.
+///
+/// # Errors
+/// [`SceneError`]: why there are none.
+pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
+    let domain =
+        stated.domain.stated().unwrap_or(Domain { origin: [0.0; 2], sides: [1.0; 2], periodic: [true; 2] });
+    resolved(stated, &domain, radii(stated.start, None))?;
+    let (domain, mut particles) = match stated.start {
+        Start::File(path) => (domain, from_file(stated, &domain, path)?),
+        Start::List(list) => (domain, listed(list)),
+        Start::Hexagonal { count, packing_fraction, grains } => {
+            placeable(stated, *count as f64, &COUNT)?;
+            on_lattice(stated, *count, *packing_fraction, grains)
+        }
+        Start::Random { amount, grains } => {
+            let count = grain_count(stated, *amount, domain.sides[0] * domain.sides[1], grains)?;
+            let far = [0, 1].map(|axis| domain.origin[axis] + domain.sides[axis]);
+            let discs = fill(stated, &domain, [domain.origin, far], &[], count, grains)?;
+            (domain, Particles::new(discs))
+        }
+        Start::Pipe { amount, grains, lining, clear_width } => {
+            (domain, pipe(stated, &domain, *amount, grains, lining, *clear_width)?)
+        }
+        Start::Box { amount, grains, lining, fill_height } => {
+            (domain, above_floor(stated, &domain, *amount, grains, lining, *fill_height)?)
+        }
+    };
+    let start_velocity = match stated.walls {
+        WallMotion::Fixed => [0.0; 2],
+        WallMotion::Oscillating { amplitude, frequency } => {
+            amplitude.map(|a| a * (std::f64::consts::TAU * frequency))
+        }
+    };
+    resolved(stated, &domain, radii(stated.start, particles.radii()))?;
+    let moving = |disc: &&Particle| {
+        disc.kind == Kind::Wall
+            && (disc.velocity != [0.0; 2] || disc.omega != 0.0)
+            && disc.velocity != start_velocity
+    };
+    let mut warnings = Vec::new();
+    if let Some(first) = particles.all().iter().find(moving) {
+        let count = particles.all().iter().filter(moving).count();
+        warnings.push(Warning {
+            key: FILE.path(),
+            message: format!(
+                "{count} wall discs have a velocity or spin in the start file, first wall disc {} with ({:.4e}, {:.4e}) and \
+                 {:.4e}; walls move as particles.wall_motion says, so these are not used",
+                first.id, first.velocity[0], first.velocity[1], first.omega
+            ),
+            suggestion: "set particles.wall_motion, or make them grains (species Si)".to_owned(),
+        });
+    }
+    for disc in particles.all_mut() {
+        disc.position = wrapped(&domain, disc.position);
+        if disc.kind == Kind::Wall {
+            (disc.velocity, disc.omega) = (start_velocity, 0.0);
+        }
+    }
+    Ok(Made { domain, particles, warnings })
+}
+
+/// Whether numbers can tell positions in the box apart far better than the smallest of the radii, where these are known.
+fn resolved(stated: &Stated<'_>, domain: &Domain, radii: Option<[f64; 2]>) -> Result<(), SceneError> {
+    /// Largest error of a position, relative to the smallest radius.
+    const COARSEST: f64 = 1e-6;
+    let Some([smallest, _]) = radii else { return Ok(()) };
+    for axis in 0..2 {
+        let farthest = domain.origin[axis].abs() + domain.sides[axis];
+        let step = farthest * f64::EPSILON;
+        if step > COARSEST * smallest {
+            let far_away = domain.origin[axis].abs() > domain.sides[axis];
+            let key: &Key = if far_away { &ORIGIN } else { &SIDES };
+            let message = format!(
+                "positions as far as {farthest:e} are known to {step:.1e} only, too coarse for discs of radius {smallest:e}"
+            );
+            let error = stated.spot(key).error(Reason::Geometry, message);
+            return Err(error.advising("bring the box nearer to the origin, or choose units that suit it"));
+        }
+    }
+    Ok(())
+}
+
+/// The discs of the last frame of a start file, which must be of the scene's box.
+fn from_file(stated: &Stated<'_>, domain: &Domain, path: &std::path::Path) -> Result<Particles, SceneError> {
+    let frame = extxyz::read(path, extxyz::Which::Last).map_err(|error| {
+        stated.spot(&FILE).error(Reason::StartFile, format!("the start file cannot be used: {error}"))
+    })?;
+    if frame.particles.is_empty() {
+        let message = format!("the start file {} holds no disc", quoted::path(path));
+        return Err(stated.spot(&FILE).error(Reason::StartFile, message));
+    }
+    for (found, here, key) in [(frame.cell, domain.sides, &SIDES), (frame.origin, domain.origin, &ORIGIN)] {
+        let apart = |axis: usize| (found[axis] - here[axis]).abs() > 1e-9 * domain.sides[axis];
+        if apart(0) || apart(1) {
+            let message = format!(
+                "`{}` is {here:?}, but the box of the start file {} says {found:?}",
+                key.path(),
+                quoted::path(path)
+            );
+            let error = stated.spot(key).error(Reason::Contradiction, message);
+            return Err(error.expecting(format!("{} = {found:?}", key.name)));
+        }
+    }
+    if let Some(found) = frame.periodic.filter(|&found| found != domain.periodic) {
+        let message = format!(
+            "`domain.periodic` is {:?}, but the start file {} says pbc = {found:?} along x and y",
+            domain.periodic,
+            quoted::path(path)
+        );
+        let error = stated.spot(&PERIODIC).error(Reason::Contradiction, message);
+        return Err(error.expecting(format!("periodic = {found:?}")));
+    }
+    Ok(frame.particles)
+}
+
+fn disc(id: u32, kind: Kind, position: [f64; 2], radius: f64, [unit, mass]: [f64; 2]) -> Particle {
+    let share = radius / unit;
+    Particle {
+        id,
+        kind,
+        position,
+        velocity: [0.0; 2],
+        angle: 0.0,
+        omega: 0.0,
+        radius,
+        mass: mass * share * share,
+    }
+}
+
+fn listed(list: &List) -> Particles {
+    let of = [list.radius, list.mass];
+    let columns = list.velocities.iter().zip(&list.omegas).zip(&list.radii);
+    let grains = list.positions.iter().zip(columns).zip(1..);
+    let grains = grains.map(|((position, ((velocity, omega), radius)), id)| Particle {
+        velocity: *velocity,
+        omega: *omega,
+        ..disc(id, Kind::Grain, *position, *radius, of)
+    });
+    let walls = list.wall_positions.iter().zip(list.positions.len() as u32 + 1..);
+    let walls = walls.map(|(position, id)| disc(id, Kind::Wall, *position, list.wall_radius, of));
+    Particles::new(grains.chain(walls).collect())
+}
+
+fn on_lattice(
+    stated: &Stated<'_>,
+    count: usize,
+    packing_fraction: f64,
+    grains: &Grains,
+) -> (Domain, Particles) {
+    // Velocities of the packing's discs of mass 1.
+    let kt = match grains.speed {
+        Speed::Deviation(speed) => speed * speed,
+        Speed::Temperature(kt) => kt / grains.mass,
+    };
+    let mut packing = hexagonal(count, packing_fraction, kt, grains.seed);
+    let diameter = 2.0 * grains.radius;
+    let origin = stated.domain.origin;
+    for disc in packing.particles.all_mut() {
+        disc.position = [0, 1].map(|axis| origin[axis] + diameter * disc.position[axis]);
+        disc.radius = grains.radius;
+        disc.mass = grains.mass;
+    }
+    let sides = packing.sides.map(|side| diameter * side);
+    (Domain { origin, sides, periodic: stated.domain.periodic }, packing.particles)
+}
+
+/// How many grains fill an area that is open to them.
+fn grain_count(stated: &Stated<'_>, amount: Amount, open: f64, grains: &Grains) -> Result<usize, SceneError> {
+    /// Beyond it random sequential placement jams, however large the box.
+    const JAMMING: f64 = 0.547;
+    let share = PI * grains.radius * grains.radius / open;
+    let (count, key): (f64, &Key) = match amount {
+        Amount::Count(count) => (count as f64, &COUNT),
+        Amount::PackingFraction(fraction) => ((fraction / share).round(), &PACKING_FRACTION),
+    };
+    let fraction = count * share;
+    let refuse = |message: String| stated.spot(key).error(Reason::Placement, message);
+    if count > MOST {
+        return Err(refuse(format!("{count:.4e} discs are more than the {MOST:.3e} that can be numbered")));
+    }
+    if count < 1.0 {
+        return Err(refuse(format!("no disc: one alone fills {share:.4} of the area open to grains")));
+    }
+    // Few discs in a small box may do better than many in a large one.
+    if fraction > JAMMING * (1.0 + 2.0 / count.sqrt()) {
+        let error = refuse(format!(
+            "{count} discs fill {fraction:.4} of the area open to grains; random placement jams at about {JAMMING}"
+        ));
+        return Err(error.advising("place fewer discs, or start from generate = \"hexagonal\""));
+    }
+    placeable(stated, count, key)?;
+    Ok(count as usize)
+}
+
+fn fill(
+    stated: &Stated<'_>,
+    domain: &Domain,
+    room: [[f64; 2]; 2],
+    obstacles: &[Particle],
+    count: usize,
+    grains: &Grains,
+) -> Result<Vec<Particle>, SceneError> {
+    let Grains { radius, spread, cut, mass, seed, speed } = *grains;
+    let cut = if spread > 0.0 { cut } else { 0.0 };
+    let filling = Filling { domain: *domain, room, obstacles, count, radius, spread, cut, mass, seed };
+    let mut discs = random(&filling).map_err(|jammed| {
+        let error = stated.spot(&GENERATE).error(Reason::Placement, jammed.to_string());
+        error.advising("lower count or packing_fraction, or make more room")
+    })?;
+    // Where walls take up momentum there is none to balance.
+    let balanced = domain.periodic == [true; 2] && obstacles.is_empty() && discs.len() > 1;
+    stir(&mut discs, seed, balanced, |disc| match speed {
+        Speed::Deviation(speed) => speed,
+        Speed::Temperature(kt) => (kt / disc.mass).sqrt(),
+    });
+    Ok(discs)
+}
+
+/// Wall discs with ids behind those of `count` grains.
+fn lined(
+    stated: &Stated<'_>,
+    domain: &Domain,
+    rows: &[(f64, f64)],
+    count: usize,
+    (lining, grains): (&Lining, &Grains),
+) -> Result<Vec<Particle>, SceneError> {
+    let each = domain.sides[0] / lining.spacing;
+    if each * rows.len() as f64 > MOST {
+        let message = format!("a row takes {each:.4e} wall discs; more than {MOST:.3e} cannot be numbered");
+        return Err(stated.spot(&WALL_SPACING).error(Reason::Placement, message));
+    }
+    placeable(stated, each * rows.len() as f64 + count as f64, &WALL_SPACING)?;
+    let share = lining.radius / grains.radius;
+    let mass = grains.mass * share * share;
+    let mut walls: Vec<Particle> = Vec::new();
+    for &(y, shift) in rows {
+        let first_id = (count + walls.len()) as u32 + 1;
+        walls.extend(row(
+            domain,
+            &Row { y, shift, radius: lining.radius, spacing: lining.spacing, mass },
+            first_id,
+        ));
+    }
+    Ok(walls)
+}
+
+fn pipe(
+    stated: &Stated<'_>,
+    domain: &Domain,
+    amount: Amount,
+    grains: &Grains,
+    lining: &Lining,
+    clear_width: f64,
+) -> Result<Particles, SceneError> {
+    let axis = domain.origin[1] + 0.5 * domain.sides[1];
+    let reach = 0.5 * clear_width + lining.radius;
+    if 2.0 * reach >= domain.sides[1] {
+        let message = format!(
+            "the centres of the two walls are {} apart, but the box is {} high",
+            readable(2.0 * reach),
+            domain.sides[1]
+        );
+        let error = stated.spot(&CLEAR_WIDTH).error(Reason::Outside, message);
+        return Err(error.advising("raise the second of domain.sides, or lower clear_width"));
+    }
+    let count = grain_count(stated, amount, domain.sides[0] * clear_width, grains)?;
+    let rows = [(axis - reach, 0.0), (axis + reach, 0.5)];
+    let walls = lined(stated, domain, &rows, count, (lining, grains))?;
+    let end = domain.origin[0] + domain.sides[0];
+    let room = [[domain.origin[0], axis - 0.5 * clear_width], [end, axis + 0.5 * clear_width]];
+    let mut discs = fill(stated, domain, room, &walls, count, grains)?;
+    discs.extend(walls);
+    Ok(Particles::new(discs))
+}
+
+fn above_floor(
+    stated: &Stated<'_>,
+    domain: &Domain,
+    amount: Amount,
+    grains: &Grains,
+    lining: &Lining,
+    fill_height: f64,
+) -> Result<Particles, SceneError> {
+    // As low as its motion leaves it inside the box.
+    let swing = match stated.walls {
+        WallMotion::Fixed => 0.0,
+        WallMotion::Oscillating { amplitude, .. } => amplitude[1].abs(),
+    };
+    let centres = domain.origin[1] + lining.radius + swing;
+    let floor = centres + lining.radius;
+    let top = domain.origin[1] + domain.sides[1];
+    if floor + fill_height > top {
+        let message = format!(
+            "grains would be placed up to {}, but the box ends at {top}",
+            readable(floor + fill_height)
+        );
+        let error = stated.spot(&FILL_HEIGHT).error(Reason::Outside, message);
+        return Err(error.advising("raise the second of domain.sides, or lower fill_height"));
+    }
+    let count = grain_count(stated, amount, domain.sides[0] * fill_height, grains)?;
+    let walls = lined(stated, domain, &[(centres, 0.0)], count, (lining, grains))?;
+    let room = [[domain.origin[0], floor], [domain.origin[0] + domain.sides[0], floor + fill_height]];
+    let mut discs = fill(stated, domain, room, &walls, count, grains)?;
+    discs.extend(walls);
+    Ok(Particles::new(discs))
+}

@@ -1,0 +1,253 @@
+//! Free flight of discs: the smallest method there can be. One entry, and every verb knows it.
+
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use stripmine::domain::Domain;
+use stripmine::io::checkpoint::Column;
+use stripmine::memory::Foreseen;
+use stripmine::method::{
+    Bench, BenchOption, Clock, Entry, Every, Fact, Failure, Prepared, Purpose, Quantity, Schedule,
+    Simulation, Snapshot, Until,
+};
+use stripmine::particles::Particles;
+use stripmine::scene::{
+    self, Binding, DISC_RIVALS, DISCS, DT, DURATION, HEADING, KeySet, OUTPUT, Output, PLANAR_DOMAIN, Preset,
+    Read, Run, STEP, STEPPED_RUN, SceneErrors, Start, Values, Vocabulary, WallMotion, Warning, Write,
+    bind_heading, disagreements, too_many_steps,
+};
+use stripmine::start::{Stated, make, outside};
+
+pub static ENTRY: Entry = Entry {
+    vocabulary: &VOCABULARY,
+    source: "this test",
+    doc: "discs that do not meet",
+    quantities: QUANTITIES,
+    prepare: |values| Ok(Box::new(Flight::prepare(values)?)),
+    benches: &[Bench {
+        name: "free-flight",
+        doc: "Discs that do not meet",
+        preset: "drift",
+        rate: "particle_steps_per_second",
+        until: Until::Steps,
+        amount: |_| 100,
+        defaults: &[("particles", "50")],
+        options: &[BenchOption {
+            name: "particles",
+            values: &[],
+            overrides: |count| vec![format!("particles.count={count}")],
+        }],
+        overrides: &[],
+        quantities: QUANTITIES,
+        compared: &["kinetic"],
+        at_end: &[],
+    }],
+    items: &[],
+    verbs: &[],
+};
+
+static VOCABULARY: Vocabulary = Vocabulary {
+    keys: KeySet {
+        method: "free-flight",
+        groups: &[HEADING, PLANAR_DOMAIN, DISCS, STEP, STEPPED_RUN, OUTPUT],
+        rivals: &[DISC_RIVALS, DURATION],
+    },
+    rules: &[disagreements, too_many_steps],
+    presets: &[Preset {
+        name: "drift",
+        text: "# Discs that fly through each other\nformat = 2\nunits = \"reduced\"\n[method]\nkind = \"free-flight\"\n\
+               [domain]\nsides = [40.0, 40.0]\n[particles]\ngenerate = \"random\"\ncount = 20\nradius = 0.5\nmass = 2.0\n\
+               speed = 1.0\n[integrator]\ndt = 0.125\n[run]\nsteps = 64\nthermo_every = 8\nsnapshot_every = 32\n\
+               checkpoint_every = 16\n",
+    }],
+    renamed: &[],
+};
+
+const QUANTITIES: &[Quantity] = &[
+    Quantity { name: "time", unit: "time", doc: "The time." },
+    Quantity { name: "kinetic", unit: "energy", doc: "Kinetic energy." },
+];
+
+/// A scene of discs in free flight.
+#[derive(Clone, Default)]
+struct Flight {
+    units: String,
+    domain: scene::Domain,
+    start: Start,
+    dt: f64,
+    run: Run,
+    output: Output,
+    made: Particles,
+    bounds: Option<Domain>,
+}
+
+impl Flight {
+    fn bind(&mut self, binding: &mut dyn Binding) {
+        bind_heading(binding, &mut self.units, VOCABULARY.keys.method);
+        self.domain.bind(binding);
+        self.start.bind(binding);
+        binding.number(&DT, &mut self.dt);
+        self.run.bind(binding, self.dt);
+        self.output.bind(binding);
+    }
+
+    fn prepare(values: Values) -> Result<Flight, SceneErrors> {
+        let (mut flight, mut read) = (Flight::default(), Read::new(&values));
+        flight.bind(&mut read);
+        read.done()?;
+        let (domain, start) = (&flight.domain, &flight.start);
+        let stated = Stated { values: &values, domain, start, walls: WallMotion::Fixed };
+        let made = make(&stated)?;
+        SceneErrors::none_of(outside(&stated, &made.domain, &made.particles))?;
+        Ok(Flight { bounds: Some(made.domain), made: made.particles, ..flight })
+    }
+}
+
+impl Prepared for Flight {
+    fn scene(&self) -> String {
+        let mut write = Write::default();
+        self.clone().bind(&mut write);
+        write.to_toml(&VOCABULARY.keys)
+    }
+
+    fn schedule(&self) -> Schedule {
+        Schedule {
+            until: Until::Steps(self.run.steps),
+            rows: Every::steps(self.run.thermo_every),
+            snapshots: Every::steps(self.run.snapshot_every),
+            checkpoints: Every::steps(self.run.checkpoint_every),
+        }
+    }
+
+    fn output(&self) -> Output {
+        self.output
+    }
+
+    fn domain(&self) -> Domain {
+        self.bounds.expect("it was prepared")
+    }
+
+    fn particles(&self) -> &Particles {
+        &self.made
+    }
+
+    fn seed(&self) -> Option<u64> {
+        self.start.seed()
+    }
+
+    fn start_file(&self) -> Option<&Path> {
+        self.start.file()
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        vec![Fact::new("discs", self.made.len(), "discs", self.made.len().to_string())]
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &[]
+    }
+
+    fn choices(&self) -> &[String] {
+        &[]
+    }
+
+    fn left_out(&self) -> &[String] {
+        &[]
+    }
+
+    fn memory(&self) -> Foreseen {
+        Foreseen { needed: 1, available: None, what: "a few discs".to_owned(), remedy: "take fewer" }
+    }
+
+    fn settings(&self) -> Map<String, Value> {
+        Map::new()
+    }
+
+    fn start(&self, _: Purpose) -> Result<Box<dyn Simulation>, Failure> {
+        Ok(Box::new(Flying { domain: self.domain(), dt: self.dt, discs: self.made.clone(), steps: 0 }))
+    }
+}
+
+struct Flying {
+    domain: Domain,
+    dt: f64,
+    discs: Particles,
+    steps: u64,
+}
+
+impl Simulation for Flying {
+    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure> {
+        while !until.iter().any(|moment| moment.has_come(&self.clock())) {
+            if interrupted.load(Ordering::Relaxed) {
+                break;
+            }
+            for disc in self.discs.all_mut() {
+                let moved = [0, 1].map(|axis| disc.position[axis] + self.dt * disc.velocity[axis]);
+                disc.position = self.domain.inside(moved);
+            }
+            self.steps += 1;
+        }
+        Ok(())
+    }
+
+    fn clock(&self) -> Clock {
+        Clock { steps: self.steps, time: self.steps as f64 * self.dt, events: 0 }
+    }
+
+    fn particles(&self) -> Particles {
+        self.discs.clone()
+    }
+
+    fn observe(&self) -> Vec<f64> {
+        let energy = |v: [f64; 2], mass: f64| 0.5 * mass * (v[0] * v[0] + v[1] * v[1]);
+        vec![self.clock().time, self.discs.all().iter().map(|disc| energy(disc.velocity, disc.mass)).sum()]
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        let column =
+            |axis: usize| Column::F64(self.discs.all().iter().map(|disc| disc.position[axis]).collect());
+        let columns = ["x", "y"].iter().zip([0, 1]).map(|(name, axis)| ((*name).to_owned(), column(axis)));
+        Snapshot { counters: BTreeMap::new(), columns: columns.collect() }
+    }
+
+    fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
+        for (axis, name) in ["x", "y"].iter().enumerate() {
+            let column = snapshot.columns.iter().find(|(there, _)| there == name);
+            let Some((_, Column::F64(values))) =
+                column.filter(|(_, values)| values.len() == self.discs.len())
+            else {
+                return Err(format!("the column {name} is missing"));
+            };
+            self.discs
+                .all_mut()
+                .iter_mut()
+                .zip(values)
+                .for_each(|(disc, &value)| disc.position[axis] = value);
+        }
+        self.steps = clock.steps;
+        Ok(())
+    }
+
+    fn phases(&self) -> BTreeMap<&'static str, f64> {
+        BTreeMap::new()
+    }
+
+    fn reset_phases(&mut self) {}
+
+    fn work(&self) -> f64 {
+        self.discs.len() as f64 * self.steps as f64
+    }
+
+    fn summary(&self) -> Map<String, Value> {
+        Map::from_iter([("discs".to_owned(), json!(self.discs.len()))])
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        vec![]
+    }
+
+    fn in_words(&self) -> String {
+        format!("{} discs", self.discs.len())
+    }
+}

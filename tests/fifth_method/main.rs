@@ -1,0 +1,99 @@
+//! A method is one folder and one line of a list: a method that only this test knows is a scene's, runs, goes on, is
+//! observed, measured and documented by the verbs as they are.
+//!
+//! The test is its own command: with the environment variable set it carries out its arguments with that list of methods.
+
+mod free_flight;
+
+use std::path::Path;
+use std::process::{Command, ExitCode, Output};
+use stripmine::method::{Methods, lattice_md};
+
+static METHODS: Methods = &[&lattice_md::ENTRY, &free_flight::ENTRY];
+
+const AS_COMMAND: &str = "STRIPMINE_TEST_AS_COMMAND";
+
+fn main() -> ExitCode {
+    if std::env::var_os(AS_COMMAND).is_some() {
+        return stripmine::cli::run_with(std::env::args_os(), METHODS);
+    }
+    scenes_are_listed_checked_and_refused();
+    a_run_is_observed_and_goes_on_to_the_same_bytes();
+    it_is_measured();
+    it_is_documented();
+    println!("the fifth method works in every verb");
+    ExitCode::SUCCESS
+}
+
+fn stripmine(arguments: &[&str]) -> Output {
+    let this = std::env::current_exe().expect("the test has a path");
+    Command::new(this).env(AS_COMMAND, "1").args(arguments).output().expect("the test can be run")
+}
+
+fn succeeds(arguments: &[&str]) -> String {
+    let output = stripmine(arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("it prints text")
+}
+
+fn data(arguments: &[&str]) -> serde_json::Value {
+    serde_json::from_str(&succeeds(arguments)).expect("it prints JSON")
+}
+
+fn scenes_are_listed_checked_and_refused() {
+    let list = succeeds(&["scene", "list"]);
+    assert!(list.contains("drift") && list.contains("two-discs"), "{list}");
+    let found = data(&["scene", "check", "drift", "--json"]);
+    assert_eq!((found["method"].as_str(), found["discs"].as_u64()), (Some("free-flight"), Some(20)));
+    for (set, words) in [
+        ("law.stiffness=1", "it is a key of scenes with method.kind = \"lattice-md\""),
+        ("particles.cuont=3", "did you mean `count`?"),
+        ("method.kind=free-fligth", "did you mean \"free-flight\"?"),
+        ("particles.count=4000", "random placement jams"),
+    ] {
+        let refused = stripmine(&["scene", "check", "drift", "--set", set]);
+        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(refused.status.code() == Some(3) && said.contains(words), "{set}: {said}");
+    }
+}
+
+fn a_run_is_observed_and_goes_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("there is room");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (whole, parts) = (path("whole"), path("parts"));
+    succeeds(&["run", "drift", "--out", &whole]);
+    succeeds(&["run", "drift", "--out", &parts, "--set", "run.steps=40"]);
+    succeeds(&["run", "drift", "--out", &parts, "--resume"]);
+    let read = |run: &str, file: &str| std::fs::read_to_string(Path::new(run).join(file)).expect(file);
+    for file in ["thermo.csv", "trajectory.xyz", "scene.toml"] {
+        assert_eq!(read(&whole, file), read(&parts, file), "{file}");
+    }
+    let rows: Vec<Vec<f64>> = read(&whole, "thermo.csv")
+        .lines()
+        .skip(1)
+        .map(|row| row.split(',').map(|number| number.parse().expect("a number")).collect())
+        .collect();
+    assert!(read(&whole, "thermo.csv").starts_with("step,time,kinetic\n"));
+    assert_eq!((rows.len(), rows[8][0], rows[8][1]), (9, 64.0, 8.0));
+    assert!(rows.iter().all(|row| row[2] == rows[0][2] && row[2] > 1.0));
+    let summary: serde_json::Value = serde_json::from_str(&read(&whole, "summary.json")).expect("JSON");
+    assert_eq!((summary["discs"].as_u64(), summary["steps"].as_u64()), (Some(20), Some(64)));
+    let refused = stripmine(&["run", "drift", "--out", &whole, "--resume", "--set", "run.steps=3"]);
+    assert_eq!(refused.status.code(), Some(2));
+}
+
+fn it_is_measured() {
+    let measured = data(&["bench", "free-flight", "--json", "--repeats", "2", "--particles", "30"]);
+    assert_eq!((measured["what"].as_str(), measured["particles"].as_u64()), (Some("free-flight"), Some(30)));
+    assert!(measured["particle_steps_per_second"].as_f64().is_some_and(|rate| rate > 0.0));
+    assert_eq!(measured["kinetic"][0], measured["kinetic"][1]);
+    let refused = stripmine(&["bench", "free-flight", "--precision", "f32"]);
+    assert_eq!(refused.status.code(), Some(2), "{}", String::from_utf8_lossy(&refused.stderr));
+}
+
+fn it_is_documented() {
+    let help = succeeds(&["bench", "--help"]);
+    assert!(help.contains("free-flight") && help.contains("Discs that do not meet"), "{help}");
+    let keys = succeeds(&["scene", "keys", "free-flight"]);
+    assert!(keys.contains("dt") && !keys.contains("stiffness"), "{keys}");
+}
