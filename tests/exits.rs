@@ -111,11 +111,11 @@ fn every_verb_refuses_with_its_exit_code_in_words_and_as_data() {
         let said = String::from_utf8_lossy(&output.stderr);
         let data: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
         let error = &data["error"];
-        let told = error["message"].as_str().is_some_and(|message| !message.is_empty())
+        let has_message = error["message"].as_str().is_some_and(|message| !message.is_empty())
             && ["place", "remedy"].iter().all(|key| error.get(key).is_some());
         let holds = output.status.code() == Some(code)
             && error["kind"] == kind
-            && told
+            && has_message
             && words.iter().all(|word| said.contains(word))
             && !said.contains("panicked");
         if !holds {
@@ -126,7 +126,7 @@ fn every_verb_refuses_with_its_exit_code_in_words_and_as_data() {
     assert_eq!(std::fs::read(folder.join("file")).unwrap(), b"mine");
 }
 
-/// A scene's mistakes are all told, each with its place; the first of them is the error.
+/// A scene's mistakes are all said, each with its place; the first of them is the error.
 #[test]
 fn mistakes_of_a_scene_have_their_places_as_data() {
     let folder = tempfile::tempdir().unwrap();

@@ -113,7 +113,7 @@ fn walls_gravity_and_a_shaken_floor_are_the_faithful_ones() {
 
 #[test]
 fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
-    // Long enough for lists to be made anew.
+    // Long enough for lists to be made again.
     const STEPS: u64 = 60;
     let (lattice, [_, sectors, lists]) = (LATTICE, SEARCHES);
     for (search, packing_fraction, precision) in [

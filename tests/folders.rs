@@ -217,7 +217,7 @@ fn endless(folder: &Path) -> Child {
     child
 }
 
-/// A second process is told who writes there; when that one is killed, however, the folder is free.
+/// A second process hears which one writes there; when that one is killed, however, the folder is free.
 #[test]
 fn one_process_writes_into_a_folder() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Text from outside in messages: whatever stands in a file, a name or an argument, a terminal is told, not commanded.
+//! Text from outside in messages: whatever stands in a file, a name or an argument, a terminal shows it and does not obey it.
 
 use assert_cmd::Command;
 use std::path::Path;

@@ -95,7 +95,7 @@ const RADII: [f64; 2] = [0.5, 0.46];
 const MASSES: [f64; 2] = [1.0, 0.7];
 const EFFECTIVE: f64 = MASSES[0] * MASSES[1] / (MASSES[0] + MASSES[1]);
 
-/// Two discs that touch after so many steps, meeting at `normal`, sliding past each other at `shear`.
+/// Two discs that touch after that many steps, meeting at `normal`, sliding past each other at `shear`.
 fn pair(contact: Contact, dt: f64, steps: f64, [normal, shear]: [f64; 2]) -> (Model, Particles) {
     let x = 4.0 + RADII[0] + RADII[1] + steps * normal * dt;
     // In the frame of the centre of mass.

@@ -137,7 +137,7 @@ fn forge(folder: &Path, change: impl FnOnce(&mut Checkpoint)) {
     checkpoint.write_atomically(&path).unwrap();
 }
 
-/// Another version that promises the same bits goes on and says so; one that does not is refused, unless told to.
+/// Another version that promises the same bits goes on and says so; one that does not is refused, unless asked to.
 #[test]
 fn another_version_is_said_or_refused() {
     let (_folder, path, whole) = folder_and_bits();

@@ -144,7 +144,7 @@ fn an_interrupted_run_goes_on() {
     }
 }
 
-/// A folder with a run is not touched unless told so; another scene is not gone on with.
+/// A folder with a run is not touched unless asked; another scene is not gone on with.
 #[test]
 fn a_folder_with_a_run_is_respected() {
     let folder = tempfile::tempdir().unwrap();

@@ -131,10 +131,10 @@ pub fn keep_awake<R>(work: impl FnOnce() -> R) -> R {
     let kept = Arc::new(AtomicBool::new(false));
     for _ in 0..others {
         let kept = Arc::clone(&kept);
-        // Nobody waits for these: on a busy machine one may begin only when all is over, and finds that it may go.
+        // Nothing waits for these: on a busy machine one may begin only when all is over, and finds that it may go.
         rayon::spawn(move || wait_for(|| kept.load(Ordering::Acquire)));
     }
-    // Whoever was kept awake already waits for this one now.
+    // The threads that were kept awake already wait for this one now.
     release();
     KEPT.set(Some(kept));
     let _release = Release;

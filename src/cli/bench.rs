@@ -48,8 +48,8 @@ pub(super) struct BenchVerb {
 }
 
 /// An override, and the option that it stands for.
-struct Told {
-    override_: String,
+struct Override {
+    text: String,
     option: String,
 }
 
@@ -70,11 +70,11 @@ impl BenchVerb {
     }
 
     /// What the options say in a scene, defaults included.
-    fn told(&self, bench: &Bench) -> Result<Vec<Told>, Failure> {
-        let mut told: Vec<Told> = bench
+    fn overrides(&self, bench: &Bench) -> Result<Vec<Override>, Failure> {
+        let mut all: Vec<Override> = bench
             .overrides
             .iter()
-            .map(|text| Told { override_: (*text).to_owned(), option: bench.name.to_owned() })
+            .map(|text| Override { text: (*text).to_owned(), option: bench.name.to_owned() })
             .collect();
         for (name, given) in self.given() {
             let default = bench.defaults.iter().find(|(known, _)| *known == name);
@@ -89,9 +89,9 @@ impl BenchVerb {
             }
             let option = format!("--{name} {value}").trim_end().to_owned();
             let overrides = (known.overrides)(&value).into_iter();
-            told.extend(overrides.map(|override_| Told { override_, option: option.clone() }));
+            all.extend(overrides.map(|text| Override { text, option: option.clone() }));
         }
-        Ok(told)
+        Ok(all)
     }
 
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
@@ -100,9 +100,9 @@ impl BenchVerb {
         let Some((entry, bench)) = found else {
             return Err(Failure::NoSuchOption { bench: "bench", option: "what" });
         };
-        let told = self.told(bench)?;
-        let result = self.measured(entry, bench, &told).map_err(|error| match error {
-            MeasurementError::Scene(mistakes) => Failure::Options(in_options(mistakes, &told)),
+        let given = self.overrides(bench)?;
+        let result = self.measured(entry, bench, &given).map_err(|error| match error {
+            MeasurementError::Scene(mistakes) => Failure::Options(in_options(mistakes, &given)),
             error => error.into(),
         })?;
         if common.json { print_json(&result) } else { print(&text(&result)) }
@@ -112,9 +112,9 @@ impl BenchVerb {
         &self,
         entry: &'static Entry,
         bench: &'static Bench,
-        told: &[Told],
+        given: &[Override],
     ) -> Result<Throughput, MeasurementError> {
-        let overrides: Vec<String> = told.iter().map(|told| told.override_.clone()).collect();
+        let overrides: Vec<String> = given.iter().map(|given| given.text.clone()).collect();
         let values = Values::load(bench.preset, &overrides, &[entry.vocabulary])?;
         let prepared = (entry.prepare)(values)?;
         let steps = self.steps.unwrap_or_else(|| (bench.amount)(prepared.particles().grain_count() as u64));
@@ -124,11 +124,11 @@ impl BenchVerb {
 }
 
 /// Mistakes of the scene as those of the options that it was made of.
-fn in_options(SceneErrors(mut mistakes): SceneErrors, told: &[Told]) -> SceneErrors {
+fn in_options(SceneErrors(mut mistakes): SceneErrors, given: &[Override]) -> SceneErrors {
     for mistake in &mut mistakes {
-        let option = told.iter().find(|told| mistake.file == format!("--set {}", told.override_));
-        if let Some(told) = option {
-            mistake.file.clone_from(&told.option);
+        let option = given.iter().find(|given| mistake.file == format!("--set {}", given.text));
+        if let Some(given) = option {
+            mistake.file.clone_from(&given.option);
         }
     }
     SceneErrors(mistakes)

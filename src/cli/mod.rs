@@ -81,7 +81,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
 /// Runs the command for scenes of some methods.
 pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> ExitCode {
     let arguments: Vec<OsString> = arguments.collect();
-    // Asked before the arguments are understood: a mistake among them is told as data too.
+    // Asked before the arguments are understood: a mistake among them is said as data too.
     let as_data = arguments.iter().any(|argument| argument == "--json");
     let last_words = move |end| {
         clear_progress();

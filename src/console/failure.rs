@@ -117,7 +117,7 @@ pub fn tell(failure: &Failure, as_data: bool) {
         _ => say(format_args!("error: {failure}")),
     }
     if as_data && is_untouched() {
-        // The first failure decides the exit code, whether it can be told or not.
+        // The first failure decides the exit code, whether it can be said or not.
         let _ = print_json(&Document { error: failure.report(), errors: failure.mistakes() });
     }
 }

@@ -126,7 +126,7 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Safe while it is held: whoever has opened it meanwhile finds that the name is gone and opens another. A file
+        // Safe while it is held: a process that has opened it meanwhile finds that the name is gone and opens another. A file
         // that cannot be removed does no harm.
         if cfg!(unix) && self.held && self.is_there() {
             let _ = remove_if_there(&self.path);

@@ -49,7 +49,7 @@ impl Identity {
     /// Holds it against what the run in `folder` was begun with; gives what has been said of that run so far.
     ///
     /// # Errors
-    /// If scene or discs are others, or this program does not promise the same bits and is not told that this is wanted.
+    /// If scene or discs are others, or this program does not promise the same bits and is not asked to go on nevertheless.
     pub(super) fn check(
         &self,
         folder: &Path,

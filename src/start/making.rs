@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 /// Most discs of one kind, grains or walls: with those of the other their ids must be numbers of 32 bits.
 const MOST: f64 = (u32::MAX / 2) as f64;
 
-/// Whether the machine has the memory to place so many discs and to look for overlaps: each disc, and its entry in a map of
+/// Whether the machine has the memory to place that many discs and to look for overlaps: each disc, and its entry in a map of
 /// squares whose number is a power of two. Asked before anything is placed.
 fn placeable(stated: &Stated<'_>, count: f64, key: &Key) -> Result<(), SceneError> {
     /// Bytes of an entry of the map, and of a disc in its square.

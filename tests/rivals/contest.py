@@ -12,7 +12,7 @@ IN_LAMMPS = pathlib.Path(__file__).with_name("in_lammps.py")
 COMPARED = 300
 # More discs than these are not compared one by one: what holds for fewer holds for them.
 COMPARED_DISCS = 100_000
-# Rivals make their lists anew now and then: fewer steps may meet no such step at all.
+# Rivals make their lists again now and then: fewer steps may meet no such step at all.
 LEAST_STEPS = 200
 # Seconds that nothing here takes.
 LONGEST = 900

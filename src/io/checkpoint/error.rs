@@ -47,7 +47,7 @@ pub enum Fault {
     Truncated {
         /// Bytes there are.
         found: u64,
-        /// Bytes there should be, where that can be told.
+        /// Bytes there should be, where that is known.
         promised: Option<u64>,
     },
     /// Longer than it says.

@@ -23,7 +23,7 @@ impl Crossings {
         self.followed.contains(&true)
     }
 
-    /// A disc was moved back by so many periods when it was wrapped.
+    /// A disc was moved back by this many periods when it was wrapped.
     pub(super) fn add(&mut self, number: usize, periods: [f64; 2]) {
         for axis in (0..2).filter(|&axis| self.followed[axis]) {
             self.counts[number][axis] += periods[axis];

@@ -70,7 +70,7 @@ impl<P: Precision> Rival<P> {
         [0, 1].map(|axis| self.made_at.iter().map(|position| position[axis]).collect())
     }
 
-    /// Takes up lists that were made where the discs were at `made_at`, after so many makings, and met so many pairs in
+    /// Takes up lists that were made where the discs were at `made_at`, after that many makings, and met so many pairs in
     /// the last step.
     pub(super) fn take_up(&mut self, model: &Model, made_at: [Vec<f64>; 2], rebuilds: u64, pairs: u64) {
         let [x, y] = made_at;
@@ -79,7 +79,7 @@ impl<P: Precision> Rival<P> {
         self.met.pairs = pairs;
     }
 
-    /// Makes the lists anew if a pair that is not listed could have come into contact.
+    /// Makes the lists again if a pair that is not listed could have come into contact.
     pub(super) fn keep<S: Precision>(&mut self, model: &Model, arrays: &Arrays<S, P>) {
         let (Some(x), Some(y)) = (arrays.state(Array::X0), arrays.state(Array::Y0)) else { return };
         let moved_too_far = 0.25 * self.options.skin * self.options.skin;

@@ -1,4 +1,4 @@
-//! Finding out who broke a precondition, once a counter says that somebody did.
+//! Which discs broke a precondition, once a counter says that one did.
 
 use super::{Arrays, Model};
 use crate::method::{Culprit, Failure};

@@ -26,7 +26,7 @@ function numbers({ low, high, codes }) {
 const powerOfTen = (exponent) =>
   "10" + [...String(exponent)].map((digit) => (digit === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit])).join("");
 
-/** A number for reading with so many digits: thousands set apart by thin blanks, a power of ten far from one. */
+/** A number for reading, with that many digits: thousands set apart by thin blanks, a power of ten far from one. */
 function readable(value, digits = 4) {
   if (value === 0) return "0";
   const rounded = Number(value.toPrecision(digits));

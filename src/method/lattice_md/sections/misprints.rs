@@ -25,8 +25,8 @@ pub fn section(data: &Misprints) -> Section {
 
 /// Reproduced where every misprint is seen to fail and ours holds.
 fn verdict(data: &Misprints) -> Verdict {
-    let told = data.findings.iter().filter(|finding| tells(finding)).count();
-    match told {
+    let failing = data.findings.iter().filter(|finding| tells(finding)).count();
+    match failing {
         0 => Verdict::Failed,
         all if all == data.findings.len() => Verdict::Reproduced,
         _ => Verdict::Partly,
@@ -46,7 +46,7 @@ fn says(data: &Misprints) -> String {
 }
 
 fn came_out(data: &Misprints) -> String {
-    let told = data.findings.iter().filter(|finding| tells(finding)).count();
+    let failing = data.findings.iter().filter(|finding| tells(finding)).count();
     let values: Vec<String> = data
         .findings
         .iter()
@@ -69,7 +69,7 @@ fn came_out(data: &Misprints) -> String {
         _ => String::new(),
     };
     format!(
-        "In {told} of {} comparisons the printed form fails where ours holds. {}.{kept}",
+        "In {failing} of {} comparisons the printed form fails where ours holds. {}.{kept}",
         data.findings.len(),
         values.join("; ")
     )

@@ -1,4 +1,4 @@
-//! The options by which a verb is told what is modelled.
+//! The options that say what is modelled.
 
 use crate::method::lattice_md::study::efficiency_table::{Choice, Question};
 use clap::Args;

@@ -161,15 +161,15 @@ fn every_misprint_fails_and_ours_holds() {
 /// A misprint that did nothing would not be seen to fail, and a law that went wrong would not hold.
 #[test]
 fn right_is_told_from_wrong() {
-    let told = |right, by_printed, by_ours| {
+    let decided = |right, by_printed, by_ours| {
         let finding = finding(Misprint::Slip, "", String::new(), right, [by_printed, by_ours]);
         [finding.printed_fails(), finding.ours_holds()]
     };
-    assert_eq!(told(Right::Equal(0.0), -0.5, 1e-12), [true, true]);
-    assert_eq!(told(Right::Equal(0.0), 0.001, 0.001), [false, false]);
-    assert_eq!(told(Right::AtMost(0.5), 0.536, 0.465), [true, true]);
-    assert_eq!(told(Right::AtMost(0.5), 0.465, 0.536), [false, false]);
-    assert_eq!(told(Right::AtMost(0.5), f64::NAN, f64::NAN), [false, false]);
+    assert_eq!(decided(Right::Equal(0.0), -0.5, 1e-12), [true, true]);
+    assert_eq!(decided(Right::Equal(0.0), 0.001, 0.001), [false, false]);
+    assert_eq!(decided(Right::AtMost(0.5), 0.536, 0.465), [true, true]);
+    assert_eq!(decided(Right::AtMost(0.5), 0.465, 0.536), [false, false]);
+    assert_eq!(decided(Right::AtMost(0.5), f64::NAN, f64::NAN), [false, false]);
 }
 
 /// From 0.500 to 0.536 as printed; ours never rises, and without damping the energy comes back.
