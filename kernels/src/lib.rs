@@ -53,4 +53,4 @@ mod threads;
 
 pub use backend::{GROUP, InstructionSet};
 pub use program::{Execution, Program, Runnable};
-pub use threads::keep_awake;
+pub use threads::{in_pieces, keep_awake, over_pieces, reordered};

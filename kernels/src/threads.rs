@@ -8,7 +8,7 @@
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use std::cell::RefCell;
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// What `work` makes of each of the parts, in their order; one part after the other if there is but one thread.
@@ -64,6 +64,11 @@ fn locked<T>(slot: &Mutex<T>) -> MutexGuard<'_, T> {
 /// next stage, or for the next call, and that takes longer. All that is waited for is being worked on, so that no
 /// thread waits for one that waits.
 fn each(stages: usize, parts: usize, work: &(dyn Fn(usize, usize) + Sync)) {
+    if parts <= 1 {
+        // Nothing to share: the others are left as they are.
+        (0..stages).for_each(|stage| (0..parts).for_each(|part| work(stage, part)));
+        return;
+    }
     release();
     let taken: Vec<AtomicBool> = (0..stages * parts).map(|_| AtomicBool::new(false)).collect();
     let done: Vec<AtomicUsize> = (0..stages).map(|_| AtomicUsize::new(0)).collect();
@@ -141,6 +146,47 @@ pub fn keep_awake<R>(work: impl FnOnce() -> R) -> R {
     work()
 }
 
+/// Entries of a column that one thread works on at a time, where an entry takes some nanoseconds: short columns are left to
+/// one thread, which is done before another would begin.
+pub(crate) const PIECE: usize = 16_384;
+
+/// What `work` makes of each piece of a range, in their order. The pieces depend on the range alone.
+pub fn over_pieces<R: Send>(range: Range<usize>, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
+    on_threads(pieces(range, PIECE), work)
+}
+
+/// Does `work` on every piece of a column, with the number of its first entry.
+pub fn in_pieces<T: Send>(column: &mut [T], work: impl Fn(usize, &mut [T]) + Sync) {
+    let parts = column.chunks_mut(PIECE).enumerate();
+    on_threads(parts, |(number, piece)| work(number * PIECE, piece));
+}
+
+/// A column in another order: entry `n` is what entry `order[n]` was.
+///
+/// # Panics
+/// If `order` names an entry that there is not.
+pub fn reordered<T: Copy + Default + Send + Sync>(column: &[T], order: &[u32]) -> Vec<T> {
+    let mut now = vec![T::default(); order.len()];
+    in_pieces(&mut now, |first, piece| {
+        let before = &order[first..first + piece.len()];
+        piece.iter_mut().zip(before).for_each(|(to, &before)| *to = column[before as usize]);
+    });
+    now
+}
+
+/// Whether one thread does all pieces of a column.
+pub(crate) fn is_alone(length: usize) -> bool {
+    length <= PIECE || rayon::current_num_threads() == 1
+}
+
+/// A column that several threads may write.
+pub(crate) fn shared(column: &mut [u32]) -> &[AtomicU32] {
+    let column: *mut [u32] = column;
+    // SAFETY: an AtomicU32 has the size and alignment of a u32, the address is that of a slice that is borrowed exclusively
+    // for as long as the result lives, and nothing but the result reaches it meanwhile.
+    unsafe { &*(column as *const [AtomicU32]) }
+}
+
 /// A range in pieces of `length`, the last one perhaps shorter.
 pub(crate) fn pieces(range: Range<usize>, length: usize) -> impl Iterator<Item = Range<usize>> {
     let end = range.end;
@@ -181,6 +227,19 @@ mod tests {
             let squares = on(threads, || on_threads(0..100, |n: usize| n * n));
             assert!(squares.iter().enumerate().all(|(n, &square)| square == n * n));
             assert_eq!(on(threads, || keep_awake(|| 7)), 7);
+        }
+    }
+
+    #[test]
+    fn a_column_is_reordered_the_same_on_any_number_of_threads() {
+        let entries = 5 * PIECE as u32 / 2;
+        let column: Vec<u32> = (0..entries).map(|entry| entry.wrapping_mul(77)).collect();
+        let order: Vec<u32> = (0..entries).rev().collect();
+        let expected: Vec<u32> = column.iter().rev().copied().collect();
+        for threads in [1, 2, 3] {
+            let sums = |piece: Range<usize>| column[piece].iter().map(|&entry| u64::from(entry)).sum::<u64>();
+            assert_eq!(on(threads, || reordered(&column, &order)), expected);
+            assert_eq!(on(threads, || over_pieces(0..column.len(), sums)).len(), 3);
         }
     }
 

@@ -176,3 +176,25 @@ fn a_lattice_takes_only_its_own_codes_and_columns() {
     assert!(refused(&of_narrow, SENTINELS));
     assert!(refused(&of_wide, 1 + SENTINELS));
 }
+
+/// Making lists is shared by threads; what is made is not.
+#[test]
+fn lists_are_the_same_on_any_number_of_threads() {
+    let made = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut of = scattered([300.0, 130.0], [true, false], 1.0, 0.3, 50_000, 11);
+            let before = VerletList::new(&of.sectors, [&of.places[0], &of.places[1]], 0.3);
+            let order = of.sectors.order();
+            of.sectors.renumber(&order);
+            let places =
+                of.places.map(|place| order.iter().map(|&disc| place[disc as usize]).collect::<Vec<_>>());
+            let places = places.map(|place| [place.as_slice(), &[0.0; SENTINELS]].concat());
+            let after = VerletList::new(&of.sectors, [&places[0], &places[1]], 0.3);
+            assert!(before.entries() > 100_000 && after.entries() == before.entries());
+            (order, before, after)
+        })
+    };
+    let alone = made(1);
+    assert!([2, 3].map(made).iter().all(|made| *made == alone));
+}

@@ -15,6 +15,9 @@
 //! members   8  3  1  4  9 ...        within a sector in an order that does not depend on what went before
 //! ```
 //!
+//! They are sorted by counting, on all threads: first how many discs each sector has, then where each begins, then the discs
+//! are put there as they come, and at last each sector's few are sorted. So the result does not depend on the threads.
+//!
 //! Inside the box a disc is compared with two stretches, each in one loop; at the rim, where a stretch ends or goes on at the
 //! other side of the box, sector by sector.
 
@@ -24,7 +27,9 @@ use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};
 use crate::sweep::lattice::Frame;
+use crate::threads::{PIECE, in_pieces, is_alone, on_threads, over_pieces, pieces, reordered, shared};
 use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Rows of a band, at least.
 pub(super) const BAND: usize = 16;
@@ -203,12 +208,29 @@ impl Sectors {
         self.sector[disc] = NOWHERE;
     }
 
-    /// Makes every disc a member of the sector it is in, those of a sector in order of their `number`.
-    pub fn arrange(&mut self, number: impl Fn(usize) -> usize) {
+    /// Makes every disc a member of the sector it is in, those of a sector in order of their `number`, which no two have in
+    /// common.
+    pub fn arrange(&mut self, number: impl Fn(usize) -> usize + Sync) {
         let Sectors { sector, starts, members, .. } = self;
+        // Additions that no other thread sees half done are slow: one thread alone goes without.
+        let alone = is_alone(sector.len());
+        let add = |count: &AtomicU32, more: u32| match alone {
+            true => {
+                let before = count.load(Ordering::Relaxed);
+                count.store(before.wrapping_add(more), Ordering::Relaxed);
+                before
+            }
+            false => count.fetch_add(more, Ordering::Relaxed),
+        };
+        let inside = |discs: Range<usize>| {
+            let sectors = discs.clone().zip(&sector[discs]);
+            sectors.filter(|&(_, &sector)| sector != NOWHERE).map(|(disc, &sector)| (disc, sector as usize))
+        };
         starts.fill(0);
-        let inside = || sector.iter().enumerate().filter(|&(_, &sector)| sector != NOWHERE);
-        inside().for_each(|(_, &sector)| starts[sector as usize] += 1);
+        let counts = shared(starts);
+        over_pieces(0..sector.len(), |discs| {
+            inside(discs).for_each(|(_, sector)| _ = add(&counts[sector], 1));
+        });
         let mut end = 0;
         for start in starts.iter_mut() {
             end += *start;
@@ -216,14 +238,28 @@ impl Sectors {
         }
         members.resize(end as usize, 0);
         // From the ends down, so that the starts are left.
-        for (disc, &sector) in inside() {
-            let start = &mut starts[sector as usize];
-            *start -= 1;
-            members[*start as usize] = disc as u32;
-        }
-        for ends in starts.windows(2).filter(|ends| ends[1] - ends[0] > 1) {
-            members[ends[0] as usize..ends[1] as usize].sort_unstable_by_key(|&disc| number(disc as usize));
-        }
+        let (ends, places) = (shared(starts), shared(members));
+        over_pieces(0..sector.len(), |discs| {
+            inside(discs).for_each(|(disc, sector)| {
+                // Adding 2³² − 1 takes one away.
+                let place = add(&ends[sector], u32::MAX) - 1;
+                places[place as usize].store(disc as u32, Ordering::Relaxed);
+            });
+        });
+        let (starts, mut rest) = (&*starts, members.as_mut_slice());
+        let parts = pieces(0..starts.len() - 1, PIECE).map(|sectors| {
+            let length = (starts[sectors.end] - starts[sectors.start]) as usize;
+            let (here, behind) = std::mem::take(&mut rest).split_at_mut(length);
+            rest = behind;
+            (sectors, here)
+        });
+        on_threads(parts, |(sectors, members)| {
+            let first = starts[sectors.start];
+            for ends in starts[sectors.start..=sectors.end].windows(2).filter(|ends| ends[1] - ends[0] > 1) {
+                members[(ends[0] - first) as usize..(ends[1] - first) as usize]
+                    .sort_unstable_by_key(|&disc| number(disc as usize));
+            }
+        });
     }
 
     /// The discs in order of their sectors, row by row.
@@ -238,12 +274,18 @@ impl Sectors {
     pub fn renumber(&mut self, order: &[u32]) {
         assert_eq!(order.len(), self.sector.len(), "an order of all discs");
         let mut now = vec![NOWHERE; order.len()];
-        for (disc, &before) in order.iter().enumerate() {
-            let first = std::mem::replace(&mut now[before as usize], disc as u32) == NOWHERE;
-            assert!(first, "disc {before} is named twice");
-        }
-        self.sector = order.iter().map(|&before| self.sector[before as usize]).collect();
-        self.members.iter_mut().for_each(|member| *member = now[*member as usize]);
+        let entries = shared(&mut now);
+        over_pieces(0..order.len(), |discs| {
+            for (disc, &before) in discs.clone().zip(&order[discs]) {
+                entries[before as usize].store(disc as u32, Ordering::Relaxed);
+            }
+        });
+        // As many names as discs: if none is left out, none is named twice.
+        assert!(!now.contains(&NOWHERE), "an order that names every disc");
+        self.sector = reordered(&self.sector, order);
+        in_pieces(&mut self.members, |_, members| {
+            members.iter_mut().for_each(|member| *member = now[*member as usize]);
+        });
     }
 
     /// The members of a sector and those that follow in the row, up to `more` sectors on.

@@ -32,7 +32,7 @@ const ROWS: usize = 8;
 /// Each pair nearer than contact and skin, once, with the disc that comes first in the order of the sectors.
 ///
 /// Places stay those seen from the sectors in which discs were when the lists were made.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct VerletList {
     grid: Grid,
     reach: f64,
@@ -99,25 +99,48 @@ impl VerletList {
             part.rows = starts;
             part
         };
+        let parts = on_threads(pieces(0..grid.counts[1], ROWS), part);
+        let of_all =
+            |column: fn(&Part) -> &Vec<u32>| parts.iter().map(|part| column(part).len()).sum::<usize>();
+        let (all_own, all_partners) = (of_all(|part| &part.own), of_all(|part| &part.partners));
         let mut list = VerletList {
             grid,
             reach,
             discs,
-            rows: Vec::with_capacity(grid.counts[1] + 1),
-            own: Vec::with_capacity(discs),
-            first: Vec::with_capacity(discs + 1),
-            partners: Vec::new(),
+            rows: vec![0; grid.counts[1] + 1],
+            own: vec![0; all_own],
+            first: vec![0; all_own + 1],
+            partners: vec![0; all_partners],
         };
-        for part in on_threads(pieces(0..grid.counts[1], ROWS), part) {
-            let (own, partners) = (list.own.len() as u32, list.partners.len() as u32);
-            list.rows.extend(part.rows.into_iter().map(|row| row + own));
-            list.own.extend(part.own);
-            list.first.extend(part.first.into_iter().map(|first| first + partners));
-            list.partners.extend(part.partners);
-        }
-        list.rows.push(list.own.len() as u32);
-        list.first.push(list.partners.len() as u32);
+        list.rows[grid.counts[1]] = all_own as u32;
+        list.first[all_own] = all_partners as u32;
+        list.join(parts);
         list
+    }
+
+    /// Copies the lists of all parts to where they belong, one behind the other.
+    fn join(&mut self, parts: Vec<Part>) {
+        let VerletList { rows, own, first, partners, .. } = self;
+        let mut rest = [rows, own, first, partners].map(Vec::as_mut_slice);
+        let mut before = [0; 2];
+        let copies = parts.into_iter().map(|part| {
+            let lengths = [part.rows.len(), part.own.len(), part.first.len(), part.partners.len()];
+            let mut to = rest.each_mut().into_iter().zip(lengths).map(|(rest, length)| {
+                let (here, behind) = std::mem::take(rest).split_at_mut(length);
+                *rest = behind;
+                here
+            });
+            let to: [&mut [u32]; 4] = std::array::from_fn(|_| to.next().unwrap_or_default());
+            let from = before;
+            before = [before[0] + part.own.len() as u32, before[1] + part.partners.len() as u32];
+            (part, to, from)
+        });
+        on_threads(copies, |(part, [rows, own, first, partners], [own_before, partners_before])| {
+            rows.iter_mut().zip(part.rows).for_each(|(to, row)| *to = row + own_before);
+            own.copy_from_slice(&part.own);
+            first.iter_mut().zip(part.first).for_each(|(to, first)| *to = first + partners_before);
+            partners.copy_from_slice(&part.partners);
+        });
     }
 
     /// Pairs listed.
