@@ -8,7 +8,7 @@ use stripmine::method::Failure;
 use stripmine::method::lattice_md::Document;
 use stripmine::method::lattice_md::Engine;
 use stripmine::method::lattice_md::{
-    Contacts, GearValues, Machine, Model, OnConflict, Scheme, Search, Watch,
+    Contacts, FastSearch, GearValues, Machine, Model, OnConflict, Scheme, Watch,
 };
 use stripmine::observe::{Observation, Scenery};
 use stripmine::particles::{Kind, Particles};
@@ -18,10 +18,10 @@ use stripmine_kernels::sweep::lattice::LatticeShape;
 use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, advance, arena, fast, gas, grain, simulate};
 
-const LATTICE: Search = Search::Lattice(OnConflict::Stop);
+const LATTICE: FastSearch = FastSearch::Lattice(OnConflict::Stop);
 
 /// All ways of finding contacts.
-const SEARCHES: [Search; 3] = [LATTICE, Search::Sectors, Search::Lists { skin: 0.15 }];
+const SEARCHES: [FastSearch; 3] = [LATTICE, FastSearch::Sectors, FastSearch::Lists { skin: 0.15 }];
 
 const SCHEMES: [Scheme; 4] = [
     Scheme::VelocityVerlet,
@@ -161,14 +161,14 @@ fn conflicts_are_resolved_beside_the_lattice() {
         start.0.shape = LatticeShape::new(counts[0], counts[1], &start.0.mask, [true; 2]).unwrap();
         start.0.frame.edge = [0, 1].map(|axis| sides[axis] / counts[axis] as f64);
         start.0.scheme = scheme;
-        let run = |search: Search, set: InstructionSet| {
+        let run = |search: FastSearch, set: InstructionSet| {
             let machine = Machine { execution: Execution::Chained, set };
             let mut gas = simulate(Precision::F64, &start, Contacts::Fast(search), machine);
             advance(gas.as_mut(), 300);
             gas
         };
-        let resolve = Search::Lattice(OnConflict::Resolve);
-        let (rival, resolved) = (run(Search::Sectors, fast().set), run(resolve, fast().set));
+        let resolve = FastSearch::Lattice(OnConflict::Resolve);
+        let (rival, resolved) = (run(FastSearch::Sectors, fast().set), run(resolve, fast().set));
         let off = differences(&start.0, &rival.particles(), &resolved.particles());
         assert!(off[0] < 1e-10 && off[1] < 1e-9, "{off:?}");
         let conflicts = resolved.totals().shared_cells;

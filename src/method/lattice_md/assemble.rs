@@ -3,7 +3,7 @@
 use super::check::Checked;
 use super::model::sides_of;
 use super::scene::By;
-use super::{Contacts, Discs, Engine, ListOptions, Machine, Model, Search, Watch, start};
+use super::{Contacts, Discs, Engine, FastSearch, ListOptions, Machine, Model, Watch, start};
 use crate::method::Failure;
 use stripmine_kernels::law::granular::Disc;
 
@@ -47,11 +47,11 @@ pub(super) fn contacts(checked: &Checked) -> Contacts {
     let (search, skin) = (&scene.search, geometry.skin);
     match search.by {
         By::Auto | By::Lattice if scene.machine.is_fast() => {
-            Contacts::Fast(Search::Lattice(search.on_conflict))
+            Contacts::Fast(FastSearch::Lattice(search.on_conflict))
         }
         By::Auto | By::Lattice => Contacts::Lattice,
-        By::Sectors => Contacts::Fast(Search::Sectors),
-        By::NeighborList if scene.machine.is_fast() => Contacts::Fast(Search::Lists { skin }),
+        By::Sectors => Contacts::Fast(FastSearch::Sectors),
+        By::NeighborList if scene.machine.is_fast() => Contacts::Fast(FastSearch::Lists { skin }),
         By::NeighborList => Contacts::Lists(ListOptions { rebuild: search.rebuild, skin }),
     }
 }

@@ -6,7 +6,7 @@
 
 use super::assemble::{contacts, model_following_energy};
 use super::check::Checked;
-use super::{Contacts, Discs, Model, Scheme, Search};
+use super::{Contacts, Discs, FastSearch, Model, Scheme};
 use crate::memory::{Foreseen, available};
 use crate::particles::Particle;
 use crate::scene::Precision;
@@ -121,7 +121,7 @@ impl Sizes {
     }
 
     /// Bytes that a fast method keeps, and of the columns of its checkpoints.
-    fn fast(&self, search: Search) -> (f64, f64) {
+    fn fast(&self, search: FastSearch) -> (f64, f64) {
         let carried = match self.model.scheme {
             Scheme::Gear(values) => values.count(),
             Scheme::VelocityVerlet => 2,
@@ -134,15 +134,15 @@ impl Sizes {
         };
         let mut written = self.state * derivatives + 3.0 * self.force + 2.0 * 8.0;
         let home = match search {
-            Search::Lattice(_) => {
+            FastSearch::Lattice(_) => {
                 let shape = &self.model.shape;
                 let padded = shape.padded() as f64;
                 let sparse = self.discs < SPARSE * shape.cells() as f64;
                 let copies = if sparse { 0.0 } else { 8.0 + if self.vary { 4.0 } else { 0.0 } };
                 4.0 * self.discs + (4.0 + copies + 0.125) * padded
             }
-            Search::Sectors => sectors(),
-            Search::Lists { skin } => {
+            FastSearch::Sectors => sectors(),
+            FastSearch::Lists { skin } => {
                 written += 2.0 * self.state;
                 let pairs = 0.5 * self.neighbours(self.reach + skin);
                 sectors() + (2.0 * self.state + 8.0 + 4.0 * pairs) * self.discs

@@ -64,7 +64,7 @@ pub use check::{Checked, Estimates, Geometry};
 pub use document::Document;
 pub use engine::Engine;
 pub use entry::ENTRY;
-pub use fast::{OnConflict, Search};
+pub use fast::{FastSearch, OnConflict};
 pub use model::{Discs, GearValues, Model, OnLongStep, Scheme, Watch};
 pub use neighbor_list::{ListOptions, Rebuild};
 pub use programs::{Part, StepProgram, execute, ledger, programs, rival_ledger};

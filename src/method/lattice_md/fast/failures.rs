@@ -1,13 +1,14 @@
 //! Who broke a precondition.
 
 use super::FastMd;
+use super::search::Search;
 use super::state::Move;
 use crate::method::lattice_md::OnLongStep;
 use crate::method::{Culprit, Failure};
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::sweep::fast::Met;
 
-impl<S: Precision, P: Precision> FastMd<S, P> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> FastMd<S, P, Q> {
     fn culprit_at(&self, disc: usize, position: [f64; 2]) -> Culprit {
         let velocity = [0, 1].map(|axis| self.state.row(axis, disc)[1].to_f64() / self.model.dt);
         let number = self.state.number(disc);
@@ -20,7 +21,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
 
     /// A disc that no cell takes: outside the box, or nowhere.
     pub(super) fn stray(&self, Move { disc, cell, place, .. }: Move, count: u64) -> Failure {
-        let frame = self.home.grid().frame;
+        let frame = self.search.grid().frame;
         let centre = [0, 1].map(|axis| frame.origin[axis] + (cell[axis] as f64 + 0.5) * frame.edge[axis]);
         let first = self.culprit_at(disc, [centre[0] + place[0], centre[1] + place[1]]);
         let step = self.steps;
@@ -50,7 +51,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
 
     /// Two discs that want one cell, with where they go if they are moving.
     pub(super) fn conflict(&self, discs: [(usize, Option<&Move>); 2]) -> Failure {
-        let frame = self.home.grid().frame;
+        let frame = self.search.grid().frame;
         let [first, second] = discs.map(|(disc, to)| match to {
             None => self.culprit(disc),
             Some(to) => {
@@ -66,7 +67,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
     fn penetration(&self, [first, second]: [usize; 2]) -> f64 {
         let at = |disc: usize| self.position(disc, self.state.place(disc));
         let [dx, dy] = self.model.domain().way(at(first), at(second));
-        let reach = self.state.radius(&self.model, first) + self.state.radius(&self.model, second);
+        let reach = self.state.radius(first) + self.state.radius(second);
         1.0 - dx.hypot(dy) / reach
     }
 

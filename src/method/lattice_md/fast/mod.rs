@@ -3,7 +3,7 @@
 //! its rivals, sectors and Verlet lists: the same state, law and integrator, and another way of finding contacts.
 
 mod failures;
-mod home;
+mod search;
 mod state;
 mod steps;
 
@@ -12,23 +12,70 @@ use super::programs::{WithLaw, with_law};
 use super::walls::walls_at;
 use super::{Engine, Phase, Timings, Totals};
 use super::{Model, Scheme};
+use crate::grid::sectors_of;
 use crate::io::checkpoint::Column;
 use crate::method::Failure;
 use crate::particles::Particles;
 use crate::scene::WallMotion;
-use home::Home;
-pub use home::{OnConflict, Search};
+pub use search::OnConflict;
+use search::{LatticeSearch, ListSearch, Search, SectorSearch};
 use state::{Move, State};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::isa::{ProgramError, Storage};
 use stripmine_kernels::keep_awake;
 use stripmine_kernels::law::Law;
 use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_kernels::sweep::fast::Met;
 
-/// A fast simulation with state of precision `S` and forces of precision `P`.
-pub(super) struct FastMd<S, P> {
+/// How the fast engine finds contacts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FastSearch {
+    /// On the lattice with at most one disc a cell.
+    Lattice(OnConflict),
+    /// In sectors, which hold any number of discs.
+    Sectors,
+    /// In lists of near partners, made again whenever a disc has moved half the skin.
+    Lists {
+        /// How much farther than contact a listed pair may be (length).
+        skin: f64,
+    },
+}
+
+/// Begins a fast simulation with state of precision `S` and forces of precision `P`. Which search it has is decided here,
+/// once.
+///
+/// # Errors
+/// [`Failure`] if the start breaks a precondition already, or the box is none for sectors.
+pub(super) fn start<S: Precision, P: Precision>(
+    model: Model,
+    search: FastSearch,
+    set: InstructionSet,
+    walls: WallMotion,
+    particles: Particles,
+) -> Result<Box<dyn Engine>, Failure> {
+    let radii = particles.all().iter().map(|disc| disc.radius);
+    let (discs, reach) = (particles.len(), 2.0 * particles.radii().map_or(1.0, |[_, largest]| largest));
+    let single = S::NAME != f64::NAME || P::NAME != f64::NAME;
+    let sectors = |skin: f64| sectors_of(&model.domain(), reach + skin, single, discs);
+    Ok(match search {
+        FastSearch::Lattice(on_conflict) => {
+            let search = LatticeSearch::<P>::new::<S>(model.shape, model.frame, on_conflict, radii);
+            Box::new(FastMd::<S, P, _>::new(model, search, set, walls, particles)?)
+        }
+        FastSearch::Sectors => {
+            let search = SectorSearch::<P>::new::<S>(sectors(0.0)?, discs, reach);
+            Box::new(FastMd::<S, P, _>::new(model, search, set, walls, particles)?)
+        }
+        FastSearch::Lists { skin } => {
+            let search = ListSearch::<S, P>::new(sectors(skin)?, discs, reach, skin);
+            Box::new(FastMd::<S, P, _>::new(model, search, set, walls, particles)?)
+        }
+    })
+}
+
+/// A fast simulation with state of precision `S`, forces of precision `P` and search `Q`.
+struct FastMd<S, P, Q> {
     model: Model,
     set: InstructionSet,
     walls: WallMotion,
@@ -36,7 +83,7 @@ pub(super) struct FastMd<S, P> {
     state: State<S>,
     /// Force along x, along y, torque.
     sums: [Vec<P>; 3],
-    home: Home<S, P>,
+    search: Q,
     /// Changes of cells since the discs were put in order.
     changes: usize,
     met: u64,
@@ -51,25 +98,24 @@ pub(super) struct FastMd<S, P> {
     timings: Timings,
 }
 
-impl<S: Precision, P: Precision> FastMd<S, P> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> FastMd<S, P, Q> {
     /// Lays out `particles` and finds their first forces.
     ///
     /// # Errors
     /// [`Failure`] if the start breaks a precondition already.
-    pub(super) fn new(
+    fn new(
         model: Model,
-        search: Search,
+        search: Q,
         set: InstructionSet,
         walls: WallMotion,
         particles: Particles,
     ) -> Result<Self, Failure> {
-        let home = Home::new(search, &model, &particles)?;
         let sums = [0, 1, 2].map(|_| vec![P::default(); particles.len()]);
         let crossings = Crossings::new(model.counts_crossings(), particles.len());
         let mut simulation = FastMd {
             state: State::new(&model, &particles),
             sums,
-            home,
+            search,
             set,
             walls,
             start: particles,
@@ -98,15 +144,15 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
     /// there are such; gives what each disc was before. No sum depends on the numbers.
     fn put_in_order(&mut self) -> Vec<u32> {
         let grains = self.start.grain_count();
-        let mut order = self.home.order();
+        let mut order = self.search.order();
         // Grains first, as ever.
         order.sort_by_key(|&disc| disc as usize >= grains);
-        self.home.renumber(&order);
+        self.search.renumber(&order);
         self.state.renumber(&order);
         for sum in &mut self.sums {
             *sum = order.iter().map(|&disc| sum[disc as usize]).collect();
         }
-        self.home.make_lists(&self.state);
+        self.search.make_lists(&self.state);
         self.rim = self.discs_at_the_rim();
         self.changes = 0;
         order
@@ -158,19 +204,19 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
 }
 
 /// A sweep with the law of the model.
-struct Sweeping<'a, S, P>(&'a mut FastMd<S, P>);
+struct Sweeping<'a, S, P, Q>(&'a mut FastMd<S, P, Q>);
 
-impl<S: Precision, P: Precision> WithLaw for Sweeping<'_, S, P> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> WithLaw for Sweeping<'_, S, P, Q> {
     type Output = Result<Met, ProgramError>;
 
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
-        let FastMd { model, state, sums, home, set, .. } = self.0;
+        let FastMd { model, state, sums, search, set, .. } = self.0;
         let sums = sums.each_mut().map(Vec::as_mut_slice);
-        home.sweep(&law, &state.discs(model), sums, model.asked(), *set)
+        search.sweep(&law, &state.discs(model), sums, model.asked(), *set)
     }
 }
 
-impl<S: Precision, P: Precision> Engine for FastMd<S, P> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> Engine for FastMd<S, P, Q> {
     fn step(&mut self) -> Result<(), Failure> {
         let first = self.steps == 0;
         let mut timings = self.timings;
@@ -184,7 +230,7 @@ impl<S: Precision, P: Precision> Engine for FastMd<S, P> {
         timings.time(Phase::Index, || keep_awake(|| self.keep_index(&passed.left)))?;
         self.timings = timings;
         self.judge_steps(&passed.far)?;
-        self.totals.shared_cells += self.home.guests() as u64;
+        self.totals.shared_cells += self.search.guests() as u64;
         let power = self.meet()?;
         self.totals.add_work(self.model.dt, power, self.wall_power());
         Ok(())
@@ -266,7 +312,7 @@ impl<S: Precision, P: Precision> Engine for FastMd<S, P> {
     }
 
     fn lists(&self) -> Option<(usize, u64)> {
-        self.home.lists().map(|lists| (lists.entries(), lists.made))
+        self.search.lists().map(|lists| (lists.entries(), lists.made()))
     }
 
     fn timings(&self) -> &Timings {

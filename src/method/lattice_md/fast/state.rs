@@ -1,5 +1,6 @@
 //! The discs of a fast simulation: columns in the order of their cells, positions seen from the cells' centres.
 
+use super::search::Search;
 use super::{FastMd, carried};
 use crate::io::checkpoint::Column;
 use crate::method::lattice_md::{Discs, Model};
@@ -23,7 +24,9 @@ pub(super) struct Move {
 pub(super) struct State<S> {
     /// Scaled derivatives: for each degree of freedom those that are carried from step to step.
     columns: Vec<Vec<Vec<S>>>,
-    /// Radii and inverse masses, and moments of inertia, where discs vary.
+    /// The radius of every disc (length), where they are alike.
+    alike: Option<f64>,
+    /// Radii, and inverse masses and moments of inertia, where discs vary.
     radius: Vec<S>,
     inverse: [Vec<S>; 2],
     /// Which of the scene's discs each is.
@@ -65,7 +68,11 @@ impl<S: Precision> State<S> {
             inverse[1] = column(&|disc| of_grain(disc, 1.0 / inertia(disc)), 1.0);
         }
         let numbers = (0..discs.len() as u32).collect();
-        State { columns, radius, inverse, numbers, grains: particles.grain_count() }
+        let alike = match model.discs {
+            Discs::Equal { disc, .. } => Some(disc.radius),
+            Discs::Varying => None,
+        };
+        State { columns, alike, radius, inverse, numbers, grains: particles.grain_count() }
     }
 
     /// Which of the scene's discs a disc is.
@@ -104,11 +111,8 @@ impl<S: Precision> State<S> {
     }
 
     /// Radius of a disc (length).
-    pub(super) fn radius(&self, model: &Model, disc: usize) -> f64 {
-        match model.discs {
-            Discs::Equal { disc, .. } => disc.radius,
-            Discs::Varying => self.radius[disc].to_f64(),
-        }
+    pub(super) fn radius(&self, disc: usize) -> f64 {
+        self.alike.unwrap_or_else(|| self.radius[disc].to_f64())
     }
 
     /// Inverse masses or moments of inertia, for a degree of freedom.
@@ -167,11 +171,11 @@ const SUMS: [&str; 3] = ["Fx", "Fy", "torque"];
 const CELL: [&str; 2] = ["cell.column", "cell.row"];
 const MADE_AT: [&str; 2] = ["listed.x", "listed.y"];
 
-impl<S: Precision, P: Precision> FastMd<S, P> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> FastMd<S, P, Q> {
     /// Where a disc is, seen from the origin (length), when it is at `place` in its cell.
     pub(super) fn position(&self, disc: usize, place: [f64; 2]) -> [f64; 2] {
-        let frame = self.home.grid().frame;
-        let cell = self.home.cell(disc).unwrap_or_default();
+        let frame = self.search.grid().frame;
+        let cell = self.search.cell(disc).unwrap_or_default();
         [0, 1].map(|axis| frame.origin[axis] + (cell[axis] as f64 + 0.5) * frame.edge[axis] + place[axis])
     }
 
@@ -188,10 +192,10 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             columns.push(((*name).to_owned(), to_column(numbers, |disc| sum[disc])));
         }
         for (axis, name) in CELL.iter().enumerate() {
-            let cell = |disc| self.home.cell(disc).map_or(f64::NAN, |cell| cell[axis] as f64);
+            let cell = |disc| self.search.cell(disc).map_or(f64::NAN, |cell| cell[axis] as f64);
             columns.push(((*name).to_owned(), to_column(numbers, cell)));
         }
-        if let Some(lists) = self.home.lists() {
+        if let Some(lists) = self.search.lists() {
             for (axis, name) in MADE_AT.iter().enumerate() {
                 let made_at = lists.made_at(axis);
                 columns.push(((*name).to_owned(), to_column(numbers, |disc| made_at[disc])));
@@ -235,12 +239,12 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             *sum = find(name, P::NAME)?.into_iter().map(P::from_f64).collect();
         }
         let cells = [find(CELL[0], f64::NAME)?, find(CELL[1], f64::NAME)?];
-        let counts = self.home.grid().counts;
+        let counts = self.search.grid().counts;
         let inside = |axis: usize, &cell: &f64| (0.0..counts[axis] as f64).contains(&cell);
         if (0..2).any(|axis| !cells[axis].iter().all(|cell| inside(axis, cell))) {
             return Err("a cell lies outside the lattice".to_owned());
         }
-        let made_at = match self.home.lists() {
+        let made_at = match self.search.lists() {
             Some(_) => Some([find(MADE_AT[0], S::NAME)?, find(MADE_AT[1], S::NAME)?]),
             None => None,
         };
@@ -248,14 +252,14 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
             Some((_, Column::F64(values))) => Ok(values.clone()),
             _ => Err(format!("the column {name} is missing")),
         })?;
-        (0..numbers.len()).for_each(|disc| self.home.leave(disc));
+        (0..numbers.len()).for_each(|disc| self.search.leave(disc));
         for (disc, (&column, &row)) in cells[0].iter().zip(&cells[1]).enumerate() {
             let cell = [column as usize, row as usize];
             let to = Move { disc, cell, place: state.place(disc), periods: [0.0; 2] };
-            let entered = self.home.enter(&to, &self.model, &state);
+            let entered = self.search.enter(&to, &state);
             entered.map_err(|_| "two discs are in one cell".to_owned())?;
         }
-        self.home.settle(&self.model, &state);
+        self.search.arrange(&state);
         (self.state, self.sums) = (state, sums);
         // Lists are made of the places of then.
         let now: Vec<[f64; 2]> = (0..numbers.len()).map(|disc| self.state.place(disc)).collect();

@@ -1,5 +1,6 @@
 //! From one step to the next: the pass over the discs, and those that change cells.
 
+use super::search::Search;
 use super::state::{Move, State};
 use super::{FastMd, walls_at};
 use crate::domain::Domain;
@@ -61,17 +62,17 @@ pub(super) fn corrected<S: Precision>(
 
 /// Corrects the last step, unless the first begins, and predicts the next; gives the discs that left their cells and those
 /// that are too fast.
-pub(super) fn advance<S: Precision, P: Precision>(
-    simulation: &mut FastMd<S, P>,
+pub(super) fn advance<S: Precision, P: Precision, Q: Search<S, P>>(
+    simulation: &mut FastMd<S, P, Q>,
     first: bool,
 ) -> Result<Passed, ProgramError> {
-    let FastMd { model, state, sums, home, start, set, steps, .. } = simulation;
+    let FastMd { model, state, sums, search, start, set, steps, .. } = simulation;
     let freedoms = model.freedoms();
     let (columns, inverse, ids) = state.for_advance();
     let state = columns.iter_mut().map(|row| row.iter_mut().map(Vec::as_mut_slice).collect()).collect();
     let sums = sums.iter_mut().take(freedoms).map(Vec::as_mut_slice).collect();
     let discs = start.grain_count();
-    let (limit, copies) = home.displacement_limit();
+    let (limit, copies) = search.displacement_limit();
     let longest_step = model.watch.map_or(f64::INFINITY, |watch| watch.longest_step());
     with_motion!(model, |motion| {
         let advance = Advance {
@@ -89,10 +90,10 @@ pub(super) fn advance<S: Precision, P: Precision>(
     })
 }
 
-impl<S: Precision, P: Precision> FastMd<S, P> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> FastMd<S, P, Q> {
     /// The cell of a disc at a position (length), and its place there.
     pub(super) fn locate(&self, disc: usize, position: [f64; 2]) -> Result<Move, Failure> {
-        let frame = self.home.grid().frame;
+        let frame = self.search.grid().frame;
         let place = [0, 1].map(|axis| position[axis] - (frame.origin[axis] + 0.5 * frame.edge[axis]));
         let from = Move { disc, cell: [0, 0], place, periods: [0.0; 2] };
         self.settled(from).ok_or_else(|| self.stray(from, 1))
@@ -102,7 +103,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
     /// cell.
     fn settled(&self, from: Move) -> Option<Move> {
         let Move { cell, place, .. } = from;
-        let Grid { frame, counts, periodic } = self.home.grid();
+        let Grid { frame, counts, periodic } = self.search.grid();
         let mut to = from;
         for axis in 0..2 {
             let (edge, count) = (frame.edge[axis], counts[axis] as f64);
@@ -140,7 +141,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
                 walls.push(self.locate(disc, [at[0] + displacement[0], at[1] + displacement[1]])?);
             }
         }
-        if self.home.lists().is_some() {
+        if self.search.lists().is_some() {
             return self.keep_lists(left, &walls);
         }
         let mut moves = self.settle_all(left.iter().map(|&disc| disc as usize))?;
@@ -154,7 +155,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
     fn settle_all(&self, discs: impl Iterator<Item = usize>) -> Result<Vec<Move>, Failure> {
         let (mut moves, mut strays) = (Vec::new(), Vec::new());
         for disc in discs {
-            let cell = self.home.cell(disc).unwrap_or_default();
+            let cell = self.search.cell(disc).unwrap_or_default();
             let from = Move { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
             match self.settled(from) {
                 Some(to) => moves.push(to),
@@ -169,23 +170,23 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
 
     /// Moves walls within the cells in which they are listed, and makes the lists anew if a disc has gone too far.
     fn keep_lists(&mut self, left: &[u32], walls: &[Move]) -> Result<(), Failure> {
-        let edge = self.home.grid().frame.edge;
+        let edge = self.search.grid().frame.edge;
         let domain = self.model.domain();
         let mut stale = !left.is_empty();
         for to in walls {
-            let (from, cell) = (self.home.cell(to.disc).unwrap_or_default(), to.cell);
+            let (from, cell) = (self.search.cell(to.disc).unwrap_or_default(), to.cell);
             let centre = |cell: [usize; 2]| [0, 1].map(|axis| cell[axis] as f64 * edge[axis]);
             let way = domain.way(centre(from), centre(cell));
             let place = [0, 1].map(|axis| to.place[axis] + way[axis]);
             self.state.put(to.disc, place);
-            stale |= self.home.lists().is_some_and(|lists| lists.has_strayed(to.disc, place));
+            stale |= self.search.lists().is_some_and(|lists| lists.has_strayed(to.disc, place));
         }
         let outside = |&&disc: &&u32| self.is_outside(disc as usize);
         if let Some(&first) =
             self.rim.iter().filter(outside).min_by_key(|&&disc| self.state.number(disc as usize))
         {
             let count = self.rim.iter().filter(outside).count() as u64;
-            let cell = self.home.cell(first as usize).unwrap_or_default();
+            let cell = self.search.cell(first as usize).unwrap_or_default();
             let place = self.state.place(first as usize);
             return Err(self.stray(Move { disc: first as usize, cell, place, periods: [0.0; 2] }, count));
         }
@@ -200,7 +201,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
     /// The discs that may leave through an open side before lists are made anew.
     pub(super) fn discs_at_the_rim(&self) -> Vec<u32> {
         let Domain { origin, sides, periodic } = self.model.domain();
-        let Some(lists) = self.home.lists().filter(|_| periodic != [true; 2]) else { return vec![] };
+        let Some(lists) = self.search.lists().filter(|_| periodic != [true; 2]) else { return vec![] };
         // A little more than the lists last: rounding must hide no disc.
         let reach = 0.5 * lists.skin() * (1.0 + 1e-6);
         let near = |disc: usize| {
@@ -215,26 +216,26 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
 
     /// Whether a disc is beyond an open side.
     fn is_outside(&self, disc: usize) -> bool {
-        let cell = self.home.cell(disc).unwrap_or_default();
+        let cell = self.search.cell(disc).unwrap_or_default();
         let from = Move { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
         self.settled(from).is_none()
     }
 
     /// Moves discs into their new cells; if two want one that must be one disc's, none is moved.
     pub(super) fn rehouse(&mut self, moves: &[Move]) -> Result<(), Failure> {
-        if self.home.is_exclusive() {
+        if self.search.is_exclusive() {
             self.refuse_conflicts(moves)?;
         }
-        moves.iter().for_each(|to| self.home.leave(to.disc));
+        moves.iter().for_each(|to| self.search.leave(to.disc));
         for to in moves {
             if to.disc < self.start.grain_count() {
                 self.crossings.add(self.state.number(to.disc), to.periods);
             }
             self.state.put(to.disc, to.place);
-            let entered = self.home.enter(to, &self.model, &self.state);
+            let entered = self.search.enter(to, &self.state);
             debug_assert!(entered.is_ok(), "looked for above");
         }
-        self.home.settle(&self.model, &self.state);
+        self.search.arrange(&self.state);
         Ok(())
     }
 
@@ -247,7 +248,7 @@ impl<S: Precision, P: Precision> FastMd<S, P> {
         let twice = targets.windows(2).find(|pair| pair[0].0 == pair[1].0).map(|pair| (pair[0].1, pair[1].1));
         let taken = || {
             targets.iter().find_map(|&(cell, disc)| {
-                let there = self.home.owner(cell)?;
+                let there = self.search.owner(cell)?;
                 moving.binary_search(&there).is_err().then_some((there, disc))
             })
         };

@@ -4,7 +4,7 @@ mod account;
 mod saved;
 
 use super::crossings::Crossings;
-use super::fast::{FastMd, Search};
+use super::fast::{self, FastSearch};
 use super::neighbor_list::Rival;
 use super::programs::rival_ledger;
 use super::walls::walls_at;
@@ -30,7 +30,7 @@ pub enum Contacts {
     /// On the lattice: the method of the source.
     Lattice,
     /// Each pair once and the law for contacts only; the machine's execution does not matter.
-    Fast(Search),
+    Fast(FastSearch),
     /// By neighbour lists: its rival.
     Lists(ListOptions),
 }
@@ -58,11 +58,11 @@ pub fn start(
 ) -> Result<Box<dyn Engine>, Failure> {
     if let Contacts::Fast(search) = contacts {
         let set = machine.set;
-        return Ok(match precision {
-            Precision::F64 => Box::new(FastMd::<f64, f64>::new(model, search, set, walls, particles)?),
-            Precision::F32 => Box::new(FastMd::<f32, f32>::new(model, search, set, walls, particles)?),
-            Precision::Mixed => Box::new(FastMd::<f64, f32>::new(model, search, set, walls, particles)?),
-        });
+        return match precision {
+            Precision::F64 => fast::start::<f64, f64>(model, search, set, walls, particles),
+            Precision::F32 => fast::start::<f32, f32>(model, search, set, walls, particles),
+            Precision::Mixed => fast::start::<f64, f32>(model, search, set, walls, particles),
+        };
     }
     Ok(match precision {
         Precision::F64 => Box::new(LatticeMd::<f64, f64>::new(model, contacts, machine, walls, particles)?),

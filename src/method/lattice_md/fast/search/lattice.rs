@@ -1,0 +1,132 @@
+//! Pairs found on a lattice with at most one disc a cell.
+
+use super::super::state::{Move, State};
+use super::{Search, rows};
+use crate::words::define_words;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::law::{Asked, Law};
+use stripmine_kernels::sweep::fast::lattice::{Candidates, Codes, Lattice, Occupancy, Taken};
+use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Grid, Met, Sweep};
+use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
+
+define_words! {
+    /// What becomes of a disc whose lattice cell is another's.
+    pub enum OnConflict {
+        /// The run stops.
+        Stop = "stop",
+        /// It is kept in a list beside the lattice, and every such disc and step counted.
+        Resolve = "resolve",
+    }
+}
+
+/// Discs in the cells of a lattice.
+pub(in crate::method) struct LatticeSearch<P> {
+    occupancy: Occupancy,
+    on_conflict: OnConflict,
+    codes: Codes<P>,
+    sweep: Sweep<Candidates>,
+}
+
+impl<P: Precision> LatticeSearch<P> {
+    /// An empty lattice for as many discs as there are radii (length).
+    pub(in crate::method) fn new<S: Precision>(
+        shape: LatticeShape,
+        frame: Frame,
+        on_conflict: OnConflict,
+        radii: impl ExactSizeIterator<Item = f64> + Clone,
+    ) -> Self {
+        let discs = radii.len();
+        let smallest = radii.clone().reduce(f64::min);
+        let largest = radii.reduce(f64::max);
+        let occupancy =
+            Occupancy::new(shape, frame, discs, 2.0 * largest.unwrap_or(1.0), smallest != largest);
+        let codes = Codes::new(&occupancy, frame);
+        let sweep = Sweep::new(rows::<S, P, _>(&Lattice { occupancy: &occupancy, codes: &codes }));
+        LatticeSearch { occupancy, on_conflict, codes, sweep }
+    }
+}
+
+impl<S: Precision, P: Precision> Search<S, P> for LatticeSearch<P> {
+    fn grid(&self) -> Grid {
+        self.occupancy.grid()
+    }
+
+    fn cell(&self, disc: usize) -> Option<[usize; 2]> {
+        self.occupancy.cell(disc)
+    }
+
+    fn leave(&mut self, disc: usize) {
+        self.occupancy.leave(disc);
+    }
+
+    fn enter(&mut self, to: &Move, state: &State<S>) -> Result<(), Taken> {
+        let Move { disc, cell, place, .. } = *to;
+        let occupancy = &mut self.occupancy;
+        let entered = occupancy.enter(disc, cell, place, state.radius(disc));
+        let Err(Taken(owner)) = entered else { return Ok(()) };
+        if self.on_conflict == OnConflict::Stop {
+            return entered;
+        }
+        // The cell is that one's with the smallest number: a state knows no history.
+        let mut guest = disc;
+        if state.number(disc) < state.number(owner) {
+            occupancy.leave(owner);
+            occupancy.enter(disc, cell, place, state.radius(disc))?;
+            guest = owner;
+        }
+        occupancy.enter_as_guest(guest, cell, |disc| state.number(disc));
+        Ok(())
+    }
+
+    fn arrange(&mut self, state: &State<S>) {
+        let occupancy = &mut self.occupancy;
+        // Guests whose host has gone have the cell to themselves.
+        for (guest, cell) in occupancy.guests().to_vec() {
+            let guest = guest as usize;
+            if occupancy.disc(cell[0], cell[1]).is_none() {
+                occupancy.leave(guest);
+                let entered = occupancy.enter(guest, cell, state.place(guest), state.radius(guest));
+                debug_assert!(entered.is_ok(), "the cell is empty");
+            }
+        }
+        occupancy.repeat_images();
+    }
+
+    fn order(&self) -> Vec<u32> {
+        self.occupancy.order()
+    }
+
+    fn renumber(&mut self, order: &[u32]) {
+        self.occupancy.renumber(order);
+    }
+
+    fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<Copies<'_>>) {
+        (DisplacementLimit::Cell(self.occupancy.grid().frame.edge), self.occupancy.copies())
+    }
+
+    fn sweep<L: Law<2> + Sync>(
+        &mut self,
+        law: &L,
+        discs: &Discs<'_, S>,
+        sums: [&mut [P]; 3],
+        asked: Asked,
+        set: InstructionSet,
+    ) -> Result<Met, ProgramError> {
+        let LatticeSearch { occupancy, codes, sweep, .. } = self;
+        sweep.run(law, &Lattice { occupancy, codes }, discs, sums, asked, set)
+    }
+
+    fn is_exclusive(&self) -> bool {
+        self.on_conflict == OnConflict::Stop
+    }
+
+    fn owner(&self, [column, row]: [usize; 2]) -> Option<usize> {
+        (self.on_conflict == OnConflict::Stop).then(|| self.occupancy.disc(column, row)).flatten()
+    }
+
+    fn guests(&self) -> usize {
+        self.occupancy.guests().len()
+    }
+}

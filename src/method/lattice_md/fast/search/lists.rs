@@ -1,0 +1,130 @@
+//! Pairs found in Verlet lists, made again whenever a disc has moved half the skin.
+
+use super::super::state::{Move, State};
+use super::{Search, rows};
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::law::{Asked, Law};
+use stripmine_kernels::sweep::fast::lattice::Taken;
+use stripmine_kernels::sweep::fast::{
+    Copies, Discs, DisplacementLimit, Grid, Met, Sectors, Sweep, Touches, VerletList,
+};
+
+/// The sectors in which discs were when the lists were made, and the lists.
+pub(in crate::method) struct ListSearch<S, P> {
+    sectors: Sectors,
+    sweep: Sweep<Touches<P>>,
+    listed: Listed<S>,
+}
+
+/// Lists, and what they were made from.
+pub(in crate::method) struct Listed<S> {
+    list: Option<VerletList>,
+    skin: f64,
+    /// Places when the lists were made.
+    made_at: [Vec<S>; 2],
+    made: u64,
+}
+
+impl<S: Precision, P: Precision> ListSearch<S, P> {
+    /// No lists yet, for `discs` discs whose pairs act up to a distance `reach` (length); a listed pair may be farther
+    /// apart by `skin` (length). Sectors are wide enough for both.
+    pub(in crate::method) fn new(grid: Grid, discs: usize, reach: f64, skin: f64) -> Self {
+        let sectors = Sectors::new(grid, discs, reach);
+        let sweep = Sweep::new(rows::<S, P, _>(&sectors));
+        let listed = Listed { list: None, skin, made_at: [vec![], vec![]], made: 0 };
+        ListSearch { sectors, sweep, listed }
+    }
+}
+
+impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
+    fn grid(&self) -> Grid {
+        *self.sectors.grid()
+    }
+
+    fn cell(&self, disc: usize) -> Option<[usize; 2]> {
+        self.sectors.cell(disc)
+    }
+
+    fn leave(&mut self, disc: usize) {
+        self.sectors.leave(disc);
+    }
+
+    fn enter(&mut self, to: &Move, _: &State<S>) -> Result<(), Taken> {
+        self.sectors.enter(to.disc, to.cell);
+        Ok(())
+    }
+
+    fn arrange(&mut self, state: &State<S>) {
+        self.sectors.arrange(|disc| state.number(disc));
+    }
+
+    fn order(&self) -> Vec<u32> {
+        self.sectors.order()
+    }
+
+    fn renumber(&mut self, order: &[u32]) {
+        self.sectors.renumber(order);
+        self.listed.list = None;
+    }
+
+    fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<Copies<'_>>) {
+        let [x, y] = &self.listed.made_at;
+        (DisplacementLimit::From { places: [x, y], distance: 0.5 * self.listed.skin }, None)
+    }
+
+    fn sweep<L: Law<2> + Sync>(
+        &mut self,
+        law: &L,
+        discs: &Discs<'_, S>,
+        sums: [&mut [P]; 3],
+        asked: Asked,
+        set: InstructionSet,
+    ) -> Result<Met, ProgramError> {
+        match &self.listed.list {
+            Some(list) => self.sweep.run(law, list, discs, sums, asked, set),
+            None => Ok(Met::default()),
+        }
+    }
+
+    fn make_lists(&mut self, state: &State<S>) {
+        let ListSearch { sectors, listed, .. } = self;
+        let places = state.places();
+        listed.made_at = places.map(<[S]>::to_vec);
+        listed.list = Some(VerletList::new(sectors, places, listed.skin));
+        listed.made += 1;
+    }
+
+    fn lists(&self) -> Option<&Listed<S>> {
+        Some(&self.listed)
+    }
+}
+
+impl<S: Precision> Listed<S> {
+    /// Pairs listed.
+    pub(in crate::method) fn entries(&self) -> usize {
+        self.list.as_ref().map_or(0, VerletList::entries)
+    }
+
+    /// How often lists were made.
+    pub(in crate::method) fn made(&self) -> u64 {
+        self.made
+    }
+
+    /// How much farther than contact a listed pair may be (length).
+    pub(in crate::method) fn skin(&self) -> f64 {
+        self.skin
+    }
+
+    /// Where the discs were when the lists were made.
+    pub(in crate::method) fn made_at(&self, axis: usize) -> &[S] {
+        &self.made_at[axis]
+    }
+
+    /// Whether a disc at a place is as far from there as it may be.
+    pub(in crate::method) fn has_strayed(&self, disc: usize, place: [f64; 2]) -> bool {
+        let [dx, dy] = [0, 1].map(|axis| place[axis] - self.made_at[axis][disc].to_f64());
+        dx * dx + dy * dy > 0.25 * self.skin * self.skin
+    }
+}

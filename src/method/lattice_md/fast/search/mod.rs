@@ -1,0 +1,91 @@
+//! How the fast engine finds pairs: on a lattice, in sectors, or in Verlet lists.
+
+mod lattice;
+mod lists;
+mod sectors;
+
+pub(in crate::method) use lattice::LatticeSearch;
+pub use lattice::OnConflict;
+pub(in crate::method) use lists::{ListSearch, Listed};
+pub(in crate::method) use sectors::SectorSearch;
+
+use super::state::{Move, State};
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::law::{Asked, Law};
+use stripmine_kernels::sweep::fast::lattice::Taken;
+use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Finder, Grid, Met, Rows};
+
+/// Cells, which discs are in them, and the pairs found with their help. A disc's place is seen from the centre of its cell.
+///
+/// The engine is compiled for each search: what a search does not need costs nothing.
+pub(in crate::method) trait Search<S: Precision, P: Precision>: Send {
+    /// The cells: where they lie, how many there are, and which sides are periodic.
+    fn grid(&self) -> Grid;
+
+    /// Column and row of a disc; none if it is in no cell.
+    fn cell(&self, disc: usize) -> Option<[usize; 2]>;
+
+    /// Takes a disc out of its cell.
+    fn leave(&mut self, disc: usize);
+
+    /// Puts a disc into a cell.
+    ///
+    /// # Errors
+    /// [`Taken`] if the cell is another disc's.
+    fn enter(&mut self, to: &Move, state: &State<S>) -> Result<(), Taken>;
+
+    /// What is to be done when discs have changed their cells.
+    fn arrange(&mut self, state: &State<S>);
+
+    /// The discs in order of their cells.
+    fn order(&self) -> Vec<u32>;
+
+    /// Disc `n` is from now on what disc `order[n]` was. Lists are to be made again.
+    fn renumber(&mut self, order: &[u32]);
+
+    /// How far discs may go, and what else is written when they do.
+    fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<Copies<'_>>);
+
+    /// All pairs with a law.
+    ///
+    /// # Errors
+    /// [`ProgramError`] if the processor lacks the instructions, or the law asks for what it does not state.
+    fn sweep<L: Law<2> + Sync>(
+        &mut self,
+        law: &L,
+        discs: &Discs<'_, S>,
+        sums: [&mut [P]; 3],
+        asked: Asked,
+        set: InstructionSet,
+    ) -> Result<Met, ProgramError>;
+
+    /// Whether a cell must hold one disc only.
+    fn is_exclusive(&self) -> bool {
+        false
+    }
+
+    /// The disc that a cell holds, where it must hold one only.
+    fn owner(&self, _cell: [usize; 2]) -> Option<usize> {
+        None
+    }
+
+    /// How many discs are in cells that are another disc's.
+    fn guests(&self) -> usize {
+        0
+    }
+
+    /// Makes lists, where there are such, from the state as it stands.
+    fn make_lists(&mut self, _state: &State<S>) {}
+
+    /// The lists, where there are such.
+    fn lists(&self) -> Option<&Listed<S>> {
+        None
+    }
+}
+
+/// The rows that a sweep for a finder is made for.
+fn rows<S: Precision, P: Precision, F: Finder<S, P>>(finder: &F) -> Rows {
+    finder.rows()
+}

@@ -1,0 +1,71 @@
+//! Pairs found in sectors, which hold any number of discs.
+
+use super::super::state::{Move, State};
+use super::{Search, rows};
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::law::{Asked, Law};
+use stripmine_kernels::sweep::fast::lattice::Taken;
+use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Grid, Met, Sectors, Sweep, Touches};
+
+/// Discs in sectors.
+pub(in crate::method) struct SectorSearch<P> {
+    sectors: Sectors,
+    sweep: Sweep<Touches<P>>,
+}
+
+impl<P: Precision> SectorSearch<P> {
+    /// Empty sectors for `discs` discs whose pairs act up to a distance `reach` (length).
+    pub(in crate::method) fn new<S: Precision>(grid: Grid, discs: usize, reach: f64) -> Self {
+        let sectors = Sectors::new(grid, discs, reach);
+        let sweep = Sweep::new(rows::<S, P, _>(&sectors));
+        SectorSearch { sectors, sweep }
+    }
+}
+
+impl<S: Precision, P: Precision> Search<S, P> for SectorSearch<P> {
+    fn grid(&self) -> Grid {
+        *self.sectors.grid()
+    }
+
+    fn cell(&self, disc: usize) -> Option<[usize; 2]> {
+        self.sectors.cell(disc)
+    }
+
+    fn leave(&mut self, disc: usize) {
+        self.sectors.leave(disc);
+    }
+
+    fn enter(&mut self, to: &Move, _: &State<S>) -> Result<(), Taken> {
+        self.sectors.enter(to.disc, to.cell);
+        Ok(())
+    }
+
+    fn arrange(&mut self, state: &State<S>) {
+        self.sectors.arrange(|disc| state.number(disc));
+    }
+
+    fn order(&self) -> Vec<u32> {
+        self.sectors.order()
+    }
+
+    fn renumber(&mut self, order: &[u32]) {
+        self.sectors.renumber(order);
+    }
+
+    fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<Copies<'_>>) {
+        (DisplacementLimit::Cell(self.sectors.grid().frame.edge), None)
+    }
+
+    fn sweep<L: Law<2> + Sync>(
+        &mut self,
+        law: &L,
+        discs: &Discs<'_, S>,
+        sums: [&mut [P]; 3],
+        asked: Asked,
+        set: InstructionSet,
+    ) -> Result<Met, ProgramError> {
+        self.sweep.run(law, &self.sectors, discs, sums, asked, set)
+    }
+}
