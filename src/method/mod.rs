@@ -5,6 +5,7 @@ mod entry;
 pub mod failure;
 pub mod lattice_md;
 mod list;
+mod pairwise;
 pub mod throughput;
 
 pub use clock::{Clock, Every, Schedule, Until};

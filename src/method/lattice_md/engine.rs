@@ -1,6 +1,6 @@
 //! What the ways of stepping granular discs have in common: vector programs, the fast sweeps, and the source's rival.
 
-use super::{Timings, Totals};
+use super::{Elapsed, Timings, Totals};
 use crate::io::checkpoint::Column;
 use crate::method::Failure;
 use crate::particles::Particles;
@@ -14,11 +14,11 @@ pub trait Engine: Send {
     /// [`Failure`] says what broke, which particles, where, and what to do; the state is that of the failing step.
     fn step(&mut self) -> Result<(), Failure>;
 
-    /// Steps done since the start of the scene.
-    fn steps(&self) -> u64;
+    /// Steps, periods and seconds since the start of the scene.
+    fn elapsed(&self) -> &Elapsed;
 
-    /// Time since the start of the scene.
-    fn time(&self) -> f64;
+    /// The same, to be changed.
+    fn elapsed_mut(&mut self) -> &mut Elapsed;
 
     /// The particles as they stand, positions inside the box.
     fn particles(&self) -> Particles;
@@ -28,10 +28,6 @@ pub trait Engine: Send {
 
     /// What has been counted and summed up since the start.
     fn totals(&self) -> Totals;
-
-    /// How many periods each particle has moved along x and y since the start, in the order of
-    /// [`particles`](Self::particles); empty where that is not followed.
-    fn crossings(&self) -> Vec<[f64; 2]>;
 
     /// Everything that the next step depends on, by name.
     fn state(&self) -> Vec<(String, Column)>;
@@ -51,9 +47,29 @@ pub trait Engine: Send {
     /// Entries of the neighbour lists, and how often they were made again; none where there are no lists.
     fn lists(&self) -> Option<(usize, u64)>;
 
+    /// Steps done since the start of the scene.
+    fn steps(&self) -> u64 {
+        self.elapsed().steps
+    }
+
+    /// Time since the start of the scene.
+    fn time(&self) -> f64 {
+        self.elapsed().time()
+    }
+
+    /// How many periods each particle has moved along x and y since the start, in the order of
+    /// [`particles`](Self::particles); empty where that is not followed.
+    fn crossings(&self) -> &[[f64; 2]] {
+        self.elapsed().crossings.counts()
+    }
+
     /// Seconds spent in each phase.
-    fn timings(&self) -> &Timings;
+    fn timings(&self) -> &Timings {
+        &self.elapsed().timings
+    }
 
     /// Forgets the seconds spent so far.
-    fn reset_timings(&mut self);
+    fn reset_timings(&mut self) {
+        self.elapsed_mut().timings = Timings::default();
+    }
 }

@@ -1,8 +1,8 @@
 //! The memory that a run needs, before it is taken.
 //!
-//! Formulas follow the allocations, term by term: `method/lattice_md/{arrays,neighbor_list}`, `fast/{state,home}` and the
-//! sweeps below them for what a method keeps, `observe` and `io/checkpoint` for what comes and goes. What does not grow with
-//! the discs or the cells is one number.
+//! Formulas follow the allocations, term by term: `method/lattice_md/{arrays,neighbor_list}`,
+//! `method/pairwise/{state,search}` and the sweeps below them for what a method keeps, `observe` and `io/checkpoint` for what
+//! comes and goes. What does not grow with the discs or the cells is one number.
 
 use super::assemble::{contacts, model_following_energy};
 use super::check::Checked;
@@ -133,7 +133,7 @@ impl Sizes {
             4.0 * columns * rows + 8.0 * self.discs
         };
         let mut written = self.state * derivatives + 3.0 * self.force + 2.0 * 8.0;
-        let home = match search {
+        let found = match search {
             FastSearch::Lattice(_) => {
                 let shape = &self.model.shape;
                 let padded = shape.padded() as f64;
@@ -148,7 +148,7 @@ impl Sizes {
                 sectors() + (2.0 * self.state + 8.0 + 4.0 * pairs) * self.discs
             }
         };
-        (columns * self.discs + home, written * self.discs)
+        (columns * self.discs + found, written * self.discs)
     }
 
     /// Bytes of the arrays of the programs, and of the columns of their checkpoints.

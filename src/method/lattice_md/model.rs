@@ -176,6 +176,14 @@ impl Model {
         if self.friction { 3 } else { 2 }
     }
 
+    /// The radius of every disc (length), where they are alike.
+    pub fn radius(&self) -> Option<f64> {
+        match self.discs {
+            Discs::Equal { disc, .. } => Some(disc.radius),
+            Discs::Varying => None,
+        }
+    }
+
     /// Whether a damping makes the accelerations depend on velocities.
     pub fn acceleration(&self) -> Acceleration {
         let Contact { normal_damping, shear_damping, .. } = self.contact;

@@ -1,9 +1,10 @@
 //! The rival: scalar neighbour lists on the lattice method's state.
 
-use super::programs::{WithLaw, with_law};
+use super::programs::with_law;
 use super::{Arrays, Discs, Model};
 use crate::domain::Domain;
 use crate::grid::Bins;
+use crate::method::pairwise::WithLaw;
 use crate::words::define_words;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Array;

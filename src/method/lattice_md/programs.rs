@@ -1,6 +1,7 @@
 //! The programs of a step, compiled for what a model needs.
 
 use super::{Discs, GearValues, Lengths, Model, Scheme};
+use crate::method::pairwise::WithLaw;
 use std::marker::PhantomData;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::{Corrector, Predictor};
@@ -127,14 +128,6 @@ pub fn rival_ledger<S: Precision, P: Precision>(model: &Model) -> Ledger {
         }
     }
     ledger
-}
-
-/// What is done with the law that a model needs, whichever of its compiled variants that is.
-pub(super) trait WithLaw {
-    /// What comes of it.
-    type Output;
-    /// Does it.
-    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output;
 }
 
 /// The list of the law's compiled variants.

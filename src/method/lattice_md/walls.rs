@@ -1,16 +1,39 @@
 //! The prescribed motion of walls.
 
+use super::Model;
+use crate::method::pairwise::Prescribed;
 use crate::scene::WallMotion;
 
-/// Displacement (length) and velocity (length/time) of all wall discs at a time.
-pub(super) fn walls_at(motion: WallMotion, time: f64) -> ([f64; 2], [f64; 2]) {
+/// All wall discs at a time.
+pub(super) fn walls_at(motion: WallMotion, time: f64) -> Prescribed {
     match motion {
-        WallMotion::Fixed => ([0.0; 2], [0.0; 2]),
+        WallMotion::Fixed => Prescribed::default(),
         WallMotion::Oscillating { amplitude, frequency } => {
             let rate = std::f64::consts::TAU * frequency;
             // The portable sine and cosine: the same bits on every platform.
             let (sine, cosine) = (libm::sin(rate * time), libm::cos(rate * time));
-            (amplitude.map(|a| a * sine), amplitude.map(|a| a * rate * cosine))
+            Prescribed {
+                displacement: amplitude.map(|a| a * sine),
+                velocity: amplitude.map(|a| a * rate * cosine),
+            }
         }
     }
+}
+
+/// What moving walls put in (energy/time), where that is followed: all walls have one velocity, and what they do to the
+/// grains is the sum of the grains' forces, for those of two grains cancel. Forces are in the scene's order, grains first.
+pub(super) fn wall_power(
+    model: &Model,
+    motion: WallMotion,
+    time: f64,
+    grains: usize,
+    forces: impl FnOnce() -> Vec<[f64; 3]>,
+) -> f64 {
+    if motion == WallMotion::Fixed || !model.follows_energy() {
+        return 0.0;
+    }
+    let Prescribed { velocity, .. } = walls_at(motion, time);
+    let forces = forces();
+    let along = |axis: usize| velocity[axis] * forces[..grains].iter().map(|force| force[axis]).sum::<f64>();
+    along(0) + along(1)
 }

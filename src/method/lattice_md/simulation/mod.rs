@@ -3,16 +3,17 @@
 mod account;
 mod saved;
 
-use super::crossings::Crossings;
 use super::fast::{self, FastSearch};
+use super::judge::judge_depth;
 use super::neighbor_list::Rival;
 use super::programs::rival_ledger;
 use super::walls::walls_at;
 use super::watch::Names;
 use super::{Arrays, ListOptions, Model, Part, StepProgram, execute, ledger, programs};
-use super::{Engine, Phase, Timings, Totals};
+use super::{Elapsed, Engine, Phase, Timings, Totals};
 use crate::io::checkpoint::Column;
 use crate::method::Failure;
+use crate::method::pairwise::{Crossings, Named, Prescribed};
 use crate::particles::Particles;
 use crate::scene::{Precision, WallMotion};
 use stripmine_kernels::backend;
@@ -81,12 +82,10 @@ pub struct LatticeMd<S, P> {
     ids: Vec<u32>,
     walls: WallMotion,
     rival: Option<Rival<P>>,
-    steps: u64,
+    elapsed: Elapsed,
     totals: Totals,
-    crossings: Crossings,
     /// The cells of the discs before the Index is made, while it is.
     anchor: Vec<u32>,
-    timings: Timings,
 }
 
 impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
@@ -117,21 +116,19 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             },
             ids: particles.all().iter().map(|disc| disc.id).collect(),
             start: particles,
+            elapsed: Elapsed::new(model.dt, crossings),
             model,
             machine,
             walls,
             rival,
-            steps: 0,
             totals: Totals::default(),
-            crossings,
             anchor: vec![],
-            timings: Timings::default(),
         };
         simulation.move_walls(0.0);
         let power = simulation.meet()?;
         simulation.start_derivatives();
         simulation.totals = Totals::starting_with(power, simulation.wall_power());
-        simulation.timings = Timings::default();
+        simulation.elapsed.timings = Timings::default();
         Ok(simulation)
     }
 
@@ -179,7 +176,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             arrays: &self.arrays,
             anchor: &self.anchor,
             ids: &self.ids,
-            step: self.steps,
+            step: self.elapsed.steps,
         }
     }
 
@@ -188,7 +185,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         if grains == discs || self.walls == WallMotion::Fixed {
             return;
         }
-        let (displacement, velocity) = walls_at(self.walls, time);
+        let Prescribed { displacement, velocity } = walls_at(self.walls, time);
         let positions = self.start.all()[grains..].iter().map(|disc| disc.position);
         let mut positions: Vec<[f64; 2]> =
             positions.map(|at| [at[0] + displacement[0], at[1] + displacement[1]]).collect();
@@ -212,8 +209,8 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
 
     /// Index, lattice vectors and forces of the positions as they stand; gives what contacts dissipate (energy/time).
     fn meet(&mut self) -> Result<f64, Failure> {
-        let mut timings = self.timings;
-        if self.crossings.is_followed() || self.model.is_anchored::<S>() {
+        let mut timings = self.elapsed.timings;
+        if self.elapsed.crossings.is_followed() || self.model.is_anchored::<S>() {
             self.anchor.clear();
             self.anchor.extend_from_slice(self.arrays.cell());
         }
@@ -234,7 +231,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         self.anchor.clear();
         if counted[CONFLICTS.0 as usize] > 0
             && self.rival.is_none()
-            && let Some(failure) = self.names().conflict()
+            && let Some(failure) = self.names().conflicting()
         {
             return Err(failure);
         }
@@ -250,38 +247,33 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             Some(mut rival) => {
                 timings.time(Phase::Index, || rival.keep(&self.model, &self.arrays));
                 timings.time(Phase::Forces, || rival.forces(&self.model, &mut self.arrays));
-                let deep = std::mem::take(&mut rival.met.deep);
+                let deep = std::mem::take(&mut rival.met.deep).into_iter().map(<[usize; 2]>::from).collect();
                 let power = rival.met.dissipated;
                 self.rival = Some(rival);
                 (power, deep)
             }
         };
-        self.timings = timings;
-        let Some(watch) = watch.filter(|_| !marked.is_empty()) else { return Ok(power) };
-        let (grains, deepest) = self.names().deep(&marked, watch.max_penetration);
-        if let Some(deepest) = deepest {
-            self.totals.add_deep(self.steps, grains, deepest.0);
-            if deepest.0 > watch.stop_penetration {
-                return Err(self.names().too_deep(deepest, watch.stop_penetration));
-            }
-        }
-        Ok(power)
+        self.elapsed.timings = timings;
+        let mut totals = self.totals;
+        let judged = judge_depth(&self.names(), marked.into_iter(), watch, &mut totals);
+        self.totals = totals;
+        judged.map(|()| power)
     }
 }
 
 impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
     fn step(&mut self) -> Result<(), Failure> {
-        self.steps += 1;
-        let mut timings = self.timings;
+        self.elapsed.steps += 1;
+        let mut timings = self.elapsed.timings;
         timings.time(Phase::Predict, || self.run(&[Part::Predictor]))?;
         timings.time(Phase::Index, || self.judge_steps())?;
-        self.timings = timings;
+        self.elapsed.timings = timings;
         self.move_walls(self.time());
         let power = self.meet()?;
         self.totals.add_work(self.model.dt, power, self.wall_power());
-        let mut timings = self.timings;
+        let mut timings = self.elapsed.timings;
         let counted = timings.time(Phase::Correct, || self.run(&[Part::Corrector]))?;
-        self.timings = timings;
+        self.elapsed.timings = timings;
         let lost = counted[NOT_FINITE.0 as usize];
         if lost > 0
             && let Some(failure) = self.names().not_finite(lost)
@@ -291,19 +283,19 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
         Ok(())
     }
 
-    fn steps(&self) -> u64 {
-        self.steps
+    fn elapsed(&self) -> &Elapsed {
+        &self.elapsed
     }
 
-    fn time(&self) -> f64 {
-        self.steps as f64 * self.model.dt
+    fn elapsed_mut(&mut self) -> &mut Elapsed {
+        &mut self.elapsed
     }
 
     fn particles(&self) -> Particles {
         let mut particles = self.start.clone();
         let column = |array| self.arrays.state(array).unwrap_or(&[]);
         let value = |array, disc: usize| column(array).get(disc).map_or(0.0, |x: &S| x.to_f64());
-        let (_, wall_velocity) = walls_at(self.walls, self.time());
+        let Prescribed { velocity: wall_velocity, .. } = walls_at(self.walls, self.time());
         let (grains, domain) = (self.arrays.lengths().grains, self.model.domain());
         for (i, disc) in particles.all_mut().iter_mut().enumerate() {
             disc.position = match self.model.is_anchored::<S>() {
@@ -337,17 +329,13 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
         self.totals
     }
 
-    fn crossings(&self) -> Vec<[f64; 2]> {
-        self.crossings.counts().to_vec()
-    }
-
     fn state(&self) -> Vec<(String, Column)> {
         self.columns()
     }
 
     fn restore(&mut self, steps: u64, totals: Totals, columns: Vec<(String, Column)>) -> Result<(), String> {
         self.take_up(&columns)?;
-        self.steps = steps;
+        self.elapsed.steps = steps;
         self.totals = totals;
         self.move_walls(self.time());
         Ok(())
@@ -370,13 +358,5 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
 
     fn lists(&self) -> Option<(usize, u64)> {
         self.rival.as_ref().map(|rival| (rival.candidates(), rival.rebuilds))
-    }
-
-    fn timings(&self) -> &Timings {
-        &self.timings
-    }
-
-    fn reset_timings(&mut self) {
-        self.timings = Timings::default();
     }
 }

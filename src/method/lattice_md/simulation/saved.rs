@@ -2,8 +2,9 @@
 
 use super::LatticeMd;
 use crate::io::checkpoint::Column;
+use crate::method::pairwise::{find_column, real_column};
 use stripmine_kernels::backend;
-use stripmine_kernels::isa::{Array, Storage};
+use stripmine_kernels::isa::Array;
 
 /// Columns of a neighbour list's state: where the discs were when the lists were made.
 const MADE_AT: [&str; 2] = ["listed.x", "listed.y"];
@@ -13,19 +14,14 @@ const LIST_COUNTS: &str = "listed.counts";
 impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
     /// Everything that the next step depends on, by name.
     pub(super) fn columns(&self) -> Vec<(String, Column)> {
-        let column = |values: &[S]| match S::NAME {
-            f64::NAME => Column::F64(values.iter().map(|x| x.to_f64()).collect()),
-            _ => Column::F32(values.iter().map(|x| x.to_f64() as f32).collect()),
-        };
-        let arrays = self.arrays.states().map(|(array, values)| (array.label(), column(values)));
-        let crossings =
-            self.crossings.columns().into_iter().map(|(name, counts)| (name, Column::F64(counts)));
+        let column = |values: &[S]| real_column(values.iter().copied());
+        let arrays = self.arrays.states().map(|(array, values)| (array.label().to_owned(), column(values)));
         let cells = self.model.is_anchored::<S>().then(|| {
-            let cells = self.arrays.cell().iter().map(|&cell| f64::from(cell)).collect();
-            (Array::DiscCell.label(), Column::F64(cells))
+            let cells = self.arrays.cell().iter().map(|&cell| f64::from(cell));
+            (Array::DiscCell.label().to_owned(), real_column(cells))
         });
-        let state = arrays.chain(cells).chain(crossings).map(|(name, column)| (name.to_owned(), column));
-        let mut columns: Vec<(String, Column)> = state.collect();
+        let crossings = self.elapsed.crossings.columns();
+        let mut columns: Vec<(String, Column)> = arrays.chain(cells).chain(crossings).collect();
         if let Some(rival) = &self.rival {
             for (name, values) in MADE_AT.into_iter().zip(rival.made_at()) {
                 columns.push((name.to_owned(), Column::F64(values)));
@@ -41,25 +37,8 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
     pub(super) fn take_up(&mut self, columns: &[(String, Column)]) -> Result<(), String> {
         let expected: Vec<Array> = self.arrays.states().map(|(array, _)| array).collect();
         for array in expected {
-            let (_, column) = columns
-                .iter()
-                .find(|(name, _)| name == array.label())
-                .ok_or_else(|| format!("the column {} is missing", array.label()))?;
-            let values: Vec<S> = match column {
-                Column::F64(values) if S::NAME == f64::NAME => {
-                    values.iter().map(|&x| S::from_f64(x)).collect()
-                }
-                Column::F32(values) if S::NAME == f32::NAME => {
-                    values.iter().map(|&x| S::from_f64(x.into())).collect()
-                }
-                _ => return Err(format!("the column {} has another precision", array.label())),
-            };
             let to = self.arrays.state_mut(array).unwrap_or(&mut []);
-            if to.len() != values.len() {
-                let label = array.label();
-                return Err(format!("the column {label} has {} entries, not {}", values.len(), to.len()));
-            }
-            to.copy_from_slice(&values);
+            to.copy_from_slice(&find_column::<S>(columns, array.label(), to.len())?);
         }
         if self.model.is_anchored::<S>() {
             let label = Array::DiscCell.label();
@@ -80,10 +59,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
                 }
             }
         }
-        self.crossings.take_up(|name| match columns.iter().find(|(known, _)| known == name) {
-            Some((_, Column::F64(values))) => Ok(values.clone()),
-            _ => Err(format!("the column {name} is missing")),
-        })?;
+        self.elapsed.crossings.take_up(columns)?;
         if let Some(rival) = &mut self.rival {
             let find = |name: &str, length: usize| -> Result<Vec<f64>, String> {
                 match columns.iter().find(|(there, _)| there == name) {

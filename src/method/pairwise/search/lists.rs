@@ -1,7 +1,7 @@
 //! Pairs found in Verlet lists, made again whenever a disc has moved half the skin.
 
-use super::super::state::{Move, State};
 use super::{Search, rows};
+use crate::method::pairwise::state::{Move, State};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
@@ -12,14 +12,14 @@ use stripmine_kernels::sweep::fast::{
 };
 
 /// The sectors in which discs were when the lists were made, and the lists.
-pub(in crate::method) struct ListSearch<S, P> {
+pub struct ListSearch<S, P> {
     sectors: Sectors,
     sweep: Sweep<Touches<P>>,
     listed: Listed<S>,
 }
 
 /// Lists, and what they were made from.
-pub(in crate::method) struct Listed<S> {
+pub struct Listed<S> {
     list: Option<VerletList>,
     skin: f64,
     /// Places when the lists were made.
@@ -30,7 +30,7 @@ pub(in crate::method) struct Listed<S> {
 impl<S: Precision, P: Precision> ListSearch<S, P> {
     /// No lists yet, for `discs` discs whose pairs act up to a distance `reach` (length); a listed pair may be farther
     /// apart by `skin` (length). Sectors are wide enough for both.
-    pub(in crate::method) fn new(grid: Grid, discs: usize, reach: f64, skin: f64) -> Self {
+    pub fn new(grid: Grid, discs: usize, reach: f64, skin: f64) -> Self {
         let sectors = Sectors::new(grid, discs, reach);
         let sweep = Sweep::new(rows::<S, P, _>(&sectors));
         let listed = Listed { list: None, skin, made_at: [vec![], vec![]], made: 0 };
@@ -103,27 +103,27 @@ impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
 
 impl<S: Precision> Listed<S> {
     /// Pairs listed.
-    pub(in crate::method) fn entries(&self) -> usize {
+    pub fn entries(&self) -> usize {
         self.list.as_ref().map_or(0, VerletList::entries)
     }
 
     /// How often lists were made.
-    pub(in crate::method) fn made(&self) -> u64 {
+    pub fn made(&self) -> u64 {
         self.made
     }
 
     /// How much farther than contact a listed pair may be (length).
-    pub(in crate::method) fn skin(&self) -> f64 {
+    pub fn skin(&self) -> f64 {
         self.skin
     }
 
     /// Where the discs were when the lists were made.
-    pub(in crate::method) fn made_at(&self, axis: usize) -> &[S] {
+    pub fn made_at(&self, axis: usize) -> &[S] {
         &self.made_at[axis]
     }
 
     /// Whether a disc at a place is as far from there as it may be.
-    pub(in crate::method) fn has_strayed(&self, disc: usize, place: [f64; 2]) -> bool {
+    pub fn has_strayed(&self, disc: usize, place: [f64; 2]) -> bool {
         let [dx, dy] = [0, 1].map(|axis| place[axis] - self.made_at[axis][disc].to_f64());
         dx * dx + dy * dy > 0.25 * self.skin * self.skin
     }

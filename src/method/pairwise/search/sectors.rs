@@ -1,7 +1,7 @@
 //! Pairs found in sectors, which hold any number of discs.
 
-use super::super::state::{Move, State};
 use super::{Search, rows};
+use crate::method::pairwise::state::{Move, State};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
@@ -10,14 +10,14 @@ use stripmine_kernels::sweep::fast::lattice::Taken;
 use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Grid, Met, Sectors, Sweep, Touches};
 
 /// Discs in sectors.
-pub(in crate::method) struct SectorSearch<P> {
+pub struct SectorSearch<P> {
     sectors: Sectors,
     sweep: Sweep<Touches<P>>,
 }
 
 impl<P: Precision> SectorSearch<P> {
     /// Empty sectors for `discs` discs whose pairs act up to a distance `reach` (length).
-    pub(in crate::method) fn new<S: Precision>(grid: Grid, discs: usize, reach: f64) -> Self {
+    pub fn new<S: Precision>(grid: Grid, discs: usize, reach: f64) -> Self {
         let sectors = Sectors::new(grid, discs, reach);
         let sweep = Sweep::new(rows::<S, P, _>(&sectors));
         SectorSearch { sectors, sweep }

@@ -1,7 +1,7 @@
 //! Pairs found on a lattice with at most one disc a cell.
 
-use super::super::state::{Move, State};
 use super::{Search, rows};
+use crate::method::pairwise::state::{Move, State};
 use crate::words::define_words;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
@@ -22,7 +22,7 @@ define_words! {
 }
 
 /// Discs in the cells of a lattice.
-pub(in crate::method) struct LatticeSearch<P> {
+pub struct LatticeSearch<P> {
     occupancy: Occupancy,
     on_conflict: OnConflict,
     codes: Codes<P>,
@@ -31,7 +31,7 @@ pub(in crate::method) struct LatticeSearch<P> {
 
 impl<P: Precision> LatticeSearch<P> {
     /// An empty lattice for as many discs as there are radii (length).
-    pub(in crate::method) fn new<S: Precision>(
+    pub fn new<S: Precision>(
         shape: LatticeShape,
         frame: Frame,
         on_conflict: OnConflict,

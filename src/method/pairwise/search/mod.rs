@@ -4,10 +4,10 @@ mod lattice;
 mod lists;
 mod sectors;
 
-pub(in crate::method) use lattice::LatticeSearch;
+pub use lattice::LatticeSearch;
 pub use lattice::OnConflict;
-pub(in crate::method) use lists::{ListSearch, Listed};
-pub(in crate::method) use sectors::SectorSearch;
+pub use lists::{ListSearch, Listed};
+pub use sectors::SectorSearch;
 
 use super::state::{Move, State};
 use stripmine_kernels::InstructionSet;
@@ -20,7 +20,7 @@ use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Finder, G
 /// Cells, which discs are in them, and the pairs found with their help. A disc's place is seen from the centre of its cell.
 ///
 /// The engine is compiled for each search: what a search does not need costs nothing.
-pub(in crate::method) trait Search<S: Precision, P: Precision>: Send {
+pub trait Search<S: Precision, P: Precision>: Send {
     /// The cells: where they lie, how many there are, and which sides are periodic.
     fn grid(&self) -> Grid;
 

@@ -1,0 +1,221 @@
+//! Granular discs in the pairwise engine: the same physics as the programs, each pair met once, the law asked about contacts
+//! only, corrector and next predictor in one pass. Equal to the programs but for rounding. Beside the lattice stand its
+//! rivals, sectors and Verlet lists: the same state, law and integrator, and another way of finding contacts.
+
+use super::judge::{judge_depth, judge_steps};
+use super::programs::with_law;
+use super::walls::{wall_power, walls_at};
+use super::{Engine, GearValues, Lengths, Model, Scheme, Totals};
+use crate::grid::sectors_of;
+use crate::io::checkpoint::Column;
+use crate::method::Failure;
+use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, Search, SectorSearch};
+use crate::method::pairwise::{self, Dynamics, Elapsed, Named, Prescribed, System, WithLaw, WithScheme};
+use crate::particles::Particles;
+use crate::scene::WallMotion;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::integrator::gear::Gear;
+use stripmine_kernels::integrator::velocity_verlet::VelocityVerlet;
+use stripmine_kernels::isa::Storage;
+use stripmine_kernels::ledger::{Ledger, Length};
+
+/// How the fast engine finds contacts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FastSearch {
+    /// On the lattice with at most one disc a cell.
+    Lattice(OnConflict),
+    /// In sectors, which hold any number of discs.
+    Sectors,
+    /// In lists of near partners, made again whenever a disc has moved half the skin.
+    Lists {
+        /// How much farther than contact a listed pair may be (length).
+        skin: f64,
+    },
+}
+
+/// Begins a fast simulation with state of precision `S` and forces of precision `P`. Which search it has is decided here,
+/// once.
+///
+/// # Errors
+/// [`Failure`] if the start breaks a precondition already, or the box is none for sectors.
+pub(super) fn start<S: Precision, P: Precision>(
+    model: Model,
+    search: FastSearch,
+    set: InstructionSet,
+    walls: WallMotion,
+    particles: Particles,
+) -> Result<Box<dyn Engine>, Failure> {
+    let radii = particles.all().iter().map(|disc| disc.radius);
+    let (discs, reach) = (particles.len(), reach(&particles));
+    let single = S::NAME != f64::NAME || P::NAME != f64::NAME;
+    let sectors = |skin: f64| sectors_of(&model.domain(), reach + skin, single, discs);
+    Ok(match search {
+        FastSearch::Lattice(on_conflict) => {
+            let search = LatticeSearch::<P>::new::<S>(model.shape, model.frame, on_conflict, radii);
+            Box::new(FastMd::<S, P, _>::new(model, search, set, walls, particles)?)
+        }
+        FastSearch::Sectors => {
+            let search = SectorSearch::<P>::new::<S>(sectors(0.0)?, discs, reach);
+            Box::new(FastMd::<S, P, _>::new(model, search, set, walls, particles)?)
+        }
+        FastSearch::Lists { skin } => {
+            let search = ListSearch::<S, P>::new(sectors(skin)?, discs, reach, skin);
+            Box::new(FastMd::<S, P, _>::new(model, search, set, walls, particles)?)
+        }
+    })
+}
+
+/// How far apart two discs may be and touch (length).
+fn reach(particles: &Particles) -> f64 {
+    2.0 * particles.radii().map_or(1.0, |[_, largest]| largest)
+}
+
+/// The contact law and the integrator of a model, and the motion of its walls.
+struct Granular {
+    model: Model,
+    walls: WallMotion,
+}
+
+impl Dynamics for Granular {
+    fn with_law<W: WithLaw>(&self, work: W) -> W::Output {
+        with_law(&self.model, work)
+    }
+
+    fn with_scheme<W: WithScheme>(&self, work: W) -> W::Output {
+        let acceleration = self.model.acceleration();
+        match self.model.scheme {
+            Scheme::Gear(GearValues::Four) => work.with(Gear::<4>::new(acceleration)),
+            Scheme::Gear(GearValues::Five) => work.with(Gear::<5>::new(acceleration)),
+            Scheme::Gear(GearValues::Six) => work.with(Gear::<6>::new(acceleration)),
+            Scheme::VelocityVerlet => work.with(VelocityVerlet),
+        }
+    }
+
+    fn prescribed(&self, time: f64) -> Option<Prescribed> {
+        (self.walls != WallMotion::Fixed).then(|| walls_at(self.walls, time))
+    }
+}
+
+/// A fast simulation with state of precision `S`, forces of precision `P` and search `Q`.
+struct FastMd<S, P, Q> {
+    engine: pairwise::Engine<S, P, Q, Granular>,
+    totals: Totals,
+    /// Pairs met in the last step.
+    met: u64,
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>> FastMd<S, P, Q> {
+    /// Lays out `particles` and finds their first forces.
+    ///
+    /// # Errors
+    /// [`Failure`] if the start breaks a precondition already.
+    fn new(
+        model: Model,
+        search: Q,
+        set: InstructionSet,
+        walls: WallMotion,
+        particles: Particles,
+    ) -> Result<Self, Failure> {
+        let system = System {
+            domain: model.domain(),
+            dt: model.dt,
+            gravity: model.gravity,
+            freedoms: model.freedoms(),
+            inertia: model.inertia(),
+            inertia_factor: model.inertia_factor,
+            radius: model.radius(),
+            reach: reach(&particles),
+            longest_step: model.watch.map_or(f64::INFINITY, |watch| watch.longest_step()),
+            followed: model.counts_crossings(),
+            // None of these schemes draws random numbers.
+            seed: 0,
+        };
+        let granular = Granular { model, walls };
+        let engine = pairwise::Engine::new(granular, system, search, set, particles)?;
+        let mut simulation = FastMd { engine, totals: Totals::default(), met: 0 };
+        let power = simulation.meet()?;
+        simulation.totals = Totals::starting_with(power, simulation.wall_power());
+        Ok(simulation)
+    }
+
+    fn model(&self) -> &Model {
+        &self.engine.dynamics().model
+    }
+
+    /// All forces of the positions as they stand; gives what contacts dissipate (energy/time).
+    fn meet(&mut self) -> Result<f64, Failure> {
+        let met = self.engine.meet(self.model().asked())?;
+        self.met = met.pairs;
+        let deep = met.deep.iter().map(|pair| pair.map(|disc| disc as usize));
+        judge_depth(&self.engine, deep, self.model().watch, &mut self.totals)?;
+        Ok(met.dissipated)
+    }
+
+    /// What moving walls put in (energy/time).
+    fn wall_power(&self) -> f64 {
+        let Granular { model, walls } = self.engine.dynamics();
+        wall_power(model, *walls, self.time(), self.engine.grains().len(), || self.engine.forces())
+    }
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>> Engine for FastMd<S, P, Q> {
+    fn step(&mut self) -> Result<(), Failure> {
+        let far = self.engine.advance()?;
+        let far = far.into_iter().map(|disc| disc as usize);
+        judge_steps(&self.engine, far, self.model().watch, &mut self.totals)?;
+        self.totals.shared_cells += self.engine.guests() as u64;
+        let power = self.meet()?;
+        self.totals.add_work(self.model().dt, power, self.wall_power());
+        Ok(())
+    }
+
+    fn elapsed(&self) -> &Elapsed {
+        self.engine.elapsed()
+    }
+
+    fn elapsed_mut(&mut self) -> &mut Elapsed {
+        self.engine.elapsed_mut()
+    }
+
+    fn particles(&self) -> Particles {
+        self.engine.particles()
+    }
+
+    fn forces(&self) -> Vec<[f64; 3]> {
+        self.engine.forces()
+    }
+
+    fn totals(&self) -> Totals {
+        self.totals
+    }
+
+    fn state(&self) -> Vec<(String, Column)> {
+        self.engine.columns()
+    }
+
+    fn restore(&mut self, steps: u64, totals: Totals, columns: Vec<(String, Column)>) -> Result<(), String> {
+        self.engine.restore(steps, &columns)?;
+        self.totals = totals;
+        Ok(())
+    }
+
+    fn ledger(&self) -> Ledger {
+        // Its work depends on the data, contact by contact: no fixed program to count.
+        Ledger::default()
+    }
+
+    fn length(&self, length: Length) -> u64 {
+        match length {
+            Length::Pairs => self.met,
+            _ => {
+                let [grains, discs] = [self.engine.grains().len(), self.engine.discs()];
+                Lengths::new(self.model(), grains, discs).range(length).len() as u64
+            }
+        }
+    }
+
+    fn lists(&self) -> Option<(usize, u64)> {
+        self.engine.lists()
+    }
+}

@@ -1,0 +1,28 @@
+//! What every simulation of steps keeps on its way.
+
+use super::{Crossings, Timings};
+
+/// Steps done, periods crossed, seconds spent.
+#[derive(Clone, Debug)]
+pub struct Elapsed {
+    /// Time step (time).
+    dt: f64,
+    /// Steps since the start of the scene.
+    pub steps: u64,
+    /// Periods that discs have crossed.
+    pub crossings: Crossings,
+    /// Seconds spent in each phase.
+    pub timings: Timings,
+}
+
+impl Elapsed {
+    /// At the start.
+    pub fn new(dt: f64, crossings: Crossings) -> Self {
+        Elapsed { dt, steps: 0, crossings, timings: Timings::default() }
+    }
+
+    /// Time since the start of the scene.
+    pub fn time(&self) -> f64 {
+        self.steps as f64 * self.dt
+    }
+}

@@ -1,0 +1,373 @@
+//! The engine: all forces, then corrector and next predictor in one pass.
+
+use super::search::Search;
+use super::state::{Move, State};
+use super::{Crossings, Dynamics, Elapsed, Named, Phase, Prescribed, System, WithLaw, WithScheme};
+use crate::domain::Domain;
+use crate::method::Failure;
+use crate::particles::Particles;
+use std::ops::Range;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::integrator::Scheme;
+use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::keep_awake;
+use stripmine_kernels::law::{Asked, Law};
+use stripmine_kernels::sweep::fast::{Advance, Met, Motion, Passed};
+
+/// Discs with state of precision `S`, forces of precision `P`, search `Q` and dynamics `D`.
+pub struct Engine<S, P, Q, D> {
+    pub(super) dynamics: D,
+    pub(super) system: System,
+    set: InstructionSet,
+    pub(super) start: Particles,
+    pub(super) state: State<S>,
+    /// Force along x, along y, torque.
+    pub(super) sums: [Vec<P>; 3],
+    pub(super) search: Q,
+    /// Changes of cells since the discs were put in order.
+    pub(super) changes: usize,
+    /// Whether the state is predicted and its forces are not yet known.
+    awaits_forces: bool,
+    /// Discs that are so near to an open side that they may leave through it before lists are made again.
+    pub(super) rim: Vec<u32>,
+    pub(super) elapsed: Elapsed,
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
+    /// Lays out `particles`. Their forces are not yet known: [`meet`](Self::meet) finds them.
+    ///
+    /// # Errors
+    /// [`Failure`] if a disc is outside the box, or in another's cell.
+    pub fn new(
+        dynamics: D,
+        system: System,
+        search: Q,
+        set: InstructionSet,
+        particles: Particles,
+    ) -> Result<Self, Failure> {
+        let carried = dynamics.with_scheme(Carried);
+        let crossings = Crossings::new(system.followed, particles.len());
+        let mut engine = Engine {
+            state: State::new(&system, carried, &particles),
+            sums: [0, 1, 2].map(|_| vec![P::default(); particles.len()]),
+            elapsed: Elapsed::new(system.dt, crossings),
+            dynamics,
+            system,
+            search,
+            set,
+            start: particles,
+            changes: 0,
+            awaits_forces: false,
+            rim: vec![],
+        };
+        engine.give_walls_their_velocity();
+        let positions = engine.start.all().iter().map(|disc| disc.position);
+        let moves = positions.enumerate().map(|(disc, position)| engine.locate(disc, position));
+        let moves: Vec<Move> = moves.collect::<Result<_, _>>()?;
+        engine.change_cells(&moves)?;
+        engine.put_in_order();
+        Ok(engine)
+    }
+
+    /// By what the discs move.
+    pub fn dynamics(&self) -> &D {
+        &self.dynamics
+    }
+
+    /// Steps, periods and seconds so far.
+    pub fn elapsed(&self) -> &Elapsed {
+        &self.elapsed
+    }
+
+    /// The same, to be changed.
+    pub fn elapsed_mut(&mut self) -> &mut Elapsed {
+        &mut self.elapsed
+    }
+
+    /// How many discs there are.
+    pub fn discs(&self) -> usize {
+        self.start.len()
+    }
+
+    /// How many discs are in cells that are another disc's.
+    pub fn guests(&self) -> usize {
+        self.search.guests()
+    }
+
+    /// Entries of the lists, and how often they were made; none where there are no lists.
+    pub fn lists(&self) -> Option<(usize, u64)> {
+        self.search.lists().map(|lists| (lists.entries(), lists.made()))
+    }
+
+    /// How the discs that no force moves stand, where they move at all.
+    pub(super) fn prescribed(&self) -> Option<Prescribed> {
+        self.dynamics.prescribed(self.elapsed.time())
+    }
+
+    pub(super) fn give_walls_their_velocity(&mut self) {
+        let velocity = self.prescribed().unwrap_or_default().velocity;
+        self.state.set_wall_velocity(velocity, self.system.dt);
+    }
+
+    /// Numbers the discs in the order of their cells, so that neighbours are near in memory, and makes lists again where
+    /// there are such; gives what each disc was before. No sum depends on the numbers.
+    pub(super) fn put_in_order(&mut self) -> Vec<u32> {
+        let grains = self.start.grain_count();
+        let mut order = self.search.order();
+        // Grains stay the first ones.
+        order.sort_by_key(|&disc| disc as usize >= grains);
+        self.search.renumber(&order);
+        self.state.renumber(&order);
+        for sum in &mut self.sums {
+            *sum = order.iter().map(|&disc| sum[disc as usize]).collect();
+        }
+        self.search.make_lists(&self.state);
+        self.rim = self.discs_at_the_rim();
+        self.changes = 0;
+        order
+    }
+
+    /// Corrects the last step, unless this is the first one, predicts the next and brings the search up to date. Gives the
+    /// discs that moved farther than [`System::longest_step`], or whose speed is no number.
+    ///
+    /// # Errors
+    /// [`Failure`] if a disc left the box, or came into another's cell.
+    pub fn advance(&mut self) -> Result<Vec<u32>, Failure> {
+        let mut timings = self.elapsed.timings;
+        if self.changes > self.start.grain_count() / 4 {
+            timings.time(Phase::Index, || _ = self.put_in_order());
+        }
+        let passed = timings.time(Phase::CorrectPredict, || self.pass())?;
+        self.elapsed.steps += 1;
+        self.awaits_forces = true;
+        let kept = timings.time(Phase::Index, || keep_awake(|| self.keep_cells(&passed.left)));
+        self.elapsed.timings = timings;
+        kept?;
+        Ok(passed.far)
+    }
+
+    fn pass(&mut self) -> Result<Passed, ProgramError> {
+        let Engine { dynamics, system, state, sums, search, start, set, elapsed, .. } = self;
+        let Elapsed { steps, .. } = *elapsed;
+        dynamics.with_scheme(Passing {
+            system,
+            state,
+            sums,
+            search,
+            discs: start.grain_count(),
+            steps,
+            set: *set,
+        })
+    }
+
+    /// All forces of the positions as they stand.
+    ///
+    /// # Errors
+    /// [`Failure`] if a force is no finite number, or the machine refuses the law.
+    pub fn meet(&mut self, asked: Asked) -> Result<Met, Failure> {
+        let mut timings = self.elapsed.timings;
+        let met = timings.time(Phase::Forces, || self.add_forces(asked))?;
+        self.elapsed.timings = timings;
+        self.awaits_forces = false;
+        self.refuse_not_finite(&met)?;
+        Ok(met)
+    }
+
+    fn add_forces(&mut self, asked: Asked) -> Result<Met, ProgramError> {
+        let Engine { dynamics, system, state, sums, search, start, set, .. } = self;
+        // Grains' sums are zero already.
+        sums.iter_mut().for_each(|sum| sum[start.grain_count()..].fill(P::default()));
+        dynamics.with_law(Sweeping { system, state, sums, search, asked, set: *set })
+    }
+
+    /// Stops at pairs of a grain whose force is no finite number.
+    fn refuse_not_finite(&self, met: &Met) -> Result<(), Failure> {
+        let grains = self.start.grain_count();
+        let pairs = met.not_finite.iter().map(|pair| pair.map(|disc| disc as usize));
+        // Two fixed discs have no effective mass: what they do to each other means nothing.
+        let of_grains = pairs.filter(|pair| pair.iter().any(|&disc| disc < grains));
+        let lost: Vec<usize> = of_grains.flatten().collect();
+        // A disc that is lost itself is named before one that only touches it.
+        let is_lost = |disc: usize| {
+            (0..self.system.freedoms).any(|freedom| !self.state.row(freedom, disc)[1].to_f64().is_finite())
+        };
+        match lost.iter().min_by_key(|&&disc| (!is_lost(disc), self.state.number(disc))) {
+            Some(&first) => {
+                let first = self.culprit(first);
+                Err(Failure::NotFinite { step: self.elapsed.steps, count: lost.len() as u64, first })
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The state at the end of the step, a disc's position and velocity times dt among it.
+    fn corrected(&self, freedom: usize, disc: usize) -> [S; 6] {
+        let row = self.state.row(freedom, disc);
+        if self.elapsed.steps == 0 || self.awaits_forces || disc >= self.start.grain_count() {
+            return row;
+        }
+        let Engine { system, state, .. } = self;
+        let force = S::from_f64(self.sums[freedom][disc].to_f64());
+        let steps = self.elapsed.steps;
+        self.dynamics.with_scheme(Correcting { system, state, steps, freedom, disc, row, force })
+    }
+
+    /// The particles as they stand, positions inside the box.
+    pub fn particles(&self) -> Particles {
+        let mut particles = self.start.clone();
+        let (grains, System { domain, dt, freedoms, .. }) = (self.start.grain_count(), &self.system);
+        let walls = self.prescribed().unwrap_or_default();
+        for disc in 0..particles.len() {
+            let rows = [0, 1, 2].map(|freedom| {
+                let row =
+                    if freedom < *freedoms { self.corrected(freedom, disc) } else { Default::default() };
+                row.map(|q| q.to_f64())
+            });
+            let particle = &mut particles.all_mut()[self.state.number(disc)];
+            particle.position = domain.inside(self.seen_from_origin(disc, [rows[0][0], rows[1][0]]));
+            if disc < grains {
+                particle.velocity = [rows[0][1] / dt, rows[1][1] / dt];
+                particle.angle = rows[2][0];
+                particle.omega = rows[2][1] / dt;
+            } else {
+                particle.velocity = walls.velocity;
+            }
+        }
+        particles
+    }
+
+    /// Force along x and y and torque on every particle, in the scene's order.
+    pub fn forces(&self) -> Vec<[f64; 3]> {
+        let mut forces = vec![[0.0; 3]; self.start.len()];
+        for disc in 0..self.start.len() {
+            forces[self.state.number(disc)] = [0, 1, 2].map(|sum| self.sums[sum][disc].to_f64());
+        }
+        forces
+    }
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Named for Engine<S, P, Q, D> {
+    fn step(&self) -> u64 {
+        self.elapsed.steps
+    }
+
+    fn domain(&self) -> Domain {
+        self.system.domain
+    }
+
+    fn grains(&self) -> Range<usize> {
+        0..self.start.grain_count()
+    }
+
+    fn number(&self, disc: usize) -> usize {
+        self.state.number(disc)
+    }
+
+    fn id(&self, disc: usize) -> u32 {
+        self.start.all()[self.state.number(disc)].id
+    }
+
+    fn position(&self, disc: usize) -> [f64; 2] {
+        self.seen_from_origin(disc, self.state.place(disc))
+    }
+
+    fn velocity(&self, disc: usize) -> [f64; 2] {
+        [0, 1].map(|axis| self.state.row(axis, disc)[1].to_f64() / self.system.dt)
+    }
+
+    fn radius(&self, disc: usize) -> f64 {
+        self.state.radius(disc)
+    }
+}
+
+/// How discs move by a scheme.
+fn motion<C: Scheme>(system: &System, scheme: C) -> Motion<C> {
+    let System { dt, inertia, gravity, seed, .. } = *system;
+    Motion { scheme, dt, inertia, gravity, seed }
+}
+
+/// How many derivatives a scheme hands on from step to step.
+struct Carried;
+
+impl WithScheme for Carried {
+    type Output = usize;
+
+    fn with<C: Scheme>(self, _: C) -> usize {
+        C::CARRIED
+    }
+}
+
+/// A pass over the discs.
+struct Passing<'a, S, P, Q> {
+    system: &'a System,
+    state: &'a mut State<S>,
+    sums: &'a mut [Vec<P>; 3],
+    search: &'a mut Q,
+    discs: usize,
+    steps: u64,
+    set: InstructionSet,
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>> WithScheme for Passing<'_, S, P, Q> {
+    type Output = Result<Passed, ProgramError>;
+
+    fn with<C: Scheme>(self, scheme: C) -> Self::Output {
+        let Passing { system, state, sums, search, discs, steps, set } = self;
+        let (columns, inverse, ids) = state.for_advance();
+        let (limit, copies) = search.displacement_limit();
+        let advance = Advance {
+            motion: &motion(system, scheme),
+            state: columns.iter_mut().map(|row| row.iter_mut().map(Vec::as_mut_slice).collect()).collect(),
+            sums: sums.iter_mut().take(system.freedoms).map(Vec::as_mut_slice).collect(),
+            inverse,
+            discs,
+            step: steps,
+            ids,
+            corrected: steps == 0,
+            longest_step: system.longest_step,
+        };
+        advance.run(limit, copies, set)
+    }
+}
+
+/// One row at the end of the step, from the one that the pass left.
+struct Correcting<'a, S> {
+    system: &'a System,
+    state: &'a State<S>,
+    steps: u64,
+    freedom: usize,
+    disc: usize,
+    row: [S; 6],
+    force: S,
+}
+
+impl<S: Precision> WithScheme for Correcting<'_, S> {
+    type Output = [S; 6];
+
+    fn with<C: Scheme>(self, scheme: C) -> [S; 6] {
+        let Correcting { system, state, steps, freedom, disc, row, force } = self;
+        let inverse = system.inertia.inverse(freedom, S::from_f64, || state.inverse(freedom)[disc]);
+        let who = (steps, state.numbers()[disc]);
+        motion(system, scheme).corrected(who, freedom, row, force, inverse)
+    }
+}
+
+/// A sweep with the law.
+struct Sweeping<'a, S, P, Q> {
+    system: &'a System,
+    state: &'a State<S>,
+    sums: &'a mut [Vec<P>; 3],
+    search: &'a mut Q,
+    asked: Asked,
+    set: InstructionSet,
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>> WithLaw for Sweeping<'_, S, P, Q> {
+    type Output = Result<Met, ProgramError>;
+
+    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
+        let sums = self.sums.each_mut().map(Vec::as_mut_slice);
+        self.search.sweep(&law, &self.state.discs(self.system), sums, self.asked, self.set)
+    }
+}

@@ -1,0 +1,111 @@
+//! The state as columns, for checkpoints: in the order of the scene's discs.
+
+use super::search::Search;
+use super::state::Move;
+use super::{Dynamics, Engine, find_column, real_column};
+use crate::io::checkpoint::Column;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::integrator::gear::STATE;
+use stripmine_kernels::isa::Element;
+
+const SUMS: [&str; 3] = ["Fx", "Fy", "torque"];
+const CELL: [&str; 2] = ["cell.column", "cell.row"];
+const MADE_AT: [&str; 2] = ["listed.x", "listed.y"];
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
+    /// A column in the scene's order, from a value for each disc.
+    fn column<T: Element>(&self, value: impl Fn(usize) -> T) -> Column {
+        let mut column = vec![T::default(); self.start.len()];
+        (0..column.len()).for_each(|disc| column[self.state.number(disc)] = value(disc));
+        real_column(column.into_iter())
+    }
+
+    /// Everything that the next step depends on, by name.
+    pub fn columns(&self) -> Vec<(String, Column)> {
+        let mut columns = Vec::new();
+        for (names, rows) in STATE.iter().zip(&self.state.columns) {
+            for (name, column) in names.iter().zip(rows) {
+                columns.push((name.label().to_owned(), self.column(|disc| column[disc])));
+            }
+        }
+        for (name, sum) in SUMS.iter().zip(&self.sums) {
+            columns.push(((*name).to_owned(), self.column(|disc| sum[disc])));
+        }
+        for (axis, name) in CELL.iter().enumerate() {
+            let cell = |disc| self.search.cell(disc).map_or(f64::NAN, |cell| cell[axis] as f64);
+            columns.push(((*name).to_owned(), self.column(cell)));
+        }
+        if let Some(lists) = self.search.lists() {
+            for (axis, name) in MADE_AT.iter().enumerate() {
+                let made_at = lists.made_at(axis);
+                columns.push(((*name).to_owned(), self.column(|disc| made_at[disc])));
+            }
+        }
+        columns.extend(self.elapsed.crossings.columns());
+        columns
+    }
+
+    /// Takes up columns that [`columns`](Self::columns) gave after so many steps.
+    ///
+    /// # Errors
+    /// A sentence, if the columns are not those of these discs.
+    pub fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
+        let numbers = self.state.numbers().to_vec();
+        let mut state = self.state.clone();
+        for (names, rows) in STATE.iter().zip(&mut state.columns) {
+            for (name, column) in names.iter().zip(rows) {
+                let values = in_order::<S>(columns, name.label(), &numbers)?;
+                // The sentinels stay.
+                column[..values.len()].copy_from_slice(&values);
+            }
+        }
+        let mut sums = self.sums.clone();
+        for (name, sum) in SUMS.iter().zip(&mut sums) {
+            *sum = in_order::<P>(columns, name, &numbers)?;
+        }
+        let cells =
+            [in_order::<f64>(columns, CELL[0], &numbers)?, in_order::<f64>(columns, CELL[1], &numbers)?];
+        let counts = self.search.grid().counts;
+        let inside = |axis: usize, &cell: &f64| (0.0..counts[axis] as f64).contains(&cell);
+        if (0..2).any(|axis| !cells[axis].iter().all(|cell| inside(axis, cell))) {
+            return Err("a cell lies outside the lattice".to_owned());
+        }
+        let made_at = match self.search.lists() {
+            Some(_) => Some([
+                in_order::<S>(columns, MADE_AT[0], &numbers)?,
+                in_order::<S>(columns, MADE_AT[1], &numbers)?,
+            ]),
+            None => None,
+        };
+        self.elapsed.crossings.take_up(columns)?;
+        (0..numbers.len()).for_each(|disc| self.search.leave(disc));
+        for (disc, (&column, &row)) in cells[0].iter().zip(&cells[1]).enumerate() {
+            let cell = [column as usize, row as usize];
+            let to = Move { disc, cell, place: state.place(disc), periods: [0.0; 2] };
+            let entered = self.search.enter(&to, &state);
+            entered.map_err(|_| "two discs are in one cell".to_owned())?;
+        }
+        self.search.arrange(&state);
+        (self.state, self.sums) = (state, sums);
+        // Lists are made of the places at which they were made before, so that they are the same.
+        let now: Vec<[f64; 2]> = (0..numbers.len()).map(|disc| self.state.place(disc)).collect();
+        if let Some(made_at) = &made_at {
+            for (axis, places) in made_at.iter().enumerate() {
+                self.state.columns[axis][0][..places.len()].copy_from_slice(places);
+            }
+        }
+        let order = self.put_in_order();
+        for (disc, before) in order.into_iter().enumerate() {
+            self.state.put(disc, now[before as usize]);
+        }
+        self.elapsed.steps = steps;
+        self.give_walls_their_velocity();
+        Ok(())
+    }
+}
+
+/// The column of a name, in the order of the discs in memory, whose numbers in the scene are given.
+fn in_order<T: Element>(columns: &[(String, Column)], name: &str, numbers: &[u32]) -> Result<Vec<T>, String> {
+    let values = find_column::<T>(columns, name, numbers.len())?;
+    Ok(numbers.iter().map(|&number| values[number as usize]).collect())
+}

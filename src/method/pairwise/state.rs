@@ -1,0 +1,151 @@
+//! The discs: columns in the order of their cells, positions seen from the cells' centres.
+
+use super::System;
+use crate::particles::{Kind, Particle, Particles};
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::integrator::Inertia;
+use stripmine_kernels::sweep::fast::{self, SENTINELS};
+
+/// A disc with the cell it goes to, its place there, seen from the cell's centre (length), and the periods that it crosses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Move {
+    pub disc: usize,
+    pub cell: [usize; 2],
+    pub place: [f64; 2],
+    pub periods: [f64; 2],
+}
+
+/// Columns with an entry a disc, grains first, and two discs behind them that never touch.
+#[derive(Clone, Debug)]
+pub struct State<S> {
+    /// Scaled derivatives: for each degree of freedom those that are carried from step to step.
+    pub(super) columns: Vec<Vec<Vec<S>>>,
+    /// The radius of every disc (length), where they are alike.
+    alike: Option<f64>,
+    /// Radii, and inverse masses and moments of inertia, where discs vary.
+    radius: Vec<S>,
+    inverse: [Vec<S>; 2],
+    /// Which of the scene's discs each is.
+    numbers: Vec<u32>,
+    grains: usize,
+}
+
+/// What a pass moves: columns, inverse masses and moments of inertia, and which of the scene's discs each is.
+type Moved<'a, S> = (&'a mut [Vec<Vec<S>>], [&'a [S]; 2], &'a [u32]);
+
+impl<S: Precision> State<S> {
+    /// Of `particles`, with as many derivatives as the scheme carries from step to step.
+    pub fn new(system: &System, carried: usize, particles: &Particles) -> Self {
+        let discs = particles.all();
+        let column = |value: &dyn Fn(&Particle) -> f64, sentinel: f64| -> Vec<S> {
+            let values = discs.iter().map(value).chain(std::iter::repeat_n(sentinel, SENTINELS));
+            values.map(S::from_f64).collect()
+        };
+        let derivative = |freedom: usize, k: usize| {
+            let value = |disc: &Particle| match (k, freedom) {
+                (1, 0 | 1) => disc.velocity[freedom] * system.dt,
+                (0, 2) => disc.angle,
+                (1, _) => disc.omega * system.dt,
+                _ => 0.0,
+            };
+            column(&value, 0.0)
+        };
+        let mut columns: Vec<Vec<Vec<S>>> = (0..system.freedoms)
+            .map(|freedom| (0..carried).map(|k| derivative(freedom, k)).collect())
+            .collect();
+        // The sentinels stand farther apart than any pair acts.
+        columns[0][0][discs.len()] = S::from_f64(4.0 * system.reach);
+        let (mut radius, mut inverse) = (vec![], [vec![], vec![]]);
+        if system.inertia == Inertia::Varying {
+            let of_grain = |disc: &Particle, value: f64| if disc.kind == Kind::Wall { 0.0 } else { value };
+            let largest = particles.radii().map_or(1.0, |[_, largest]| largest);
+            radius = column(&|disc| disc.radius, largest);
+            inverse[0] = column(&|disc| of_grain(disc, 1.0 / disc.mass), 1.0);
+            let inertia = |disc: &Particle| system.inertia_factor * disc.mass * disc.radius * disc.radius;
+            inverse[1] = column(&|disc| of_grain(disc, 1.0 / inertia(disc)), 1.0);
+        }
+        let numbers = (0..discs.len() as u32).collect();
+        State { columns, alike: system.radius, radius, inverse, numbers, grains: particles.grain_count() }
+    }
+
+    /// Which of the scene's discs a disc is.
+    pub fn number(&self, disc: usize) -> usize {
+        self.numbers[disc] as usize
+    }
+
+    /// The carried derivatives of a disc, the others zero.
+    pub fn row(&self, freedom: usize, disc: usize) -> [S; 6] {
+        let mut row = [S::default(); 6];
+        row.iter_mut().zip(&self.columns[freedom]).for_each(|(q, column)| *q = column[disc]);
+        row
+    }
+
+    /// The place of a disc, seen from the centre of its cell (length).
+    pub fn place(&self, disc: usize) -> [f64; 2] {
+        [self.columns[0][0][disc].to_f64(), self.columns[1][0][disc].to_f64()]
+    }
+
+    /// The places of all discs and sentinels.
+    pub fn places(&self) -> [&[S]; 2] {
+        [&self.columns[0][0], &self.columns[1][0]]
+    }
+
+    /// Puts a disc at a place.
+    pub fn put(&mut self, disc: usize, place: [f64; 2]) {
+        (0..2).for_each(|axis| self.columns[axis][0][disc] = S::from_f64(place[axis]));
+    }
+
+    /// Gives all wall discs a velocity (length/time).
+    pub fn set_wall_velocity(&mut self, velocity: [f64; 2], dt: f64) {
+        let discs = self.numbers.len();
+        (0..2).for_each(|axis| {
+            self.columns[axis][1][self.grains..discs].fill(S::from_f64(velocity[axis] * dt))
+        });
+    }
+
+    /// Radius of a disc (length).
+    pub fn radius(&self, disc: usize) -> f64 {
+        self.alike.unwrap_or_else(|| self.radius[disc].to_f64())
+    }
+
+    /// Inverse masses or moments of inertia, for a degree of freedom.
+    pub fn inverse(&self, freedom: usize) -> &[S] {
+        &self.inverse[freedom / 2]
+    }
+
+    /// Which of the scene's discs each is.
+    pub fn numbers(&self) -> &[u32] {
+        &self.numbers
+    }
+
+    /// What a pass moves.
+    pub fn for_advance(&mut self) -> Moved<'_, S> {
+        (&mut self.columns, [&self.inverse[0], &self.inverse[1]], &self.numbers)
+    }
+
+    /// The discs as a sweep reads them.
+    pub fn discs(&self, system: &System) -> fast::Discs<'_, S> {
+        let omega = if system.freedoms == 3 { self.columns[2][1].as_slice() } else { &[] };
+        fast::Discs {
+            place: self.places(),
+            velocity: [&self.columns[0][1], &self.columns[1][1], omega],
+            per_time: 1.0 / system.dt,
+            radius: &self.radius,
+            inverse_mass: &self.inverse[0],
+        }
+    }
+
+    /// Disc `n` is from now on what disc `order[n]` was.
+    pub fn renumber(&mut self, order: &[u32]) {
+        let derivatives = self.columns.iter_mut().flatten();
+        for column in derivatives.chain([&mut self.radius]).chain(&mut self.inverse) {
+            if !column.is_empty() {
+                let mut now = Vec::with_capacity(column.len());
+                now.extend(order.iter().map(|&disc| column[disc as usize]));
+                now.extend_from_slice(&column[order.len()..]);
+                *column = now;
+            }
+        }
+        self.numbers = order.iter().map(|&disc| self.numbers[disc as usize]).collect();
+    }
+}
