@@ -111,6 +111,32 @@ fn walls_gravity_and_a_shaken_floor_are_the_faithful_ones() {
     }
 }
 
+/// So many discs that making lists and sorting are cut into pieces.
+#[test]
+fn lists_and_order_are_the_same_on_any_number_of_threads() {
+    let mut start = gas(40_000, 0.3, 5);
+    (start.0.scheme, start.0.dt) = (Scheme::VelocityVerlet, 0.02);
+    for (search, precision) in [
+        (FastSearch::Sectors, Precision::F64),
+        (FastSearch::Lists { skin: 0.02 }, Precision::F64),
+        (FastSearch::Lists { skin: 0.02 }, Precision::Mixed),
+    ] {
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut gas = simulate(precision, &start, Contacts::Fast(search), fast());
+                advance(gas.as_mut(), 5);
+                assert!(gas.lists().is_none_or(|(_, made)| made > 1), "lists are made again");
+                (bits(gas.as_ref()), gas.lists())
+            })
+        };
+        let alone = run(1);
+        for threads in [2, 3] {
+            assert!(run(threads) == alone, "{search:?} on {threads} threads");
+        }
+    }
+}
+
 #[test]
 fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
     // Long enough for lists to be made again.

@@ -5,8 +5,17 @@ use super::state::Move;
 use super::{Dynamics, Engine, Named, conflict, outside};
 use crate::domain::Domain;
 use crate::method::{Culprit, Failure};
+use std::ops::Range;
 use stripmine_kernels::backend::Precision;
+use stripmine_kernels::over_pieces;
 use stripmine_kernels::sweep::fast::Grid;
+
+/// What was found when discs were looked for: changes of cells, and discs that belong to no cell.
+#[derive(Default)]
+struct Looked {
+    moves: Vec<Move>,
+    strays: Vec<Move>,
+}
 
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
     /// A position (length), from the place in a cell.
@@ -72,7 +81,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         if self.search.lists().is_some() {
             return self.keep_lists(left, &walls);
         }
-        let mut moves = self.find_cells(left.iter().map(|&disc| disc as usize))?;
+        let mut moves = self.changes_of(vec![self.look(left.iter().map(|&disc| disc as usize))])?;
         self.changes += moves.len();
         moves.extend(walls);
         self.change_cells(&moves)?;
@@ -99,20 +108,27 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         Culprit { position: self.position_in_cell(at.cell, at.place), ..self.culprit(at.disc) }
     }
 
-    /// Discs in the cells that their places lie in.
-    fn find_cells(&self, discs: impl Iterator<Item = usize>) -> Result<Vec<Move>, Failure> {
-        let (mut moves, mut strays) = (Vec::new(), Vec::new());
+    /// Looks for the cells that the places of some discs lie in.
+    fn look(&self, discs: impl Iterator<Item = usize>) -> Looked {
+        let mut looked = Looked::default();
         for disc in discs {
             let cell = self.search.cell(disc).unwrap_or_default();
             let from = Move { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
             match self.in_its_cell(from) {
-                Some(to) => moves.push(to),
-                None => strays.push(from),
+                Some(to) if to == from => {}
+                Some(to) => looked.moves.push(to),
+                None => looked.strays.push(from),
             }
         }
-        match strays.iter().min_by_key(|from| self.state.number(from.disc)) {
-            Some(&first) => Err(self.stray(first, strays.len() as u64)),
-            None => Ok(moves),
+        looked
+    }
+
+    /// The changes of cells that were found; a failure if a disc belongs to no cell.
+    fn changes_of(&self, looked: Vec<Looked>) -> Result<Vec<Move>, Failure> {
+        let strays = || looked.iter().flat_map(|looked| &looked.strays);
+        match strays().min_by_key(|from| self.state.number(from.disc)) {
+            Some(&first) => Err(self.stray(first, strays().count() as u64)),
+            None => Ok(looked.into_iter().flat_map(|looked| looked.moves).collect()),
         }
     }
 
@@ -139,7 +155,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             return Err(self.stray(Move { disc: first as usize, cell, place, periods: [0.0; 2] }, count));
         }
         if stale {
-            let moves = self.find_cells(0..self.start.len())?;
+            let looked = over_pieces(0..self.start.len(), |discs| self.look(discs));
+            let moves = self.changes_of(looked)?;
             self.change_cells(&moves)?;
             self.put_in_order();
         }
@@ -159,7 +176,10 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
                 !(reach..=sides[axis] - reach).contains(&along)
             })
         };
-        (0..self.start.len()).filter(|&disc| near(disc)).map(|disc| disc as u32).collect()
+        let near = |discs: Range<usize>| -> Vec<u32> {
+            discs.filter(|&disc| near(disc)).map(|disc| disc as u32).collect()
+        };
+        over_pieces(0..self.start.len(), near).concat()
     }
 
     /// Whether a disc is beyond an open side.

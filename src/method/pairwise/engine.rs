@@ -11,9 +11,9 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Scheme;
 use stripmine_kernels::isa::ProgramError;
-use stripmine_kernels::keep_awake;
 use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::{Advance, Met, Motion, Passed};
+use stripmine_kernels::{keep_awake, reordered};
 
 /// Discs with state of precision `S`, forces of precision `P`, search `Q` and dynamics `D`.
 pub struct Engine<S, P, Q, D> {
@@ -115,12 +115,14 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     pub(super) fn put_in_order(&mut self) -> Vec<u32> {
         let grains = self.start.grain_count();
         let mut order = self.search.order();
-        // Grains stay the first ones.
-        order.sort_by_key(|&disc| disc as usize >= grains);
+        if grains < order.len() {
+            // Grains stay the first ones.
+            order.sort_by_key(|&disc| disc as usize >= grains);
+        }
         self.search.renumber(&order);
         self.state.renumber(&order);
         for sum in &mut self.sums {
-            *sum = order.iter().map(|&disc| sum[disc as usize]).collect();
+            *sum = reordered(sum, &order);
         }
         self.search.make_lists(&self.state);
         self.rim = self.discs_at_the_rim();

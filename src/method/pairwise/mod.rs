@@ -62,7 +62,7 @@ pub struct System {
 }
 
 /// By what discs move.
-pub trait Dynamics: Send {
+pub trait Dynamics: Send + Sync {
     /// Does something with the pair law.
     fn with_law<W: WithLaw>(&self, work: W) -> W::Output;
 

@@ -4,6 +4,7 @@ use super::System;
 use crate::particles::{Kind, Particle, Particles};
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Inertia;
+use stripmine_kernels::reordered;
 use stripmine_kernels::sweep::fast::{self, SENTINELS};
 
 /// A disc with the cell it goes to, its place there, seen from the cell's centre (length), and the periods that it crosses.
@@ -137,15 +138,14 @@ impl<S: Precision> State<S> {
 
     /// Disc `n` is from now on what disc `order[n]` was.
     pub fn renumber(&mut self, order: &[u32]) {
+        let discs = order.len() as u32;
+        let with_sentinels: Vec<u32> = order.iter().copied().chain(discs..discs + SENTINELS as u32).collect();
         let derivatives = self.columns.iter_mut().flatten();
         for column in derivatives.chain([&mut self.radius]).chain(&mut self.inverse) {
             if !column.is_empty() {
-                let mut now = Vec::with_capacity(column.len());
-                now.extend(order.iter().map(|&disc| column[disc as usize]));
-                now.extend_from_slice(&column[order.len()..]);
-                *column = now;
+                *column = reordered(column, &with_sentinels);
             }
         }
-        self.numbers = order.iter().map(|&disc| self.numbers[disc as usize]).collect();
+        self.numbers = reordered(&self.numbers, order);
     }
 }

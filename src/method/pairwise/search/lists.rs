@@ -4,6 +4,7 @@ use super::{Search, rows};
 use crate::method::pairwise::state::{Move, State};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
+use stripmine_kernels::in_pieces;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::lattice::Taken;
@@ -91,7 +92,10 @@ impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
     fn make_lists(&mut self, state: &State<S>) {
         let ListSearch { sectors, listed, .. } = self;
         let places = state.places();
-        listed.made_at = places.map(<[S]>::to_vec);
+        for (made_at, places) in listed.made_at.iter_mut().zip(places) {
+            made_at.resize(places.len(), S::default());
+            in_pieces(made_at, |first, piece| piece.copy_from_slice(&places[first..first + piece.len()]));
+        }
         listed.list = Some(VerletList::new(sectors, places, listed.skin));
         listed.made += 1;
     }

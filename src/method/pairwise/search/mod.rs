@@ -20,7 +20,7 @@ use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Finder, G
 /// Cells, which discs are in them, and the pairs found with their help. A disc's place is seen from the centre of its cell.
 ///
 /// The engine is compiled for each search: what a search does not need costs nothing.
-pub trait Search<S: Precision, P: Precision>: Send {
+pub trait Search<S: Precision, P: Precision>: Send + Sync {
     /// The cells: where they lie, how many there are, and which sides are periodic.
     fn grid(&self) -> Grid;
 
