@@ -1,9 +1,9 @@
 //! The keys that are this method's own: law, search, integrator, machine; and what they demand of each other.
 
-use super::fast::OnConflict;
 use super::model::OnLongStep;
 use super::neighbor_list::Rebuild;
 use super::options::{By, EngineChoice, Inertia, IntegratorKind};
+use crate::method::pairwise::search::OnConflict;
 use crate::scene::Bounds::{NonNegative, Positive, Within};
 use crate::scene::Fallback::{Is, Otherwise, Required};
 use crate::scene::Kind::{Choice, Number, OneOf, Switch};

@@ -1,10 +1,10 @@
 //! What a scene of this method says, as plain data.
 
-use super::fast::OnConflict;
 use super::keys::*;
 use super::model::{GearValues, OnLongStep, Scheme};
 use super::neighbor_list::Rebuild;
 pub use super::options::{By, EngineChoice, Inertia, IntegratorKind};
+use crate::method::pairwise::search::OnConflict;
 use crate::scene::{
     Binding, DT, Domain, Output, Precision, Run, Start, WallMotion, Write, bind_arithmetic, bind_heading,
 };

@@ -3,10 +3,10 @@
 use crate::domain::Domain;
 use crate::grid::sectors_of;
 use crate::method::lattice_md::document::Document;
-use crate::method::lattice_md::fast::OnConflict;
 use crate::method::lattice_md::keys::{CELL_EDGE, MASK, SEARCH, SKIN};
 use crate::method::lattice_md::model::sides_of;
 use crate::method::lattice_md::scene::By;
+use crate::method::pairwise::search::OnConflict;
 use crate::scene::{
     COUNT, FILE, Key, Precision, RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, Reason, SIDES, SceneError, Spot,
     Start, WALL_RADIUS,
