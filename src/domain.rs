@@ -13,7 +13,7 @@ pub struct Domain {
 
 impl Domain {
     /// From `from` to `to`, across periodic sides where that is shorter (length).
-    pub fn way(&self, from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
+    pub fn displacement(&self, from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|axis| {
             let way = to[axis] - from[axis];
             let side = self.sides[axis];

@@ -96,7 +96,7 @@ mod tests {
                     offered.dedup();
                     assert_eq!(offered.len(), before);
                     for (j, &there) in positions.iter().enumerate() {
-                        let [dx, dy] = domain.way(own, there);
+                        let [dx, dy] = domain.displacement(own, there);
                         assert!(dx.hypot(dy) >= 1.0 || offered.contains(&j), "{i} and {j} in {domain:?}");
                     }
                 }

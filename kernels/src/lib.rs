@@ -46,8 +46,8 @@ pub mod law;
 pub mod ledger;
 pub mod mask;
 pub mod noise;
+pub mod probe;
 mod program;
-pub mod rests;
 pub mod sweep;
 mod threads;
 

@@ -3,7 +3,7 @@
 use crate::backend::tape::Outlines;
 use crate::backend::{GROUP, InstructionSet, Precision, Registers, Scalar, Strip, Tape, Task, dispatch};
 use crate::isa::{Footprint, Memory, OpCounts, ProgramError, Text};
-use crate::rests::{self, Rest};
+use crate::probe::{self, Probe};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
 
@@ -77,7 +77,7 @@ where
             Execution::Strip(length) => self.tape.interpret(memory, range, length, set),
             Execution::Chained => {
                 let loops = |range| dispatch(set, Compiled { text: &self.text, memory, range });
-                if rests::heard() { self.in_spans(range, loops) } else { loops(range) }
+                if probe::is_probed() { self.in_spans(range, loops) } else { loops(range) }
             }
         }
     }
@@ -90,11 +90,11 @@ where
         loops: impl Fn(Range<usize>) -> Result<(), ProgramError>,
     ) -> Result<(), ProgramError> {
         // A compiled loop takes about a quarter of what passes take.
-        let elements = 4 * rests::SPAN / self.tape.instructions().len().max(1);
+        let elements = 4 * probe::SPAN / self.tape.instructions().len().max(1);
         for start in range.clone().step_by(elements.next_multiple_of(GROUP)) {
             let end = range.end.min(start + elements.next_multiple_of(GROUP));
             loops(start..end)?;
-            rests::rest(Rest::Within);
+            probe::probe(Probe::Within);
         }
         Ok(())
     }

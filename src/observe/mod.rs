@@ -108,7 +108,7 @@ pub fn contacts(particles: &Particles, domain: &Domain) -> Vec<(usize, usize, f6
             let j = j as usize;
             let once = j > i || all[j].kind == Kind::Wall;
             if once && j != i {
-                let [dx, dy] = domain.way(disc.position, all[j].position);
+                let [dx, dy] = domain.displacement(disc.position, all[j].position);
                 let reach = disc.radius + all[j].radius;
                 let penetration = 1.0 - dx.hypot(dy) / reach;
                 if penetration > 0.0 {

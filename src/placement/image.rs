@@ -19,7 +19,7 @@ pub fn wrapped(domain: &Domain, position: [f64; 2]) -> [f64; 2] {
 
 /// The distance of two positions, across periodic sides where that is shorter (length).
 pub fn distance(domain: &Domain, a: [f64; 2], b: [f64; 2]) -> f64 {
-    let [x, y] = domain.way(a, b);
+    let [x, y] = domain.displacement(a, b);
     x.hypot(y)
 }
 

@@ -1,21 +1,21 @@
 //! The instruction set: what a kernel text may ask of the machine, and the one list of operations.
 
+pub mod aligned_column;
 mod element;
 mod footprint;
 pub(crate) mod list;
 mod machine;
 mod memory;
-pub mod on_lines;
 pub mod op;
 mod slot;
 mod vector;
 
+pub use aligned_column::AlignedColumn;
 pub use element::{Element, Storage};
 pub use footprint::{Access, Footprint};
 pub(crate) use machine::same;
 pub use machine::{Machine, Text};
 pub use memory::{COUNTERS, Column, Columns, Counter, Memory, ProgramError};
-pub use on_lines::OnLines;
 pub use op::{Op, OpClass, OpCounts};
 pub use slot::{Array, Slot};
 pub use vector::{Predicate, Vector};

@@ -92,7 +92,7 @@ pub struct Met {
 
 /// How cells of the lattice are seen from each other.
 #[derive(Clone, Debug)]
-pub struct Ways {
+pub struct CellOffsets {
     shape: LatticeShape,
     half_width: isize,
     /// Number of a place of the mask, by row and column from the lower left corner; the own cell comes last.
@@ -101,9 +101,9 @@ pub struct Ways {
     relative: bool,
 }
 
-impl Ways {
+impl CellOffsets {
     /// For a full mask on a lattice, with positions relative to the cell or not.
-    pub fn new(shape: LatticeShape, frame: Frame, mask: &Mask, relative: bool) -> Ways {
+    pub fn new(shape: LatticeShape, frame: Frame, mask: &Mask, relative: bool) -> CellOffsets {
         let half_width = mask.half_width() as isize;
         let side = 2 * half_width + 1;
         let mut place = vec![None; (side * side) as usize];
@@ -112,7 +112,7 @@ impl Ways {
             place[at as usize] = Some(number as u16);
         }
         place[(half_width * side + half_width) as usize] = Some(mask.offsets().len() as u16);
-        Ways { shape, half_width, place, edge: frame.edge, relative }
+        CellOffsets { shape, half_width, place, edge: frame.edge, relative }
     }
 
     /// Column and row of a cell numbered from 1 in the padded lattice.
@@ -120,7 +120,7 @@ impl Ways {
         self.shape.column_and_row(cell as usize - 1)
     }
 
-    /// The place at which `there` is seen from `own`, with the way between their centres and the periods crossed.
+    /// The place at which `there` is seen from `own`, with the offset of their centres and the periods crossed.
     fn place(&self, own: [isize; 2], there: [isize; 2]) -> Option<(u16, [f64; 2], [f64; 2])> {
         let mut offset = [0; 2];
         let mut periods = [0.0; 2];
@@ -237,7 +237,7 @@ impl<P: Precision> Env<2> for &OneByOne<'_, P> {
 pub fn walk<P: Precision, L: Law<2>>(
     law: &L,
     lists: &Lists,
-    ways: &Ways,
+    cell_offsets: &CellOffsets,
     discs: Discs<'_, P>,
     grains: usize,
     reach: f64,
@@ -246,7 +246,7 @@ pub fn walk<P: Precision, L: Law<2>>(
 ) -> Met {
     let zero = P::from_f64(0.0);
     let square = P::from_f64(reach * reach);
-    let places: Vec<[isize; 2]> = discs.cell.iter().map(|&cell| ways.column_and_row(cell)).collect();
+    let places: Vec<[isize; 2]> = discs.cell.iter().map(|&cell| cell_offsets.column_and_row(cell)).collect();
     let mut met = Met::default();
     let mut contacts: Vec<Partner<P>> = Vec::new();
     let mut env = OneByOne {
@@ -268,11 +268,13 @@ pub fn walk<P: Precision, L: Law<2>>(
         contacts.clear();
         for &j in lists.of(i) {
             let j = j as usize;
-            let Some((place, way, periods)) = ways.place(places[i], places[j]) else { continue };
+            let Some((place, cell_offset, periods)) = cell_offsets.place(places[i], places[j]) else {
+                continue;
+            };
             let displacement = [0, 1].map(|axis| {
                 let (own, there) = (discs.position[axis][i], discs.position[axis][j]);
-                if ways.relative {
-                    (own - there) - P::from_f64(way[axis])
+                if cell_offsets.relative {
+                    (own - there) - P::from_f64(cell_offset[axis])
                 } else {
                     // The lattice shifts the image, then subtracts.
                     own - (there + P::from_f64(periods[axis]))

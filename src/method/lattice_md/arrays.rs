@@ -5,7 +5,7 @@ use crate::particles::{Kind, Particle, Particles};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::STATE;
-use stripmine_kernels::isa::{Array, Memory, OnLines, Slot};
+use stripmine_kernels::isa::{AlignedColumn, Array, Memory, Slot};
 use stripmine_kernels::ledger::Length;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
@@ -62,16 +62,16 @@ pub struct Arrays<S, P> {
     lattice: Columns<P>,
     /// Columns in force precision that stay as they are.
     constant: Columns<P>,
-    cell: OnLines<u32>,
+    cell: AlignedColumn<u32>,
     /// Where the forces of every disc stand where that is not its cell: numbered from 1.
-    force_at: Option<OnLines<u32>>,
-    index: OnLines<u32>,
-    halo_cell: OnLines<u32>,
-    halo_source: OnLines<u32>,
+    force_at: Option<AlignedColumn<u32>>,
+    index: AlignedColumn<u32>,
+    halo_cell: AlignedColumn<u32>,
+    halo_source: AlignedColumn<u32>,
 }
 
 /// Columns, each for one array of the machine.
-type Columns<T> = Vec<(Array, OnLines<T>)>;
+type Columns<T> = Vec<(Array, AlignedColumn<T>)>;
 
 /// State and lattice columns, bound to their slots.
 fn bound<'a, S: Precision, P: Precision>(
@@ -94,8 +94,8 @@ fn bound<'a, S: Precision, P: Precision>(
 }
 
 /// An array's elements, at lines of its own.
-fn laid_out<X: Copy>(array: Array, values: impl IntoIterator<Item = X>) -> OnLines<X> {
-    OnLines::new(array as usize, values)
+fn laid_out<X: Copy>(array: Array, values: impl IntoIterator<Item = X>) -> AlignedColumn<X> {
+    AlignedColumn::new(array as usize, values)
 }
 
 impl<S: Precision, P: Precision> Arrays<S, P> {
@@ -162,7 +162,7 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
             for (axis, array) in [Array::ImageX, Array::ImageY].into_iter().enumerate() {
                 let cells = [model.shape.columns(), model.shape.rows()][axis];
                 let period = cells as f64 * model.frame.edge[axis];
-                let mut shift = OnLines::filled(array as usize, P::from_f64(0.0), padded);
+                let mut shift = AlignedColumn::filled(array as usize, P::from_f64(0.0), padded);
                 for image in &images {
                     shift[image.cell] = P::from_f64(f64::from(image.periods[axis]) * period);
                 }
@@ -172,7 +172,7 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
 
         let mut lattice: Columns<P> = Vec::new();
         let mut columns = |arrays: &[Array], length| {
-            let zeros = |array| OnLines::filled(array as usize, P::from_f64(0.0), length);
+            let zeros = |array| AlignedColumn::filled(array as usize, P::from_f64(0.0), length);
             lattice.extend(arrays.iter().map(|&array| (array, zeros(array))));
         };
         columns(&[Array::DiscX, Array::DiscY, Array::DiscVx, Array::DiscVy], discs);
@@ -209,10 +209,10 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
             constant,
             cell: match anchored {
                 Some(anchored) => laid_out(Array::DiscCell, anchored.into_iter().map(|(cell, _)| cell)),
-                None => OnLines::filled(Array::DiscCell as usize, 0, discs),
+                None => AlignedColumn::filled(Array::DiscCell as usize, 0, discs),
             },
             force_at: by_disc.then(|| laid_out(Array::DiscCell, 1..=discs as u32)),
-            index: OnLines::filled(Array::Index as usize, 0, padded),
+            index: AlignedColumn::filled(Array::Index as usize, 0, padded),
             halo_cell: laid_out(Array::HaloCell, images.iter().map(|image| image.cell as u32 + 1)),
             halo_source: laid_out(Array::HaloSource, images.iter().map(|image| image.source as u32 + 1)),
             lengths,

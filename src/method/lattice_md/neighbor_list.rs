@@ -10,7 +10,7 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Array;
 use stripmine_kernels::law::Law;
 use stripmine_kernels::sweep::lattice::Coordinates;
-use stripmine_kernels::sweep::neighbor_list::{self, Lists, Met, Ways, walk};
+use stripmine_kernels::sweep::neighbor_list::{self, CellOffsets, Lists, Met, walk};
 
 define_words! {
     /// How neighbour lists are made.
@@ -35,7 +35,7 @@ pub struct ListOptions {
 #[derive(Clone, Debug)]
 pub(super) struct Rival<P> {
     options: ListOptions,
-    ways: Ways,
+    cell_offsets: CellOffsets,
     lists: Lists,
     /// Positions when the lists were made.
     made_at: Vec<[f64; 2]>,
@@ -51,7 +51,7 @@ impl<P: Precision> Rival<P> {
         let relative = model.coordinates == Coordinates::CellRelative;
         Rival {
             options,
-            ways: Ways::new(model.shape, model.frame, &model.mask, relative),
+            cell_offsets: CellOffsets::new(model.shape, model.frame, &model.mask, relative),
             lists: Lists::default(),
             made_at: vec![],
             reach: 2.0 * largest_radius,
@@ -137,7 +137,7 @@ impl<P: Precision> Rival<P> {
 
 /// Square of the distance between two places (length²).
 fn square(domain: &Domain, from: [f64; 2], to: [f64; 2]) -> f64 {
-    let [dx, dy] = domain.way(from, to);
+    let [dx, dy] = domain.displacement(from, to);
     dx * dx + dy * dy
 }
 
@@ -168,8 +168,8 @@ impl<S: Precision, P: Precision> WithLaw for Walk<'_, S, P> {
         // A rounding error more than contact, so that the law decides on every contact.
         let reach = self.rival.reach * (1.0 + 1e-6);
         let grains = self.arrays.lengths().grains;
-        let Rival { lists, ways, .. } = self.rival;
-        walk(&law, lists, ways, discs, grains, reach, asked, |disc, sums| {
+        let Rival { lists, cell_offsets, .. } = self.rival;
+        walk(&law, lists, cell_offsets, discs, grains, reach, asked, |disc, sums| {
             self.sums.iter_mut().zip(sums).for_each(|(column, sum)| column[disc] = sum);
         })
     }

@@ -140,7 +140,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         for to in walls {
             let (from, cell) = (self.search.cell(to.disc).unwrap_or_default(), to.cell);
             let centre = |cell: [usize; 2]| [0, 1].map(|axis| cell[axis] as f64 * edge[axis]);
-            let way = domain.way(centre(from), centre(cell));
+            let way = domain.displacement(centre(from), centre(cell));
             let place = [0, 1].map(|axis| to.place[axis] + way[axis]);
             self.state.put(to.disc, place);
             stale |= self.search.lists().is_some_and(|lists| lists.has_strayed(to.disc, place));

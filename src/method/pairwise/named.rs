@@ -37,7 +37,7 @@ pub trait Named {
 
     /// Penetration of two discs, as a fraction of the sum of their radii.
     fn penetration(&self, [first, second]: [usize; 2]) -> f64 {
-        let [dx, dy] = self.domain().way(self.position(first), self.position(second));
+        let [dx, dy] = self.domain().displacement(self.position(first), self.position(second));
         1.0 - dx.hypot(dy) / (self.radius(first) + self.radius(second))
     }
 
@@ -61,6 +61,6 @@ pub fn outside(step: u64, count: u64, first: Culprit) -> Failure {
 
 /// The failure of two discs in one cell.
 pub fn conflict(step: u64, domain: Domain, [first, second]: [Culprit; 2]) -> Failure {
-    let [dx, dy] = domain.way(first.position, second.position);
+    let [dx, dy] = domain.displacement(first.position, second.position);
     Failure::Conflict { step, first, second, distance: dx.hypot(dy) }
 }

@@ -1,7 +1,7 @@
 //! Where the time of a step goes.
 
 use serde::Serialize;
-use stripmine_kernels::rests::{Rest, rest};
+use stripmine_kernels::probe::{Probe, probe};
 
 macro_rules! define_phases {
     ($(($variant:ident, $name:literal, $doc:literal)),* $(,)?) => {
@@ -41,11 +41,11 @@ impl Timings {
     /// Runs `work` and adds what it took. Whoever listens hears of its beginning and its end, by the phase's place in
     /// [`Phase::ALL`].
     pub fn time<R>(&mut self, phase: Phase, work: impl FnOnce() -> R) -> R {
-        rest(Rest::Begins(phase as usize));
+        probe(Probe::Begins(phase as usize));
         let start = std::time::Instant::now();
         let result = work();
         self.seconds[phase as usize] += start.elapsed().as_secs_f64();
-        rest(Rest::Ends(phase as usize));
+        probe(Probe::Ends(phase as usize));
         result
     }
 

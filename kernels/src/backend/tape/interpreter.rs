@@ -10,7 +10,7 @@ use crate::backend::{InstructionSet, Task, dispatch};
 use crate::isa::list::for_each_op;
 use crate::isa::op::{BinaryOp, CompareOp, UnaryOp};
 use crate::isa::{Array, Column, Counter, Element, Machine, Memory, ProgramError, Slot, Storage, Vector};
-use crate::rests::Rests;
+use crate::probe::SinceProbe;
 use std::cell::Cell;
 use std::ops::Range;
 
@@ -44,7 +44,7 @@ impl<L: Precision> Task<L> for Passes<'_, L> {
         let mut rest: Box<RegisterFiles<Scalar<L>>> = pool::take();
         whole.provide(hardware, self.tape, strip / R::LANES);
         rest.provide(Scalar::default(), self.tape, strip.min(R::LANES - 1));
-        let mut rests = Rests::new();
+        let mut rests = SinceProbe::new();
         for base in self.range.clone().step_by(strip.max(1)) {
             let length = strip.min(self.range.end - base);
             let registers = length / R::LANES;
@@ -220,7 +220,11 @@ impl<L: Precision> RegisterFiles<Scalar<L>> {
     /// The program on `length` elements from `base` on: the same for every instruction set.
     #[inline(never)]
     fn execute_elements(&self, tape: &Tape<L>, memory: &Memory<'_>, base: usize, length: usize) {
-        self.execute(tape, Span { hardware: Scalar::default(), memory, base, length }, &mut Rests::new());
+        self.execute(
+            tape,
+            Span { hardware: Scalar::default(), memory, base, length },
+            &mut SinceProbe::new(),
+        );
     }
 }
 
@@ -239,7 +243,7 @@ impl<R: Registers> RegisterFiles<R> {
 
     /// The program on one strip, instruction by instruction.
     #[inline(always)]
-    fn execute(&self, tape: &Tape<R::Lane>, span: Span<'_, R>, rests: &mut Rests) {
+    fn execute(&self, tape: &Tape<R::Lane>, span: Span<'_, R>, rests: &mut SinceProbe) {
         if span.length == 0 {
             return;
         }

@@ -1,23 +1,23 @@
 //! Vector registers one behind the other in memory, close together for short strips and long ones alike.
 
-use crate::isa::on_lines::{self, LINE, OnLines};
+use crate::isa::aligned_column::{self, AlignedColumn, LINE};
 use std::cell::Cell;
 
 /// Lines after which addresses look alike to a first-level cache.
-const ALIKE: usize = on_lines::ALIKE / LINE;
+const ALIKE: usize = aligned_column::ALIKE / LINE;
 /// Lines that long registers must be apart at least, addresses taken as such a cache sees them.
 const APART: usize = 9;
 
 /// Registers of entries `X`.
 pub(super) struct RegisterFile<X> {
-    entries: OnLines<Cell<X>>,
+    entries: AlignedColumn<Cell<X>>,
     /// Entries from one register to the next.
     stride: usize,
 }
 
 impl<X> Default for RegisterFile<X> {
     fn default() -> Self {
-        RegisterFile { entries: OnLines::default(), stride: 0 }
+        RegisterFile { entries: AlignedColumn::default(), stride: 0 }
     }
 }
 
@@ -30,7 +30,7 @@ impl<X: Copy> RegisterFile<X> {
         let needed = count * self.stride;
         if self.entries.len() < needed {
             // Nothing of the old entries is worth a copy.
-            self.entries = OnLines::filled(0, Cell::new(entry), needed);
+            self.entries = AlignedColumn::filled(0, Cell::new(entry), needed);
         }
     }
 

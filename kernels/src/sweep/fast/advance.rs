@@ -6,7 +6,7 @@
 //! ```
 //!
 //! The state that a pass leaves is that of the predictor; an observer, which wants the state at the end of the step, corrects a
-//! copy ([`Motion::corrected`]). So every column is read once and written once a step. On the way, while all is in registers:
+//! copy ([`Motion::corrected`]). So every column is read once and written once a step. On this pass, while all is in registers:
 //!
 //! - the sums of forces are set to zero for the next sweep;
 //! - each disc's place is compared with how far it may go before the search must know: the rim of its cell, or half the skin

@@ -109,7 +109,7 @@ struct Gathered<'a, R: Registers, S> {
     discs: &'a Discs<'a, S>,
     own: &'a Lanes<u32>,
     partner: &'a Lanes<u32>,
-    way: [R::V; 2],
+    cell_offset: [R::V; 2],
     asked: Asked,
     penetration: Cell<R::V>,
     power: Cell<R::V>,
@@ -175,8 +175,8 @@ impl<R: Registers, S: Element> Env<2> for &Gathered<'_, R, S> {
     }
     #[inline(always)]
     fn displacement(self, own: [R::V; 2], (): ()) -> [R::V; 2] {
-        let x = (own[0] - self.gather(self.discs.place[0], self.partner)) - self.way[0];
-        let y = (own[1] - self.gather(self.discs.place[1], self.partner)) - self.way[1];
+        let x = (own[0] - self.gather(self.discs.place[0], self.partner)) - self.cell_offset[0];
+        let y = (own[1] - self.gather(self.discs.place[1], self.partner)) - self.cell_offset[1];
         [x, y]
     }
     #[inline(always)]
@@ -252,23 +252,24 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
         let count = (self.pairs.count() - first).min(R::LANES);
         let mut own = [self.sentinel; GROUP];
         let mut partner = [self.sentinel + 1; GROUP];
-        let mut ways = [[P::default(); GROUP]; 2];
+        let mut cell_offsets = [[P::default(); GROUP]; 2];
         // Nearly all registers are full: a loop over all lanes is unrolled.
         for lane in 0..R::LANES {
             if lane == count {
                 break;
             }
-            ([own[lane], partner[lane]], [ways[0][lane], ways[1][lane]]) = self.pairs.pair(first + lane);
+            ([own[lane], partner[lane]], [cell_offsets[0][lane], cell_offsets[1][lane]]) =
+                self.pairs.pair(first + lane);
         }
         let zero = || Cell::new(registers.splat(P::default()));
         // SAFETY: each array has GROUP entries, and LANES <= GROUP.
-        let way = ways.map(|way| unsafe { registers.load(way.as_ptr()) });
+        let cell_offset = cell_offsets.map(|cell_offset| unsafe { registers.load(cell_offset.as_ptr()) });
         let gathered = Gathered {
             registers,
             discs: self.discs,
             own: &own,
             partner: &partner,
-            way,
+            cell_offset,
             asked: self.asked,
             penetration: zero(),
             power: zero(),

@@ -60,7 +60,7 @@ pub trait Pairs<P> {
     /// How many.
     fn count(&self) -> usize;
 
-    /// Two discs, and the way from where the first one's place is seen from to where the second one's is (length).
+    /// Two discs, and the cell offset from where the first one's place is seen from to where the second one's is (length).
     ///
     /// # Panics
     /// May, if there is no pair of that number.

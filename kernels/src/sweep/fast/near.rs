@@ -1,4 +1,4 @@
-//! Pairs written out: two discs and the way between them, listed if they are near.
+//! Pairs written out: two discs and the cell offset between them, listed if they are near.
 
 use super::SENTINELS;
 use super::finder::{AT_ONCE, Cursor, MARGIN, Pairs};
@@ -7,11 +7,11 @@ use crate::backend::Precision;
 use crate::isa::Element;
 use std::ops::Range;
 
-/// Two discs that may touch, and the way between where their places are seen from (length).
+/// Two discs that may touch, and the cell offset between where their places are seen from (length).
 #[derive(Clone, Copy, Debug)]
 pub struct Touch<P> {
     discs: [u32; 2],
-    way: [P; 2],
+    cell_offset: [P; 2],
 }
 
 /// A list of pairs.
@@ -20,8 +20,8 @@ pub struct Touches<P>(Vec<Touch<P>>);
 
 impl<P: Precision> Touches<P> {
     /// Appends a pair.
-    pub(super) fn push(&mut self, discs: [u32; 2], way: [f64; 2]) {
-        self.0.push(Touch { discs, way: way.map(P::from_f64) });
+    pub(super) fn push(&mut self, discs: [u32; 2], cell_offset: [f64; 2]) {
+        self.0.push(Touch { discs, cell_offset: cell_offset.map(P::from_f64) });
     }
 }
 
@@ -32,15 +32,15 @@ impl<P: Precision> Pairs<P> for &Touches<P> {
     }
     #[inline(always)]
     fn pair(&self, number: usize) -> ([u32; 2], [P; 2]) {
-        let Touch { discs, way } = self.0[number];
-        (discs, way)
+        let Touch { discs, cell_offset } = self.0[number];
+        (discs, cell_offset)
     }
 }
 
 /// Lists those of the pairs it is given that are nearer than some distance.
 pub(super) struct Near<'a, S, P> {
     places: [&'a [S]; 2],
-    ways: [[f64; 2]; 5],
+    cell_offsets: [[f64; 2]; 5],
     limit: f64,
     touches: &'a mut Vec<Touch<P>>,
 }
@@ -60,7 +60,7 @@ impl<'a, S: Element, P: Precision> Near<'a, S, P> {
         assert!(places.iter().all(|place| place.len() == discs + SENTINELS), "a place for every disc");
         touches.0.clear();
         let limit = reach * reach * MARGIN;
-        Near { places, ways: grid.ways(), limit, touches: &mut touches.0 }
+        Near { places, cell_offsets: grid.cell_offsets(), limit, touches: &mut touches.0 }
     }
 
     /// Goes on through rows, piece by piece (`pieces` of a row), until enough is listed.
@@ -98,18 +98,19 @@ impl<'a, S: Element, P: Precision> Near<'a, S, P> {
     /// Lists a pair if it is near enough.
     ///
     /// # Safety
-    /// `second` is one of the discs, and `way` below 5.
+    /// `second` is one of the discs, and `cell_offset` below 5.
     #[inline(always)]
-    pub(super) unsafe fn meet(&mut self, first: u32, at: [f64; 2], second: u32, way: usize) {
-        // SAFETY: the caller promises that `second` is a disc and that `way` is below 5, the length of `ways`.
-        let (there, way) = unsafe { (self.at(second), *self.ways.get_unchecked(way)) };
-        let (dx, dy) = ((at[0] - there[0]) - way[0], (at[1] - there[1]) - way[1]);
+    pub(super) unsafe fn meet(&mut self, first: u32, at: [f64; 2], second: u32, cell_offset: usize) {
+        // SAFETY: the caller promises that `second` is a disc and that `cell_offset` is below 5, the length of `cell_offsets`.
+        let (there, cell_offset) =
+            unsafe { (self.at(second), *self.cell_offsets.get_unchecked(cell_offset)) };
+        let (dx, dy) = ((at[0] - there[0]) - cell_offset[0], (at[1] - there[1]) - cell_offset[1]);
         let length = self.touches.len();
         if length == self.touches.capacity() {
             self.touches.reserve(AT_ONCE);
         }
         // Written whether it is near or not: that spares a branch that cannot be predicted.
-        let touch = Touch { discs: [first, second], way: way.map(P::from_f64) };
+        let touch = Touch { discs: [first, second], cell_offset: cell_offset.map(P::from_f64) };
         // SAFETY: `reserve` above has left room for one more, and it is written before the length covers it.
         unsafe {
             self.touches.as_mut_ptr().add(length).write(touch);

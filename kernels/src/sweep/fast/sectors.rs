@@ -3,7 +3,7 @@
 //! A disc's partners are in its own sector and in the eight around it. Each pair of sectors is met from one side:
 //!
 //! ```text
-//! row + 1     2  3  4        ways from a sector to those ahead of it; 0 is itself
+//! row + 1     2  3  4        cell offsets from a sector to those ahead of it; 0 is itself
 //! own row        0  1
 //! ```
 //!
@@ -131,13 +131,13 @@ impl Grid {
     }
 
     /// From the centre of a sector to the one that lies `ahead` columns and rows from it (length).
-    fn way(&self, ahead: [isize; 2]) -> [f64; 2] {
+    fn cell_offset(&self, ahead: [isize; 2]) -> [f64; 2] {
         [0, 1].map(|axis| ahead[axis] as f64 * self.frame.edge[axis])
     }
 
-    /// The ways to the sectors ahead, in their order.
-    pub(super) fn ways(&self) -> [[f64; 2]; 5] {
-        AHEAD.map(|ahead| self.way(ahead))
+    /// Offsets of the sectors ahead, in their order.
+    pub(super) fn cell_offsets(&self) -> [[f64; 2]; 5] {
+        AHEAD.map(|ahead| self.cell_offset(ahead))
     }
 
     pub(super) fn rows(&self) -> Rows {
@@ -294,7 +294,7 @@ impl Sectors {
         self.starts[sector] as usize..self.starts[sector + more + 1] as usize
     }
 
-    /// Calls `own(disc)` for every disc of some sectors of a row, and then `meet(disc, partner, number of the way)` for
+    /// Calls `own(disc)` for every disc of some sectors of a row, and then `meet(disc, partner, number of the cell offset)` for
     /// every partner in the sectors ahead.
     #[inline(always)]
     pub(super) fn pairs_of_row(
@@ -335,8 +335,8 @@ impl Sectors {
                 let first = self.members[at];
                 own(first);
                 self.members[rest_of(at)].iter().for_each(|&second| meet(first, second, 0));
-                for (way, there) in ahead.iter().enumerate().skip(1) {
-                    self.members[there.clone()].iter().for_each(|&second| meet(first, second, way));
+                for (cell_offset, there) in ahead.iter().enumerate().skip(1) {
+                    self.members[there.clone()].iter().for_each(|&second| meet(first, second, cell_offset));
                 }
             }
         }
@@ -374,13 +374,13 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
                     row,
                     column..column + 1,
                     |_| {},
-                    |first, second, way| {
-                        // SAFETY: `pairs_of_row` gives members of sectors, which are discs, and numbers of ways below 5.
+                    |first, second, cell_offset| {
+                        // SAFETY: `pairs_of_row` gives members of sectors, which are discs, and numbers of cell offsets below 5.
                         unsafe {
                             if first != last {
                                 (last, at) = (first, near.at(first));
                             }
-                            near.meet(first, at, second, way);
+                            near.meet(first, at, second, cell_offset);
                         }
                     },
                 );

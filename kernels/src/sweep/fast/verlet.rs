@@ -7,10 +7,10 @@
 //! rows      0           2     3     4    where in `own` the discs of each row of sectors begin, and the end
 //! own       4     9     2     7          the discs in order of their sectors
 //! first     0     3     4     5     5    where in `partners` those of each begin, and the end
-//! partners  9 2 7 2     7                each with the number of the way in its upper three bits
+//! partners  9 2 7 2     7                each with the number of the cell offset in its upper three bits
 //! ```
 //!
-//! A pair is listed once, with the disc that comes first in the order of the sectors. The *way* is one of the five from a
+//! A pair is listed once, with the disc that comes first in the order of the sectors. The *cell offset* is one of the five from a
 //! sector to those ahead of it (itself first), and stands for the difference of the places from which the two discs are seen;
 //! so a pair across a periodic side costs no more than any other, and no position is ever wrapped.
 
@@ -23,7 +23,7 @@ use crate::isa::{Element, ProgramError};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
 
-/// Bits of a partner that number the disc; those above number the way.
+/// Bits of a partner that number the disc; those above number the cell offset.
 const DISC: u32 = 29;
 
 /// Rows of sectors whose lists one thread makes at a time.
@@ -72,7 +72,7 @@ impl VerletList {
         );
         let discs = sectors.disc_count();
         let at = |disc: u32| places.map(|place| place[disc as usize].to_f64());
-        let ways = grid.ways();
+        let cell_offsets = grid.cell_offsets();
         let part = |rows: Range<usize>| {
             let mut part = Part::default();
             let Part { own, first, partners, .. } = &mut part;
@@ -87,11 +87,12 @@ impl VerletList {
                         own.push(disc);
                         first.push(partners.borrow().len() as u32);
                     },
-                    |disc, partner, way| {
+                    |disc, partner, cell_offset| {
                         let (here, there) = (at(disc), at(partner));
-                        let along = |axis: usize| (here[axis] - there[axis]) - ways[way][axis];
+                        let along =
+                            |axis: usize| (here[axis] - there[axis]) - cell_offsets[cell_offset][axis];
                         if along(0) * along(0) + along(1) * along(1) < limit {
-                            partners.borrow_mut().push(partner | (way as u32) << DISC);
+                            partners.borrow_mut().push(partner | (cell_offset as u32) << DISC);
                         }
                     },
                 );
@@ -183,9 +184,9 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
                 // SAFETY: `own` holds numbers of discs: the lists were made of the sectors' members.
                 let at = unsafe { near.at(disc) };
                 for &partner in partners {
-                    let (second, way) = (partner & ((1 << DISC) - 1), (partner >> DISC) as usize);
-                    // SAFETY: a partner is a member of a sector and so a disc, and `pairs_of_row` numbered its way, below 5.
-                    unsafe { near.meet(disc, at, second, way) };
+                    let (second, cell_offset) = (partner & ((1 << DISC) - 1), (partner >> DISC) as usize);
+                    // SAFETY: a partner is a member of a sector and so a disc, and `pairs_of_row` numbered its cell offset, below 5.
+                    unsafe { near.meet(disc, at, second, cell_offset) };
                 }
             },
         );

@@ -11,7 +11,7 @@ use crate::statistics::quantile;
 use std::cell::RefCell;
 use std::hint::black_box;
 use std::time::Instant;
-use stripmine_kernels::rests::{Rest, listening};
+use stripmine_kernels::probe::{Probe, probed};
 
 /// Numbers that the reference loop reads: few, so that they stay in the first-level cache.
 static NUMBERS: [f64; 256] = [1.0; 256];
@@ -192,7 +192,7 @@ impl NoiseMonitor {
         quiet: &mut usize,
         work: impl FnOnce() -> T,
     ) -> (T, Vec<(usize, Timed)>) {
-        let result = listening(record, work);
+        let result = probed(record, work);
         let recorded = RECORDED.take();
         self.within.extend(recorded.iter().map(|(_, _, reading, _)| reading));
         let recorded: Vec<_> = recorded
@@ -204,9 +204,9 @@ impl NoiseMonitor {
         for pair in recorded.windows(2) {
             let [(rest, _, before, went_on), (_, rested, after, _)] = [pair[0], pair[1]];
             match rest {
-                Rest::Begins(begun) => number = Some(begun),
-                Rest::Ends(_) => number = None,
-                Rest::Within => {}
+                Probe::Begins(begun) => number = Some(begun),
+                Probe::Ends(_) => number = None,
+                Probe::Within => {}
             }
             let ns = rested.duration_since(went_on).as_nanos() as f64;
             segments.extend(number.map(|number| (number, Timed { ns, around: [before, after] })));
@@ -236,26 +236,26 @@ fn rising<'a>(values: impl Iterator<Item = &'a f64>) -> Vec<f64> {
 
 thread_local! {
     /// The probes of a run: which, when it was reached, the reading there, and when the run went on.
-    static RECORDED: RefCell<Vec<(Rest, Instant, f64, Instant)>> = const { RefCell::new(vec![]) };
+    static RECORDED: RefCell<Vec<(Probe, Instant, f64, Instant)>> = const { RefCell::new(vec![]) };
 }
 
-fn record(rest: Rest) {
-    let rested = Instant::now();
+fn record(at: Probe) {
+    let reached = Instant::now();
     let reading = reading();
-    RECORDED.with_borrow_mut(|recorded| recorded.push((rest, rested, reading, Instant::now())));
+    RECORDED.with_borrow_mut(|recorded| recorded.push((at, reached, reading, Instant::now())));
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stripmine_kernels::rests::rest;
+    use stripmine_kernels::probe::probe;
 
     #[test]
     fn times_in_segments_belong_to_the_work_that_was_begun() {
         let mut monitor = NoiseMonitor::default();
         let ((), segments) = monitor.in_segments(&mut 0, || {
-            for at in [Rest::Begins(1), Rest::Within, Rest::Ends(1), Rest::Begins(0), Rest::Ends(0)] {
-                rest(at);
+            for at in [Probe::Begins(1), Probe::Within, Probe::Ends(1), Probe::Begins(0), Probe::Ends(0)] {
+                probe(at);
             }
         });
         assert_eq!(segments.iter().map(|(number, _)| *number).collect::<Vec<_>>(), [1, 1, 0]);

@@ -57,7 +57,7 @@ pub struct Codes<P> {
     /// From the group's first cell to the own cell and to the partner's.
     cells: Vec<[i32; 2]>,
     /// From the centre of the own cell to that of the partner's (length).
-    ways: [Vec<P>; 2],
+    cell_offsets: [Vec<P>; 2],
 }
 
 impl<P: Precision> Codes<P> {
@@ -70,7 +70,7 @@ impl<P: Precision> Codes<P> {
             cells: all()
                 .map(|(lane, [column, row])| [lane as i32, (lane as isize + row * stride + column) as i32])
                 .collect(),
-            ways: [0, 1].map(|axis| {
+            cell_offsets: [0, 1].map(|axis| {
                 all().map(|(_, place)| P::from_f64(place[axis] as f64 * frame.edge[axis])).collect()
             }),
         }
@@ -82,7 +82,7 @@ impl<P: Precision> Codes<P> {
         self.stride == occupancy.shape().stride() && self.cells.len() == codes
     }
 
-    /// The two discs of a candidate and the way between their cells.
+    /// The two discs of a candidate and the cell offset between their cells.
     #[inline(always)]
     pub(super) fn pair(&self, candidate: Candidate, index: &[u32]) -> ([u32; 2], [P; 2]) {
         let (base, code) = (candidate.base(), candidate.code());
@@ -91,7 +91,7 @@ impl<P: Precision> Codes<P> {
         unsafe {
             let cells = *self.cells.get_unchecked(code);
             let discs = cells.map(|cell| *index.get_unchecked(base.wrapping_add_signed(cell as isize)));
-            (discs, [*self.ways[0].get_unchecked(code), *self.ways[1].get_unchecked(code)])
+            (discs, [*self.cell_offsets[0].get_unchecked(code), *self.cell_offsets[1].get_unchecked(code)])
         }
     }
 }

@@ -3,7 +3,7 @@
 //! ```text
 //! for every group of 16 cells of a row that has a disc:
 //!     for every place of the half mask:
-//!         dx = x[group] - x[group at the place] - way,  dy likewise        a register of cells at a time
+//!         dx = x[group] - x[group at the place] - cell offset,  dy likewise        a register of cells at a time
 //!         16 bits: dx² + dy² < 1                                           in units of the largest contact distance;
 //!                                                                          (r_i + r_j)² in place of 1 where radii vary
 //!     and these bits with those of the occupied cells                      four places share a word of 64 bits
@@ -16,7 +16,7 @@
 //! - *Single precision.* Places inside cells are copied in single precision ([`Advance`](crate::sweep::fast::Advance)): twice as
 //!   many lanes. A margin of 2·10⁻⁵ covers the rounding, so no contact is missed; the law decides in full precision.
 //! - *No question whether the partner's cell is occupied.* An empty cell's x is so far away that nothing is near it.
-//! - *The way belongs to the own side.* The own place as seen from the columns and rows around is made once a register.
+//! - *The cell offset belongs to the own side.* The own place as seen from the columns and rows around is made once a register.
 //! - *Bits, not branches.* Results stay bits until the end, and candidates are appended four at a time, whether there are four
 //!   or not: how many there are cannot be predicted.
 

@@ -103,23 +103,27 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
         let (guests, shape) = (occupancy.guests(), occupancy.shape());
         let Grid { frame, counts, periodic } = occupancy.grid();
         let half = occupancy.half_width() as isize;
-        let way = |offset: [isize; 2]| [0, 1].map(|axis| offset[axis] as f64 * frame.edge[axis]);
+        let cell_offset = |offset: [isize; 2]| [0, 1].map(|axis| offset[axis] as f64 * frame.edge[axis]);
         for (at, &(guest, [column, row])) in guests.iter().enumerate() {
             for offset in (-half..=half).flat_map(|rows| (-half..=half).map(move |columns| [columns, rows])) {
                 let position = shape.position(column as isize + offset[0], row as isize + offset[1]);
                 let there = occupancy.index()[position];
                 if (there as usize) < occupancy.discs() {
-                    found.push([guest, there], way(offset));
+                    found.push([guest, there], cell_offset(offset));
                 }
             }
             for &(other, cell) in &guests[at + 1..] {
                 let offset = [0, 1].map(|axis| {
-                    let (count, way) =
+                    let (count, cell_offset) =
                         (counts[axis] as isize, cell[axis] as isize - [column, row][axis] as isize);
-                    if periodic[axis] && way.abs() > half { way - way.signum() * count } else { way }
+                    if periodic[axis] && cell_offset.abs() > half {
+                        cell_offset - cell_offset.signum() * count
+                    } else {
+                        cell_offset
+                    }
                 });
-                if offset.iter().all(|way| way.abs() <= half) {
-                    found.push([guest, other], way(offset));
+                if offset.iter().all(|cell_offset| cell_offset.abs() <= half) {
+                    found.push([guest, other], cell_offset(offset));
                 }
             }
         }

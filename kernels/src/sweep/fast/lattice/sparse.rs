@@ -77,14 +77,14 @@ impl<S: Element, P: Precision> Task<f32> for SparseSearch<'_, S, P> {
                 let mut kept = before;
                 for listed in before..found.len() {
                     let candidate = found[listed];
-                    let ([own, partner], way) = codes.pair(candidate, index);
+                    let ([own, partner], cell_offset) = codes.pair(candidate, index);
                     // SAFETY: the Index numbers discs and sentinels, which the columns have (asserted where the search begins).
-                    let along = |column: &[S], way: P| unsafe {
+                    let along = |column: &[S], cell_offset: P| unsafe {
                         let (own, partner) =
                             (column.get_unchecked(own as usize), column.get_unchecked(partner as usize));
-                        (own.to_f64() - partner.to_f64()) - way.to_f64()
+                        (own.to_f64() - partner.to_f64()) - cell_offset.to_f64()
                     };
-                    let (dx, dy) = (along(x, way[0]), along(y, way[1]));
+                    let (dx, dy) = (along(x, cell_offset[0]), along(y, cell_offset[1]));
                     found[kept] = candidate;
                     kept += usize::from(dx * dx + dy * dy < limit);
                 }

@@ -6,7 +6,7 @@
 use std::marker::PhantomData;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::{
-    Array, Counter, Element, Machine, Memory, OnLines, Op, Predicate, Slot, Text, Vector,
+    AlignedColumn, Array, Counter, Element, Machine, Memory, Op, Predicate, Slot, Text, Vector,
 };
 use stripmine_kernels::{Program, Runnable};
 
@@ -269,12 +269,12 @@ pub(super) const LONGEST: usize = 4_000_000;
 
 /// The arrays of the drills.
 pub(super) struct Arrays<L, O> {
-    read: [OnLines<L>; 2],
-    written: Vec<OnLines<L>>,
-    others: [OnLines<O>; 2],
-    index: OnLines<u32>,
-    through: OnLines<u32>,
-    written_index: [OnLines<u32>; 2],
+    read: [AlignedColumn<L>; 2],
+    written: Vec<AlignedColumn<L>>,
+    others: [AlignedColumn<O>; 2],
+    index: AlignedColumn<u32>,
+    through: AlignedColumn<u32>,
+    written_index: [AlignedColumn<u32>; 2],
 }
 
 impl<L: Element, O: Element> Arrays<L, O> {
@@ -283,18 +283,18 @@ impl<L: Element, O: Element> Arrays<L, O> {
         let n = n + SHIFT;
         // Near 1, so that no chain of products, quotients or roots leaves the normal numbers.
         let near_one = |array, step: f64| {
-            OnLines::new(array as usize, (0..n).map(|i| L::from_f64(1.0 + step * (i % 97) as f64)))
+            AlignedColumn::new(array as usize, (0..n).map(|i| L::from_f64(1.0 + step * (i % 97) as f64)))
         };
         // As discs lie in cells at a usual occupancy: every fourth element, in order.
-        let index = |array| OnLines::new(array as usize, (0..n).map(|i| ((4 * i) % n) as u32 + 1));
-        let ones = |array: Array| OnLines::filled(array as usize, L::from_f64(1.0), n);
+        let index = |array| AlignedColumn::new(array as usize, (0..n).map(|i| ((4 * i) % n) as u32 + 1));
+        let ones = |array: Array| AlignedColumn::filled(array as usize, L::from_f64(1.0), n);
         Arrays {
             read: [near_one(Array::X, 1e-7), near_one(Array::Y, 2e-7)],
             written: WRITTEN.map(ones).into_iter().collect(),
-            others: OTHERS.map(|array| OnLines::filled(array as usize, O::from_f64(1.0), n)),
+            others: OTHERS.map(|array| AlignedColumn::filled(array as usize, O::from_f64(1.0), n)),
             index: index(Array::Index),
             through: index(Array::HaloSource),
-            written_index: WRITTEN_INDEX.map(|array| OnLines::filled(array as usize, 1, n)),
+            written_index: WRITTEN_INDEX.map(|array| AlignedColumn::filled(array as usize, 1, n)),
         }
     }
 

@@ -5,7 +5,7 @@
 use crate::method::lattice_md::study::noise_monitor::{ENOUGH, NoiseMonitor, Timed};
 use crate::method::lattice_md::study::segment_times::{COUNTS, SegmentTimes};
 use std::time::Instant;
-use stripmine_kernels::rests::{Rest, rest};
+use stripmine_kernels::probe::{Probe, probe};
 
 /// The smallest step of the clock that was seen (ns).
 pub(super) fn timer_resolution() -> f64 {
@@ -30,9 +30,9 @@ fn long_runs(
 ) -> Vec<Vec<Timed>> {
     let ((), segments) = monitor.in_segments(quiet, || {
         for at in 0..works {
-            rest(Rest::Begins(at));
+            probe(Probe::Begins(at));
             work(at);
-            rest(Rest::Ends(at));
+            probe(Probe::Ends(at));
         }
     });
     let mut times = vec![vec![]; works];
@@ -257,7 +257,7 @@ mod tests {
         let (mut all, mut monitor) = (vec![Samples::default(); 2], NoiseMonitor::default());
         let at_rest = |_| {
             std::thread::sleep(std::time::Duration::from_micros(300));
-            rest(Rest::Within);
+            probe(Probe::Within);
         };
         Samples::take_in_turns(&mut all, &mut monitor, 1, at_rest);
         assert!(all.iter().all(|samples| samples.each.runs() == 1));

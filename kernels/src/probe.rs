@@ -1,15 +1,15 @@
-//! Rests: places within a run at which whoever times it may look up. They lie at the same places whenever a program runs
-//! over as many elements, so that what lies between two of them can be compared with itself, run by run.
+//! Probes: places within a run at which a timer may read the clock. They lie at the same places whenever a program runs over
+//! as many elements, so that what lies between two of them can be compared with itself, run by run.
 
 use std::cell::Cell;
 
 thread_local! {
-    static LISTENER: Cell<Option<fn(Rest)>> = const { Cell::new(None) };
+    static LISTENER: Cell<Option<fn(Probe)>> = const { Cell::new(None) };
 }
 
-/// Where a run rests.
+/// A place in a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rest {
+pub enum Probe {
     /// Before work that has a number.
     Begins(usize),
     /// Within a program.
@@ -18,10 +18,10 @@ pub enum Rest {
     Ends(usize),
 }
 
-/// Does some work, and tells `listener` of every rest of what this thread does meanwhile.
-pub fn listening<T>(listener: fn(Rest), work: impl FnOnce() -> T) -> T {
+/// Does some work; `listener` hears of every probe that this thread comes to meanwhile.
+pub fn probed<T>(listener: fn(Probe), work: impl FnOnce() -> T) -> T {
     /// The listener before, which listens on even where the work breaks off.
-    struct Before(Option<fn(Rest)>);
+    struct Before(Option<fn(Probe)>);
     impl Drop for Before {
         fn drop(&mut self) {
             LISTENER.set(self.0);
@@ -31,51 +31,51 @@ pub fn listening<T>(listener: fn(Rest), work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// Rests, if anybody listens.
+/// SinceProbe, if anybody listens.
 #[inline]
-pub fn rest(rest: Rest) {
+pub fn probe(at: Probe) {
     if let Some(listener) = LISTENER.get() {
-        listener(rest);
+        listener(at);
     }
 }
 
-/// Whether anybody listens on this thread.
-pub(crate) fn heard() -> bool {
+/// Whether this thread has a listener.
+pub(crate) fn is_probed() -> bool {
     LISTENER.get().is_some()
 }
 
-/// Elements times operations between two rests: some dozens of microseconds.
+/// Elements times operations between two probes: some dozens of microseconds.
 pub(crate) const SPAN: usize = 1 << 17;
-/// A pass over at least this many elements may end in a rest; passes over fewer are too short to be asked.
+/// A pass over at least this many elements may end in a probe; passes over fewer are too short.
 const LONG: usize = 4096;
 
-/// What an interpreted run has done since its last rest.
+/// What an interpreted run has done since its last probe.
 #[derive(Debug)]
-pub(crate) struct Rests {
-    heard: bool,
+pub(crate) struct SinceProbe {
+    probed: bool,
     /// Elements times passes.
     done: usize,
 }
 
-impl Rests {
+impl SinceProbe {
     /// Of a run that begins.
-    pub(crate) fn new() -> Rests {
-        Rests { heard: heard(), done: 0 }
+    pub(crate) fn new() -> SinceProbe {
+        SinceProbe { probed: is_probed(), done: 0 }
     }
 
     /// Whether to ask after every pass over this many elements, and not only after all of a strip.
     #[inline(always)]
     pub(crate) fn after_passes(&self, elements: usize) -> bool {
-        self.heard && elements >= LONG
+        self.probed && elements >= LONG
     }
 
-    /// Something was done; rests where it was enough.
+    /// Something was done; a probe where it was enough.
     #[inline(never)]
     pub(crate) fn after(&mut self, done: usize) {
         self.done += done;
-        if self.heard && self.done >= SPAN {
+        if self.probed && self.done >= SPAN {
             self.done = 0;
-            rest(Rest::Within);
+            probe(Probe::Within);
         }
     }
 }
@@ -105,15 +105,15 @@ mod tests {
     }
 
     thread_local! {
-        static HEARD: RefCell<Vec<Rest>> = const { RefCell::new(vec![]) };
+        static HEARD: RefCell<Vec<Probe>> = const { RefCell::new(vec![]) };
     }
 
-    fn note(rest: Rest) {
-        HEARD.with_borrow_mut(|heard| heard.push(rest));
+    fn note(at: Probe) {
+        HEARD.with_borrow_mut(|heard| heard.push(at));
     }
 
     #[test]
-    fn runs_rest_at_the_same_places_and_do_the_same() {
+    fn runs_are_probed_at_the_same_places_and_do_the_same() {
         let n = 30_011;
         let x: Vec<f64> = (0..n).map(|i| i as f64).collect();
         let program = Program::new(Double);
@@ -127,12 +127,12 @@ mod tests {
         for execution in [Execution::Eager, Execution::Strip(64), Execution::Chained] {
             let alone = run(execution);
             assert!(HEARD.with_borrow(Vec::is_empty));
-            let rests = [(); 2].map(|()| {
-                assert_eq!(listening(note, || run(execution)), alone);
+            let probes = [(); 2].map(|()| {
+                assert_eq!(probed(note, || run(execution)), alone);
                 HEARD.take().len()
             });
-            assert!(rests[0] > 2 && rests[0] == rests[1], "{execution:?}: {rests:?}");
+            assert!(probes[0] > 2 && probes[0] == probes[1], "{execution:?}: {probes:?}");
         }
-        assert!(!heard());
+        assert!(!is_probed());
     }
 }

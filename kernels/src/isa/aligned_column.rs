@@ -83,7 +83,7 @@ fn room(number: usize, bytes: usize) -> (Arc<Pages>, NonNull<u8>) {
 }
 
 /// Elements in a row that begin at a line of their own.
-pub struct OnLines<X> {
+pub struct AlignedColumn<X> {
     number: usize,
     start: NonNull<X>,
     length: usize,
@@ -92,29 +92,29 @@ pub struct OnLines<X> {
 }
 
 // SAFETY: a row owns its elements, as a vector does.
-unsafe impl<X: Send> Send for OnLines<X> {}
+unsafe impl<X: Send> Send for AlignedColumn<X> {}
 // SAFETY: a shared row gives out shared references to its elements, and nothing else.
-unsafe impl<X: Sync> Sync for OnLines<X> {}
+unsafe impl<X: Sync> Sync for AlignedColumn<X> {}
 
-impl<X: Clone> OnLines<X> {
+impl<X: Clone> AlignedColumn<X> {
     /// `values` behind each other; rows of another `number` begin at other lines.
-    pub fn new(number: usize, values: impl IntoIterator<Item = X>) -> OnLines<X> {
-        OnLines::from_vec(number, &values.into_iter().collect::<Vec<X>>())
+    pub fn new(number: usize, values: impl IntoIterator<Item = X>) -> AlignedColumn<X> {
+        AlignedColumn::from_vec(number, &values.into_iter().collect::<Vec<X>>())
     }
 
     /// The same value `length` times.
-    pub fn filled(number: usize, value: X, length: usize) -> OnLines<X> {
-        OnLines::written(number, length, |_| value.clone())
+    pub fn filled(number: usize, value: X, length: usize) -> AlignedColumn<X> {
+        AlignedColumn::written(number, length, |_| value.clone())
     }
 
-    fn from_vec(number: usize, values: &[X]) -> OnLines<X> {
-        OnLines::written(number, values.len(), |at| values[at].clone())
+    fn from_vec(number: usize, values: &[X]) -> AlignedColumn<X> {
+        AlignedColumn::written(number, values.len(), |at| values[at].clone())
     }
 
-    fn written(number: usize, length: usize, value: impl Fn(usize) -> X) -> OnLines<X> {
+    fn written(number: usize, length: usize, value: impl Fn(usize) -> X) -> AlignedColumn<X> {
         const { assert!(align_of::<X>() <= LINE && !std::mem::needs_drop::<X>()) }
         if length == 0 {
-            return OnLines::default();
+            return AlignedColumn::default();
         }
         let (pages, start) = room(number, length * size_of::<X>());
         let start = start.cast::<X>();
@@ -122,30 +122,30 @@ impl<X: Clone> OnLines<X> {
             // SAFETY: `room` has given `length` elements' bytes, at the beginning of a line, to this row alone.
             unsafe { start.add(at).write(value(at)) };
         }
-        OnLines { number, start, length, _pages: Some(pages) }
+        AlignedColumn { number, start, length, _pages: Some(pages) }
     }
 }
 
-impl<X> Default for OnLines<X> {
+impl<X> Default for AlignedColumn<X> {
     /// None.
     fn default() -> Self {
-        OnLines { number: 0, start: NonNull::dangling(), length: 0, _pages: None }
+        AlignedColumn { number: 0, start: NonNull::dangling(), length: 0, _pages: None }
     }
 }
 
-impl<X: Clone> Clone for OnLines<X> {
+impl<X: Clone> Clone for AlignedColumn<X> {
     fn clone(&self) -> Self {
-        OnLines::from_vec(self.number, self)
+        AlignedColumn::from_vec(self.number, self)
     }
 }
 
-impl<X: Debug> Debug for OnLines<X> {
+impl<X: Debug> Debug for AlignedColumn<X> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.debug_list().entries(self.iter()).finish()
     }
 }
 
-impl<X> Deref for OnLines<X> {
+impl<X> Deref for AlignedColumn<X> {
     type Target = [X];
 
     fn deref(&self) -> &[X] {
@@ -154,7 +154,7 @@ impl<X> Deref for OnLines<X> {
     }
 }
 
-impl<X> DerefMut for OnLines<X> {
+impl<X> DerefMut for AlignedColumn<X> {
     fn deref_mut(&mut self) -> &mut [X] {
         // SAFETY: all `length` elements were written when the row was made, no other row has them, and this one is borrowed
         // exclusively.
@@ -168,8 +168,9 @@ mod tests {
 
     #[test]
     fn rows_begin_at_lines_of_their_own_wherever_memory_is() {
-        let rows: Vec<OnLines<f32>> =
-            (0..40).map(|number| OnLines::filled(number, number as f32, 100 + 20_000 * number)).collect();
+        let rows: Vec<AlignedColumn<f32>> = (0..40)
+            .map(|number| AlignedColumn::filled(number, number as f32, 100 + 20_000 * number))
+            .collect();
         let mut lines: Vec<usize> = rows.iter().map(|row| row.as_ptr().addr() % ALIKE).collect();
         assert!(lines.iter().all(|at| at.is_multiple_of(LINE)));
         lines.sort_unstable();
@@ -186,19 +187,19 @@ mod tests {
 
     #[test]
     fn rows_are_vectors_otherwise() {
-        let mut row = OnLines::new(3, 1_u16..=9);
+        let mut row = AlignedColumn::new(3, 1_u16..=9);
         row[2] = 7;
         let copy = row.clone();
         row[0] = 5;
         drop(row);
         assert_eq!((&copy[..4], copy.len()), ([1, 2, 7, 4].as_slice(), 9));
-        assert!(OnLines::<u64>::default().is_empty() && OnLines::new(1, [0.0; 0]).is_empty());
-        assert_eq!(format!("{:?}", OnLines::new(0, [1, 2])), "[1, 2]");
+        assert!(AlignedColumn::<u64>::default().is_empty() && AlignedColumn::new(1, [0.0; 0]).is_empty());
+        assert_eq!(format!("{:?}", AlignedColumn::new(0, [1, 2])), "[1, 2]");
     }
 
     #[test]
     fn a_row_outlives_the_thread_that_laid_it_out() {
-        let row = std::thread::spawn(|| OnLines::new(5, 0..1000_u32)).join();
+        let row = std::thread::spawn(|| AlignedColumn::new(5, 0..1000_u32)).join();
         assert_eq!(row.map(|row| row.iter().sum::<u32>()).ok(), Some(499_500));
     }
 }
