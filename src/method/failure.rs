@@ -29,8 +29,8 @@ impl fmt::Display for Culprit {
 pub enum Failure {
     /// Positions or forces that are no numbers.
     #[error(
-        "step {step}: {count} discs have a position or force that is no finite number, first {first}; \
-         the time step is too large for the stiffness or the damping: halve dt, or use fewer Gear values"
+        "step {step}: {count} discs have a position or force that is no finite number, first {first}\n  \
+         help: the time step is too large for the stiffness or the damping: halve dt, or use fewer Gear values"
     )]
     NotFinite {
         /// The step.
@@ -42,7 +42,7 @@ pub enum Failure {
     },
     /// Discs outside a closed side, or more than a period outside a periodic one.
     #[error(
-        "step {step}: {count} discs left the box, first {first}; a wall was passed or the time step is too large: \
+        "step {step}: {count} discs left the box, first {first}\n  help: a wall was passed or the time step is too large: \
          use larger or stiffer wall discs, slower grains, or a smaller dt"
     )]
     OutOfBox {
@@ -56,7 +56,7 @@ pub enum Failure {
     /// Two discs in one cell: the lattice would lose one.
     #[error(
         "step {step}: {first} and {second} are in one cell, {distance:.6} apart; the exclusive lattice holds one disc a \
-         cell: the discs overlap too deeply (stiffen the contacts), or the cells are too large (set method.cell_edge \
+         cell\n  help: the discs overlap too deeply (stiffen the contacts), or the cells are too large (set search.cell_edge \
          towards the largest radius)"
     )]
     Conflict {
@@ -72,7 +72,7 @@ pub enum Failure {
     /// A contact deeper than the scene allows.
     #[error(
         "step {step}: {first} and {second} overlap by {penetration:.4} of the sum of their radii, more than \
-         law.stop_penetration = {limit}; the contacts are too soft for these weights and speeds: raise law.stiffness \
+         law.stop_penetration = {limit}\n  help: the contacts are too soft for these weights and speeds: raise law.stiffness \
          (and lower dt), or slow the discs"
     )]
     TooDeep {
@@ -90,7 +90,7 @@ pub enum Failure {
     /// A disc that moved so far in a step that it may have passed through another unseen.
     #[error(
         "step {step}: {count} discs moved farther than {limit:.6} in the step, first {first}; contacts deeper than \
-         law.max_penetration could pass unseen between two steps: lower dt to {dt:.4e}, slow the discs, or set \
+         law.max_penetration could pass unseen between two steps\n  help: lower dt to {dt:.4e}, slow the discs, or set \
          integrator.on_long_step = \"count\""
     )]
     LongStep {
@@ -107,7 +107,7 @@ pub enum Failure {
     },
     /// Sums over all discs that no number holds.
     #[error(
-        "step {step}: {quantity} is {value}, which is no finite number: the units make masses, speeds or stiffness too large \
+        "step {step}: {quantity} is {value}, which is no finite number\n  help: the units make masses, speeds or stiffness too large \
          for double precision; choose units in which they are nearer to 1"
     )]
     Overflow {
@@ -119,12 +119,35 @@ pub enum Failure {
         value: f64,
     },
     /// Sectors do not fit the box.
-    #[error("{0}; take more discs, a smaller method.skin, or method.kind = \"lattice\"")]
+    #[error("{0}\n  help: take more discs, a smaller search.skin, or search.by = \"lattice\"")]
     NoSectors(#[from] GridError),
     /// The machine refused a program.
     #[error(transparent)]
     Machine(#[from] ProgramError),
 }
+
+impl Failure {
+    /// What broke, when, and which particles.
+    pub fn what(&self) -> String {
+        self.parts().0
+    }
+
+    /// What to do about it.
+    pub fn remedy(&self) -> Option<String> {
+        self.parts().1
+    }
+
+    fn parts(&self) -> (String, Option<String>) {
+        let text = self.to_string();
+        match text.split_once(HELP) {
+            Some((what, remedy)) => (what.to_owned(), Some(remedy.to_owned())),
+            None => (text, None),
+        }
+    }
+}
+
+/// What stands between what broke and what to do about it.
+const HELP: &str = "\n  help: ";
 
 impl Reported for Failure {
     fn class(&self) -> Class {

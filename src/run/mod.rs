@@ -110,7 +110,12 @@ pub enum RunError {
     #[error(transparent)]
     Scene(#[from] SceneErrors),
     /// The physics.
-    #[error("{failure}\nthe state of that step is the last frame of {}", snapshot.display())]
+    #[error(
+        "{}\nthe state of that step is the last frame of {}{}",
+        failure.what(),
+        snapshot.display(),
+        failure.remedy().map(|remedy| format!("\n  help: {remedy}")).unwrap_or_default()
+    )]
     Physics {
         /// What broke.
         failure: Failure,

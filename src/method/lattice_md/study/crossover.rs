@@ -7,7 +7,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use stripmine_kernels::InstructionSet;
 
-/// The methods, as `method.kind` names them. The lattice comes first.
+/// The searches, as `search.by` names them. The lattice comes first.
 pub const METHODS: [&str; 3] = ["lattice", "neighbor-list", "sectors"];
 
 /// How much is measured.
