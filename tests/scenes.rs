@@ -342,3 +342,26 @@ fn the_verbs_print_presets_keys_and_checks() {
         assert!(output.status.success() && words.iter().all(|word| said.contains(word)), "{said}");
     }
 }
+
+/// What is not given follows from what is: the cut of radii from their spread, wall discs from the grains.
+#[test]
+fn values_that_are_not_given_follow_from_others() {
+    let scene = |spread: f64| {
+        let text = format!(
+            "format = 2\nmethod.kind = \"lattice-md\"\nunits = \"reduced\"\n[domain]\nsides = [30.0, 20.0]\n\
+             periodic = [true, false]\n[particles]\ngenerate = \"pipe\"\ncount = 9\nradius = 0.5\nradius_spread = {spread}\n\
+             mass = 1.0\nclear_width = 6.0\n[law]\nstiffness = 100.0\n[integrator]\ndt = 0.005\n[run]\nsteps = 1\n"
+        );
+        Scene::parse("scene.toml", &text).unwrap()
+    };
+    for (spread, cut) in [(0.0, 0.0), (0.03, 0.06), (0.2, 0.12)] {
+        let Start::Pipe { grains, lining, .. } = scene(spread).start else { panic!("a pipe") };
+        assert!((grains.cut - cut).abs() < 1e-15, "{spread}: {}", grains.cut);
+        assert!((lining.radius - 0.45).abs() < 1e-15 && (lining.spacing - 1.35).abs() < 1e-15, "{lining:?}");
+    }
+    let listed = "format = 2\nmethod.kind = \"lattice-md\"\nunits = \"reduced\"\n[domain]\nsides = [9.0, 9.0]\n[particles]\n\
+                  generate = \"list\"\npositions = [[2.0, 2.0]]\nwall_positions = [[6.0, 6.0]]\nradius = 0.5\nmass = 1.0\n\
+                  [law]\nstiffness = 100.0\n[integrator]\ndt = 0.005\n[run]\nsteps = 1\n";
+    let Start::List(list) = Scene::parse("scene.toml", listed).unwrap().start else { panic!("a list") };
+    assert!((list.wall_radius - 0.45).abs() < 1e-15 && list.radii == [0.5] && list.velocities == [[0.0; 2]]);
+}
