@@ -242,6 +242,8 @@ fn the_figures_are_reported() {
     assert!((late(&long.fano)) > 1.0);
     if std::env::var_os("STRIPMINE_REPORTS").is_some() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("reports/physics");
+        let origin = stripmine::origin::Origin::here();
+        assert!(origin.is_committed(), "committed results come from a committed source: {origin:?}");
         std::fs::create_dir_all(&folder).unwrap();
         std::fs::write(folder.join("pipe_small.md"), text).unwrap();
     }
