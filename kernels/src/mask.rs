@@ -11,6 +11,7 @@ pub struct Offset {
 
 impl Offset {
     /// Square of the smallest distance between points of the own cell and of this one, in cells².
+    #[inline]
     pub const fn clearance_squared(self) -> u32 {
         let columns = self.columns.unsigned_abs().saturating_sub(1);
         let rows = self.rows.unsigned_abs().saturating_sub(1);
@@ -28,6 +29,7 @@ pub struct Mask {
 impl Mask {
     /// The square mask of `(2h + 1)² − 1` cells, numbered outwards ring by ring, each ring from the right-hand cell
     /// against the clock. BP93 fig. 2 for `h = 2`.
+    #[inline]
     pub fn square(half_width: u32) -> Mask {
         let mut offsets = Vec::new();
         for ring in 1..=half_width as i32 {
@@ -44,6 +46,7 @@ impl Mask {
     }
 
     /// The round mask of ISO99: the offsets with `i² + j² ≤ R² + R`, ring by ring as [`Mask::square`].
+    #[inline]
     pub fn round(radius: u32) -> Mask {
         let bound = (radius * radius + radius) as i32;
         let mut mask = Mask::square(radius);
@@ -52,22 +55,26 @@ impl Mask {
     }
 
     /// The right-hand cell alone: what one place costs. It covers the neighbourhood of no disc.
+    #[inline]
     pub fn one_place() -> Mask {
         Mask { offsets: vec![Offset { columns: 1, rows: 0 }], half_width: 1 }
     }
 
     /// The places in their order of visit; the source numbers them from 1.
+    #[inline]
     pub fn offsets(&self) -> &[Offset] {
         &self.offsets
     }
 
     /// The farthest column or row.
+    #[inline]
     pub fn half_width(&self) -> u32 {
         self.half_width
     }
 
     /// Square of the reach, in cells²: the smallest distance from a point of the own cell to a point outside the mask.
     /// Everything closer is seen. ISO99 table 1.
+    #[inline]
     pub fn reach_squared(&self) -> u32 {
         let beyond = self.half_width as i32 + 1;
         let own = Offset { columns: 0, rows: 0 };

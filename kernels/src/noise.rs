@@ -16,6 +16,7 @@ pub enum Purpose {
 }
 
 /// Philox 4x32 with ten rounds (Salmon et al., SC11): four random words from a counter of four and a key of two.
+#[inline]
 pub fn philox4x32(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
     for _ in 0..10 {
         let product = |multiplier: u64, word: u32| multiplier * u64::from(word);
@@ -32,6 +33,7 @@ pub fn philox4x32(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
 }
 
 /// The random words of (seed, purpose, id, step) and of the `block`-th four of them.
+#[inline]
 fn words(seed: u64, purpose: Purpose, id: u32, step: u64, block: u16) -> [u32; 4] {
     // The top byte of the fourth word keeps purposes apart, the two below it blocks; 40 bits count steps.
     debug_assert!(step < 1 << 40, "a run of 2^40 steps is out of reach");
@@ -40,6 +42,7 @@ fn words(seed: u64, purpose: Purpose, id: u32, step: u64, block: u16) -> [u32; 4
 }
 
 /// A uniform number in (0, 1), of 53 random bits; never 0, so that its logarithm exists.
+#[inline]
 fn uniform(high: u32, low: u32) -> f64 {
     let bits = (u64::from(high) << 32 | u64::from(low)) >> 11;
     (bits as f64 + 0.5) * (1.0 / (1u64 << 53) as f64)
@@ -48,6 +51,7 @@ fn uniform(high: u32, low: u32) -> f64 {
 /// Two independent standard normal numbers of (seed, purpose, id, step) (Box and Muller).
 ///
 /// Logarithm, cosine and sine come from the portable `libm`, so that the bits are the same on every platform.
+#[inline]
 pub fn normals(seed: u64, purpose: Purpose, id: u32, step: u64) -> [f64; 2] {
     let word = words(seed, purpose, id, step, 0);
     let radius = (-2.0 * libm::log(uniform(word[0], word[1]))).sqrt();
@@ -66,16 +70,19 @@ pub struct Stream {
 
 impl Stream {
     /// The stream from its beginning.
+    #[inline]
     pub fn new(seed: u64, purpose: Purpose, id: u32) -> Self {
         Stream { seed, purpose, id, drawn: 0 }
     }
 
     /// A uniform number in (0, 1).
+    #[inline]
     pub fn uniform(&mut self) -> f64 {
         let (high, low) = (self.word(), self.word());
         uniform(high, low)
     }
 
+    #[inline]
     fn word(&mut self) -> u32 {
         let (step, word) = (self.drawn / 4, (self.drawn % 4) as usize);
         self.drawn += 1;
@@ -85,12 +92,15 @@ impl Stream {
 
 impl rand_core::TryRng for Stream {
     type Error = Infallible;
+    #[inline]
     fn try_next_u32(&mut self) -> Result<u32, Infallible> {
         Ok(self.word())
     }
+    #[inline]
     fn try_next_u64(&mut self) -> Result<u64, Infallible> {
         Ok(u64::from(self.word()) | u64::from(self.word()) << 32)
     }
+    #[inline]
     fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
         for chunk in bytes.chunks_mut(4) {
             chunk.copy_from_slice(&self.word().to_le_bytes()[..chunk.len()]);

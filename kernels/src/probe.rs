@@ -19,10 +19,12 @@ pub enum Probe {
 }
 
 /// Does some work; `listener` hears of every probe that this thread comes to meanwhile.
+#[inline]
 pub fn probed<T>(listener: fn(Probe), work: impl FnOnce() -> T) -> T {
     /// The listener before, which listens on even where the work breaks off.
     struct Before(Option<fn(Probe)>);
     impl Drop for Before {
+        #[inline]
         fn drop(&mut self) {
             LISTENER.set(self.0);
         }
@@ -40,6 +42,7 @@ pub fn probe(at: Probe) {
 }
 
 /// Whether this thread has a listener.
+#[inline]
 pub(crate) fn is_probed() -> bool {
     LISTENER.get().is_some()
 }
@@ -59,6 +62,7 @@ pub(crate) struct SinceProbe {
 
 impl SinceProbe {
     /// Of a run that begins.
+    #[inline]
     pub(crate) fn new() -> SinceProbe {
         SinceProbe { probed: is_probed(), done: 0 }
     }

@@ -12,6 +12,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// What `work` makes of each of the parts, in their order; one part after the other if there is but one thread.
+#[inline]
 pub(crate) fn on_threads<T: Send, R: Send>(
     parts: impl IntoIterator<Item = T>,
     work: impl Fn(T) -> R + Sync,
@@ -35,6 +36,7 @@ pub(crate) fn on_threads<T: Send, R: Send>(
 /// # Errors
 /// Of those of `work`, one. The other parts of that stage are worked on all the same, and what comes after it as well if
 /// there are more threads than one.
+#[inline]
 pub(crate) fn in_stages<T: Send, E: Send>(
     parts: &mut [T],
     stages: usize,
@@ -53,6 +55,7 @@ pub(crate) fn in_stages<T: Send, E: Send>(
     failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
 }
 
+#[inline]
 fn locked<T>(slot: &Mutex<T>) -> MutexGuard<'_, T> {
     slot.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -92,12 +95,14 @@ fn each(stages: usize, parts: usize, work: &(dyn Fn(usize, usize) + Sync)) {
 struct Done<'a>(&'a AtomicUsize);
 
 impl Drop for Done<'_> {
+    #[inline]
     fn drop(&mut self) {
         self.0.fetch_add(1, Ordering::Release);
     }
 }
 
 /// Stays awake until something holds.
+#[inline]
 fn wait_for(holds: impl Fn() -> bool) {
     while !holds() {
         std::thread::yield_now();
@@ -110,6 +115,7 @@ thread_local! {
 }
 
 /// Lets those go that this thread keeps awake: it needs them, or is done.
+#[inline]
 fn release() {
     if let Some(kept) = KEPT.take() {
         kept.store(true, Ordering::Release);
@@ -120,6 +126,7 @@ fn release() {
 struct Release;
 
 impl Drop for Release {
+    #[inline]
     fn drop(&mut self) {
         release();
     }
@@ -151,11 +158,13 @@ pub fn keep_awake<R>(work: impl FnOnce() -> R) -> R {
 pub(crate) const PIECE: usize = 16_384;
 
 /// What `work` makes of each piece of a range, in their order. The pieces depend on the range alone.
+#[inline]
 pub fn over_pieces<R: Send>(range: Range<usize>, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
     on_threads(pieces(range, PIECE), work)
 }
 
 /// Does `work` on every piece of a column, with the number of its first entry.
+#[inline]
 pub fn in_pieces<T: Send>(column: &mut [T], work: impl Fn(usize, &mut [T]) + Sync) {
     let parts = column.chunks_mut(PIECE).enumerate();
     on_threads(parts, |(number, piece)| work(number * PIECE, piece));
@@ -165,6 +174,7 @@ pub fn in_pieces<T: Send>(column: &mut [T], work: impl Fn(usize, &mut [T]) + Syn
 ///
 /// # Panics
 /// If `order` names an entry that there is not.
+#[inline]
 pub fn reordered<T: Copy + Default + Send + Sync>(column: &[T], order: &[u32]) -> Vec<T> {
     let mut now = vec![T::default(); order.len()];
     in_pieces(&mut now, |first, piece| {
@@ -175,11 +185,13 @@ pub fn reordered<T: Copy + Default + Send + Sync>(column: &[T], order: &[u32]) -
 }
 
 /// Whether one thread does all pieces of a column.
+#[inline]
 pub(crate) fn is_alone(length: usize) -> bool {
     length <= PIECE || rayon::current_num_threads() == 1
 }
 
 /// A column that several threads may write.
+#[inline]
 pub(crate) fn shared(column: &mut [u32]) -> &[AtomicU32] {
     let column: *mut [u32] = column;
     // SAFETY: an AtomicU32 has the size and alignment of a u32, the address is that of a slice that is borrowed exclusively
@@ -188,6 +200,7 @@ pub(crate) fn shared(column: &mut [u32]) -> &[AtomicU32] {
 }
 
 /// A range in pieces of `length`, the last one perhaps shorter.
+#[inline]
 pub(crate) fn pieces(range: Range<usize>, length: usize) -> impl Iterator<Item = Range<usize>> {
     let end = range.end;
     range.step_by(length).map(move |start| start..(start + length).min(end))

@@ -23,6 +23,7 @@ macro_rules! define_instruction_sets {
             pub const ALL: &'static [InstructionSet] = &[$(InstructionSet::$variant),*];
 
             /// The name on the command line.
+            #[inline]
             pub const fn name(self) -> &'static str {
                 match self { $(InstructionSet::$variant => $name),* }
             }
@@ -40,6 +41,7 @@ define_instruction_sets! {
 
 impl InstructionSet {
     /// Whether this processor has it.
+    #[inline]
     pub fn is_available(self) -> bool {
         match self {
             InstructionSet::Scalar | InstructionSet::Wide => true,
@@ -54,11 +56,13 @@ impl InstructionSet {
     }
 
     /// The sets this processor has, in the order of the list.
+    #[inline]
     pub fn available() -> impl Iterator<Item = InstructionSet> {
         Self::ALL.iter().copied().filter(|set| set.is_available())
     }
 
     /// The widest set this processor has.
+    #[inline]
     pub fn best() -> InstructionSet {
         Self::available().last().unwrap_or(InstructionSet::Scalar)
     }

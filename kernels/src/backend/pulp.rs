@@ -123,7 +123,7 @@ macro_rules! pulp_element {
     ($ty:ident, $register:ident, $truth:ident, $lanes:ident, $widest:literal,
      $splat:ident $add:ident $sub:ident $mul:ident $div:ident $min:ident $max:ident $sqrt:ident $abs:ident
      $less_than:ident $less_equal:ident $equal:ident $select:ident $and:ident $not:ident $first_true:ident
-     $movemask:ident) => {
+     $movemask:ident $bits:ident) => {
         impl PulpElement for $ty {
             type Register<S: Simd> = S::$register;
             type Truth<S: Simd> = S::$truth;
@@ -221,6 +221,10 @@ macro_rules! pulp_element {
                 if let (Some(v3), Some(truth)) = (same_value::<S, pulp::x86::V3>(simd), same_value(a)) {
                     return u64::from(v3.avx.$movemask(truth) as u32);
                 }
+                // From a mask register: by way of memory it would be a store and a load.
+                if let Some(truth) = same_value::<_, pulp::$bits>(a) {
+                    return u64::from(truth.0);
+                }
                 bits_by_lane(pulp::bytemuck::bytes_of(&a), S::$lanes)
             }
         }
@@ -229,11 +233,11 @@ macro_rules! pulp_element {
 
 pulp_element!(
     f64, f64s, m64s, F64_LANES, 8, splat_f64s add_f64s sub_f64s mul_f64s div_f64s min_f64s max_f64s sqrt_f64s abs_f64s
-    less_than_f64s less_than_or_equal_f64s equal_f64s select_f64s and_m64s not_m64s first_true_m64s _mm256_movemask_pd
+    less_than_f64s less_than_or_equal_f64s equal_f64s select_f64s and_m64s not_m64s first_true_m64s _mm256_movemask_pd b8
 );
 pulp_element!(
     f32, f32s, m32s, F32_LANES, 16, splat_f32s add_f32s sub_f32s mul_f32s div_f32s min_f32s max_f32s sqrt_f32s abs_f32s
-    less_than_f32s less_than_or_equal_f32s equal_f32s select_f32s and_m32s not_m32s first_true_m32s _mm256_movemask_ps
+    less_than_f32s less_than_or_equal_f32s equal_f32s select_f32s and_m32s not_m32s first_true_m32s _mm256_movemask_ps b16
 );
 
 /// A value whose type turns out to be another of the same size: `pulp` has no instruction for this in all its sets.

@@ -80,6 +80,7 @@ pub struct Gear<const VALUES: usize> {
 
 impl<const VALUES: usize> Gear<VALUES> {
     /// For accelerations of some kind.
+    #[inline]
     pub const fn new(acceleration: Acceleration) -> Self {
         Gear { coefficients: coefficients(VALUES, acceleration) }
     }
@@ -121,6 +122,7 @@ pub struct Predictor<S, P, const VALUES: usize, const FREEDOMS: usize> {
 
 impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Predictor<S, P, VALUES, FREEDOMS> {
     /// For steps of `dt` (time).
+    #[inline]
     pub fn new(dt: f64) -> Self {
         Predictor { inverse_dt: 1.0 / dt, precisions: PhantomData }
     }
@@ -164,6 +166,7 @@ pub struct Corrector<S, P, const VALUES: usize, const FREEDOMS: usize> {
 
 impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Corrector<S, P, VALUES, FREEDOMS> {
     /// For steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
+    #[inline]
     pub fn new(dt: f64, acceleration: Acceleration, inertia: Inertia, gravity: [f64; 2]) -> Self {
         Corrector {
             half_dt_squared: 0.5 * dt * dt,
@@ -177,6 +180,7 @@ impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Correct
 
     /// The same program, which also counts the discs whose correction is no finite number in [`NOT_FINITE`].
     #[must_use]
+    #[inline]
     pub fn checked(self) -> Self {
         Corrector { checked: true, ..self }
     }

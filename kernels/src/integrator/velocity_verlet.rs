@@ -53,6 +53,7 @@ pub struct Drift<S, P, const FREEDOMS: usize> {
 
 impl<S: Element, P: Element, const FREEDOMS: usize> Drift<S, P, FREEDOMS> {
     /// For steps of `dt` (time).
+    #[inline]
     pub fn new(dt: f64) -> Self {
         Drift { inverse_dt: 1.0 / dt, precisions: PhantomData }
     }
@@ -98,6 +99,7 @@ pub struct Kick<S, P, const FREEDOMS: usize> {
 
 impl<S: Element, P: Element, const FREEDOMS: usize> Kick<S, P, FREEDOMS> {
     /// For steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
+    #[inline]
     pub fn new(dt: f64, inertia: Inertia, gravity: [f64; 2]) -> Self {
         let half_dt_squared = 0.5 * dt * dt;
         Kick { half_dt_squared, inertia, gravity, checked: false, precisions: PhantomData }
@@ -106,6 +108,7 @@ impl<S: Element, P: Element, const FREEDOMS: usize> Kick<S, P, FREEDOMS> {
     /// The same program, which also counts the discs whose acceleration is no finite number in
     /// [`NOT_FINITE`].
     #[must_use]
+    #[inline]
     pub fn checked(self) -> Self {
         Kick { checked: true, ..self }
     }

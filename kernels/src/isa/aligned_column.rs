@@ -40,6 +40,7 @@ unsafe impl Sync for Pages {}
 
 impl Pages {
     /// As many as hold `bytes` bytes.
+    #[inline]
     fn holding(bytes: usize) -> Arc<Pages> {
         let length = bytes.next_multiple_of(LARGE);
         let failed = || -> ! { handle_alloc_error(Layout::new::<[u8; LARGE]>()) };
@@ -98,19 +99,23 @@ unsafe impl<X: Sync> Sync for AlignedColumn<X> {}
 
 impl<X: Clone> AlignedColumn<X> {
     /// `values` behind each other; rows of another `number` begin at other lines.
+    #[inline]
     pub fn new(number: usize, values: impl IntoIterator<Item = X>) -> AlignedColumn<X> {
         AlignedColumn::from_vec(number, &values.into_iter().collect::<Vec<X>>())
     }
 
     /// The same value `length` times.
+    #[inline]
     pub fn filled(number: usize, value: X, length: usize) -> AlignedColumn<X> {
         AlignedColumn::written(number, length, |_| value.clone())
     }
 
+    #[inline]
     fn from_vec(number: usize, values: &[X]) -> AlignedColumn<X> {
         AlignedColumn::written(number, values.len(), |at| values[at].clone())
     }
 
+    #[inline]
     fn written(number: usize, length: usize, value: impl Fn(usize) -> X) -> AlignedColumn<X> {
         const { assert!(align_of::<X>() <= LINE && !std::mem::needs_drop::<X>()) }
         if length == 0 {
@@ -128,18 +133,21 @@ impl<X: Clone> AlignedColumn<X> {
 
 impl<X> Default for AlignedColumn<X> {
     /// None.
+    #[inline]
     fn default() -> Self {
         AlignedColumn { number: 0, start: NonNull::dangling(), length: 0, _pages: None }
     }
 }
 
 impl<X: Clone> Clone for AlignedColumn<X> {
+    #[inline]
     fn clone(&self) -> Self {
         AlignedColumn::from_vec(self.number, self)
     }
 }
 
 impl<X: Debug> Debug for AlignedColumn<X> {
+    #[inline]
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.debug_list().entries(self.iter()).finish()
     }
@@ -148,6 +156,7 @@ impl<X: Debug> Debug for AlignedColumn<X> {
 impl<X> Deref for AlignedColumn<X> {
     type Target = [X];
 
+    #[inline]
     fn deref(&self) -> &[X] {
         // SAFETY: all of them were written, and they are this row's alone.
         unsafe { std::slice::from_raw_parts(self.start.as_ptr(), self.length) }
@@ -155,6 +164,7 @@ impl<X> Deref for AlignedColumn<X> {
 }
 
 impl<X> DerefMut for AlignedColumn<X> {
+    #[inline]
     fn deref_mut(&mut self) -> &mut [X] {
         // SAFETY: all `length` elements were written when the row was made, no other row has them, and this one is borrowed
         // exclusively.

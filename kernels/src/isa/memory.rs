@@ -118,6 +118,7 @@ impl<T: Storage> Column<T> {
 pub struct Columns<T>([Column<T>; Array::ALL.len()]);
 
 impl<T: Storage> Default for Columns<T> {
+    #[inline]
     fn default() -> Self {
         Columns([Column::UNBOUND; Array::ALL.len()])
     }
@@ -137,18 +138,21 @@ pub struct Memory<'a> {
 
 impl<'a> Memory<'a> {
     /// An empty memory.
+    #[inline]
     pub fn new() -> Self {
         Memory::default()
     }
 
     /// Binds a slice for reading.
     #[must_use]
+    #[inline]
     pub fn read<T: Storage>(mut self, slot: Slot<T>, slice: &'a [T]) -> Self {
         self.bind_read(slot, slice);
         self
     }
 
     /// As [`Memory::read`], in place: a memory is kilobytes of columns, and many bindings would move it many times.
+    #[inline]
     pub fn bind_read<T: Storage>(&mut self, slot: Slot<T>, slice: &'a [T]) {
         // The pointer is never written through: the column is not writable.
         let origin = slice.as_ptr().cast_mut();
@@ -157,17 +161,20 @@ impl<'a> Memory<'a> {
 
     /// Binds a slice for reading and writing.
     #[must_use]
+    #[inline]
     pub fn write<T: Storage>(mut self, slot: Slot<T>, slice: &'a mut [T]) -> Self {
         self.bind_write(slot, slice);
         self
     }
 
     /// As [`Memory::write`], in place.
+    #[inline]
     pub fn bind_write<T: Storage>(&mut self, slot: Slot<T>, slice: &'a mut [T]) {
         let length = slice.len();
         self.bind(slot, Column { origin: slice.as_mut_ptr(), length, writable: true });
     }
 
+    #[inline]
     fn bind<T: Storage>(&mut self, slot: Slot<T>, column: Column<T>) {
         T::columns_mut(self).0[slot.array() as usize] = column;
     }
@@ -178,6 +185,7 @@ impl<'a> Memory<'a> {
     }
 
     /// What was counted into `counter` so far.
+    #[inline]
     pub fn counted(&self, counter: Counter) -> u64 {
         self.counters[counter.0 as usize].get()
     }
@@ -186,6 +194,7 @@ impl<'a> Memory<'a> {
     ///
     /// # Safety
     /// While both are used, no element is written through one and touched through the other.
+    #[inline]
     pub(crate) unsafe fn part(&self) -> Memory<'_> {
         Memory {
             f64s: Columns(self.f64s.0),
@@ -197,10 +206,12 @@ impl<'a> Memory<'a> {
     }
 
     /// Adds the counters of a part.
+    #[inline]
     pub(crate) fn join(&self, counters: [u64; COUNTERS]) {
         self.counters.iter().zip(counters).for_each(|(cell, more)| cell.set(cell.get() + more));
     }
 
+    #[inline]
     pub(crate) fn counters(&self) -> [u64; COUNTERS] {
         std::array::from_fn(|i| self.counters[i].get())
     }
@@ -236,6 +247,7 @@ impl<'a> Memory<'a> {
         Ok(())
     }
 
+    #[inline]
     fn extent<T: Storage>(&self, array: Array) -> Option<(usize, bool)> {
         let column = &T::columns(self).0[array as usize];
         (!column.origin.is_null()).then_some((column.length, column.writable))

@@ -16,16 +16,19 @@ macro_rules! define_ops {
             pub const ALL: &'static [Op] = &[$($(Op::$variant),*),*];
 
             /// The name in a listing.
+            #[inline]
             pub const fn mnemonic(self) -> &'static str {
                 match self { $($(Op::$variant => $mnemonic,)*)* }
             }
 
             /// The class whose cost a machine states.
+            #[inline]
             pub const fn class(self) -> OpClass {
                 match self { $($(Op::$variant => OpClass::$class,)*)* }
             }
 
             /// What the operation does, in one line.
+            #[inline]
             pub const fn meaning(self) -> &'static str {
                 match self { $($(Op::$variant => $doc,)*)* }
             }
@@ -47,6 +50,7 @@ macro_rules! define_group {
 
         impl $name {
             /// The operation.
+            #[inline]
             pub const fn op(self) -> Op {
                 match self { $($name::$variant => Op::$variant,)* }
             }
@@ -105,11 +109,13 @@ macro_rules! define_classes {
             pub const ALL: &'static [OpClass] = &[$(OpClass::$variant),*];
 
             /// The name in tables and machine files.
+            #[inline]
             pub const fn name(self) -> &'static str {
                 match self { $(OpClass::$variant => $name),* }
             }
 
             /// What belongs to the class.
+            #[inline]
             pub const fn meaning(self) -> &'static str {
                 match self { $(OpClass::$variant => $doc),* }
             }
@@ -135,6 +141,7 @@ define_classes! {
 
 impl OpClass {
     /// Whether the class moves data between memory and registers rather than computing.
+    #[inline]
     pub const fn moves_data(self) -> bool {
         matches!(self, OpClass::Load | OpClass::Shift | OpClass::Store | OpClass::Gather | OpClass::Scatter)
     }
@@ -145,6 +152,7 @@ impl OpClass {
 pub struct OpCounts([u64; Op::ALL.len()]);
 
 impl Default for OpCounts {
+    #[inline]
     fn default() -> Self {
         OpCounts([0; Op::ALL.len()])
     }
@@ -152,11 +160,13 @@ impl Default for OpCounts {
 
 impl OpCounts {
     /// Counts one more execution of `op`.
+    #[inline]
     pub fn record(&mut self, op: Op) {
         self.0[op as usize] += 1;
     }
 
     /// Adds all counts of `other`.
+    #[inline]
     pub fn add(&mut self, other: &OpCounts) {
         for (count, more) in self.0.iter_mut().zip(&other.0) {
             *count += more;
@@ -165,6 +175,7 @@ impl OpCounts {
 
     /// The executions of operations that `keep` holds.
     #[must_use]
+    #[inline]
     pub fn filtered(&self, keep: impl Fn(Op) -> bool) -> OpCounts {
         let mut kept = OpCounts::default();
         Op::ALL.iter().filter(|&&op| keep(op)).for_each(|&op| kept.0[op as usize] = self.of(op));
@@ -172,16 +183,19 @@ impl OpCounts {
     }
 
     /// Executions of one operation.
+    #[inline]
     pub fn of(&self, op: Op) -> u64 {
         self.0[op as usize]
     }
 
     /// Executions of all operations of a class.
+    #[inline]
     pub fn of_class(&self, class: OpClass) -> u64 {
         Op::ALL.iter().filter(|op| op.class() == class).map(|&op| self.of(op)).sum()
     }
 
     /// All executions: the source's NOP.
+    #[inline]
     pub fn total(&self) -> u64 {
         self.0.iter().sum()
     }

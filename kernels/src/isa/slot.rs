@@ -12,6 +12,7 @@ pub struct Slot<T> {
 }
 
 impl<T> Clone for Slot<T> {
+    #[inline]
     fn clone(&self) -> Self {
         *self
     }
@@ -47,6 +48,7 @@ macro_rules! define_arrays {
             pub const ALL: &'static [Array] = &[$(Array::$variant),*];
 
             /// The label in listings and errors.
+            #[inline]
             pub const fn label(self) -> &'static str {
                 match self { $(Array::$variant => $label),* }
             }

@@ -38,6 +38,7 @@ impl Field {
     pub const ALL: [Field; 5] = [Field::Vx, Field::Vy, Field::Omega, Field::Radius, Field::InverseMass];
 
     /// The name in errors.
+    #[inline]
     pub const fn name(self) -> &'static str {
         match self {
             Field::Vx => "the velocity along x",
@@ -54,6 +55,7 @@ impl Sum {
     pub const ALL: [Sum; 3] = [Sum::Fx, Sum::Fy, Sum::Torque];
 
     /// The name in errors.
+    #[inline]
     pub const fn name(self) -> &'static str {
         match self {
             Sum::Fx => "the force along x",

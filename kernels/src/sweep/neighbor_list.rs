@@ -19,6 +19,7 @@ pub struct Lists {
 
 impl Lists {
     /// Lists of all pairs for which `near` holds, by trying every pair: O(N²), as in BP93.
+    #[inline]
     pub fn by_all_pairs(discs: usize, near: impl Fn(usize, usize) -> bool) -> Lists {
         Lists::collect(discs, |i, list| {
             list.extend((0..discs).filter(|&j| j != i && near(i, j)).map(|j| j as u32))
@@ -26,6 +27,7 @@ impl Lists {
     }
 
     /// Lists of the pairs for which `near` holds among the candidates of each disc.
+    #[inline]
     pub fn by_candidates(
         discs: usize,
         candidates: impl Fn(usize, &mut dyn FnMut(u32)),
@@ -40,6 +42,7 @@ impl Lists {
         })
     }
 
+    #[inline]
     fn collect(discs: usize, mut fill: impl FnMut(usize, &mut Vec<u32>)) -> Lists {
         let mut lists = Lists { first: vec![0], partners: Vec::new() };
         for i in 0..discs {
@@ -50,11 +53,13 @@ impl Lists {
     }
 
     /// The discs near disc `i`.
+    #[inline]
     pub fn of(&self, i: usize) -> &[u32] {
         &self.partners[self.first[i] as usize..self.first[i + 1] as usize]
     }
 
     /// Entries of all lists: the candidates a step looks at.
+    #[inline]
     pub fn entries(&self) -> usize {
         self.partners.len()
     }
@@ -103,6 +108,7 @@ pub struct CellOffsets {
 
 impl CellOffsets {
     /// For a full mask on a lattice, with positions relative to the cell or not.
+    #[inline]
     pub fn new(shape: LatticeShape, frame: Frame, mask: &Mask, relative: bool) -> CellOffsets {
         let half_width = mask.half_width() as isize;
         let side = 2 * half_width + 1;
@@ -116,6 +122,7 @@ impl CellOffsets {
     }
 
     /// Column and row of a cell numbered from 1 in the padded lattice.
+    #[inline]
     fn column_and_row(&self, cell: u32) -> [isize; 2] {
         self.shape.column_and_row(cell as usize - 1)
     }
@@ -165,6 +172,7 @@ struct OneByOne<'a, P> {
 }
 
 impl<'a, P: Precision> OneByOne<'a, P> {
+    #[inline]
     fn field(&self, field: Field, disc: usize) -> P {
         let Discs { velocity, omega, radius, inverse_mass, .. } = self.discs;
         match field {
@@ -182,52 +190,68 @@ impl<P: Precision> Env<2> for &OneByOne<'_, P> {
     type Place = Partner<P>;
     const BOTH_PARTNERS: bool = false;
 
+    #[inline]
     fn own_position(self) -> [P; 2] {
         self.discs.position.map(|axis| axis[self.own])
     }
+    #[inline]
     fn own(self, field: Field) -> P {
         self.field(field, self.own)
     }
+    #[inline]
     fn displacement(self, _: [P; 2], place: Partner<P>) -> [P; 2] {
         place.displacement
     }
+    #[inline]
     fn partner(self, field: Field, place: Partner<P>) -> P {
         self.field(field, place.disc)
     }
+    #[inline]
     fn uniform(self, value: f64) -> P {
         P::from_f64(value)
     }
+    #[inline]
     fn none(self, predicate: bool) -> bool {
         !predicate
     }
+    #[inline]
     fn own_add(self, sum: Sum, value: P) {
         let cell = &self.sums[sum as usize];
         cell.set(cell.get() + value);
     }
+    #[inline]
     fn partner_sub(self, _: Sum, _: Partner<P>, _: P) {
         unreachable!("every pair is met from both sides")
     }
+    #[inline]
     fn watches(self) -> bool {
         self.watches
     }
+    #[inline]
     fn watch(self, penetration: P) {
         self.penetration.set(penetration);
     }
+    #[inline]
     fn counts_dissipation(self) -> bool {
         self.dissipation
     }
+    #[inline]
     fn dissipate(self, power: P) {
         self.power.set(self.power.get() + power);
     }
+    #[inline]
     fn observes_energy(self) -> bool {
         self.observes_energy
     }
+    #[inline]
     fn energy(self, energy: P) {
         self.energy[0].set(self.energy[0].get() + energy);
     }
+    #[inline]
     fn virial(self, virial: P) {
         self.energy[1].set(self.energy[1].get() + virial);
     }
+    #[inline]
     fn section(self, _: &'static str) {}
 }
 

@@ -96,6 +96,7 @@ impl<C: Scheme> Motion<C> {
 
     /// The row of one degree of freedom of the disc `id`, corrected in the step numbered `step`: from the predicted one (its
     /// first [`Scheme::CARRIED`] entries), the force and the inverse mass or moment of inertia.
+    #[inline]
     pub fn corrected<S: Element>(
         &self,
         (step, id): (u64, u32),

@@ -70,6 +70,7 @@ pub struct Sweep<F> {
 
 impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
     /// For rows of discs.
+    #[inline]
     pub fn new(rows: Rows) -> Self {
         let count = (rows.count / rows.band.max(2 * rows.ahead)).max(1);
         let bands = (0..count).map(|band| Band {

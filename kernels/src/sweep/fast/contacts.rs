@@ -57,6 +57,7 @@ impl<'a, S: Element> Discs<'a, S> {
     }
 
     /// Whether every column that a law asks for has an entry for every disc and sentinel.
+    #[inline]
     pub(super) fn suffice(&self, fields: &[Field], discs: usize) -> bool {
         let columns = fields.iter().map(|&field| self.column(field)).chain(self.place);
         columns.into_iter().all(|column| column.len() == discs + SENTINELS)

@@ -49,6 +49,7 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
     ) -> Result<(), ProgramError>;
 
     /// Appends the pairs that are found in no row.
+    #[inline]
     fn find_beside_rows(&self, _: &mut Touches<P>) {}
 
     /// What was found.
@@ -83,11 +84,13 @@ pub struct Cursor {
 
 impl Cursor {
     /// At the beginning of a row.
+    #[inline]
     pub fn at(row: usize) -> Self {
         Cursor { row, along: 0 }
     }
 
     /// The row that is searched.
+    #[inline]
     pub fn row(&self) -> usize {
         self.row
     }

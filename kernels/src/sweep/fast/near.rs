@@ -20,6 +20,7 @@ pub struct Touches<P>(Vec<Touch<P>>);
 
 impl<P: Precision> Touches<P> {
     /// Appends a pair.
+    #[inline]
     pub(super) fn push(&mut self, discs: [u32; 2], cell_offset: [f64; 2]) {
         self.0.push(Touch { discs, cell_offset: cell_offset.map(P::from_f64) });
     }
@@ -50,6 +51,7 @@ impl<'a, S: Element, P: Precision> Near<'a, S, P> {
     ///
     /// # Panics
     /// If there is not a place for every disc and sentinel.
+    #[inline]
     pub(super) fn new(
         places: [&'a [S]; 2],
         discs: usize,

@@ -131,15 +131,18 @@ impl Grid {
     }
 
     /// From the centre of a sector to the one that lies `ahead` columns and rows from it (length).
+    #[inline]
     fn cell_offset(&self, ahead: [isize; 2]) -> [f64; 2] {
         [0, 1].map(|axis| ahead[axis] as f64 * self.frame.edge[axis])
     }
 
     /// Offsets of the sectors ahead, in their order.
+    #[inline]
     pub(super) fn cell_offsets(&self) -> [[f64; 2]; 5] {
         AHEAD.map(|ahead| self.cell_offset(ahead))
     }
 
+    #[inline]
     pub(super) fn rows(&self) -> Rows {
         Rows { count: self.counts[1], ahead: 1, band: BAND }
     }
@@ -166,6 +169,7 @@ impl Sectors {
     ///
     /// # Panics
     /// If there are 2²⁹ discs or more.
+    #[inline]
     pub fn new(grid: Grid, discs: usize, reach: f64) -> Self {
         assert!(discs < 1 << 29, "{discs} discs are too many to number");
         let starts = vec![0; grid.counts[0] * grid.counts[1] + 1];
@@ -173,21 +177,25 @@ impl Sectors {
     }
 
     /// Which sectors there are.
+    #[inline]
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
     /// How far contacts reach (length).
+    #[inline]
     pub(super) fn reach(&self) -> f64 {
         self.reach
     }
 
     /// How many discs there are.
+    #[inline]
     pub(super) fn disc_count(&self) -> usize {
         self.sector.len()
     }
 
     /// Column and row of a disc; none if it is in no sector.
+    #[inline]
     pub fn cell(&self, disc: usize) -> Option<[usize; 2]> {
         let (sector, columns) = (self.sector[disc] as usize, self.grid.counts[0]);
         (self.sector[disc] != NOWHERE).then(|| [sector % columns, sector / columns])
@@ -197,6 +205,7 @@ impl Sectors {
     ///
     /// # Panics
     /// If there is no such disc or sector.
+    #[inline]
     pub fn enter(&mut self, disc: usize, [column, row]: [usize; 2]) {
         let [columns, rows] = self.grid.counts;
         assert!(column < columns && row < rows, "no sector in column {column}, row {row}");
@@ -204,6 +213,7 @@ impl Sectors {
     }
 
     /// Takes a disc out of its sector, if it is in one.
+    #[inline]
     pub fn leave(&mut self, disc: usize) {
         self.sector[disc] = NOWHERE;
     }
@@ -263,6 +273,7 @@ impl Sectors {
     }
 
     /// The discs in order of their sectors, row by row.
+    #[inline]
     pub fn order(&self) -> Vec<u32> {
         self.members.clone()
     }
@@ -347,10 +358,12 @@ impl Sectors {
 unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
     type Found = Touches<P>;
 
+    #[inline]
     fn discs(&self) -> usize {
         self.sector.len()
     }
 
+    #[inline]
     fn rows(&self) -> Rows {
         self.grid.rows()
     }
@@ -389,6 +402,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
         Ok(())
     }
 
+    #[inline]
     fn pairs<'a>(&'a self, found: &'a Touches<P>) -> impl Pairs<P> + 'a {
         found
     }

@@ -145,6 +145,7 @@ impl VerletList {
     }
 
     /// Pairs listed.
+    #[inline]
     pub fn entries(&self) -> usize {
         self.partners.len()
     }
@@ -155,10 +156,12 @@ impl VerletList {
 unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
     type Found = Touches<P>;
 
+    #[inline]
     fn discs(&self) -> usize {
         self.discs
     }
 
+    #[inline]
     fn rows(&self) -> Rows {
         self.grid.rows()
     }
@@ -193,6 +196,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
         Ok(())
     }
 
+    #[inline]
     fn pairs<'a>(&'a self, found: &'a Touches<P>) -> impl Pairs<P> + 'a {
         found
     }

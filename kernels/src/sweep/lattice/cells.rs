@@ -46,12 +46,14 @@ pub struct Enter<S, P> {
 
 impl<S: Element, P: Element> Enter<S, P> {
     /// For a lattice at `frame`, with state positions from the origin.
+    #[inline]
     pub fn new(shape: LatticeShape, frame: Frame, coordinates: Coordinates) -> Self {
         Enter { shape, frame, coordinates, anchored: false, precisions: PhantomData }
     }
 
     /// For a lattice at `frame`, with state positions from the centre of the cell in which the disc was entered last: they
     /// are as precise in single precision as the cell is small, wherever it lies.
+    #[inline]
     pub fn anchored(shape: LatticeShape, frame: Frame) -> Self {
         let coordinates = Coordinates::CellRelative;
         Enter { shape, frame, coordinates, anchored: true, precisions: PhantomData }

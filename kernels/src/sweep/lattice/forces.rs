@@ -57,6 +57,7 @@ impl<P: Element, L: Law<2>> Forces<P, L> {
     /// The same program, which also writes the penetration of each cell's deepest contact to the array `deepest` and counts
     /// the cells with one deeper than `depth` (length) in [`DEEP`].
     #[must_use]
+    #[inline]
     pub fn watching(self, depth: f64) -> Self {
         Forces { watched: Some(depth), ..self }
     }
@@ -64,12 +65,14 @@ impl<P: Element, L: Law<2>> Forces<P, L> {
     /// The same program, which also writes what each disc's contacts dissipate (energy/time) to the array `power`, half of it
     /// where both discs may move and have one mass.
     #[must_use]
+    #[inline]
     pub fn counting_dissipation(self) -> Self {
         Forces { dissipation: true, ..self }
     }
 }
 
 /// Where a sum goes.
+#[inline]
 const fn sum_array(sum: Sum) -> Array {
     match sum {
         Sum::Fx => Array::Fx,
@@ -138,6 +141,7 @@ impl<M: Machine> Env<2> for &Around<M> {
         cell.set(cell.get() + value);
     }
 
+    #[inline]
     fn partner_sub(self, _: Sum, _: Neighbour, _: M::V) {
         unreachable!("every pair is met from both sides")
     }
@@ -166,7 +170,9 @@ impl<M: Machine> Env<2> for &Around<M> {
     fn observes_energy(self) -> bool {
         false
     }
+    #[inline]
     fn energy(self, _: M::V) {}
+    #[inline]
     fn virial(self, _: M::V) {}
 
     #[inline(always)]

@@ -107,47 +107,56 @@ impl LatticeShape {
     }
 
     /// Cells along x.
+    #[inline]
     pub fn columns(&self) -> usize {
         self.columns
     }
 
     /// Cells along y.
+    #[inline]
     pub fn rows(&self) -> usize {
         self.rows
     }
 
     /// Cells that discs may live in: the source's LMAX.
+    #[inline]
     pub fn cells(&self) -> usize {
         self.columns * self.rows
     }
 
     /// Which sides are periodic.
+    #[inline]
     pub fn periodic(&self) -> [bool; 2] {
         self.periodic
     }
 
     /// Elements from a row to the next.
+    #[inline]
     pub fn stride(&self) -> usize {
         self.columns + 2 * self.half_width
     }
 
     /// Elements before the first row (and again behind the last).
+    #[inline]
     pub fn lead(&self) -> usize {
         (self.half_width * (self.stride() + 1)).next_multiple_of(GROUP)
     }
 
     /// The elements that a sweep runs over; their number is the vector length of the forces.
+    #[inline]
     pub fn swept(&self) -> Range<usize> {
         let lead = self.lead();
         lead..lead + (self.rows * self.stride()).next_multiple_of(GROUP)
     }
 
     /// Elements of a lattice vector.
+    #[inline]
     pub fn padded(&self) -> usize {
         self.swept().end + self.lead()
     }
 
     /// Position of a cell in a padded lattice vector; halo cells have negative columns and rows or ones too large.
+    #[inline]
     pub fn position(&self, column: isize, row: isize) -> usize {
         let from_first = row * self.stride() as isize + self.half_width as isize + column;
         (self.lead() as isize + from_first) as usize
@@ -155,6 +164,7 @@ impl LatticeShape {
 
     /// Column and row of the cell at a position in a padded lattice vector: what [`position`](Self::position) came from, if that
     /// was no halo cell at the end of a row.
+    #[inline]
     pub fn column_and_row(&self, position: usize) -> [isize; 2] {
         let from_first = position as isize - self.position(0, 0) as isize;
         let stride = self.stride() as isize;
@@ -162,6 +172,7 @@ impl LatticeShape {
     }
 
     /// How far the cell of `offset` is from the own cell.
+    #[inline]
     pub fn shift(&self, offset: Offset) -> isize {
         offset.rows as isize * self.stride() as isize + offset.columns as isize
     }
@@ -188,6 +199,7 @@ impl LatticeShape {
     }
 
     /// 1 where discs live, 0 in the halo and the padding: a padded lattice vector.
+    #[inline]
     pub fn interior<T: crate::isa::Element>(&self) -> Vec<T> {
         let mut interior = vec![T::from_f64(0.0); self.padded()];
         for row in 0..self.rows as isize {
@@ -199,6 +211,7 @@ impl LatticeShape {
 
     /// The x of an empty cell: finite, farther from every disc and from every other empty cell than any contact
     /// reaches. The one place where this is chosen. A padded lattice vector.
+    #[inline]
     pub fn far<T: crate::isa::Element>(&self, frame: Frame) -> Vec<T> {
         let extent = (0..2)
             .map(|axis| {

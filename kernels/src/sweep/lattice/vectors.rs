@@ -6,6 +6,7 @@ use crate::law::Field;
 use std::marker::PhantomData;
 
 /// Which arrays hold a quantity: disc by disc, and cell by cell; and what an empty cell has.
+#[inline]
 pub(super) const fn arrays(field: Field) -> (Array, Array, f64) {
     match field {
         Field::Vx => (Array::DiscVx, Array::Vx, 0.0),
@@ -32,6 +33,7 @@ pub struct Spread<P> {
 impl<P: Element> Spread<P> {
     /// For the quantities a law asks for. Absolute positions are shifted in the halo of periodic sides, which takes
     /// the arrays `image.x`, `image.y`; relative ones are repeated as they are.
+    #[inline]
     pub fn new(shape: LatticeShape, coordinates: Coordinates, fields: &'static [Field]) -> Self {
         let shifts = coordinates == Coordinates::Absolute;
         Spread {

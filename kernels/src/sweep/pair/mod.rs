@@ -27,17 +27,20 @@ pub struct Body {
 
 impl Body {
     /// A disc of radius and mass 1 at rest.
+    #[inline]
     pub fn at(x: f64, y: f64) -> Body {
         Body { position: [x, y], velocity: [0.0; 2], omega: 0.0, radius: 1.0, inverse_mass: 1.0 }
     }
 
     /// Its mirror image in the x axis.
+    #[inline]
     pub fn mirrored(self) -> Body {
         let flip = |[x, y]: [f64; 2]| [x, -y];
         Body { position: flip(self.position), velocity: flip(self.velocity), omega: -self.omega, ..self }
     }
 
     /// Velocity of its surface at `arm` from the centre: v + Ω × arm.
+    #[inline]
     fn surface_velocity(&self, arm: [f64; 2]) -> [f64; 2] {
         [self.velocity[0] - self.omega * arm[1], self.velocity[1] + self.omega * arm[0]]
     }
@@ -52,15 +55,18 @@ pub struct Pair {
 
 impl Pair {
     /// Force along x, along y, and torque, on each of the two.
+    #[inline]
     pub fn sums<L: Law<2>>(&self, law: &L) -> [[f64; 3]; 2] {
         self.meet(law).sums.get()
     }
 
     /// The energy that the pair stores, and its virial (r_i − r_j)·F_i.
+    #[inline]
     pub fn energy_and_virial<L: Law<2>>(&self, law: &L) -> [f64; 2] {
         self.meet(law).energy.get()
     }
 
+    #[inline]
     fn meet<L: Law<2>>(&self, law: &L) -> Meeting<'_> {
         let meeting = Meeting { bodies: &self.bodies, sums: Cell::default(), energy: Cell::default() };
         let env = Stated::new(&meeting, law);
@@ -70,12 +76,14 @@ impl Pair {
     }
 
     /// Depth of the contact, ξ = R_i + R_j − |r_i − r_j|; negative for discs apart.
+    #[inline]
     pub fn depth(&self) -> f64 {
         let [own, partner] = &self.bodies;
         own.radius + partner.radius - length(self.displacement())
     }
 
     /// The unit vector n from the partner's centre to the own.
+    #[inline]
     pub fn normal(&self) -> [f64; 2] {
         let displacement = self.displacement();
         let distance = length(displacement);
@@ -83,11 +91,13 @@ impl Pair {
     }
 
     /// The unit vector s = (−n_y, n_x), BP93 (13).
+    #[inline]
     pub fn tangent(&self) -> [f64; 2] {
         let [nx, ny] = self.normal();
         [-ny, nx]
     }
 
+    #[inline]
     fn displacement(&self) -> [f64; 2] {
         let [own, partner] = self.bodies.map(|body| body.position);
         [own[0] - partner[0], own[1] - partner[1]]
@@ -95,6 +105,7 @@ impl Pair {
 
     /// Slip of the surfaces along the tangent, by the vectors: what BP93 (16) is about, in another way than the law has
     /// it.
+    #[inline]
     pub fn slip(&self) -> f64 {
         let n = self.normal();
         let surface = |body: &Body, towards: f64| {
@@ -106,12 +117,14 @@ impl Pair {
     }
 
     /// F_N and F_S: the force on the own disc along the normal and along the tangent.
+    #[inline]
     pub fn normal_and_shear<L: Law<2>>(&self, law: &L) -> [f64; 2] {
         let [[fx, fy, _], _] = self.sums(law);
         [self.normal(), self.tangent()].map(|direction| dot([fx, fy], direction))
     }
 
     /// d(L_orbital + L_spin)/dt. Torques that act at the undeformed radii make it −ξ F_S.
+    #[inline]
     pub fn angular_momentum_rate<L: Law<2>>(&self, law: &L) -> f64 {
         let [first, second] = self.sums(law);
         let [p, q] = self.bodies.map(|body| body.position);
@@ -119,6 +132,7 @@ impl Pair {
     }
 
     /// By how much, in its worst component, the mirrored pair's forces are not the mirrored forces.
+    #[inline]
     pub fn asymmetry<L: Law<2>>(&self, law: &L) -> f64 {
         let (here, there) = (self.sums(law), self.mirrored().sums(law));
         here.iter()
@@ -130,15 +144,18 @@ impl Pair {
     }
 
     /// Its mirror image in the x axis.
+    #[inline]
     pub fn mirrored(self) -> Pair {
         Pair { bodies: self.bodies.map(Body::mirrored) }
     }
 }
 
+#[inline]
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
+#[inline]
 fn length(vector: [f64; 2]) -> f64 {
     dot(vector, vector).sqrt()
 }
@@ -152,6 +169,7 @@ struct Meeting<'a> {
 }
 
 impl Meeting<'_> {
+    #[inline]
     fn field(&self, body: usize, field: Field) -> f64 {
         let body = &self.bodies[body];
         match field {
@@ -163,6 +181,7 @@ impl Meeting<'_> {
         }
     }
 
+    #[inline]
     fn add(&self, body: usize, sum: Sum, value: f64) {
         let mut sums = self.sums.get();
         sums[body][sum as usize] += value;
@@ -175,46 +194,62 @@ impl Env<2> for &Meeting<'_> {
     type Place = ();
     const BOTH_PARTNERS: bool = true;
 
+    #[inline]
     fn own_position(self) -> [f64; 2] {
         self.bodies[0].position
     }
+    #[inline]
     fn own(self, field: Field) -> f64 {
         self.field(0, field)
     }
+    #[inline]
     fn displacement(self, own: [f64; 2], (): ()) -> [f64; 2] {
         [own[0] - self.bodies[1].position[0], own[1] - self.bodies[1].position[1]]
     }
+    #[inline]
     fn partner(self, field: Field, (): ()) -> f64 {
         self.field(1, field)
     }
+    #[inline]
     fn uniform(self, value: f64) -> f64 {
         value
     }
+    #[inline]
     fn none(self, predicate: bool) -> bool {
         !predicate
     }
+    #[inline]
     fn own_add(self, sum: Sum, value: f64) {
         self.add(0, sum, value);
     }
+    #[inline]
     fn partner_sub(self, sum: Sum, (): (), value: f64) {
         self.add(1, sum, -value);
     }
+    #[inline]
     fn watches(self) -> bool {
         false
     }
+    #[inline]
     fn watch(self, _: f64) {}
+    #[inline]
     fn counts_dissipation(self) -> bool {
         false
     }
+    #[inline]
     fn dissipate(self, _: f64) {}
+    #[inline]
     fn observes_energy(self) -> bool {
         true
     }
+    #[inline]
     fn energy(self, energy: f64) {
         self.energy.set([energy, self.energy.get()[1]]);
     }
+    #[inline]
     fn virial(self, virial: f64) {
         self.energy.set([self.energy.get()[0], virial]);
     }
+    #[inline]
     fn section(self, _: &'static str) {}
 }

@@ -8,6 +8,7 @@ type Rates = [f64; 5];
 
 impl Body {
     /// Kinetic energy, of motion and spin; a fixed disc has none.
+    #[inline]
     fn kinetic_energy(&self) -> f64 {
         if self.inverse_mass == 0.0 {
             return 0.0;
@@ -17,6 +18,7 @@ impl Body {
     }
 
     /// The disc after `dt` at constant rates.
+    #[inline]
     fn moved(self, &[vx, vy, ax, ay, angular_acceleration]: &Rates, dt: f64) -> Body {
         Body {
             position: [self.position[0] + dt * vx, self.position[1] + dt * vy],
@@ -29,16 +31,19 @@ impl Body {
 
 impl Pair {
     /// Kinetic energy of motion and spin; the inertia is a disc's, ½ M R². Fixed discs have none.
+    #[inline]
     pub fn kinetic_energy(&self) -> f64 {
         self.bodies.iter().map(Body::kinetic_energy).sum()
     }
 
     /// The pair now and after every step of `dt`, without end, by the classical Runge–Kutta method of fourth order;
     /// the inertia is a disc's, ½ M R².
+    #[inline]
     pub fn trajectory<L: Law<2>>(self, law: &L, dt: f64) -> impl Iterator<Item = Pair> {
         std::iter::successors(Some(self), move |pair| Some(pair.stepped(law, dt)))
     }
 
+    #[inline]
     fn stepped<L: Law<2>>(self, law: &L, dt: f64) -> Pair {
         let first = self.rates(law);
         let second = self.moved(&first, 0.5 * dt).rates(law);
@@ -52,6 +57,7 @@ impl Pair {
         self.moved(&mean, dt)
     }
 
+    #[inline]
     fn rates<L: Law<2>>(&self, law: &L) -> [Rates; 2] {
         let sums = self.sums(law);
         std::array::from_fn(|i| {
@@ -62,6 +68,7 @@ impl Pair {
         })
     }
 
+    #[inline]
     fn moved(self, rates: &[Rates; 2], dt: f64) -> Pair {
         Pair { bodies: std::array::from_fn(|i| self.bodies[i].moved(&rates[i], dt)) }
     }

@@ -27,11 +27,13 @@ impl Candidate {
 }
 
 /// How many places a half mask has.
+#[inline]
 pub(super) const fn place_count(half_width: usize) -> usize {
     half_width + half_width * (2 * half_width + 1)
 }
 
 /// A place of a half mask in the order of the sweep: column and row. Those beyond the last are no places.
+#[inline]
 pub(super) const fn place(half_width: usize, number: usize) -> [isize; 2] {
     if number < half_width {
         return [number as isize + 1, 0];
@@ -41,11 +43,13 @@ pub(super) const fn place(half_width: usize, number: usize) -> [isize; 2] {
 }
 
 /// The places of a half mask in their order.
+#[inline]
 fn places(half_width: usize) -> impl Iterator<Item = [isize; 2]> {
     (0..place_count(half_width)).map(move |number| place(half_width, number))
 }
 
 /// What a code stands for: lane and place.
+#[inline]
 pub(super) fn codes(half_width: usize) -> impl Iterator<Item = (usize, [isize; 2])> {
     places(half_width).flat_map(|place| (0..GROUP).map(move |lane| (lane, place)))
 }
@@ -62,6 +66,7 @@ pub struct Codes<P> {
 
 impl<P: Precision> Codes<P> {
     /// For the lattice of an occupancy.
+    #[inline]
     pub fn new(occupancy: &Occupancy, frame: Frame) -> Self {
         let stride = occupancy.shape().stride() as isize;
         let all = || codes(occupancy.half_width());
@@ -77,6 +82,7 @@ impl<P: Precision> Codes<P> {
     }
 
     /// Whether they are of a lattice with rows as long and a mask as wide.
+    #[inline]
     pub(super) fn are_of(&self, occupancy: &Occupancy) -> bool {
         let codes = place_count(occupancy.half_width()) * GROUP;
         self.stride == occupancy.shape().stride() && self.cells.len() == codes

@@ -54,6 +54,7 @@ impl Task<f32> for Search<'_> {
 }
 
 /// Words that the findings of a group take: 12 or 24 places.
+#[inline]
 const fn words(half_width: usize) -> usize {
     place_count(half_width).div_ceil(PLACES)
 }

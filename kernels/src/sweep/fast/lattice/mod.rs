@@ -63,10 +63,12 @@ pub struct Candidates {
 unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
     type Found = Candidates;
 
+    #[inline]
     fn discs(&self) -> usize {
         self.occupancy.discs()
     }
 
+    #[inline]
     fn rows(&self) -> Rows {
         Rows { count: self.occupancy.shape().rows(), ahead: self.occupancy.half_width(), band: BAND }
     }
@@ -129,6 +131,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
         }
     }
 
+    #[inline]
     fn pairs<'a>(&'a self, found: &'a Candidates) -> impl Pairs<P> + 'a {
         assert!(self.codes.are_of(self.occupancy), "codes of this lattice");
         assert!(found.candidates.is_empty() || found.shape.as_ref() == Some(self.occupancy.shape()));

@@ -87,22 +87,26 @@ impl Occupancy {
     }
 
     /// The lattice.
+    #[inline]
     pub fn shape(&self) -> &LatticeShape {
         &self.shape
     }
 
     /// Its cells.
+    #[inline]
     pub fn grid(&self) -> Grid {
         let counts = [self.shape.columns(), self.shape.rows()];
         Grid { frame: self.frame, counts, periodic: self.shape.periodic() }
     }
 
     /// How many discs there are.
+    #[inline]
     pub fn discs(&self) -> usize {
         self.discs
     }
 
     /// Column and row of a disc; none if it is in no cell.
+    #[inline]
     pub fn cell(&self, disc: usize) -> Option<[usize; 2]> {
         let cell = self.cell[disc];
         if cell == self.guest_room() {
@@ -112,16 +116,19 @@ impl Occupancy {
     }
 
     /// Where the copies of a guest's place are written, where they are never read: behind the lattice.
+    #[inline]
     fn guest_room(&self) -> u32 {
         self.index.len() as u32 - 1
     }
 
     /// The disc in a cell of the lattice.
+    #[inline]
     pub fn disc(&self, column: usize, row: usize) -> Option<usize> {
         let disc = self.index[self.shape.position(column as isize, row as isize)] as usize;
         (disc < self.discs).then_some(disc)
     }
 
+    #[inline]
     fn column_and_row(&self, position: usize) -> [usize; 2] {
         let from_first = position - self.shape.position(0, 0);
         [from_first % self.shape.stride(), from_first / self.shape.stride()]
@@ -162,6 +169,7 @@ impl Occupancy {
     ///
     /// # Panics
     /// If the disc is in a cell already, or there is no such disc or cell.
+    #[inline]
     pub fn enter_as_guest(&mut self, disc: usize, cell: [usize; 2], number: impl Fn(usize) -> usize) {
         assert!(self.cell[disc] == NOWHERE, "disc {disc} is in a cell already");
         assert!(cell[0] < self.shape.columns() && cell[1] < self.shape.rows(), "no cell {cell:?}");
@@ -173,6 +181,7 @@ impl Occupancy {
     }
 
     /// The discs in cells that are another disc's, with these cells.
+    #[inline]
     pub fn guests(&self) -> &[(u32, [usize; 2])] {
         &self.guests
     }
@@ -204,6 +213,7 @@ impl Occupancy {
     ///
     /// # Panics
     /// If it is in none.
+    #[inline]
     pub fn settle(&mut self, disc: usize, place: [f64; 2]) {
         let at = self.cell[disc] as usize;
         assert!(at < self.index.len(), "disc {disc} is in no cell");
@@ -235,6 +245,7 @@ impl Occupancy {
     }
 
     /// The discs in order of their cells, row by row, guests behind all.
+    #[inline]
     pub fn order(&self) -> Vec<u32> {
         let rows = (0..self.shape.rows() as isize).map(|row| self.shape.position(0, row));
         rows.flat_map(|first| &self.index[first..first + self.shape.columns()])
@@ -267,36 +278,44 @@ impl Occupancy {
     }
 
     /// The largest contact distance (length).
+    #[inline]
     pub(super) fn reach(&self) -> f64 {
         1.0 / self.unit
     }
 
+    #[inline]
     pub(super) fn half_width(&self) -> usize {
         self.half_width
     }
 
+    #[inline]
     pub(super) fn edge(&self) -> [f32; 2] {
         self.edge
     }
 
+    #[inline]
     pub(super) fn index(&self) -> &[u32] {
         &self.index
     }
 
+    #[inline]
     pub(super) fn places(&self) -> [&[f32]; 2] {
         [&self.place[0], &self.place[1]]
     }
 
+    #[inline]
     pub(super) fn radii(&self) -> Option<&[f32]> {
         self.radius.as_deref()
     }
 
     /// Whether so few cells are occupied that places are not kept.
+    #[inline]
     pub fn is_sparse(&self) -> bool {
         self.sparse
     }
 
     /// Which cells are occupied, images included.
+    #[inline]
     pub(super) fn occupied(&self) -> &Bits {
         &self.occupied
     }
@@ -305,6 +324,7 @@ impl Occupancy {
     ///
     /// # Panics
     /// If a disc is in no cell.
+    #[inline]
     pub fn copies(&mut self) -> Option<Copies<'_>> {
         assert!(self.outside == 0, "{} discs are in no cell", self.outside);
         let [x, y] = &mut self.place;
