@@ -271,7 +271,7 @@ impl Simulation for Running {
     }
 
     fn clock(&self) -> Clock {
-        Clock { steps: self.engine.steps(), time: self.engine.time(), events: 0 }
+        self.engine.elapsed().clock()
     }
 
     fn particles(&self) -> Particles {

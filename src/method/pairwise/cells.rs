@@ -100,7 +100,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 
     /// A disc at a place that no cell takes.
     fn stray(&self, at: Move, count: u64) -> Failure {
-        outside(self.elapsed.steps, count, self.culprit_at(&at))
+        outside(self.clock(), count, self.culprit_at(&at))
     }
 
     /// A disc where it would be.
@@ -225,8 +225,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
                 let to = moves.iter().find(|to| to.disc == disc);
                 to.map_or_else(|| self.culprit(disc), |to| self.culprit_at(to))
             };
-            let (step, domain) = (self.elapsed.steps, self.system.domain);
-            return Err(conflict(step, domain, [culprit(first), culprit(second)]));
+            return Err(conflict(self.clock(), self.system.domain, [culprit(first), culprit(second)]));
         }
         Ok(())
     }

@@ -2,10 +2,13 @@
 
 use super::search::Search;
 use super::state::{Move, State};
-use super::{Crossings, Dynamics, Elapsed, Named, Phase, Prescribed, System, WithLaw, WithScheme};
+use super::{
+    Crossings, Dynamics, Elapsed, Named, Phase, Prescribed, System, WithLaw, WithScheme, not_finite,
+};
 use crate::domain::Domain;
-use crate::method::Failure;
+use crate::method::{Clock, Failure};
 use crate::particles::Particles;
+use std::collections::BTreeSet;
 use std::ops::Range;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
@@ -189,16 +192,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         let pairs = met.not_finite.iter().map(|pair| pair.map(|disc| disc as usize));
         // Two fixed discs have no effective mass: what they do to each other means nothing.
         let of_grains = pairs.filter(|pair| pair.iter().any(|&disc| disc < grains));
-        let lost: Vec<usize> = of_grains.flatten().collect();
+        let lost: BTreeSet<usize> = of_grains.flatten().collect();
         // A disc that is lost itself is named before one that only touches it.
         let is_lost = |disc: usize| {
             (0..self.system.freedoms).any(|freedom| !self.state.row(freedom, disc)[1].to_f64().is_finite())
         };
         match lost.iter().min_by_key(|&&disc| (!is_lost(disc), self.state.number(disc))) {
-            Some(&first) => {
-                let first = self.culprit(first);
-                Err(Failure::NotFinite { step: self.elapsed.steps, count: lost.len() as u64, first })
-            }
+            Some(&first) => Err(not_finite(self.clock(), lost.len() as u64, self.culprit(first))),
             None => Ok(()),
         }
     }
@@ -250,8 +250,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 }
 
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Named for Engine<S, P, Q, D> {
-    fn step(&self) -> u64 {
-        self.elapsed.steps
+    fn clock(&self) -> Clock {
+        self.elapsed.clock()
     }
 
     fn domain(&self) -> Domain {

@@ -27,7 +27,7 @@ pub use columns::{find_column, real_column};
 pub use crossings::Crossings;
 pub use elapsed::Elapsed;
 pub use engine::Engine;
-pub use named::{Named, conflict, outside};
+pub use named::{Named, conflict, not_finite, outside};
 pub use timings::{Phase, Timings};
 
 use crate::domain::Domain;

@@ -176,7 +176,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             arrays: &self.arrays,
             anchor: &self.anchor,
             ids: &self.ids,
-            step: self.elapsed.steps,
+            clock: self.elapsed.clock(),
         }
     }
 
