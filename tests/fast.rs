@@ -203,7 +203,7 @@ fn conflicts_are_resolved_beside_the_lattice() {
         let scalar = run(resolve, InstructionSet::Scalar);
         assert!(bits(scalar.as_ref()) == bits(resolved.as_ref()));
         assert_eq!(scalar.totals(), resolved.totals());
-        // Who is whose guest is a matter of the state, not of its history.
+        // Which of two discs has a shared cell is a matter of the state, not of its history.
         let mut first = simulate(Precision::F64, &start, Contacts::Fast(resolve), fast());
         advance(first.as_mut(), 111);
         let mut second = simulate(Precision::F64, &start, Contacts::Fast(resolve), fast());

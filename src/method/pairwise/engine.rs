@@ -1,6 +1,6 @@
 //! The engine: all forces, then corrector and next predictor in one pass.
 
-use super::search::Search;
+use super::search::{Cells, Search};
 use super::state::{Move, State};
 use super::{
     Crossings, Dynamics, Elapsed, Named, Phase, Prescribed, System, WithLaw, WithScheme, not_finite,
@@ -94,8 +94,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     }
 
     /// How many discs are in cells that are another disc's.
-    pub fn guests(&self) -> usize {
-        self.search.guests()
+    pub fn shared_cells(&self) -> usize {
+        self.search.cells().shared_cells()
     }
 
     /// Entries of the lists, and how often they were made; none where there are no lists.
@@ -117,12 +117,12 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     /// there are such; gives what each disc was before. No sum depends on the numbers.
     pub(super) fn put_in_order(&mut self) -> Vec<u32> {
         let grains = self.start.grain_count();
-        let mut order = self.search.order();
+        let mut order = self.search.cells().order();
         if grains < order.len() {
             // Grains stay the first ones.
             order.sort_by_key(|&disc| disc as usize >= grains);
         }
-        self.search.renumber(&order);
+        self.search.cells_mut().renumber(&order);
         self.state.renumber(&order);
         for sum in &mut self.sums {
             *sum = reordered(sum, &order);
