@@ -1,4 +1,4 @@
-//! Whole simulations in the fast execution: the faithful ones but for rounding, the same bits however they are run, and
+//! Whole simulations in the fast engine: those of programs but for rounding, the same bits however they are run, and
 //! every failure found as there.
 
 mod support;
@@ -294,7 +294,7 @@ fn momentum_is_conserved_to_rounding() {
     assert!(seen.kinetic < 0.99 * first.kinetic, "the gas must have collided and cooled");
 }
 
-/// Undamped: velocity Verlet in the fast execution keeps the energy as well as Gear's scheme in the faithful one.
+/// Undamped: velocity Verlet in the fast engine keeps the energy as well as Gear's scheme in programs.
 #[test]
 fn energy_is_kept_over_ten_thousand_steps() {
     let drift = |scheme: Scheme, contacts: Contacts| {
@@ -320,7 +320,7 @@ fn energy_is_kept_over_ten_thousand_steps() {
     assert!(gear < 1e-3, "{gear:e}");
 }
 
-/// What breaks breaks in the same step, with the same discs, as in the faithful execution.
+/// What breaks breaks in the same step, with the same discs, as with programs.
 #[test]
 fn failures_are_found_in_their_step() {
     let lost = [

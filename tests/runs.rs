@@ -85,7 +85,7 @@ fn a_run_is_the_same_for_threads_and_executions() {
     }
 }
 
-/// The fast execution: the same bytes for any number of threads and any instructions, and after going on.
+/// The fast engine: the same bytes for any number of threads and any instructions, and after going on.
 #[test]
 fn a_fast_run_is_the_same_for_threads_and_instructions_and_goes_on() {
     let folder = tempfile::tempdir().unwrap();
