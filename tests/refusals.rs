@@ -1,10 +1,11 @@
 //! What a method cannot do right is refused or said: every way of finding contacts, in every precision, against what is known
 //! of the motion.
 
+use std::sync::atomic::AtomicBool;
 use stripmine::method::lattice_md::{Checked, Document};
 use stripmine::method::lattice_md::{Engine, Totals};
 use stripmine::method::lattice_md::{assemble, assemble_following_energy, model};
-use stripmine::method::{Culprit, Failure, FailureKind};
+use stripmine::method::{Culprit, Failure, FailureKind, METHODS, Purpose, Until};
 use stripmine::observe::{Observation, Scenery};
 
 /// Every engine by the overrides that choose it.
@@ -265,6 +266,35 @@ fn work_of_gravity_and_walls_is_counted() {
             let scale = totals.dissipated + work.abs() + totals.wall_work.abs();
             assert!(error.abs() < tolerance * scale, "{scene}, {name}: {error} {work} {totals:?}");
             assert_eq!(scene == "shaken-box", totals.wall_work != 0.0);
+        }
+    }
+}
+
+/// A corrector that takes a disc across a periodic side is no fall of a whole period: the balance of energy holds in that step.
+#[test]
+fn corrections_across_a_side_are_no_work() {
+    const STEP: u64 = 12;
+    let seen = |engine: &[&str], origin: f64| {
+        let scene = discs([12.0, 9.0], "[[4.0, 4.5], [5.02, 4.5]]", "[[1.5, 0.0], [0.5, 0.0]]", 0.01)
+            .replace(
+                "sides = [12.0, 9.0]",
+                &format!("sides = [12.0, 9.0]\norigin = [{origin:?}, 0.0]\ngravity = [0.5, 0.0]"),
+            );
+        let gear = ["integrator.kind=gear", "integrator.values=5"];
+        let overrides: Vec<String> = [engine, &gear].concat().into_iter().map(str::to_owned).collect();
+        let prepared = Document::parse("scene", &scene, &overrides).and_then(Document::prepare).unwrap();
+        let mut run = prepared.start(Purpose::Run).unwrap();
+        run.advance(&[Until::Steps(STEP)], &AtomicBool::new(false)).unwrap();
+        let quantities = METHODS[0].quantities;
+        let error = quantities.iter().position(|quantity| quantity.name == "balance_error").unwrap();
+        (run.particles().all()[0].position[0], run.observe()[error].abs())
+    };
+    for (name, engine) in ENGINES {
+        let (there, error) = seen(engine, 0.0);
+        // The prediction is on the other side of one of the two.
+        for beside in [-1e-8, 1e-8] {
+            let (_, across) = seen(engine, there - 12.0 + beside);
+            assert!((across - error).abs() < 1e-6, "{name}: {across}, and {error} elsewhere");
         }
     }
 }

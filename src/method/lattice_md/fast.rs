@@ -182,6 +182,10 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine for FastMd<S, P, Q> {
         self.engine.particles()
     }
 
+    fn standing(&self) -> Particles {
+        self.engine.standing()
+    }
+
     fn forces(&self) -> Vec<[f64; 3]> {
         self.engine.forces()
     }

@@ -4,6 +4,7 @@ use super::search::{Cells, Search};
 use super::state::{Move, State};
 use super::{
     Crossings, Dynamics, Elapsed, Named, Phase, Prescribed, System, WithLaw, WithScheme, not_finite,
+    standing, wrapped,
 };
 use crate::domain::Domain;
 use crate::method::{Clock, Failure};
@@ -217,26 +218,23 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 
     /// The particles as they stand, positions inside the box.
     pub fn particles(&self) -> Particles {
-        let mut particles = self.start.clone();
-        let (grains, System { domain, dt, freedoms, .. }) = (self.start.grain_count(), &self.system);
-        let walls = self.prescribed().unwrap_or_default();
-        for disc in 0..particles.len() {
-            let rows = [0, 1, 2].map(|freedom| {
-                let row =
-                    if freedom < *freedoms { self.corrected(freedom, disc) } else { Default::default() };
-                row.map(|q| q.to_f64())
+        wrapped(self.standing(), &self.system.domain)
+    }
+
+    /// The particles as they stand; positions are consistent with the periods that are counted as crossed.
+    pub fn standing(&self) -> Particles {
+        let freedoms = self.system.freedoms;
+        let of = |disc: usize| {
+            let [x, y, angle] = [0, 1, 2].map(|freedom| match freedom < freedoms {
+                true => self.corrected(freedom, disc).map(|q| q.to_f64()),
+                false => [0.0; 6],
             });
-            let particle = &mut particles.all_mut()[self.state.number(disc)];
-            particle.position = domain.inside(self.seen_from_origin(disc, [rows[0][0], rows[1][0]]));
-            if disc < grains {
-                particle.velocity = [rows[0][1] / dt, rows[1][1] / dt];
-                particle.angle = rows[2][0];
-                particle.omega = rows[2][1] / dt;
-            } else {
-                particle.velocity = walls.velocity;
-            }
-        }
-        particles
+            let position = self.seen_from_origin(disc, [x[0], y[0]]);
+            let rows = [[position[0], x[1]], [position[1], y[1]], [angle[0], angle[1]]];
+            (self.state.number(disc), rows)
+        };
+        let walls = self.prescribed().unwrap_or_default().velocity;
+        standing(&self.start, self.system.dt, walls, (0..self.start.len()).map(of))
     }
 
     /// Force along x and y and torque on every particle, in the scene's order.
