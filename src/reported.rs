@@ -65,19 +65,29 @@ pub trait Reported: std::error::Error + Send + Sync {
     /// Its class.
     fn class(&self) -> Class;
 
+    /// The error that it passes on, if it does: what is not said here of mistakes, place, remedy and details, that one says.
+    fn passed_on(&self) -> Option<&dyn Reported> {
+        None
+    }
+
     /// The mistakes of a scene, where it is of one.
     fn mistakes(&self) -> Option<&SceneErrors> {
-        None
+        self.passed_on()?.mistakes()
     }
 
     /// Where, if it has a place.
     fn place(&self) -> Option<FilePlace> {
-        None
+        self.passed_on()?.place()
     }
 
     /// What to do, where its words do not say so in a paragraph of their own.
     fn remedy(&self) -> Option<String> {
-        None
+        self.passed_on()?.remedy()
+    }
+
+    /// What more is known of it, as data.
+    fn details(&self) -> Option<serde_json::Value> {
+        self.passed_on()?.details()
     }
 }
 

@@ -126,6 +126,22 @@ fn every_verb_refuses_with_its_exit_code_in_words_and_as_data() {
     assert_eq!(std::fs::read(folder.join("file")).unwrap(), b"mine");
 }
 
+/// What broke a simulation is there as data: kind, moment, particles, values, wherever the verb met it.
+#[test]
+fn failures_of_the_physics_are_data() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = ["run", "two-discs", "--set", "law.stiffness=1e-3", "--json"];
+    let data: Value = serde_json::from_slice(&stripmine(folder.path(), &run).stdout).unwrap();
+    let (error, details) = (&data["error"], &data["error"]["details"]);
+    assert!(error["message"].as_str().unwrap().contains("overlap"), "{error:#}");
+    assert!(error["remedy"].as_str().unwrap().contains("law.stiffness"), "{error:#}");
+    assert!(details["kind"] == "too-deep" && details["count"] == 2, "{details:#}");
+    assert!(details["when"]["steps"].as_u64() > Some(0) && details["when"]["time"].as_f64() > Some(0.0));
+    let who = details["who"].as_array().unwrap();
+    assert!(who.len() == 2 && who.iter().all(|disc| disc["id"].is_u64() && disc["position"][1].is_f64()));
+    assert!(details["values"]["penetration"].as_f64() > details["values"]["limit"].as_f64());
+}
+
 /// A scene's mistakes are all said, each with its place; the first of them is the error.
 #[test]
 fn mistakes_of_a_scene_have_their_places_as_data() {

@@ -85,7 +85,7 @@ fn a_run_is_the_same_for_threads_and_executions() {
     }
 }
 
-/// The fast execution: the same bytes for any number of threads and any instructions, and after going on.
+/// The fast engine: the same bytes for any number of threads and any instructions, and after going on.
 #[test]
 fn a_fast_run_is_the_same_for_threads_and_instructions_and_goes_on() {
     let folder = tempfile::tempdir().unwrap();
@@ -195,7 +195,9 @@ fn pipe_as_printed_is_caught_and_named() {
     let summary: Value = serde_json::from_slice(&read(&run, "summary.json")).unwrap();
     let step = summary["steps"].as_u64().unwrap();
     assert!((650..2500).contains(&step), "{step}");
-    assert!(summary["failure"].as_str().unwrap().contains("overlap"));
+    let failure = &summary["failure"];
+    assert!(failure["message"].as_str().unwrap().contains("overlap") && failure["kind"] == "too-deep");
+    assert_eq!((&failure["when"]["steps"], &failure["count"]), (&summary["steps"], &Value::from(2)));
     assert!(summary["deep_disc_steps"].as_u64().unwrap() > 0);
     let frames = String::from_utf8(read(&run, "trajectory.xyz")).unwrap();
     assert!(frames.contains(&format!("step={step}")), "the state of the failing step is written");

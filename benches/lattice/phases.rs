@@ -19,7 +19,7 @@ pub fn advance(gas: &mut dyn Engine, steps: u64) {
     (0..steps).for_each(|_| gas.step().expect("the bench scene runs on"));
 }
 
-/// A gas with friction, velocity Verlet, in the fast execution.
+/// A gas with friction, velocity Verlet, in the fast engine.
 pub fn scene(packing_fraction: f64, count: usize, precision: &str) -> Checked {
     let overrides = [
         format!("particles.count={count}"),

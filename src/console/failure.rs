@@ -103,6 +103,9 @@ struct Report {
     place: Option<FilePlace>,
     /// What to do about it, where the message does not say so itself.
     remedy: Option<String>,
+    /// What more is known, where a simulation broke: what kind of failure, when, who, and the values found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    details: Option<serde_json::Value>,
 }
 
 /// Says a failure: in words on standard error and, where data is asked for and none is there yet, as data on standard output.
@@ -181,6 +184,7 @@ impl Failure {
                 message: first.message.clone(),
                 place: Some(FilePlace { file: first.file.clone(), line, column }),
                 remedy: first.suggestion.clone().or(expected),
+                details: None,
             };
         }
         let text = match self {
@@ -194,7 +198,15 @@ impl Failure {
             None => (text, None),
         };
         let message = message.trim().to_owned();
-        Report { kind, message, place: self.place(), remedy: remedy.or_else(|| self.remedy()) }
+        let (place, details) = (self.place(), self.details());
+        Report { kind, message, place, remedy: remedy.or_else(|| self.remedy()), details }
+    }
+
+    fn details(&self) -> Option<serde_json::Value> {
+        match self {
+            Failure::Reported(error) => error.details(),
+            _ => None,
+        }
     }
 
     fn place(&self) -> Option<FilePlace> {

@@ -1,7 +1,9 @@
 //! How far a simulation has come, and when something is due.
 
+use std::fmt;
+
 /// How far a simulation has come.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Clock {
     /// Steps done; 0 where a method takes none.
     pub steps: u64,
@@ -9,6 +11,16 @@ pub struct Clock {
     pub time: f64,
     /// Events, such as collisions; 0 where a method has none.
     pub events: u64,
+}
+
+impl fmt::Display for Clock {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Clock { steps, time, events } = self;
+        match (steps, events) {
+            (0, 1..) => write!(f, "event {events}, time {time:?}"),
+            _ => write!(f, "step {steps}"),
+        }
+    }
 }
 
 /// A moment that a simulation comes to.
@@ -62,8 +74,8 @@ impl Until {
     }
 }
 
-impl std::fmt::Display for Until {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Display for Until {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Until::Steps(steps) => write!(f, "run.steps={steps}"),
             Until::Time(time) => write!(f, "run.time={time:?}"),

@@ -1,12 +1,54 @@
-//! What stops a method, with what a user needs to find out why.
+//! What stops a method: what broke, when, which particles, and what to do. A method makes its failures beside the physics
+//! that they are of.
 
+use super::clock::Clock;
 use crate::reported::{Class, Reported};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde_json::{Map, Value, json};
 use std::fmt;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::sweep::fast::GridError;
 
+/// What broke, as every method names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FailureKind {
+    /// Positions or forces that are no numbers.
+    NotFinite,
+    /// Particles outside a closed side, or more than a period outside a periodic one.
+    OutOfBox,
+    /// Two particles where one may be.
+    Conflict,
+    /// A contact deeper than the scene allows.
+    TooDeep,
+    /// A particle that moved so far in a step that it may have passed through another unseen.
+    LongStep,
+    /// Sums over all particles that no number holds.
+    Overflow,
+    /// Sectors do not fit the box.
+    NoSectors,
+    /// The machine refused a program.
+    Machine,
+}
+
+impl FailureKind {
+    /// The name in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            FailureKind::NotFinite => "not-finite",
+            FailureKind::OutOfBox => "out-of-box",
+            FailureKind::Conflict => "conflict",
+            FailureKind::TooDeep => "too-deep",
+            FailureKind::LongStep => "long-step",
+            FailureKind::Overflow => "overflow",
+            FailureKind::NoSectors => "no-sectors",
+            FailureKind::Machine => "machine",
+        }
+    }
+}
+
 /// A particle that a failure names.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Culprit {
     /// Its id.
     pub id: u32,
@@ -24,133 +66,152 @@ impl fmt::Display for Culprit {
 }
 
 /// The physics broke a precondition of the method. Found in the step in which it happens.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum Failure {
-    /// Positions or forces that are no numbers.
-    #[error(
-        "step {step}: {count} discs have a position or force that is no finite number, first {first}\n  \
-         help: the time step is too large for the stiffness or the damping: halve dt, or use fewer Gear values"
-    )]
-    NotFinite {
-        /// The step.
-        step: u64,
-        /// How many.
-        count: u64,
-        /// The first.
-        first: Culprit,
-    },
-    /// Discs outside a closed side, or more than a period outside a periodic one.
-    #[error(
-        "step {step}: {count} discs left the box, first {first}\n  help: a wall was passed or the time step is too large: \
-         use larger or stiffer wall discs, slower grains, or a smaller dt"
-    )]
-    OutOfBox {
-        /// The step.
-        step: u64,
-        /// How many.
-        count: u64,
-        /// The first.
-        first: Culprit,
-    },
-    /// Two discs in one cell: the lattice would lose one.
-    #[error(
-        "step {step}: {first} and {second} are in one cell, {distance:.6} apart; the exclusive lattice holds one disc a \
-         cell\n  help: the discs overlap too deeply (stiffen the contacts), or the cells are too large (set search.cell_edge \
-         towards the largest radius)"
-    )]
-    Conflict {
-        /// The step.
-        step: u64,
-        /// One disc.
-        first: Culprit,
-        /// The other.
-        second: Culprit,
-        /// Distance of their centres (length).
-        distance: f64,
-    },
-    /// A contact deeper than the scene allows.
-    #[error(
-        "step {step}: {first} and {second} overlap by {penetration:.4} of the sum of their radii, more than \
-         law.stop_penetration = {limit}\n  help: the contacts are too soft for these weights and speeds: raise law.stiffness \
-         (and lower dt), or slow the discs"
-    )]
-    TooDeep {
-        /// The step.
-        step: u64,
-        /// One disc.
-        first: Culprit,
-        /// The other.
-        second: Culprit,
-        /// ξ/(R_i + R_j).
-        penetration: f64,
-        /// The limit.
-        limit: f64,
-    },
-    /// A disc that moved so far in a step that it may have passed through another unseen.
-    #[error(
-        "step {step}: {count} discs moved farther than {limit:.6} in the step, first {first}; contacts deeper than \
-         law.max_penetration could pass unseen between two steps\n  help: lower dt to {dt:.4e}, slow the discs, or set \
-         integrator.on_long_step = \"count\""
-    )]
-    LongStep {
-        /// The step.
-        step: u64,
-        /// How many.
-        count: u64,
-        /// The first.
-        first: Culprit,
-        /// How far a disc may move (length).
-        limit: f64,
-        /// A step in which the first would move as far (time).
-        dt: f64,
-    },
-    /// Sums over all discs that no number holds.
-    #[error(
-        "step {step}: {quantity} is {value}, which is no finite number\n  help: the units make masses, speeds or stiffness too large \
-         for double precision; choose units in which they are nearer to 1"
-    )]
-    Overflow {
-        /// The step.
-        step: u64,
-        /// What was summed up.
-        quantity: &'static str,
-        /// What came out.
-        value: f64,
-    },
-    /// Sectors do not fit the box.
-    #[error("{0}\n  help: take more discs, a smaller search.skin, or search.by = \"lattice\"")]
-    NoSectors(#[from] GridError),
-    /// The machine refused a program.
-    #[error(transparent)]
-    Machine(#[from] ProgramError),
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failure {
+    /// What broke.
+    pub kind: FailureKind,
+    /// When; none if there was no simulation yet, or time has nothing to do with it.
+    pub at: Option<Clock>,
+    /// The particles named: the first, or the two of a pair.
+    pub culprits: Vec<Culprit>,
+    /// How many particles it is true of.
+    pub count: u64,
+    /// What was found and what it was held against, by name.
+    pub values: Vec<(&'static str, f64)>,
+    /// What broke, in a sentence that names the particles, without the moment.
+    pub message: String,
+    /// What to do about it.
+    pub remedy: String,
 }
 
 impl Failure {
-    /// What broke, when, and which particles.
+    /// A failure that no particle and no moment is named of.
+    pub fn new(kind: FailureKind, message: impl Into<String>, remedy: impl Into<String>) -> Failure {
+        let (message, remedy) = (message.into(), remedy.into());
+        Failure { kind, at: None, culprits: vec![], count: 0, values: vec![], message, remedy }
+    }
+
+    /// The same, at a moment.
+    pub fn at(self, clock: Clock) -> Failure {
+        Failure { at: Some(clock), ..self }
+    }
+
+    /// The same, true of `count` particles, of which some are named.
+    pub fn of(self, count: u64, culprits: impl Into<Vec<Culprit>>) -> Failure {
+        Failure { count, culprits: culprits.into(), ..self }
+    }
+
+    /// The same, with what was found and what it was held against.
+    pub fn with(self, values: impl Into<Vec<(&'static str, f64)>>) -> Failure {
+        Failure { values: values.into(), ..self }
+    }
+
+    /// What was found, or what it was held against, by its name.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        self.values.iter().find(|(known, _)| *known == name).map(|&(_, value)| value)
+    }
+
+    /// When it was, what broke, and which particles.
     pub fn what(&self) -> String {
-        self.parts().0
-    }
-
-    /// What to do about it.
-    pub fn remedy(&self) -> Option<String> {
-        self.parts().1
-    }
-
-    fn parts(&self) -> (String, Option<String>) {
-        let text = self.to_string();
-        match text.split_once(HELP) {
-            Some((what, remedy)) => (what.to_owned(), Some(remedy.to_owned())),
-            None => (text, None),
+        match self.at {
+            Some(clock) => format!("{clock}: {}", self.message),
+            None => self.message.clone(),
         }
+    }
+
+    /// All but the sentences, as data. What is no finite number is null.
+    fn data(&self) -> Map<String, Value> {
+        let values: Map<String, Value> =
+            self.values.iter().map(|&(name, value)| (name.to_owned(), json!(value))).collect();
+        let entries = [
+            ("kind", json!(self.kind.name())),
+            ("when", json!(self.at)),
+            ("who", json!(self.culprits)),
+            ("count", json!(self.count)),
+            ("values", Value::Object(values)),
+        ];
+        entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
     }
 }
 
-/// What stands between what broke and what to do about it.
-const HELP: &str = "\n  help: ";
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}\n  help: {}", self.what(), self.remedy)
+    }
+}
+
+impl std::error::Error for Failure {}
+
+impl Serialize for Failure {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("message", &self.what())?;
+        map.serialize_entry("remedy", &self.remedy)?;
+        self.data().iter().try_for_each(|(name, value)| map.serialize_entry(name, value))?;
+        map.end()
+    }
+}
 
 impl Reported for Failure {
     fn class(&self) -> Class {
         Class::Precondition
+    }
+
+    fn remedy(&self) -> Option<String> {
+        Some(self.remedy.clone())
+    }
+
+    fn details(&self) -> Option<Value> {
+        Some(Value::Object(self.data()))
+    }
+}
+
+impl From<GridError> for Failure {
+    fn from(error: GridError) -> Failure {
+        let remedy = "take more discs, a smaller search.skin, or search.by = \"lattice\"";
+        Failure::new(FailureKind::NoSectors, error.to_string(), remedy)
+    }
+}
+
+impl From<ProgramError> for Failure {
+    fn from(error: ProgramError) -> Failure {
+        let remedy = match error {
+            ProgramError::NoSuchInstructionSet(_) => "set machine.instruction_set = \"auto\"",
+            _ => "the program is at fault, not the scene: report this with the scene",
+        };
+        Failure::new(FailureKind::Machine, error.to_string(), remedy)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn failures_are_sentences_and_data() {
+        let culprit = Culprit { id: 7, position: [1.0, f64::NAN], velocity: [0.5, 0.0] };
+        let at = |clock| {
+            let failure = Failure::new(FailureKind::NotFinite, format!("first {culprit}"), "halve dt");
+            failure.at(clock).of(3, [culprit]).with([("limit", 0.25)])
+        };
+        let failure = at(Clock { steps: 61, time: 0.5, events: 0 });
+        assert_eq!(
+            failure.to_string(),
+            "step 61: first disc 7 at (1.000000000, NaN) with velocity (5.0000e-1, 0.0000e0)\n  help: halve dt"
+        );
+        assert_eq!((failure.value("limit"), failure.value("depth")), (Some(0.25), None));
+        let data = json!({
+            "kind": "not-finite", "count": 3, "values": {"limit": 0.25},
+            "when": {"steps": 61, "time": 0.5, "events": 0},
+            "who": [{"id": 7, "position": [1.0, null], "velocity": [0.5, 0.0]}],
+        });
+        assert_eq!(failure.details(), Some(data));
+        let whole = serde_json::to_value(&failure).unwrap();
+        assert_eq!((&whole["remedy"], &whole["kind"]), (&json!("halve dt"), &json!("not-finite")));
+        // A method of events takes no steps.
+        assert!(at(Clock { steps: 0, time: 0.5, events: 9 }).what().starts_with("event 9, time 0.5: first"));
+        let refused = Failure::from(ProgramError::NoSuchInstructionSet("avx512"));
+        assert_eq!((refused.what().as_str(), refused.at), ("this processor has no avx512", None));
+        assert!(refused.remedy.contains("instruction_set"));
     }
 }

@@ -12,5 +12,5 @@ pub use clock::{Clock, Every, Schedule, Until};
 pub use entry::{
     Bench, BenchOption, Entry, Fact, Item, Prepared, Progress, Purpose, Quantity, Simulation, Snapshot, Verb,
 };
-pub use failure::{Culprit, Failure};
+pub use failure::{Culprit, Failure, FailureKind};
 pub use list::{METHODS, Methods, load, method, prepare, vocabularies};

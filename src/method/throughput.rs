@@ -217,10 +217,11 @@ impl Reported for MeasurementError {
         }
     }
 
-    fn mistakes(&self) -> Option<&SceneErrors> {
+    fn passed_on(&self) -> Option<&dyn Reported> {
         match self {
             MeasurementError::Scene(errors) => Some(errors),
-            MeasurementError::Physics(_) | MeasurementError::Threads(_) => None,
+            MeasurementError::Physics(failure) => Some(failure),
+            MeasurementError::Threads(_) => None,
         }
     }
 }

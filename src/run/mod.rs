@@ -111,10 +111,10 @@ pub enum RunError {
     Scene(#[from] SceneErrors),
     /// The physics.
     #[error(
-        "{}\nthe state of that step is the last frame of {}{}",
+        "{}\nthe state of that step is the last frame of {}\n  help: {}",
         failure.what(),
         snapshot.display(),
-        failure.remedy().map(|remedy| format!("\n  help: {remedy}")).unwrap_or_default()
+        failure.remedy
     )]
     Physics {
         /// What broke.
@@ -173,9 +173,10 @@ impl Reported for RunError {
         }
     }
 
-    fn mistakes(&self) -> Option<&SceneErrors> {
+    fn passed_on(&self) -> Option<&dyn Reported> {
         match self {
             RunError::Scene(errors) => Some(errors),
+            RunError::Physics { failure, .. } | RunError::Start(failure) => Some(failure),
             _ => None,
         }
     }
@@ -198,7 +199,7 @@ impl Reported for RunError {
     fn remedy(&self) -> Option<String> {
         match self {
             RunError::Exists(_) => Some("--resume, --overwrite or another --out".to_owned()),
-            _ => None,
+            _ => self.passed_on()?.remedy(),
         }
     }
 }

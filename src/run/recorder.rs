@@ -10,7 +10,7 @@ use crate::io::extxyz::{self, Frame};
 use crate::io::growing_file::Mark;
 use crate::io::table_file::TableFile;
 use crate::io::{FileError, lammps};
-use crate::method::{Clock, Failure, Prepared, Quantity, Schedule, Simulation, Snapshot, Until};
+use crate::method::{Clock, Failure, FailureKind, Prepared, Quantity, Schedule, Simulation, Snapshot, Until};
 use crate::scene::Output;
 use std::collections::BTreeMap;
 use std::fs;
@@ -273,12 +273,12 @@ impl Recorder {
 
     /// A row of observables, unless one of them is no finite number.
     fn thermo(&mut self, simulation: &dyn Simulation) -> Result<Option<Failure>, RunError> {
-        let (step, row) = (simulation.clock().steps, simulation.observe());
+        let (clock, row) = (simulation.clock(), simulation.observe());
         let named = self.quantities.iter().zip(&row);
         if let Some((quantity, &value)) = named.into_iter().find(|(_, value)| !value.is_finite()) {
-            return Ok(Some(Failure::Overflow { step, quantity: quantity.name, value }));
+            return Ok(Some(overflow(clock, quantity.name, value)));
         }
-        self.thermo.append(step, &row)?;
+        self.thermo.append(clock.steps, &row)?;
         Ok(None)
     }
 
@@ -389,6 +389,14 @@ impl Recorder {
         self.folder.check(self.checkpointed.is_some())?;
         Ok(summary)
     }
+}
+
+/// The failure of a sum over all particles that no number holds.
+fn overflow(at: Clock, quantity: &'static str, value: f64) -> Failure {
+    let what = format!("{quantity} is {value}, which is no finite number");
+    let remedy = "the units make masses, speeds or stiffness too large for double precision; choose units in which they are \
+                  nearer to 1";
+    Failure::new(FailureKind::Overflow, what, remedy).at(at).with([(quantity, value)])
 }
 
 /// The names of the columns of `thermo.csv` after the step.

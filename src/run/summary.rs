@@ -29,7 +29,7 @@ pub struct Summary {
     /// like; known once it is written.
     pub notes: Vec<String>,
     /// What stopped the run, if the physics did.
-    pub failure: Option<String>,
+    pub failure: Option<Failure>,
     /// Steps done.
     pub steps: u64,
     /// Simulated time.
@@ -68,7 +68,7 @@ impl Summary {
             left_out: prepared.left_out().to_vec(),
             warnings,
             notes: vec![],
-            failure: failure.map(ToString::to_string),
+            failure: failure.cloned(),
             steps: clock.steps,
             time: clock.time,
             events: clock.events,

@@ -42,7 +42,7 @@ impl Work {
         Work { domain, gravity, start: inner(seen), from }
     }
 
-    /// The balance of a moment, with the particles as they were observed.
+    /// The balance of a moment, with the particles as the state has them: consistent with the crossings counted.
     pub(super) fn balance(&self, seen: &Observation, particles: &Particles, engine: &dyn Engine) -> Balance {
         let crossings = engine.crossings();
         let mut gravity_work = 0.0;

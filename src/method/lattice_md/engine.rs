@@ -23,6 +23,10 @@ pub trait Engine: Send {
     /// The particles as they stand, positions inside the box.
     fn particles(&self) -> Particles;
 
+    /// The same as the state has them: the last correction may have taken a position beyond a periodic side, and no
+    /// [crossing](Self::crossings) is counted before the next step.
+    fn standing(&self) -> Particles;
+
     /// Force along x and y and torque on every particle, as of the last step.
     fn forces(&self) -> Vec<[f64; 3]>;
 

@@ -164,7 +164,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine for FastMd<S, P, Q> {
         let far = self.engine.advance()?;
         let far = far.into_iter().map(|disc| disc as usize);
         judge_steps(&self.engine, far, self.model().watch, &mut self.totals)?;
-        self.totals.shared_cells += self.engine.guests() as u64;
+        self.totals.shared_cells += self.engine.shared_cells() as u64;
         let power = self.meet()?;
         self.totals.add_work(self.model().dt, power, self.wall_power());
         Ok(())
@@ -180,6 +180,10 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine for FastMd<S, P, Q> {
 
     fn particles(&self) -> Particles {
         self.engine.particles()
+    }
+
+    fn standing(&self) -> Particles {
+        self.engine.standing()
     }
 
     fn forces(&self) -> Vec<[f64; 3]> {

@@ -1,8 +1,8 @@
 //! What a step of granular discs is judged by: contacts that are too deep, discs that are too fast.
 
 use super::{OnLongStep, Totals, Watch};
-use crate::method::Failure;
 use crate::method::pairwise::Named;
+use crate::method::{Clock, Culprit, Failure, FailureKind};
 
 /// Counts discs that are so fast that contacts may pass unseen in a step, and stops if there must be none.
 pub(super) fn judge_steps(
@@ -25,7 +25,7 @@ pub(super) fn judge_steps(
         (OnLongStep::Stop, Some(first)) => {
             let limit = watch.longest_step();
             let dt = limit / speed(first);
-            Err(Failure::LongStep { step: discs.step(), count, first: discs.culprit(first), limit, dt })
+            Err(long_step(discs.clock(), count, discs.culprit(first), limit, dt))
         }
         _ => Ok(()),
     }
@@ -53,11 +53,31 @@ pub(super) fn judge_depth(
     grains.sort_unstable();
     grains.dedup();
     let Some((penetration, pair)) = deepest else { return Ok(()) };
-    totals.add_deep(discs.step(), grains.len() as u64, penetration);
+    totals.add_deep(discs.clock().steps, grains.len() as u64, penetration);
     if penetration > watch.stop_penetration {
-        let [first, second] = pair.map(|disc| discs.culprit(disc));
-        let (step, limit) = (discs.step(), watch.stop_penetration);
-        return Err(Failure::TooDeep { step, first, second, penetration, limit });
+        let pair = pair.map(|disc| discs.culprit(disc));
+        return Err(too_deep(discs.clock(), pair, penetration, watch.stop_penetration));
     }
     Ok(())
+}
+
+/// The failure of discs that moved farther than `limit` (length) in a step; the first would not in a step of `dt` (time).
+fn long_step(at: Clock, count: u64, first: Culprit, limit: f64, dt: f64) -> Failure {
+    let what = format!(
+        "{count} discs moved farther than {limit:.6} in the step, first {first}; contacts deeper than law.max_penetration \
+         could pass unseen between two steps"
+    );
+    let remedy = format!("lower dt to {dt:.4e}, slow the discs, or set integrator.on_long_step = \"count\"");
+    let failure = Failure::new(FailureKind::LongStep, what, remedy).at(at).of(count, [first]);
+    failure.with([("limit", limit), ("dt", dt)])
+}
+
+/// The failure of a contact of penetration ξ/(R_i + R_j) beyond the limit.
+fn too_deep(at: Clock, [first, second]: [Culprit; 2], penetration: f64, limit: f64) -> Failure {
+    let what = format!(
+        "{first} and {second} overlap by {penetration:.4} of the sum of their radii, more than law.stop_penetration = {limit}"
+    );
+    let remedy = "the contacts are too soft for these weights and speeds: raise law.stiffness (and lower dt), or slow the discs";
+    let failure = Failure::new(FailureKind::TooDeep, what, remedy).at(at).of(2, [first, second]);
+    failure.with([("penetration", penetration), ("limit", limit)])
 }

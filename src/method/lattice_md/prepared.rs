@@ -196,7 +196,7 @@ impl Running {
         let model = model(checked);
         let scenery = Scenery::of(&model);
         let seen = Observation::of(engine.steps(), engine.time(), &engine.particles(), &scenery);
-        let work = Work::begin(&seen, &engine.particles(), scenery.domain, scenery.gravity);
+        let work = Work::begin(&seen, &engine.standing(), scenery.domain, scenery.gravity);
         let grains = particles.grain_count();
         let cells = [geometry.shape.columns(), geometry.shape.rows()];
         Running {
@@ -211,9 +211,9 @@ impl Running {
     }
 
     fn seen(&self) -> (Observation, Balance) {
-        let (engine, particles) = (self.engine.as_ref(), self.engine.particles());
-        let seen = Observation::of(engine.steps(), engine.time(), &particles, &self.scenery);
-        let balance = self.work.balance(&seen, &particles, engine);
+        let engine = self.engine.as_ref();
+        let seen = Observation::of(engine.steps(), engine.time(), &engine.particles(), &self.scenery);
+        let balance = self.work.balance(&seen, &engine.standing(), engine);
         (seen, balance)
     }
 
@@ -271,7 +271,7 @@ impl Simulation for Running {
     }
 
     fn clock(&self) -> Clock {
-        Clock { steps: self.engine.steps(), time: self.engine.time(), events: 0 }
+        self.engine.elapsed().clock()
     }
 
     fn particles(&self) -> Particles {

@@ -2,8 +2,8 @@
 
 use super::{Arrays, Model};
 use crate::domain::Domain;
-use crate::method::Failure;
-use crate::method::pairwise::{Named, conflict, outside};
+use crate::method::pairwise::{Named, conflict, not_finite, outside};
+use crate::method::{Clock, Failure};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Array;
@@ -15,12 +15,12 @@ pub(super) struct Names<'a, S, P> {
     /// The cells from which discs are seen while these are looked for; empty if they are those of the arrays.
     pub(super) anchor: &'a [u32],
     pub(super) ids: &'a [u32],
-    pub(super) step: u64,
+    pub(super) clock: Clock,
 }
 
 impl<S: Precision, P: Precision> Named for Names<'_, S, P> {
-    fn step(&self) -> u64 {
-        self.step
+    fn clock(&self) -> Clock {
+        self.clock
     }
 
     fn domain(&self) -> Domain {
@@ -73,7 +73,7 @@ impl<S: Precision, P: Precision> Names<'_, S, P> {
             Some(first) => (first, strays().filter(lost).count() as u64),
             None => (strays().next()?, count),
         };
-        Some(outside(self.step, count, self.culprit(first)))
+        Some(outside(self.clock, count, self.culprit(first)))
     }
 
     /// Discs whose cell another one took.
@@ -83,7 +83,7 @@ impl<S: Precision, P: Precision> Names<'_, S, P> {
         let taken = |disc: &usize| cell[*disc] != 0 && index[cell[*disc] as usize - 1] != *disc as u32 + 1;
         let first = (0..self.ids.len()).find(taken)?;
         let second = index[cell[first] as usize - 1] as usize - 1;
-        Some(conflict(self.step, self.domain(), [self.culprit(first), self.culprit(second)]))
+        Some(conflict(self.clock, self.domain(), [self.culprit(first), self.culprit(second)]))
     }
 
     /// Discs whose correction was no finite number.
@@ -93,7 +93,7 @@ impl<S: Precision, P: Precision> Names<'_, S, P> {
                 [Array::X2, Array::Y2, Array::Phi2].into_iter().filter_map(|array| self.arrays.state(array));
             moved.into_iter().any(|column| !column[disc].to_f64().is_finite())
         })?;
-        Some(Failure::NotFinite { step: self.step, count, first: self.culprit(disc) })
+        Some(not_finite(self.clock, count, self.culprit(disc)))
     }
 
     /// Pairs that may be too deep: around the cells that the sweep marked.

@@ -1,6 +1,6 @@
 //! The cells of the discs: who changes them, and when lists are made again.
 
-use super::search::Search;
+use super::search::{Cells, Search};
 use super::state::Move;
 use super::{Dynamics, Engine, Named, conflict, outside};
 use crate::domain::Domain;
@@ -20,18 +20,18 @@ struct Looked {
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
     /// A position (length), from the place in a cell.
     fn position_in_cell(&self, cell: [usize; 2], place: [f64; 2]) -> [f64; 2] {
-        let frame = self.search.grid().frame;
+        let frame = self.search.cells().grid().frame;
         [0, 1].map(|axis| frame.origin[axis] + (cell[axis] as f64 + 0.5) * frame.edge[axis] + place[axis])
     }
 
     /// Where a disc is (length) when it is at `place` in its cell.
     pub(super) fn seen_from_origin(&self, disc: usize, place: [f64; 2]) -> [f64; 2] {
-        self.position_in_cell(self.search.cell(disc).unwrap_or_default(), place)
+        self.position_in_cell(self.search.cells().cell(disc).unwrap_or_default(), place)
     }
 
     /// The cell of a disc at a position (length), and its place there.
     pub(super) fn locate(&self, disc: usize, position: [f64; 2]) -> Result<Move, Failure> {
-        let frame = self.search.grid().frame;
+        let frame = self.search.cells().grid().frame;
         let place = [0, 1].map(|axis| position[axis] - (frame.origin[axis] + 0.5 * frame.edge[axis]));
         let from = Move { disc, cell: [0, 0], place, periods: [0.0; 2] };
         self.in_its_cell(from).ok_or_else(|| self.stray(from, 1))
@@ -41,7 +41,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     /// cell.
     fn in_its_cell(&self, from: Move) -> Option<Move> {
         let Move { cell, place, .. } = from;
-        let Grid { frame, counts, periodic } = self.search.grid();
+        let Grid { frame, counts, periodic } = self.search.cells().grid();
         let mut to = from;
         for axis in 0..2 {
             let (edge, count) = (frame.edge[axis], counts[axis] as f64);
@@ -93,14 +93,14 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 
     /// Whether a disc may be outside the box and yet in a cell.
     fn reaches_beyond_box(&self) -> bool {
-        let Grid { frame, counts, .. } = self.search.grid();
+        let Grid { frame, counts, .. } = self.search.cells().grid();
         let filled = |axis: usize| counts[axis] as f64 * frame.edge[axis];
         (0..2).any(|axis| filled(axis) > self.system.domain.sides[axis] * (1.0 + 1e-12))
     }
 
     /// A disc at a place that no cell takes.
     fn stray(&self, at: Move, count: u64) -> Failure {
-        outside(self.elapsed.steps, count, self.culprit_at(&at))
+        outside(self.clock(), count, self.culprit_at(&at))
     }
 
     /// A disc where it would be.
@@ -112,7 +112,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     fn look(&self, discs: impl Iterator<Item = usize>) -> Looked {
         let mut looked = Looked::default();
         for disc in discs {
-            let cell = self.search.cell(disc).unwrap_or_default();
+            let cell = self.search.cells().cell(disc).unwrap_or_default();
             let from = Move { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
             match self.in_its_cell(from) {
                 Some(to) if to == from => {}
@@ -134,11 +134,11 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 
     /// Moves walls within the cells in which they are listed, and makes the lists again if a disc has gone too far.
     fn keep_lists(&mut self, left: &[u32], walls: &[Move]) -> Result<(), Failure> {
-        let edge = self.search.grid().frame.edge;
+        let edge = self.search.cells().grid().frame.edge;
         let domain = self.system.domain;
         let mut stale = !left.is_empty();
         for to in walls {
-            let (from, cell) = (self.search.cell(to.disc).unwrap_or_default(), to.cell);
+            let (from, cell) = (self.search.cells().cell(to.disc).unwrap_or_default(), to.cell);
             let centre = |cell: [usize; 2]| [0, 1].map(|axis| cell[axis] as f64 * edge[axis]);
             let way = domain.displacement(centre(from), centre(cell));
             let place = [0, 1].map(|axis| to.place[axis] + way[axis]);
@@ -150,7 +150,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             self.rim.iter().filter(outside).min_by_key(|&&disc| self.state.number(disc as usize))
         {
             let count = self.rim.iter().filter(outside).count() as u64;
-            let cell = self.search.cell(first as usize).unwrap_or_default();
+            let cell = self.search.cells().cell(first as usize).unwrap_or_default();
             let place = self.state.place(first as usize);
             return Err(self.stray(Move { disc: first as usize, cell, place, periods: [0.0; 2] }, count));
         }
@@ -184,26 +184,26 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 
     /// Whether a disc is beyond an open side.
     fn is_outside(&self, disc: usize) -> bool {
-        let cell = self.search.cell(disc).unwrap_or_default();
+        let cell = self.search.cells().cell(disc).unwrap_or_default();
         let from = Move { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
         self.in_its_cell(from).is_none()
     }
 
     /// Moves discs into their new cells; if two want one that must be one disc's, none is moved.
     pub(super) fn change_cells(&mut self, moves: &[Move]) -> Result<(), Failure> {
-        if self.search.is_exclusive() {
+        if self.search.cells().is_exclusive() {
             self.refuse_conflicts(moves)?;
         }
-        moves.iter().for_each(|to| self.search.leave(to.disc));
+        moves.iter().for_each(|to| self.search.cells_mut().leave(to.disc));
         for to in moves {
             if to.disc < self.start.grain_count() {
                 self.elapsed.crossings.add(self.state.number(to.disc), to.periods);
             }
             self.state.put(to.disc, to.place);
-            let entered = self.search.enter(to, &self.state);
+            let entered = self.search.cells_mut().enter(to, &self.state);
             debug_assert!(entered.is_ok(), "looked for above");
         }
-        self.search.arrange(&self.state);
+        self.search.cells_mut().arrange(&self.state);
         Ok(())
     }
 
@@ -216,7 +216,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         let twice = targets.windows(2).find(|pair| pair[0].0 == pair[1].0).map(|pair| (pair[0].1, pair[1].1));
         let taken = || {
             targets.iter().find_map(|&(cell, disc)| {
-                let there = self.search.owner(cell)?;
+                let there = self.search.cells().owner(cell)?;
                 moving.binary_search(&there).is_err().then_some((there, disc))
             })
         };
@@ -225,8 +225,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
                 let to = moves.iter().find(|to| to.disc == disc);
                 to.map_or_else(|| self.culprit(disc), |to| self.culprit_at(to))
             };
-            let (step, domain) = (self.elapsed.steps, self.system.domain);
-            return Err(conflict(step, domain, [culprit(first), culprit(second)]));
+            return Err(conflict(self.clock(), self.system.domain, [culprit(first), culprit(second)]));
         }
         Ok(())
     }

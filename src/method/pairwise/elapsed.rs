@@ -1,6 +1,7 @@
 //! What every simulation of steps keeps on its way.
 
 use super::{Crossings, Timings};
+use crate::method::Clock;
 
 /// Steps done, periods crossed, seconds spent.
 #[derive(Clone, Debug)]
@@ -24,5 +25,10 @@ impl Elapsed {
     /// Time since the start of the scene.
     pub fn time(&self) -> f64 {
         self.steps as f64 * self.dt
+    }
+
+    /// How far that is.
+    pub fn clock(&self) -> Clock {
+        Clock { steps: self.steps, time: self.time(), events: 0 }
     }
 }

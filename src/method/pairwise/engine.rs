@@ -1,11 +1,15 @@
 //! The engine: all forces, then corrector and next predictor in one pass.
 
-use super::search::Search;
+use super::search::{Cells, Search};
 use super::state::{Move, State};
-use super::{Crossings, Dynamics, Elapsed, Named, Phase, Prescribed, System, WithLaw, WithScheme};
+use super::{
+    Crossings, Dynamics, Elapsed, Named, Phase, Prescribed, System, WithLaw, WithScheme, not_finite,
+    standing, wrapped,
+};
 use crate::domain::Domain;
-use crate::method::Failure;
+use crate::method::{Clock, Failure};
 use crate::particles::Particles;
+use std::collections::BTreeSet;
 use std::ops::Range;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
@@ -91,8 +95,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     }
 
     /// How many discs are in cells that are another disc's.
-    pub fn guests(&self) -> usize {
-        self.search.guests()
+    pub fn shared_cells(&self) -> usize {
+        self.search.cells().shared_cells()
     }
 
     /// Entries of the lists, and how often they were made; none where there are no lists.
@@ -114,12 +118,12 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     /// there are such; gives what each disc was before. No sum depends on the numbers.
     pub(super) fn put_in_order(&mut self) -> Vec<u32> {
         let grains = self.start.grain_count();
-        let mut order = self.search.order();
+        let mut order = self.search.cells().order();
         if grains < order.len() {
             // Grains stay the first ones.
             order.sort_by_key(|&disc| disc as usize >= grains);
         }
-        self.search.renumber(&order);
+        self.search.cells_mut().renumber(&order);
         self.state.renumber(&order);
         for sum in &mut self.sums {
             *sum = reordered(sum, &order);
@@ -189,16 +193,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         let pairs = met.not_finite.iter().map(|pair| pair.map(|disc| disc as usize));
         // Two fixed discs have no effective mass: what they do to each other means nothing.
         let of_grains = pairs.filter(|pair| pair.iter().any(|&disc| disc < grains));
-        let lost: Vec<usize> = of_grains.flatten().collect();
+        let lost: BTreeSet<usize> = of_grains.flatten().collect();
         // A disc that is lost itself is named before one that only touches it.
         let is_lost = |disc: usize| {
             (0..self.system.freedoms).any(|freedom| !self.state.row(freedom, disc)[1].to_f64().is_finite())
         };
         match lost.iter().min_by_key(|&&disc| (!is_lost(disc), self.state.number(disc))) {
-            Some(&first) => {
-                let first = self.culprit(first);
-                Err(Failure::NotFinite { step: self.elapsed.steps, count: lost.len() as u64, first })
-            }
+            Some(&first) => Err(not_finite(self.clock(), lost.len() as u64, self.culprit(first))),
             None => Ok(()),
         }
     }
@@ -217,26 +218,23 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 
     /// The particles as they stand, positions inside the box.
     pub fn particles(&self) -> Particles {
-        let mut particles = self.start.clone();
-        let (grains, System { domain, dt, freedoms, .. }) = (self.start.grain_count(), &self.system);
-        let walls = self.prescribed().unwrap_or_default();
-        for disc in 0..particles.len() {
-            let rows = [0, 1, 2].map(|freedom| {
-                let row =
-                    if freedom < *freedoms { self.corrected(freedom, disc) } else { Default::default() };
-                row.map(|q| q.to_f64())
+        wrapped(self.standing(), &self.system.domain)
+    }
+
+    /// The particles as they stand; positions are consistent with the periods that are counted as crossed.
+    pub fn standing(&self) -> Particles {
+        let freedoms = self.system.freedoms;
+        let of = |disc: usize| {
+            let [x, y, angle] = [0, 1, 2].map(|freedom| match freedom < freedoms {
+                true => self.corrected(freedom, disc).map(|q| q.to_f64()),
+                false => [0.0; 6],
             });
-            let particle = &mut particles.all_mut()[self.state.number(disc)];
-            particle.position = domain.inside(self.seen_from_origin(disc, [rows[0][0], rows[1][0]]));
-            if disc < grains {
-                particle.velocity = [rows[0][1] / dt, rows[1][1] / dt];
-                particle.angle = rows[2][0];
-                particle.omega = rows[2][1] / dt;
-            } else {
-                particle.velocity = walls.velocity;
-            }
-        }
-        particles
+            let position = self.seen_from_origin(disc, [x[0], y[0]]);
+            let rows = [[position[0], x[1]], [position[1], y[1]], [angle[0], angle[1]]];
+            (self.state.number(disc), rows)
+        };
+        let walls = self.prescribed().unwrap_or_default().velocity;
+        standing(&self.start, self.system.dt, walls, (0..self.start.len()).map(of))
     }
 
     /// Force along x and y and torque on every particle, in the scene's order.
@@ -250,8 +248,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 }
 
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Named for Engine<S, P, Q, D> {
-    fn step(&self) -> u64 {
-        self.elapsed.steps
+    fn clock(&self) -> Clock {
+        self.elapsed.clock()
     }
 
     fn domain(&self) -> Domain {

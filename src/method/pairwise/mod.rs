@@ -20,6 +20,7 @@ mod engine;
 mod named;
 mod saved;
 pub mod search;
+mod standing;
 mod state;
 mod timings;
 
@@ -27,7 +28,8 @@ pub use columns::{find_column, real_column};
 pub use crossings::Crossings;
 pub use elapsed::Elapsed;
 pub use engine::Engine;
-pub use named::{Named, conflict, outside};
+pub use named::{Named, conflict, not_finite, outside};
+pub use standing::{standing, wrapped};
 pub use timings::{Phase, Timings};
 
 use crate::domain::Domain;

@@ -1,13 +1,13 @@
 //! Discs as failures name them.
 
 use crate::domain::Domain;
-use crate::method::{Culprit, Failure};
+use crate::method::{Clock, Culprit, Failure, FailureKind};
 use std::ops::Range;
 
 /// Discs that can be named, by their numbers in memory.
 pub trait Named {
-    /// The step.
-    fn step(&self) -> u64;
+    /// How far the simulation has come.
+    fn clock(&self) -> Clock;
 
     /// The box.
     fn domain(&self) -> Domain;
@@ -46,21 +46,43 @@ pub trait Named {
         let domain = self.domain();
         let beyond = || self.grains().filter(|&disc| !domain.contains(self.position(disc)));
         let first = self.culprit(beyond().min_by_key(|&disc| self.number(disc))?);
-        Some(Failure::OutOfBox { step: self.step(), count: beyond().count() as u64, first })
+        Some(out_of_box(self.clock(), beyond().count() as u64, first))
     }
 }
 
 /// The failure of discs that no cell takes: outside the box, or at no finite place.
-pub fn outside(step: u64, count: u64, first: Culprit) -> Failure {
-    if first.position.iter().all(|along| along.is_finite()) {
-        Failure::OutOfBox { step, count, first }
-    } else {
-        Failure::NotFinite { step, count, first }
+pub fn outside(at: Clock, count: u64, first: Culprit) -> Failure {
+    match first.position.iter().all(|along| along.is_finite()) {
+        true => out_of_box(at, count, first),
+        false => not_finite(at, count, first),
     }
 }
 
-/// The failure of two discs in one cell.
-pub fn conflict(step: u64, domain: Domain, [first, second]: [Culprit; 2]) -> Failure {
+/// The failure of discs that left the box.
+fn out_of_box(at: Clock, count: u64, first: Culprit) -> Failure {
+    let what = format!("{count} discs left the box, first {first}");
+    let remedy = "a wall was passed or the time step is too large: use larger or stiffer wall discs, slower grains, or a \
+                  smaller dt";
+    Failure::new(FailureKind::OutOfBox, what, remedy).at(at).of(count, [first])
+}
+
+/// The failure of discs that are nowhere, or that no finite force acts on.
+pub fn not_finite(at: Clock, count: u64, first: Culprit) -> Failure {
+    let what = format!("{count} discs have a position or force that is no finite number, first {first}");
+    let remedy =
+        "the time step is too large for the stiffness or the damping: halve dt, or use fewer Gear values";
+    Failure::new(FailureKind::NotFinite, what, remedy).at(at).of(count, [first])
+}
+
+/// The failure of two discs in one cell: the exclusive lattice would lose one.
+pub fn conflict(at: Clock, domain: Domain, [first, second]: [Culprit; 2]) -> Failure {
     let [dx, dy] = domain.displacement(first.position, second.position);
-    Failure::Conflict { step, first, second, distance: dx.hypot(dy) }
+    let distance = dx.hypot(dy);
+    let what = format!(
+        "{first} and {second} are in one cell, {distance:.6} apart; the exclusive lattice holds one disc a cell"
+    );
+    let remedy = "the discs overlap too deeply (stiffen the contacts), or the cells are too large (set search.cell_edge \
+                  towards the largest radius)";
+    let failure = Failure::new(FailureKind::Conflict, what, remedy).at(at).of(2, [first, second]);
+    failure.with([("distance", distance)])
 }

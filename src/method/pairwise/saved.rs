@@ -1,6 +1,6 @@
 //! The state as columns, for checkpoints: in the order of the scene's discs.
 
-use super::search::Search;
+use super::search::{Cells, Search};
 use super::state::Move;
 use super::{Dynamics, Engine, find_column, real_column};
 use crate::io::checkpoint::Column;
@@ -32,7 +32,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             columns.push(((*name).to_owned(), self.column(|disc| sum[disc])));
         }
         for (axis, name) in CELL.iter().enumerate() {
-            let cell = |disc| self.search.cell(disc).map_or(f64::NAN, |cell| cell[axis] as f64);
+            let cell = |disc| self.search.cells().cell(disc).map_or(f64::NAN, |cell| cell[axis] as f64);
             columns.push(((*name).to_owned(), self.column(cell)));
         }
         if let Some(lists) = self.search.lists() {
@@ -65,7 +65,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         }
         let cells =
             [in_order::<f64>(columns, CELL[0], &numbers)?, in_order::<f64>(columns, CELL[1], &numbers)?];
-        let counts = self.search.grid().counts;
+        let counts = self.search.cells().grid().counts;
         let inside = |axis: usize, &cell: &f64| (0.0..counts[axis] as f64).contains(&cell);
         if (0..2).any(|axis| !cells[axis].iter().all(|cell| inside(axis, cell))) {
             return Err("a cell lies outside the lattice".to_owned());
@@ -78,14 +78,14 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             None => None,
         };
         self.elapsed.crossings.take_up(columns)?;
-        (0..numbers.len()).for_each(|disc| self.search.leave(disc));
+        (0..numbers.len()).for_each(|disc| self.search.cells_mut().leave(disc));
         for (disc, (&column, &row)) in cells[0].iter().zip(&cells[1]).enumerate() {
             let cell = [column as usize, row as usize];
             let to = Move { disc, cell, place: state.place(disc), periods: [0.0; 2] };
-            let entered = self.search.enter(&to, &state);
+            let entered = self.search.cells_mut().enter(&to, &state);
             entered.map_err(|_| "two discs are in one cell".to_owned())?;
         }
-        self.search.arrange(&state);
+        self.search.cells_mut().arrange(&state);
         (self.state, self.sums) = (state, sums);
         // Lists are made of the places at which they were made before, so that they are the same.
         let now: Vec<[f64; 2]> = (0..numbers.len()).map(|disc| self.state.place(disc)).collect();

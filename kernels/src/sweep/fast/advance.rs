@@ -229,8 +229,8 @@ struct Arrays<'a, S, P> {
     places: [*mut f32; 2],
 }
 
-// SAFETY: passes over ranges that do not overlap touch different discs, and these are in different cells, but for guests,
-// whose common place is stored to atomically and read by none.
+// SAFETY: passes over ranges that do not overlap touch different discs, and these have different cells, but for those in
+// shared cells, whose common spare cell is stored to atomically and read by none.
 unsafe impl<S: Send + Sync, P: Send> Sync for Arrays<'_, S, P> {}
 
 /// The pass over some discs.
@@ -335,8 +335,8 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             // First all, then one by one: so they are converted at once.
             let along = along.map(|along| along.to_f64() as f32);
             for (lane, &along) in along.iter().enumerate().take(R::LANES) {
-                // SAFETY: the cells are ones of the lattice, each of one disc only but for the room behind it, which guests
-                // share and only these stores touch: they are atomic, and compile to plain ones.
+                // SAFETY: the cells are ones of the lattice, each of one disc only but for the spare cell behind it, which
+                // discs in shared cells have in common and only these stores touch: they are atomic, and compile to plain ones.
                 unsafe {
                     let place = arrays.places[axis].add(*arrays.cells.add(first + lane) as usize);
                     AtomicU32::from_ptr(place.cast()).store(along.to_bits(), Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! The fast execution: each pair is met once, contacts are looked for first, and the law is asked about contacts only.
+//! The fast engine's sweep: each pair is met once, contacts are looked for first, and the law is asked about contacts only.
 //!
 //! ```text
 //! for every band of rows, in two stages:            Sweep      bands.rs

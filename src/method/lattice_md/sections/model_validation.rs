@@ -70,7 +70,7 @@ fn said(errors: &Errors) -> String {
         format!(" The measurement repeated differs from itself by {median:.1} % in the median, nine of ten by less than {ninth:.1} %.")
     });
     format!(
-        "Executions {what}, {cases} phases of steps: median error {:.1} %, nine of ten below {:.1} %, the worst {:.0} %; {} \
+        "For {what}, {cases} phases of steps: median error {:.1} %, nine of ten below {:.1} %, the worst {:.0} %; {} \
          within 5 %, {} within 10 %, {} within 20 %, {} within 30 %.{baseline}{repeated}",
         100.0 * median,
         100.0 * ninth_tenth,

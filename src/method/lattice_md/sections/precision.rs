@@ -56,13 +56,13 @@ fn came_out(data: &Precisions) -> String {
         dense().map(|rival| format!("{:.3} ({})", rival.rate.mean, named(rival))).collect();
     format!(
         "Root of the mean square error of the forces, in boxes of a thousand to a hundred thousand discs at packing \
-         fraction {}: fast execution in f32 {}, in mixed precision {}; faithful execution in mixed precision with positions \
+         fraction {}: the fast engine in f32 {}, in mixed precision {}; programs in mixed precision with positions \
          from the box's corner {}. Over {} undamped steps of {} with dt = {} the energy strays by {}. Trajectories part \
          from those in f64 at the rates {} in a unit of time: that is the gas's own chaos, which digits only start.",
         PACKING_FRACTIONS[0],
         over_boxes("f32, fast"),
         over_boxes("mixed, fast"),
-        over_boxes("mixed, faithful, absolute"),
+        over_boxes("mixed, programs, absolute"),
         Cell::Count(energy::STEPS).for_reading(),
         stepping.name,
         stepping.dt,
@@ -72,8 +72,8 @@ fn came_out(data: &Precisions) -> String {
 }
 
 fn named(rival: &Divergence) -> String {
-    let execution = if rival.execution == "fast" { "" } else { ", faithful" };
-    format!("{}{execution}", rival.precision)
+    let engine = if rival.engine == "fast" { "" } else { ", programs" };
+    format!("{}{engine}", rival.precision)
 }
 
 /// Points that a logarithmic axis can show.
@@ -104,10 +104,9 @@ fn force_figure(errors: &[ForceError]) -> Figure {
         name: "force_error".into(),
         title: "Error of the forces over the size of the box".into(),
         caption: format!(
-            "Packing fraction {}. Root of the mean square error over that of the forces; held against the fast execution in \
-             f64. The fast execution keeps positions from the cell's centre, as the faithful one does in f32. In mixed \
-             precision the faithful one keeps them in f64 from the box's corner and takes the difference with the cell in \
-             f64; absolute ones are from the corner in f32. Marks of one box stand beside each other; its side is that of \
+            "Packing fraction {}. Root of the mean square error over that of the forces; held against the fast engine in \
+             f64. The fast engine keeps positions from the cell's centre, as programs do in f32. In mixed precision \
+             programs keep them in f64 from the box's corner and take the difference with the cell in f64; absolute ones are from the corner in f32. Marks of one box stand beside each other; its side is that of \
              the leftmost.",
             PACKING_FRACTIONS[0]
         ),
@@ -138,7 +137,7 @@ fn energy_figure(cases: &[EnergyCase], dt: f64) -> Figure {
         name: format!("energy_dt_{}", dt.to_string().replace('.', "_")),
         title: format!("How far the energy strays, dt = {dt}"),
         caption: format!(
-            "Packing fraction {}, about {} discs without damping and friction, fast execution. Root of the mean square, over \
+            "Packing fraction {}, about {} discs without damping and friction, fast engine. Root of the mean square, over \
              {} seeds and the looks of a window, of the energy's relative deviation from its first value.",
             energy::PACKING_FRACTION,
             energy::PARTICLES,
@@ -155,7 +154,7 @@ fn energy_figure(cases: &[EnergyCase], dt: f64) -> Figure {
 
 fn trajectory_figure(rivals: &[Divergence]) -> Figure {
     let hue = |rival: &Divergence| {
-        let variant = (rival.precision, rival.execution);
+        let variant = (rival.precision, rival.engine);
         trajectories::RIVALS.iter().position(|&other| other == variant).unwrap_or(0)
     };
     let series = rivals.iter().map(|rival| Series {
@@ -168,7 +167,7 @@ fn trajectory_figure(rivals: &[Divergence]) -> Figure {
         name: "trajectories".into(),
         title: "How far trajectories run apart".into(),
         caption: format!(
-            "Distance between a disc and its twin in the fast execution in f64: root of the mean square over about {} discs \
+            "Distance between a disc and its twin in the fast engine in f64: root of the mean square over about {} discs \
              and {} seeds. Velocity Verlet, dt = {}. A straight line is exponential growth.",
             trajectories::PARTICLES,
             SEEDS.len(),
@@ -222,7 +221,7 @@ fn force_table(errors: &[ForceError]) -> Table {
         rows: rows.collect(),
         notes: vec![format!(
             "The bench scene after {EQUILIBRATION} steps; errors of a disc's force, over the root of the mean square of all \
-             forces, against the fast execution in f64."
+             forces, against the fast engine in f64."
         )],
     }
 }
@@ -270,7 +269,7 @@ fn trajectory_table(rivals: &[Divergence]) -> Table {
     });
     Table {
         name: "trajectories".into(),
-        title: "How fast trajectories part from those of the fast execution in f64".into(),
+        title: "How fast trajectories part from those of the fast engine in f64".into(),
         columns: [
             "packing fraction".to_owned(),
             "variant".to_owned(),
@@ -282,7 +281,7 @@ fn trajectory_table(rivals: &[Divergence]) -> Table {
         rows: rows.collect(),
         notes: vec![format!(
             "Rate: least squares through the logarithm of the distance, from {} times its first value to {} diameters; mean \
-             over {} seeds with its standard error. Faithful and fast in f64 differ in the order of their sums only: the \
+             over {} seeds with its standard error. Programs and the fast engine differ in f64 in the order of their sums only: the \
              growth is the gas's own.",
             trajectories::PARTED,
             trajectories::LOST,

@@ -13,7 +13,7 @@ use super::{Arrays, ListOptions, Model, Part, StepProgram, execute, ledger, prog
 use super::{Elapsed, Engine, Phase, Timings, Totals};
 use crate::io::checkpoint::Column;
 use crate::method::Failure;
-use crate::method::pairwise::{Crossings, Named, Prescribed};
+use crate::method::pairwise::{Crossings, Named, Prescribed, standing, wrapped};
 use crate::particles::Particles;
 use crate::scene::{Precision, WallMotion};
 use stripmine_kernels::backend;
@@ -176,7 +176,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             arrays: &self.arrays,
             anchor: &self.anchor,
             ids: &self.ids,
-            step: self.elapsed.steps,
+            clock: self.elapsed.clock(),
         }
     }
 
@@ -292,28 +292,23 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
     }
 
     fn particles(&self) -> Particles {
-        let mut particles = self.start.clone();
+        wrapped(self.standing(), &self.model.domain())
+    }
+
+    fn standing(&self) -> Particles {
         let column = |array| self.arrays.state(array).unwrap_or(&[]);
         let value = |array, disc: usize| column(array).get(disc).map_or(0.0, |x: &S| x.to_f64());
-        let Prescribed { velocity: wall_velocity, .. } = walls_at(self.walls, self.time());
-        let (grains, domain) = (self.arrays.lengths().grains, self.model.domain());
-        for (i, disc) in particles.all_mut().iter_mut().enumerate() {
-            disc.position = match self.model.is_anchored::<S>() {
-                true => {
-                    let place = [value(Array::X0, i), value(Array::Y0, i)];
-                    domain.inside(self.model.position(self.arrays.cell()[i], place))
-                }
-                false => [value(Array::X0, i), value(Array::Y0, i)],
+        let of = |disc: usize| {
+            let place = [Array::X0, Array::Y0].map(|array| value(array, disc));
+            let [x, y] = match self.model.is_anchored::<S>() {
+                true => self.model.position(self.arrays.cell()[disc], place),
+                false => place,
             };
-            if i < grains {
-                disc.velocity = [Array::X1, Array::Y1].map(|array| value(array, i) / self.model.dt);
-                disc.omega = value(Array::Phi1, i) / self.model.dt;
-                disc.angle = value(Array::Phi0, i);
-            } else {
-                disc.velocity = wall_velocity;
-            }
-        }
-        particles
+            let [vx, vy, omega] = [Array::X1, Array::Y1, Array::Phi1].map(|array| value(array, disc));
+            (disc, [[x, vx], [y, vy], [value(Array::Phi0, disc), omega]])
+        };
+        let walls = walls_at(self.walls, self.time()).velocity;
+        standing(&self.start, self.model.dt, walls, (0..self.start.len()).map(of))
     }
 
     fn forces(&self) -> Vec<[f64; 3]> {

@@ -1,4 +1,4 @@
-//! At which density does the lattice overtake neighbour lists and sectors? Fast executions of whole steps, on this host.
+//! At which density does the lattice overtake neighbour lists and sectors? Whole steps of the fast engine, on this host.
 
 use super::running;
 use crate::method::lattice_md::Document;

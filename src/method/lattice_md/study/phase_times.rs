@@ -23,15 +23,16 @@ pub struct Run {
     pub occupancy: f64,
     /// Precision of state and forces, as a scene names it.
     pub precision: &'static str,
-    /// The execution, as a scene names it; [`LISTS`] for the rival, [`FAST_LISTS`] for its fast execution.
+    /// What executes the step: an execution of programs as a scene names it, [`FAST`] for the fast engine, [`LISTS`] for the
+    /// rival, [`FAST_LISTS`] for lists in the fast engine.
     pub execution: &'static str,
 }
 
 /// The name of the neighbour lists among the executions.
 pub const LISTS: &str = "lists";
-/// The name of the fast execution.
+/// The name of the fast engine among them.
 pub const FAST: &str = "fast";
-/// The name of the lists in the fast execution.
+/// The name of lists in the fast engine among them.
 pub const FAST_LISTS: &str = "fast lists";
 
 /// Places of half a mask of 5×5 cells.

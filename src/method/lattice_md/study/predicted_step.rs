@@ -51,7 +51,7 @@ impl Step {
             Phase::Index => &[Part::Index, Part::Lattice],
             Phase::Forces => &[Part::Forces],
             Phase::Correct => &[Part::Corrector],
-            // Only the fast execution has it, which has no programs.
+            // Only the fast engine has it, which has no programs.
             Phase::CorrectPredict => &[],
         };
         // Every part binds all arrays of the step.

@@ -8,7 +8,6 @@ use super::host_ladder::LadderError;
 use super::model_validation::ValidationError;
 use crate::method::throughput::MeasurementError;
 use crate::reported::{Class, Reported};
-use crate::scene::SceneErrors;
 
 impl Reported for QuestionError {
     fn class(&self) -> Class {
@@ -25,10 +24,11 @@ impl Reported for StudyError {
         }
     }
 
-    fn mistakes(&self) -> Option<&SceneErrors> {
+    fn passed_on(&self) -> Option<&dyn Reported> {
         match self {
             StudyError::Scene(errors) => Some(errors),
-            StudyError::Physics(_) | StudyError::Question(_) => None,
+            StudyError::Physics(failure) => Some(failure),
+            StudyError::Question(_) => None,
         }
     }
 }
@@ -50,9 +50,9 @@ impl Reported for CalibrationError {
         }
     }
 
-    fn mistakes(&self) -> Option<&SceneErrors> {
+    fn passed_on(&self) -> Option<&dyn Reported> {
         match self {
-            CalibrationError::Measurement(error) => error.mistakes(),
+            CalibrationError::Measurement(error) => Some(error),
             CalibrationError::Program(_) => None,
         }
     }
@@ -69,10 +69,10 @@ impl Reported for ValidationError {
         }
     }
 
-    fn mistakes(&self) -> Option<&SceneErrors> {
+    fn passed_on(&self) -> Option<&dyn Reported> {
         match self {
-            ValidationError::Measurement(error) => error.mistakes(),
-            ValidationError::Calibration(error) => error.mistakes(),
+            ValidationError::Measurement(error) => Some(error),
+            ValidationError::Calibration(error) => Some(error),
             ValidationError::OutOfRange { .. } => None,
         }
     }
@@ -87,10 +87,10 @@ impl Reported for AtlasError {
         }
     }
 
-    fn mistakes(&self) -> Option<&SceneErrors> {
+    fn passed_on(&self) -> Option<&dyn Reported> {
         match self {
-            AtlasError::Study(error) => error.mistakes(),
-            AtlasError::Measurement(error) => error.mistakes(),
+            AtlasError::Study(error) => Some(error),
+            AtlasError::Measurement(error) => Some(error),
             AtlasError::OutOfRange(_) => None,
         }
     }

@@ -1,6 +1,6 @@
 //! Pairs found on a lattice with at most one disc a cell.
 
-use super::{Search, rows};
+use super::{Cells, Search, rows};
 use crate::method::pairwise::state::{Move, State};
 use crate::words::define_words;
 use stripmine_kernels::InstructionSet;
@@ -22,33 +22,12 @@ define_words! {
 }
 
 /// Discs in the cells of a lattice.
-pub struct LatticeSearch<P> {
+pub struct LatticeCells {
     occupancy: Occupancy,
     on_conflict: OnConflict,
-    codes: Codes<P>,
-    sweep: Sweep<Candidates>,
 }
 
-impl<P: Precision> LatticeSearch<P> {
-    /// An empty lattice for as many discs as there are radii (length).
-    pub fn new<S: Precision>(
-        shape: LatticeShape,
-        frame: Frame,
-        on_conflict: OnConflict,
-        radii: impl ExactSizeIterator<Item = f64> + Clone,
-    ) -> Self {
-        let discs = radii.len();
-        let smallest = radii.clone().reduce(f64::min);
-        let largest = radii.reduce(f64::max);
-        let occupancy =
-            Occupancy::new(shape, frame, discs, 2.0 * largest.unwrap_or(1.0), smallest != largest);
-        let codes = Codes::new(&occupancy, frame);
-        let sweep = Sweep::new(rows::<S, P, _>(&Lattice { occupancy: &occupancy, codes: &codes }));
-        LatticeSearch { occupancy, on_conflict, codes, sweep }
-    }
-}
-
-impl<S: Precision, P: Precision> Search<S, P> for LatticeSearch<P> {
+impl<S: Precision> Cells<S> for LatticeCells {
     fn grid(&self) -> Grid {
         self.occupancy.grid()
     }
@@ -70,24 +49,24 @@ impl<S: Precision, P: Precision> Search<S, P> for LatticeSearch<P> {
             return entered;
         }
         // The cell is that one's with the smallest number: a state knows no history.
-        let mut guest = disc;
+        let mut sharing = disc;
         if state.number(disc) < state.number(owner) {
             occupancy.leave(owner);
             occupancy.enter(disc, cell, place, state.radius(disc))?;
-            guest = owner;
+            sharing = owner;
         }
-        occupancy.enter_as_guest(guest, cell, |disc| state.number(disc));
+        occupancy.share(sharing, cell, |disc| state.number(disc));
         Ok(())
     }
 
     fn arrange(&mut self, state: &State<S>) {
         let occupancy = &mut self.occupancy;
-        // Guests whose host has gone have the cell to themselves.
-        for (guest, cell) in occupancy.guests().to_vec() {
-            let guest = guest as usize;
+        // Discs that shared the cell of one that has gone have it to themselves.
+        for (disc, cell) in occupancy.shared_cells().to_vec() {
+            let disc = disc as usize;
             if occupancy.disc(cell[0], cell[1]).is_none() {
-                occupancy.leave(guest);
-                let entered = occupancy.enter(guest, cell, state.place(guest), state.radius(guest));
+                occupancy.leave(disc);
+                let entered = occupancy.enter(disc, cell, state.place(disc), state.radius(disc));
                 debug_assert!(entered.is_ok(), "the cell is empty");
             }
         }
@@ -102,8 +81,59 @@ impl<S: Precision, P: Precision> Search<S, P> for LatticeSearch<P> {
         self.occupancy.renumber(order);
     }
 
+    fn is_exclusive(&self) -> bool {
+        self.on_conflict == OnConflict::Stop
+    }
+
+    fn owner(&self, [column, row]: [usize; 2]) -> Option<usize> {
+        (self.on_conflict == OnConflict::Stop).then(|| self.occupancy.disc(column, row)).flatten()
+    }
+
+    fn shared_cells(&self) -> usize {
+        self.occupancy.shared_cells().len()
+    }
+}
+
+/// Pairs of discs on a lattice.
+pub struct LatticeSearch<P> {
+    cells: LatticeCells,
+    codes: Codes<P>,
+    sweep: Sweep<Candidates>,
+}
+
+impl<P: Precision> LatticeSearch<P> {
+    /// An empty lattice for as many discs as there are radii (length).
+    pub fn new<S: Precision>(
+        shape: LatticeShape,
+        frame: Frame,
+        on_conflict: OnConflict,
+        radii: impl ExactSizeIterator<Item = f64> + Clone,
+    ) -> Self {
+        let discs = radii.len();
+        let smallest = radii.clone().reduce(f64::min);
+        let largest = radii.reduce(f64::max);
+        let occupancy =
+            Occupancy::new(shape, frame, discs, 2.0 * largest.unwrap_or(1.0), smallest != largest);
+        let codes = Codes::new(&occupancy, frame);
+        let sweep = Sweep::new(rows::<S, P, _>(&Lattice { occupancy: &occupancy, codes: &codes }));
+        LatticeSearch { cells: LatticeCells { occupancy, on_conflict }, codes, sweep }
+    }
+}
+
+impl<S: Precision, P: Precision> Search<S, P> for LatticeSearch<P> {
+    type Cells = LatticeCells;
+
+    fn cells(&self) -> &LatticeCells {
+        &self.cells
+    }
+
+    fn cells_mut(&mut self) -> &mut LatticeCells {
+        &mut self.cells
+    }
+
     fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<Copies<'_>>) {
-        (DisplacementLimit::Cell(self.occupancy.grid().frame.edge), self.occupancy.copies())
+        let occupancy = &mut self.cells.occupancy;
+        (DisplacementLimit::Cell(occupancy.grid().frame.edge), occupancy.copies())
     }
 
     fn sweep<L: Law<2> + Sync>(
@@ -114,19 +144,7 @@ impl<S: Precision, P: Precision> Search<S, P> for LatticeSearch<P> {
         asked: Asked,
         set: InstructionSet,
     ) -> Result<Met, ProgramError> {
-        let LatticeSearch { occupancy, codes, sweep, .. } = self;
+        let LatticeSearch { cells: LatticeCells { occupancy, .. }, codes, sweep } = self;
         sweep.run(law, &Lattice { occupancy, codes }, discs, sums, asked, set)
-    }
-
-    fn is_exclusive(&self) -> bool {
-        self.on_conflict == OnConflict::Stop
-    }
-
-    fn owner(&self, [column, row]: [usize; 2]) -> Option<usize> {
-        (self.on_conflict == OnConflict::Stop).then(|| self.occupancy.disc(column, row)).flatten()
-    }
-
-    fn guests(&self) -> usize {
-        self.occupancy.guests().len()
     }
 }

@@ -1,13 +1,12 @@
 //! Pairs found in Verlet lists, made again whenever a disc has moved half the skin.
 
 use super::{Search, rows};
-use crate::method::pairwise::state::{Move, State};
+use crate::method::pairwise::state::State;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::in_pieces;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Asked, Law};
-use stripmine_kernels::sweep::fast::lattice::Taken;
 use stripmine_kernels::sweep::fast::{
     Copies, Discs, DisplacementLimit, Grid, Met, Sectors, Sweep, Touches, VerletList,
 };
@@ -40,34 +39,14 @@ impl<S: Precision, P: Precision> ListSearch<S, P> {
 }
 
 impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
-    fn grid(&self) -> Grid {
-        *self.sectors.grid()
+    type Cells = Sectors;
+
+    fn cells(&self) -> &Sectors {
+        &self.sectors
     }
 
-    fn cell(&self, disc: usize) -> Option<[usize; 2]> {
-        self.sectors.cell(disc)
-    }
-
-    fn leave(&mut self, disc: usize) {
-        self.sectors.leave(disc);
-    }
-
-    fn enter(&mut self, to: &Move, _: &State<S>) -> Result<(), Taken> {
-        self.sectors.enter(to.disc, to.cell);
-        Ok(())
-    }
-
-    fn arrange(&mut self, state: &State<S>) {
-        self.sectors.arrange(|disc| state.number(disc));
-    }
-
-    fn order(&self) -> Vec<u32> {
-        self.sectors.order()
-    }
-
-    fn renumber(&mut self, order: &[u32]) {
-        self.sectors.renumber(order);
-        self.listed.list = None;
+    fn cells_mut(&mut self) -> &mut Sectors {
+        &mut self.sectors
     }
 
     fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<Copies<'_>>) {

@@ -17,11 +17,9 @@ use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::lattice::Taken;
 use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Finder, Grid, Met, Rows};
 
-/// Cells, which discs are in them, and the pairs found with their help. A disc's place is seen from the centre of its cell.
-///
-/// The engine is compiled for each search: what a search does not need costs nothing.
-pub trait Search<S: Precision, P: Precision>: Send + Sync {
-    /// The cells: where they lie, how many there are, and which sides are periodic.
+/// Cells, and which discs are in them. A disc's place is seen from the centre of its cell.
+pub trait Cells<S: Precision>: Send + Sync {
+    /// Where the cells lie, how many there are, and which sides are periodic.
     fn grid(&self) -> Grid;
 
     /// Column and row of a disc; none if it is in no cell.
@@ -42,8 +40,37 @@ pub trait Search<S: Precision, P: Precision>: Send + Sync {
     /// The discs in order of their cells.
     fn order(&self) -> Vec<u32>;
 
-    /// Disc `n` is from now on what disc `order[n]` was. Lists are to be made again.
+    /// Disc `n` is from now on what disc `order[n]` was.
     fn renumber(&mut self, order: &[u32]);
+
+    /// Whether a cell must hold one disc only.
+    fn is_exclusive(&self) -> bool {
+        false
+    }
+
+    /// The disc that a cell holds, where it must hold one only.
+    fn owner(&self, _cell: [usize; 2]) -> Option<usize> {
+        None
+    }
+
+    /// How many discs are in cells that are another disc's, where one disc has a cell.
+    fn shared_cells(&self) -> usize {
+        0
+    }
+}
+
+/// Pairs, found with the help of cells.
+///
+/// The engine is compiled for each search: what a search does not need costs nothing.
+pub trait Search<S: Precision, P: Precision>: Send + Sync {
+    /// The kind of cells.
+    type Cells: Cells<S>;
+
+    /// The cells.
+    fn cells(&self) -> &Self::Cells;
+
+    /// The same, to be changed.
+    fn cells_mut(&mut self) -> &mut Self::Cells;
 
     /// How far discs may go, and what else is written when they do.
     fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<Copies<'_>>);
@@ -61,22 +88,7 @@ pub trait Search<S: Precision, P: Precision>: Send + Sync {
         set: InstructionSet,
     ) -> Result<Met, ProgramError>;
 
-    /// Whether a cell must hold one disc only.
-    fn is_exclusive(&self) -> bool {
-        false
-    }
-
-    /// The disc that a cell holds, where it must hold one only.
-    fn owner(&self, _cell: [usize; 2]) -> Option<usize> {
-        None
-    }
-
-    /// How many discs are in cells that are another disc's.
-    fn guests(&self) -> usize {
-        0
-    }
-
-    /// Makes lists, where there are such, from the state as it stands.
+    /// Makes lists, where there are such, from the state as it stands. Due whenever discs were renumbered.
     fn make_lists(&mut self, _state: &State<S>) {}
 
     /// The lists, where there are such.

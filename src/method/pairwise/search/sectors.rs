@@ -1,6 +1,6 @@
 //! Pairs found in sectors, which hold any number of discs.
 
-use super::{Search, rows};
+use super::{Cells, Search, rows};
 use crate::method::pairwise::state::{Move, State};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
@@ -9,7 +9,38 @@ use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::lattice::Taken;
 use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Grid, Met, Sectors, Sweep, Touches};
 
-/// Discs in sectors.
+impl<S: Precision> Cells<S> for Sectors {
+    fn grid(&self) -> Grid {
+        *Sectors::grid(self)
+    }
+
+    fn cell(&self, disc: usize) -> Option<[usize; 2]> {
+        Sectors::cell(self, disc)
+    }
+
+    fn leave(&mut self, disc: usize) {
+        Sectors::leave(self, disc);
+    }
+
+    fn enter(&mut self, to: &Move, _: &State<S>) -> Result<(), Taken> {
+        Sectors::enter(self, to.disc, to.cell);
+        Ok(())
+    }
+
+    fn arrange(&mut self, state: &State<S>) {
+        Sectors::arrange(self, |disc| state.number(disc));
+    }
+
+    fn order(&self) -> Vec<u32> {
+        Sectors::order(self)
+    }
+
+    fn renumber(&mut self, order: &[u32]) {
+        Sectors::renumber(self, order);
+    }
+}
+
+/// Pairs of discs in sectors.
 pub struct SectorSearch<P> {
     sectors: Sectors,
     sweep: Sweep<Touches<P>>,
@@ -25,33 +56,14 @@ impl<P: Precision> SectorSearch<P> {
 }
 
 impl<S: Precision, P: Precision> Search<S, P> for SectorSearch<P> {
-    fn grid(&self) -> Grid {
-        *self.sectors.grid()
+    type Cells = Sectors;
+
+    fn cells(&self) -> &Sectors {
+        &self.sectors
     }
 
-    fn cell(&self, disc: usize) -> Option<[usize; 2]> {
-        self.sectors.cell(disc)
-    }
-
-    fn leave(&mut self, disc: usize) {
-        self.sectors.leave(disc);
-    }
-
-    fn enter(&mut self, to: &Move, _: &State<S>) -> Result<(), Taken> {
-        self.sectors.enter(to.disc, to.cell);
-        Ok(())
-    }
-
-    fn arrange(&mut self, state: &State<S>) {
-        self.sectors.arrange(|disc| state.number(disc));
-    }
-
-    fn order(&self) -> Vec<u32> {
-        self.sectors.order()
-    }
-
-    fn renumber(&mut self, order: &[u32]) {
-        self.sectors.renumber(order);
+    fn cells_mut(&mut self) -> &mut Sectors {
+        &mut self.sectors
     }
 
     fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<Copies<'_>>) {

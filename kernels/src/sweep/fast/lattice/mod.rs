@@ -99,22 +99,22 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
         }
     }
 
-    /// Guests with all discs around them, and with each other.
+    /// Discs in shared cells with all discs around them, and with each other.
     fn find_beside_rows(&self, found: &mut Touches<P>) {
         let occupancy = self.occupancy;
-        let (guests, shape) = (occupancy.guests(), occupancy.shape());
+        let (shared, shape) = (occupancy.shared_cells(), occupancy.shape());
         let Grid { frame, counts, periodic } = occupancy.grid();
         let half = occupancy.half_width() as isize;
         let cell_offset = |offset: [isize; 2]| [0, 1].map(|axis| offset[axis] as f64 * frame.edge[axis]);
-        for (at, &(guest, [column, row])) in guests.iter().enumerate() {
+        for (at, &(disc, [column, row])) in shared.iter().enumerate() {
             for offset in (-half..=half).flat_map(|rows| (-half..=half).map(move |columns| [columns, rows])) {
                 let position = shape.position(column as isize + offset[0], row as isize + offset[1]);
                 let there = occupancy.index()[position];
                 if (there as usize) < occupancy.discs() {
-                    found.push([guest, there], cell_offset(offset));
+                    found.push([disc, there], cell_offset(offset));
                 }
             }
-            for &(other, cell) in &guests[at + 1..] {
+            for &(other, cell) in &shared[at + 1..] {
                 let offset = [0, 1].map(|axis| {
                     let (count, cell_offset) =
                         (counts[axis] as isize, cell[axis] as isize - [column, row][axis] as isize);
@@ -125,7 +125,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
                     }
                 });
                 if offset.iter().all(|cell_offset| cell_offset.abs() <= half) {
-                    found.push([guest, other], cell_offset(offset));
+                    found.push([disc, other], cell_offset(offset));
                 }
             }
         }

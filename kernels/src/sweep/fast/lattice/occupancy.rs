@@ -43,7 +43,7 @@ pub struct Occupancy {
     /// Discs that are in no cell.
     outside: usize,
     /// Discs in cells that are another disc's, with these cells.
-    guests: Vec<(u32, [usize; 2])>,
+    shared: Vec<(u32, [usize; 2])>,
 }
 
 /// The cell of a disc that is in none.
@@ -81,7 +81,7 @@ impl Occupancy {
                 .map(|image| [image.cell, image.source].map(|at| at as u32))
                 .collect(),
             outside: discs,
-            guests: vec![],
+            shared: vec![],
             shape,
         }
     }
@@ -109,15 +109,15 @@ impl Occupancy {
     #[inline]
     pub fn cell(&self, disc: usize) -> Option<[usize; 2]> {
         let cell = self.cell[disc];
-        if cell == self.guest_room() {
-            return self.guests.iter().find(|guest| guest.0 as usize == disc).map(|guest| guest.1);
+        if cell == self.spare_cell() {
+            return self.shared.iter().find(|shared| shared.0 as usize == disc).map(|shared| shared.1);
         }
         (cell != NOWHERE).then(|| self.column_and_row(cell as usize))
     }
 
-    /// Where the copies of a guest's place are written, where they are never read: behind the lattice.
+    /// Where the copies of the places of discs in shared cells are written and never read: behind the lattice.
     #[inline]
-    fn guest_room(&self) -> u32 {
+    fn spare_cell(&self) -> u32 {
         self.index.len() as u32 - 1
     }
 
@@ -165,25 +165,25 @@ impl Occupancy {
         Ok(())
     }
 
-    /// Puts a disc as a guest into a cell that is another disc's, behind the guests whose `number` is smaller.
+    /// Puts a disc into a cell that is another disc's, in the list of such discs behind those whose `number` is smaller.
     ///
     /// # Panics
     /// If the disc is in a cell already, or there is no such disc or cell.
     #[inline]
-    pub fn enter_as_guest(&mut self, disc: usize, cell: [usize; 2], number: impl Fn(usize) -> usize) {
+    pub fn share(&mut self, disc: usize, cell: [usize; 2], number: impl Fn(usize) -> usize) {
         assert!(self.cell[disc] == NOWHERE, "disc {disc} is in a cell already");
         assert!(cell[0] < self.shape.columns() && cell[1] < self.shape.rows(), "no cell {cell:?}");
-        self.cell[disc] = self.guest_room();
+        self.cell[disc] = self.spare_cell();
         self.outside -= 1;
         let own = number(disc);
-        let before = self.guests.iter().take_while(|guest| number(guest.0 as usize) < own).count();
-        self.guests.insert(before, (disc as u32, cell));
+        let before = self.shared.iter().take_while(|shared| number(shared.0 as usize) < own).count();
+        self.shared.insert(before, (disc as u32, cell));
     }
 
     /// The discs in cells that are another disc's, with these cells.
     #[inline]
-    pub fn guests(&self) -> &[(u32, [usize; 2])] {
-        &self.guests
+    pub fn shared_cells(&self) -> &[(u32, [usize; 2])] {
+        &self.shared
     }
 
     /// Takes a disc out of its cell, if it is in one.
@@ -192,9 +192,9 @@ impl Occupancy {
             return;
         }
         self.outside += 1;
-        if self.cell[disc] == self.guest_room() {
+        if self.cell[disc] == self.spare_cell() {
             self.cell[disc] = NOWHERE;
-            return self.guests.retain(|guest| guest.0 as usize != disc);
+            return self.shared.retain(|shared| shared.0 as usize != disc);
         }
         let at = self.cell[disc] as usize;
         self.cell[disc] = NOWHERE;
@@ -244,14 +244,13 @@ impl Occupancy {
         }
     }
 
-    /// The discs in order of their cells, row by row, guests behind all.
-    #[inline]
+    /// The discs in order of their cells, row by row, those in shared cells behind all.
     pub fn order(&self) -> Vec<u32> {
         let rows = (0..self.shape.rows() as isize).map(|row| self.shape.position(0, row));
         rows.flat_map(|first| &self.index[first..first + self.shape.columns()])
             .copied()
             .filter(|&disc| (disc as usize) < self.discs)
-            .chain(self.guests.iter().map(|guest| guest.0))
+            .chain(self.shared.iter().map(|shared| shared.0))
             .collect()
     }
 
@@ -263,17 +262,17 @@ impl Occupancy {
         let old = std::mem::replace(&mut self.cell, vec![NOWHERE; self.discs]);
         assert_eq!(order.len(), self.discs, "an order of all discs");
         let mut now = vec![NOWHERE; self.discs];
-        let guest_room = self.guest_room();
+        let spare_cell = self.spare_cell();
         for (disc, &before) in order.iter().enumerate() {
             let before = before as usize;
             let first = std::mem::replace(&mut now[before], disc as u32) == NOWHERE;
             assert!(first, "disc {before} is named twice");
             self.cell[disc] = old[before];
-            if old[before] != NOWHERE && old[before] != guest_room {
+            if old[before] != NOWHERE && old[before] != spare_cell {
                 self.index[old[before] as usize] = disc as u32;
             }
         }
-        self.guests.iter_mut().for_each(|guest| guest.0 = now[guest.0 as usize]);
+        self.shared.iter_mut().for_each(|shared| shared.0 = now[shared.0 as usize]);
         self.repeat_images();
     }
 

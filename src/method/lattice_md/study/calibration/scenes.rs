@@ -1,4 +1,4 @@
-//! Work whose amount depends on the data: the fast execution and the neighbour lists, on drill scenes of their own.
+//! Work whose amount depends on the data: the fast engine and the neighbour lists, on drill scenes of their own.
 
 use super::fit;
 use crate::method::lattice_md::Checked;

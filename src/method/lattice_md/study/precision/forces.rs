@@ -1,56 +1,56 @@
 //! Errors of the forces on one configuration, over the size of the box.
 
 use super::gas::{Gas, PACKING_FRACTIONS, place};
-use crate::method::lattice_md::study::{StudyError, executed};
+use crate::method::lattice_md::study::StudyError;
 use crate::observe::contacts;
 use serde::Serialize;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
-/// A precision, execution and choice of coordinates that forces are computed with.
+/// A precision, engine and choice of coordinates that forces are computed with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Variant {
     /// Its name in a legend.
     pub name: &'static str,
     /// `machine.precision`.
     pub precision: &'static str,
-    /// `machine.execution`.
-    pub execution: &'static str,
+    /// `machine.engine`; programs are chained.
+    pub engine: &'static str,
     /// `machine.coordinates`.
     pub coordinates: &'static str,
 }
 
-/// The variants that are compared with the fast execution in f64.
+/// The variants that are compared with the fast engine in f64.
 pub const VARIANTS: [Variant; 7] = [
-    Variant { name: "mixed, fast", precision: "mixed", execution: "fast", coordinates: "cell-relative" },
-    Variant { name: "f32, fast", precision: "f32", execution: "fast", coordinates: "cell-relative" },
+    Variant { name: "mixed, fast", precision: "mixed", engine: "fast", coordinates: "cell-relative" },
+    Variant { name: "f32, fast", precision: "f32", engine: "fast", coordinates: "cell-relative" },
     Variant {
-        name: "mixed, faithful, from the cell",
+        name: "mixed, programs, from the cell",
         precision: "mixed",
-        execution: "chained",
+        engine: "programs",
         coordinates: "cell-relative",
     },
     Variant {
-        name: "f32, faithful, from the cell",
+        name: "f32, programs, from the cell",
         precision: "f32",
-        execution: "chained",
+        engine: "programs",
         coordinates: "cell-relative",
     },
     Variant {
-        name: "mixed, faithful, absolute",
+        name: "mixed, programs, absolute",
         precision: "mixed",
-        execution: "chained",
+        engine: "programs",
         coordinates: "absolute",
     },
     Variant {
-        name: "f32, faithful, absolute",
+        name: "f32, programs, absolute",
         precision: "f32",
-        execution: "chained",
+        engine: "programs",
         coordinates: "absolute",
     },
     Variant {
-        name: "f64, faithful, absolute",
+        name: "f64, programs, absolute",
         precision: "f64",
-        execution: "chained",
+        engine: "programs",
         coordinates: "absolute",
     },
 ];
@@ -97,7 +97,8 @@ fn on_one_configuration(packing_fraction: f64, count: usize) -> Result<Vec<Force
     let overrides = place(count, packing_fraction, 1);
     let discs = Gas::equilibrated(&overrides)?;
     let computed = |variant: Variant| -> Result<Gas, StudyError> {
-        let machine = [format!("machine.precision={}", variant.precision), executed(variant.execution)];
+        let Variant { precision, engine, .. } = variant;
+        let machine = [format!("machine.precision={precision}"), format!("machine.engine={engine}")];
         let coordinates = match variant.coordinates {
             "absolute" => Coordinates::Absolute,
             _ => Coordinates::CellRelative,
@@ -143,12 +144,12 @@ mod tests {
         let rms = |errors: &[ForceError], name: &str| {
             errors.iter().find(|error| error.variant.name == name).map(|error| error.rms).unwrap()
         };
-        for name in ["mixed, fast", "f32, fast", "mixed, faithful, from the cell"] {
+        for name in ["mixed, fast", "f32, fast", "mixed, programs, from the cell"] {
             let ratio = rms(&large, name) / rms(&small, name);
             assert!(rms(&large, name) < 1e-5 && (0.5..2.0).contains(&ratio), "{name}: {ratio}");
         }
-        let absolute = "mixed, faithful, absolute";
+        let absolute = "mixed, programs, absolute";
         assert!(rms(&large, absolute) > 2.0 * rms(&small, absolute));
-        assert!(rms(&large, "f64, faithful, absolute") < 1e-11);
+        assert!(rms(&large, "f64, programs, absolute") < 1e-11);
     }
 }

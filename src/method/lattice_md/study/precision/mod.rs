@@ -1,6 +1,6 @@
 //! What do forces, energy and trajectories lose in f32 and in mixed precision?
 //!
-//! All of it on the bench scene. Nothing here depends on the host: every execution gives the same bits everywhere.
+//! All of it on the bench scene. Nothing here depends on the host: an engine gives the same bits everywhere.
 
 pub mod energy;
 pub mod forces;

@@ -2,7 +2,6 @@
 
 use super::gas::{Gas, PACKING_FRACTIONS, SEEDS, place};
 use crate::method::lattice_md::study::StudyError;
-use crate::method::lattice_md::study::executed;
 use crate::statistics::{Spread, slope};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
@@ -15,22 +14,22 @@ pub const DT: f64 = 0.005;
 pub const STEPS: u64 = 8000;
 /// Steps between two looks.
 pub const LOOK: u64 = 100;
-/// Precision and execution of those that run beside the fast execution in f64.
-pub const RIVALS: [(&str, &str); 3] = [("f64", "chained"), ("mixed", "fast"), ("f32", "fast")];
+/// Precision and engine of those that run beside the fast engine in f64.
+pub const RIVALS: [(&str, &str); 3] = [("f64", "programs"), ("mixed", "fast"), ("f32", "fast")];
 /// From this multiple of its first value on a distance grows because trajectories part, not because rounding goes on.
 pub const PARTED: f64 = 10.0;
 /// Up to this distance (length) the growth is exponential: beyond it discs meet other partners.
 pub const LOST: f64 = 0.02;
 
-/// A trajectory beside that of the fast execution in f64.
+/// A trajectory beside that of the fast engine in f64.
 #[derive(Clone, Debug, Serialize)]
 pub struct Divergence {
     /// Packing fraction.
     pub packing_fraction: f64,
     /// Precision.
     pub precision: &'static str,
-    /// Execution.
-    pub execution: &'static str,
+    /// Engine; programs are chained.
+    pub engine: &'static str,
     /// Times of the looks (time).
     pub times: Vec<f64>,
     /// Root of the mean square distance between a disc and its twin, over discs and seeds, at each look (length).
@@ -51,7 +50,7 @@ pub fn divergences() -> Result<Vec<Divergence>, StudyError> {
     let times: Vec<f64> = (1..=STEPS / LOOK).map(|look| (look * LOOK) as f64 * DT).collect();
     let mut divergences = Vec::new();
     for (&packing_fraction, runs) in PACKING_FRACTIONS.iter().zip(runs.chunks(SEEDS.len())) {
-        for (rival, (precision, execution)) in RIVALS.into_iter().enumerate() {
+        for (rival, (precision, engine)) in RIVALS.into_iter().enumerate() {
             let mean_square = |look: usize| {
                 runs.iter().map(|run| run[rival][look] * run[rival][look]).sum::<f64>() / runs.len() as f64
             };
@@ -59,7 +58,7 @@ pub fn divergences() -> Result<Vec<Divergence>, StudyError> {
             divergences.push(Divergence {
                 packing_fraction,
                 precision,
-                execution,
+                engine,
                 distance: (0..times.len()).map(|look| mean_square(look).sqrt()).collect(),
                 rate: Spread::of(&rates),
                 times: times.clone(),
@@ -72,12 +71,12 @@ pub fn divergences() -> Result<Vec<Divergence>, StudyError> {
 /// Root of the mean square distance between the discs of each rival and those of the reference, at every look.
 fn distances(overrides: &[String], steps: u64) -> Result<[Vec<f64>; RIVALS.len()], StudyError> {
     let discs = Gas::equilibrated(overrides)?;
-    let begin = |(precision, execution): (&str, &str)| {
+    let begin = |(precision, engine): (&str, &str)| {
         let mut overrides = overrides.to_vec();
         overrides.push("integrator.kind=\"velocity-verlet\"".to_owned());
         overrides.push(format!("integrator.dt={DT}"));
         overrides.push(format!("machine.precision=\"{precision}\""));
-        overrides.push(executed(execution));
+        overrides.push(format!("machine.engine={engine}"));
         Gas::begin(&overrides, Some(&discs))
     };
     let mut reference = begin(("f64", "fast"))?;

@@ -1,0 +1,39 @@
+//! The discs of a state as particles of the scene.
+
+use crate::domain::Domain;
+use crate::particles::Particles;
+
+/// The particles of `start` as a state has them: each disc with its number in the scene and, for each degree of freedom (x, y,
+/// angle), its value and its change in a step of `dt`. Discs that no force moves have the velocity `walls` (length/time).
+///
+/// Positions are those of the state: the last correction may have taken one beyond a periodic side, where no crossing is
+/// counted yet.
+pub fn standing(
+    start: &Particles,
+    dt: f64,
+    walls: [f64; 2],
+    discs: impl Iterator<Item = (usize, [[f64; 2]; 3])>,
+) -> Particles {
+    let mut particles = start.clone();
+    let grains = start.grain_count();
+    for (number, [x, y, angle]) in discs {
+        let particle = &mut particles.all_mut()[number];
+        particle.position = [x[0], y[0]];
+        if number < grains {
+            particle.velocity = [x[1] / dt, y[1] / dt];
+            particle.angle = angle[0];
+            particle.omega = angle[1] / dt;
+        } else {
+            particle.velocity = walls;
+        }
+    }
+    particles
+}
+
+/// The same particles, with positions inside the box.
+pub fn wrapped(mut particles: Particles, domain: &Domain) -> Particles {
+    for particle in particles.all_mut() {
+        particle.position = domain.inside(particle.position);
+    }
+    particles
+}
