@@ -111,7 +111,7 @@ fn walls_gravity_and_a_shaken_floor_are_the_faithful_ones() {
     }
 }
 
-/// So many discs that making lists and sorting are cut into pieces.
+/// Enough discs for making lists and sorting to be cut into pieces.
 #[test]
 fn lists_and_order_are_the_same_on_any_number_of_threads() {
     let mut start = gas(40_000, 0.3, 5);

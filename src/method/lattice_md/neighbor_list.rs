@@ -25,7 +25,7 @@ define_words! {
 /// The choices of the rival.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ListOptions {
-    /// How lists are made anew.
+    /// How lists are made again.
     pub rebuild: Rebuild,
     /// How much farther than contact a listed pair may be (length).
     pub skin: f64,
@@ -71,7 +71,7 @@ impl<P: Precision> Rival<P> {
         [0, 1].map(|axis| self.made_at.iter().map(|position| position[axis]).collect())
     }
 
-    /// Takes up lists that were made where the discs were at `made_at`, after that many makings, and met so many pairs in
+    /// Takes up lists that were made where the discs were at `made_at`, after `rebuilds` makings, and met `pairs` pairs in
     /// the last step.
     pub(super) fn take_up(&mut self, model: &Model, made_at: [Vec<f64>; 2], rebuilds: u64, pairs: u64) {
         let [x, y] = made_at;

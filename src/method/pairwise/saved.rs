@@ -45,7 +45,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         columns
     }
 
-    /// Takes up columns that [`columns`](Self::columns) gave after so many steps.
+    /// Takes up columns that [`columns`](Self::columns) gave after `steps` steps.
     ///
     /// # Errors
     /// A sentence, if the columns are not those of these discs.

@@ -27,14 +27,27 @@ pub fn chart(chart: &Chart) -> Value {
             json!({
                 "name": series.name,
                 "look": look,
-                "x": points.iter().map(|point| point.x).collect::<Vec<_>>(),
-                "y": points.iter().map(|point| point.y).collect::<Vec<_>>(),
-                "spreads": points.iter().map(|point| point.spread).collect::<Vec<_>>(),
+                "x": points.iter().map(|point| short(point.x)).collect::<Vec<_>>(),
+                "y": points.iter().map(|point| short(point.y)).collect::<Vec<_>>(),
+                "spreads": spreads_of(&points),
             })
         })
         .collect();
     let bands: Vec<Value> = bands.iter().map(|band| json!({ "label": band.label, "x": band.x })).collect();
     json!({ "x": axis(x, across), "y": axis(y, up), "series": series, "bands": bands })
+}
+
+/// The spreads of points; none at all where no point has one.
+fn spreads_of(points: &[&Point]) -> Vec<Option<[f64; 2]>> {
+    match points.iter().any(|point| point.spread.is_some()) {
+        true => points.iter().map(|point| point.spread.map(|ends| ends.map(short))).collect(),
+        false => vec![],
+    }
+}
+
+/// A number with six digits: more than a chart has dots, or a reader is shown.
+fn short(number: f64) -> f64 {
+    format!("{number:.5e}").parse().unwrap_or(number)
 }
 
 /// A map: its values row by row from the bottom, on the scale of their axis.

@@ -1,25 +1,25 @@
 //! What the player gets of a film.
 
 use super::quantised::Quantised;
-use crate::report::section::Film;
+use crate::report::figure::style;
+use crate::report::section::{Film, Frame};
 use serde_json::{Value, json};
 
 /// Windows longer than this many times their width are cut into strips.
 const LONG: f64 = 6.0;
 
+/// The most pixels along a film: six strips side by side on a screen of twice as many dots as pixels.
+const PIXELS: f64 = 6.0 * 2200.0;
+
 /// The film, all frames of a quantity behind one another. Every frame has a place for each of the radii; a disc that a
 /// frame does not have is no number there.
 pub fn data(film: &Film) -> Value {
     let Film { window, radii, fixed, frames, shade, shades, .. } = film;
-    let column = |number: fn(&([f64; 2], f64)) -> f64| {
-        let of_frame = |discs: &[_]| -> Vec<f64> {
-            (0..radii.len()).map(|i| discs.get(i).map_or(f64::NAN, number)).collect()
-        };
-        Quantised::of(&frames.iter().flat_map(|frame| of_frame(&frame.discs)).collect::<Vec<_>>())
-    };
     let still =
         |number: fn(&([f64; 2], f64)) -> f64| Quantised::of(&fixed.iter().map(number).collect::<Vec<_>>());
     let [width, height] = [window[1][0] - window[0][0], window[1][1] - window[0][1]];
+    let half_a_pixel = 0.5 * width.max(height) / PIXELS;
+    let half_a_shade = 0.5 * (shades[1] - shades[0]) / f64::from(style::SHADES);
     json!({
         "window": window,
         "long": width > LONG * height || height > LONG * width,
@@ -27,16 +27,24 @@ pub fn data(film: &Film) -> Value {
         "radii": Quantised::of(radii),
         "fixed": { "x": still(|disc| disc.0[0]), "y": still(|disc| disc.0[1]), "radii": still(|disc| disc.1) },
         "times": frames.iter().map(|frame| frame.time).collect::<Vec<_>>(),
-        "x": column(|disc| disc.0[0]),
-        "y": column(|disc| disc.0[1]),
-        "shades": column(|disc| disc.1),
+        "x": column(film, |disc| disc.0[0], half_a_pixel),
+        "y": column(film, |disc| disc.0[1], half_a_pixel),
+        // A shade beyond an end looks like the end.
+        "shades": column(film, |disc| disc.1.max(shades[0]).min(shades[1]), half_a_shade),
     })
+}
+
+/// A number of every disc in every frame, off by no more than `tolerance` if that needs no more than two bytes.
+fn column(film: &Film, number: impl Fn(&([f64; 2], f64)) -> f64, tolerance: f64) -> Quantised {
+    let of_frame = |frame: &Frame| -> Vec<f64> {
+        (0..film.radii.len()).map(|i| frame.discs.get(i).map_or(f64::NAN, &number)).collect()
+    };
+    Quantised::within(&film.frames.iter().flat_map(of_frame).collect::<Vec<_>>(), tolerance)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::section::Frame;
 
     fn pipe(frames: usize, discs: usize) -> Film {
         let place = |frame: usize, disc: usize| {
@@ -69,8 +77,7 @@ mod tests {
         let film = pipe(40, 300);
         let data = data(&film);
         let (x, y) = (read(&data["x"]), read(&data["y"]));
-        // Six strips side by side on a screen of twice as many dots as pixels.
-        let pixel = 8.1 / (6.0 * 2200.0);
+        let pixel = 8.1 / PIXELS;
         for (i, disc) in film.frames.iter().flat_map(|frame| &frame.discs).enumerate() {
             assert!((disc.0[0] - x[i]).abs() < 0.5 * pixel, "x of disc {i}");
             assert!((disc.0[1] - y[i]).abs() < 0.5 * pixel, "y of disc {i}");
@@ -80,7 +87,7 @@ mod tests {
     #[test]
     fn forty_frames_of_six_hundred_discs_are_small() {
         let letters = data(&pipe(40, 600)).to_string().len();
-        assert!(letters < 400_000, "{letters} bytes");
+        assert!(letters < 200_000, "{letters} bytes");
     }
 
     #[test]

@@ -26,7 +26,7 @@ pub fn render(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) ->
                 (moving(section, shown))
             }
             @for each in &section.tables {
-                (table(each))
+                (table(each, &section.folder()))
             }
             @if let Some((what, lines)) = &section.excerpt {
                 figure.excerpt {
@@ -83,29 +83,40 @@ fn moving(section: &Section, shown: &Film) -> Markup {
     }
 }
 
-/// A table in a box of its own, which scrolls where the table is wider than the page.
-fn table(table: &Table) -> Markup {
+/// Rows of a table that a page shows; a longer one is for programs.
+const ROWS: usize = 60;
+
+/// A table in a box of its own, which scrolls where the table is wider than the page. The page has the first rows of a long
+/// one, and says where all are: in the item's folder.
+fn table(table: &Table, folder: &str) -> Markup {
     let numeric = |i: usize| table.rows.iter().all(|row| row.get(i).is_some_and(Cell::is_number));
     html! {
         div.scroll tabindex="0" role="region" aria-label=(table.title) {
-            table {
+            table.data {
                 caption { (table.title) }
                 thead {
                     tr {
                         @for (i, column) in table.columns.iter().enumerate() {
-                            th.number[numeric(i)] scope="col" { (column) }
+                            th class=[numeric(i).then_some("number")] scope="col" { (column) }
                         }
                     }
                 }
                 tbody {
-                    @for row in &table.rows {
+                    @for row in table.rows.iter().take(ROWS) {
                         tr {
                             @for cell in row {
-                                td.number[cell.is_number()] { (cell.for_reading()) }
+                                td class=[(!cell.is_number()).then_some("words")] { (cell.for_reading()) }
                             }
                         }
                     }
                 }
+            }
+        }
+        @if table.rows.len() > ROWS {
+            @let file = format!("{folder}/{}.csv", table.name);
+            p.note {
+                "The first " (ROWS) " of " (Cell::Count(table.rows.len() as u64).for_reading()) " rows; all are in "
+                a href=(file) { code { (file) } } "."
             }
         }
         @for note in &table.notes {

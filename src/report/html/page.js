@@ -12,12 +12,13 @@ function shadeOf(value, [low, high]) {
 }
 
 /** The numbers of a `Quantised` of Rust; NaN where there is none. */
-function numbers({ low, high, codes }) {
-  const bytes = Uint8Array.from(atob(codes), (letter) => letter.charCodeAt(0));
-  const out = new Float64Array(bytes.length / 2);
+function numbers({ low, high, bytes, codes }) {
+  const all = Uint8Array.from(atob(codes), (letter) => letter.charCodeAt(0));
+  const out = new Float64Array(all.length / bytes);
+  const highest = 256 ** bytes - 2;
   for (let i = 0; i < out.length; i++) {
-    const code = bytes[2 * i] + 256 * bytes[2 * i + 1];
-    out[i] = code === 65535 ? NaN : low + (code / 65534) * (high - low);
+    const code = bytes === 1 ? all[i] : all[2 * i] + 256 * all[2 * i + 1];
+    out[i] = code > highest ? NaN : low + (code / highest) * (high - low);
   }
   return out;
 }

@@ -1,36 +1,52 @@
-//! Many numbers in few letters: 16 bits each, in base 64.
+//! Many numbers in few letters: one or two bytes each, in base 64.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
-/// The highest code; the numbers lie evenly between 0 and it.
-const HIGHEST: u16 = u16::MAX - 1;
-/// The code of what is no number.
-const MISSING: u16 = u16::MAX;
-
-/// Numbers between two ends: code `c` stands for `low + c / 65534 · (high − low)`, code 65535 for no number.
+/// Numbers between two ends: the codes from 0 to the last but one lie evenly from `low` to `high`, the last stands for no
+/// number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(serde::Deserialize))]
 pub struct Quantised {
     low: f64,
     high: f64,
-    /// Two bytes each, the low one first.
+    /// Bytes of a code, 1 or 2.
+    bytes: u32,
+    /// The codes, of two bytes the low one first.
     codes: String,
+}
+
+/// The highest code of a number; the one above it is the code of what is no number.
+fn highest(bytes: u32) -> u16 {
+    (u16::MAX >> (16 - 8 * bytes)) - 1
 }
 
 impl Quantised {
     /// The numbers, each off by no more than a 131 068th of their range. What is not finite becomes no number.
     pub fn of(numbers: &[f64]) -> Quantised {
+        Quantised::in_bytes(numbers, 2)
+    }
+
+    /// The numbers, each off by no more than `tolerance` where one byte does that, else as of [`of`](Self::of).
+    pub fn within(numbers: &[f64], tolerance: f64) -> Quantised {
+        let [low, high] =
+            ends(numbers.iter().copied().filter(|number| number.is_finite())).unwrap_or_default();
+        let step = (high - low) / f64::from(highest(1));
+        Quantised::in_bytes(numbers, if 0.5 * step <= tolerance { 1 } else { 2 })
+    }
+
+    fn in_bytes(numbers: &[f64], bytes: u32) -> Quantised {
         let finite = || numbers.iter().copied().filter(|number| number.is_finite());
         let [low, high] = ends(finite()).unwrap_or([0.0, 1.0]);
         let width = if high > low { high - low } else { 1.0 };
         let code = |&number: &f64| match number.is_finite() {
-            true => ((number - low) / width * f64::from(HIGHEST)).round() as u16,
-            false => MISSING,
+            true => ((number - low) / width * f64::from(highest(bytes))).round() as u16,
+            false => highest(bytes) + 1,
         };
-        let bytes: Vec<u8> = numbers.iter().map(code).flat_map(u16::to_le_bytes).collect();
-        Quantised { low, high: low + width, codes: STANDARD.encode(bytes) }
+        let codes =
+            numbers.iter().map(code).flat_map(|code| code.to_le_bytes().into_iter().take(bytes as usize));
+        Quantised { low, high: low + width, bytes, codes: STANDARD.encode(codes.collect::<Vec<u8>>()) }
     }
 }
 
@@ -48,11 +64,12 @@ pub mod tests {
 
     /// What the scripts read: the twin of `numbers` in `page.js`.
     pub fn read(quantised: &Quantised) -> Vec<f64> {
-        let Quantised { low, high, codes } = quantised;
-        let bytes = STANDARD.decode(codes).unwrap();
-        let codes = bytes.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]]));
-        let number = |code| low + f64::from(code) / f64::from(HIGHEST) * (high - low);
-        codes.map(|code| if code == MISSING { f64::NAN } else { number(code) }).collect()
+        let Quantised { low, high, bytes, codes } = quantised;
+        let codes = STANDARD.decode(codes).unwrap();
+        let whole = |code: &[u8]| code.iter().rev().fold(0, |code, &byte| 256 * code + u16::from(byte));
+        let number = |code| low + f64::from(code) / f64::from(highest(*bytes)) * (high - low);
+        let read = |code| if code > highest(*bytes) { f64::NAN } else { number(code) };
+        codes.chunks_exact(*bytes as usize).map(whole).map(read).collect()
     }
 
     #[test]
@@ -62,6 +79,20 @@ pub mod tests {
         let step = 2.0 * 8.1 / 65534.0;
         for (number, back) in numbers.iter().zip(back) {
             assert!((number - back).abs() <= 0.5001 * step, "{number} became {back}");
+        }
+    }
+
+    #[test]
+    fn one_byte_is_taken_where_it_is_enough() {
+        let numbers: Vec<f64> = (0..=254).map(f64::from).chain([f64::NAN]).collect();
+        for (tolerance, bytes) in [(0.5, 1), (0.49, 2)] {
+            let quantised = Quantised::within(&numbers, tolerance);
+            assert_eq!(quantised.bytes, bytes);
+            let back = read(&quantised);
+            assert!(
+                numbers.iter().zip(&back).take(255).all(|(number, back)| (number - back).abs() <= tolerance)
+            );
+            assert!(back[255].is_nan());
         }
     }
 

@@ -293,7 +293,7 @@ fn film(showing: Showing, flow: &PipeFlow) -> Option<Film> {
         discs: flow.frames[at]
             .grains()
             .iter()
-            .map(|disc| (disc.position, disc.omega * disc.radius))
+            .map(|disc| (disc.position.map(rounded), rounded(disc.omega * disc.radius)))
             .collect(),
     });
     Some(Film {

@@ -30,7 +30,7 @@ impl Look {
         let lines = bars.flat_map(|(x, ends)| {
             let [[x, low], [_, high]] = ends.map(|y| frame.place(x, y));
             let cap = |y: f64| vec![[x - CAP, y], [x + CAP, y]];
-            [vec![[x, low], [x, high]], cap(low), cap(high)]
+            [cap(low), vec![[x, low], [x, high]], cap(high)]
         });
         let pieces: Vec<_> = lines.flat_map(|piece| clip::line(&frame.plot, &piece)).collect();
         let paint = Paint::stroke(self.colour, 0.7 * style::CURVE);

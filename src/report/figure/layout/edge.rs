@@ -64,17 +64,14 @@ impl Edge {
 
     /// The edge as marks, at a distance from the sheet's upper (or left) edge.
     pub fn marks(&self, at: f64) -> Vec<Mark> {
-        let mut marks = Vec::new();
-        for tick in &self.ticks {
-            let along = self.ruler.pixel(tick.at);
+        let places = || self.ticks.iter().map(|tick| (tick, self.ruler.pixel(tick.at)));
+        let line = |(tick, along): (&Tick, f64)| {
             let length = TICKS[usize::from(tick.label.is_none())] * self.zoom;
-            let pieces = vec![vec![self.outward(at, along, 0.0), self.outward(at, along, length)]];
-            let paint = Paint::stroke(style::INK, style::AXIS * self.zoom);
-            marks.push(Mark::Lines { pieces, closed: false, paint });
-            if let Some(label) = &tick.label {
-                marks.push(self.number(at, along, label));
-            }
-        }
+            vec![self.outward(at, along, 0.0), self.outward(at, along, length)]
+        };
+        let paint = Paint::stroke(style::INK, style::AXIS * self.zoom);
+        let mut marks = vec![Mark::Lines { pieces: places().map(line).collect(), closed: false, paint }];
+        marks.extend(places().filter_map(|(tick, along)| Some(self.number(at, along, tick.label.as_ref()?))));
         marks.extend(self.heading_marks(at));
         marks
     }
