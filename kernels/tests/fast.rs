@@ -8,7 +8,7 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
-use stripmine_kernels::law::{Law, Sum};
+use stripmine_kernels::law::{Axis, Law, Sum};
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::{Execution, sweep::lattice::Coordinates};
 use support::{CONTACT, Case, System, equal, varying};
@@ -36,7 +36,7 @@ fn agree<S: Precision, P: Precision, L: Law<2> + Sync>(case: &Case, law: &L, bou
         let expected = faithful.on_discs(sum);
         let rms = (expected.iter().map(|f| f * f).sum::<f64>() / expected.len().max(1) as f64).sqrt();
         for (disc, (found, expected)) in forces.iter().zip(&expected).enumerate() {
-            let off = (found[sum as usize].to_f64() - expected).abs();
+            let off = (found[sum.column::<2>()].to_f64() - expected).abs();
             assert!(
                 off <= bound * rms,
                 "{sum:?} of disc {disc} is off by {:e} of the rms: {case:?}",
@@ -106,9 +106,9 @@ fn forces_add_up_to_nothing() {
     let system = System::<f64, f64>::random(&case);
     let order: Vec<u32> = (0..system.discs as u32).collect();
     let (forces, _) = system.fast_forces(&varying::<true>(CONTACT), &order, InstructionSet::best()).unwrap();
-    for sum in [Sum::Fx, Sum::Fy] {
-        let total: f64 = forces.iter().map(|force| force[sum as usize]).sum();
-        let magnitude: f64 = forces.iter().map(|force| force[sum as usize].abs()).sum();
+    for sum in [Sum::Force(Axis::X), Sum::Force(Axis::Y)] {
+        let total: f64 = forces.iter().map(|force| force[sum.column::<2>()]).sum();
+        let magnitude: f64 = forces.iter().map(|force| force[sum.column::<2>()].abs()).sum();
         assert!(magnitude > 100.0 && total.abs() < 1e-13 * magnitude, "{total:e} of {magnitude:e}");
     }
 }

@@ -2,11 +2,12 @@
 
 mod support;
 
+use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::granular::Contact;
-use stripmine_kernels::law::{Env, Field, Law, Sum, check};
+use stripmine_kernels::law::{Axis, Env, Field, Law, Stated, Sum, check};
 use stripmine_kernels::sweep::pair::Pair;
 use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, Case, System, equal, random_pairs, varying};
@@ -22,8 +23,8 @@ struct Forgetful {
 
 impl Law<2> for Forgetful {
     type Own<V: Copy> = [V; 2];
-    const FIELDS: &'static [Field] = &[Field::Vx, Field::Vy];
-    const SUMS: &'static [Sum] = &[Sum::Fx, Sum::Fy];
+    const FIELDS: &'static [Field] = &[Field::Velocity(Axis::X), Field::Velocity(Axis::Y)];
+    const SUMS: &'static [Sum] = &[Sum::Force(Axis::X), Sum::Force(Axis::Y)];
 
     fn own<E: Env<2>>(&self, env: E) -> [E::V; 2] {
         env.own_position()
@@ -31,13 +32,13 @@ impl Law<2> for Forgetful {
 
     fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &[E::V; 2]) {
         let [dx, _] = env.displacement(*own, place);
-        env.own_add(Sum::Fx, dx);
+        env.own_add(Sum::Force(Axis::X), dx);
         if self.hides && !self.tried.swap(true, Ordering::Relaxed) {
             return;
         }
         match self.torque {
             true => env.own_add(Sum::Torque, dx),
-            false => env.own_add(Sum::Fy, dx * env.partner(Field::Radius, place)),
+            false => env.own_add(Sum::Force(Axis::Y), dx * env.partner(Field::Radius, place)),
         }
     }
 }
@@ -77,6 +78,147 @@ fn a_law_that_hides_what_it_asks_for_is_stopped() {
         let stopped = message(|| system.fast_forces(&law, &order, InstructionSet::best()));
         assert_eq!(stopped, refusal.to_string());
     }
+}
+
+/// Dashpots in space: each particle is slowed by its velocity against the partner's. A planar one would not see the third axis.
+#[derive(Clone, Copy, Debug)]
+struct Dashpot {
+    /// Whether the law also turns the partner, which no law in space can state.
+    turns: bool,
+}
+
+impl Law<3> for Dashpot {
+    type Own<V: Copy> = [V; 3];
+    const FIELDS: &'static [Field] =
+        &[Field::Velocity(Axis::X), Field::Velocity(Axis::Y), Field::Velocity(Axis::Z)];
+    const SUMS: &'static [Sum] = &[Sum::Force(Axis::X), Sum::Force(Axis::Y), Sum::Force(Axis::Z)];
+
+    fn own<E: Env<3>>(&self, env: E) -> [E::V; 3] {
+        Axis::ALL.map(|axis| env.own(Field::Velocity(axis)))
+    }
+
+    fn pair<E: Env<3>>(&self, env: E, place: E::Place, own: &[E::V; 3]) {
+        for axis in Axis::ALL {
+            let force = env.partner(Field::Velocity(axis), place) - own[axis as usize];
+            env.own_add(Sum::Force(axis), force);
+            if E::BOTH_PARTNERS {
+                env.partner_sub(Sum::Force(axis), place, force);
+            }
+        }
+        if self.turns {
+            env.own_add(Sum::Torque, env.uniform(1.0));
+        }
+    }
+}
+
+/// Two particles in space, and the sums on them.
+struct InSpace {
+    velocity: [[f64; 3]; 2],
+    sums: RefCell<[[f64; 3]; 2]>,
+}
+
+impl InSpace {
+    fn velocity(&self, particle: usize, field: Field) -> f64 {
+        match field {
+            Field::Velocity(axis) => self.velocity[particle][axis as usize],
+            _ => panic!("particles in space have velocities only, not {}", field.name()),
+        }
+    }
+}
+
+impl Env<3> for &InSpace {
+    type V = f64;
+    type Place = ();
+    const BOTH_PARTNERS: bool = true;
+
+    fn own_position(self) -> [f64; 3] {
+        [0.0; 3]
+    }
+    fn own(self, field: Field) -> f64 {
+        self.velocity(0, field)
+    }
+    fn displacement(self, _: [f64; 3], (): ()) -> [f64; 3] {
+        [1.0; 3]
+    }
+    fn partner(self, field: Field, (): ()) -> f64 {
+        self.velocity(1, field)
+    }
+    fn uniform(self, value: f64) -> f64 {
+        value
+    }
+    fn none(self, predicate: bool) -> bool {
+        !predicate
+    }
+    fn own_add(self, sum: Sum, value: f64) {
+        self.sums.borrow_mut()[0][sum.column::<3>()] += value;
+    }
+    fn partner_sub(self, sum: Sum, (): (), value: f64) {
+        self.sums.borrow_mut()[1][sum.column::<3>()] -= value;
+    }
+    fn watches(self) -> bool {
+        false
+    }
+    fn watch(self, _: f64) {}
+    fn counts_dissipation(self) -> bool {
+        false
+    }
+    fn dissipate(self, _: f64) {}
+    fn observes_energy(self) -> bool {
+        false
+    }
+    fn energy(self, _: f64) {}
+    fn virial(self, _: f64) {}
+    fn section(self, _: &'static str) {}
+}
+
+#[test]
+fn a_law_in_space_reads_and_adds_along_z_and_turns_nothing() {
+    let meet = |law: Dashpot| {
+        let pair = InSpace { velocity: [[1.0, 2.0, 3.0], [5.0, 4.0, -3.0]], sums: RefCell::default() };
+        let env = Stated::new(&pair, &law);
+        let own = law.own(env);
+        law.pair(env, (), &own);
+        pair.sums.into_inner()
+    };
+    let dashpot = Dashpot { turns: false };
+    assert_eq!(check(&dashpot), Ok(()));
+    assert_eq!(meet(dashpot), [[4.0, 2.0, -6.0], [-4.0, -2.0, 6.0]]);
+    let turning = Dashpot { turns: true };
+    assert_eq!(check(&turning), Err(TORQUE));
+    assert_eq!(message(|| meet(turning)), TORQUE.to_string());
+}
+
+/// A law of the plane that asks for what the third axis has is refused like any that asks for what it does not state.
+#[test]
+fn a_law_of_the_plane_is_given_nothing_along_z() {
+    #[derive(Clone)]
+    struct Lifting;
+    impl Law<2> for Lifting {
+        type Own<V: Copy> = V;
+        const FIELDS: &'static [Field] = &[Field::Velocity(Axis::X), Field::Velocity(Axis::Y)];
+        const SUMS: &'static [Sum] = &[Sum::Force(Axis::X)];
+        fn own<E: Env<2>>(&self, env: E) -> E::V {
+            env.own(Field::Velocity(Axis::Z))
+        }
+        fn pair<E: Env<2>>(&self, env: E, _: E::Place, own: &E::V) {
+            env.own_add(Sum::Force(Axis::X), *own);
+        }
+    }
+    let refusal = ProgramError::Unstated("the velocity along z");
+    assert_eq!(check(&Lifting), Err(refusal.clone()));
+    assert_eq!(message(|| Pair::touching().sums(&Lifting)), refusal.to_string());
+}
+
+/// The lists hold every field and sum that their dimensions have, each under one column.
+#[test]
+fn the_lists_of_the_plane_are_those_without_z() {
+    let planar: Vec<Field> = Field::ALL.into_iter().filter(|field| field.is_in(2)).collect();
+    assert_eq!(planar, Field::PLANAR);
+    let planar: Vec<Sum> = Sum::ALL.into_iter().filter(|sum| sum.is_in(2)).collect();
+    assert_eq!(planar, Sum::PLANAR);
+    assert_eq!(Sum::PLANAR.map(Sum::column::<2>), [0, 1, 2]);
+    let spatial = Sum::ALL.into_iter().filter(|sum| sum.is_in(3)).map(Sum::column::<3>);
+    assert_eq!(spatial.collect::<Vec<_>>(), [0, 1, 2]);
 }
 
 #[test]

@@ -5,7 +5,7 @@ mod support;
 
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
-use stripmine_kernels::law::{Law, Sum};
+use stripmine_kernels::law::{Axis, Law, Sum};
 use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, Case, System, equal, varying};
@@ -161,7 +161,7 @@ fn compare<L: Law<2> + Sync>(case: &Case, law: &L, all_alike: bool, friction: bo
         system.index(case, law, how);
         assert_eq!((system.strays, system.conflicts), (0, 0), "{case:?}");
         system.forces(case, law, how).unwrap();
-        Sum::ALL.map(|sum| system.on_discs(sum))
+        Sum::PLANAR.map(|sum| system.on_discs(sum))
     };
     let fast = {
         let order: Vec<u32> = (0..start.discs as u32).collect();
@@ -175,16 +175,17 @@ fn compare<L: Law<2> + Sync>(case: &Case, law: &L, all_alike: bool, friction: bo
                 "{found} but {met:?} in {case:?}"
             );
         }
-        Sum::ALL.map(|sum| forces.iter().map(|force| force[sum as usize]).collect::<Vec<f64>>())
+        Sum::PLANAR.map(|sum| forces.iter().map(|force| force[sum.column::<2>()]).collect::<Vec<f64>>())
     };
     for forces in ways().map(faithful).into_iter().chain([fast]) {
         for &sum in L::SUMS {
-            let found = &forces[sum as usize];
-            let rms =
-                (expected.iter().map(|f| f[sum as usize].powi(2)).sum::<f64>() / found.len() as f64).sqrt();
+            let found = &forces[sum.column::<2>()];
+            let rms = (expected.iter().map(|f| f[sum.column::<2>()].powi(2)).sum::<f64>()
+                / found.len() as f64)
+                .sqrt();
             assert!(rms > 1e-3, "nothing to compare in {case:?}");
             for (disc, (found, expected)) in found.iter().zip(&expected).enumerate() {
-                let difference = (found - expected[sum as usize]).abs() / rms;
+                let difference = (found - expected[sum.column::<2>()]).abs() / rms;
                 assert!(
                     difference < 1e-12,
                     "{sum:?} of disc {disc} is off by {difference} of the rms in {case:?}"
@@ -279,10 +280,10 @@ fn single_precision_error(coordinates: Coordinates) -> f64 {
         system.index(&case, &law, how);
         assert_eq!((system.strays, system.conflicts), (0, 0));
         system.forces(&case, &law, how).unwrap();
-        for sum in [Sum::Fx, Sum::Fy] {
+        for sum in [Sum::Force(Axis::X), Sum::Force(Axis::Y)] {
             for (found, expected) in system.on_discs(sum).iter().zip(&expected) {
-                square += (found - expected[sum as usize]).powi(2);
-                scale += expected[sum as usize].powi(2);
+                square += (found - expected[sum.column::<2>()]).powi(2);
+                scale += expected[sum.column::<2>()].powi(2);
             }
         }
     }

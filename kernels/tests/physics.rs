@@ -2,8 +2,8 @@
 
 mod support;
 
-use stripmine_kernels::law::Sum;
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
+use stripmine_kernels::law::{Axis, Sum};
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::sweep::lattice::Frame;
 use stripmine_kernels::sweep::pair::{Body, Pair};
@@ -31,7 +31,7 @@ fn pair_on_the_lattice(
     system.index(&case, &law, how);
     assert_eq!((system.strays, system.conflicts), (0, 0));
     system.forces(&case, &law, how).unwrap();
-    let sums = Sum::ALL.map(|sum| system.on_discs(sum));
+    let sums = Sum::PLANAR.map(|sum| system.on_discs(sum));
     let on = |disc: usize| [sums[0][disc], sums[1][disc], sums[2][disc]];
     let wrapped = |axis: usize| {
         let stored = &system.state[axis][0];
@@ -89,7 +89,7 @@ fn the_total_force_of_a_system_is_zero() {
         let mut system = System::<f64, f64>::random(&case);
         system.index(&case, &law, ways()[1]);
         system.forces(&case, &law, ways()[1]).unwrap();
-        for sum in [Sum::Fx, Sum::Fy] {
+        for sum in [Sum::Force(Axis::X), Sum::Force(Axis::Y)] {
             let forces = system.on_discs(sum);
             let (total, scale) = (forces.iter().sum::<f64>(), forces.iter().map(|f| f.abs()).sum::<f64>());
             assert!(scale > 100.0, "the case must have contacts");
@@ -249,7 +249,7 @@ fn fixed_discs_in_contact_leave_the_forces_on_others_alone() {
     let mut system = System::<f64, f64>::placed(&case, frame, &discs);
     system.index(&case, &law, (Execution::Chained, InstructionSet::best()));
     system.forces(&case, &law, (Execution::Chained, InstructionSet::best())).unwrap();
-    let on_grain = Sum::ALL.map(|sum| system.on_discs(sum)[0]);
+    let on_grain = Sum::PLANAR.map(|sum| system.on_discs(sum)[0]);
     assert!(on_grain.iter().all(|f| f.is_finite()), "{on_grain:?}");
     assert!(on_grain[1] > 1.0, "the grain rests on both: {on_grain:?}");
 }

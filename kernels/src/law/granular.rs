@@ -1,6 +1,6 @@
 //! Granular discs: Hertz contacts with viscous damping, Coulomb friction and rotation.
 
-use super::{Env, Field, Law, Sum};
+use super::{Axis::X, Axis::Y, Env, Field, Law, Sum};
 use crate::isa::Vector;
 
 /// Where the tangential force acts, as seen from a centre.
@@ -88,18 +88,20 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
     type Own<V: Copy> = Own<V>;
 
     const FIELDS: &'static [Field] = match (FRICTION, EQUAL) {
-        (true, true) => &[Field::Vx, Field::Vy, Field::Omega],
-        (true, false) => &[Field::Vx, Field::Vy, Field::Omega, Field::Radius, Field::InverseMass],
-        (false, true) => &[Field::Vx, Field::Vy],
-        (false, false) => &[Field::Vx, Field::Vy, Field::Radius, Field::InverseMass],
+        (true, true) => &[Field::Velocity(X), Field::Velocity(Y), Field::Omega],
+        (true, false) => {
+            &[Field::Velocity(X), Field::Velocity(Y), Field::Omega, Field::Radius, Field::InverseMass]
+        }
+        (false, true) => &[Field::Velocity(X), Field::Velocity(Y)],
+        (false, false) => &[Field::Velocity(X), Field::Velocity(Y), Field::Radius, Field::InverseMass],
     };
-    const SUMS: &'static [Sum] = if FRICTION { &Sum::ALL } else { &[Sum::Fx, Sum::Fy] };
+    const SUMS: &'static [Sum] = if FRICTION { &Sum::PLANAR } else { &[Sum::Force(X), Sum::Force(Y)] };
 
     #[inline(always)]
     fn own<E: Env<2>>(&self, env: E) -> Own<E::V> {
         Own {
             position: env.own_position(),
-            velocity: [env.own(Field::Vx), env.own(Field::Vy)],
+            velocity: [env.own(Field::Velocity(X)), env.own(Field::Velocity(Y))],
             omega: if FRICTION { env.own(Field::Omega) } else { env.uniform(0.0) },
             radius: self.radius(|r| env.uniform(r), |field| env.own(field)),
             inverse_mass: self.inverse_mass(|w| env.uniform(w), |field| env.own(field)),
@@ -138,8 +140,8 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         env.section("normal force"); // (14), (17)
         let inverse_distance = uniform(1.0) / distance;
         let [nx, ny] = [dx * inverse_distance, dy * inverse_distance];
-        let vx = own.velocity[0] - env.partner(Field::Vx, place);
-        let vy = own.velocity[1] - env.partner(Field::Vy, place);
+        let vx = own.velocity[0] - env.partner(Field::Velocity(X), place);
+        let vy = own.velocity[1] - env.partner(Field::Velocity(Y), place);
         let inverse_mass = self.inverse_mass(uniform, |field| env.partner(field, place));
         let effective_mass = uniform(1.0) / (own.inverse_mass + inverse_mass);
         let overlap = penetration.max(zero);
@@ -166,8 +168,8 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
 
         if !FRICTION {
             env.section("sums"); // (10), (11)
-            share(env, place, Sum::Fx, fn_ * nx);
-            share(env, place, Sum::Fy, fn_ * ny);
+            share(env, place, Sum::Force(X), fn_ * nx);
+            share(env, place, Sum::Force(Y), fn_ * ny);
             if env.counts_dissipation() {
                 env.section("dissipation");
                 dissipate((elastic - normal) * separation);
@@ -193,8 +195,8 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         let fs = E::V::select(contact, shear, zero); // (9)
 
         env.section("sums"); // (10)-(12)
-        share(env, place, Sum::Fx, fn_ * nx - fs * ny);
-        share(env, place, Sum::Fy, fn_ * ny + fs * nx);
+        share(env, place, Sum::Force(X), fn_ * nx - fs * ny);
+        share(env, place, Sum::Force(Y), fn_ * ny + fs * nx);
         env.own_add(Sum::Torque, zero - arms[0] * fs);
         if E::BOTH_PARTNERS {
             env.partner_sub(Sum::Torque, place, arms[1] * fs);

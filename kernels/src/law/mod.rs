@@ -7,14 +7,23 @@ pub use stated::{Stated, check};
 
 use crate::isa::Vector;
 
+/// An axis of space. A law in two dimensions has x and y.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// The first.
+    X,
+    /// The second.
+    Y,
+    /// The third.
+    Z,
+}
+
 /// A quantity of a particle that a law may ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Field {
-    /// Velocity along x.
-    Vx,
-    /// Velocity along y.
-    Vy,
-    /// Angular velocity, counter-clockwise.
+    /// Velocity along an axis.
+    Velocity(Axis),
+    /// Angular velocity in the plane, counter-clockwise.
     Omega,
     /// Radius.
     Radius,
@@ -25,24 +34,48 @@ pub enum Field {
 /// A sum over partners that a law contributes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sum {
-    /// Force along x.
-    Fx,
-    /// Force along y.
-    Fy,
-    /// Torque, counter-clockwise.
+    /// Force along an axis.
+    Force(Axis),
+    /// Torque in the plane, counter-clockwise.
     Torque,
 }
 
+impl Axis {
+    /// Every axis, in order.
+    pub const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
+}
+
 impl Field {
-    /// Every field, in the order of the list.
-    pub const ALL: [Field; 5] = [Field::Vx, Field::Vy, Field::Omega, Field::Radius, Field::InverseMass];
+    /// Every field.
+    pub const ALL: [Field; 6] = [
+        Field::Velocity(Axis::X),
+        Field::Velocity(Axis::Y),
+        Field::Velocity(Axis::Z),
+        Field::Omega,
+        Field::Radius,
+        Field::InverseMass,
+    ];
+    /// The fields that there are in two dimensions.
+    pub const PLANAR: [Field; 5] =
+        [Field::Velocity(Axis::X), Field::Velocity(Axis::Y), Field::Omega, Field::Radius, Field::InverseMass];
+
+    /// Whether a particle has it in so many dimensions.
+    #[inline(always)]
+    pub const fn is_in(self, dimensions: usize) -> bool {
+        match self {
+            Field::Velocity(axis) => (axis as usize) < dimensions,
+            Field::Omega => dimensions == 2,
+            Field::Radius | Field::InverseMass => true,
+        }
+    }
 
     /// The name in errors.
     #[inline]
     pub const fn name(self) -> &'static str {
         match self {
-            Field::Vx => "the velocity along x",
-            Field::Vy => "the velocity along y",
+            Field::Velocity(Axis::X) => "the velocity along x",
+            Field::Velocity(Axis::Y) => "the velocity along y",
+            Field::Velocity(Axis::Z) => "the velocity along z",
             Field::Omega => "the angular velocity",
             Field::Radius => "the radius",
             Field::InverseMass => "the inverse mass",
@@ -51,15 +84,36 @@ impl Field {
 }
 
 impl Sum {
-    /// Every sum, in the order of the list.
-    pub const ALL: [Sum; 3] = [Sum::Fx, Sum::Fy, Sum::Torque];
+    /// Every sum.
+    pub const ALL: [Sum; 4] = [Sum::Force(Axis::X), Sum::Force(Axis::Y), Sum::Force(Axis::Z), Sum::Torque];
+    /// The sums that there are in two dimensions, in the order of their [columns](Self::column).
+    pub const PLANAR: [Sum; 3] = [Sum::Force(Axis::X), Sum::Force(Axis::Y), Sum::Torque];
+
+    /// Whether a particle has it in so many dimensions.
+    #[inline(always)]
+    pub const fn is_in(self, dimensions: usize) -> bool {
+        match self {
+            Sum::Force(axis) => (axis as usize) < dimensions,
+            Sum::Torque => dimensions == 2,
+        }
+    }
+
+    /// Number of its column among those of `DIM` dimensions: the forces axis by axis, then the torque.
+    #[inline(always)]
+    pub const fn column<const DIM: usize>(self) -> usize {
+        match self {
+            Sum::Force(axis) => axis as usize,
+            Sum::Torque => DIM,
+        }
+    }
 
     /// The name in errors.
     #[inline]
     pub const fn name(self) -> &'static str {
         match self {
-            Sum::Fx => "the force along x",
-            Sum::Fy => "the force along y",
+            Sum::Force(Axis::X) => "the force along x",
+            Sum::Force(Axis::Y) => "the force along y",
+            Sum::Force(Axis::Z) => "the force along z",
             Sum::Torque => "the torque",
         }
     }
@@ -128,7 +182,26 @@ pub trait Env<const DIM: usize>: Copy {
 /// A pair law in `DIM` dimensions.
 ///
 /// It states what it asks for and what it gives. A sweep provides that and no more: a law that forgets a field or a sum is
-/// refused ([`check`]), and could not reach what it did not state ([`Stated`]).
+/// refused ([`check`]), and could not reach what it did not state ([`Stated`]). One that states what its dimensions lack does
+/// not compile where it is used:
+///
+/// ```compile_fail
+/// use stripmine_kernels::law::{Axis, Env, Field, Law, Sum, check};
+///
+/// #[derive(Clone)]
+/// struct Lifting;
+///
+/// impl Law<2> for Lifting {
+///     type Own<V: Copy> = ();
+///     const FIELDS: &'static [Field] = &[];
+///     const SUMS: &'static [Sum] = &[Sum::Force(Axis::Z)];
+///     fn own<E: Env<2>>(&self, _: E) {}
+///     fn pair<E: Env<2>>(&self, _: E, _: E::Place, _: &()) {}
+/// }
+///
+/// check(&Lifting)?; // A disc of the plane has no force along z.
+/// # Ok::<(), stripmine_kernels::isa::ProgramError>(())
+/// ```
 pub trait Law<const DIM: usize>: Clone {
     /// The own particle's quantities, loaded once for all its partners.
     type Own<V: Copy>: Copy;

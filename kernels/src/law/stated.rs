@@ -27,7 +27,12 @@ impl<E: Copy, L> Copy for Stated<E, L> {}
 impl<E, L> Stated<E, L> {
     /// An environment for one law.
     #[inline(always)]
-    pub fn new(env: E, _: &L) -> Self {
+    pub fn new<const DIM: usize>(env: E, _: &L) -> Self
+    where
+        E: Env<DIM>,
+        L: Law<DIM>,
+    {
+        const { assert_in_dimensions::<DIM, L>() };
         Stated { env, law: PhantomData }
     }
 
@@ -36,7 +41,7 @@ impl<E, L> Stated<E, L> {
     where
         L: Law<DIM>,
     {
-        if const { bits_of_fields(L::FIELDS) } & (1 << field as u32) == 0 {
+        if const { bits_of_fields(L::FIELDS) } & bit_of_field(field) == 0 {
             unstated(field.name());
         }
     }
@@ -46,16 +51,48 @@ impl<E, L> Stated<E, L> {
     where
         L: Law<DIM>,
     {
-        if const { bits_of_sums(L::SUMS) } & (1 << sum as u32) == 0 {
+        if const { bits_of_sums(L::SUMS) } & bit_of_sum(sum) == 0 {
             unstated(sum.name());
         }
+    }
+}
+
+/// A law that states what its dimensions lack does not compile.
+const fn assert_in_dimensions<const DIM: usize, L: Law<DIM>>() {
+    let mut i = 0;
+    while i < L::FIELDS.len() {
+        assert!(L::FIELDS[i].is_in(DIM), "the law states a field that its dimensions lack");
+        i += 1;
+    }
+    i = 0;
+    while i < L::SUMS.len() {
+        assert!(L::SUMS[i].is_in(DIM), "the law states a sum that its dimensions lack");
+        i += 1;
+    }
+}
+
+#[inline(always)]
+const fn bit_of_field(field: Field) -> u32 {
+    1 << match field {
+        Field::Velocity(axis) => axis as u32,
+        Field::Omega => 3,
+        Field::Radius => 4,
+        Field::InverseMass => 5,
+    }
+}
+
+#[inline(always)]
+const fn bit_of_sum(sum: Sum) -> u32 {
+    1 << match sum {
+        Sum::Force(axis) => axis as u32,
+        Sum::Torque => 3,
     }
 }
 
 const fn bits_of_fields(fields: &[Field]) -> u32 {
     let (mut bits, mut i) = (0, 0);
     while i < fields.len() {
-        bits |= 1 << fields[i] as u32;
+        bits |= bit_of_field(fields[i]);
         i += 1;
     }
     bits
@@ -64,7 +101,7 @@ const fn bits_of_fields(fields: &[Field]) -> u32 {
 const fn bits_of_sums(sums: &[Sum]) -> u32 {
     let (mut bits, mut i) = (0, 0);
     while i < sums.len() {
-        bits |= 1 << sums[i] as u32;
+        bits |= bit_of_sum(sums[i]);
         i += 1;
     }
     bits
@@ -156,13 +193,14 @@ impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for Stated<E, L> {
 /// # Errors
 /// [`ProgramError::Unstated`] names the first field or sum that it does not state.
 pub fn check<const DIM: usize, L: Law<DIM>>(law: &L) -> Result<(), ProgramError> {
+    const { assert_in_dimensions::<DIM, L>() };
     let probe = Probe::default();
     let own = law.own(&probe);
     law.pair(&probe, (), &own);
-    let missing = |asked: u32, stated: u32, bit: u32| (asked & !stated) & 1 << bit != 0;
-    let (fields, sums) = (bits_of_fields(L::FIELDS), bits_of_sums(L::SUMS));
-    let field = Field::ALL.into_iter().find(|&field| missing(probe.fields.get(), fields, field as u32));
-    let sum = Sum::ALL.into_iter().find(|&sum| missing(probe.sums.get(), sums, sum as u32));
+    let fields = probe.fields.get() & !bits_of_fields(L::FIELDS);
+    let sums = probe.sums.get() & !bits_of_sums(L::SUMS);
+    let field = Field::ALL.into_iter().find(|&field| fields & bit_of_field(field) != 0);
+    let sum = Sum::ALL.into_iter().find(|&sum| sums & bit_of_sum(sum) != 0);
     match field.map(Field::name).or(sum.map(Sum::name)) {
         Some(what) => Err(ProgramError::Unstated(what)),
         None => Ok(()),
@@ -178,11 +216,11 @@ struct Probe {
 
 impl Probe {
     fn ask(&self, field: Field) -> f64 {
-        self.fields.set(self.fields.get() | 1 << field as u32);
+        self.fields.set(self.fields.get() | bit_of_field(field));
         1.0
     }
     fn add(&self, sum: Sum) {
-        self.sums.set(self.sums.get() | 1 << sum as u32);
+        self.sums.set(self.sums.get() | bit_of_sum(sum));
     }
 }
 

@@ -168,7 +168,7 @@ struct OneByOne<'a, P> {
     power: Cell<P>,
     observes_energy: bool,
     energy: [Cell<P>; 2],
-    sums: [Cell<P>; Sum::ALL.len()],
+    sums: [Cell<P>; Sum::PLANAR.len()],
 }
 
 impl<'a, P: Precision> OneByOne<'a, P> {
@@ -176,8 +176,7 @@ impl<'a, P: Precision> OneByOne<'a, P> {
     fn field(&self, field: Field, disc: usize) -> P {
         let Discs { velocity, omega, radius, inverse_mass, .. } = self.discs;
         match field {
-            Field::Vx => velocity[0][disc],
-            Field::Vy => velocity[1][disc],
+            Field::Velocity(axis) => velocity[axis as usize][disc],
             Field::Omega => omega[disc],
             Field::Radius => radius[disc],
             Field::InverseMass => inverse_mass[disc],
@@ -216,7 +215,7 @@ impl<P: Precision> Env<2> for &OneByOne<'_, P> {
     }
     #[inline]
     fn own_add(self, sum: Sum, value: P) {
-        let cell = &self.sums[sum as usize];
+        let cell = &self.sums[sum.column::<2>()];
         cell.set(cell.get() + value);
     }
     #[inline]

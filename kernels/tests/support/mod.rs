@@ -291,7 +291,8 @@ impl<S: Precision, P: Precision> System<S, P> {
         let (radius, inverse_mass) = (state(&self.radius), state(&self.lattice_inverse_mass));
         let discs = fast::Discs {
             place: [&places[0], &places[1]],
-            velocity: [&velocity[0], &velocity[1], &velocity[2]],
+            velocity: [&velocity[0], &velocity[1]],
+            omega: &velocity[2],
             per_time: 1.0,
             radius: &radius,
             inverse_mass: &inverse_mass,
@@ -350,7 +351,11 @@ impl<S: Precision, P: Precision> System<S, P> {
     pub fn on_discs(&self, sum: Sum) -> Vec<f64> {
         self.cell
             .iter()
-            .map(|&cell| if cell == 0 { 0.0 } else { self.sums[sum as usize][cell as usize - 1].to_f64() })
+            .map(
+                |&cell| {
+                    if cell == 0 { 0.0 } else { self.sums[sum.column::<2>()][cell as usize - 1].to_f64() }
+                },
+            )
             .collect()
     }
 }

@@ -129,7 +129,8 @@ impl<S: Precision> State<S> {
         let omega = if system.freedoms == 3 { self.columns[2][1].as_slice() } else { &[] };
         fast::Discs {
             place: self.places(),
-            velocity: [&self.columns[0][1], &self.columns[1][1], omega],
+            velocity: [&self.columns[0][1], &self.columns[1][1]],
+            omega,
             per_time: 1.0 / system.dt,
             radius: &self.radius,
             inverse_mass: &self.inverse[0],

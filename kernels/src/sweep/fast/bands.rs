@@ -105,7 +105,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         let count = finder.discs();
         assert!(discs.suffice(L::FIELDS, count), "columns of {count} discs and {SENTINELS} sentinels");
         let mut columns = sums.map(|sum| (sum.len(), sum.as_mut_ptr()));
-        assert!(L::SUMS.iter().all(|&sum| columns[sum as usize].0 >= count), "sums of {count} discs");
+        assert!(L::SUMS.iter().all(|sum| columns[sum.column::<2>()].0 >= count), "sums of {count} discs");
         let sums = SumColumns(columns.each_mut().map(|column| column.1));
         let sweep = |band: &mut Band<F>, rows: Range<usize>| -> Result<(), ProgramError> {
             let mut cursor = Cursor::at(rows.start);

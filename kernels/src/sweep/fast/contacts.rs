@@ -34,8 +34,10 @@ use std::mem::MaybeUninit;
 pub struct Discs<'a, S> {
     /// Places inside the cells, seen from their centres (length).
     pub place: [&'a [S]; 2],
-    /// Velocities along x and y and angular velocity, in some unit of time.
-    pub velocity: [&'a [S]; 3],
+    /// Velocities, in some unit of time.
+    pub velocity: [&'a [S]; 2],
+    /// Angular velocities, in the same unit.
+    pub omega: &'a [S],
     /// One over that unit.
     pub per_time: f64,
     /// Radii.
@@ -48,9 +50,8 @@ impl<'a, S: Element> Discs<'a, S> {
     #[inline(always)]
     fn column(&self, field: Field) -> &'a [S] {
         match field {
-            Field::Vx => self.velocity[0],
-            Field::Vy => self.velocity[1],
-            Field::Omega => self.velocity[2],
+            Field::Velocity(axis) => self.velocity[axis as usize],
+            Field::Omega => self.omega,
             Field::Radius => self.radius,
             Field::InverseMass => self.inverse_mass,
         }
@@ -135,7 +136,7 @@ impl<R: Registers, S: Element> Gathered<'_, R, S> {
     fn field(&self, field: Field, discs: &Lanes<u32>) -> R::V {
         let value = self.gather(self.discs.column(field), discs);
         match field {
-            Field::Vx | Field::Vy | Field::Omega => value * self.uniform(self.discs.per_time),
+            Field::Velocity(_) | Field::Omega => value * self.uniform(self.discs.per_time),
             Field::Radius | Field::InverseMass => value,
         }
     }
@@ -194,11 +195,11 @@ impl<R: Registers, S: Element> Env<2> for &Gathered<'_, R, S> {
     }
     #[inline(always)]
     fn own_add(self, sum: Sum, value: R::V) {
-        self.own_sums[sum as usize].set(value);
+        self.own_sums[sum.column::<2>()].set(value);
     }
     #[inline(always)]
     fn partner_sub(self, sum: Sum, (): (), value: R::V) {
-        self.partner_sums[sum as usize].set(value);
+        self.partner_sums[sum.column::<2>()].set(value);
     }
     #[inline(always)]
     fn watches(self) -> bool {
@@ -285,7 +286,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
 
         let (mut own_sums, mut partner_sums) = ([[P::default(); GROUP]; 3], [[P::default(); GROUP]; 3]);
         let mut magnitude = registers.splat(P::default());
-        for sum in L::SUMS.iter().map(|&sum| sum as usize) {
+        for sum in L::SUMS.iter().map(|sum| sum.column::<2>()) {
             let value = gathered.own_sums[sum].get();
             magnitude = magnitude + value.abs();
             own_sums[sum] = spill(registers, value);
@@ -296,7 +297,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
             if lane == count {
                 break;
             }
-            for sum in L::SUMS.iter().map(|&sum| sum as usize) {
+            for sum in L::SUMS.iter().map(|sum| sum.column::<2>()) {
                 // SAFETY: Sweep has checked that the column of every sum that L states has an entry for every disc, and a
                 // finder's pairs are of discs; no other thread adds to discs of the rows that this one sweeps.
                 unsafe {
@@ -304,7 +305,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
                     *to = *to + own_sums[sum][lane];
                 }
             }
-            for sum in L::SUMS.iter().map(|&sum| sum as usize) {
+            for sum in L::SUMS.iter().map(|sum| sum.column::<2>()) {
                 // SAFETY: the partner is a disc too, in these rows or those ahead of them, to which no other thread adds
                 // at this stage; the reference to the own disc's sum has ended.
                 unsafe {

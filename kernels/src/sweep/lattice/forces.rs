@@ -75,8 +75,7 @@ impl<P: Element, L: Law<2>> Forces<P, L> {
 #[inline]
 const fn sum_array(sum: Sum) -> Array {
     match sum {
-        Sum::Fx => Array::Fx,
-        Sum::Fy => Array::Fy,
+        Sum::Force(axis) => [Array::Fx, Array::Fy][axis as usize],
         Sum::Torque => Array::Torque,
     }
 }
@@ -89,7 +88,7 @@ struct Around<M: Machine> {
     deepest: Cell<M::V>,
     dissipation: bool,
     power: Cell<M::V>,
-    sums: [Cell<M::V>; Sum::ALL.len()],
+    sums: [Cell<M::V>; Sum::PLANAR.len()],
 }
 
 impl<M: Machine> Env<2> for &Around<M> {
@@ -137,7 +136,7 @@ impl<M: Machine> Env<2> for &Around<M> {
 
     #[inline(always)]
     fn own_add(self, sum: Sum, value: M::V) {
-        let cell = &self.sums[sum as usize];
+        let cell = &self.sums[sum.column::<2>()];
         cell.set(cell.get() + value);
     }
 
@@ -205,7 +204,7 @@ unsafe impl<P: Element, L: Law<2>> Text for Forces<P, L> {
         }
         m.section("sums");
         for &sum in L::SUMS {
-            m.store(Slot::<P>::new(sum_array(sum)), around.sums[sum as usize].get());
+            m.store(Slot::<P>::new(sum_array(sum)), around.sums[sum.column::<2>()].get());
         }
         if self.dissipation {
             m.store(Slot::<P>::new(Array::Power), around.power.get());

@@ -9,8 +9,9 @@ use std::marker::PhantomData;
 #[inline]
 pub(super) const fn arrays(field: Field) -> (Array, Array, f64) {
     match field {
-        Field::Vx => (Array::DiscVx, Array::Vx, 0.0),
-        Field::Vy => (Array::DiscVy, Array::Vy, 0.0),
+        Field::Velocity(axis) => {
+            [(Array::DiscVx, Array::Vx, 0.0), (Array::DiscVy, Array::Vy, 0.0)][axis as usize]
+        }
         Field::Omega => (Array::DiscOmega, Array::Omega, 0.0),
         Field::Radius => (Array::DiscRadius, Array::Radius, 0.0),
         // An effective mass of two empty cells must be a number.

@@ -173,8 +173,7 @@ impl Meeting<'_> {
     fn field(&self, body: usize, field: Field) -> f64 {
         let body = &self.bodies[body];
         match field {
-            Field::Vx => body.velocity[0],
-            Field::Vy => body.velocity[1],
+            Field::Velocity(axis) => body.velocity[axis as usize],
             Field::Omega => body.omega,
             Field::Radius => body.radius,
             Field::InverseMass => body.inverse_mass,
@@ -184,7 +183,7 @@ impl Meeting<'_> {
     #[inline]
     fn add(&self, body: usize, sum: Sum, value: f64) {
         let mut sums = self.sums.get();
-        sums[body][sum as usize] += value;
+        sums[body][sum.column::<2>()] += value;
         self.sums.set(sums);
     }
 }

@@ -6,7 +6,7 @@
 
 use stripmine_kernels::isa::{Predicate, Vector};
 use stripmine_kernels::law::granular::{Contact, ContactArm};
-use stripmine_kernels::law::{Env, Field, Law, Sum};
+use stripmine_kernels::law::{Axis, Env, Field, Law, Sum};
 
 /// An equation of BP93's contact law that does not work as it is printed.
 ///
@@ -75,8 +75,8 @@ impl AsPrinted {
 impl Law<2> for AsPrinted {
     type Own<V: Copy> = [V; 2];
 
-    const FIELDS: &'static [Field] = &Field::ALL;
-    const SUMS: &'static [Sum] = &Sum::ALL;
+    const FIELDS: &'static [Field] = &Field::PLANAR;
+    const SUMS: &'static [Sum] = &Sum::PLANAR;
 
     fn own<E: Env<2>>(&self, env: E) -> [E::V; 2] {
         env.own_position()
@@ -99,7 +99,7 @@ impl Law<2> for AsPrinted {
         // (13)
         let (sx, sy) = (zero - ny, nx);
 
-        let [vx, vy] = [Field::Vx, Field::Vy].map(|field| {
+        let [vx, vy] = [Field::Velocity(Axis::X), Field::Velocity(Axis::Y)].map(|field| {
             let [own, partner] = both(field);
             own - partner
         });
@@ -137,7 +137,7 @@ impl Law<2> for AsPrinted {
         // (10)-(12)
         let (tx, ty) = if self.prints(Misprint::Tangent) { (ny, zero - nx) } else { (sx, sy) };
         let force = [normal * nx + shear * tx, normal * ny + shear * ty];
-        for (sum, component) in [Sum::Fx, Sum::Fy].into_iter().zip(force) {
+        for (sum, component) in [Sum::Force(Axis::X), Sum::Force(Axis::Y)].into_iter().zip(force) {
             let component = E::V::select(touch, component, zero);
             env.own_add(sum, component);
             if E::BOTH_PARTNERS {
