@@ -1,47 +1,152 @@
 //! The box that particles live in.
 
-/// A rectangle, each pair of sides periodic or closed.
+/// What bounds a box along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Side {
+    /// What leaves at one end comes in at the other; its length.
+    Periodic(f64),
+    /// Nothing may leave; its length.
+    Closed(f64),
+    /// There is no end.
+    Open,
+    /// Nothing moves along it: a planar scene has no depth.
+    Flat,
+}
+
+impl Side {
+    /// How long it is (length): without end where it is open, 0 where it is flat.
+    pub const fn length(self) -> f64 {
+        match self {
+            Side::Periodic(length) | Side::Closed(length) => length,
+            Side::Open => f64::INFINITY,
+            Side::Flat => 0.0,
+        }
+    }
+}
+
+/// A box, as its scene states it. Planar methods read its first two axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Domain {
-    /// Lower left corner (length).
-    pub origin: [f64; 2],
-    /// Sides (length).
-    pub sides: [f64; 2],
-    /// Which sides are periodic.
-    pub periodic: [bool; 2],
+    /// The corner where every coordinate is least (length); the coordinates of an open side are counted from there too.
+    pub origin: [f64; 3],
+    /// What bounds it along each axis.
+    pub sides: [Side; 3],
 }
 
 impl Domain {
+    /// A rectangle with its lower left corner and sides (length), each pair of sides periodic or closed.
+    pub fn planar([x, y]: [f64; 2], sides: [f64; 2], periodic: [bool; 2]) -> Domain {
+        let side = |axis: usize| match periodic[axis] {
+            true => Side::Periodic(sides[axis]),
+            false => Side::Closed(sides[axis]),
+        };
+        Domain { origin: [x, y, 0.0], sides: [side(0), side(1), Side::Flat] }
+    }
+
+    /// The length of a side.
+    pub fn length(&self, axis: usize) -> f64 {
+        self.sides[axis].length()
+    }
+
+    /// Whether a side is periodic.
+    pub fn is_periodic(&self, axis: usize) -> bool {
+        matches!(self.sides[axis], Side::Periodic(_))
+    }
+
+    /// The lower left corner of a planar box (length).
+    pub fn corner(&self) -> [f64; 2] {
+        [self.origin[0], self.origin[1]]
+    }
+
+    /// The sides of a planar box (length).
+    pub fn lengths(&self) -> [f64; 2] {
+        [self.length(0), self.length(1)]
+    }
+
+    /// The area of a planar box (length²).
+    pub fn area(&self) -> f64 {
+        self.length(0) * self.length(1)
+    }
+
+    /// Which sides of a planar box are periodic.
+    pub fn periodic(&self) -> [bool; 2] {
+        [self.is_periodic(0), self.is_periodic(1)]
+    }
+
     /// From `from` to `to`, across periodic sides where that is shorter (length).
-    pub fn displacement(&self, from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|axis| {
+    pub fn displacement<const D: usize>(&self, from: [f64; D], to: [f64; D]) -> [f64; D] {
+        std::array::from_fn(|axis| {
             let way = to[axis] - from[axis];
-            let side = self.sides[axis];
-            if self.periodic[axis] && way.abs() > 0.5 * side {
-                way - (way / side).round() * side
-            } else {
-                way
+            match self.sides[axis] {
+                Side::Periodic(side) if way.abs() > 0.5 * side => way - (way / side).round() * side,
+                _ => way,
             }
         })
     }
 
-    /// A position moved by periods into the box.
-    pub fn inside(&self, position: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|axis| {
-            let from_low = position[axis] - self.origin[axis];
-            if self.periodic[axis] && !(0.0..self.sides[axis]).contains(&from_low) {
-                self.origin[axis] + from_low.rem_euclid(self.sides[axis])
-            } else {
-                position[axis]
+    /// The distance of two positions, across periodic sides where that is shorter (length).
+    pub fn distance(&self, a: [f64; 2], b: [f64; 2]) -> f64 {
+        let [x, y] = self.displacement(a, b);
+        x.hypot(y)
+    }
+
+    /// The image of a position that lies inside along the periodic sides.
+    pub fn wrapped<const D: usize>(&self, position: [f64; D]) -> [f64; D] {
+        std::array::from_fn(|axis| {
+            let origin = self.origin[axis];
+            let along = position[axis] - origin;
+            let Side::Periodic(side) = self.sides[axis] else { return position[axis] };
+            if (0.0..side).contains(&along) {
+                return position[axis];
             }
+            // What rounds to a whole side is the origin.
+            let rest = along.rem_euclid(side);
+            let inside = origin + if rest < side { rest } else { 0.0 };
+            if inside - origin < side { inside } else { origin }
         })
     }
 
     /// Whether a position lies inside, or on the rim.
-    pub fn contains(&self, position: [f64; 2]) -> bool {
-        (0..2).all(|axis| {
+    pub fn contains<const D: usize>(&self, position: [f64; D]) -> bool {
+        (0..D).all(|axis| {
             let from_low = position[axis] - self.origin[axis];
-            from_low >= 0.0 && from_low <= self.sides[axis]
+            match self.sides[axis] {
+                Side::Periodic(side) | Side::Closed(side) => from_low >= 0.0 && from_low <= side,
+                Side::Open => true,
+                Side::Flat => from_low == 0.0,
+            }
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn images_lie_inside_and_keep_their_distances() {
+        let domain = Domain::planar([-1.0, 2.0], [0.3, 5.0], [true, false]);
+        for x in [-1.0, -0.7, -0.7 - 1e-17, 12.0, -9.123, f64::from_bits((-1f64).to_bits() + 1)] {
+            let image = domain.wrapped([x, 3.0]);
+            assert!(image[0] - domain.origin[0] < 0.3 && domain.contains(image), "{x} becomes {image:?}");
+            assert!(domain.distance([x, 3.0], image) < 1e-12);
+        }
+        assert_eq!(domain.wrapped([-1.0, 99.0]), [-1.0, 99.0]);
+        assert!((domain.distance([-0.99, 3.0], [-0.71, 3.0]) - 0.02).abs() < 1e-12);
+    }
+
+    #[test]
+    fn space_without_end_holds_everything_and_a_plane_has_no_depth() {
+        let space = Domain { origin: [0.0; 3], sides: [Side::Open, Side::Periodic(2.0), Side::Open] };
+        assert!(space.contains([-1e300, 1.0, 7.0]) && !space.contains([0.0, 3.0, 0.0]));
+        assert_eq!(space.wrapped([-5.0, 3.0, 9.0]), [-5.0, 1.0, 9.0]);
+        assert_eq!(
+            space.displacement([0.0, 0.1, 0.0], [8.0, 1.9, -3.0]).map(|way| (way * 10.0).round()),
+            [80.0, -2.0, -30.0]
+        );
+        let plane = Domain::planar([0.0; 2], [1.0; 2], [false; 2]);
+        assert!(
+            plane.contains([0.5, 0.5, 0.0]) && !plane.contains([0.5, 0.5, 0.1]) && plane.length(2) == 0.0
+        );
     }
 }

@@ -43,6 +43,7 @@ pub mod io;
 pub mod memory;
 pub mod method;
 pub mod model;
+pub mod near;
 pub mod observe;
 pub mod origin;
 pub mod particles;

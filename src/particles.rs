@@ -10,20 +10,20 @@ pub enum Kind {
     Wall,
 }
 
-/// One disc.
+/// One particle: a disc in the plane, or a body in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Particle {
     /// A number of its own, which stays with it.
     pub id: u32,
     /// What moves it.
     pub kind: Kind,
-    /// Centre (length).
-    pub position: [f64; 2],
-    /// Velocity (length/time).
-    pub velocity: [f64; 2],
+    /// Centre (length); in the plane the third coordinate is 0.
+    pub position: [f64; 3],
+    /// Velocity (length/time); likewise.
+    pub velocity: [f64; 3],
     /// Angle, counter-clockwise (radian).
     pub angle: f64,
-    /// Angular velocity, counter-clockwise (1/time).
+    /// Angular velocity, counter-clockwise (1/time). What moves in space does not turn.
     pub omega: f64,
     /// Radius (length).
     pub radius: f64,
@@ -31,7 +31,29 @@ pub struct Particle {
     pub mass: f64,
 }
 
-/// Discs in the plane: all grains first, then all wall discs.
+/// A vector of the plane as one of space.
+pub const fn in_space([x, y]: [f64; 2]) -> [f64; 3] {
+    [x, y, 0.0]
+}
+
+/// The first two coordinates, all that there is in the plane.
+pub const fn in_plane([x, y, _]: [f64; 3]) -> [f64; 2] {
+    [x, y]
+}
+
+impl Particle {
+    /// Where it is in the plane (length).
+    pub const fn place(&self) -> [f64; 2] {
+        in_plane(self.position)
+    }
+
+    /// How fast it moves in the plane (length/time).
+    pub const fn planar_velocity(&self) -> [f64; 2] {
+        in_plane(self.velocity)
+    }
+}
+
+/// Particles: all grains first, then all wall discs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Particles(Vec<Particle>);
 
@@ -78,9 +100,11 @@ impl Particles {
         discs.sort_by_key(|disc| disc.id);
         let mut hasher = crc32fast::Hasher::new();
         for disc in discs {
-            let numbers =
-                [disc.position[0], disc.position[1], disc.velocity[0], disc.velocity[1], disc.omega];
-            numbers.iter().for_each(|number| hasher.update(&number.to_bits().to_le_bytes()));
+            // What has no depth has the checksum of its plane.
+            let depth = [disc.position[2], disc.velocity[2]];
+            let depth = depth.into_iter().filter(|_| depth != [0.0; 2]);
+            let planar = disc.place().into_iter().chain(disc.planar_velocity()).chain([disc.omega]);
+            planar.chain(depth).for_each(|number| hasher.update(&number.to_bits().to_le_bytes()));
         }
         format!("{:08x}", hasher.finalize())
     }

@@ -45,7 +45,7 @@ fn differences(model: &Model, a: &Particles, b: &Particles) -> [f64; 2] {
     let mut largest = [0.0_f64; 2];
     for (a, b) in a.all().iter().zip(b.all()) {
         assert_eq!(a.id, b.id);
-        let [dx, dy] = model.domain().displacement(a.position, b.position);
+        let [dx, dy] = model.domain().displacement(a.place(), b.place());
         let dv = [0, 1].map(|axis| a.velocity[axis] - b.velocity[axis]);
         let spin = (a.omega - b.omega).abs();
         largest = [largest[0].max(dx.hypot(dy)), largest[1].max(dv[0].hypot(dv[1])).max(spin)];
@@ -182,7 +182,7 @@ fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
 fn conflicts_are_resolved_beside_the_lattice() {
     for (scheme, edge) in [(Scheme::VelocityVerlet, 1.0), (Scheme::Gear(GearValues::Five), 1.2)] {
         let mut start = gas(400, 0.8, 9);
-        let sides = start.0.domain().sides;
+        let sides = start.0.domain().lengths();
         let counts = sides.map(|side| (side / edge) as usize);
         start.0.shape = LatticeShape::new(counts[0], counts[1], &start.0.mask, [true; 2]).unwrap();
         start.0.frame.edge = [0, 1].map(|axis| sides[axis] / counts[axis] as f64);
@@ -225,7 +225,7 @@ fn naive_forces(model: &Model, discs: &Particles) -> Vec<[f64; 2]> {
     let mut forces = vec![[0.0; 2]; discs.len()];
     for (i, a) in discs.all().iter().enumerate() {
         for (j, b) in discs.all().iter().enumerate().skip(i + 1) {
-            let way = model.domain().displacement(a.position, b.position);
+            let way = model.domain().displacement(a.place(), b.place());
             let distance = way[0].hypot(way[1]);
             let depth = (a.radius + b.radius - distance).max(0.0);
             for axis in 0..2 {

@@ -21,14 +21,14 @@ fn frame(step: u64) -> Frame {
     let grain = Particle {
         id: 7,
         kind: Kind::Grain,
-        position: [0.1 + 0.2, -0.0],
-        velocity: [5e-324, -f64::MAX],
+        position: [0.1 + 0.2, -0.0, 0.0],
+        velocity: [5e-324, -f64::MAX, 0.0],
         angle: 0.0,
         omega: -1.0 / 3.0,
         radius: 0.5,
         mass: 1e-7,
     };
-    let wall = Particle { id: u32::MAX, kind: Kind::Wall, position: [1e300, 2.0], mass: 1e16, ..grain };
+    let wall = Particle { id: u32::MAX, kind: Kind::Wall, position: [1e300, 2.0, 0.0], mass: 1e16, ..grain };
     Frame {
         particles: Particles::new(vec![grain, wall]),
         cell: [10.0 / 3.0, 8.0],

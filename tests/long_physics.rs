@@ -62,7 +62,7 @@ fn run(seed: u64, time: f64, overrides: &[&str]) -> Pipe {
     checked.scene.law.max_penetration = 0.01;
     let mut method = assemble(&checked).unwrap();
     let scenery = Scenery::of(&model(&checked));
-    let length = checked.domain.sides[0];
+    let length = checked.domain.length(0);
     let dt = checked.scene.integrator.dt;
     let steps = (time / dt).round() as u64;
     let (snapshot, tenth) = ((0.05 / dt).round() as u64, steps / 10);

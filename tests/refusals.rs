@@ -255,7 +255,7 @@ fn work_of_gravity_and_walls_is_counted() {
             for (number, (a, b)) in start.grains().iter().zip(now.grains()).enumerate() {
                 for axis in 0..2 {
                     let periods = crossings.get(number).map_or(0.0, |periods| periods[axis]);
-                    let way = b.position[axis] - a.position[axis] + periods * checked.domain.sides[axis];
+                    let way = b.position[axis] - a.position[axis] + periods * checked.domain.length(axis);
                     let pulled = checked.scene.domain.gravity[axis];
                     if pulled != 0.0 {
                         work += b.mass * pulled * way;
@@ -434,7 +434,7 @@ fn velocities_of_wall_discs_are_not_dropped_in_silence() {
         said.iter().any(|text| text.contains("1 wall discs") && text.contains("wall disc 2")),
         "{said:?}"
     );
-    assert_eq!(checked.particles.all()[1].velocity, [0.0; 2]);
+    assert_eq!(checked.particles.all()[1].velocity, [0.0; 3]);
 }
 
 /// Sums that no number holds stop a run: no `inf` stands in a table.

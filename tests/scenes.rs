@@ -96,7 +96,7 @@ fn the_pipe_is_built_as_tried() {
             let along = (i % (walls / 2)) as f64 + if upper { 0.5 } else { 0.0 };
             assert!((disc.position[0] - 0.027 * along).abs() < 1e-9 && disc.radius == 0.009);
             assert!((disc.position[1] - if upper { 0.0365 } else { -0.0365 }).abs() < 1e-12);
-            assert_eq!((disc.kind, disc.velocity), (particles::Kind::Wall, [0.0; 2]));
+            assert_eq!((disc.kind, disc.velocity), (particles::Kind::Wall, [0.0; 3]));
         }
         let speeds: f64 = discs.grains().iter().map(|d| d.velocity[0].powi(2) + d.velocity[1].powi(2)).sum();
         assert!(((speeds / (2.0 * grains as f64)).sqrt() / 0.3 - 1.0).abs() < 0.1);
@@ -104,10 +104,10 @@ fn the_pipe_is_built_as_tried() {
             assert!((disc.mass - 1e-6 * (disc.radius / 0.01).powi(2)).abs() < 1e-18);
         }
         // Started evenly: counts in bins of 20 radii vary far less than Poisson's.
-        let bins = (checked.domain.sides[0] / 0.2) as usize;
+        let bins = (checked.domain.length(0) / 0.2) as usize;
         let mut counts = vec![0.0; bins];
         discs.grains().iter().for_each(|disc| counts[(disc.position[0] / 0.2) as usize % bins] += 1.0);
-        let mean = grains as f64 / checked.domain.sides[0] * 0.2;
+        let mean = grains as f64 / checked.domain.length(0) * 0.2;
         let variance = counts[..bins].iter().map(|count| (count - mean).powi(2)).sum::<f64>() / bins as f64;
         assert!(variance / mean < 0.4, "{name}: {}", variance / mean);
     }
@@ -206,7 +206,7 @@ fn start_files_are_read_beside_the_scene() {
     std::fs::write(&path, good.replace("[20.0, 20.0]", "[10.0, 8.0]")).unwrap();
     let checked = Document::load(path.to_str().unwrap(), &[]).and_then(Document::check).unwrap();
     assert_eq!(checked.particles.len(), 2);
-    assert_eq!(checked.particles.all()[0].velocity, [1.0, 0.0]);
+    assert_eq!(checked.particles.all()[0].velocity, [1.0, 0.0, 0.0]);
     assert!(checked.alike);
 }
 

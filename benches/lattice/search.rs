@@ -57,7 +57,7 @@ pub fn search(criterion: &mut Criterion) {
         let lattice = Lattice { occupancy: &occupancy, codes: &codes };
 
         let domain = model.domain();
-        let grid = Grid::new(domain.origin, domain.sides, domain.periodic, 1.0, f64::INFINITY, count)
+        let grid = Grid::new(domain.corner(), domain.lengths(), domain.periodic(), 1.0, f64::INFINITY, count)
             .expect("a large box");
         let mut sectors = Sectors::new(grid, count, 1.0);
         let (in_sectors, [sx, sy]) = settled(&particles, &grid);

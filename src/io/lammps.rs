@@ -42,13 +42,13 @@ pub fn write_data(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "\nAtoms # sphere\n")?;
     for disc in discs {
         let density = disc.mass / (4.0 / 3.0 * PI * (disc.radius * disc.radius * disc.radius));
-        let ([x, y], diameter) = (disc.position, 2.0 * disc.radius);
-        writeln!(out, "{} {} {diameter:?} {density:?} {x:?} {y:?} 0.0", disc.id, atom_type(disc.kind))?;
+        let ([x, y, z], diameter) = (disc.position, 2.0 * disc.radius);
+        writeln!(out, "{} {} {diameter:?} {density:?} {x:?} {y:?} {z:?}", disc.id, atom_type(disc.kind))?;
     }
     writeln!(out, "\nVelocities\n")?;
     for disc in discs {
-        let [u, v] = disc.velocity;
-        writeln!(out, "{} {u:?} {v:?} 0.0 0.0 0.0 {:?}", disc.id, disc.omega)?;
+        let [u, v, w] = disc.velocity;
+        writeln!(out, "{} {u:?} {v:?} {w:?} 0.0 0.0 {:?}", disc.id, disc.omega)?;
     }
     Ok(())
 }
@@ -69,8 +69,8 @@ pub fn write_dump(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
     }
     writeln!(out, "ITEM: ATOMS id type x y z vx vy vz omegaz radius mass")?;
     for disc in frame.particles.all() {
-        let ([x, y], [u, v]) = (disc.position, disc.velocity);
-        write!(out, "{} {} {x:?} {y:?} 0.0 {u:?} {v:?} 0.0 ", disc.id, atom_type(disc.kind))?;
+        let ([x, y, z], [u, v, w]) = (disc.position, disc.velocity);
+        write!(out, "{} {} {x:?} {y:?} {z:?} {u:?} {v:?} {w:?} ", disc.id, atom_type(disc.kind))?;
         writeln!(out, "{:?} {:?} {:?}", disc.omega, disc.radius, disc.mass)?;
     }
     Ok(())

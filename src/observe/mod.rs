@@ -3,8 +3,8 @@
 pub mod waves;
 
 use crate::domain::Domain;
-use crate::grid::Bins;
-use crate::particles::{Kind, Particles};
+use crate::near::Near;
+use crate::particles::{Kind, Particle, Particles};
 use serde::Serialize;
 use stripmine_kernels::law::granular::Contact;
 
@@ -59,7 +59,7 @@ impl Observation {
         let mut mass = 0.0;
         let mut sum_velocity = [0.0; 2];
         for grain in grains {
-            let [vx, vy] = grain.velocity;
+            let [vx, vy] = grain.planar_velocity();
             seen.kinetic += 0.5 * grain.mass * (vx * vx + vy * vy);
             let inertia = inertia_factor * grain.mass * grain.radius * grain.radius;
             seen.rotational += 0.5 * inertia * grain.omega * grain.omega;
@@ -97,25 +97,28 @@ impl Observation {
 }
 
 /// Pairs in contact with at least one grain: the two, the penetration (fraction of the sum of the radii) and that sum
-/// (length). In order of the first disc.
+/// (length). In order of the first disc, then of the second.
 pub fn contacts(particles: &Particles, domain: &Domain) -> Vec<(usize, usize, f64, f64)> {
     let all = particles.all();
     let Some([_, largest]) = particles.radii() else { return vec![] };
-    let bins = Bins::new(*domain, all.iter().map(|disc| disc.position), 2.0 * largest);
+    let near = Near::among(*domain, all.iter().map(Particle::place), 2.0 * largest);
     let mut found = Vec::new();
+    let mut partners = Vec::new();
     for (i, disc) in particles.grains().iter().enumerate() {
-        bins.around(disc.position, |j| {
-            let j = j as usize;
+        partners.clear();
+        partners.extend(near.of(disc.place()).map(|(number, _)| number as usize));
+        partners.sort_unstable();
+        for &j in &partners {
             let once = j > i || all[j].kind == Kind::Wall;
             if once && j != i {
-                let [dx, dy] = domain.displacement(disc.position, all[j].position);
+                let [dx, dy] = domain.displacement(disc.place(), all[j].place());
                 let reach = disc.radius + all[j].radius;
                 let penetration = 1.0 - dx.hypot(dy) / reach;
                 if penetration > 0.0 {
                     found.push((i, j, penetration, reach));
                 }
             }
-        });
+        }
     }
     found
 }

@@ -1,17 +1,13 @@
 //! Initial states: where discs are and how fast they start.
 
-mod image;
-mod near;
 mod random;
 mod rows;
 
-pub use image::{distance, wrapped};
-pub use near::Near;
 pub(crate) use random::stir;
 pub use random::{Filling, Jammed, random};
 pub use rows::{Row, row};
 
-use crate::particles::{Kind, Particle, Particles};
+use crate::particles::{Kind, Particle, Particles, in_space};
 use stripmine_kernels::noise::{Purpose, Stream, normals};
 
 /// A periodic box filled with equal discs.
@@ -45,11 +41,11 @@ pub fn hexagonal(least: usize, packing_fraction: f64, kt: f64, seed: u64) -> Pac
             discs.push(Particle {
                 id,
                 kind: Kind::Grain,
-                position: [
+                position: in_space([
                     (column as f64 + offset) * spacing + length * libm::cos(angle),
                     (row as f64 + 0.5) * row_height + length * libm::sin(angle),
-                ],
-                velocity: normals(seed, Purpose::Placement, id, 1).map(|v| v * kt.sqrt()),
+                ]),
+                velocity: in_space(normals(seed, Purpose::Placement, id, 1).map(|v| v * kt.sqrt())),
                 angle: 0.0,
                 omega: 0.0,
                 radius: 0.5,

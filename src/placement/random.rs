@@ -1,8 +1,8 @@
 //! Random placement without overlap.
 
-use super::{Near, distance, wrapped};
 use crate::domain::Domain;
-use crate::particles::{Kind, Particle};
+use crate::near::Near;
+use crate::particles::{Kind, Particle, in_space};
 use stripmine_kernels::noise::{Purpose, Stream, normals};
 
 /// What is placed where.
@@ -55,7 +55,7 @@ pub fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
     let mut near = Near::new(domain, (2.0 * largest).max(largest + obstacle));
     let mut circles: Vec<f64> = Vec::with_capacity(obstacles.len() + count.min(1 << 20));
     for disc in obstacles {
-        near.add(circles.len() as u32, wrapped(&domain, disc.position));
+        near.add(circles.len() as u32, domain.wrapped(disc.place()));
         circles.push(disc.radius);
     }
     let mut discs = Vec::new();
@@ -65,7 +65,7 @@ pub fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
         let jammed = Jammed { placed: discs.len(), asked: count, tries: TRIES };
         let ranges = [0, 1].map(|axis| {
             let [low, high] = room.map(|corner| corner[axis]);
-            let open = domain.periodic[axis] && high - low >= domain.sides[axis];
+            let open = domain.is_periodic(axis) && high - low >= domain.length(axis);
             if open { [low, high] } else { [low + radius, high - radius] }
         });
         if ranges.iter().any(|[low, high]| low > high) {
@@ -73,11 +73,11 @@ pub fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
         }
         let mut draw = || {
             let position = ranges.map(|[low, high]| low + (high - low) * stream.uniform());
-            wrapped(&domain, position)
+            domain.wrapped(position)
         };
         let free = |position: &[f64; 2]| {
             near.of(*position)
-                .all(|(other, there)| distance(&domain, *position, there) > radius + circles[other as usize])
+                .all(|(other, there)| domain.distance(*position, there) > radius + circles[other as usize])
         };
         let position = (0..TRIES).map(|_| draw()).find(free).ok_or(jammed)?;
         near.add(circles.len() as u32, position);
@@ -86,8 +86,8 @@ pub fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
         discs.push(Particle {
             id,
             kind: Kind::Grain,
-            position,
-            velocity: [0.0; 2],
+            position: in_space(position),
+            velocity: [0.0; 3],
             angle: 0.0,
             omega: 0.0,
             radius,
@@ -125,7 +125,7 @@ fn truncated_normal(stream: &mut Stream, deviation: f64, cut: f64) -> f64 {
 /// id; without net momentum if `balanced`.
 pub(crate) fn stir(discs: &mut [Particle], seed: u64, balanced: bool, deviation: impl Fn(&Particle) -> f64) {
     for disc in discs.iter_mut() {
-        disc.velocity = normals(seed, Purpose::Placement, disc.id, 1).map(|v| v * deviation(disc));
+        disc.velocity = in_space(normals(seed, Purpose::Placement, disc.id, 1).map(|v| v * deviation(disc)));
     }
     if balanced {
         let mass: f64 = discs.iter().map(|disc| disc.mass).sum();
@@ -142,7 +142,7 @@ mod tests {
 
     fn filling() -> Filling<'static> {
         Filling {
-            domain: Domain { origin: [-2.0, 1.0], sides: [30.0, 20.0], periodic: [true, false] },
+            domain: Domain::planar([-2.0, 1.0], [30.0, 20.0], [true, false]),
             room: [[-2.0, 1.0], [28.0, 21.0]],
             obstacles: &[],
             count: 300,
@@ -166,7 +166,7 @@ mod tests {
             assert!((a.radius / 0.5 - 1.0).abs() <= 0.1);
             assert!((a.mass - 2.0 * (a.radius / 0.5).powi(2)).abs() < 1e-12);
             for b in &discs[..i] {
-                assert!(distance(&filling.domain, a.position, b.position) > a.radius + b.radius);
+                assert!(filling.domain.distance(a.place(), b.place()) > a.radius + b.radius);
             }
         }
         assert_eq!(discs, random(&filling).unwrap());

@@ -1,8 +1,7 @@
 //! Rows of wall discs.
 
-use super::wrapped;
 use crate::domain::Domain;
-use crate::particles::{Kind, Particle};
+use crate::particles::{Kind, Particle, in_space};
 
 /// A row of wall discs along x, across the whole box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,13 +20,13 @@ pub struct Row {
 
 /// The discs of a row, ids from `first_id` on.
 pub fn row(domain: &Domain, row: &Row, first_id: u32) -> Vec<Particle> {
-    let count = (domain.sides[0] / row.spacing).round().clamp(1.0, f64::from(u32::MAX / 4)) as u32;
-    let spacing = domain.sides[0] / f64::from(count);
+    let count = (domain.length(0) / row.spacing).round().clamp(1.0, f64::from(u32::MAX / 4)) as u32;
+    let spacing = domain.length(0) / f64::from(count);
     let disc = |i: u32| Particle {
         id: first_id + i,
         kind: Kind::Wall,
-        position: wrapped(domain, [domain.origin[0] + (f64::from(i) + row.shift) * spacing, row.y]),
-        velocity: [0.0; 2],
+        position: in_space(domain.wrapped([domain.origin[0] + (f64::from(i) + row.shift) * spacing, row.y])),
+        velocity: [0.0; 3],
         angle: 0.0,
         omega: 0.0,
         radius: row.radius,
@@ -38,20 +37,20 @@ pub fn row(domain: &Domain, row: &Row, first_id: u32) -> Vec<Particle> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::distance;
+
     use super::*;
 
     #[test]
     fn a_row_closes_across_the_periodic_side() {
-        let domain = Domain { origin: [1.0, 0.0], sides: [8.1, 0.1], periodic: [true, false] };
+        let domain = Domain::planar([1.0, 0.0], [8.1, 0.1], [true, false]);
         for shift in [0.0, 0.5] {
             let discs = row(&domain, &Row { y: 0.03, shift, radius: 0.009, spacing: 0.0271, mass: 1.0 }, 7);
             assert_eq!(discs.len(), 299);
             assert_eq!((discs[0].id, discs[298].id), (7, 305));
             let spacing = 8.1 / 299.0;
             for pair in 0..299 {
-                let (a, b) = (discs[pair].position, discs[(pair + 1) % 299].position);
-                assert!((distance(&domain, a, b) - spacing).abs() < 1e-9);
+                let (a, b) = (discs[pair].place(), discs[(pair + 1) % 299].place());
+                assert!((domain.distance(a, b) - spacing).abs() < 1e-9);
             }
         }
     }

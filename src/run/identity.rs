@@ -110,12 +110,12 @@ fn short(digest: &str) -> String {
 /// SHA-256 of all bits of all discs, hexadecimal.
 fn digest(particles: &Particles) -> String {
     let mut sum = Sha256::new();
-    for &Particle { id, kind, position: [x, y], velocity: [u, v], angle, omega, radius, mass } in
+    for &Particle { id, kind, position: [x, y, z], velocity: [u, v, w], angle, omega, radius, mass } in
         particles.all()
     {
         sum.update(id.to_le_bytes());
         sum.update([u8::from(kind == Kind::Wall)]);
-        [x, y, u, v, angle, omega, radius, mass]
+        [x, y, z, u, v, w, angle, omega, radius, mass]
             .iter()
             .for_each(|value| sum.update(value.to_bits().to_le_bytes()));
     }

@@ -286,9 +286,9 @@ impl Recorder {
         let (domain, clock) = (self.domain, simulation.clock());
         Frame {
             particles: simulation.particles(),
-            cell: domain.sides,
-            origin: domain.origin,
-            periodic: Some(domain.periodic),
+            cell: domain.lengths(),
+            origin: domain.corner(),
+            periodic: Some(domain.periodic()),
             time: clock.time,
             step: clock.steps,
             seed: self.seed,

@@ -49,7 +49,7 @@ impl Domain {
     /// The box, where the scene states it.
     pub fn stated(&self) -> Option<crate::domain::Domain> {
         let sides = self.sides?;
-        Some(crate::domain::Domain { origin: self.origin, sides, periodic: self.periodic })
+        Some(crate::domain::Domain::planar(self.origin, sides, self.periodic))
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::Stated;
 use crate::domain::Domain;
+use crate::near::Near;
 use crate::particles::{Kind, Particles};
-use crate::placement::{Near, distance, wrapped};
 use crate::scene::{
     FILE, GENERATE, POSITIONS, Reason, SceneError, Spot, Start, WALL_AMPLITUDE, WALL_POSITIONS, WallMotion,
 };
@@ -14,7 +14,7 @@ const NAMED: usize = 5;
 /// Discs that are not in the box.
 pub fn outside(stated: &Stated<'_>, domain: &Domain, particles: &Particles) -> Vec<SceneError> {
     let [[left, bottom], [right, top]] =
-        [domain.origin, [domain.origin[0] + domain.sides[0], domain.origin[1] + domain.sides[1]]];
+        [domain.corner(), [domain.origin[0] + domain.length(0), domain.origin[1] + domain.length(1)]];
     let sweep = match stated.walls {
         WallMotion::Fixed => [0.0; 2],
         WallMotion::Oscillating { amplitude, .. } => amplitude.map(f64::abs),
@@ -22,19 +22,19 @@ pub fn outside(stated: &Stated<'_>, domain: &Domain, particles: &Particles) -> V
     let leaves = |position: [f64; 2]| {
         (0..2).any(|axis| {
             let (low, high) = (position[axis] - sweep[axis], position[axis] + sweep[axis]);
-            let end = domain.origin[axis] + domain.sides[axis];
-            !domain.periodic[axis] && (low < domain.origin[axis] || high >= end)
+            let end = domain.origin[axis] + domain.length(axis);
+            !domain.is_periodic(axis) && (low < domain.origin[axis] || high >= end)
         })
     };
     let mut errors = Vec::new();
     for (number, disc) in particles.all().iter().enumerate() {
-        let ([x, y], what) = (disc.position.map(readable), noun(disc.kind));
+        let ([x, y], what) = (disc.place().map(readable), noun(disc.kind));
         let spot = spot_of(stated, particles, number);
         if !domain.contains(disc.position) {
             let message = format!("{what} {} at ({x}, {y}) is outside the box", disc.id);
             let inside = format!("a position from ({left}, {bottom}) to below ({right}, {top})");
             errors.push(spot.error(Reason::Outside, message).expecting(inside));
-        } else if disc.kind == Kind::Wall && leaves(disc.position) {
+        } else if disc.kind == Kind::Wall && leaves(disc.place()) {
             let message = format!(
                 "{what} {} at ({x}, {y}) swings by ({}, {}) out of the box, which reaches from ({left}, {bottom}) to \
                  ({right}, {top})",
@@ -103,10 +103,10 @@ pub fn overlaps(stated: &Stated<'_>, domain: &Domain, particles: &Particles, lim
     let discs = particles.all();
     let mut deep = Deep::default();
     'all: for (number, disc) in discs.iter().enumerate() {
-        let position = wrapped(domain, disc.position);
+        let position = domain.wrapped(disc.place());
         for (other, there) in near.of(position) {
             let reach = disc.radius + discs[other as usize].radius;
-            let penetration = 1.0 - distance(domain, position, there) / reach;
+            let penetration = 1.0 - domain.distance(position, there) / reach;
             if penetration > limit {
                 deep.add((other as usize, number, penetration));
             }
@@ -121,7 +121,7 @@ pub fn overlaps(stated: &Stated<'_>, domain: &Domain, particles: &Particles, lim
     for (first, second, penetration) in worst {
         let [a, b] = [first, second].map(|number| {
             let disc = &discs[number];
-            let [x, y] = disc.position.map(readable);
+            let [x, y] = disc.place().map(readable);
             format!("{} {} at ({x}, {y})", noun(disc.kind), disc.id)
         });
         let reach = discs[first].radius + discs[second].radius;

@@ -4,8 +4,8 @@ use super::{Stated, readable};
 use crate::domain::Domain;
 use crate::io::extxyz;
 use crate::memory;
-use crate::particles::{Kind, Particle, Particles};
-use crate::placement::{Filling, Row, hexagonal, random, row, stir, wrapped};
+use crate::particles::{Kind, Particle, Particles, in_space};
+use crate::placement::{Filling, Row, hexagonal, random, row, stir};
 use crate::quoted;
 use crate::scene::{
     Amount, CLEAR_WIDTH, COUNT, FILE, FILL_HEIGHT, GENERATE, Grains, Key, Lining, List, ORIGIN,
@@ -67,8 +67,7 @@ pub struct Made {
 /// # Errors
 /// [`SceneError`]: why there are none.
 pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
-    let domain =
-        stated.domain.stated().unwrap_or(Domain { origin: [0.0; 2], sides: [1.0; 2], periodic: [true; 2] });
+    let domain = stated.domain.stated().unwrap_or(Domain::planar([0.0; 2], [1.0; 2], [true; 2]));
     resolved(stated, &domain, radii(stated.start, None))?;
     let (domain, mut particles) = match stated.start {
         Start::File(path) => (domain, from_file(stated, &domain, path)?),
@@ -78,9 +77,9 @@ pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
             on_lattice(stated, *count, *packing_fraction, grains)
         }
         Start::Random { amount, grains } => {
-            let count = grain_count(stated, *amount, domain.sides[0] * domain.sides[1], grains)?;
-            let far = [0, 1].map(|axis| domain.origin[axis] + domain.sides[axis]);
-            let discs = fill(stated, &domain, [domain.origin, far], &[], count, grains)?;
+            let count = grain_count(stated, *amount, domain.area(), grains)?;
+            let far = [0, 1].map(|axis| domain.origin[axis] + domain.length(axis));
+            let discs = fill(stated, &domain, [domain.corner(), far], &[], count, grains)?;
             (domain, Particles::new(discs))
         }
         Start::Pipe { amount, grains, lining, clear_width } => {
@@ -99,8 +98,8 @@ pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
     resolved(stated, &domain, radii(stated.start, particles.radii()))?;
     let moving = |disc: &&Particle| {
         disc.kind == Kind::Wall
-            && (disc.velocity != [0.0; 2] || disc.omega != 0.0)
-            && disc.velocity != start_velocity
+            && (disc.velocity != [0.0; 3] || disc.omega != 0.0)
+            && disc.planar_velocity() != start_velocity
     };
     let mut warnings = Vec::new();
     if let Some(first) = particles.all().iter().find(moving) {
@@ -116,9 +115,9 @@ pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
         });
     }
     for disc in particles.all_mut() {
-        disc.position = wrapped(&domain, disc.position);
+        disc.position = domain.wrapped(disc.position);
         if disc.kind == Kind::Wall {
-            (disc.velocity, disc.omega) = (start_velocity, 0.0);
+            (disc.velocity, disc.omega) = (in_space(start_velocity), 0.0);
         }
     }
     Ok(Made { domain, particles, warnings })
@@ -130,10 +129,10 @@ fn resolved(stated: &Stated<'_>, domain: &Domain, radii: Option<[f64; 2]>) -> Re
     const COARSEST: f64 = 1e-6;
     let Some([smallest, _]) = radii else { return Ok(()) };
     for axis in 0..2 {
-        let farthest = domain.origin[axis].abs() + domain.sides[axis];
+        let farthest = domain.origin[axis].abs() + domain.length(axis);
         let step = farthest * f64::EPSILON;
         if step > COARSEST * smallest {
-            let far_away = domain.origin[axis].abs() > domain.sides[axis];
+            let far_away = domain.origin[axis].abs() > domain.length(axis);
             let key: &Key = if far_away { &ORIGIN } else { &SIDES };
             let message = format!(
                 "positions as far as {farthest:e} are known to {step:.1e} only, too coarse for discs of radius {smallest:e}"
@@ -154,8 +153,10 @@ fn from_file(stated: &Stated<'_>, domain: &Domain, path: &std::path::Path) -> Re
         let message = format!("the start file {} holds no disc", quoted::path(path));
         return Err(stated.spot(&FILE).error(Reason::StartFile, message));
     }
-    for (found, here, key) in [(frame.cell, domain.sides, &SIDES), (frame.origin, domain.origin, &ORIGIN)] {
-        let apart = |axis: usize| (found[axis] - here[axis]).abs() > 1e-9 * domain.sides[axis];
+    for (found, here, key) in
+        [(frame.cell, domain.lengths(), &SIDES), (frame.origin, domain.corner(), &ORIGIN)]
+    {
+        let apart = |axis: usize| (found[axis] - here[axis]).abs() > 1e-9 * domain.length(axis);
         if apart(0) || apart(1) {
             let message = format!(
                 "`{}` is {here:?}, but the box of the start file {} says {found:?}",
@@ -166,10 +167,10 @@ fn from_file(stated: &Stated<'_>, domain: &Domain, path: &std::path::Path) -> Re
             return Err(error.expecting(format!("{} = {found:?}", key.name)));
         }
     }
-    if let Some(found) = frame.periodic.filter(|&found| found != domain.periodic) {
+    if let Some(found) = frame.periodic.filter(|&found| found != domain.periodic()) {
         let message = format!(
             "`domain.periodic` is {:?}, but the start file {} says pbc = {found:?} along x and y",
-            domain.periodic,
+            domain.periodic(),
             quoted::path(path)
         );
         let error = stated.spot(&PERIODIC).error(Reason::Contradiction, message);
@@ -183,8 +184,8 @@ fn disc(id: u32, kind: Kind, position: [f64; 2], radius: f64, [unit, mass]: [f64
     Particle {
         id,
         kind,
-        position,
-        velocity: [0.0; 2],
+        position: in_space(position),
+        velocity: [0.0; 3],
         angle: 0.0,
         omega: 0.0,
         radius,
@@ -197,7 +198,7 @@ fn listed(list: &List) -> Particles {
     let columns = list.velocities.iter().zip(&list.omegas).zip(&list.radii);
     let grains = list.positions.iter().zip(columns).zip(1..);
     let grains = grains.map(|((position, ((velocity, omega), radius)), id)| Particle {
-        velocity: *velocity,
+        velocity: in_space(*velocity),
         omega: *omega,
         ..disc(id, Kind::Grain, *position, *radius, of)
     });
@@ -221,12 +222,12 @@ fn on_lattice(
     let diameter = 2.0 * grains.radius;
     let origin = stated.domain.origin;
     for disc in packing.particles.all_mut() {
-        disc.position = [0, 1].map(|axis| origin[axis] + diameter * disc.position[axis]);
+        disc.position = in_space([0, 1].map(|axis| origin[axis] + diameter * disc.position[axis]));
         disc.radius = grains.radius;
         disc.mass = grains.mass;
     }
     let sides = packing.sides.map(|side| diameter * side);
-    (Domain { origin, sides, periodic: stated.domain.periodic }, packing.particles)
+    (Domain::planar(origin, sides, stated.domain.periodic), packing.particles)
 }
 
 /// How many grains fill an area that is open to them.
@@ -273,7 +274,7 @@ fn fill(
         error.advising("lower count or packing_fraction, or make more room")
     })?;
     // Where walls take up momentum there is none to balance.
-    let balanced = domain.periodic == [true; 2] && obstacles.is_empty() && discs.len() > 1;
+    let balanced = domain.periodic() == [true; 2] && obstacles.is_empty() && discs.len() > 1;
     stir(&mut discs, seed, balanced, |disc| match speed {
         Speed::Deviation(speed) => speed,
         Speed::Temperature(kt) => (kt / disc.mass).sqrt(),
@@ -289,7 +290,7 @@ fn lined(
     count: usize,
     (lining, grains): (&Lining, &Grains),
 ) -> Result<Vec<Particle>, SceneError> {
-    let each = domain.sides[0] / lining.spacing;
+    let each = domain.length(0) / lining.spacing;
     if each * rows.len() as f64 > MOST {
         let message = format!("a row takes {each:.4e} wall discs; more than {MOST:.3e} cannot be numbered");
         return Err(stated.spot(&WALL_SPACING).error(Reason::Placement, message));
@@ -317,21 +318,21 @@ fn pipe(
     lining: &Lining,
     clear_width: f64,
 ) -> Result<Particles, SceneError> {
-    let axis = domain.origin[1] + 0.5 * domain.sides[1];
+    let axis = domain.origin[1] + 0.5 * domain.length(1);
     let reach = 0.5 * clear_width + lining.radius;
-    if 2.0 * reach >= domain.sides[1] {
+    if 2.0 * reach >= domain.length(1) {
         let message = format!(
             "the centres of the two walls are {} apart, but the box is {} high",
             readable(2.0 * reach),
-            domain.sides[1]
+            domain.length(1)
         );
         let error = stated.spot(&CLEAR_WIDTH).error(Reason::Outside, message);
-        return Err(error.advising("raise the second of domain.sides, or lower clear_width"));
+        return Err(error.advising("raise the second of domain.lengths(), or lower clear_width"));
     }
-    let count = grain_count(stated, amount, domain.sides[0] * clear_width, grains)?;
+    let count = grain_count(stated, amount, domain.length(0) * clear_width, grains)?;
     let rows = [(axis - reach, 0.0), (axis + reach, 0.5)];
     let walls = lined(stated, domain, &rows, count, (lining, grains))?;
-    let end = domain.origin[0] + domain.sides[0];
+    let end = domain.origin[0] + domain.length(0);
     let room = [[domain.origin[0], axis - 0.5 * clear_width], [end, axis + 0.5 * clear_width]];
     let mut discs = fill(stated, domain, room, &walls, count, grains)?;
     discs.extend(walls);
@@ -353,18 +354,18 @@ fn above_floor(
     };
     let centres = domain.origin[1] + lining.radius + swing;
     let floor = centres + lining.radius;
-    let top = domain.origin[1] + domain.sides[1];
+    let top = domain.origin[1] + domain.length(1);
     if floor + fill_height > top {
         let message = format!(
             "grains would be placed up to {}, but the box ends at {top}",
             readable(floor + fill_height)
         );
         let error = stated.spot(&FILL_HEIGHT).error(Reason::Outside, message);
-        return Err(error.advising("raise the second of domain.sides, or lower fill_height"));
+        return Err(error.advising("raise the second of domain.lengths(), or lower fill_height"));
     }
-    let count = grain_count(stated, amount, domain.sides[0] * fill_height, grains)?;
+    let count = grain_count(stated, amount, domain.length(0) * fill_height, grains)?;
     let walls = lined(stated, domain, &[(centres, 0.0)], count, (lining, grains))?;
-    let room = [[domain.origin[0], floor], [domain.origin[0] + domain.sides[0], floor + fill_height]];
+    let room = [[domain.origin[0], floor], [domain.origin[0] + domain.length(0), floor + fill_height]];
     let mut discs = fill(stated, domain, room, &walls, count, grains)?;
     discs.extend(walls);
     Ok(Particles::new(discs))

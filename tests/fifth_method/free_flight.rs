@@ -183,8 +183,8 @@ impl Simulation for Flying {
                 break;
             }
             for disc in self.discs.all_mut() {
-                let moved = [0, 1].map(|axis| disc.position[axis] + self.dt * disc.velocity[axis]);
-                disc.position = self.domain.inside(moved);
+                let moved = [0, 1, 2].map(|axis| disc.position[axis] + self.dt * disc.velocity[axis]);
+                disc.position = self.domain.wrapped(moved);
             }
             self.steps += 1;
         }
@@ -201,7 +201,10 @@ impl Simulation for Flying {
 
     fn observe(&self) -> Vec<f64> {
         let energy = |v: [f64; 2], mass: f64| 0.5 * mass * (v[0] * v[0] + v[1] * v[1]);
-        vec![self.clock().time, self.discs.all().iter().map(|disc| energy(disc.velocity, disc.mass)).sum()]
+        vec![
+            self.clock().time,
+            self.discs.all().iter().map(|disc| energy(disc.planar_velocity(), disc.mass)).sum(),
+        ]
     }
 
     fn snapshot(&self) -> Snapshot {

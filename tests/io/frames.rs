@@ -12,8 +12,9 @@ fn frames(text: &str) -> Result<Vec<Frame>, ReadError> {
 fn bits(frame: &Frame) -> Vec<u64> {
     let Frame { particles, cell, origin, periodic, time, step, seed } = frame;
     let disc = |disc: &Particle| {
-        let Particle { id, kind, position: [x, y], velocity: [u, v], angle, omega, radius, mass } = *disc;
-        let numbers = [x, y, u, v, angle, omega, radius, mass].map(f64::to_bits);
+        let Particle { id, kind, position: [x, y, z], velocity: [u, v, w], angle, omega, radius, mass } =
+            *disc;
+        let numbers = [x, y, z, u, v, w, angle, omega, radius, mass].map(f64::to_bits);
         [vec![u64::from(id), u64::from(kind == Kind::Wall)], numbers.to_vec()].concat()
     };
     let numbers = [cell[0], cell[1], origin[0], origin[1], *time].map(f64::to_bits);
@@ -50,8 +51,8 @@ fn every_bit_comes_back() {
     let discs = (1..=2000).map(|id| Particle {
         id,
         kind: if id > 1900 { Kind::Wall } else { Kind::Grain },
-        position: [any(), any()],
-        velocity: [any(), any()],
+        position: [any(), any(), 0.0],
+        velocity: [any(), any(), 0.0],
         angle: 0.0,
         omega: any(),
         radius: any().abs().max(f64::MIN_POSITIVE),

@@ -3,7 +3,7 @@
 
 use stripmine::method::lattice_md::Engine;
 use stripmine::method::lattice_md::{Contacts, Discs, GearValues, Machine, Model, Scheme, Watch, start};
-use stripmine::particles::{Kind, Particle, Particles};
+use stripmine::particles::{Kind, Particle, Particles, in_space};
 use stripmine::placement::hexagonal;
 use stripmine::scene::{Precision, WallMotion};
 use stripmine_kernels::law::granular::{Contact, ContactArm};
@@ -85,5 +85,6 @@ pub fn arena(cells: [usize; 2], periodic: bool, discs: &[Particle]) -> (Model, P
 
 /// A grain without spin.
 pub fn grain(id: u32, position: [f64; 2], velocity: [f64; 2], radius: f64, mass: f64) -> Particle {
+    let (position, velocity) = (in_space(position), in_space(velocity));
     Particle { id, kind: Kind::Grain, position, velocity, angle: 0.0, omega: 0.0, radius, mass }
 }

@@ -97,7 +97,7 @@ impl Layout {
         let mass = row.positive(MASS)?;
         let [about_x, about_y, omega] = row.vector(OMEGA)?;
         row.zeros(OMEGA, &[(0, about_x), (1, about_y)])?;
-        Ok(Particle { id, kind, position: [x, y], velocity: [u, v], angle: 0.0, omega, radius, mass })
+        Ok(Particle { id, kind, position: [x, y, z], velocity: [u, v, w], angle: 0.0, omega, radius, mass })
     }
 }
 

@@ -27,8 +27,8 @@ pub fn write(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
             Kind::Grain => "Si",
             Kind::Wall => "W",
         };
-        let ([x, y], [u, v]) = (disc.position, disc.velocity);
-        write!(out, "{species} {x:?} {y:?} 0.0 {} {u:?} {v:?} 0.0 ", disc.id)?;
+        let ([x, y, z], [u, v, w]) = (disc.position, disc.velocity);
+        write!(out, "{species} {x:?} {y:?} {z:?} {} {u:?} {v:?} {w:?} ", disc.id)?;
         writeln!(out, "{:?} {:?} 0.0 0.0 {:?}", disc.radius, disc.mass, disc.omega)?;
     }
     Ok(())

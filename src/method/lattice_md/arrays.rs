@@ -118,10 +118,10 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
 
         let anchored: Option<Vec<(u32, [f64; 2])>> = model
             .is_anchored::<S>()
-            .then(|| particles.all().iter().map(|disc| model.anchored(disc.position)).collect());
+            .then(|| particles.all().iter().map(|disc| model.anchored(disc.place())).collect());
         let places: Vec<[f64; 2]> = match &anchored {
             Some(anchored) => anchored.iter().map(|(_, place)| *place).collect(),
-            None => particles.all().iter().map(|disc| disc.position).collect(),
+            None => particles.all().iter().map(Particle::place).collect(),
         };
         let mut state = Vec::new();
         for (freedom, row) in STATE.iter().enumerate().take(model.freedoms()) {

@@ -3,7 +3,7 @@
 use super::{Engine, Totals};
 use crate::domain::Domain;
 use crate::observe::Observation;
-use crate::particles::Particles;
+use crate::particles::{Particle, Particles};
 
 /// What the energy of the grains is held against: what was there at the start, what gravity and walls have put in, and what
 /// contacts have taken out.
@@ -38,7 +38,7 @@ impl Work {
         domain: Domain,
         gravity: [f64; 2],
     ) -> Work {
-        let from = particles.grains().iter().map(|grain| grain.position).collect();
+        let from = particles.grains().iter().map(Particle::place).collect();
         Work { domain, gravity, start: inner(seen), from }
     }
 
@@ -49,7 +49,7 @@ impl Work {
         for (number, (grain, from)) in particles.grains().iter().zip(&self.from).enumerate() {
             let periods = crossings.get(number).copied().unwrap_or_default();
             let along = |axis: usize| {
-                let way = (grain.position[axis] - from[axis]) + periods[axis] * self.domain.sides[axis];
+                let way = (grain.position[axis] - from[axis]) + periods[axis] * self.domain.length(axis);
                 self.gravity[axis] * way
             };
             // Where nothing pulls, nothing is followed, and the way may be an image's.

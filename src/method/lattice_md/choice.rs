@@ -80,7 +80,7 @@ pub(super) fn searches(scene: &Scene, domain: &Domain, particles: &Particles) ->
         return vec![choice(By::Lattice, "a key that only the lattice has is given".to_owned())];
     }
     let area: f64 = particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius * disc.radius).sum();
-    let (packing_fraction, discs) = (area / (domain.sides[0] * domain.sides[1]), particles.len());
+    let (packing_fraction, discs) = (area / (domain.area()), particles.len());
     let crossing = crossing(scene.machine.precision, discs);
     let on_lattice = choice(By::Lattice, {
         format!("the packing fraction {packing_fraction:.3} is above {crossing:.3}, where lists are as fast")

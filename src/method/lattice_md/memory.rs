@@ -77,7 +77,7 @@ impl Sizes {
         };
         Sizes {
             model: model_following_energy(checked),
-            sides: domain.sides,
+            sides: domain.lengths(),
             widest_cell: checked.geometry.widest_cell,
             reach: 2.0 * largest,
             vary: smallest != largest,

@@ -136,7 +136,7 @@ pub fn filled(shape: &LatticeShape, frame: &Frame) -> [f64; 2] {
 /// Sides of a box (length) as steps see them: along periodic sides exactly what the lattice fills.
 pub fn sides_of(domain: &Domain, shape: &LatticeShape, frame: &Frame) -> [f64; 2] {
     let filled = filled(shape, frame);
-    [0, 1].map(|axis| if domain.periodic[axis] { filled[axis] } else { domain.sides[axis] })
+    [0, 1].map(|axis| if domain.is_periodic(axis) { filled[axis] } else { domain.length(axis) })
 }
 
 /// What is modelled, on which lattice.
@@ -200,7 +200,7 @@ impl Model {
     /// The cell of a position (length), numbered from 1 in the padded lattice, and the position from its centre; for a position
     /// beyond a closed side the cell at that side.
     pub fn anchored(&self, position: [f64; 2]) -> (u32, [f64; 2]) {
-        let position = self.domain().inside(position);
+        let position = self.domain().wrapped(position);
         let counts = [self.shape.columns(), self.shape.rows()];
         let mut cell = [0; 2];
         let mut place = position;
@@ -224,7 +224,7 @@ impl Model {
 
     /// The box.
     pub fn domain(&self) -> Domain {
-        Domain { origin: self.frame.origin, sides: self.sides, periodic: self.shape.periodic() }
+        Domain::planar(self.frame.origin, self.sides, self.shape.periodic())
     }
 
     /// Whether a disc may be outside the box and yet on the lattice.

@@ -3,8 +3,8 @@
 use super::programs::with_law;
 use super::{Arrays, Discs, Model};
 use crate::domain::Domain;
-use crate::grid::Bins;
 use crate::method::pairwise::WithLaw;
+use crate::near::Near;
 use crate::words::define_words;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Array;
@@ -107,8 +107,12 @@ impl<P: Precision> Rival<P> {
         self.lists = match self.options.rebuild {
             Rebuild::AllPairs => Lists::by_all_pairs(discs, near),
             Rebuild::Cells => {
-                let bins = Bins::new(domain, made_at.iter().copied(), limit);
-                Lists::by_candidates(discs, |i, take| bins.around(made_at[i], take), near)
+                let wrapped = |position: &[f64; 2]| domain.wrapped(*position);
+                let cells = Near::among(domain, made_at.iter().map(wrapped), limit);
+                let around = |i: usize, take: &mut dyn FnMut(u32)| {
+                    cells.of(wrapped(&made_at[i])).for_each(|(number, _)| take(number));
+                };
+                Lists::by_candidates(discs, around, near)
             }
         };
         self.made_at = made_at;

@@ -94,7 +94,7 @@ impl Prepared for Discs {
         let discs: f64 = particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius.powi(2)).sum();
         let cell_edge = scene.needs_lattice().then_some(geometry.frame.edge);
         let settings = [
-            ("packing_fraction", json!(discs / (domain.sides[0] * domain.sides[1]))),
+            ("packing_fraction", json!(discs / (domain.area()))),
             ("precision", json!(scene.machine.precision.word())),
             ("integrator", json!(scene.integrator.scheme.name())),
             ("execution", json!(scene.machine.execution_name())),
@@ -129,9 +129,9 @@ fn facts(checked: &Checked) -> Vec<Fact> {
         Fact::new("radii", json!(geometry.radii), "radii", {
             format!("{:.6} to {:.6}", geometry.radii[0], geometry.radii[1])
         }),
-        Fact::data("origin", json!(domain.origin)),
-        Fact::new("sides", json!(domain.sides), "box", sides(domain.sides)),
-        Fact::data("periodic", json!(domain.periodic)),
+        Fact::data("origin", json!(domain.corner())),
+        Fact::new("sides", json!(domain.lengths()), "box", sides(domain.lengths())),
+        Fact::data("periodic", json!(domain.periodic())),
         Fact::data("search", scene.search.by.word()),
         Fact::data("engine", scene.machine.engine.word()),
     ];

@@ -3,7 +3,6 @@
 use super::search::{Cells, Search};
 use super::state::Move;
 use super::{Dynamics, Engine, Named, conflict, outside};
-use crate::domain::Domain;
 use crate::method::{Culprit, Failure};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
@@ -95,7 +94,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     fn reaches_beyond_box(&self) -> bool {
         let Grid { frame, counts, .. } = self.search.cells().grid();
         let filled = |axis: usize| counts[axis] as f64 * frame.edge[axis];
-        (0..2).any(|axis| filled(axis) > self.system.domain.sides[axis] * (1.0 + 1e-12))
+        (0..2).any(|axis| filled(axis) > self.system.domain.length(axis) * (1.0 + 1e-12))
     }
 
     /// A disc at a place that no cell takes.
@@ -165,15 +164,17 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 
     /// The discs that may leave through an open side before lists are made again.
     pub(super) fn discs_at_the_rim(&self) -> Vec<u32> {
-        let Domain { origin, sides, periodic } = self.system.domain;
-        let Some(lists) = self.search.lists().filter(|_| periodic != [true; 2]) else { return vec![] };
+        let domain = &self.system.domain;
+        let Some(lists) = self.search.lists().filter(|_| domain.periodic() != [true; 2]) else {
+            return vec![];
+        };
         // A little more than the lists last: rounding must hide no disc.
         let reach = 0.5 * lists.skin() * (1.0 + 1e-6);
         let near = |disc: usize| {
             let position = self.position(disc);
-            (0..2).filter(|&axis| !periodic[axis]).any(|axis| {
-                let along = position[axis] - origin[axis];
-                !(reach..=sides[axis] - reach).contains(&along)
+            (0..2).filter(|&axis| !domain.is_periodic(axis)).any(|axis| {
+                let along = position[axis] - domain.origin[axis];
+                !(reach..=domain.length(axis) - reach).contains(&along)
             })
         };
         let near = |discs: Range<usize>| -> Vec<u32> {

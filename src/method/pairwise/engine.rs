@@ -8,7 +8,7 @@ use super::{
 };
 use crate::domain::Domain;
 use crate::method::{Clock, Failure};
-use crate::particles::Particles;
+use crate::particles::{Particle, Particles};
 use std::collections::BTreeSet;
 use std::ops::Range;
 use stripmine_kernels::InstructionSet;
@@ -66,7 +66,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             rim: vec![],
         };
         engine.give_walls_their_velocity();
-        let positions = engine.start.all().iter().map(|disc| disc.position);
+        let positions = engine.start.all().iter().map(Particle::place);
         let moves = positions.enumerate().map(|(disc, position)| engine.locate(disc, position));
         let moves: Vec<Move> = moves.collect::<Result<_, _>>()?;
         engine.change_cells(&moves)?;

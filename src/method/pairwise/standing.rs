@@ -1,7 +1,7 @@
 //! The discs of a state as particles of the scene.
 
 use crate::domain::Domain;
-use crate::particles::Particles;
+use crate::particles::{Particles, in_space};
 
 /// The particles of `start` as a state has them: each disc with its number in the scene and, for each degree of freedom (x, y,
 /// angle), its value and its change in a step of `dt`. Discs that no force moves have the velocity `walls` (length/time).
@@ -18,13 +18,13 @@ pub fn standing(
     let grains = start.grain_count();
     for (number, [x, y, angle]) in discs {
         let particle = &mut particles.all_mut()[number];
-        particle.position = [x[0], y[0]];
+        particle.position = in_space([x[0], y[0]]);
         if number < grains {
-            particle.velocity = [x[1] / dt, y[1] / dt];
+            particle.velocity = in_space([x[1] / dt, y[1] / dt]);
             particle.angle = angle[0];
             particle.omega = angle[1] / dt;
         } else {
-            particle.velocity = walls;
+            particle.velocity = in_space(walls);
         }
     }
     particles
@@ -33,7 +33,7 @@ pub fn standing(
 /// The same particles, with positions inside the box.
 pub fn wrapped(mut particles: Particles, domain: &Domain) -> Particles {
     for particle in particles.all_mut() {
-        particle.position = domain.inside(particle.position);
+        particle.position = domain.wrapped(particle.position);
     }
     particles
 }

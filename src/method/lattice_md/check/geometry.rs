@@ -140,7 +140,8 @@ pub(super) fn fit(
             Ok((shape, frame, mask)) => {
                 let occupancy = discs as f64 / shape.cells() as f64;
                 let edge_bounds = [bounds.least, bounds.most()];
-                let seen = Domain { sides: sides_of(domain, &shape, &frame), ..*domain };
+                let seen =
+                    Domain::planar(domain.corner(), sides_of(domain, &shape, &frame), domain.periodic());
                 let (skin, widest_cell) = search(document, [domain, &seen], radii[1], discs, frame.edge)
                     .map_err(|error| vec![error])?;
                 return Ok(Geometry { shape, frame, mask, radii, edge_bounds, occupancy, skin, widest_cell });
@@ -192,13 +193,13 @@ fn search(
 /// Skin of the fast lists (length) where the scene gives none: half of the gap between the discs, were they spread evenly,
 /// within bounds, and not more than the box has room for. The wider the skin, the longer the lists, and the longer they last.
 fn roomy_skin(domain: &Domain, largest: f64, discs: usize) -> f64 {
-    let area = domain.sides[0] * domain.sides[1] / discs.max(1) as f64;
+    let area = domain.area() / discs.max(1) as f64;
     // Neighbours on a hexagonal lattice are so far apart.
     let spacing = (area * 2.0 / 3f64.sqrt()).sqrt();
     let wanted = (0.5 * (spacing - 2.0 * largest)).clamp(LEAST_SKIN * largest, largest);
     // Three sectors fill a periodic side.
-    let periodic = (0..2).filter(|&axis| domain.periodic[axis]);
-    let room = periodic.map(|axis| domain.sides[axis] / 3.0 - 2.0 * largest).fold(f64::INFINITY, f64::min);
+    let periodic = (0..2).filter(|&axis| domain.is_periodic(axis));
+    let room = periodic.map(|axis| domain.length(axis) / 3.0 - 2.0 * largest).fold(f64::INFINITY, f64::min);
     if room > 0.0 { wanted.min(room * (1.0 - 1e-12)) } else { wanted }
 }
 
@@ -242,18 +243,18 @@ fn lattice(
     }
     // No index numbers that many, and beyond 2^53 counting stops.
     if let Some(axis) = (0..2)
-        .find(|&axis| domain.sides[axis] / bounds.least >= 2f64.powi(32) || !domain.sides[axis].is_finite())
+        .find(|&axis| domain.length(axis) / bounds.least >= 2f64.powi(32) || !domain.length(axis).is_finite())
     {
         let message = format!(
             "the side along {}, {:e} long, takes more cells of {:e} than the 2^32 − 1 that an index numbers",
             ["x", "y"][axis],
-            domain.sides[axis],
+            domain.length(axis),
             bounds.most()
         );
         let error = box_spot(document).error(Reason::Geometry, message);
         return Err(vec![error.advising("make the box smaller, or the discs larger")]);
     }
-    let axes = [0, 1].map(|axis| cuts(domain.sides[axis], domain.periodic[axis], bounds, wanted));
+    let axes = [0, 1].map(|axis| cuts(domain.length(axis), domain.is_periodic(axis), bounds, wanted));
     let short: Vec<SceneError> = (0..2)
         .filter(|&axis| axes[axis].is_empty())
         .map(|axis| short_side(document, domain, axis, bounds))
@@ -275,8 +276,8 @@ fn lattice(
         let message = format!(
             "no whole numbers of cells fill the sides {} and {}: a cell must have sides of at least {} and a diagonal \
              of at most {}",
-            domain.sides[0],
-            domain.sides[1],
+            domain.length(0),
+            domain.length(1),
             readable(bounds.least),
             readable(bounds.diagonal)
         );
@@ -284,9 +285,9 @@ fn lattice(
         return Err(vec![error.advising("make the box a little larger, or lower law.max_penetration")]);
     };
     let mask = Mask::square(bounds.half_width);
-    let shape = LatticeShape::new(x.count as usize, y.count as usize, &mask, domain.periodic)
+    let shape = LatticeShape::new(x.count as usize, y.count as usize, &mask, domain.periodic())
         .map_err(|cause| vec![box_spot(document).error(Reason::Geometry, cause.to_string())])?;
-    Ok((shape, Frame { origin: domain.origin, edge: [x.edge, y.edge] }, mask))
+    Ok((shape, Frame { origin: domain.corner(), edge: [x.edge, y.edge] }, mask))
 }
 
 /// What decides how large the box is.
@@ -298,10 +299,10 @@ fn box_spot(document: &Document) -> Spot {
 }
 
 fn short_side(document: &Document, domain: &Domain, axis: usize, bounds: &Bounds) -> SceneError {
-    let (side, name) = (domain.sides[axis], ["x", "y"][axis]);
+    let (side, name) = (domain.length(axis), ["x", "y"][axis]);
     let needed = 2 * bounds.half_width + 1;
     let fit = (side / bounds.least * SLACK).floor();
-    let error = if domain.periodic[axis] && fit < f64::from(needed) {
+    let error = if domain.is_periodic(axis) && fit < f64::from(needed) {
         let message = format!(
             "the periodic side along {name} is {side} long and takes {fit} cells of at least {}; a {needed}×{needed} \
              mask needs {needed} of them, or a pair would be met twice",

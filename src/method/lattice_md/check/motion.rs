@@ -226,7 +226,7 @@ fn lost_motion(
         return None;
     }
     let farthest = |axis: usize| match are_absolute(scene) {
-        true => domain.origin[axis].abs() + domain.sides[axis],
+        true => domain.origin[axis].abs() + domain.length(axis),
         false => 0.5 * geometry.widest_cell[axis],
     };
     Some((0.5 * f64::from(f32::EPSILON) * farthest(0).max(farthest(1)), typical))

@@ -74,7 +74,7 @@ fn spin_shade(disc: &Particle) -> f64 {
 }
 
 fn shape(disc: &Particle, offset: [f64; 2], tint: Tint) -> Shape {
-    let [x, y] = disc.position;
+    let [x, y] = disc.place();
     let tint = if disc.kind == Kind::Wall { Tint::Still } else { tint };
     Shape::Disc { centre: [x + offset[0], y + offset[1]], radius: disc.radius, tint }
 }
@@ -293,14 +293,14 @@ fn film(showing: Showing, flow: &PipeFlow) -> Option<Film> {
         discs: flow.frames[at]
             .grains()
             .iter()
-            .map(|disc| (disc.position.map(rounded), rounded(disc.omega * disc.radius)))
+            .map(|disc| (disc.place().map(rounded), rounded(disc.omega * disc.radius)))
             .collect(),
     });
     Some(Film {
         title: format!("{} grains falling", flow.grains),
         window: [[0.0, -half], [flow.length, half]],
         radii: start.grains().iter().map(|disc| disc.radius).collect(),
-        fixed: start.all()[flow.grains..].iter().map(|disc| (disc.position, disc.radius)).collect(),
+        fixed: start.all()[flow.grains..].iter().map(|disc| (disc.place(), disc.radius)).collect(),
         frames: frames.collect(),
         shade: "rim speed ΩR (m/s)".into(),
         shades: [-SPIN, SPIN],

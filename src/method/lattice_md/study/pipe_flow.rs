@@ -93,7 +93,7 @@ pub fn pipe_flow(question: &Question, progress: impl Fn(f64)) -> Result<PipeFlow
     let checked = Document::load(question.scene, &overrides)?.check()?;
     let mut method = assemble(&checked)?;
     let scenery = Scenery::of(&model(&checked));
-    let (length, origin) = (checked.domain.sides[0], checked.domain.origin[0]);
+    let (length, origin) = (checked.domain.length(0), checked.domain.origin[0]);
     let scene = &checked.scene;
     let look_every = (LOOK / scene.integrator.dt).round() as u64;
     let radii = checked.particles.grains().iter().map(|grain| grain.radius);

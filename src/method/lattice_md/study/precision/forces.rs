@@ -111,7 +111,7 @@ fn on_one_configuration(packing_fraction: f64, count: usize) -> Result<Vec<Force
     let contacts = contacts(&discs, &domain).len() as f64 / discs.len() as f64;
     let variants = VARIANTS.into_iter().map(|variant| {
         let [rms, largest] = errors(&exact, &computed(variant)?.method.forces());
-        let side = domain.sides[0].max(domain.sides[1]);
+        let side = domain.length(0).max(domain.length(1));
         Ok(ForceError { variant, packing_fraction, particles: discs.len(), side, contacts, rms, largest })
     });
     variants.collect()

@@ -92,7 +92,7 @@ fn distances(overrides: &[String], steps: u64) -> Result<[Vec<f64>; RIVALS.len()
             gas.advance(LOOK)?;
             let here = gas.method.particles();
             let squares = here.all().iter().zip(there.all()).map(|(a, b)| {
-                let [dx, dy] = gas.scenery.domain.displacement(a.position, b.position);
+                let [dx, dy] = gas.scenery.domain.displacement(a.place(), b.place());
                 dx * dx + dy * dy
             });
             distances.push((squares.sum::<f64>() / there.len() as f64).sqrt());

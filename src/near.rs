@@ -1,10 +1,10 @@
-//! Finding what is near a position, while positions are added.
+//! Who is near whom: positions in a planar box sorted into squares, any number in each.
 
 use crate::domain::Domain;
 use std::collections::HashMap;
 
-/// Positions in a box, sorted into squares, so that what is within a reach is found without looking at all. Takes memory
-/// for what is added, not for the box.
+/// Positions in a box, sorted into squares at least as wide as a reach, so that what is within the reach is found without
+/// looking at all. Takes memory for what is added, not for the box.
 #[derive(Clone, Debug)]
 pub struct Near {
     domain: Domain,
@@ -27,13 +27,20 @@ impl Near {
     pub fn new(domain: Domain, reach: f64) -> Self {
         // Whole squares fill a side, so that a periodic one closes; 2^30 of them number far more than there are discs.
         // What is no number becomes one square.
-        let squares = domain.sides.map(|side| (side / reach).floor().max(1.0).min(2f64.powi(30)));
+        let squares = domain.lengths().map(|side| (side / reach).floor().max(1.0).min(2f64.powi(30)));
         Near { domain, squares, last: HashMap::new(), members: Vec::new() }
+    }
+
+    /// All of these positions, numbered from 0 on.
+    pub fn among(domain: Domain, positions: impl Iterator<Item = [f64; 2]>, reach: f64) -> Self {
+        let mut near = Near::new(domain, reach);
+        positions.zip(0..).for_each(|(position, number)| near.add(number, position));
+        near
     }
 
     fn square(&self, position: [f64; 2]) -> [i64; 2] {
         [0, 1].map(|axis| {
-            let fraction = (position[axis] - self.domain.origin[axis]) / self.domain.sides[axis];
+            let fraction = (position[axis] - self.domain.origin[axis]) / self.domain.length(axis);
             // Outside of a side that is not periodic the last square goes on.
             (fraction * self.squares[axis]).floor().clamp(0.0, self.squares[axis] - 1.0) as i64
         })
@@ -48,7 +55,7 @@ impl Near {
     /// Along one axis, a square and its neighbours, each once.
     fn around(&self, axis: usize, square: i64) -> impl Iterator<Item = i64> + use<> {
         let count = self.squares[axis] as i64;
-        let (periodic, few) = (self.domain.periodic[axis], count < 3);
+        let (periodic, few) = (self.domain.is_periodic(axis), count < 3);
         let range = if few { 0..=count - 1 } else { square - 1..=square + 1 };
         range.filter_map(move |at| match periodic {
             true => Some(at.rem_euclid(count)),
@@ -71,11 +78,10 @@ impl Near {
 
 #[cfg(test)]
 mod tests {
-    use super::super::distance;
     use super::*;
     use stripmine_kernels::noise::{Purpose, Stream};
 
-    /// Against looking at everything, in boxes of one square to many, open and periodic.
+    /// Against looking at everything, in boxes of one square to many, closed and periodic.
     #[test]
     fn everything_within_reach_is_found_once() {
         let mut random = Stream::new(1, Purpose::Test, 0);
@@ -85,21 +91,20 @@ mod tests {
             ([2.5, 3.9], [true, true]),
             ([0.5, 40.0], [false, true]),
         ] {
-            let domain = Domain { origin: [-3.0, 1.0], sides, periodic };
+            let domain = Domain::planar([-3.0, 1.0], sides, periodic);
             let points: Vec<[f64; 2]> = (0..150)
                 .map(|_| [0, 1].map(|axis| domain.origin[axis] + sides[axis] * random.uniform()))
                 .collect();
-            let mut near = Near::new(domain, 1.0);
-            points.iter().enumerate().for_each(|(i, point)| near.add(i as u32, *point));
+            let near = Near::among(domain, points.iter().copied(), 1.0);
             for point in &points {
                 let mut found: Vec<u32> = near
                     .of(*point)
-                    .filter(|(_, other)| distance(&domain, *point, *other) < 1.0)
+                    .filter(|(_, other)| domain.distance(*point, *other) < 1.0)
                     .map(|(i, _)| i)
                     .collect();
                 found.sort_unstable();
                 let all: Vec<u32> =
-                    (0..150).filter(|&i| distance(&domain, *point, points[i as usize]) < 1.0).collect();
+                    (0..150).filter(|&i| domain.distance(*point, points[i as usize]) < 1.0).collect();
                 assert_eq!(found, all);
             }
         }
