@@ -79,6 +79,7 @@ impl Near {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::RngExt;
     use stripmine_kernels::noise::{Purpose, Stream};
 
     /// Against looking at everything, in boxes of one square to many, closed and periodic.
@@ -93,7 +94,11 @@ mod tests {
         ] {
             let domain = Domain::planar([-3.0, 1.0], sides, periodic);
             let points: Vec<[f64; 2]> = (0..150)
-                .map(|_| [0, 1].map(|axis| domain.origin[axis] + sides[axis] * random.uniform()))
+                .map(|_| {
+                    [0, 1].map(|axis| {
+                        random.random_range(domain.origin[axis]..domain.origin[axis] + sides[axis])
+                    })
+                })
                 .collect();
             let near = Near::among(domain, points.iter().copied(), 1.0);
             for point in &points {

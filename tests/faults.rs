@@ -5,6 +5,7 @@
 #![cfg(unix)]
 
 use assert_cmd::cargo::CommandCargoExt;
+use rand::RngExt;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -37,7 +38,7 @@ impl Random {
     }
 
     fn below(&mut self, limit: usize) -> usize {
-        (self.0.uniform() * limit as f64) as usize
+        self.0.random_range(0..limit)
     }
 }
 

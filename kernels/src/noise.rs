@@ -75,13 +75,6 @@ impl Stream {
         Stream { seed, purpose, id, drawn: 0 }
     }
 
-    /// A uniform number in (0, 1).
-    #[inline]
-    pub fn uniform(&mut self) -> f64 {
-        let (high, low) = (self.word(), self.word());
-        uniform(high, low)
-    }
-
     #[inline]
     fn word(&mut self) -> u32 {
         let (step, word) = (self.drawn / 4, (self.drawn % 4) as usize);
@@ -90,7 +83,7 @@ impl Stream {
     }
 }
 
-impl rand_core::TryRng for Stream {
+impl rand::TryRng for Stream {
     type Error = Infallible;
     #[inline]
     fn try_next_u32(&mut self) -> Result<u32, Infallible> {
@@ -112,7 +105,7 @@ impl rand_core::TryRng for Stream {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand_core::Rng;
+    use rand::Rng;
 
     /// The known answers that the authors of Random123 publish for philox4x32-10.
     #[test]

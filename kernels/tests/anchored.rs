@@ -3,6 +3,7 @@
 
 mod support;
 
+use rand::RngExt;
 use stripmine_kernels::isa::{Array, Counter, Memory, Slot};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};
@@ -47,14 +48,14 @@ fn discs_are_found_from_the_cells_in_which_they_were() {
         let mask = Mask::square(half_width);
         let shape = LatticeShape::new(columns, rows, &mask, periodic).unwrap();
         let mut random = Stream::new(5, Purpose::Test, half_width);
-        let mut draw = |most: f64| (most * random.uniform()) as usize;
+        let mut draw = |most: f64| (most * random.random::<f64>()) as usize;
         let from: Vec<[usize; 2]> = (0..DISCS).map(|_| [draw(columns as f64), draw(rows as f64)]).collect();
         let mut random = Stream::new(6, Purpose::Test, half_width);
         // A third stays in its cell, the others go up to three cells away.
         let place: [Vec<f32>; 2] = [0, 1].map(|axis| {
             let reach = |disc: usize| if disc.is_multiple_of(3) { 0.49 } else { 3.0 };
             (0..DISCS)
-                .map(|disc| (frame.edge[axis] * reach(disc) * (2.0 * random.uniform() - 1.0)) as f32)
+                .map(|disc| (frame.edge[axis] * reach(disc) * random.random_range(-1.0..1.0)) as f32)
                 .collect()
         });
         let number = |[column, row]: [usize; 2]| shape.position(column as isize, row as isize) as u32 + 1;

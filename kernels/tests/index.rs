@@ -2,6 +2,7 @@
 
 mod support;
 
+use rand::RngExt;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame};
@@ -106,7 +107,7 @@ fn index_agrees<S: Precision>(case: &Case) {
     let frame = Frame { origin: [-3.0, 2.0], edge: [1.1, 1.3] };
     let cells = [case.columns, case.rows];
     let mut draw = |axis: usize| {
-        let there = (2.8 * random.uniform() - 0.9) * cells[axis] as f64 * frame.edge[axis];
+        let there = (2.8 * random.random::<f64>() - 0.9) * cells[axis] as f64 * frame.edge[axis];
         S::from_f64(frame.origin[axis] + there).to_f64()
     };
     let places: Vec<_> = (0..200).map(|_| [draw(0), draw(1)]).collect();
@@ -153,8 +154,9 @@ fn coordinates_on_the_lattice_are_the_places_of_the_discs() {
         let case = Case { coordinates, ..Case::new(13, 9) };
         let frame = Frame { origin: [-3.0, 2.0], edge: [1.1, 1.3] };
         let mut random = Stream::new(7, Purpose::Test, 2);
-        let places: Vec<[f64; 2]> =
-            (0..100).map(|_| [-3.0 + 14.3 * random.uniform(), 2.0 + 11.7 * random.uniform()]).collect();
+        let places: Vec<[f64; 2]> = (0..100)
+            .map(|_| [-3.0 + 14.3 * random.random::<f64>(), 2.0 + 11.7 * random.random::<f64>()])
+            .collect();
         let system = indexed::<f64>(&case, frame, &places);
         assert_eq!(system.strays, 0);
         for (found, place) in places_on_the_lattice(&system, &case).iter().zip(&places) {
@@ -312,8 +314,8 @@ fn strays_at_periodic_sides(origin: impl Fn(&mut Stream) -> f64) -> Vec<String> 
     let mut random = Stream::new(11, Purpose::Test, 3);
     let mut found = vec![];
     for _ in 0..300 {
-        let columns = 5 + (40.0 * random.uniform()) as usize;
-        let edge = 0.5 + random.uniform();
+        let columns = 5 + (40.0 * random.random::<f64>()) as usize;
+        let edge = 0.5 + random.random::<f64>();
         let low = origin(&mut random);
         let frame = Frame { origin: [low, 0.0], edge: [edge, 1.0] };
         let case = Case::new(columns, 6);
@@ -331,7 +333,7 @@ fn strays_at_periodic_sides(origin: impl Fn(&mut Stream) -> f64) -> Vec<String> 
 /// origin.
 #[test]
 fn no_disc_next_to_a_periodic_side_is_a_stray() {
-    let found = strays_at_periodic_sides(|random| 20.0 * random.uniform() - 10.0);
+    let found = strays_at_periodic_sides(|random| 20.0 * random.random::<f64>() - 10.0);
     assert!(found.is_empty(), "{} strays of 1800, the first: {}", found.len(), found[0]);
 }
 

@@ -2,6 +2,7 @@
 
 mod support;
 
+use rand::RngExt;
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
 use stripmine_kernels::law::{Axis, Sum};
 use stripmine_kernels::noise::{Purpose, Stream};
@@ -47,7 +48,7 @@ fn action_is_reaction_to_the_bit() {
     let (mut seams, mut inside, mut random) = (0, 0, Stream::new(1, Purpose::Test, 1));
     for contact in contacts() {
         for mut pair in random_pairs(2, 300) {
-            let to = [-3.0 + 8.8 * random.uniform(), 2.0 + 8.8 * random.uniform()];
+            let to = [-3.0 + 8.8 * random.random::<f64>(), 2.0 + 8.8 * random.random::<f64>()];
             let from = pair.bodies[0].position;
             for body in &mut pair.bodies {
                 body.position = [0, 1].map(|axis| body.position[axis] + (to[axis] - from[axis]));

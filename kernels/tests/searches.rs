@@ -1,6 +1,7 @@
 //! Sectors and Verlet lists against all pairs: every pair in reach found once, and the way to it the nearest one.
 
 use proptest::prelude::*;
+use rand::RngExt;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use stripmine_kernels::InstructionSet;
@@ -33,7 +34,7 @@ fn scattered(
     let mut places = [vec![], vec![]];
     let mut positions = vec![];
     for disc in 0..discs {
-        let along = sides.map(|side| side * random.uniform());
+        let along = sides.map(|side| side * random.random::<f64>());
         let cell = [0, 1].map(|axis| (along[axis] / grid.frame.edge[axis]) as usize);
         sectors.enter(disc, cell);
         for axis in 0..2 {
@@ -120,7 +121,7 @@ proptest! {
         let (mut places, mut positions) = (places, positions);
         let mut random = Stream::new(seed, Purpose::Test, 1);
         for (disc, position) in positions.iter_mut().enumerate() {
-            let angle = std::f64::consts::TAU * random.uniform();
+            let angle = std::f64::consts::TAU * random.random::<f64>();
             for (axis, along) in [angle.cos(), angle.sin()].into_iter().enumerate() {
                 places[axis][disc] += 0.499 * skin * along;
                 position[axis] += 0.499 * skin * along;

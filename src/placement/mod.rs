@@ -8,6 +8,7 @@ pub use random::{Filling, Jammed, random};
 pub use rows::{Row, row};
 
 use crate::particles::{Kind, Particle, Particles, in_space};
+use rand::RngExt;
 use stripmine_kernels::noise::{Purpose, Stream, normals};
 
 /// A periodic box filled with equal discs.
@@ -37,7 +38,8 @@ pub fn hexagonal(least: usize, packing_fraction: f64, kt: f64, seed: u64) -> Pac
             let id = discs.len() as u32 + 1;
             let offset = 0.25 + 0.5 * (row % 2) as f64;
             let reach = 0.45 * (spacing - 1.0).max(0.0);
-            let (length, angle) = (reach * random.uniform(), std::f64::consts::TAU * random.uniform());
+            let length = reach * random.random::<f64>();
+            let angle = random.random_range(0.0..std::f64::consts::TAU);
             discs.push(Particle {
                 id,
                 kind: Kind::Grain,

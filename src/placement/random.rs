@@ -3,6 +3,8 @@
 use crate::domain::Domain;
 use crate::near::Near;
 use crate::particles::{Kind, Particle, in_space};
+use rand::distr::Distribution;
+use rand::{Rng, RngExt};
 use stripmine_kernels::noise::{Purpose, Stream, normals};
 
 /// What is placed where.
@@ -61,7 +63,7 @@ pub fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
     let mut discs = Vec::new();
     for id in 1..=count as u32 {
         let mut stream = Stream::new(seed, Purpose::Placement, id);
-        let radius = mean * (1.0 + truncated_normal(&mut stream, filling.spread, cut));
+        let radius = mean * (1.0 + stream.sample(TruncatedNormal { deviation: filling.spread, cut }));
         let jammed = Jammed { placed: discs.len(), asked: count, tries: TRIES };
         let ranges = [0, 1].map(|axis| {
             let [low, high] = room.map(|corner| corner[axis]);
@@ -72,7 +74,7 @@ pub fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
             return Err(Jammed { tries: 0, ..jammed });
         }
         let mut draw = || {
-            let position = ranges.map(|[low, high]| low + (high - low) * stream.uniform());
+            let position = ranges.map(|[low, high]| stream.random_range(low..=high));
             domain.wrapped(position)
         };
         let free = |position: &[f64; 2]| {
@@ -97,26 +99,38 @@ pub fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
     Ok(discs)
 }
 
-/// A Gaussian number of the given standard deviation, not larger than `cut` in magnitude.
-fn truncated_normal(stream: &mut Stream, deviation: f64, cut: f64) -> f64 {
-    if deviation == 0.0 || cut == 0.0 {
-        return 0.0;
-    }
-    loop {
-        // Narrow cuts by a flat proposal, wide ones by the Gaussian itself: either is accepted three times in five.
-        let number = if cut < deviation {
-            let flat = cut * (2.0 * stream.uniform() - 1.0);
-            let z = flat / deviation;
-            if stream.uniform() > libm::exp(-0.5 * z * z) {
-                continue;
+/// Gaussian numbers of the given standard deviation, not larger than `cut` in magnitude.
+///
+/// The distributions of the crate `rand_distr` take logarithms and exponentials of the platform; these are of the portable
+/// `libm`, so that radii are the same bits everywhere.
+struct TruncatedNormal {
+    deviation: f64,
+    cut: f64,
+}
+
+impl Distribution<f64> for TruncatedNormal {
+    fn sample<R: Rng + ?Sized>(&self, random: &mut R) -> f64 {
+        let TruncatedNormal { deviation, cut } = *self;
+        if deviation == 0.0 || cut == 0.0 {
+            return 0.0;
+        }
+        loop {
+            // Narrow cuts by a flat proposal, wide ones by the Gaussian itself: either is accepted three times in five.
+            let number = if cut < deviation {
+                let flat = random.random_range(-cut..=cut);
+                let z = flat / deviation;
+                if random.random::<f64>() > libm::exp(-0.5 * z * z) {
+                    continue;
+                }
+                flat
+            } else {
+                // Of (0, 1], where the logarithm exists.
+                let radius = (-2.0 * libm::log(1.0 - random.random::<f64>())).sqrt();
+                deviation * radius * libm::cos(random.random_range(0.0..std::f64::consts::TAU))
+            };
+            if number.abs() <= cut {
+                return number;
             }
-            flat
-        } else {
-            let radius = (-2.0 * libm::log(stream.uniform())).sqrt();
-            deviation * radius * libm::cos(std::f64::consts::TAU * stream.uniform())
-        };
-        if number.abs() <= cut {
-            return number;
         }
     }
 }
@@ -173,6 +187,14 @@ mod tests {
         assert_ne!(discs, random(&Filling { seed: 10, ..filling }).unwrap());
     }
 
+    /// A change of these bits changes every scene that is placed at random: a new version of `rand` may not bring it unseen.
+    #[test]
+    fn the_bits_of_a_start_stay() {
+        let mut discs = random(&Filling { count: 40, ..filling() }).unwrap();
+        stir(&mut discs, 9, true, |_| 0.5);
+        assert_eq!(crate::particles::Particles::new(discs).checksum(), "00000000");
+    }
+
     #[test]
     fn more_than_there_is_room_for_is_refused() {
         let jammed = random(&Filling { count: 700, ..filling() }).unwrap_err();
@@ -187,7 +209,8 @@ mod tests {
         let mut stream = Stream::new(3, Purpose::Test, 1);
         for (cut, variance) in [(0.5, 0.080_5), (2.0, 0.773_7), (9.0, 1.0)] {
             let n = 40_000;
-            let numbers: Vec<f64> = (0..n).map(|_| truncated_normal(&mut stream, 1.0, cut)).collect();
+            let numbers: Vec<f64> =
+                (0..n).map(|_| stream.sample(TruncatedNormal { deviation: 1.0, cut })).collect();
             assert!(numbers.iter().all(|z| z.abs() <= cut));
             let (mean, square) =
                 numbers.iter().fold((0.0, 0.0), |(m, s), z| (m + z / f64::from(n), s + z * z / f64::from(n)));

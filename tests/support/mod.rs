@@ -1,6 +1,7 @@
 //! Small systems for the tests of the lattice method.
 #![allow(dead_code, reason = "each test file uses its part")]
 
+use rand::RngExt;
 use stripmine::method::lattice_md::Engine;
 use stripmine::method::lattice_md::{Contacts, Discs, GearValues, Machine, Model, Scheme, Watch, start};
 use stripmine::particles::{Kind, Particle, Particles, in_space};
@@ -31,9 +32,9 @@ pub fn gas(least: usize, packing_fraction: f64, seed: u64) -> (Model, Particles)
     let mut particles = packing.particles;
     let mut random = Stream::new(seed, Purpose::Test, 0);
     for disc in particles.all_mut() {
-        disc.radius = 0.5 - 0.05 * random.uniform();
+        disc.radius = random.random_range(0.45..0.5);
         disc.mass = 4.0 * disc.radius * disc.radius;
-        disc.omega = 0.2 * (random.uniform() - 0.5);
+        disc.omega = random.random_range(-0.1..0.1);
     }
     let mask = Mask::square(2);
     let counts = packing.sides.map(|side| (side / 0.5) as usize);

@@ -1,6 +1,7 @@
 //! A small granular lattice, stepped by the machine's programs: what the tests compare between executions.
 #![allow(dead_code, reason = "each test file uses its part")]
 
+use rand::RngExt;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Predictor, STATE};
@@ -92,11 +93,11 @@ impl<S: Precision, P: Precision> System<S, P> {
         let mut radius = vec![];
         for row in 0..case.rows {
             for column in 0..case.columns {
-                if random.uniform() >= case.fill {
+                if random.random::<f64>() >= case.fill {
                     continue;
                 }
                 let mut place = |k: usize, axis: usize| {
-                    let inside = 0.02 + 0.96 * random.uniform();
+                    let inside = 0.02 + 0.96 * random.random::<f64>();
                     frame.origin[axis] + (k as f64 + inside) * frame.edge[axis]
                 };
                 rows[0][0].push(S::from_f64(place(column, 0)));
@@ -105,10 +106,10 @@ impl<S: Precision, P: Precision> System<S, P> {
                 for (freedom, derivatives) in rows.iter_mut().enumerate() {
                     for (k, q) in derivatives.iter_mut().enumerate().skip(1) {
                         let scale = if freedom == 2 { 2.0 } else { 1.0 } * 4f64.powi(1 - k as i32);
-                        q.push(S::from_f64(DT.powi(k as i32) * scale * (random.uniform() - 0.5)));
+                        q.push(S::from_f64(DT.powi(k as i32) * scale * (random.random::<f64>() - 0.5)));
                     }
                 }
-                radius.push(0.9 + 0.2 * random.uniform());
+                radius.push(0.9 + 0.2 * random.random::<f64>());
             }
         }
         let discs = radius.len();

@@ -2,6 +2,7 @@
 
 use super::{Body, Pair};
 use crate::noise::Stream;
+use rand::RngExt;
 
 impl Pair {
     /// Like discs of radius and mass 1 that touch along x, 5 % deep, at rest.
@@ -31,7 +32,7 @@ impl Pair {
 
     /// A pair in contact at any angle, 0 to 10 % deep, with random velocities, spins, radii and masses.
     pub fn random(random: &mut Stream) -> Pair {
-        let mut spread = |width: f64| width * (random.uniform() - 0.5);
+        let mut spread = |width: f64| random.random_range(-0.5 * width..=0.5 * width);
         let radii = [1.0 + spread(0.2), 1.0 + spread(0.2)];
         let distance = (radii[0] + radii[1]) * (0.95 + spread(0.1));
         let angle = spread(std::f64::consts::TAU);
