@@ -2,7 +2,7 @@
 
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Registers;
-use stripmine_kernels::integrator::{Context, Inertia, Scheme};
+use stripmine_kernels::integrator::{Context, DERIVATIVES, Inertia, Scheme};
 use stripmine_kernels::noise::{Purpose, normals};
 use stripmine_kernels::sweep::fast::{Advance, DisplacementLimit, Motion};
 
@@ -14,9 +14,15 @@ impl Scheme for Diffusion {
     const CARRIED: usize = 2;
     const DRAWS: bool = true;
 
-    fn correct<R: Registers>(&self, _: &Context<'_, R>, _: &mut [R::V; 6], _: R::V) {}
+    fn scales(_: f64) -> [f64; DERIVATIVES] {
+        [1.0; DERIVATIVES]
+    }
 
-    fn predict<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; 6]) {
+    fn begin<R: Registers>(&self, _: &Context<'_, R>, _: &mut [R::V; DERIVATIVES], _: R::V) {}
+
+    fn correct<R: Registers>(&self, _: &Context<'_, R>, _: &mut [R::V; DERIVATIVES], _: R::V) {}
+
+    fn predict<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES]) {
         let noise = context.normals(Purpose::Test)[context.freedom()];
         row[0] = row[0] + context.uniform(context.dt()) * noise;
     }
