@@ -103,4 +103,6 @@ define_arrays! {
     (Torque, "torque", "cells: torque"),
     (Deepest, "deepest", "cells: penetration (length) of the deepest contact"),
     (Power, "power", "cells: what the contacts of the disc dissipate (energy/time), its share"),
+    (Energy, "energy", "cells: what the contacts of the disc store (energy), its share"),
+    (Virial, "virial", "cells: virial of the disc's contacts (energy), its share"),
 }

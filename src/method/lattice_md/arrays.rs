@@ -189,12 +189,16 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
         if model.discs == Discs::Varying {
             columns(&[Array::Radius, Array::InverseMass], padded);
         }
-        if model.watch.is_some() {
+        let asked = model.asked();
+        if asked.watched.is_some() {
             columns(&[Array::Deepest], padded);
             constant.push((Array::Interior, laid_out(Array::Interior, model.shape.interior())));
         }
-        if model.counts_dissipation() {
+        if asked.dissipation {
             columns(&[Array::Power], padded);
+        }
+        if asked.energy {
+            columns(&[Array::Energy, Array::Virial], padded);
         }
         // The predictor hands on the grains' velocities; a wall's stay until the wall is moved.
         let velocity = |disc: &Particle| [disc.velocity[0], disc.velocity[1], disc.omega];

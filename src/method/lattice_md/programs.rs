@@ -167,14 +167,8 @@ impl<P: Precision> WithLaw for LatticeSweep<'_, P> {
     type Output = (Box<dyn Runnable>, &'static [Field]);
 
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
-        let Model { mask, shape, frame, coordinates, watch, .. } = self.0;
-        let mut forces = Forces::<P, L>::new(law, mask, *shape, *frame, *coordinates);
-        if let Some(watch) = watch {
-            forces = forces.watching(watch.depth());
-        }
-        if self.0.counts_dissipation() {
-            forces = forces.counting_dissipation();
-        }
+        let Model { mask, shape, frame, coordinates, .. } = self.0;
+        let forces = Forces::<P, L>::new(law, mask, *shape, *frame, *coordinates).asked(self.0.asked());
         (Box::new(Program::new(forces)), L::FIELDS)
     }
 }
