@@ -3,13 +3,13 @@
 //! The state is a row of scaled derivatives q_k = (dt^k/k!) d^k r/dt^k for each degree of freedom: x, y and, with
 //! rotation, the angle.
 
-use super::{Context, Inertia, NOT_FINITE, Scheme, VELOCITY, gathered_acceleration};
+use super::{Context, DERIVATIVES, Inertia, NOT_FINITE, Scheme, VELOCITY, gathered_acceleration};
 use crate::backend::Registers;
 use crate::isa::{Array, Element, Machine, Predicate, Slot, Text, Vector};
 use std::marker::PhantomData;
 
-/// The arrays of the scaled derivatives, a row for each degree of freedom.
-pub const STATE: [[Array; 6]; 3] = [
+/// The arrays of the state, a row for each degree of freedom: the position and its derivatives, as the scheme scales them.
+pub const STATE: [[Array; DERIVATIVES]; 3] = [
     [Array::X0, Array::X1, Array::X2, Array::X3, Array::X4, Array::X5],
     [Array::Y0, Array::Y1, Array::Y2, Array::Y3, Array::Y4, Array::Y5],
     [Array::Phi0, Array::Phi1, Array::Phi2, Array::Phi3, Array::Phi4, Array::Phi5],
@@ -46,6 +46,15 @@ pub const fn coefficients(values: usize, acceleration: Acceleration) -> [f64; 6]
         }
         _ => panic!("Gear schemes have 4, 5 or 6 values"),
     }
+}
+
+/// dt^k/k!, by which the derivatives are multiplied in the state.
+#[inline(always)]
+fn scales(dt: f64) -> [f64; DERIVATIVES] {
+    let second = 0.5 * dt * dt;
+    let third = second * dt / 3.0;
+    let fourth = third * dt / 4.0;
+    [1.0, dt, second, third, fourth, fourth * dt / 5.0]
 }
 
 /// Taylor expansion of one row over a step: Pascal's triangle, by sums alone.
@@ -90,13 +99,33 @@ impl<const VALUES: usize> Scheme for Gear<VALUES> {
     const CARRIED: usize = VALUES;
 
     #[inline(always)]
-    fn correct<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; 6], second: R::V) {
-        let difference = second - row[2];
+    fn scales(dt: f64) -> [f64; DERIVATIVES] {
+        scales(dt)
+    }
+
+    #[inline(always)]
+    fn begin<R: Registers>(
+        &self,
+        context: &Context<'_, R>,
+        row: &mut [R::V; DERIVATIVES],
+        acceleration: R::V,
+    ) {
+        row[2] = acceleration * context.uniform(scales(context.dt())[2]);
+    }
+
+    #[inline(always)]
+    fn correct<R: Registers>(
+        &self,
+        context: &Context<'_, R>,
+        row: &mut [R::V; DERIVATIVES],
+        acceleration: R::V,
+    ) {
+        let difference = acceleration * context.uniform(scales(context.dt())[2]) - row[2];
         add_difference::<R::V, VALUES>(&self.coefficients, |c| context.uniform(c), row, difference);
     }
 
     #[inline(always)]
-    fn predict<R: Registers>(&self, _: &Context<'_, R>, row: &mut [R::V; 6]) {
+    fn predict<R: Registers>(&self, _: &Context<'_, R>, row: &mut [R::V; DERIVATIVES]) {
         advance::<R::V, VALUES>(row);
     }
 }
@@ -156,7 +185,7 @@ unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> 
 /// Δ = (dt²/2)(a − a_predicted), q_k += c_k Δ.
 #[derive(Clone, Copy, Debug)]
 pub struct Corrector<S, P, const VALUES: usize, const FREEDOMS: usize> {
-    half_dt_squared: f64,
+    dt: f64,
     coefficients: [f64; 6],
     inertia: Inertia,
     gravity: [f64; 2],
@@ -169,7 +198,7 @@ impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Correct
     #[inline]
     pub fn new(dt: f64, acceleration: Acceleration, inertia: Inertia, gravity: [f64; 2]) -> Self {
         Corrector {
-            half_dt_squared: 0.5 * dt * dt,
+            dt,
             coefficients: coefficients(VALUES, acceleration),
             inertia,
             gravity,
@@ -202,7 +231,7 @@ unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> 
             let acceleration = gathered_acceleration::<S, P, M>(m, cell, freedom, self.inertia, self.gravity);
             m.section("correction");
             let mut q = row::<S, M, VALUES>(m, freedom);
-            let difference = acceleration * m.uniform(self.half_dt_squared) - q[2];
+            let difference = acceleration * m.uniform(scales(self.dt)[2]) - q[2];
             if self.checked {
                 magnitude = magnitude + difference.abs();
             }

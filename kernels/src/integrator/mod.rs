@@ -7,6 +7,9 @@ use crate::backend::Registers;
 use crate::isa::{Array, Counter, Element, Machine, Slot, Vector};
 use crate::noise::{self, Purpose};
 
+/// Most entries that a row of the state has: the position and its derivatives.
+pub const DERIVATIVES: usize = 6;
+
 const VELOCITY: [Array; 3] = [Array::DiscVx, Array::DiscVy, Array::DiscOmega];
 const FORCE: [Array; 3] = [Array::Fx, Array::Fy, Array::Torque];
 
@@ -77,7 +80,7 @@ fn gathered_acceleration<S: Element, P: Element, M: Machine>(
 
 /// What a scheme may know beside a row of the state: of the step, and of the discs in the lanes.
 #[derive(Clone, Copy, Debug)]
-pub struct Context<'a, R> {
+pub struct Context<'a, R: Registers> {
     pub(crate) registers: R,
     pub(crate) dt: f64,
     pub(crate) seed: u64,
@@ -85,6 +88,7 @@ pub struct Context<'a, R> {
     /// As many as lanes, where the scheme [draws](Scheme::DRAWS).
     pub(crate) ids: &'a [u32],
     pub(crate) freedom: usize,
+    pub(crate) inverse: R::V,
 }
 
 impl<R: Registers> Context<'_, R> {
@@ -106,6 +110,12 @@ impl<R: Registers> Context<'_, R> {
         self.freedom
     }
 
+    /// Inverse mass of the discs, or inverse moment of inertia for the angle.
+    #[inline(always)]
+    pub fn inverse(&self) -> R::V {
+        self.inverse
+    }
+
     /// Two independent standard normal numbers for every disc. They depend on the run's seed, the purpose, the disc's id and
     /// the step alone: the same for every degree of freedom, whatever the registers and the order of the discs.
     ///
@@ -124,15 +134,33 @@ impl<R: Registers> Context<'_, R> {
     }
 }
 
-/// A predictor and a corrector for one degree of freedom, on the scaled derivatives q_k = (dt^k/k!) d^k r/dt^k.
+/// A predictor and a corrector for one degree of freedom.
+///
+/// The state is a row for each degree of freedom, q_k = s_k d^k r/dt^k, in which s_k are the scheme's own
+/// [scales](Self::scales). Whoever puts velocities in or reads them asks for these; the acceleration comes in the scene's units.
 pub trait Scheme: Copy + Send + Sync {
-    /// How many scaled derivatives a step hands on to the next, where corrector and next predictor are one.
+    /// How many derivatives a step hands on to the next, where corrector and next predictor are one.
     const CARRIED: usize;
     /// Whether it draws random numbers, for which the discs' ids are needed.
     const DRAWS: bool = false;
 
-    /// Corrects the predicted row with the acceleration found, `second` = (dt²/2) a.
-    fn correct<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; 6], second: R::V);
+    /// The scales s_k of the row for steps of `dt` (time). That of the position is 1.
+    fn scales(dt: f64) -> [f64; DERIVATIVES];
+
+    /// Takes up the acceleration of the start (length/time²): the row is that of the start already.
+    fn begin<R: Registers>(
+        &self,
+        context: &Context<'_, R>,
+        row: &mut [R::V; DERIVATIVES],
+        acceleration: R::V,
+    );
+    /// Corrects the predicted row with the acceleration found (length/time²).
+    fn correct<R: Registers>(
+        &self,
+        context: &Context<'_, R>,
+        row: &mut [R::V; DERIVATIVES],
+        acceleration: R::V,
+    );
     /// Predicts the row one step ahead.
-    fn predict<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; 6]);
+    fn predict<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES]);
 }

@@ -1,10 +1,10 @@
-//! The velocity Verlet scheme, on scaled derivatives: half a kick, a drift, the forces, half a kick.
+//! The velocity Verlet scheme: half a kick, a drift, the forces, half a kick.
 //!
-//! With q_1 = dt v and q_2 = (dt²/2) a, half a kick is q_1 += q_2 and a drift q_0 += q_1. Forces that depend on
-//! velocities are those of the velocities after the first half kick, as is usual.
+//! The state is position, velocity and acceleration. Half a kick is v += (dt/2) a and a drift r += dt v. Forces that depend
+//! on velocities are those of the velocities after the first half kick, as is usual.
 
 use super::gear::STATE;
-use super::{Context, Inertia, NOT_FINITE, Scheme, VELOCITY, gathered_acceleration};
+use super::{Context, DERIVATIVES, Inertia, NOT_FINITE, Scheme, VELOCITY, gathered_acceleration};
 use crate::backend::Registers;
 use crate::isa::{Array, Element, Machine, Predicate, Slot, Text, Vector};
 use std::marker::PhantomData;
@@ -18,28 +18,43 @@ impl Scheme for VelocityVerlet {
     const CARRIED: usize = 2;
 
     #[inline(always)]
-    fn correct<R: Registers>(&self, _: &Context<'_, R>, row: &mut [R::V; 6], second: R::V) {
-        kick(row, second);
+    fn scales(_: f64) -> [f64; DERIVATIVES] {
+        [1.0; DERIVATIVES]
     }
 
     #[inline(always)]
-    fn predict<R: Registers>(&self, _: &Context<'_, R>, row: &mut [R::V; 6]) {
-        drift(row);
+    fn begin<R: Registers>(&self, _: &Context<'_, R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V) {
+        row[2] = acceleration;
+    }
+
+    #[inline(always)]
+    fn correct<R: Registers>(
+        &self,
+        context: &Context<'_, R>,
+        row: &mut [R::V; DERIVATIVES],
+        acceleration: R::V,
+    ) {
+        kick(|value| context.uniform(value), context.dt(), row, acceleration);
+    }
+
+    #[inline(always)]
+    fn predict<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES]) {
+        drift(|value| context.uniform(value), context.dt(), row);
     }
 }
 
-/// The second half kick, with `second` = (dt²/2) a.
+/// The second half kick.
 #[inline(always)]
-fn kick<V: Vector>(row: &mut [V; 6], second: V) {
-    row[1] = row[1] + second;
-    row[2] = second;
+fn kick<V: Vector>(uniform: impl Fn(f64) -> V, dt: f64, row: &mut [V; DERIVATIVES], acceleration: V) {
+    row[1] = row[1] + acceleration * uniform(0.5 * dt);
+    row[2] = acceleration;
 }
 
 /// The first half kick and the drift.
 #[inline(always)]
-fn drift<V: Vector>(row: &mut [V; 6]) {
-    row[1] = row[1] + row[2];
-    row[0] = row[0] + row[1];
+fn drift<V: Vector>(uniform: impl Fn(f64) -> V, dt: f64, row: &mut [V; DERIVATIVES]) {
+    row[1] = row[1] + row[2] * uniform(0.5 * dt);
+    row[0] = row[0] + row[1] * uniform(dt);
 }
 
 /// The first half kick and the drift; hands the velocities to the lattice. Vector length: the discs.
@@ -47,7 +62,7 @@ fn drift<V: Vector>(row: &mut [V; 6]) {
 /// `S` is the state's precision, `P` the forces'; `FREEDOMS` is 2, or 3 with rotation.
 #[derive(Clone, Copy, Debug)]
 pub struct Drift<S, P, const FREEDOMS: usize> {
-    inverse_dt: f64,
+    dt: f64,
     precisions: PhantomData<(S, P)>,
 }
 
@@ -55,14 +70,14 @@ impl<S: Element, P: Element, const FREEDOMS: usize> Drift<S, P, FREEDOMS> {
     /// For steps of `dt` (time).
     #[inline]
     pub fn new(dt: f64) -> Self {
-        Drift { inverse_dt: 1.0 / dt, precisions: PhantomData }
+        Drift { dt, precisions: PhantomData }
     }
 }
 
 /// The row of one degree of freedom; entries that the scheme has no use for are zero.
 #[inline(always)]
-fn row<S: Element, M: Machine>(m: M, freedom: usize) -> [M::V; 6] {
-    let mut row = [m.uniform(0.0); 6];
+fn row<S: Element, M: Machine>(m: M, freedom: usize) -> [M::V; DERIVATIVES] {
+    let mut row = [m.uniform(0.0); DERIVATIVES];
     for (k, q) in row.iter_mut().enumerate().take(3) {
         *q = m.load(Slot::<S>::new(STATE[freedom][k]));
     }
@@ -78,11 +93,11 @@ unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Text for Drift<S, P, 
         for freedom in 0..FREEDOMS {
             m.section("drift");
             let mut q = row::<S, M>(m, freedom);
-            drift(&mut q);
+            drift(|value| m.uniform(value), self.dt, &mut q);
             m.store(Slot::<S>::new(STATE[freedom][0]), q[0]);
             m.store(Slot::<S>::new(STATE[freedom][1]), q[1]);
             m.section("velocities");
-            m.store(Slot::<P>::new(VELOCITY[freedom]), q[1] * m.uniform(self.inverse_dt));
+            m.store(Slot::<P>::new(VELOCITY[freedom]), q[1]);
         }
     }
 }
@@ -90,7 +105,7 @@ unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Text for Drift<S, P, 
 /// Gathers the forces from the lattice and gives the second half kick. Vector length: the discs.
 #[derive(Clone, Copy, Debug)]
 pub struct Kick<S, P, const FREEDOMS: usize> {
-    half_dt_squared: f64,
+    dt: f64,
     inertia: Inertia,
     gravity: [f64; 2],
     checked: bool,
@@ -101,8 +116,7 @@ impl<S: Element, P: Element, const FREEDOMS: usize> Kick<S, P, FREEDOMS> {
     /// For steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
     #[inline]
     pub fn new(dt: f64, inertia: Inertia, gravity: [f64; 2]) -> Self {
-        let half_dt_squared = 0.5 * dt * dt;
-        Kick { half_dt_squared, inertia, gravity, checked: false, precisions: PhantomData }
+        Kick { dt, inertia, gravity, checked: false, precisions: PhantomData }
     }
 
     /// The same program, which also counts the discs whose acceleration is no finite number in
@@ -127,12 +141,11 @@ unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Text for Kick<S, P, F
         for freedom in 0..FREEDOMS {
             let acceleration = gathered_acceleration::<S, P, M>(m, cell, freedom, self.inertia, self.gravity);
             m.section("kick");
-            let second = acceleration * m.uniform(self.half_dt_squared);
             if self.checked {
-                magnitude = magnitude + second.abs();
+                magnitude = magnitude + acceleration.abs();
             }
             let mut q = row::<S, M>(m, freedom);
-            kick(&mut q, second);
+            kick(|value| m.uniform(value), self.dt, &mut q, acceleration);
             m.store(Slot::<S>::new(STATE[freedom][1]), q[1]);
             m.store(Slot::<S>::new(STATE[freedom][2]), q[2]);
         }

@@ -152,18 +152,21 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         let floor = uniform(if cohesionless { 0.0 } else { f64::NEG_INFINITY });
         let normal = (elastic - damping).max(floor);
         let fn_ = E::V::select(contact, normal, zero); // (8)
-        // The springs' power less the pair's: what damping and the clamp take. Met from both sides, a pair's loss is shared
-        // as the recoil is: a fixed disc has no part in it.
-        let dissipate = |power: E::V| {
-            let share = if E::BOTH_PARTNERS { power } else { power * (own.inverse_mass * effective_mass) };
-            env.dissipate(E::V::select(contact, share, zero));
+        // Of what a pair has each disc's share is as its recoil: a fixed disc has no part in it.
+        let shared = |whole: E::V| {
+            if E::BOTH_PARTNERS {
+                E::V::select(effective_mass.less_than(uniform(f64::INFINITY)), whole, zero)
+            } else {
+                whole * (own.inverse_mass * effective_mass)
+            }
         };
+        // The springs' power less the pair's: what damping and the clamp take.
+        let dissipate = |power: E::V| env.dissipate(E::V::select(contact, shared(power), zero));
         if env.observes_energy() {
             env.section("energy");
-            // Met from both sides, each has half. Friction acts across the way between the centres and has no virial.
-            let half = |whole: E::V| if E::BOTH_PARTNERS { whole } else { uniform(0.5) * whole };
-            env.energy(half(self.contact.energy(uniform, overlap)));
-            env.virial(E::V::select(contact, half(normal * distance), zero));
+            // Friction acts across the way between the centres and has no virial.
+            env.energy(E::V::select(contact, shared(self.contact.energy(uniform, overlap)), zero));
+            env.virial(E::V::select(contact, shared(normal * distance), zero));
         }
 
         if !FRICTION {

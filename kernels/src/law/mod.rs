@@ -169,11 +169,11 @@ pub trait Env<const DIM: usize>: Copy {
     fn dissipate(self, power: Self::V);
     /// Whether energy and virial are observed.
     fn observes_energy(self) -> bool;
-    /// Reports the energy that every pair stores, 0 without contact; where a pair is met from both sides, half of it. Called
-    /// only where [`Env::observes_energy`].
+    /// Reports the energy that every pair stores, 0 without contact; where a pair is met from both sides, the own particle's
+    /// share, of which a fixed one has none. Called only where [`Env::observes_energy`].
     fn energy(self, energy: Self::V);
-    /// Reports the virial of every pair, (r_own − r_partner)·F_own (energy); where a pair is met from both sides, half of it.
-    /// Called only where [`Env::observes_energy`].
+    /// Reports the virial of every pair, (r_own − r_partner)·F_own (energy), or the own particle's share of it, as
+    /// [`Env::energy`]. Called only where [`Env::observes_energy`].
     fn virial(self, virial: Self::V);
     /// Names what follows, for the ledger and the listing.
     fn section(self, name: &'static str);

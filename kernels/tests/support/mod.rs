@@ -74,6 +74,8 @@ pub struct System<S, P> {
     pub index: Vec<u32>,
     pub lattice: [Vec<P>; 7],
     pub sums: [Vec<P>; 3],
+    /// What the sweep of the lattice gives beside the sums: power, energy, virial.
+    pub observed: [Vec<P>; 3],
     pub strays: u64,
     pub conflicts: u64,
 }
@@ -134,6 +136,7 @@ impl<S: Precision, P: Precision> System<S, P> {
             index: vec![0; shape.padded()],
             lattice: std::array::from_fn(|_| padded.clone()),
             sums: std::array::from_fn(|_| padded.clone()),
+            observed: std::array::from_fn(|_| padded.clone()),
             strays: 0,
             conflicts: 0,
         }
@@ -202,6 +205,10 @@ impl<S: Precision, P: Precision> System<S, P> {
         for (array, column) in [Array::Fx, Array::Fy, Array::Torque].into_iter().zip(&mut self.sums) {
             memory = memory.write(Slot::<P>::new(array), column);
         }
+        let observed = [Array::Power, Array::Energy, Array::Virial].into_iter().zip(&mut self.observed);
+        for (array, column) in observed {
+            memory = memory.write(Slot::<P>::new(array), column);
+        }
         let result = run(&memory);
         let counted = [memory.counted(STRAYS), memory.counted(CONFLICTS)];
         self.strays += counted[0];
@@ -244,12 +251,23 @@ impl<S: Precision, P: Precision> System<S, P> {
         &mut self,
         case: &Case,
         law: &L,
+        how: (Execution, InstructionSet),
+    ) -> Result<(), ProgramError> {
+        self.forces_and(case, law, how, Asked::default())
+    }
+
+    /// The same, with what is asked for beside them in [`observed`](Self::observed).
+    pub fn forces_and<L: Law<2>>(
+        &mut self,
+        case: &Case,
+        law: &L,
         (execution, set): (Execution, InstructionSet),
+        asked: Asked,
     ) -> Result<(), ProgramError> {
         let mask = Mask::square(case.half_width);
         let shape = self.shape;
-        let program =
-            Program::new(Forces::<P, L>::new(law.clone(), &mask, shape, self.frame, case.coordinates));
+        let forces = Forces::<P, L>::new(law.clone(), &mask, shape, self.frame, case.coordinates);
+        let program = Program::new(forces.asked(asked));
         self.memory(&Default::default(), &Default::default(), |memory| {
             program.run(memory, shape.swept(), execution, set)
         })

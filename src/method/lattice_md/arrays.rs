@@ -1,5 +1,6 @@
 //! The arrays a step works on.
 
+use super::programs::scales;
 use super::{Discs, Model};
 use crate::particles::{Kind, Particle, Particles};
 use std::ops::Range;
@@ -123,14 +124,15 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
             Some(anchored) => anchored.iter().map(|(_, place)| *place).collect(),
             None => particles.all().iter().map(Particle::place).collect(),
         };
+        let velocity_scale = scales(model)[1];
         let mut state = Vec::new();
         for (freedom, row) in STATE.iter().enumerate().take(model.freedoms()) {
             for (k, &array) in row.iter().enumerate().take(model.scheme.values()) {
                 let column = particles.all().iter().zip(&places).map(|(disc, place)| match (k, freedom) {
                     (0, 0 | 1) => place[freedom],
-                    (1, 0 | 1) => disc.velocity[freedom] * model.dt,
+                    (1, 0 | 1) => disc.velocity[freedom] * velocity_scale,
                     (0, _) => disc.angle,
-                    (1, _) => disc.omega * model.dt,
+                    (1, _) => disc.omega * velocity_scale,
                     _ => 0.0,
                 });
                 state.push(convert(array, column.collect()));
@@ -187,12 +189,16 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
         if model.discs == Discs::Varying {
             columns(&[Array::Radius, Array::InverseMass], padded);
         }
-        if model.watch.is_some() {
+        let asked = model.asked();
+        if asked.watched.is_some() {
             columns(&[Array::Deepest], padded);
             constant.push((Array::Interior, laid_out(Array::Interior, model.shape.interior())));
         }
-        if model.counts_dissipation() {
+        if asked.dissipation {
             columns(&[Array::Power], padded);
+        }
+        if asked.energy {
+            columns(&[Array::Energy, Array::Virial], padded);
         }
         // The predictor hands on the grains' velocities; a wall's stay until the wall is moved.
         let velocity = |disc: &Particle| [disc.velocity[0], disc.velocity[1], disc.omega];

@@ -3,9 +3,9 @@
 //! rivals, sectors and Verlet lists: the same state, law and integrator, and another way of finding contacts.
 
 use super::judge::{judge_depth, judge_steps};
-use super::programs::with_law;
+use super::programs::{with_law, with_scheme};
 use super::walls::{wall_power, walls_at};
-use super::{Engine, GearValues, Lengths, Model, Scheme, Totals};
+use super::{Engine, Lengths, Model, Totals};
 use crate::grid::sectors_of;
 use crate::io::checkpoint::Column;
 use crate::method::Failure;
@@ -15,8 +15,6 @@ use crate::particles::Particles;
 use crate::scene::WallMotion;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::integrator::gear::Gear;
-use stripmine_kernels::integrator::velocity_verlet::VelocityVerlet;
 use stripmine_kernels::isa::Storage;
 use stripmine_kernels::ledger::{Ledger, Length};
 
@@ -83,13 +81,7 @@ impl Dynamics for Granular {
     }
 
     fn with_scheme<W: WithScheme>(&self, work: W) -> W::Output {
-        let acceleration = self.model.acceleration();
-        match self.model.scheme {
-            Scheme::Gear(GearValues::Four) => work.with(Gear::<4>::new(acceleration)),
-            Scheme::Gear(GearValues::Five) => work.with(Gear::<5>::new(acceleration)),
-            Scheme::Gear(GearValues::Six) => work.with(Gear::<6>::new(acceleration)),
-            Scheme::VelocityVerlet => work.with(VelocityVerlet),
-        }
+        with_scheme(&self.model, work)
     }
 
     fn prescribed(&self, time: f64) -> Option<Prescribed> {

@@ -1,11 +1,12 @@
 //! The programs of a step, compiled for what a model needs.
 
 use super::{Discs, GearValues, Lengths, Model, Scheme};
-use crate::method::pairwise::WithLaw;
+use crate::method::pairwise::{CarriedBy, WithLaw, WithScheme};
 use std::marker::PhantomData;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::integrator::gear::{Corrector, Predictor};
-use stripmine_kernels::integrator::velocity_verlet::{Drift, Kick};
+use stripmine_kernels::integrator::DERIVATIVES;
+use stripmine_kernels::integrator::gear::{Corrector, Gear, Predictor};
+use stripmine_kernels::integrator::velocity_verlet::{Drift, Kick, VelocityVerlet};
 use stripmine_kernels::isa::{Memory, Op, OpClass, ProgramError};
 use stripmine_kernels::law::granular::{Disc, Granular};
 use stripmine_kernels::law::{Field, Law};
@@ -143,6 +144,22 @@ pub(super) fn with_law<W: WithLaw>(model: &Model, task: W) -> W::Output {
     }
 }
 
+/// The list of the integrators.
+pub(super) fn with_scheme<W: WithScheme>(model: &Model, work: W) -> W::Output {
+    let acceleration = model.acceleration();
+    match model.scheme {
+        Scheme::Gear(GearValues::Four) => work.with(Gear::<4>::new(acceleration)),
+        Scheme::Gear(GearValues::Five) => work.with(Gear::<5>::new(acceleration)),
+        Scheme::Gear(GearValues::Six) => work.with(Gear::<6>::new(acceleration)),
+        Scheme::VelocityVerlet => work.with(VelocityVerlet),
+    }
+}
+
+/// What the derivatives are multiplied by in the state that the programs carry.
+pub(super) fn scales(model: &Model) -> [f64; DERIVATIVES] {
+    with_scheme(model, CarriedBy { dt: model.dt }).scales
+}
+
 /// The lattice sweep of a law, and the quantities it asks for.
 struct LatticeSweep<'m, P>(&'m Model, PhantomData<P>);
 
@@ -150,14 +167,8 @@ impl<P: Precision> WithLaw for LatticeSweep<'_, P> {
     type Output = (Box<dyn Runnable>, &'static [Field]);
 
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
-        let Model { mask, shape, frame, coordinates, watch, .. } = self.0;
-        let mut forces = Forces::<P, L>::new(law, mask, *shape, *frame, *coordinates);
-        if let Some(watch) = watch {
-            forces = forces.watching(watch.depth());
-        }
-        if self.0.counts_dissipation() {
-            forces = forces.counting_dissipation();
-        }
+        let Model { mask, shape, frame, coordinates, .. } = self.0;
+        let forces = Forces::<P, L>::new(law, mask, *shape, *frame, *coordinates).asked(self.0.asked());
         (Box::new(Program::new(forces)), L::FIELDS)
     }
 }

@@ -3,8 +3,8 @@
 use super::search::{Cells, Search};
 use super::state::{Move, State};
 use super::{
-    Crossings, Dynamics, Elapsed, Named, Phase, Prescribed, System, WithLaw, WithScheme, not_finite,
-    standing, wrapped,
+    CarriedBy, Crossings, Dynamics, Elapsed, Named, Phase, Prescribed, System, WithLaw, WithScheme,
+    not_finite, standing, wrapped,
 };
 use crate::domain::Domain;
 use crate::method::{Clock, Failure};
@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::integrator::Scheme;
+use stripmine_kernels::integrator::{DERIVATIVES, Scheme};
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::{Advance, Met, Motion, Passed};
@@ -50,10 +50,10 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         set: InstructionSet,
         particles: Particles,
     ) -> Result<Self, Failure> {
-        let carried = dynamics.with_scheme(Carried);
+        let carried = dynamics.with_scheme(CarriedBy { dt: system.dt });
         let crossings = Crossings::new(system.followed, particles.len());
         let mut engine = Engine {
-            state: State::new(&system, carried, &particles),
+            state: State::new(&system, &carried, &particles),
             sums: [0, 1, 2].map(|_| vec![P::default(); particles.len()]),
             elapsed: Elapsed::new(system.dt, crossings),
             dynamics,
@@ -111,7 +111,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 
     pub(super) fn give_walls_their_velocity(&mut self) {
         let velocity = self.prescribed().unwrap_or_default().velocity;
-        self.state.set_wall_velocity(velocity, self.system.dt);
+        self.state.set_wall_velocity(velocity);
     }
 
     /// Numbers the discs in the order of their cells, so that neighbours are near in memory, and makes lists again where
@@ -204,8 +204,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         }
     }
 
-    /// The state at the end of the step, a disc's position and velocity times dt among it.
-    fn corrected(&self, freedom: usize, disc: usize) -> [S; 6] {
+    /// A row of a disc's state at the end of the step.
+    fn corrected(&self, freedom: usize, disc: usize) -> [S; DERIVATIVES] {
         let row = self.state.row(freedom, disc);
         if self.elapsed.steps == 0 || self.awaits_forces || disc >= self.start.grain_count() {
             return row;
@@ -226,15 +226,18 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         let freedoms = self.system.freedoms;
         let of = |disc: usize| {
             let [x, y, angle] = [0, 1, 2].map(|freedom| match freedom < freedoms {
-                true => self.corrected(freedom, disc).map(|q| q.to_f64()),
-                false => [0.0; 6],
+                true => {
+                    let row = self.corrected(freedom, disc);
+                    [row[0].to_f64(), self.state.rate(&row)]
+                }
+                false => [0.0; 2],
             });
             let position = self.seen_from_origin(disc, [x[0], y[0]]);
-            let rows = [[position[0], x[1]], [position[1], y[1]], [angle[0], angle[1]]];
+            let rows = [[position[0], x[1]], [position[1], y[1]], angle];
             (self.state.number(disc), rows)
         };
         let walls = self.prescribed().unwrap_or_default().velocity;
-        standing(&self.start, self.system.dt, walls, (0..self.start.len()).map(of))
+        standing(&self.start, walls, (0..self.start.len()).map(of))
     }
 
     /// Force along x and y and torque on every particle, in the scene's order.
@@ -273,7 +276,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Named for Engine<
     }
 
     fn velocity(&self, disc: usize) -> [f64; 2] {
-        [0, 1].map(|axis| self.state.row(axis, disc)[1].to_f64() / self.system.dt)
+        [0, 1].map(|axis| self.state.rate(&self.state.row(axis, disc)))
     }
 
     fn radius(&self, disc: usize) -> f64 {
@@ -285,17 +288,6 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Named for Engine<
 fn motion<C: Scheme>(system: &System, scheme: C) -> Motion<C> {
     let System { dt, inertia, gravity, seed, .. } = *system;
     Motion { scheme, dt, inertia, gravity, seed }
-}
-
-/// How many derivatives a scheme hands on from step to step.
-struct Carried;
-
-impl WithScheme for Carried {
-    type Output = usize;
-
-    fn with<C: Scheme>(self, _: C) -> usize {
-        C::CARRIED
-    }
 }
 
 /// A pass over the discs.
@@ -338,14 +330,14 @@ struct Correcting<'a, S> {
     steps: u64,
     freedom: usize,
     disc: usize,
-    row: [S; 6],
+    row: [S; DERIVATIVES],
     force: S,
 }
 
 impl<S: Precision> WithScheme for Correcting<'_, S> {
-    type Output = [S; 6];
+    type Output = [S; DERIVATIVES];
 
-    fn with<C: Scheme>(self, scheme: C) -> [S; 6] {
+    fn with<C: Scheme>(self, scheme: C) -> [S; DERIVATIVES] {
         let Correcting { system, state, steps, freedom, disc, row, force } = self;
         let inverse = system.inertia.inverse(freedom, S::from_f64, || state.inverse(freedom)[disc]);
         let who = (steps, state.numbers()[disc]);

@@ -12,6 +12,7 @@
 //! and whatever the method itself counts and judges after each of the two. Positions are seen from the centres of cells, so
 //! that single precision holds in large boxes. No sum depends on the numbers of threads or the order of the discs in memory.
 
+mod carried;
 mod cells;
 mod columns;
 mod crossings;
@@ -24,6 +25,7 @@ mod standing;
 mod state;
 mod timings;
 
+pub use carried::{Carried, CarriedBy};
 pub use columns::{find_column, real_column};
 pub use crossings::Crossings;
 pub use elapsed::Elapsed;

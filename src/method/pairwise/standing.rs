@@ -4,13 +4,12 @@ use crate::domain::Domain;
 use crate::particles::{Particles, in_space};
 
 /// The particles of `start` as a state has them: each disc with its number in the scene and, for each degree of freedom (x, y,
-/// angle), its value and its change in a step of `dt`. Discs that no force moves have the velocity `walls` (length/time).
+/// angle), its value and its rate of change. Discs that no force moves have the velocity `walls` (length/time).
 ///
 /// Positions are those of the state: the last correction may have taken one beyond a periodic side, where no crossing is
 /// counted yet.
 pub fn standing(
     start: &Particles,
-    dt: f64,
     walls: [f64; 2],
     discs: impl Iterator<Item = (usize, [[f64; 2]; 3])>,
 ) -> Particles {
@@ -20,9 +19,9 @@ pub fn standing(
         let particle = &mut particles.all_mut()[number];
         particle.position = in_space([x[0], y[0]]);
         if number < grains {
-            particle.velocity = in_space([x[1] / dt, y[1] / dt]);
+            particle.velocity = in_space([x[1], y[1]]);
             particle.angle = angle[0];
-            particle.omega = angle[1] / dt;
+            particle.omega = angle[1];
         } else {
             particle.velocity = in_space(walls);
         }

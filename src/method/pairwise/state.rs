@@ -1,9 +1,9 @@
 //! The discs: columns in the order of their cells, positions seen from the cells' centres.
 
-use super::System;
+use super::{Carried, System};
 use crate::particles::{Kind, Particle, Particles};
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::integrator::Inertia;
+use stripmine_kernels::integrator::{DERIVATIVES, Inertia};
 use stripmine_kernels::reordered;
 use stripmine_kernels::sweep::fast::{self, SENTINELS};
 
@@ -19,8 +19,10 @@ pub struct Move {
 /// Columns with an entry a disc, grains first, and two discs behind them that never touch.
 #[derive(Clone, Debug)]
 pub struct State<S> {
-    /// Scaled derivatives: for each degree of freedom those that are carried from step to step.
+    /// For each degree of freedom the derivatives that are carried from step to step, as the scheme scales them.
     pub(super) columns: Vec<Vec<Vec<S>>>,
+    /// What velocities are multiplied by in the columns.
+    velocity_scale: f64,
     /// The radius of every disc (length), where they are alike.
     alike: Option<f64>,
     /// Radii, and inverse masses and moments of inertia, where discs vary.
@@ -35,8 +37,9 @@ pub struct State<S> {
 type Moved<'a, S> = (&'a mut [Vec<Vec<S>>], [&'a [S]; 2], &'a [u32]);
 
 impl<S: Precision> State<S> {
-    /// Of `particles`, with as many derivatives as the scheme carries from step to step.
-    pub fn new(system: &System, carried: usize, particles: &Particles) -> Self {
+    /// Of `particles`, in the form in which the scheme carries them from step to step.
+    pub fn new(system: &System, carried: &Carried, particles: &Particles) -> Self {
+        let velocity_scale = carried.scales[1];
         let discs = particles.all();
         let column = |value: &dyn Fn(&Particle) -> f64, sentinel: f64| -> Vec<S> {
             let values = discs.iter().map(value).chain(std::iter::repeat_n(sentinel, SENTINELS));
@@ -44,15 +47,15 @@ impl<S: Precision> State<S> {
         };
         let derivative = |freedom: usize, k: usize| {
             let value = |disc: &Particle| match (k, freedom) {
-                (1, 0 | 1) => disc.velocity[freedom] * system.dt,
+                (1, 0 | 1) => disc.velocity[freedom] * velocity_scale,
                 (0, 2) => disc.angle,
-                (1, _) => disc.omega * system.dt,
+                (1, _) => disc.omega * velocity_scale,
                 _ => 0.0,
             };
             column(&value, 0.0)
         };
         let mut columns: Vec<Vec<Vec<S>>> = (0..system.freedoms)
-            .map(|freedom| (0..carried).map(|k| derivative(freedom, k)).collect())
+            .map(|freedom| (0..carried.derivatives).map(|k| derivative(freedom, k)).collect())
             .collect();
         // The sentinels stand farther apart than any pair acts.
         columns[0][0][discs.len()] = S::from_f64(4.0 * system.reach);
@@ -66,7 +69,15 @@ impl<S: Precision> State<S> {
             inverse[1] = column(&|disc| of_grain(disc, 1.0 / inertia(disc)), 1.0);
         }
         let numbers = (0..discs.len() as u32).collect();
-        State { columns, alike: system.radius, radius, inverse, numbers, grains: particles.grain_count() }
+        State {
+            columns,
+            velocity_scale,
+            alike: system.radius,
+            radius,
+            inverse,
+            numbers,
+            grains: particles.grain_count(),
+        }
     }
 
     /// Which of the scene's discs a disc is.
@@ -75,10 +86,15 @@ impl<S: Precision> State<S> {
     }
 
     /// The carried derivatives of a disc, the others zero.
-    pub fn row(&self, freedom: usize, disc: usize) -> [S; 6] {
-        let mut row = [S::default(); 6];
+    pub fn row(&self, freedom: usize, disc: usize) -> [S; DERIVATIVES] {
+        let mut row = [S::default(); DERIVATIVES];
         row.iter_mut().zip(&self.columns[freedom]).for_each(|(q, column)| *q = column[disc]);
         row
+    }
+
+    /// The rate of change (of a position, of the angle) that a row has in the scene's units.
+    pub fn rate(&self, row: &[S; DERIVATIVES]) -> f64 {
+        row[1].to_f64() / self.velocity_scale
     }
 
     /// The place of a disc, seen from the centre of its cell (length).
@@ -97,10 +113,10 @@ impl<S: Precision> State<S> {
     }
 
     /// Gives all wall discs a velocity (length/time).
-    pub fn set_wall_velocity(&mut self, velocity: [f64; 2], dt: f64) {
-        let discs = self.numbers.len();
+    pub fn set_wall_velocity(&mut self, velocity: [f64; 2]) {
+        let (discs, scale) = (self.numbers.len(), self.velocity_scale);
         (0..2).for_each(|axis| {
-            self.columns[axis][1][self.grains..discs].fill(S::from_f64(velocity[axis] * dt))
+            self.columns[axis][1][self.grains..discs].fill(S::from_f64(velocity[axis] * scale))
         });
     }
 
@@ -131,7 +147,7 @@ impl<S: Precision> State<S> {
             place: self.places(),
             velocity: [&self.columns[0][1], &self.columns[1][1]],
             omega,
-            per_time: 1.0 / system.dt,
+            per_time: 1.0 / self.velocity_scale,
             radius: &self.radius,
             inverse_mass: &self.inverse[0],
         }

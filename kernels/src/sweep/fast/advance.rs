@@ -21,7 +21,7 @@
 use crate::InstructionSet;
 use crate::backend::{Precision, Registers, Scalar};
 use crate::backend::{Task, dispatch};
-use crate::integrator::{Context, Inertia, Scheme, acceleration};
+use crate::integrator::{Context, DERIVATIVES, Inertia, Scheme, acceleration};
 use crate::isa::{Element, Predicate, ProgramError, Vector, same};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
@@ -82,16 +82,17 @@ pub struct Copies<'a> {
 }
 
 impl<C: Scheme> Motion<C> {
-    /// (dt²/2) a of one degree of freedom.
-    #[inline(always)]
-    fn second<V: Vector>(&self, uniform: &impl Fn(f64) -> V, freedom: usize, force: V, inverse: V) -> V {
-        acceleration(uniform, self.gravity, freedom, force, inverse) * uniform(0.5 * self.dt * self.dt)
-    }
-
     /// What the scheme may know of one degree of freedom of the discs `ids` in a step.
     #[inline(always)]
-    fn context<'a, R>(&self, registers: R, step: u64, ids: &'a [u32], freedom: usize) -> Context<'a, R> {
-        Context { registers, dt: self.dt, seed: self.seed, step, ids, freedom }
+    fn context<'a, R: Registers>(
+        &self,
+        registers: R,
+        step: u64,
+        ids: &'a [u32],
+        freedom: usize,
+        inverse: R::V,
+    ) -> Context<'a, R> {
+        Context { registers, dt: self.dt, seed: self.seed, step, ids, freedom, inverse }
     }
 
     /// The row of one degree of freedom of the disc `id`, corrected in the step numbered `step`: from the predicted one (its
@@ -101,15 +102,16 @@ impl<C: Scheme> Motion<C> {
         &self,
         (step, id): (u64, u32),
         freedom: usize,
-        predicted: [S; 6],
+        predicted: [S; DERIVATIVES],
         force: S,
         inverse: S,
-    ) -> [S; 6] {
+    ) -> [S; DERIVATIVES] {
         let ids = [id];
-        let context = self.context(Scalar::<S>::default(), step, &ids, freedom);
+        let context = self.context(Scalar::<S>::default(), step, &ids, freedom, inverse);
         let mut row = predicted;
-        let second = self.second(&|value| context.uniform(value), freedom, force, inverse);
-        self.scheme.correct(&context, &mut row, second);
+        let acceleration =
+            acceleration(|value| context.uniform(value), self.gravity, freedom, force, inverse);
+        self.scheme.correct(&context, &mut row, acceleration);
         row
     }
 }
@@ -132,7 +134,7 @@ pub struct Advance<'a, S, P, C> {
     pub step: u64,
     /// The discs' ids, for a scheme that draws random numbers; an entry a disc that moves, or more.
     pub ids: &'a [u32],
-    /// Whether the state is corrected already, so that forces give no more than the acceleration: the first step.
+    /// Whether the state is that of the start, so that forces give no more than the acceleration: the first step.
     pub corrected: bool,
     /// Discs that move farther than this (length) in a step, at the velocity predicted, are listed.
     pub longest_step: f64,
@@ -161,7 +163,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
         if let DisplacementLimit::From { places, .. } = limit {
             assert!(places.iter().all(|place| place.len() >= discs), "a place for every disc that moves");
         }
-        let mut columns = [[std::ptr::null_mut(); 6]; 3];
+        let mut columns = [[std::ptr::null_mut(); DERIVATIVES]; 3];
         for (to, from) in columns.iter_mut().zip(&mut self.state) {
             assert!(from.len() == C::CARRIED && from.iter().all(|column| column.len() >= discs));
             to.iter_mut().zip(from).for_each(|(to, from)| *to = from.as_mut_ptr());
@@ -189,7 +191,9 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             copies_places,
             places: places.map(<[f32]>::as_mut_ptr),
         };
-        let square = longest_step * longest_step;
+        // The velocity as the state has it, at which a step is so long.
+        let fastest = longest_step * (C::scales(motion.dt)[1] / motion.dt);
+        let square = fastest * fastest;
         let pass = |range: Range<usize>| -> Result<Passed, ProgramError> {
             let mut passed = Passed::default();
             let (arrays, found) = (&arrays, &mut passed);
@@ -217,7 +221,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
 
 /// Pointers to what a pass works on.
 struct Arrays<'a, S, P> {
-    columns: [[*mut S; 6]; 3],
+    columns: [[*mut S; DERIVATIVES]; 3],
     sums: [*mut P; 3],
     step: u64,
     ids: &'a [u32],
@@ -239,7 +243,7 @@ struct Pass<'a, S, P, C, const FREEDOMS: usize> {
     arrays: &'a Arrays<'a, S, P>,
     range: Range<usize>,
     corrected: bool,
-    /// Square of the longest step (length²).
+    /// Square of the velocity, as the state has it, at which a step is as long as it may be.
     square: f64,
     unit: f64,
     passed: &'a mut Passed,
@@ -269,10 +273,9 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
     fn register<R: Registers<Lane = S>>(&mut self, registers: R, first: usize) {
         let Pass { motion, arrays, corrected, .. } = *self;
         let uniform = |value: f64| registers.splat(S::from_f64(value));
-        let (mut place, mut step) = ([uniform(0.0); 2], [uniform(0.0); 2]);
+        let (mut place, mut velocity) = ([uniform(0.0); 2], [uniform(0.0); 2]);
         let ids = if C::DRAWS { &arrays.ids[first..first + R::LANES] } else { &[] };
         for freedom in 0..FREEDOMS {
-            let context = |step: u64| motion.context(registers, step, ids, freedom);
             // SAFETY: Advance has checked that every sum has an entry for every disc that moves; the discs of a register are
             // such ones, and this thread alone works on them.
             let force = unsafe { take(registers, arrays.sums[freedom].add(first)) };
@@ -280,16 +283,17 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 // SAFETY: where discs vary, Advance has checked that these columns have an entry for every disc that moves.
                 unsafe { registers.load(arrays.inverse[freedom / 2].add(first)) }
             });
-            let second = motion.second(&uniform, freedom, force, inverse);
-            let mut row = [uniform(0.0); 6];
+            let context = |step: u64| motion.context(registers, step, ids, freedom, inverse);
+            let acceleration = acceleration(uniform, motion.gravity, freedom, force, inverse);
+            let mut row = [uniform(0.0); DERIVATIVES];
             for k in 0..C::CARRIED {
                 // SAFETY: Advance has checked that every derivative that is carried has an entry for every disc that moves.
                 row[k] = unsafe { registers.load(arrays.columns[freedom][k].add(first)) };
             }
             if corrected {
-                row[2] = second;
+                motion.scheme.begin(&context(arrays.step), &mut row, acceleration);
             } else {
-                motion.scheme.correct(&context(arrays.step), &mut row, second);
+                motion.scheme.correct(&context(arrays.step), &mut row, acceleration);
             }
             motion.scheme.predict(&context(arrays.step + 1), &mut row);
             for k in 0..C::CARRIED {
@@ -298,7 +302,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             }
             if freedom < 2 {
                 place[freedom] = row[0];
-                step[freedom] = row[1];
+                velocity[freedom] = row[1];
             }
         }
         let stays = match arrays.limit {
@@ -314,7 +318,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 (dx * dx + dy * dy).less_equal(uniform(distance * distance))
             }
         };
-        let creeps = (step[0] * step[0] + step[1] * step[1]).less_equal(uniform(self.square));
+        let creeps = (velocity[0] * velocity[0] + velocity[1] * velocity[1]).less_equal(uniform(self.square));
         let list = |bits: u64, to: &mut Vec<u32>| {
             let lanes = (0..R::LANES).filter(|lane| bits >> lane & 1 == 1);
             to.extend(lanes.map(|lane| (first + lane) as u32));

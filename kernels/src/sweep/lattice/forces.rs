@@ -3,7 +3,7 @@
 use super::shape::{Coordinates, Frame, LatticeShape};
 use super::vectors::arrays;
 use crate::isa::{Array, Counter, Element, Machine, Slot, Text, Vector};
-use crate::law::{Env, Field, Law, Stated, Sum};
+use crate::law::{Asked, Env, Field, Law, Stated, Sum};
 use crate::mask::Mask;
 use std::cell::Cell;
 use std::marker::PhantomData;
@@ -26,12 +26,11 @@ pub struct Forces<P, L> {
     law: L,
     places: Vec<Neighbour>,
     relative: bool,
-    watched: Option<f64>,
-    dissipation: bool,
+    asked: Asked,
     precision: PhantomData<P>,
 }
 
-/// Counts cells with a contact deeper than watched. Written by [`Forces`] that [`watch`](Forces::watching).
+/// Counts cells with a contact deeper than watched. Written by [`Forces`] that are [asked](Forces::asked) for it.
 pub const DEEP: Counter = Counter(2);
 
 impl<P: Element, L: Law<2>> Forces<P, L> {
@@ -44,30 +43,21 @@ impl<P: Element, L: Law<2>> Forces<P, L> {
             shift: shape.shift(offset),
             way: [f64::from(offset.columns) * frame.edge[0], f64::from(offset.rows) * frame.edge[1]],
         });
-        Forces {
-            law,
-            places: places.collect(),
-            relative,
-            watched: None,
-            dissipation: false,
-            precision: PhantomData,
-        }
+        Forces { law, places: places.collect(), relative, asked: Asked::default(), precision: PhantomData }
     }
 
-    /// The same program, which also writes the penetration of each cell's deepest contact to the array `deepest` and counts
-    /// the cells with one deeper than `depth` (length) in [`DEEP`].
+    /// The same program, which also writes, where it is asked for:
+    ///
+    /// - watched penetrations: that of each cell's deepest contact to the array `deepest`, and counts the cells with one
+    ///   deeper than watched in [`DEEP`];
+    /// - dissipation: what each disc's contacts dissipate (energy/time) to the array `power`;
+    /// - energy: what they store and their virial (energy) to the arrays `energy` and `virial`.
+    ///
+    /// Of a pair each disc has its share, as the law says: the sums over all discs that may move are those of the pairs.
     #[must_use]
     #[inline]
-    pub fn watching(self, depth: f64) -> Self {
-        Forces { watched: Some(depth), ..self }
-    }
-
-    /// The same program, which also writes what each disc's contacts dissipate (energy/time) to the array `power`, half of it
-    /// where both discs may move and have one mass.
-    #[must_use]
-    #[inline]
-    pub fn counting_dissipation(self) -> Self {
-        Forces { dissipation: true, ..self }
+    pub fn asked(self, asked: Asked) -> Self {
+        Forces { asked, ..self }
     }
 }
 
@@ -84,10 +74,11 @@ const fn sum_array(sum: Sum) -> Array {
 struct Around<M: Machine> {
     machine: M,
     relative: bool,
-    watches: bool,
+    asked: Asked,
     deepest: Cell<M::V>,
-    dissipation: bool,
     power: Cell<M::V>,
+    energy: Cell<M::V>,
+    virial: Cell<M::V>,
     sums: [Cell<M::V>; Sum::PLANAR.len()],
 }
 
@@ -147,7 +138,7 @@ impl<M: Machine> Env<2> for &Around<M> {
 
     #[inline(always)]
     fn watches(self) -> bool {
-        self.watches
+        self.asked.watched.is_some()
     }
 
     #[inline(always)]
@@ -157,7 +148,7 @@ impl<M: Machine> Env<2> for &Around<M> {
 
     #[inline(always)]
     fn counts_dissipation(self) -> bool {
-        self.dissipation
+        self.asked.dissipation
     }
 
     #[inline(always)]
@@ -167,12 +158,18 @@ impl<M: Machine> Env<2> for &Around<M> {
 
     #[inline(always)]
     fn observes_energy(self) -> bool {
-        false
+        self.asked.energy
     }
-    #[inline]
-    fn energy(self, _: M::V) {}
-    #[inline]
-    fn virial(self, _: M::V) {}
+
+    #[inline(always)]
+    fn energy(self, energy: M::V) {
+        self.energy.set(self.energy.get() + energy);
+    }
+
+    #[inline(always)]
+    fn virial(self, virial: M::V) {
+        self.virial.set(self.virial.get() + virial);
+    }
 
     #[inline(always)]
     fn section(self, name: &'static str) {
@@ -180,7 +177,7 @@ impl<M: Machine> Env<2> for &Around<M> {
     }
 }
 
-// SAFETY: slots and shifts depend on the law, the places and the coordinates only.
+// SAFETY: slots and shifts depend on the law, the places, the coordinates and what is asked only.
 unsafe impl<P: Element, L: Law<2>> Text for Forces<P, L> {
     type Lane = P;
 
@@ -191,10 +188,11 @@ unsafe impl<P: Element, L: Law<2>> Text for Forces<P, L> {
         let around = Around::<M> {
             machine: m,
             relative: self.relative,
-            watches: self.watched.is_some(),
+            asked: self.asked,
             deepest: Cell::new(zero),
-            dissipation: self.dissipation,
             power: Cell::new(zero),
+            energy: Cell::new(zero),
+            virial: Cell::new(zero),
             sums: [Cell::new(zero), Cell::new(zero), Cell::new(zero)],
         };
         let env = Stated::new(&around, &self.law);
@@ -206,10 +204,14 @@ unsafe impl<P: Element, L: Law<2>> Text for Forces<P, L> {
         for &sum in L::SUMS {
             m.store(Slot::<P>::new(sum_array(sum)), around.sums[sum.column::<2>()].get());
         }
-        if self.dissipation {
+        if self.asked.dissipation {
             m.store(Slot::<P>::new(Array::Power), around.power.get());
         }
-        if let Some(depth) = self.watched {
+        if self.asked.energy {
+            m.store(Slot::<P>::new(Array::Energy), around.energy.get());
+            m.store(Slot::<P>::new(Array::Virial), around.virial.get());
+        }
+        if let Some(depth) = self.asked.watched {
             m.section("watch");
             // A halo cell has false neighbours across the ends of the rows.
             let interior = zero.less_than(m.load(Slot::<P>::new(Array::Interior)));

@@ -4,6 +4,7 @@ use super::LatticeMd;
 use crate::method::Failure;
 use crate::method::lattice_md::Engine;
 use crate::method::lattice_md::judge::judge_steps;
+use crate::method::lattice_md::programs::scales;
 use crate::method::lattice_md::walls::wall_power;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::Array;
@@ -13,11 +14,13 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
     pub(super) fn judge_steps(&mut self) -> Result<(), Failure> {
         let Some(watch) = self.model.watch else { return Ok(()) };
         let column = |array| self.arrays.state(array).unwrap_or(&[]);
-        let steps = column(Array::X1).iter().zip(column(Array::Y1)).take(self.arrays.lengths().grains);
-        let square = S::from_f64(watch.longest_step() * watch.longest_step());
+        let velocities = column(Array::X1).iter().zip(column(Array::Y1)).take(self.arrays.lengths().grains);
+        // The velocity as the state has it, at which a step is so long.
+        let fastest = watch.longest_step() * (scales(&self.model)[1] / self.model.dt);
+        let square = S::from_f64(fastest * fastest);
         let is_far = |(x, y): (&S, &S)| square.less_than(*x * *x + *y * *y);
         let far: Vec<usize> =
-            steps.enumerate().filter(|&(_, step)| is_far(step)).map(|(disc, _)| disc).collect();
+            velocities.enumerate().filter(|&(_, velocity)| is_far(velocity)).map(|(disc, _)| disc).collect();
         let mut totals = self.totals;
         let judged = judge_steps(&self.names(), far.into_iter(), Some(watch), &mut totals);
         self.totals = totals;

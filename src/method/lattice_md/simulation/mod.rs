@@ -6,7 +6,7 @@ mod saved;
 use super::fast::{self, FastSearch};
 use super::judge::judge_depth;
 use super::neighbor_list::Rival;
-use super::programs::rival_ledger;
+use super::programs::{rival_ledger, scales};
 use super::walls::walls_at;
 use super::watch::Names;
 use super::{Arrays, ListOptions, Model, Part, StepProgram, execute, ledger, programs};
@@ -134,7 +134,8 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
 
     /// The second derivatives that belong to the first forces: a start from zero would spoil the order.
     fn start_derivatives(&mut self) {
-        let Model { dt, gravity, inertia_factor, discs, .. } = self.model;
+        let scale = scales(&self.model)[2];
+        let Model { gravity, inertia_factor, discs, .. } = self.model;
         for (freedom, force) in [Array::Fx, Array::Fy, Array::Torque].into_iter().enumerate() {
             let Some(column) = self.arrays.lattice(force) else { continue };
             let acceleration: Vec<f64> = self
@@ -156,7 +157,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
                 })
                 .collect();
             if let Some(q2) = self.arrays.state_mut(STATE[freedom][2]) {
-                q2.iter_mut().zip(acceleration).for_each(|(q, a)| *q = S::from_f64(0.5 * dt * dt * a));
+                q2.iter_mut().zip(acceleration).for_each(|(q, a)| *q = S::from_f64(scale * a));
             }
         }
     }
@@ -297,6 +298,7 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
 
     fn standing(&self) -> Particles {
         let column = |array| self.arrays.state(array).unwrap_or(&[]);
+        let velocity_scale = scales(&self.model)[1];
         let value = |array, disc: usize| column(array).get(disc).map_or(0.0, |x: &S| x.to_f64());
         let of = |disc: usize| {
             let place = [Array::X0, Array::Y0].map(|array| value(array, disc));
@@ -304,11 +306,12 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
                 true => self.model.position(self.arrays.cell()[disc], place),
                 false => place,
             };
-            let [vx, vy, omega] = [Array::X1, Array::Y1, Array::Phi1].map(|array| value(array, disc));
+            let [vx, vy, omega] =
+                [Array::X1, Array::Y1, Array::Phi1].map(|array| value(array, disc) / velocity_scale);
             (disc, [[x, vx], [y, vy], [value(Array::Phi0, disc), omega]])
         };
         let walls = walls_at(self.walls, self.time()).velocity;
-        standing(&self.start, self.model.dt, walls, (0..self.start.len()).map(of))
+        standing(&self.start, walls, (0..self.start.len()).map(of))
     }
 
     fn forces(&self) -> Vec<[f64; 3]> {

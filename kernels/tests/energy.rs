@@ -1,0 +1,151 @@
+//! Power, energy and virial: every sweep gives those of all pairs, and the lattice's texts cost nothing where none is asked for.
+
+mod support;
+
+use stripmine_kernels::isa::Element;
+use stripmine_kernels::law::granular::{ContactArm, Granular};
+use stripmine_kernels::law::{Asked, Law};
+use stripmine_kernels::mask::Mask;
+use stripmine_kernels::sweep::lattice::forces::Forces;
+use stripmine_kernels::sweep::neighbor_list::{CellOffsets, Discs, Lists, walk};
+use stripmine_kernels::sweep::pair::{Body, Pair};
+use stripmine_kernels::{Execution, InstructionSet, Program};
+use support::{CONTACT, Case, System, all_ways, varying};
+
+const ASKED: Asked = Asked { watched: None, dissipation: true, energy: true };
+
+/// Discs at random places, of which every fifth is fixed.
+fn some_fixed(case: &Case) -> System<f64, f64> {
+    let mut system = System::random(case);
+    system.lattice_inverse_mass.iter_mut().step_by(5).for_each(|inverse| *inverse = 0.0);
+    system
+}
+
+/// Energy and virial of all pairs, each looked at alone, and how many of fixed discs alone touch.
+fn by_pairs<L: Law<2>>(system: &System<f64, f64>, law: &L) -> ([f64; 2], usize) {
+    let sides = [system.shape.columns(), system.shape.rows()];
+    let body = |disc: usize| Body {
+        position: [0, 1].map(|axis| system.state[axis][0][disc]),
+        velocity: [0, 1].map(|axis| system.velocity[axis][disc]),
+        omega: system.velocity[2][disc],
+        radius: system.radius[disc],
+        inverse_mass: system.lattice_inverse_mass[disc],
+    };
+    let (mut sums, mut fixed) = ([0.0; 2], 0);
+    for i in 0..system.discs {
+        for j in 0..i {
+            let mut bodies = [body(i), body(j)];
+            for (axis, side) in sides.into_iter().enumerate() {
+                let period = side as f64 * system.frame.edge[axis];
+                if system.shape.periodic()[axis] {
+                    let way = bodies[0].position[axis] - bodies[1].position[axis];
+                    bodies[1].position[axis] += (way / period).round() * period;
+                }
+            }
+            let pair = Pair { bodies };
+            let alone = bodies.iter().all(|body| body.inverse_mass == 0.0);
+            fixed += usize::from(alone && pair.depth() > 0.0);
+            let found = pair.energy_and_virial(law);
+            assert!(!alone || found == [0.0; 2], "{found:?}");
+            sums.iter_mut().zip(found).for_each(|(sum, more)| *sum += more);
+        }
+    }
+    (sums, fixed)
+}
+
+/// Power, energy and virial as the lattice's sweep gives them: shares summed over the discs that may move.
+fn on_lattice<L: Law<2>>(
+    start: &System<f64, f64>,
+    case: &Case,
+    law: &L,
+    how: (Execution, InstructionSet),
+) -> [f64; 3] {
+    let (mut asked, mut unasked) = (start.clone(), start.clone());
+    for system in [&mut asked, &mut unasked] {
+        system.index(case, law, how);
+        assert_eq!((system.strays, system.conflicts), (0, 0));
+    }
+    asked.forces_and(case, law, how, ASKED).unwrap();
+    unasked.forces(case, law, how).unwrap();
+    let bits =
+        |system: &System<f64, f64>| -> Vec<u64> { system.sums.iter().flatten().map(|x| x.bits()).collect() };
+    assert!(bits(&asked) == bits(&unasked), "what is asked for changes no force");
+    assert!(unasked.observed.iter().flatten().all(|&x| x == 0.0), "nothing is written unasked");
+    let moving = (0..start.discs).filter(|&disc| start.lattice_inverse_mass[disc] != 0.0);
+    let cells: Vec<usize> = moving.map(|disc| asked.cell[disc] as usize - 1).collect();
+    asked.observed.each_ref().map(|column| cells.iter().map(|&cell| column[cell]).sum())
+}
+
+/// The same by lists, disc by disc.
+fn by_lists<L: Law<2>>(start: &System<f64, f64>, case: &Case, law: &L) -> [f64; 3] {
+    let mut system = start.clone();
+    system.index(case, law, (Execution::Chained, InstructionSet::best()));
+    let mask = Mask::square(case.half_width);
+    let offsets = CellOffsets::new(system.shape, system.frame, &mask, true);
+    let lists = Lists::by_all_pairs(system.discs, |i, _| system.lattice_inverse_mass[i] != 0.0);
+    let [vx, vy, omega] = &system.velocity;
+    let discs = Discs {
+        position: [&system.on_lattice[0], &system.on_lattice[1]],
+        velocity: [vx, vy],
+        omega,
+        radius: &system.radius,
+        inverse_mass: &system.lattice_inverse_mass,
+        cell: &system.cell,
+    };
+    let met = walk(law, &lists, &offsets, discs, system.discs, 2.3, ASKED, |_, _| ());
+    [met.dissipated, met.energy[0], met.energy[1]]
+}
+
+#[test]
+fn every_sweep_gives_power_energy_and_virial_of_all_pairs() {
+    let mut fixed_pairs = 0;
+    for (seed, periodic) in [[true, true], [false, true], [false, false]].into_iter().enumerate() {
+        let case = Case { periodic, seed: seed as u64, fill: 0.6, ..Case::new(23, 17) };
+        let law = varying::<true>(CONTACT);
+        let system = some_fixed(&case);
+        let (pairs, fixed) = by_pairs(&system, &law);
+        fixed_pairs += fixed;
+        let order: Vec<u32> = (0..system.discs as u32).collect();
+        let (_, fast) = system.fast_forces(&law, &order, InstructionSet::best()).unwrap();
+        let power = fast.dissipated;
+        let expected = [power, pairs[0], pairs[1]];
+        assert!(expected.iter().all(|&sum| sum > 1.0), "{expected:?}");
+        let agrees = |found: [f64; 3], by: &str| {
+            for (found, expected) in found.into_iter().zip(expected) {
+                assert!((found / expected - 1.0).abs() < 1e-11, "{by}: {found}, not {expected}, in {case:?}");
+            }
+        };
+        agrees([power, fast.energy[0], fast.energy[1]], "fast");
+        agrees(by_lists(&system, &case, &law), "lists");
+        for how in all_ways() {
+            agrees(on_lattice(&system, &case, &law, how), &format!("{how:?}"));
+        }
+    }
+    assert!(fixed_pairs > 0, "no two fixed discs touch");
+}
+
+/// Energy is a section of its own on the tape; asked for nothing, a text is the one that knows of nothing to ask.
+#[test]
+fn what_is_not_asked_for_is_not_recorded() {
+    let case = Case::new(9, 7);
+    let system = System::<f64, f64>::random(&case);
+    let contact = stripmine_kernels::law::granular::Contact { arm: ContactArm::Overlap, ..CONTACT };
+    let sections = |asked: Asked| {
+        let law: Granular<true, false> = varying(contact);
+        let mask = Mask::square(case.half_width);
+        let forces = Forces::<f64, _>::new(law, &mask, system.shape, system.frame, case.coordinates);
+        Program::new(forces.asked(asked)).tape().tally()
+    };
+    let total = |asked: Asked, name: &str| {
+        let of_name = sections(asked).into_iter().filter(|(section, _)| *section == name);
+        of_name.map(|(_, counts)| counts.total()).sum::<u64>()
+    };
+    let (unasked, energy) = (Asked::default(), Asked { energy: true, ..Asked::default() });
+    assert_eq!(total(unasked, "energy"), 0);
+    assert!(total(energy, "energy") > 0);
+    for section in ["own disc", "distance", "contact", "normal force", "shear force"] {
+        assert_eq!(total(unasked, section), total(energy, section), "{section}");
+    }
+    // The sums with their two stores.
+    assert_eq!(total(unasked, "sums") + 2, total(energy, "sums"));
+}

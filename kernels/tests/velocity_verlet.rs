@@ -1,0 +1,176 @@
+//! Velocity Verlet: what its state is, its order, what it does exactly; programs and the fast pass give the same bits.
+
+use stripmine_kernels::integrator::gear::STATE;
+use stripmine_kernels::integrator::velocity_verlet::{Drift, Kick, VelocityVerlet};
+use stripmine_kernels::integrator::{Inertia, Scheme};
+use stripmine_kernels::isa::{Array, Memory, Slot};
+use stripmine_kernels::sweep::fast::{Advance, DisplacementLimit, Motion};
+use stripmine_kernels::{Execution, InstructionSet, Program};
+
+const INERTIA: Inertia = Inertia::Equal { inverse_mass: 0.5, inverse_inertia: 4.0 };
+const FREEDOMS: usize = 3;
+
+/// One row of position, velocity and acceleration for each degree of freedom, an entry a disc.
+type State = [[Vec<f64>; 3]; FREEDOMS];
+
+/// Discs of different speeds, without acceleration.
+fn start(discs: usize) -> State {
+    let column = |freedom: usize, k: usize| match k {
+        2 => vec![0.0; discs],
+        _ => (0..discs).map(|disc| 0.3 + (disc + 2 * freedom + k) as f64 / 7.0).collect(),
+    };
+    std::array::from_fn(|freedom| std::array::from_fn(|k| column(freedom, k)))
+}
+
+/// How discs are pulled back, and slowed by their velocities.
+fn force(r: f64, v: f64) -> f64 {
+    -2.0 * r - 0.25 * v
+}
+
+/// By programs; the accelerations of the start are given.
+fn by_programs(state: &mut State, dt: f64, gravity: [f64; 2], steps: usize, force: impl Fn(f64, f64) -> f64) {
+    let discs = state[0][0].len();
+    let (execution, set) = (Execution::Chained, InstructionSet::best());
+    let drift = Program::new(Drift::<f64, f64, FREEDOMS>::new(dt));
+    let kick = Program::new(Kick::<f64, f64, FREEDOMS>::new(dt, INERTIA, gravity));
+    let cell: Vec<u32> = (1..=discs as u32).collect();
+    for _ in 0..steps {
+        let mut velocity: [Vec<f64>; FREEDOMS] = std::array::from_fn(|_| vec![0.0; discs]);
+        {
+            let mut memory = Memory::new();
+            for (arrays, row) in STATE.into_iter().zip(&mut *state) {
+                for (array, q) in arrays.into_iter().zip(row) {
+                    memory = memory.write(Slot::<f64>::new(array), q);
+                }
+            }
+            let velocities = [Array::DiscVx, Array::DiscVy, Array::DiscOmega].into_iter().zip(&mut velocity);
+            for (array, column) in velocities {
+                memory = memory.write(Slot::<f64>::new(array), column);
+            }
+            drift.run(&memory, 0..discs, execution, set).unwrap();
+        }
+        let on = |freedom: usize| (0..discs).map(move |disc| (freedom, disc));
+        let forces = [0, 1, 2].map(|freedom| {
+            let at = on(freedom).map(|(freedom, disc)| (state[freedom][0][disc], velocity[freedom][disc]));
+            at.map(|(r, v)| force(r, v)).collect::<Vec<f64>>()
+        });
+        let mut memory = Memory::new();
+        for (arrays, row) in STATE.into_iter().zip(&mut *state) {
+            for (array, q) in arrays.into_iter().zip(row) {
+                memory = memory.write(Slot::<f64>::new(array), q);
+            }
+        }
+        for (array, column) in [Array::Fx, Array::Fy, Array::Torque].into_iter().zip(&forces) {
+            memory = memory.read(Slot::<f64>::new(array), column);
+        }
+        let memory = memory.read(Slot::new(Array::DiscCell), &cell);
+        kick.run(&memory, 0..discs, execution, set).unwrap();
+    }
+}
+
+/// By the fast pass, which leaves predicted states; the last one is corrected as an observer does it.
+fn by_passes(state: &State, dt: f64, gravity: [f64; 2], steps: u64) -> [[Vec<f64>; 2]; FREEDOMS] {
+    let discs = state[0][0].len();
+    let motion = Motion { scheme: VelocityVerlet, dt, inertia: INERTIA, gravity, seed: 0 };
+    let mut columns: Vec<Vec<Vec<f64>>> = state.iter().map(|row| row[..2].to_vec()).collect();
+    // At the start the discs have the accelerations given, and no force gives gravity back.
+    let mut sums: Vec<Vec<f64>> = (0..FREEDOMS)
+        .map(|freedom| {
+            let inverse = INERTIA.inverse(freedom, |value| value, || f64::NAN);
+            let gravity = gravity.get(freedom).copied().unwrap_or(0.0);
+            state[freedom][2].iter().map(|a| (a - gravity) / inverse).collect()
+        })
+        .collect();
+    for step in 0..steps {
+        let advance = Advance {
+            motion: &motion,
+            state: columns.iter_mut().map(|row| row.iter_mut().map(Vec::as_mut_slice).collect()).collect(),
+            sums: sums.iter_mut().map(Vec::as_mut_slice).collect::<Vec<&mut [f64]>>(),
+            inverse: [&[], &[]],
+            discs,
+            step,
+            ids: &[],
+            corrected: step == 0,
+            longest_step: f64::INFINITY,
+        };
+        advance.run(DisplacementLimit::Cell([1e9, 1e9]), None, InstructionSet::best()).unwrap();
+        for (freedom, sum) in sums.iter_mut().enumerate() {
+            let [r, v] = [0, 1].map(|k| &columns[freedom][k]);
+            sum.iter_mut().enumerate().for_each(|(disc, sum)| *sum = force(r[disc], v[disc]));
+        }
+    }
+    std::array::from_fn(|freedom| {
+        let inverse = INERTIA.inverse(freedom, |value| value, || f64::NAN);
+        let corrected = |disc: usize| {
+            let predicted = [columns[freedom][0][disc], columns[freedom][1][disc], 0.0, 0.0, 0.0, 0.0];
+            motion.corrected((steps, disc as u32), freedom, predicted, sums[freedom][disc], inverse)
+        };
+        [0, 1].map(|k| (0..discs).map(|disc| corrected(disc)[k]).collect())
+    })
+}
+
+#[test]
+fn the_state_is_position_and_velocity_in_the_scenes_units() {
+    assert_eq!(VelocityVerlet::scales(1e-3)[..3], [1.0; 3]);
+    // Without forces a disc keeps its velocity to the bit, whatever dt is.
+    let mut state = start(5);
+    let before = state.clone();
+    by_programs(&mut state, 1e-3, [0.0; 2], 7, |_, _| 0.0);
+    for (row, before) in state.iter().zip(&before) {
+        assert_eq!(row[1], before[1]);
+        for (r, (r0, v)) in row[0].iter().zip(before[0].iter().zip(&before[1])) {
+            assert!((r - (r0 + 7e-3 * v)).abs() < 1e-14, "{r}");
+        }
+    }
+}
+
+#[test]
+fn programs_and_passes_give_the_same_bits() {
+    for gravity in [[0.0, 0.0], [0.25, -1.5]] {
+        let begin = start(37);
+        let mut state = begin.clone();
+        for row in state.iter_mut().take(2) {
+            row[2].fill(0.0);
+        }
+        let passes = by_passes(&state, 0.0625, gravity, 20);
+        by_programs(&mut state, 0.0625, gravity, 20, force);
+        for (row, passed) in state.iter().zip(&passes) {
+            assert_eq!(row[..2], passed[..]);
+        }
+        assert_ne!(state[0][0], begin[0][0]);
+    }
+}
+
+/// Of second order on a harmonic oscillator.
+#[test]
+fn the_error_falls_with_the_square_of_the_step() {
+    let error = |steps: usize| {
+        let dt = 4.0 / steps as f64;
+        let mut state = start(1);
+        // a = F/2 = −r: r = cos t.
+        (state[0][0][0], state[0][1][0], state[0][2][0]) = (1.0, 0.0, -1.0);
+        by_programs(&mut state, dt, [0.0; 2], steps, |r, _| -2.0 * r);
+        (state[0][0][0] - 4.0f64.cos()).abs().max((state[0][1][0] + 4.0f64.sin()).abs())
+    };
+    let errors = [50, 100, 200].map(error);
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((order - 2.0).abs() < 0.1, "{order}");
+    }
+}
+
+/// Numbers of few bits: the parabola to the bit.
+#[test]
+fn free_fall_is_the_exact_parabola() {
+    let (gravity, dt) = ([0.5, -8.0], 1.0 / 1024.0);
+    let mut state = start(1);
+    for (axis, g) in gravity.into_iter().enumerate() {
+        (state[axis][0][0], state[axis][1][0], state[axis][2][0]) = (1.25, 3.5, g);
+    }
+    by_programs(&mut state, dt, gravity, 1000, |_, _| 0.0);
+    let t = 1000.0 * dt;
+    for (axis, g) in gravity.into_iter().enumerate() {
+        assert_eq!(state[axis][0][0], 1.25 + 3.5 * t + 0.5 * g * t * t);
+        assert_eq!(state[axis][1][0], 3.5 + g * t);
+    }
+}
