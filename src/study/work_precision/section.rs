@@ -5,6 +5,7 @@ mod tables;
 
 use super::conclusions::sentences;
 use super::dataset::WorkPrecision;
+use crate::console::Failure;
 use crate::report::{Section, Verdict, csv};
 use crate::results::Made;
 
@@ -15,7 +16,7 @@ pub const NAME: &str = "work-precision";
 ///
 /// # Errors
 /// If the dataset is none that JSON can hold.
-pub fn made(scenes: &[(String, WorkPrecision)], again: String) -> Result<Made, crate::console::Failure> {
+pub fn made(scenes: &[(String, WorkPrecision)], again: String) -> Result<Made, Failure> {
     let said = scenes.iter().map(|(name, data)| format!("{name}. {}", sentences(data).join(" ")));
     let mut seeds: Vec<u64> = scenes.iter().flat_map(|(_, data)| data.seeds.clone()).collect();
     seeds.sort_unstable();
@@ -39,8 +40,12 @@ pub fn made(scenes: &[(String, WorkPrecision)], again: String) -> Result<Made, c
         .iter()
         .map(|(name, data)| Ok((name.clone(), serde_json::to_value(data)?)))
         .collect::<serde_json::Result<_>>()
-        .map_err(|cause| crate::console::Failure::writing("JSON")(cause.into()))?;
-    let mut runs = Vec::new();
-    csv::write(&tables::runs(scenes), &mut runs).map_err(crate::console::Failure::writing("CSV"))?;
-    Ok(Made::new(section, &all)?.with_file("runs.csv", String::from_utf8_lossy(&runs).into_owned()))
+        .map_err(|cause| Failure::writing("JSON")(cause.into()))?;
+    let mut made = Made::new(section, &all)?;
+    for table in [tables::runs(scenes), tables::all_means(scenes)] {
+        let mut text = Vec::new();
+        csv::write(&table, &mut text).map_err(Failure::writing("CSV"))?;
+        made = made.with_file(&format!("{}.csv", table.name), String::from_utf8_lossy(&text).into_owned());
+    }
+    Ok(made)
 }

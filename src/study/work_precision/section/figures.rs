@@ -209,7 +209,7 @@ fn clocks(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
         title: format!("{name}: error over clock periods"),
         caption: format!(
             "By the paper's clock of {machine}, n + D for each operation counted. Ways whose work depends on the data are not in it: \
-             they have no fixed program to count."
+             they have no fixed program to count. Executions of one program have the same clock periods."
         ),
         picture: Picture::Chart(Chart {
             x: Axis::logarithmic("clock periods for a unit of simulated time", None),
@@ -227,8 +227,8 @@ fn growth(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
         let points = grown.times.iter().zip(values).map(|(&time, &value)| Point::at(time, value));
         points.filter(|point| point.y > 0.0).collect::<Vec<_>>()
     };
-    let rate = grown.rate.map_or("no exponential growth".to_owned(), |rate| {
-        format!("the distance grows as exp({} t)", short(rate))
+    let rate = grown.rate.map_or("No exponential growth is seen".to_owned(), |rate| {
+        format!("The distance grows as exp({} t)", short(rate))
     });
     Some(Figure {
         name: format!("{file}_growth"),
