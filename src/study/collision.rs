@@ -66,7 +66,7 @@ pub fn is_collision(subject: &Subject) -> bool {
     particles.grain_count() == 2 && particles.len() == 2
 }
 
-/// Collisions by every scheme over `steps` (time, rising), each with so many phases. None where the discs do not part within
+/// Collisions by every scheme over `steps` (time, rising), each with `phases` starts. None where the discs do not part within
 /// the time of the scene.
 ///
 /// # Errors

@@ -129,7 +129,7 @@ fn at_step(
     Ok(growth)
 }
 
-/// All runs at the time of so many steps of the first.
+/// All runs at the time of `steps` steps of the first.
 fn all_up_to(
     runs: &mut [Box<dyn Simulation>; 3],
     steps: u64,

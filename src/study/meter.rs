@@ -11,12 +11,12 @@ pub struct Meter<'p> {
 }
 
 impl<'p> Meter<'p> {
-    /// Of a study that will take about so many seconds of work.
+    /// Of a study that is expected to take `all` seconds of work.
     pub fn new(all: f64, progress: Progress<'p>) -> Self {
         Meter { done: Mutex::new(0.0), all: Mutex::new(all), progress }
     }
 
-    /// The rest of the work will take about so many seconds.
+    /// The rest of the work is expected to take `rest` seconds.
     pub fn expect(&self, rest: f64) {
         let done = self.done.lock().map_or(0.0, |done| *done);
         if let Ok(mut all) = self.all.lock() {
@@ -24,7 +24,7 @@ impl<'p> Meter<'p> {
         }
     }
 
-    /// Work of so many expected seconds is done.
+    /// Work that was expected to take `seconds` is done.
     pub fn add(&self, seconds: f64) {
         let done = self.done.lock().map_or(0.0, |mut done| {
             *done += seconds;

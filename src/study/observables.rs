@@ -49,7 +49,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Whether the error bar reaches zero: no difference can be told.
+    /// Whether the error bar reaches zero: the difference is not significant.
     pub fn reaches_zero(&self) -> bool {
         self.difference.abs() <= self.bar
     }
@@ -60,7 +60,7 @@ impl Comparison {
 pub struct Observables {
     /// The time of each run (time).
     pub duration: f64,
-    /// Every comparison; none of a mean that is itself not told from zero.
+    /// Every comparison; none of a mean that is itself not known to a tenth.
     pub comparisons: Vec<Comparison>,
     /// What failed, and why.
     pub failed: Vec<(String, f64, String)>,
@@ -69,7 +69,7 @@ pub struct Observables {
 /// Means over time of a run: a value for each observable, and the profile.
 type Means = BTreeMap<String, Vec<f64>>;
 
-/// Runs every way to run the scene with every seed for so many own steps.
+/// Runs every way to run the scene with every seed for `steps` own steps.
 ///
 /// # Errors
 /// [`JournalError`] if a finished run cannot be kept.
@@ -105,8 +105,8 @@ pub fn observables(
         let [runs, reference] =
             [runs, reference].map(|runs| runs.iter().filter_map(|run| run.as_ref().ok()).collect::<Vec<_>>());
         for observable in reference[0].keys() {
-            // No part of a mean that is zero can be stated.
-            if is_zero(&reference, observable) {
+            // A part of a mean means nothing where the mean itself is about zero.
+            if !is_known(&reference, observable) {
                 continue;
             }
             let of = |runs: &[&Means]| runs.iter().map(|run| run[observable].clone()).collect::<Vec<_>>();
@@ -174,11 +174,11 @@ fn profile(state: &State, domain: &Domain) -> Vec<f64> {
     bins
 }
 
-/// Whether the error bar of a mean reaches zero; never for a profile.
-fn is_zero(runs: &[&Means], observable: &str) -> bool {
+/// Whether a mean is known to a tenth; a profile always is.
+fn is_known(runs: &[&Means], observable: &str) -> bool {
     let values: Vec<f64> = runs.iter().filter_map(|run| run[observable].first().copied()).collect();
     let spread = Spread::of(&values);
-    observable != PROFILE && spread.mean.abs() <= STUDENT * spread.error.unwrap_or(0.0)
+    observable == PROFILE || spread.error.is_some_and(|error| error < 0.1 * spread.mean.abs())
 }
 
 /// The mean of the reference, and the difference of runs to it with its bar, both relative to it: seed by seed. Of several

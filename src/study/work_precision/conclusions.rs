@@ -38,7 +38,10 @@ pub fn own_run(data: &WorkPrecision) -> Option<&Run> {
 
 /// Sentences on a scene.
 pub fn sentences(data: &WorkPrecision) -> Vec<String> {
-    [own(data), digits(data), orders(data), means(data), cut(data)].into_iter().flatten().collect()
+    [own(data), cheap(data), digits(data), orders(data), means(data), cut(data)]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// How a number with a wide range is written.
@@ -88,6 +91,19 @@ fn own(data: &WorkPrecision) -> Option<String> {
         data.ways[best.way].label,
         multiple(best.power),
         100.0 * least / cost
+    ))
+}
+
+/// What the largest wish costs, where that is less than the scene's own way.
+fn cheap(data: &WorkPrecision) -> Option<String> {
+    let it = fulfilled(data).into_iter().next()?;
+    let share = it.of_own.filter(|share| *share < 0.9)?;
+    Some(format!(
+        "For an error of at most {:.0e} radii {} at {} is the cheapest, for {:.0} % of the scene's own cost.",
+        it.wish,
+        data.ways[it.run.way].label,
+        multiple(it.run.power),
+        100.0 * share
     ))
 }
 
@@ -146,20 +162,20 @@ fn orders(data: &WorkPrecision) -> Option<String> {
     (!said.is_empty()).then(|| format!("Orders of convergence: {}.", said.join(", ")))
 }
 
-/// Whether means tell the steps apart.
+/// Which means differ significantly.
 fn means(data: &WorkPrecision) -> Option<String> {
     let all = &data.observables.as_ref()?.comparisons;
-    let told: Vec<_> = all.iter().filter(|comparison| !comparison.reaches_zero()).collect();
+    let significant: Vec<_> = all.iter().filter(|comparison| !comparison.reaches_zero()).collect();
     let seeds = data.seeds.len();
-    Some(match told.iter().max_by(|a, b| a.difference.abs().total_cmp(&b.difference.abs())) {
+    Some(match significant.iter().max_by(|a, b| a.difference.abs().total_cmp(&b.difference.abs())) {
         None => format!(
-            "Over {seeds} seeds none of {} means over time can be told from that of the reference, up to the largest step tried.",
+            "Over {seeds} seeds none of {} means over time differs significantly from that of the reference, up to the largest step tried.",
             all.len()
         ),
         Some(worst) => format!(
-            "Over {seeds} seeds {} of {} means over time can be told from those of the reference, about {:.0} of them by chance; the \
+            "Over {seeds} seeds {} of {} means over time differ significantly from those of the reference, where chance alone makes about {:.0}; the \
              farthest off is the {} of {} with step {}, by {:.1} %.",
-            told.len(),
+            significant.len(),
             all.len(),
             CHANCE * all.len() as f64,
             worst.observable,

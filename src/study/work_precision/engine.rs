@@ -7,6 +7,7 @@ use super::plan::{BELOW, COARSEST, Plan};
 use super::{Effort, MEANS_SHARE};
 use crate::method::{Decides, Prepared, Purpose, Simulation};
 use crate::results::{Journal, JournalError};
+use crate::scene::SceneErrors;
 use crate::study::choice::Choice;
 use crate::study::collision::{Collision, collision, is_collision};
 use crate::study::meter::Meter;
@@ -22,7 +23,7 @@ use std::time::Instant;
 const LOOKS: u64 = 16;
 /// Steps of a probe at most.
 const PROBED: u64 = 4096;
-/// An error below this many times the reference's own is not told from it.
+/// An error below this many times the reference's own is not distinguished from it.
 const ABOVE_FLOOR: f64 = 3.0;
 /// The fewest steps of a run whose means are compared.
 const FEWEST: u64 = 256;
@@ -48,6 +49,12 @@ pub fn probes(
         journal.recall(&format!("probe|{}", choice.label()), || Ok::<_, JournalError>(probe(choice)))
     };
     choices.iter().map(of).collect()
+}
+
+/// Every mistake, in one line.
+fn refusal(errors: &SceneErrors) -> String {
+    let messages: Vec<&str> = errors.0.iter().map(|error| error.message.as_str()).collect();
+    format!("refused: {}", messages.join("; "))
 }
 
 /// A message without its advice, in one line.
@@ -102,7 +109,7 @@ impl Work<'_> {
 
     fn prepared(&self, choice: &Choice, power: i32) -> Result<Box<dyn Prepared>, String> {
         let prepared = self.subject.prepared_as(choice, self.step(power), &[]);
-        prepared.map_err(|errors| format!("refused: {}", first_line(&errors.to_string())))
+        prepared.map_err(|errors| refusal(&errors))
     }
 
     /// Runs a choice to the end of the time.

@@ -328,7 +328,7 @@ fn means(file: &str, name: &str, data: &WorkPrecision, all: &Observables) -> Opt
         title: format!("{name}: mean {observable}, off the reference's"),
         caption: format!(
             "Means over the second half of a time of {}, {} seeds; bars hold the difference in 95 of 100 studies. Hollow: no \
-             difference can be told.",
+             significant difference.",
             short(all.duration),
             data.seeds.len()
         ),

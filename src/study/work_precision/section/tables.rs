@@ -162,7 +162,7 @@ fn compared(name: &str, scenes: &Scenes, is_shown: fn(&WorkPrecision, &str) -> b
     table(
         name,
         "Means over time of the scene's own way beside the reference's",
-        &["scene", "mean of", "way", "step", "difference (%)", "bar, 95 % (%)", "can be told"],
+        &["scene", "mean of", "way", "step", "difference (%)", "bar, 95 % (%)", "significant"],
         rows.collect(),
         &[
             "Paired by seed; one bar in twenty misses zero by chance. The density profile: root of the mean square over bins along \
@@ -249,10 +249,9 @@ fn failed(scenes: &Scenes) -> Table {
     let rows = scenes.iter().flat_map(|(name, data)| {
         let refused = refused(data).into_iter();
         let refused = refused.map(move |(what, why)| vec![text(name), text(what), text("any"), text(why)]);
-        let failed = data.runs.iter().filter_map(move |run| {
-            let why = run.outcome.as_ref().err()?;
-            Some(vec![text(name), text(&data.ways[run.way].label), text(short(run.step)), text(why)])
-        });
+        let failed = broken(data).into_iter();
+        let failed =
+            failed.map(move |(what, step, why)| vec![text(name), text(what), text(short(step)), text(why)]);
         refused.chain(failed)
     });
     table(
@@ -275,6 +274,25 @@ fn refused(data: &WorkPrecision) -> Vec<(String, &str)> {
             if is_all { format!("any integrator and precision, {}", way.cost) } else { way.label.clone() };
         if !all.iter().any(|(known, _)| *known == what) {
             all.push((what, why));
+        }
+    }
+    all
+}
+
+/// Runs that broke, their step, and why; those of one scheme that broke alike as one.
+fn broken(data: &WorkPrecision) -> Vec<(String, f64, &str)> {
+    let mut all: Vec<(String, f64, &str)> = vec![];
+    for run in &data.runs {
+        let Err(why) = &run.outcome else { continue };
+        let scheme = &data.ways[run.way].scheme;
+        let mut alike =
+            data.runs.iter().filter(|it| it.step == run.step && data.ways[it.way].scheme == *scheme);
+        let what = match alike.all(|other| other.outcome.as_ref().err() == Some(why)) {
+            true => format!("{scheme}, in every way that was run"),
+            false => data.ways[run.way].label.clone(),
+        };
+        if !all.iter().any(|(known, step, _)| *known == what && *step == run.step) {
+            all.push((what, run.step, why));
         }
     }
     all
