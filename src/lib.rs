@@ -57,4 +57,5 @@ pub mod scene;
 pub mod signals;
 pub mod start;
 pub mod statistics;
+pub mod study;
 pub mod words;

@@ -1,6 +1,7 @@
 //! The command line: one file per verb; composes, decides nothing. Methods add verbs, benches, presets and items.
 
 mod bench;
+mod chart;
 mod completions;
 mod man;
 mod reproduce;
@@ -8,9 +9,10 @@ mod run;
 mod scene;
 
 use crate::console::{Common, Failure, clear_progress, print_answer, tell};
-use crate::method::{METHODS, Methods, Verb};
+use crate::method::{Item, METHODS, Methods, Verb};
 use crate::origin::command_line;
 use crate::signals;
+use crate::study;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
@@ -33,6 +35,7 @@ enum GeneralVerb {
     Scene(scene::SceneVerb),
     Run(run::RunVerb),
     Bench(bench::BenchVerb),
+    Chart(chart::ChartVerb),
     Completions(completions::Completions),
     Man(man::ManVerb),
 }
@@ -42,13 +45,28 @@ fn verbs_of(methods: Methods) -> impl Iterator<Item = &'static Verb> {
     methods.iter().flat_map(|method| method.verbs)
 }
 
+/// The studies of methods, below `chart`.
+fn charts_of(methods: Methods) -> impl Iterator<Item = &'static Verb> {
+    methods.iter().flat_map(|method| method.charts)
+}
+
+/// What `reproduce` makes, in the order of the page: of methods, and of studies that all of them share.
+fn items_of(methods: Methods) -> impl Iterator<Item = &'static Item> {
+    methods.iter().flat_map(|method| method.items).chain(study::ITEMS)
+}
+
+/// A verb of a method as a command.
+fn subcommand(verb: &Verb) -> clap::Command {
+    (verb.command)(clap::Command::new(verb.name))
+}
+
 /// The command, with what its methods add.
 fn command(methods: Methods) -> clap::Command {
     let benches = methods.iter().flat_map(|method| method.benches);
     let benches: Vec<PossibleValue> =
         benches.map(|bench| PossibleValue::new(bench.name).help(bench.doc)).collect();
-    let items = methods.iter().flat_map(|method| method.items);
-    let items: Vec<PossibleValue> = items.map(|item| PossibleValue::new(item.name).help(item.doc)).collect();
+    let items: Vec<PossibleValue> =
+        items_of(methods).map(|item| PossibleValue::new(item.name).help(item.doc)).collect();
     let presets: Vec<&str> = scene::presets(methods).map(|preset| preset.name).collect();
     let names: Vec<PossibleValue> = methods
         .iter()
@@ -70,7 +88,9 @@ fn command(methods: Methods) -> clap::Command {
                     keys.mut_arg("method", |method| method.value_parser(PossibleValuesParser::new(names)))
                 })
         });
-    general.subcommands(verbs_of(methods).map(|verb| (verb.command)(clap::Command::new(verb.name))))
+    general
+        .mut_subcommand("chart", |chart| chart.subcommands(charts_of(methods).map(subcommand)))
+        .subcommands(verbs_of(methods).map(subcommand))
 }
 
 /// Runs the command with its arguments, the first of which is its name.
@@ -121,9 +141,15 @@ fn carried_out(matches: &ArgMatches, command: &str, methods: Methods) -> Result<
     // Without an answer the default pool has a thread for each core.
     let threads = common.threads.map_or(0, usize::from);
     rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(Failure::Threads)?;
-    if let Some((name, matches)) = matches.subcommand()
-        && let Some(verb) = verbs_of(methods).find(|verb| verb.name == name)
-    {
+    let named = |verb: &&Verb, name: &str| verb.name == name;
+    let of_method = match matches.subcommand() {
+        Some(("chart", below)) => below
+            .subcommand()
+            .and_then(|(name, matches)| Some((charts_of(methods).find(|verb| named(verb, name))?, matches))),
+        Some((name, matches)) => verbs_of(methods).find(|verb| named(verb, name)).map(|verb| (verb, matches)),
+        None => None,
+    };
+    if let Some((verb, matches)) = of_method {
         return (verb.run)(matches, &common);
     }
     match CommandLine::from_arg_matches(matches).map_err(Failure::Arguments)?.verb {
@@ -131,6 +157,7 @@ fn carried_out(matches: &ArgMatches, command: &str, methods: Methods) -> Result<
         GeneralVerb::Scene(verb) => verb.run(&common, methods),
         GeneralVerb::Run(verb) => verb.run(&common, methods),
         GeneralVerb::Bench(verb) => verb.run(&common, methods),
+        GeneralVerb::Chart(verb) => verb.run(&common, methods),
         GeneralVerb::Completions(verb) => verb.run(methods),
         GeneralVerb::Man(verb) => verb.run(methods),
     }

@@ -1,5 +1,6 @@
 //! `stripmine reproduce`: the main job.
 
+use super::items_of;
 use crate::console::{Common, Failure, SHARES, bar, clear_progress, print_json, say};
 use crate::method::{Item, Methods};
 use crate::origin::Provenance;
@@ -40,7 +41,7 @@ impl Reproduce {
             [] => item.is_quick || effort == Effort::Full,
             only => only.iter().any(|name| name == item.name),
         };
-        let all: Vec<&'static Item> = methods.iter().flat_map(|method| method.items).collect();
+        let all: Vec<&'static Item> = items_of(methods).collect();
         let on_page: Vec<&str> = all.iter().map(|item| item.name).collect();
         let items: Vec<&'static Item> = all.into_iter().filter(asked).collect();
         let names: Vec<&str> = items.iter().map(|item| item.name).collect();

@@ -2,10 +2,12 @@
 
 use super::clock::{Clock, Schedule, Until};
 use super::failure::Failure;
+use super::trials::Trials;
 use crate::console;
 use crate::domain::Domain;
 use crate::io::checkpoint::{Column, Counter};
 use crate::memory::Foreseen;
+use crate::model::machine::MachineModel;
 use crate::particles::Particles;
 use crate::results::{Effort, Made};
 use crate::scene::{Output, SceneErrors, Values, Vocabulary, Warning};
@@ -33,6 +35,10 @@ pub struct Entry {
     pub items: &'static [Item],
     /// Verbs of its own.
     pub verbs: &'static [Verb],
+    /// Studies of its own, as verbs below `chart`.
+    pub charts: &'static [Verb],
+    /// How its scenes may be tried; none where nothing of them may be varied.
+    pub trials: Option<&'static Trials>,
 }
 
 /// Where the share of a piece of work that is done is heard.
@@ -163,7 +169,7 @@ pub enum Purpose {
 }
 
 /// A scene that may run: its particles are made, and every precondition holds.
-pub trait Prepared: Send {
+pub trait Prepared: Send + Sync {
     /// The scene as TOML, every value spelled out and every choice made.
     fn scene(&self) -> String;
 
@@ -208,6 +214,9 @@ pub trait Prepared: Send {
     /// # Errors
     /// [`Failure`] if the start breaks a precondition, or the processor lacks what is asked for.
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure>;
+
+    /// The same scene with other positions and velocities at the start: of the same particles in the same order.
+    fn started_from(&self, particles: Particles) -> Box<dyn Prepared>;
 }
 
 /// Everything that the future of a simulation depends on.
@@ -253,6 +262,11 @@ pub trait Simulation: Send {
 
     /// How much has been done, in the unit of the rates that `bench` gives.
     fn work(&self) -> f64;
+
+    /// Clock periods of the last step on a vector machine, by the operations counted; none where none are counted.
+    fn clock_periods(&self, _machine: &MachineModel) -> Option<f64> {
+        None
+    }
 
     /// What there is to be said at the end: the method's own entries of `summary.json`.
     fn summary(&self) -> Map<String, Value>;

@@ -7,6 +7,7 @@ pub mod lattice_md;
 mod list;
 mod pairwise;
 pub mod throughput;
+mod trials;
 
 pub use clock::{Clock, Every, Schedule, Until};
 pub use entry::{
@@ -14,3 +15,4 @@ pub use entry::{
 };
 pub use failure::{Culprit, Failure, FailureKind};
 pub use list::{METHODS, Methods, load, method, prepare, vocabularies};
+pub use trials::{Axis, Decides, Setting, Theory, Trials};

@@ -1,9 +1,10 @@
 //! The folder that results go to: a folder for each item, and the pages over all of them.
 //!
 //! Only what this program wrote is written over. An item's folder is its own if `provenance.json` there lists every file in
-//! it; a page, if it bears the mark of ours; the whole folder, if it is empty or holds one of these.
+//! it; a page, if it bears the mark of ours; the whole folder, if it is empty or holds one of these, or a journal of ours.
 
 use super::Made;
+use super::journal::is_journal;
 use crate::console::{Failure, to_json};
 use crate::io::FileError;
 use crate::io::lock::{Lock, LockError, is_lock};
@@ -346,6 +347,7 @@ fn judge(path: &Path) -> Result<(), FolderError> {
     let is_item = |folder: PathBuf| is_file(&folder.join(SECTION)) && own_files(&folder).is_ok();
     let (page, mark) = PAGES[0];
     let ours = names.is_empty()
+        || is_journal(path)
         || own_page(&path.join(page), mark).is_ok_and(|there| there)
         || items.into_iter().any(is_item);
     if ours { Ok(()) } else { Err(not_ours(path, &names)) }

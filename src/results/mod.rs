@@ -1,8 +1,10 @@
-//! Results: what a finished item holds, and the folder that items are written to.
+//! Results: what a finished item holds, the folder that items are written to, and the runs that a study has finished.
 
 mod folder;
+mod journal;
 
 pub use folder::{Folder, FolderError};
+pub use journal::{Identity, Journal, JournalError};
 
 use crate::console::Failure;
 use crate::report::Section;

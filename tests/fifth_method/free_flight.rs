@@ -8,8 +8,8 @@ use stripmine::domain::Domain;
 use stripmine::io::checkpoint::Column;
 use stripmine::memory::Foreseen;
 use stripmine::method::{
-    Bench, BenchOption, Clock, Entry, Every, Fact, Failure, Prepared, Purpose, Quantity, Schedule,
-    Simulation, Snapshot, Until,
+    Axis, Bench, BenchOption, Clock, Decides, Entry, Every, Fact, Failure, Prepared, Purpose, Quantity,
+    Schedule, Setting, Simulation, Snapshot, Trials, Until,
 };
 use stripmine::particles::Particles;
 use stripmine::scene::{
@@ -45,6 +45,25 @@ pub static ENTRY: Entry = Entry {
     }],
     items: &[],
     verbs: &[],
+    charts: &[],
+    trials: Some(&TRIALS),
+};
+
+/// The one way there is: steps of any length end in the same place.
+static TRIALS: Trials = Trials {
+    step: &DT,
+    axes: &[Axis {
+        name: "integrator",
+        decides: Decides::Order,
+        settings: &[Setting { name: "drift", overrides: &[] }],
+        own: |_| Some("drift".to_owned()),
+    }],
+    references: [&[("integrator", "drift")], &[("integrator", "drift")]],
+    balance: None,
+    observables: &["kinetic"],
+    inertia: |_| None,
+    theory: |_, _, _| None,
+    shown: &[],
 };
 
 static VOCABULARY: Vocabulary = Vocabulary {
@@ -166,6 +185,10 @@ impl Prepared for Flight {
 
     fn start(&self, _: Purpose) -> Result<Box<dyn Simulation>, Failure> {
         Ok(Box::new(Flying { domain: self.domain(), dt: self.dt, discs: self.made.clone(), steps: 0 }))
+    }
+
+    fn started_from(&self, particles: Particles) -> Box<dyn Prepared> {
+        Box::new(Flight { made: particles, ..self.clone() })
     }
 }
 

@@ -20,6 +20,7 @@ fn main() -> ExitCode {
     scenes_are_listed_checked_and_refused();
     a_run_is_observed_and_goes_on_to_the_same_bytes();
     it_is_measured();
+    it_is_studied();
     it_is_documented();
     println!("the fifth method works in every verb");
     ExitCode::SUCCESS
@@ -89,6 +90,21 @@ fn it_is_measured() {
     assert_eq!(measured["kinetic"][0], measured["kinetic"][1]);
     let refused = stripmine(&["bench", "free-flight", "--precision", "f32"]);
     assert_eq!(refused.status.code(), Some(2), "{}", String::from_utf8_lossy(&refused.stderr));
+}
+
+fn it_is_studied() {
+    let folder = tempfile::tempdir().expect("there is room");
+    let out = folder.path().join("study").display().to_string();
+    let study = ["chart", "work-precision", "drift", "--out", &out, "--budget", "1", "--json"];
+    let found = data(&study);
+    let runs = found["drift"]["runs"].as_array().expect("there are runs");
+    // Free flight is exact with any step, but for rounding.
+    let error = |run: &serde_json::Value| run["outcome"]["Ok"]["position"].as_f64();
+    assert!(
+        runs.len() > 4 && runs.iter().all(|run| error(run).is_some_and(|error| error < 1e-9)),
+        "{runs:?}"
+    );
+    assert!(Path::new(&out).join("host/work-precision/drift_searches.svg").metadata().is_err());
 }
 
 fn it_is_documented() {

@@ -4,7 +4,8 @@ use super::benches::{BENCHES, QUANTITIES};
 use super::document::Document;
 use super::items::ITEMS;
 use super::keys::VOCABULARY;
-use super::verbs::VERBS;
+use super::trials::TRIALS;
+use super::verbs::{CHARTS, VERBS};
 use crate::method::Entry;
 
 /// Lattice molecular dynamics of granular discs.
@@ -17,4 +18,6 @@ pub static ENTRY: Entry = Entry {
     benches: BENCHES,
     items: ITEMS,
     verbs: VERBS,
+    charts: CHARTS,
+    trials: Some(&TRIALS),
 };

@@ -52,6 +52,7 @@ pub mod sections;
 mod simulation;
 pub mod study;
 mod totals;
+mod trials;
 mod verbs;
 mod walls;
 mod watch;

@@ -11,6 +11,8 @@ use crate::domain::Domain;
 use crate::io::checkpoint::Counter;
 use crate::memory::{Foreseen, in_words};
 use crate::method::{Clock, Every, Fact, Failure, Prepared, Purpose, Schedule, Simulation, Snapshot, Until};
+use crate::model::clock;
+use crate::model::machine::MachineModel;
 use crate::observe::{Observation, Scenery};
 use crate::particles::Particles;
 use crate::scene::{Output, SceneErrors, Warning};
@@ -111,6 +113,10 @@ impl Prepared for Discs {
             Purpose::Measurement => assemble(&self.0)?,
         };
         Ok(Box::new(Running::new(&self.0, engine)))
+    }
+
+    fn started_from(&self, particles: Particles) -> Box<dyn Prepared> {
+        Box::new(Discs(Checked { particles, ..self.0.clone() }))
     }
 }
 
@@ -329,6 +335,15 @@ impl Simulation for Running {
 
     fn work(&self) -> f64 {
         self.discs[0] as f64 * self.engine.steps() as f64
+    }
+
+    fn clock_periods(&self, machine: &MachineModel) -> Option<f64> {
+        let parts = self.engine.ledger().parts();
+        let is_counted = !parts.is_empty();
+        let clocks = parts.into_iter().map(|(_, length, counts)| {
+            clock::Clock::Paper.clocks(machine, &clock::Work::from(counts), self.engine.length(length))
+        });
+        is_counted.then(|| clocks.sum())
     }
 
     fn summary(&self) -> Map<String, Value> {

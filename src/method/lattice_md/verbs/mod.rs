@@ -1,7 +1,7 @@
 //! The verbs that are this method's own: what its programs cost, by count, by clock and by measurement.
 
 mod calibrate;
-mod chart;
+mod density_cost;
 mod listing;
 mod scene_choice;
 mod table;
@@ -10,8 +10,8 @@ mod validate_model;
 use crate::console::{Common, Failure};
 use crate::method::Verb;
 use calibrate::CalibrateVerb;
-use chart::ChartVerb;
 use clap::{Args, FromArgMatches};
+use density_cost::DensityCostVerb;
 use listing::ListingVerb;
 use table::TableVerb;
 use validate_model::ValidateModel;
@@ -32,7 +32,11 @@ pub(super) const VERBS: &[Verb] = verbs! {
     "listing" ListingVerb,
     "calibrate" CalibrateVerb,
     "validate-model" ValidateModel,
-    "chart" ChartVerb,
+};
+
+/// Every study below `chart`, in the order of the help.
+pub(super) const CHARTS: &[Verb] = verbs! {
+    "density-cost" DensityCostVerb,
 };
 
 fn carried_out<A: Args + FromArgMatches>(

@@ -1,4 +1,4 @@
-//! `stripmine chart`: studies as data and charts.
+//! `stripmine chart density-cost`: cost over density, as data and charts.
 
 use super::validate_model::host_model;
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say};
@@ -12,16 +12,13 @@ use crate::origin::Provenance;
 use crate::report::Section;
 use crate::results::{Folder, Made};
 use crate::signals;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// Studies as data and charts
+/// BP93, figures 3 and 4, by the paper's clock of a machine and measured here, and the break-even atlas: who wins where
 #[derive(Args)]
-pub(super) struct ChartVerb {
-    /// What to chart
-    #[arg(value_enum)]
-    what: What,
+pub(super) struct DensityCostVerb {
     #[arg(long, default_value = "paper", help = super::table::machine_help())]
     machine: String,
     /// Host file of `calibrate` for the atlas; without one, the model that comes with the program
@@ -32,16 +29,8 @@ pub(super) struct ChartVerb {
     out: PathBuf,
 }
 
-/// What can be charted so far.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum What {
-    /// BP93, figures 3 and 4, by the paper's clock of a machine and measured here, and the break-even atlas: who wins where
-    DensityCost,
-}
-
-impl ChartVerb {
+impl DensityCostVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
-        let What::DensityCost = self.what;
         let machine = machines::find(&self.machine)?;
         // Before anything takes its time.
         let folder = Folder::open(&self.out, &["cost", "measured", "atlas"], false)?;

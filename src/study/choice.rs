@@ -1,0 +1,82 @@
+//! A way to run a scene: a setting for each axis that its method states.
+
+use crate::method::{Axis, Decides, Prepared, Setting, Trials};
+
+/// A setting for each axis.
+#[derive(Clone, Debug)]
+pub struct Choice(Vec<(&'static Axis, &'static Setting)>);
+
+impl PartialEq for Choice {
+    fn eq(&self, other: &Self) -> bool {
+        self.label() == other.label()
+    }
+}
+
+impl Choice {
+    /// Every combination of settings, those of the first axis changing slowest.
+    pub fn all(trials: &Trials) -> Vec<Choice> {
+        let begin = vec![Choice(vec![])];
+        trials.axes.iter().fold(begin, |choices, axis| {
+            let with_axis = |choice: Choice| {
+                axis.settings
+                    .iter()
+                    .map(move |setting| Choice(choice.0.iter().copied().chain([(axis, setting)]).collect()))
+            };
+            choices.into_iter().flat_map(with_axis).collect()
+        })
+    }
+
+    /// How a scene itself is run; the first setting where its own is not among those of an axis.
+    pub fn own(trials: &Trials, prepared: &dyn Prepared) -> Choice {
+        let of = |axis: &'static Axis| {
+            let own = (axis.own)(prepared).and_then(|name| axis.setting(&name));
+            Some((axis, own.or(axis.settings.first())?))
+        };
+        Choice(trials.axes.iter().filter_map(of).collect())
+    }
+
+    /// The same with some settings, by axis and name.
+    #[must_use]
+    pub fn with(&self, settings: &[(&str, &str)]) -> Choice {
+        let mut changed = self.clone();
+        for (axis, setting) in &mut changed.0 {
+            let named = settings.iter().find(|(name, _)| *name == axis.name);
+            *setting = named.and_then(|(_, name)| axis.setting(name)).unwrap_or(setting);
+        }
+        changed
+    }
+
+    /// What it is called: the names of its settings.
+    pub fn label(&self) -> String {
+        self.0.iter().map(|(_, setting)| setting.name).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The settings, by the names of their axes.
+    pub fn settings(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        self.0.iter().map(|(axis, setting)| (axis.name, setting.name))
+    }
+
+    /// The overrides that it makes in a scene.
+    pub fn overrides(&self) -> impl Iterator<Item = String> {
+        self.0.iter().flat_map(|(_, setting)| setting.overrides.iter().map(|&text| text.to_owned()))
+    }
+
+    /// The setting that decides the order of convergence.
+    pub fn scheme(&self) -> Option<&'static Setting> {
+        self.of(Decides::Order).next()
+    }
+
+    fn of(&self, decides: Decides) -> impl Iterator<Item = &'static Setting> {
+        self.0.iter().filter(move |(axis, _)| axis.decides == decides).map(|(_, setting)| *setting)
+    }
+
+    /// The names of the settings of a kind.
+    pub fn names(&self, decides: Decides) -> Vec<&'static str> {
+        self.of(decides).map(|setting| setting.name).collect()
+    }
+
+    /// Whether the settings of a kind are those of another choice.
+    pub fn agrees(&self, other: &Choice, decides: Decides) -> bool {
+        self.names(decides) == other.names(decides)
+    }
+}

@@ -1,0 +1,64 @@
+//! Why a study has no result.
+
+use crate::method::Failure;
+use crate::reported::{Class, Reported};
+use crate::results::JournalError;
+use crate::scene::SceneErrors;
+
+/// Why a study has no result.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// The method states no trials.
+    #[error(
+        "scenes of the method {0} have nothing that a study may vary\n  help: choose a scene of another method"
+    )]
+    NothingToVary(&'static str),
+    /// The scene.
+    #[error(transparent)]
+    Scene(#[from] SceneErrors),
+    /// The scene as it stands.
+    #[error(transparent)]
+    Physics(#[from] Failure),
+    /// The scene ends before anything is seen of it.
+    #[error(
+        "the scene is over after {steps} steps, before its first output (after {first}): no run of it was tried\n  help: \
+         raise run.steps or run.time, or lower run.thermo_every"
+    )]
+    OverBeforeOutput {
+        /// Steps of the scene.
+        steps: u64,
+        /// Steps up to the first row.
+        first: u64,
+    },
+    /// No run came to its end.
+    #[error(
+        "no run of the scene came to its end; tried were:{}\n  help: lower integrator.dt, or mend what the failures name",
+        tried.iter().map(|(what, why)| format!("\n  {what}: {why}")).collect::<String>()
+    )]
+    EveryRunFails {
+        /// What was tried, and why it failed.
+        tried: Vec<(String, String)>,
+    },
+    /// What was finished before cannot be read, or is another scene's.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+}
+
+impl Reported for StudyError {
+    fn class(&self) -> Class {
+        match self {
+            StudyError::NothingToVary(_) => Class::Usage,
+            StudyError::Scene(errors) => errors.class(),
+            StudyError::Physics(failure) => failure.class(),
+            StudyError::OverBeforeOutput { .. } | StudyError::EveryRunFails { .. } => Class::Precondition,
+            StudyError::Journal(error) => error.class(),
+        }
+    }
+
+    fn mistakes(&self) -> Option<&SceneErrors> {
+        match self {
+            StudyError::Scene(errors) => Some(errors),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! Studies that any method joins by stating its trials: speed against accuracy. They know methods by their entries alone.
+
+mod choice;
+mod collision;
+mod error;
+mod growth;
+mod items;
+mod meter;
+mod observables;
+mod orders;
+mod state;
+mod subject;
+mod trial;
+pub mod work_precision;
+
+pub use choice::Choice;
+pub use error::StudyError;
+pub use items::ITEMS;
+pub use subject::Subject;

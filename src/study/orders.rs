@@ -1,0 +1,54 @@
+//! Orders of convergence from errors over steps.
+
+use crate::statistics::slope;
+use serde::{Deserialize, Serialize};
+
+/// Points that a fit takes at most, the smallest steps first.
+const MOST: usize = 5;
+/// Points that it needs.
+const LEAST: usize = 3;
+
+/// The power of the step with which an error falls.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fitted {
+    /// The power.
+    pub order: f64,
+    /// The smallest and the largest step of the fit (time).
+    pub range: [f64; 2],
+    /// Points of the fit.
+    pub points: usize,
+}
+
+/// Fits a power law through errors over steps, by rising step: those above `floor`, where the error is that of the reference or
+/// of the digits, and below `ceiling`, where it is none of convergence any more. None through fewer than three points.
+pub fn fit(errors: &[(f64, f64)], floor: f64, ceiling: f64) -> Option<Fitted> {
+    let in_range = errors.iter().filter(|(_, error)| *error > floor && *error < ceiling);
+    let used: Vec<(f64, f64)> = in_range.copied().take(MOST).collect();
+    if used.len() < LEAST {
+        return None;
+    }
+    let (steps, logarithms): (Vec<f64>, Vec<f64>) =
+        used.iter().map(|(step, error)| (libm::log(*step), libm::log(*error))).unzip();
+    Some(Fitted {
+        order: slope(&steps, &logarithms),
+        range: [used[0].0, used[used.len() - 1].0],
+        points: used.len(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_power_law_between_floor_and_ceiling_has_its_order() {
+        let steps = (0..9).map(|k| 0.001 * f64::from(1 << k));
+        let errors: Vec<(f64, f64)> = steps.map(|h| (h, (h.powi(3) + 1e-9).min(1e-3))).collect();
+        let fitted = fit(&errors, 5e-8, 0.9e-3).unwrap();
+        assert!((fitted.order - 3.0).abs() < 0.05, "{fitted:?}");
+        assert_eq!((fitted.range, fitted.points), ([0.004, 0.064], 5));
+        // With the floor in it the order would be wrong: it is found out.
+        assert!(fit(&errors, 0.0, 1.0).unwrap().order < 2.0);
+        assert_eq!(fit(&errors[..2], 0.0, 1.0), None);
+    }
+}

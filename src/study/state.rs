@@ -1,0 +1,139 @@
+//! A state of a run as studies compare it: particles by id, and what differs between two states of one scene.
+
+use crate::domain::Domain;
+use crate::particles::{Kind, Particle, Particles, in_space};
+use serde::{Deserialize, Serialize};
+
+/// A particle that moves.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Body {
+    position: [f64; 2],
+    velocity: [f64; 2],
+    omega: f64,
+    radius: f64,
+    mass: f64,
+}
+
+/// The particles that move, by id.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct State(Vec<Body>);
+
+impl State {
+    /// Of particles as a simulation gives them.
+    pub fn of(particles: &Particles) -> State {
+        let mut grains: Vec<&Particle> = particles.grains().iter().collect();
+        grains.sort_by_key(|grain| grain.id);
+        let body = |grain: &&Particle| {
+            let Particle { omega, radius, mass, .. } = **grain;
+            Body { position: grain.place(), velocity: grain.planar_velocity(), omega, radius, mass }
+        };
+        State(grains.iter().map(body).collect())
+    }
+
+    /// How many particles move.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// The centres (length).
+    pub fn positions(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.0.iter().map(|body| body.position)
+    }
+
+    /// The smallest radius (length).
+    pub fn smallest_radius(&self) -> f64 {
+        self.0.iter().map(|body| body.radius).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Root of the mean square distance between the particles of two states, and the largest (length).
+    pub fn distance(&self, other: &State, domain: &Domain) -> [f64; 2] {
+        let squares = self.0.iter().zip(&other.0).map(|(a, b)| {
+            let way = domain.displacement(a.position, b.position);
+            way.iter().map(|part| part * part).sum::<f64>()
+        });
+        let (sum, largest) = squares.fold((0.0, 0.0), |(sum, largest): (f64, f64), square| {
+            // A number that is none is the largest distance there is.
+            (sum + square, if square <= largest { largest } else { square })
+        });
+        [(sum / self.0.len().max(1) as f64).sqrt(), largest.sqrt()]
+    }
+
+    /// Momentum, and the sum of its magnitudes (mass · length/time).
+    pub fn momentum(&self) -> ([f64; 2], f64) {
+        let sum = |axis: usize| self.0.iter().map(|body| body.mass * body.velocity[axis]).sum();
+        let scale = self.0.iter().map(|body| body.mass * body.velocity[0].hypot(body.velocity[1])).sum();
+        ([sum(0), sum(1)], scale)
+    }
+
+    /// Angular momentum about the corner of the box, and the sum of its parts' magnitudes (mass · length²/time); none in a
+    /// box with periodic sides, where it has no meaning.
+    pub fn angular_momentum(&self, domain: &Domain, inertia: Option<f64>) -> Option<(f64, f64)> {
+        if domain.periodic().contains(&true) {
+            return None;
+        }
+        let parts = self.0.iter().flat_map(|body| {
+            let [x, y] = [0, 1].map(|axis| body.position[axis] - domain.origin[axis]);
+            let [u, v] = body.velocity;
+            let spin = inertia.map_or(0.0, |factor| factor * body.mass * body.radius.powi(2) * body.omega);
+            [body.mass * x * v, -body.mass * y * u, spin]
+        });
+        Some(parts.fold((0.0, 0.0), |(sum, scale), part| (sum + part, scale + part.abs())))
+    }
+
+    /// Relative velocity of two particles (length/time) and the distance of their surfaces (length); none unless there are
+    /// just two.
+    pub fn pair(&self, domain: &Domain) -> Option<([f64; 2], f64)> {
+        let [a, b] = self.0.as_slice() else { return None };
+        let way = domain.displacement(a.position, b.position);
+        let relative = [0, 1].map(|axis| b.velocity[axis] - a.velocity[axis]);
+        Some((relative, way[0].hypot(way[1]) - a.radius - b.radius))
+    }
+}
+
+/// Particles moved along x and y by what `by` says of each that moves (length), by its place among all.
+pub fn displaced(
+    particles: &Particles,
+    domain: &Domain,
+    by: impl Fn(usize, &Particle) -> [f64; 2],
+) -> Particles {
+    let mut moved = particles.clone();
+    for (i, grain) in moved.all_mut().iter_mut().enumerate().filter(|(_, grain)| grain.kind == Kind::Grain) {
+        let way = by(i, grain);
+        let position = [0, 1].map(|axis| grain.position[axis] + way[axis]);
+        grain.position = in_space(domain.wrapped(position));
+    }
+    moved
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn particles(positions: [[f64; 2]; 2]) -> Particles {
+        let disc = |(id, position)| Particle {
+            id,
+            kind: Kind::Grain,
+            position: in_space(position),
+            velocity: [f64::from(id), 0.0, 0.0],
+            angle: 0.0,
+            omega: 2.0,
+            radius: 0.5,
+            mass: 2.0,
+        };
+        Particles::new([2, 1].into_iter().zip(positions).map(disc).collect())
+    }
+
+    /// By hand.
+    #[test]
+    fn states_are_compared_by_id_across_periodic_sides() {
+        let mut domain = Domain::planar([0.0; 2], [10.0; 2], [true, false]);
+        let [a, b] = [[[9.5, 1.0], [4.0, 4.0]], [[0.5, 1.0], [4.0, 4.0]]].map(|at| State::of(&particles(at)));
+        assert_eq!(a.distance(&b, &domain), [0.5f64.sqrt(), 1.0]);
+        assert_eq!((a.momentum(), a.angular_momentum(&domain, None)), (([6.0, 0.0], 6.0), None));
+        domain = Domain::planar([0.0; 2], [10.0; 2], [false; 2]);
+        // −m y u: 2·1·2 and 2·4·1; spin: ½·2·¼·2 each.
+        assert_eq!(a.angular_momentum(&domain, Some(0.5)), Some((-12.0 + 1.0, 13.0)));
+        let (relative, gap) = b.pair(&domain).unwrap();
+        assert_eq!((relative, gap), ([1.0, 0.0], (3.5f64 * 3.5 + 9.0).sqrt() - 1.0));
+    }
+}

@@ -1,0 +1,116 @@
+//! The scene of a study, and what its method states of the trials that may be made of it.
+
+use super::{Choice, StudyError};
+use crate::method::{Every, Methods, Prepared, Setting, Trials, Until, prepare, vocabularies};
+use crate::results::Identity;
+use crate::scene::{SceneErrors, Values};
+use sha2::{Digest, Sha256};
+
+/// A scene under study.
+pub struct Subject {
+    what: String,
+    overrides: Vec<String>,
+    methods: Methods,
+    /// What its method states.
+    pub trials: &'static Trials,
+    /// The values of the scene as they were given.
+    pub values: Values,
+    /// The scene as it was given.
+    pub prepared: Box<dyn Prepared>,
+    /// The names of the quantities that its method observes.
+    pub quantities: Vec<&'static str>,
+    /// How the scene itself is run.
+    pub own: Choice,
+    /// Its own step (time).
+    pub step: f64,
+    /// Its own number of steps.
+    pub steps: u64,
+}
+
+impl Subject {
+    /// The scene that is a preset's name or a file's path, with overrides.
+    ///
+    /// # Errors
+    /// [`StudyError`] if the scene is bad, its method states no trials, or it is over before anything is seen of it.
+    pub fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Subject, StudyError> {
+        let values = Values::load(what, overrides, &vocabularies(methods))?;
+        let (prepared, entry) = prepare(values.clone(), methods)?;
+        let nothing = StudyError::NothingToVary(entry.vocabulary.keys.method);
+        let (Some(trials), Until::Steps(steps)) = (entry.trials, prepared.schedule().until) else {
+            return Err(nothing);
+        };
+        let Some(step) = values.number(trials.step) else { return Err(nothing) };
+        let first = match prepared.schedule().rows {
+            Every::Steps(steps) => steps,
+            Every::Never | Every::Time(_) => 1,
+        };
+        if steps < first.max(1) {
+            return Err(StudyError::OverBeforeOutput { steps, first: first.max(1) });
+        }
+        prepared.memory().fits("scene").map_err(StudyError::Scene)?;
+        let own = Choice::own(trials, prepared.as_ref());
+        Ok(Subject {
+            what: what.to_owned(),
+            overrides: overrides.to_vec(),
+            methods,
+            trials,
+            values,
+            prepared,
+            quantities: entry.quantities.iter().map(|quantity| quantity.name).collect(),
+            own,
+            step,
+            steps,
+        })
+    }
+
+    /// The name of the scene.
+    pub fn name(&self) -> &str {
+        &self.what
+    }
+
+    /// The arguments that name it on a command line.
+    pub fn arguments(&self) -> String {
+        let set = self.overrides.iter().map(|text| format!(" --set {text}"));
+        std::iter::once(self.what.clone()).chain(set).collect()
+    }
+
+    /// The same scene in a way to run it, with a step (time) and further overrides.
+    ///
+    /// # Errors
+    /// [`SceneErrors`]: why it cannot be run so.
+    pub fn prepared_as(
+        &self,
+        choice: &Choice,
+        step: f64,
+        more: &[String],
+    ) -> Result<Box<dyn Prepared>, SceneErrors> {
+        let mut overrides = self.overrides.clone();
+        overrides.extend(choice.overrides());
+        overrides.push(format!("{}={step:?}", self.trials.step.path()));
+        overrides.extend_from_slice(more);
+        let values = Values::load(&self.what, &overrides, &vocabularies(self.methods))?;
+        Ok(prepare(values, self.methods)?.0)
+    }
+
+    /// The setting of the axis that decides the order, of a way to run it.
+    pub fn theory(&self, setting: &Setting) -> Option<crate::method::Theory> {
+        (self.trials.theory)(&self.values, self.prepared.as_ref(), setting)
+    }
+
+    /// The place of a quantity among those observed.
+    pub fn quantity(&self, name: &str) -> Option<usize> {
+        self.quantities.iter().position(|known| *known == name)
+    }
+
+    /// What a study of it depends on: the resolved scene, the options and the version of the program.
+    pub fn identity(&self, study: &str, options: &str) -> Identity {
+        let mut sum = Sha256::new();
+        for part in [study, options, env!("CARGO_PKG_VERSION"), &self.prepared.scene()] {
+            sum.update(part.as_bytes());
+            sum.update([0]);
+        }
+        sum.update(self.prepared.particles().checksum().as_bytes());
+        let digest = sum.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        Identity { of: format!("{study} of {}", self.arguments()), digest }
+    }
+}

@@ -1,0 +1,108 @@
+//! One run of a study: to a time, looked at on the way.
+
+use super::meter::Meter;
+use super::state::State;
+use crate::method::{Failure, Prepared, Purpose, Simulation, Until};
+use crate::model::machine::MachineModel;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+/// Repeats are timed over at least this long.
+const LONG_ENOUGH: Duration = Duration::from_millis(1);
+
+/// The end of a run.
+pub struct End {
+    /// The state.
+    pub state: State,
+    /// Clock periods of a step on a machine, the mean over the looks; none where no operations are counted.
+    pub clocks: Option<f64>,
+}
+
+/// How far a run goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Course {
+    /// Steps.
+    pub steps: u64,
+    /// Looks, evenly spread, the last one at the end.
+    pub looks: u64,
+    /// Seconds that a step is expected to take.
+    pub each: f64,
+}
+
+/// Runs a scene; `look` sees it, the first time before the first step, with the quantities observed.
+///
+/// # Errors
+/// [`Failure`] if it breaks.
+pub fn follow(
+    prepared: &dyn Prepared,
+    purpose: Purpose,
+    course: Course,
+    machine: Option<&MachineModel>,
+    meter: &Meter<'_>,
+    mut look: impl FnMut(&dyn Simulation),
+) -> Result<End, Failure> {
+    let mut simulation = prepared.start(purpose)?;
+    let mut clocks = vec![];
+    for at in 0..=course.looks {
+        advance(simulation.as_mut(), course.steps * at / course.looks.max(1), course.each, meter)?;
+        look(simulation.as_ref());
+        clocks.extend(machine.and_then(|machine| simulation.clock_periods(machine)));
+    }
+    let mean = clocks.iter().sum::<f64>() / clocks.len() as f64;
+    Ok(End { state: State::of(&simulation.particles()), clocks: (!clocks.is_empty()).then_some(mean) })
+}
+
+/// Goes on up to a step; what is done is heard at least twice a second, as far as steps take as long as expected.
+///
+/// # Errors
+/// [`Failure`] if it breaks.
+pub fn advance(
+    simulation: &mut dyn Simulation,
+    end: u64,
+    each: f64,
+    meter: &Meter<'_>,
+) -> Result<(), Failure> {
+    let stride = ((0.3 / each.max(1e-12)) as u64).max(1);
+    let mut done = simulation.clock().steps;
+    while done < end {
+        let next = (done + stride).min(end);
+        simulation.advance(&[Until::Steps(next)], &AtomicBool::new(false))?;
+        meter.add(each * (next - done) as f64);
+        done = next;
+    }
+    Ok(())
+}
+
+/// Processor seconds of a run of that many steps, over all threads; short runs are made again and again.
+///
+/// # Errors
+/// [`Failure`] if it breaks.
+pub fn timed(prepared: &dyn Prepared, course: Course, meter: &Meter<'_>) -> Result<f64, Failure> {
+    let (mut spent, mut runs) = (Duration::ZERO, 0);
+    while spent < LONG_ENOUGH {
+        let mut simulation = prepared.start(Purpose::Measurement)?;
+        let before = cpu_time::ProcessTime::now();
+        advance(simulation.as_mut(), course.steps, course.each, meter)?;
+        spent += before.elapsed();
+        runs += 1;
+    }
+    Ok(spent.as_secs_f64() / f64::from(runs))
+}
+
+/// Processor seconds of a step, from the first few.
+///
+/// # Errors
+/// [`Failure`] if it breaks.
+pub fn probed(prepared: &dyn Prepared, most: u64) -> Result<f64, Failure> {
+    let mut simulation = prepared.start(Purpose::Measurement)?;
+    let before = cpu_time::ProcessTime::now();
+    let mut steps = 1;
+    loop {
+        simulation.advance(&[Until::Steps(steps)], &AtomicBool::new(false))?;
+        let spent = before.elapsed();
+        if spent > 2 * LONG_ENOUGH || steps >= most {
+            return Ok(spent.as_secs_f64() / steps as f64);
+        }
+        steps = (2 * steps).min(most);
+    }
+}

@@ -1,0 +1,187 @@
+//! What a diagram says, in plain words: which way and which step for which wish.
+
+use super::dataset::{Run, WorkPrecision};
+use super::measures::Measure;
+use crate::study::observables::CHANCE;
+
+/// Wishes: errors of positions (smallest radii).
+pub const WISHES: [f64; 5] = [3e-2, 1e-2, 1e-3, 1e-4, 1e-6];
+
+/// The cheapest run that fulfils a wish.
+#[derive(Clone, Copy, Debug)]
+pub struct Fulfilled<'d> {
+    /// The error that is wished for at most (smallest radii).
+    pub wish: f64,
+    /// The run.
+    pub run: &'d Run,
+    /// Its cost over that of the scene's own way with its own step; none where that one breaks.
+    pub of_own: Option<f64>,
+}
+
+/// The cheapest run for each wish that is above the reference's own error and that some run fulfils.
+pub fn fulfilled(data: &WorkPrecision) -> Vec<Fulfilled<'_>> {
+    let floor = data.reference.floor.get(&Measure::Position).copied().unwrap_or(0.0);
+    let own = own_run(data).and_then(Run::cost);
+    let cheapest = |wish: f64| {
+        let serves = |run: &&Run| run.error(Measure::Position).is_some_and(|error| error <= wish);
+        let timed = data.runs.iter().filter(serves).filter_map(|run| Some((run, run.cost()?)));
+        let (run, cost) = timed.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(Fulfilled { wish, run, of_own: own.map(|own| cost / own) })
+    };
+    WISHES.into_iter().filter(|wish| *wish > floor).filter_map(cheapest).collect()
+}
+
+/// The scene's own way with its own step.
+pub fn own_run(data: &WorkPrecision) -> Option<&Run> {
+    data.runs.iter().find(|run| run.power == 0 && data.ways[run.way].label == data.own)
+}
+
+/// Sentences on a scene.
+pub fn sentences(data: &WorkPrecision) -> Vec<String> {
+    [own(data), cheap(data), digits(data), orders(data), means(data), cut(data)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+/// How a number with a wide range is written.
+pub fn short(value: f64) -> String {
+    match value.abs() {
+        magnitude if (0.01..1000.0).contains(&magnitude) => {
+            let decimals = if magnitude >= 10.0 { 0 } else { 2 };
+            format!("{value:.decimals$}")
+        }
+        0.0 => "0".to_owned(),
+        _ => format!("{value:.1e}"),
+    }
+}
+
+/// A step as a multiple of the scene's own.
+pub fn multiple(power: i32) -> String {
+    match power {
+        0 => "its own step".to_owned(),
+        1.. => format!("{} times its own step", 1_u64 << power),
+        _ => format!("1/{} of its own step", 1_u64 << -power),
+    }
+}
+
+fn own(data: &WorkPrecision) -> Option<String> {
+    let own = own_run(data)?;
+    let error = match (&own.outcome, own.error(Measure::Position)) {
+        (Err(why), _) => {
+            return Some(format!("The scene's own way, {}, breaks with its own step: {why}.", data.own));
+        }
+        (Ok(_), error) => error?,
+    };
+    let cost = own.cost()?;
+    let as_good = data.runs.iter().filter(|run| run.error(Measure::Position).is_some_and(|it| it <= error));
+    let (best, least) =
+        as_good.filter_map(|run| Some((run, run.cost()?))).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let begin = format!(
+        "The scene's own way, {}, errs by {} radii after a time of {}",
+        data.own,
+        short(error),
+        short(data.duration)
+    );
+    if least > 0.95 * cost {
+        return Some(format!("{begin}; no run that is as accurate is cheaper by more than 5 %."));
+    }
+    Some(format!(
+        "{begin}; {} at {} is at least as accurate for {:.0} % of the cost.",
+        data.ways[best.way].label,
+        multiple(best.power),
+        100.0 * least / cost
+    ))
+}
+
+/// What the largest wish costs, where that is less than the scene's own way.
+fn cheap(data: &WorkPrecision) -> Option<String> {
+    let it = fulfilled(data).into_iter().next()?;
+    let share = it.of_own.filter(|share| *share < 0.9)?;
+    Some(format!(
+        "For an error of at most {:.0e} radii {} at {} is the cheapest, for {:.0} % of the scene's own cost.",
+        it.wish,
+        data.ways[it.run.way].label,
+        multiple(it.run.power),
+        100.0 * share
+    ))
+}
+
+/// What did not fit into the time that was given.
+fn cut(data: &WorkPrecision) -> Option<String> {
+    // The time is divided by the coarsest step.
+    let is_cut = data.duration < 0.9 * data.growth.window && !data.plan.left_out.is_empty();
+    is_cut.then(|| {
+        format!(
+            "Trajectories are comparable up to a time of {}; more than {} did not fit into the time given.",
+            short(data.growth.window),
+            short(data.duration)
+        )
+    })
+}
+
+/// What fewer digits cost and where they stop.
+fn digits(data: &WorkPrecision) -> Option<String> {
+    let [first, ..] = data.reference.ways.each_ref();
+    let full = data.ways.iter().find(|way| way.label == *first)?.digits.clone();
+    let others: Vec<&str> = data
+        .ways
+        .iter()
+        .map(|way| way.digits.as_str())
+        .fold(
+            vec![],
+            |known, digits| if known.contains(&digits) { known } else { [known, vec![digits]].concat() },
+        )
+        .into_iter()
+        .filter(|digits| *digits != full)
+        .collect();
+    let least = |digits: &str| {
+        let of = data.runs.iter().filter(|run| data.ways[run.way].digits == digits);
+        of.filter_map(|run| run.error(Measure::Position)).reduce(f64::min)
+    };
+    let said: Vec<String> = others
+        .iter()
+        .filter_map(|digits| Some(format!("{digits} no lower than {}", short(least(digits)?))))
+        .collect();
+    let best = short(least(&full)?);
+    (!said.is_empty()).then(|| format!("Errors come down to {best} radii in {full}; {}.", said.join(", ")))
+}
+
+/// Measured orders beside theory.
+fn orders(data: &WorkPrecision) -> Option<String> {
+    let said: Vec<String> = data
+        .orders
+        .iter()
+        .filter(|order| order.measure == Measure::Position)
+        .filter_map(|order| {
+            let scheme = &data.ways[order.way].scheme;
+            let theory = order.theory.map_or(String::new(), |(order, _)| format!(" (theory {order})"));
+            Some(format!("{scheme} {:.2}{theory}", order.fitted?.order))
+        })
+        .collect();
+    (!said.is_empty()).then(|| format!("Orders of convergence: {}.", said.join(", ")))
+}
+
+/// Which means differ significantly.
+fn means(data: &WorkPrecision) -> Option<String> {
+    let all = &data.observables.as_ref()?.comparisons;
+    let significant: Vec<_> = all.iter().filter(|comparison| !comparison.reaches_zero()).collect();
+    let seeds = data.seeds.len();
+    Some(match significant.iter().max_by(|a, b| a.difference.abs().total_cmp(&b.difference.abs())) {
+        None => format!(
+            "Over {seeds} seeds none of {} means over time differs significantly from that of the reference, up to the largest step tried.",
+            all.len()
+        ),
+        Some(worst) => format!(
+            "Over {seeds} seeds {} of {} means over time differ significantly from those of the reference, where chance alone makes about {:.0}; the \
+             farthest off is the {} of {} with step {}, by {:.1} %.",
+            significant.len(),
+            all.len(),
+            CHANCE * all.len() as f64,
+            worst.observable,
+            worst.choice,
+            short(worst.step),
+            100.0 * worst.difference.abs()
+        ),
+    })
+}

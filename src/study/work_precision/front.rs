@@ -1,0 +1,30 @@
+//! The Pareto front: runs than which no other is both cheaper and more accurate.
+
+/// The places of the points (cost, error) that lie on the front, by rising cost.
+pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|&a, &b| {
+        let ((x, error), (y, other)) = (points[a], points[b]);
+        x.total_cmp(&y).then(error.total_cmp(&other))
+    });
+    let mut least = f64::INFINITY;
+    order.retain(|&place| {
+        let error = points[place].1;
+        let is_on = error < least;
+        least = least.min(error);
+        is_on
+    });
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_point_of_the_front_is_beaten_in_both() {
+        let points = [(1.0, 1.0), (2.0, 0.1), (3.0, 0.2), (2.0, 0.05), (4.0, 0.01), (0.5, f64::NAN)];
+        assert_eq!(front(&points), [0, 3, 4]);
+        assert!(front(&[]).is_empty());
+    }
+}

@@ -1,0 +1,64 @@
+//! How wrong a run is.
+
+use crate::domain::Domain;
+use crate::study::state::State;
+use serde::{Deserialize, Serialize};
+
+/// An error of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Measure {
+    /// Root mean square distance of the particles from those of the reference (smallest radii).
+    Position,
+    /// The largest such distance (smallest radii).
+    LargestPosition,
+    /// Largest error of the balance of energy over the looks (energy that moves).
+    Energy,
+    /// Difference of the momentum from the reference's (sum of its magnitudes).
+    Momentum,
+    /// Difference of the angular momentum from the reference's (sum of its magnitudes).
+    AngularMomentum,
+}
+
+impl Measure {
+    /// Every measure.
+    pub const ALL: [Measure; 5] = [
+        Measure::Position,
+        Measure::LargestPosition,
+        Measure::Energy,
+        Measure::Momentum,
+        Measure::AngularMomentum,
+    ];
+
+    /// What it is called, with its unit.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Measure::Position => "position, RMS (radii)",
+            Measure::LargestPosition => "position, largest (radii)",
+            Measure::Energy => "energy balance (relative)",
+            Measure::Momentum => "momentum (relative)",
+            Measure::AngularMomentum => "angular momentum (relative)",
+        }
+    }
+}
+
+/// The errors of a run by measure; those that the scene does not have are not in it.
+pub type Errors = std::collections::BTreeMap<Measure, f64>;
+
+/// The errors of a state that can be seen from the reference's.
+pub fn errors(state: &State, reference: &State, domain: &Domain, inertia: Option<f64>) -> Errors {
+    let radius = reference.smallest_radius();
+    let [rms, largest] = state.distance(reference, domain).map(|distance| distance / radius);
+    let mut errors = Errors::from([(Measure::Position, rms), (Measure::LargestPosition, largest)]);
+    let (ours, (theirs, scale)) = (state.momentum().0, reference.momentum());
+    if scale > 0.0 {
+        errors.insert(Measure::Momentum, (ours[0] - theirs[0]).hypot(ours[1] - theirs[1]) / scale);
+    }
+    let angular = |state: &State| state.angular_momentum(domain, inertia);
+    if let (Some((ours, _)), Some((theirs, scale))) = (angular(state), angular(reference))
+        && scale > 0.0
+    {
+        errors.insert(Measure::AngularMomentum, (ours - theirs).abs() / scale);
+    }
+    errors
+}

@@ -1,0 +1,118 @@
+//! Speed against accuracy: the error of a scene over its cost, for every way to run it and every step.
+//!
+//! First the growth of a small disturbance says up to which time trajectories are comparable. A reference with halved steps,
+//! and one by another integrator, say what the error of the reference is. Then every way is run with the scene's own step, with
+//! smaller ones down to the reference's error and with larger ones until it breaks, and timed in alternating repeats.
+
+pub mod conclusions;
+mod dataset;
+mod engine;
+mod front;
+mod measures;
+mod plan;
+pub mod section;
+
+pub use dataset::{Order, Reference, Run, Way, WorkPrecision};
+pub use measures::{Errors, Measure};
+pub use plan::Plan;
+
+use super::choice::Choice;
+use super::growth::{Growth, growth};
+use super::meter::Meter;
+use super::observables::SEEDS;
+use super::{StudyError, Subject};
+use crate::method::Progress;
+use crate::model::machine::MachineModel;
+use crate::results::{Journal, JournalError};
+use crate::statistics::median;
+use engine::{Work, probes, way};
+use plan::{COARSEST, plan};
+use std::time::Instant;
+
+/// The share of the time that the growth takes at most.
+const GROWTH_SHARE: f64 = 0.1;
+/// The share that means over seeds take at most.
+const MEANS_SHARE: f64 = 0.2;
+/// Failures that an error names at most.
+const TRIED: usize = 8;
+
+/// How much is done.
+#[derive(Clone, Debug)]
+pub struct Effort {
+    /// Processor seconds that it may take about.
+    pub budget: f64,
+    /// Timed runs of each.
+    pub repeats: usize,
+    /// Starts a step of a collision.
+    pub phases: u32,
+    /// The machine whose clock periods are asked for.
+    pub machine: Option<MachineModel>,
+}
+
+/// Measures a scene.
+///
+/// # Errors
+/// [`StudyError`] if no run of the scene comes to its end, or finished runs cannot be kept.
+pub fn work_precision(
+    subject: &Subject,
+    effort: &Effort,
+    journal: &Journal,
+    progress: Progress<'_>,
+) -> Result<WorkPrecision, StudyError> {
+    let start = Instant::now();
+    let meter = Meter::new(effort.budget, progress);
+    let choices = Choice::all(subject.trials);
+    let probes = probes(subject, &choices, journal)?;
+    let rates: Vec<Option<f64>> = probes.iter().map(|probe| probe.as_ref().ok().copied()).collect();
+    let own_place = choices.iter().position(|choice| *choice == subject.own).unwrap_or(0);
+    let all_rates = || rates.iter().flatten().copied();
+    if all_rates().next().is_none() {
+        let tried = choices.iter().zip(&probes);
+        let tried = tried.filter_map(|(choice, probe)| Some((choice.label(), probe.clone().err()?)));
+        return Err(StudyError::EveryRunFails { tried: tried.take(TRIED).collect() });
+    }
+    let own_rate = rates[own_place].unwrap_or_else(|| median(all_rates()));
+    let most = (GROWTH_SHARE * effort.budget / (4.0 * own_rate)) as u64;
+    let most = subject.steps.min(most.max(1 << COARSEST));
+    let growth: Growth = journal.recall("growth", || {
+        growth(subject, most, own_rate, &meter).map_err(|tried| StudyError::EveryRunFails { tried })
+    })?;
+    let comparable = (growth.window / subject.step).round() as u64;
+    let plan: Plan = journal.recall("plan", || {
+        Ok::<_, JournalError>(plan(&choices, &rates, &subject.own, comparable, effort.budget, effort.repeats))
+    })?;
+    let work =
+        Work { subject, effort, journal, meter: &meter, choices: &choices, rates: &rates, plan: &plan };
+    meter.expect(plan.seconds + MEANS_SHARE * effort.budget);
+    let (reference, state) = work.reference(own_rate)?;
+    let mut runs = work.runs(&reference, &state)?;
+    if runs.iter().all(|run| run.outcome.is_err()) {
+        let tried = runs.iter().filter_map(|run| {
+            Some((format!("{}, step {:e}", choices[run.way].label(), run.step), run.outcome.clone().err()?))
+        });
+        return Err(StudyError::EveryRunFails { tried: tried.take(TRIED).collect() });
+    }
+    let observables = work.observables(own_rate)?;
+    let collision = work.collision()?;
+    work.time(&mut runs, start)?;
+    let fronts = Measure::ALL.into_iter().map(|measure| (measure, work.front(&runs, &reference, measure)));
+    let fronts = fronts.filter(|(_, places)| !places.is_empty()).collect();
+    Ok(WorkPrecision {
+        scene: subject.arguments(),
+        particles: subject.prepared.particles().grain_count(),
+        step: subject.step,
+        own: subject.own.label(),
+        duration: plan.own_steps as f64 * subject.step,
+        growth,
+        orders: work.orders(&runs, &reference),
+        reference,
+        ways: choices.iter().zip(&probes).map(|(choice, probe)| way(choice, &subject.own, probe)).collect(),
+        runs,
+        fronts,
+        seeds: if observables.is_some() { SEEDS.to_vec() } else { vec![] },
+        observables,
+        collision,
+        machine: effort.machine.as_ref().map(|machine| machine.title().to_owned()),
+        plan,
+    })
+}

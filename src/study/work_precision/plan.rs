@@ -1,0 +1,119 @@
+//! Which runs a diagram is made of: as many as fit into the time that is given.
+
+use crate::method::Decides;
+use crate::study::choice::Choice;
+use serde::{Deserialize, Serialize};
+
+/// Steps go up to this power of two times the scene's own.
+pub const COARSEST: i32 = 4;
+/// The reference's step is this power of two below the smallest that is tried.
+pub const BELOW: i32 = 3;
+/// The share of the time that is given to runs of the ladder and their references; the rest is for the growth, for means over
+/// seeds and for collisions.
+const SHARE: f64 = 0.6;
+
+/// How much is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct Scope {
+    /// Whether ways that cost otherwise but give the same are run in every scheme and precision.
+    every_cost: bool,
+    /// The smallest step is this power of two below the scene's own.
+    finest: i32,
+}
+
+const SCOPES: [Scope; 4] = [
+    Scope { every_cost: true, finest: 4 },
+    Scope { every_cost: false, finest: 4 },
+    Scope { every_cost: false, finest: 3 },
+    Scope { every_cost: false, finest: 2 },
+];
+
+/// What is run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// Steps of the scene's own that the runs last; divided by the coarsest step.
+    pub own_steps: u64,
+    /// The smallest step is this power of two below the scene's own.
+    pub finest: i32,
+    /// Places of the ways that are run, among all.
+    pub choices: Vec<usize>,
+    /// Seconds that it takes about.
+    pub seconds: f64,
+    /// What is left out, in words.
+    pub left_out: Vec<String>,
+}
+
+/// Plans the runs: `rates` are seconds of a step by place of the choice, none where it is refused; `own_steps` the steps of the
+/// scene's own for which trajectories are comparable; `repeats` the timed runs of each.
+pub fn plan(
+    choices: &[Choice],
+    rates: &[Option<f64>],
+    own: &Choice,
+    own_steps: u64,
+    budget: f64,
+    repeats: usize,
+) -> Plan {
+    let multiple = 1 << COARSEST;
+    let mut best = None;
+    for scope in SCOPES {
+        let places: Vec<usize> =
+            (0..choices.len()).filter(|&i| rates[i].is_some() && is_run(&choices[i], own, scope)).collect();
+        let own_rate = |i: &usize| rates[*i].unwrap_or(0.0);
+        let ladder: f64 = (-scope.finest..=COARSEST).map(|k| 0.5f64.powi(k)).sum();
+        let runs: f64 = places.iter().map(own_rate).sum::<f64>() * ladder * (1 + repeats) as f64;
+        let place = choices.iter().position(|choice| choice == own);
+        let reference = place.and_then(|i| rates[i]).unwrap_or(0.0) * 2.5 * 2f64.powi(scope.finest + BELOW);
+        let each = runs + reference;
+        let affordable = (SHARE * budget / each.max(1e-12)) as u64;
+        let steps = own_steps.min(affordable) / multiple * multiple;
+        let is_whole = affordable >= own_steps;
+        best = Some((scope, places, steps.max(multiple), each, is_whole));
+        if is_whole {
+            break;
+        }
+    }
+    let Some((scope, places, steps, each, is_whole)) = best else {
+        return Plan { own_steps: 0, finest: 0, choices: vec![], seconds: 0.0, left_out: vec![] };
+    };
+    let mut left_out = vec![];
+    if !scope.every_cost {
+        left_out.push(
+            "ways that differ in cost alone are run with the scene's own integrator and precision only"
+                .to_owned(),
+        );
+    }
+    if scope.finest < SCOPES[0].finest {
+        left_out.push(format!("steps below 1/{} of the scene's own", 1 << scope.finest));
+    }
+    if !is_whole {
+        left_out.push(format!(
+            "what comes after {steps} of the {own_steps} own steps for which trajectories are comparable"
+        ));
+    }
+    Plan { own_steps: steps, finest: scope.finest, choices: places, seconds: each * steps as f64, left_out }
+}
+
+fn is_run(choice: &Choice, own: &Choice, scope: Scope) -> bool {
+    let same = |decides| choice.agrees(own, decides);
+    same(Decides::Cost) || scope.every_cost || same(Decides::Order) && same(Decides::Digits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::METHODS;
+
+    #[test]
+    fn less_time_leaves_out_more_and_says_so() {
+        let trials = METHODS[0].trials.unwrap();
+        let choices = Choice::all(trials);
+        let own = choices[0].clone();
+        let mut rates = vec![Some(1e-6); choices.len()];
+        rates[1] = None;
+        let [rich, poor] = [1e4, 0.5].map(|budget| plan(&choices, &rates, &own, 10_000, budget, 3));
+        assert_eq!((rich.choices.len(), rich.finest, rich.left_out.len()), (choices.len() - 1, 4, 0));
+        assert!(poor.choices.len() < rich.choices.len() && poor.finest == 2 && poor.left_out.len() == 3);
+        assert!(poor.own_steps < rich.own_steps && poor.own_steps.is_multiple_of(16));
+        assert!(poor.seconds <= 0.5, "{}", poor.seconds);
+    }
+}

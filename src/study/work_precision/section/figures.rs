@@ -1,0 +1,342 @@
+//! The pictures of a scene.
+
+use super::super::conclusions::short;
+use super::super::dataset::{Run, Way, WorkPrecision};
+use super::super::measures::Measure;
+use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::statistics::median;
+use crate::study::collision::{Collision, OUTCOMES, OutcomeError};
+use crate::study::growth::COMPARABLE;
+use crate::study::observables::Observables;
+
+/// The hue of what belongs to no series.
+const INK: usize = 6;
+
+/// The pictures of a scene whose files begin with its name.
+pub fn of(name: &str, data: &WorkPrecision) -> Vec<Figure> {
+    let file = name.replace('-', "_");
+    let mut figures = vec![
+        diagram(&file, name, data, Measure::Position),
+        diagram(&file, name, data, Measure::Energy),
+        costs(&file, name, data),
+        clocks(&file, name, data),
+        growth(&file, name, data),
+    ];
+    figures.push(data.collision.as_ref().and_then(|collision| outcomes(&file, name, data, collision)));
+    figures.push(data.observables.as_ref().and_then(|all| means(&file, name, data, all)));
+    // A chart without a point is no chart.
+    let is_drawn = |figure: &Figure| match &figure.picture {
+        Picture::Chart(chart) => chart.series.iter().any(|series| !series.points.is_empty()),
+        Picture::Map(_) | Picture::Drawing(_) => true,
+    };
+    figures.into_iter().flatten().filter(is_drawn).collect()
+}
+
+/// The place of a name among those that occur.
+fn place(names: impl Iterator<Item = String>, name: &str) -> usize {
+    let mut known: Vec<String> = vec![];
+    for other in names {
+        if !known.contains(&other) {
+            known.push(other);
+        }
+    }
+    known.iter().position(|other| other == name).unwrap_or(0)
+}
+
+fn axis_of_cost() -> Axis {
+    Axis::logarithmic("processor time for a unit of simulated time", Some("s"))
+}
+
+fn axis_of_error(measure: Measure) -> Axis {
+    match measure {
+        Measure::Position => Axis::logarithmic("error of positions, RMS", Some("radii")),
+        _ => Axis::logarithmic(measure.name(), None),
+    }
+}
+
+/// A point of a run that came to its end, with the spread of nothing: costs lie along x, and bars stand on y.
+fn point(run: &Run, measure: Measure, cost: impl Fn(&Run) -> Option<f64>) -> Option<Point> {
+    Some(Point::at(cost(run)?, run.error(measure)?)).filter(|point| point.y > 0.0)
+}
+
+/// A series for each way that `is_shown`: one hue a scheme, or a cost.
+fn series<'d>(
+    data: &'d WorkPrecision,
+    measure: Measure,
+    is_shown: impl Fn(&Way) -> bool + 'd,
+    name: impl Fn(&Way) -> String + 'd,
+    hue: impl Fn(&Way) -> usize + 'd,
+    cost: impl Fn(&Run) -> Option<f64> + Copy + 'd,
+) -> impl Iterator<Item = Series> + 'd {
+    let shown = data.ways.iter().enumerate().filter(move |(_, way)| is_shown(way));
+    shown.filter_map(move |(at, way)| {
+        let own = data.runs.iter().filter(|run| run.way == at);
+        let mut points: Vec<Point> = own.filter_map(|run| point(run, measure, cost)).collect();
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        (!points.is_empty()).then(|| Series { name: name(way), style: Style::Joined, hue: hue(way), points })
+    })
+}
+
+/// Runs that broke, at the upper edge of a chart, where they would cost as much as their first steps say.
+fn broken(data: &WorkPrecision, is_shown: impl Fn(&Way) -> bool, shown: &[Series]) -> Option<Series> {
+    let highest = shown.iter().flat_map(|series| &series.points).map(|point| point.y).reduce(f64::max)?;
+    let broken = data.runs.iter().filter(|run| run.outcome.is_err() && is_shown(&data.ways[run.way]));
+    let mut points: Vec<Point> = broken
+        .filter_map(|run| Some(Point::at(data.ways[run.way].each? / run.step, 4.0 * highest)))
+        .collect();
+    points.sort_by(|a, b| a.x.total_cmp(&b.x));
+    Some(Series { name: "failed: see the table".into(), style: Style::Points, hue: INK, points })
+}
+
+/// A horizontal line across what is shown.
+fn level(name: &str, y: f64, shown: &[Series]) -> Option<Series> {
+    let x = || shown.iter().flat_map(|series| &series.points).map(|point| point.x);
+    let ends = [x().reduce(f64::min)?, x().reduce(f64::max)?];
+    let points = ends.map(|x| Point::at(x, y)).to_vec();
+    (y > 0.0).then(|| Series { name: name.into(), style: Style::Dashed, hue: INK, points })
+}
+
+/// Error over cost, for every scheme and precision with the scene's own search and execution.
+fn diagram(file: &str, name: &str, data: &WorkPrecision, measure: Measure) -> Option<Figure> {
+    let is_shown = |way: &Way| way.is_primary;
+    let schemes = || data.ways.iter().map(|way| way.scheme.clone());
+    let mut all: Vec<Series> = series(
+        data,
+        measure,
+        is_shown,
+        |way| format!("{} {}", way.scheme, way.digits),
+        move |way| place(schemes(), &way.scheme),
+        Run::cost,
+    )
+    .collect();
+    let floor = data.reference.floor.get(&measure).copied().unwrap_or(0.0);
+    let more = [
+        front_of(data, measure),
+        (measure == Measure::Position)
+            .then(|| level("a tenth of a radius: parted", COMPARABLE, &all))
+            .flatten(),
+        level("error of the reference itself", floor, &all),
+        broken(data, is_shown, &all),
+    ];
+    all.extend(more.into_iter().flatten());
+    Some(Figure {
+        name: format!("{file}_{}", if measure == Measure::Position { "position" } else { "energy" }),
+        title: format!(
+            "{name}: {} over cost",
+            if measure == Measure::Position { "error" } else { "error of the energy" }
+        ),
+        caption: format!(
+            "{} particles over a time of {}; the scene's own step is {}, along each line it doubles from point to point. Cost: the \
+             median of the repeats, which differ by {:.0} % in the middle; search and execution as the scene has them ({}). The front is over \
+             all ways to run it.",
+            data.particles,
+            short(data.duration),
+            short(data.step),
+            100.0 * spread(data),
+            data.ways.iter().find(|way| way.is_primary).map_or("", |way| &way.cost)
+        ),
+        picture: Picture::Chart(Chart {
+            x: axis_of_cost(),
+            y: axis_of_error(measure),
+            series: all,
+            bands: vec![],
+        }),
+    })
+}
+
+/// By how much the repeats of a run differ, in parts of the shortest: the median over the runs.
+fn spread(data: &WorkPrecision) -> f64 {
+    let of = |run: &Run| {
+        let [least, most] = [f64::min, f64::max].map(|end| run.costs.iter().copied().reduce(end));
+        Some(most? / least? - 1.0)
+    };
+    median(data.runs.iter().filter_map(of))
+}
+
+fn front_of(data: &WorkPrecision, measure: Measure) -> Option<Series> {
+    let (_, places) = data.fronts.iter().find(|(of, _)| *of == measure)?;
+    let points = places.iter().filter_map(|&place| point(&data.runs[place], measure, Run::cost)).collect();
+    Some(Series { name: "Pareto front".into(), style: Style::Line, hue: INK, points })
+}
+
+/// The same for every search and execution, in the scene's own scheme and precision.
+fn costs(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
+    let is_shown = |way: &Way| way.is_own_arithmetic;
+    let names = || data.ways.iter().map(|way| way.cost.clone());
+    let all: Vec<Series> = series(
+        data,
+        Measure::Position,
+        is_shown,
+        |way| way.cost.clone(),
+        move |way| place(names(), &way.cost),
+        Run::cost,
+    )
+    .collect();
+    (all.len() > 1).then(|| Figure {
+        name: format!("{file}_searches"),
+        title: format!("{name}: the same error, found in other ways"),
+        caption: format!(
+            "The scene's own integrator and precision ({}) with every search and execution: errors are equal but for rounding, \
+             costs are not.",
+            data.own
+        ),
+        picture: Picture::Chart(Chart {
+            x: axis_of_cost(),
+            y: axis_of_error(Measure::Position),
+            series: all,
+            bands: vec![],
+        }),
+    })
+}
+
+/// Error over clock periods, for the ways whose operations are counted.
+fn clocks(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
+    let machine = data.machine.as_ref()?;
+    let schemes = || data.ways.iter().map(|way| way.scheme.clone());
+    let counted =
+        |way: &Way| data.runs.iter().any(|run| data.ways[run.way].label == way.label && run.clocks.is_some());
+    let all = series(
+        data,
+        Measure::Position,
+        counted,
+        |way| way.label.clone(),
+        move |way| place(schemes(), &way.scheme),
+        |run| run.clocks,
+    )
+    .collect();
+    Some(Figure {
+        name: format!("{file}_clocks"),
+        title: format!("{name}: error over clock periods"),
+        caption: format!(
+            "By the paper's clock of {machine}, n + D for each operation counted. Ways whose work depends on the data are not in it: \
+             they have no fixed program to count. Executions of one program have the same clock periods."
+        ),
+        picture: Picture::Chart(Chart {
+            x: Axis::logarithmic("clock periods for a unit of simulated time", None),
+            y: axis_of_error(Measure::Position),
+            series: all,
+            bands: vec![],
+        }),
+    })
+}
+
+/// How a disturbance and the error of the scene's own step grow.
+fn growth(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
+    let grown = &data.growth;
+    let over_time = |values: &[f64]| {
+        let points = grown.times.iter().zip(values).map(|(&time, &value)| Point::at(time, value));
+        points.filter(|point| point.y > 0.0).collect::<Vec<_>>()
+    };
+    let rate = grown.rate.map_or("No exponential growth is seen".to_owned(), |rate| {
+        format!("The distance grows as exp({} t)", short(rate))
+    });
+    Some(Figure {
+        name: format!("{file}_growth"),
+        title: format!("{name}: how long trajectories are comparable"),
+        caption: format!("{rate}; compared is a time of {}.", short(data.duration)),
+        picture: Picture::Chart(Chart {
+            x: Axis::linear("time", None),
+            y: Axis::logarithmic("distance, RMS", Some("radii")),
+            series: vec![
+                Series {
+                    name: "start disturbed by 1e-9 radii".into(),
+                    style: Style::Line,
+                    hue: 0,
+                    points: over_time(&grown.separation),
+                },
+                Series {
+                    name: "half the step".into(),
+                    style: Style::Dashed,
+                    hue: 1,
+                    points: over_time(&grown.error),
+                },
+            ],
+            bands: vec![],
+        }),
+    })
+}
+
+/// Errors of what comes out of a collision over the step.
+fn outcomes(file: &str, name: &str, data: &WorkPrecision, collision: &Collision) -> Option<Figure> {
+    let scheme = |label: &str| data.ways.iter().find(|way| way.label == label).map_or("", |way| &way.scheme);
+    let schemes = || data.ways.iter().map(|way| way.scheme.clone());
+    let mut labels: Vec<&str> = collision.errors.iter().map(|error| error.choice.as_str()).collect();
+    labels.dedup();
+    let of = |label: &str, style, what: &str, value: fn(&OutcomeError) -> f64| Series {
+        name: format!("{}, {what}", scheme(label)),
+        style,
+        hue: place(schemes(), scheme(label)),
+        points: collision
+            .errors
+            .iter()
+            .filter(|error| error.choice == label)
+            .map(|error| Point::at(error.step, value(error)))
+            .filter(|point| point.y > 0.0)
+            .collect(),
+    };
+    let spread = labels.iter().map(|label| of(label, Style::Joined, "RMS", |error| error.spread[0]));
+    let mean = labels.iter().map(|label| of(label, Style::Dashed, "mean", |error| error.mean[0]));
+    Some(Figure {
+        name: format!("{file}_{}", OUTCOMES[0]),
+        title: format!("{name}: error of the restitution over the step"),
+        caption: format!(
+            "{} starts, each a part of a step later than the one before: root of the mean square over them, and the mean.",
+            collision.phases
+        ),
+        picture: Picture::Chart(Chart {
+            x: Axis::logarithmic("step", None),
+            y: Axis::logarithmic("error of the restitution", None),
+            series: spread.chain(mean).collect(),
+            bands: vec![],
+        }),
+    })
+}
+
+/// Differences of a mean over time: full where they count, hollow where the error bar reaches zero.
+fn means(file: &str, name: &str, data: &WorkPrecision, all: &Observables) -> Option<Figure> {
+    let observable = &all.comparisons.first()?.observable;
+    let way = |label: &str| data.ways.iter().find(|way| way.label == label);
+    let schemes = || data.ways.iter().map(|way| way.scheme.clone());
+    let mut labels: Vec<&str> = all.comparisons.iter().map(|it| it.choice.as_str()).collect();
+    labels.sort_unstable();
+    labels.dedup();
+    let digits = data.ways.iter().find(|way| way.label == data.reference.ways[0]).map(|way| &way.digits);
+    let in_full = labels.into_iter().filter(|label| way(label).map(|way| &way.digits) == digits);
+    let mut series = vec![];
+    for (i, label) in in_full.enumerate() {
+        let Some(way) = way(label) else { continue };
+        for (reaches_zero, said) in [(false, ""), (true, ", bar reaches zero")] {
+            let own = all.comparisons.iter().filter(|it| {
+                it.choice == label && it.observable == *observable && it.reaches_zero() == reaches_zero
+            });
+            // Side by side, so that bars do not hide each other.
+            let shift = 1.0 + 0.04 * i as f64;
+            let points = own.map(|it| {
+                let [size, bar] = [100.0 * it.difference, 100.0 * it.bar];
+                Point { x: shift * it.step, y: size, spread: Some([size - bar, size + bar]) }
+            });
+            series.push(Series {
+                name: format!("{}{said}", way.scheme),
+                style: Style::Points,
+                hue: place(schemes(), &way.scheme),
+                points: points.collect(),
+            });
+        }
+    }
+    Some(Figure {
+        name: format!("{file}_means"),
+        title: format!("{name}: mean {observable}, off the reference's"),
+        caption: format!(
+            "Means over the second half of a time of {}, {} seeds; bars hold the difference in 95 of 100 studies. Hollow: no \
+             significant difference.",
+            short(all.duration),
+            data.seeds.len()
+        ),
+        picture: Picture::Chart(Chart {
+            x: Axis::logarithmic("step", None),
+            y: Axis::linear("difference", Some("%")),
+            series,
+            bands: vec![],
+        }),
+    })
+}

@@ -1,0 +1,204 @@
+//! Studies that any method joins: speed against accuracy, as a user meets it.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+#[cfg(unix)]
+use std::time::Duration;
+
+fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stripmine"));
+    command.args(arguments).stdin(Stdio::null());
+    command
+}
+
+fn study(scene: &Path, out: &Path, more: &[&str]) -> Output {
+    let paths = ["chart", "work-precision", scene.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    command(&[&paths[..], &["--json"], more].concat()).output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn succeeds(output: &Output) -> Value {
+    assert!(output.status.success(), "{}", said(output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Two discs that are pressed together for the whole time: forces without a kink.
+const PRESSED: &str = r#"format = 2
+units = "reduced"
+[method]
+kind = "lattice-md"
+[domain]
+sides = [12.0, 8.0]
+periodic = [false, false]
+[particles]
+generate = "list"
+positions = [[5.0, 4.0], [5.94, 4.0]]
+velocities = [[0.2, 0.0], [-0.2, 0.0]]
+radius = 0.5
+mass = 1.0
+[law]
+stiffness = 100.0
+[integrator]
+values = 5
+dt = 2e-3
+[run]
+time = 0.1
+thermo_every = 10
+"#;
+
+fn pressed(folder: &Path) -> std::path::PathBuf {
+    let scene = folder.join("pressed.toml");
+    fs::write(&scene, PRESSED).unwrap();
+    scene
+}
+
+/// Positions converge as theory says; velocity Verlet by its own order, Gear's schemes as their start allows. Energy of discs that
+/// begin at rest converges with the orders of the schemes.
+#[test]
+fn orders_in_smooth_forces_are_those_of_theory() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = pressed(folder.path());
+    let orders = |out: &str, more: &[&str], measure: &str| -> Vec<(String, f64, Option<f64>)> {
+        let data = succeeds(&study(&scene, &folder.path().join(out), &[&["--budget", "4"], more].concat()));
+        let (ways, orders) = (&data["pressed"]["ways"], data["pressed"]["orders"].as_array().unwrap());
+        let of = orders.iter().filter(|order| order["measure"] == measure);
+        of.map(|order| {
+            let way = &ways[order["way"].as_u64().unwrap() as usize];
+            let scheme = way["scheme"].as_str().unwrap().to_owned();
+            (scheme, order["fitted"]["order"].as_f64().unwrap(), order["theory"][0].as_f64())
+        })
+        .collect()
+    };
+    let moving = orders("moving", &[], "position");
+    assert_eq!(moving.len(), 4);
+    for (scheme, order, theory) in moving {
+        assert!((order - theory.unwrap()).abs() < 0.2, "{scheme}: {order}, {theory:?}");
+    }
+    let at_rest = orders("rest", &["--set", "particles.velocities=[[0.0,0.0],[0.0,0.0]]"], "energy");
+    let expected = [("velocity-verlet", 2.0), ("gear4", 3.0), ("gear5", 4.0)];
+    for (name, theory) in expected {
+        let (_, order, _) = at_rest.iter().find(|(scheme, ..)| scheme == name).unwrap();
+        assert!((order - theory).abs() < 0.2, "{name}: {order}");
+    }
+}
+
+/// One collision: over all phases of a step the error has the order of the kink or of the jump, and its mean falls faster.
+#[test]
+fn a_collision_errs_by_the_phase_of_its_step() {
+    let folder = tempfile::tempdir().unwrap();
+    let orders = |out: &str, more: &[&str]| -> Vec<(f64, f64)> {
+        let undone = ["--budget", "20", "--set", "run.time=2.6", "--set", "law.friction=0"];
+        let output = study(Path::new("two-discs"), &folder.path().join(out), &[&undone, more].concat());
+        let data = succeeds(&output);
+        let orders = data["two-discs"]["collision"]["orders"].as_array().unwrap();
+        let of = orders.iter().filter(|order| order["outcome"] == "restitution");
+        of.map(|it| {
+            (it["spread"]["order"].as_f64().unwrap(), it["mean"]["order"].as_f64().unwrap_or(f64::NAN))
+        })
+        .collect()
+    };
+    let damped = orders("damped", &[]);
+    assert!(damped.iter().all(|(spread, _)| (spread - 1.0).abs() < 0.2), "{damped:?}");
+    let elastic = orders("elastic", &["--set", "law.normal_damping=0"]);
+    // The first is velocity Verlet, which keeps an energy; Gear's schemes lose some of it in a smooth contact, too.
+    let (spread, _) = elastic[0];
+    assert!((spread - 2.5).abs() < 0.2, "{elastic:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_study_that_was_interrupted_goes_on_and_another_scenes_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, out) = (pressed(folder.path()), folder.path().join("study"));
+    let journal = out.join("journal.jsonl");
+    let arguments =
+        ["chart", "work-precision", scene.to_str().unwrap(), "--out", out.to_str().unwrap(), "--budget", "3"];
+    let mut child = command(&arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let lines = || fs::read_to_string(&journal).map_or(0, |text| text.lines().count());
+    while lines() < 100 {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before it was interrupted");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(kill.unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+    assert!(!out.join("host").exists());
+    let kept = lines();
+    let gone_on = command(&arguments).output().unwrap();
+    assert!(gone_on.status.success() && said(&gone_on).contains("going on with"), "{}", said(&gone_on));
+    assert!(lines() > kept && out.join("host/work-precision/orders.csv").exists());
+
+    let before = fs::read(&journal).unwrap();
+    for more in [&["--set", "law.stiffness=90"][..], &["--repeats", "5"], &["--machine", "cray-1"]] {
+        let refused = study(&scene, &out, &[&["--budget", "3"], more].concat());
+        assert_eq!(refused.status.code(), Some(2), "{more:?}: {}", said(&refused));
+        assert!(said(&refused).contains("journal.jsonl") && said(&refused).contains("choose another --out"));
+    }
+    assert_eq!(fs::read(&journal).unwrap(), before);
+}
+
+#[test]
+fn scenes_without_an_answer_are_refused_with_what_was_tried() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = pressed(folder.path());
+    let refused = |more: &[&str], code: i32, words: &[&str]| {
+        let out = folder.path().join("refused");
+        let output = study(&scene, &out, more);
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(code), "{more:?}: {said}");
+        assert!(words.iter().all(|word| said.contains(word)), "{more:?}: {said}");
+        let data: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert!(data["error"]["message"].is_string());
+        let _ = fs::remove_dir_all(out);
+    };
+    refused(&["--set", "run.time=0.01"], 4, &["over after 5 steps", "run.thermo_every"]);
+    let soft = ["--set", "law.stiffness=1e-6", "--set", "run.time=5"];
+    refused(&soft, 4, &["tried were", "overlap", "step 2e-3", "step 2.5e-4"]);
+    refused(&["--set", "law.friction=-1"], 3, &["law.friction"]);
+    refused(&["--budget", "0"], 2, &["1..=86400"]);
+    refused(&["--repeats", "101"], 2, &["1..=100"]);
+    refused(&["--machine", "cray-9"], 2, &["cray-9", "cray-1"]);
+}
+
+/// Programs have clock periods on any machine, and what depends on the data has none.
+#[test]
+fn clock_periods_are_those_of_programs() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("study");
+    let data = succeeds(&study(&pressed(folder.path()), &out, &["--budget", "4", "--machine", "cray-1"]));
+    let (ways, runs) = (&data["pressed"]["ways"], data["pressed"]["runs"].as_array().unwrap());
+    assert!(data["pressed"]["machine"].as_str().is_some_and(|name| name.contains("CRAY-1")));
+    for run in runs.iter().filter(|run| run["outcome"]["Ok"].is_object()) {
+        let cost = ways[run["way"].as_u64().unwrap() as usize]["cost"].as_str().unwrap();
+        let clocks = run["clocks"].as_f64();
+        assert_eq!(clocks.is_some_and(|clocks| clocks > 1e3), !cost.ends_with("fast"), "{cost}: {clocks:?}");
+    }
+    assert!(out.join("host/work-precision/pressed_clocks.svg").exists());
+}
+
+/// Studies know methods by their entries alone.
+#[test]
+fn no_study_names_a_method() {
+    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src")];
+    let mut wrong = vec![];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() && !path.ends_with("src/method") {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                let text = fs::read_to_string(&path).unwrap();
+                if text.contains("lattice_md") || text.contains("LatticeMd") {
+                    wrong.push(path);
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
