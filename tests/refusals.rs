@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use stripmine::method::lattice_md::{Checked, Document};
 use stripmine::method::lattice_md::{Engine, Totals};
 use stripmine::method::lattice_md::{assemble, assemble_following_energy, model};
-use stripmine::method::{Culprit, Failure, FailureKind, METHODS, Purpose, Until};
+use stripmine::method::{Culprit, Failure, FailureKind, METHODS, Purpose, Until, load};
 use stripmine::observe::{Observation, Scenery};
 
 /// Every engine by the overrides that choose it.
@@ -295,6 +295,24 @@ fn corrections_across_a_side_are_no_work() {
         for beside in [-1e-8, 1e-8] {
             let (_, across) = seen(engine, there - 12.0 + beside);
             assert!((across - error).abs() < 1e-6, "{name}: {across}, and {error} elsewhere");
+        }
+    }
+}
+
+/// A grain that falls through a periodic side counts at once, not when a search next asks where it is.
+#[test]
+fn the_balance_has_no_jump_where_a_grain_crosses_a_side() {
+    let quantities = METHODS[0].quantities;
+    let balance = quantities.iter().position(|quantity| quantity.name == "balance_error").unwrap();
+    for search in ["lattice", "neighbor-list", "sectors"] {
+        let overrides = ["integrator.dt=5e-5".to_owned(), format!("search.by={search}")];
+        let (prepared, _) = load("pipe-small", &overrides, METHODS).unwrap();
+        let mut simulation = prepared.start(Purpose::Run).unwrap();
+        for step in 1..=1300 {
+            simulation.advance(&[Until::Steps(step)], &AtomicBool::new(false)).unwrap();
+            // A period of the pipe is worth 3.2e-5 J to a grain.
+            let error = simulation.observe()[balance];
+            assert!(error.abs() < 1e-6, "{search}, step {step}: {error}");
         }
     }
 }
