@@ -143,7 +143,7 @@ impl<'m, R: Registers> Span<'m, R> {
     /// Where an array is.
     #[inline(always)]
     fn column<T: Storage>(self, array: Array) -> Column<T> {
-        *self.memory.column(Slot::new(array))
+        self.memory.column(Slot::new(array))
     }
 
     /// The lanes at the place of one hardware register.
