@@ -1,7 +1,10 @@
 //! Instruction sets, and how work comes into a function compiled for one of them.
 
-use super::registers::MAX_LANES;
-use super::{Precision, Pulp, Registers, Scalar, Wide};
+use super::precision::Precision;
+use super::pulp::Pulp;
+use super::registers::{MAX_LANES, Registers};
+use super::scalar::Scalar;
+use super::wide::Wide;
 use crate::isa::ProgramError;
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;

@@ -241,12 +241,12 @@ impl<R: Registers> Machine for Strip<'_, R> {
 
     #[inline(always)]
     fn load_shifted<T: Element>(self, slot: Slot<T>, shift: isize) -> R::V {
-        self.load_from(*self.memory.column(slot), shift)
+        self.load_from(self.memory.column(slot), shift)
     }
 
     #[inline(always)]
     fn store<T: Element>(self, slot: Slot<T>, value: R::V) {
-        self.store_to(*self.memory.column(slot), value);
+        self.store_to(self.memory.column(slot), value);
     }
 
     #[inline(always)]
@@ -269,27 +269,27 @@ impl<R: Registers> Machine for Strip<'_, R> {
 
     #[inline(always)]
     fn load_index(self, slot: Slot<u32>) -> R::Index {
-        self.load_index_from(*self.memory.column(slot))
+        self.load_index_from(self.memory.column(slot))
     }
 
     #[inline(always)]
     fn store_index(self, slot: Slot<u32>, value: R::Index) {
-        self.store_index_to(*self.memory.column(slot), value);
+        self.store_index_to(self.memory.column(slot), value);
     }
 
     #[inline(always)]
     fn gather<T: Element>(self, slot: Slot<T>, index: R::Index, elsewhere: R::V) -> R::V {
-        self.gather_from(*self.memory.column(slot), index, elsewhere)
+        self.gather_from(self.memory.column(slot), index, elsewhere)
     }
 
     #[inline(always)]
     fn gather_index(self, slot: Slot<u32>, index: R::Index) -> R::Index {
-        self.gather_index_from(*self.memory.column(slot), index)
+        self.gather_index_from(self.memory.column(slot), index)
     }
 
     #[inline(always)]
     fn scatter_index(self, slot: Slot<u32>, index: R::Index, value: R::Index) {
-        self.scatter_index_to(*self.memory.column(slot), index, value);
+        self.scatter_index_to(self.memory.column(slot), index, value);
     }
 
     #[inline(always)]

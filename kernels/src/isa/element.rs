@@ -1,6 +1,5 @@
 //! What a lane may hold and what memory may hold.
 
-use super::memory::{Columns, Memory};
 use super::vector::Vector;
 
 mod sealed {
@@ -16,12 +15,13 @@ pub trait Storage: sealed::Sealed + Copy + Default + Send + Sync + std::fmt::Deb
     const NAME: &'static str;
     /// Bytes an element takes.
     const BYTES: usize;
-    /// Which of a memory's tables holds columns of this type.
+    /// Number of the table of a memory that holds columns of this type, below [`TABLES`].
     #[doc(hidden)]
-    fn columns<'m>(memory: &'m Memory<'_>) -> &'m Columns<Self>;
-    #[doc(hidden)]
-    fn columns_mut<'m>(memory: &'m mut Memory<'_>) -> &'m mut Columns<Self>;
+    const TABLE: usize;
 }
+
+/// How many tables a memory has: one for each type that it may hold.
+pub(super) const TABLES: usize = 3;
 
 /// A floating-point number of one of the two precisions; also the scalar oracle's vector of one lane.
 pub trait Element: Storage + Vector<Predicate = bool> + PartialOrd {
@@ -34,24 +34,17 @@ pub trait Element: Storage + Vector<Predicate = bool> + PartialOrd {
 }
 
 macro_rules! storage {
-    ($ty:ident, $table:ident) => {
+    ($ty:ident, $table:literal) => {
         impl Storage for $ty {
             const NAME: &'static str = stringify!($ty);
             const BYTES: usize = size_of::<$ty>();
-            #[inline(always)]
-            fn columns<'m>(memory: &'m Memory<'_>) -> &'m Columns<Self> {
-                &memory.$table
-            }
-            #[inline(always)]
-            fn columns_mut<'m>(memory: &'m mut Memory<'_>) -> &'m mut Columns<Self> {
-                &mut memory.$table
-            }
+            const TABLE: usize = $table;
         }
     };
 }
-storage!(f64, f64s);
-storage!(f32, f32s);
-storage!(u32, u32s);
+storage!(f64, 0);
+storage!(f32, 1);
+storage!(u32, 2);
 
 macro_rules! element {
     ($ty:ident) => {

@@ -81,6 +81,5 @@ pub unsafe trait Text {
 /// Whether two storage types are the same.
 #[inline]
 pub(crate) const fn same<A: Storage, B: Storage>() -> bool {
-    // Names of sealed types are distinct; comparing lengths in bytes would take u32 for f32, which no load mixes.
-    A::BYTES == B::BYTES
+    A::TABLE == B::TABLE
 }

@@ -1,6 +1,6 @@
 //! The arrays behind a program's slots, and the check that makes their use sound.
 
-use super::element::Storage;
+use super::element::{Storage, TABLES};
 use super::footprint::Footprint;
 use super::slot::{Array, Slot};
 use std::cell::Cell;
@@ -63,9 +63,19 @@ pub struct Column<T> {
     writable: bool,
 }
 
-impl<T: Storage> Column<T> {
-    const UNBOUND: Column<T> = Column { origin: std::ptr::null_mut(), length: 0, writable: false };
+impl Column<()> {
+    const UNBOUND: Column<()> = Column { origin: std::ptr::null_mut(), length: 0, writable: false };
+}
 
+impl<T: Copy> Column<T> {
+    /// The same elements as ones of another type.
+    #[inline(always)]
+    fn cast<U>(self) -> Column<U> {
+        Column { origin: self.origin.cast(), length: self.length, writable: self.writable }
+    }
+}
+
+impl<T: Storage> Column<T> {
     /// Pointer to an element.
     ///
     /// # Safety
@@ -114,26 +124,22 @@ impl<T: Storage> Column<T> {
     }
 }
 
-/// The columns of one element type.
-pub struct Columns<T>([Column<T>; Array::ALL.len()]);
-
-impl<T: Storage> Default for Columns<T> {
-    #[inline]
-    fn default() -> Self {
-        Columns([Column::UNBOUND; Array::ALL.len()])
-    }
-}
-
 /// The arrays a program runs on, bound to its slots.
 ///
 /// Slices are borrowed for as long as the memory lives; a mutable one exclusively.
-#[derive(Default)]
 pub struct Memory<'a> {
-    pub(crate) f64s: Columns<f64>,
-    pub(crate) f32s: Columns<f32>,
-    pub(crate) u32s: Columns<u32>,
+    /// For each type its columns: what stands in the table of a type was bound as that type.
+    tables: [[Column<()>; Array::ALL.len()]; TABLES],
     counters: [Cell<u64>; COUNTERS],
     borrow: PhantomData<&'a mut ()>,
+}
+
+impl Default for Memory<'_> {
+    #[inline]
+    fn default() -> Self {
+        let tables = [[Column::UNBOUND; Array::ALL.len()]; TABLES];
+        Memory { tables, counters: Default::default(), borrow: PhantomData }
+    }
 }
 
 impl<'a> Memory<'a> {
@@ -176,12 +182,12 @@ impl<'a> Memory<'a> {
 
     #[inline]
     fn bind<T: Storage>(&mut self, slot: Slot<T>, column: Column<T>) {
-        T::columns_mut(self).0[slot.array() as usize] = column;
+        self.tables[T::TABLE][slot.array() as usize] = column.cast();
     }
 
     #[inline(always)]
-    pub(crate) fn column<T: Storage>(&self, slot: Slot<T>) -> &Column<T> {
-        &T::columns(self).0[slot.array() as usize]
+    pub(crate) fn column<T: Storage>(&self, slot: Slot<T>) -> Column<T> {
+        self.tables[T::TABLE][slot.array() as usize].cast()
     }
 
     /// What was counted into `counter` so far.
@@ -196,13 +202,7 @@ impl<'a> Memory<'a> {
     /// While both are used, no element is written through one and touched through the other.
     #[inline]
     pub(crate) unsafe fn part(&self) -> Memory<'_> {
-        Memory {
-            f64s: Columns(self.f64s.0),
-            f32s: Columns(self.f32s.0),
-            u32s: Columns(self.u32s.0),
-            counters: Default::default(),
-            borrow: PhantomData,
-        }
+        Memory { tables: self.tables, counters: Default::default(), borrow: PhantomData }
     }
 
     /// Adds the counters of a part.
@@ -249,7 +249,7 @@ impl<'a> Memory<'a> {
 
     #[inline]
     fn extent<T: Storage>(&self, array: Array) -> Option<(usize, bool)> {
-        let column = &T::columns(self).0[array as usize];
+        let column = self.tables[T::TABLE][array as usize];
         (!column.origin.is_null()).then_some((column.length, column.writable))
     }
 }

@@ -15,7 +15,7 @@ pub use element::{Element, Storage};
 pub use footprint::{Access, Footprint};
 pub(crate) use machine::same;
 pub use machine::{Machine, Text};
-pub use memory::{COUNTERS, Column, Columns, Counter, Memory, ProgramError};
+pub use memory::{COUNTERS, Column, Counter, Memory, ProgramError};
 pub use op::{Op, OpClass, OpCounts};
 pub use slot::{Array, Slot};
 pub use vector::{Predicate, Vector};

@@ -4,7 +4,8 @@
 //! reads and adds without asking again. So a law reaches a sweep only through [`Stated`], which stops at anything else. Both
 //! lists are constants and so is every field a law names: what is left of the question, compiled, is nothing.
 
-use super::{Env, Field, Law, Sum};
+use super::environment::{Env, Law};
+use super::quantity::{Field, Sum};
 use crate::isa::{ProgramError, Vector};
 use std::cell::Cell;
 use std::marker::PhantomData;

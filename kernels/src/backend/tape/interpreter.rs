@@ -1,12 +1,12 @@
 //! Executes a tape strip by strip: each instruction a pass over the strip. One strip over everything is the unchained
 //! CRAY; short strips keep the registers in the cache.
 
-use super::Tape;
 use super::instruction::{Action, Effect, Indices, Instruction, Number, Operand, RegisterName, Truth};
 use super::pool;
+use super::recorded::Tape;
 use super::register_file::RegisterFile;
+use crate::backend::dispatch::{InstructionSet, Task, dispatch};
 use crate::backend::{IndexLanes, Precision, Registers, Scalar, Strip};
-use crate::backend::{InstructionSet, Task, dispatch};
 use crate::isa::list::for_each_op;
 use crate::isa::op::{BinaryOp, CompareOp, UnaryOp};
 use crate::isa::{Array, Column, Counter, Element, Machine, Memory, ProgramError, Slot, Storage, Vector};
@@ -143,7 +143,7 @@ impl<'m, R: Registers> Span<'m, R> {
     /// Where an array is.
     #[inline(always)]
     fn column<T: Storage>(self, array: Array) -> Column<T> {
-        *self.memory.column(Slot::new(array))
+        self.memory.column(Slot::new(array))
     }
 
     /// The lanes at the place of one hardware register.

@@ -1,12 +1,19 @@
 //! A program as an assembly listing.
 
-use super::Tape;
 use super::instruction::{Action, Effect, Indices, Number, Operand, Reference, RegisterName, Truth};
+use super::recorded::Tape;
 use crate::isa::Element;
 use std::fmt;
 
+impl<L: Element> Tape<L> {
+    /// The program as an assembly listing.
+    pub fn listing(&self) -> Listing<'_, L> {
+        Listing(self)
+    }
+}
+
 /// Prints a tape, one vector instruction a line.
-pub struct Listing<'t, L>(pub(super) &'t Tape<L>);
+pub struct Listing<'t, L>(&'t Tape<L>);
 
 impl fmt::Display for RegisterName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

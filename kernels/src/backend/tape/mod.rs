@@ -7,6 +7,7 @@ mod interpreter;
 mod listing;
 mod outline;
 mod pool;
+mod recorded;
 mod recorder;
 mod register_file;
 
@@ -15,69 +16,4 @@ pub use instruction::{
 };
 pub use listing::Listing;
 pub use outline::{Outline, Outlines, Place, register_shape};
-
-use crate::isa::{Element, Footprint, Op, OpCounts, Text};
-use allocation::FileSizes;
-use recorder::{Recorder, Recording};
-
-/// A recorded program: straight-line vector instructions with registers, and the passes that execute them.
-#[derive(Clone, Debug)]
-pub struct Tape<L> {
-    instructions: Vec<Instruction<L>>,
-    sections: Vec<&'static str>,
-    sizes: FileSizes,
-    passes: Vec<Instruction<L>>,
-    pass_sizes: FileSizes,
-}
-
-impl<L: Element> Tape<L> {
-    /// Records `text` by running it once on a machine that computes nothing.
-    pub fn record<T: Text<Lane = L>>(text: &T) -> Self {
-        let recorder = Recorder::new();
-        text.body(Recording(&recorder));
-        let mut instructions = recorder.instructions.into_inner();
-        let mut passes = folding::fold_loads(&instructions);
-        let sizes = allocation::allocate(&mut instructions);
-        let pass_sizes = allocation::allocate(&mut passes);
-        Tape { instructions, sections: recorder.sections.into_inner(), sizes, passes, pass_sizes }
-    }
-
-    /// The instructions, in order.
-    pub fn instructions(&self) -> &[Instruction<L>] {
-        &self.instructions
-    }
-
-    /// Registers of a file that the program needs at once.
-    pub fn registers(&self, file: File) -> usize {
-        self.sizes[file as usize]
-    }
-
-    /// What is executed, section by section, in the order of the text.
-    pub fn tally(&self) -> Vec<(&'static str, OpCounts)> {
-        let mut tally: Vec<_> = self.sections.iter().map(|&name| (name, OpCounts::default())).collect();
-        for instruction in &self.instructions {
-            instruction.operations().for_each(|op| tally[instruction.section].1.record(op));
-        }
-        tally.retain(|(_, counts)| counts.total() > 0);
-        tally
-    }
-
-    /// Which arrays the program touches, and how far from the own place.
-    pub fn footprint(&self) -> Footprint {
-        let mut footprint = Footprint::default();
-        for instruction in &self.instructions {
-            if let Some(reference) = instruction.reference() {
-                let strided = !matches!(instruction.op(), Op::Gather | Op::Scatter);
-                let writes = matches!(instruction.op(), Op::Store | Op::Scatter);
-                let shift = strided.then_some(reference.shift);
-                footprint.record(reference.array, reference.element, shift, writes);
-            }
-        }
-        footprint
-    }
-
-    /// The program as an assembly listing.
-    pub fn listing(&self) -> Listing<'_, L> {
-        Listing(self)
-    }
-}
+pub use recorded::Tape;

@@ -1,11 +1,12 @@
 //! Instructions as a timing model sees them: which unit, from where, to where, whatever the lanes hold.
 
-use super::Tape;
 use super::instruction::{
     Action, Effect, File, Indices, Instruction, Number, Operand, Reference, RegisterName,
 };
-use crate::backend::{InstructionSet, Task, dispatch};
-use crate::backend::{Precision, Registers};
+use super::recorded::Tape;
+use crate::backend::dispatch::{InstructionSet, Task, dispatch};
+use crate::backend::precision::Precision;
+use crate::backend::registers::Registers;
 use crate::isa::{Element, Op, ProgramError, Storage, Vector};
 use std::cell::Cell;
 

@@ -20,10 +20,9 @@
 //! bands are a function of the scene, the order of every sum is the same on any number of threads. The last band's partners
 //! beyond the last row are, on a periodic side, those of the first rows, which band A leaves alone in stage 1.
 
-use super::SENTINELS;
 use super::contacts::{Discs, Evaluate, Notes, SumColumns};
-use super::finder::{Cursor, Finder, Pairs, Rows};
-use super::near::Touches;
+use super::finder::{Cursor, Finder, Rows};
+use super::pairs::{Pairs, SENTINELS, Touches};
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::backend::dispatch;

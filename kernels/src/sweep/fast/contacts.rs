@@ -19,8 +19,7 @@
 //! - *Reads are not checked against the columns' ends.* Columns are checked once a sweep, pairs are of discs by the
 //!   [`Finder`](super::Finder)'s promise, and a law has no other columns than those it states ([`Stated`]).
 
-use super::SENTINELS;
-use super::finder::Pairs;
+use super::pairs::{Pair, Pairs, SENTINELS};
 use crate::backend::{GROUP, Task};
 use crate::backend::{Precision, Registers};
 use crate::isa::{Element, Vector};
@@ -74,9 +73,6 @@ pub(super) struct SumColumns<P>(pub(super) [*mut P; 3]);
 unsafe impl<P: Send> Send for SumColumns<P> {}
 // SAFETY: a shared one gives out copies of the pointers only; for what is done with them the same holds.
 unsafe impl<P: Send> Sync for SumColumns<P> {}
-
-/// Two discs.
-pub(super) type Pair = [u32; 2];
 
 /// What came up beside the sums.
 #[derive(Clone, Debug, Default)]

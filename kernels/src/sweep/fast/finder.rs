@@ -1,7 +1,6 @@
 //! What a sweep asks of whatever finds its pairs.
 
-use super::contacts::Pair;
-use super::near::Touches;
+use super::pairs::{Pairs, Touches};
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::ProgramError;
@@ -54,18 +53,6 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
 
     /// What was found.
     fn pairs<'a>(&'a self, found: &'a Self::Found) -> impl Pairs<P> + 'a;
-}
-
-/// Pairs that are at most asked for their contacts as they stand.
-pub trait Pairs<P> {
-    /// How many.
-    fn count(&self) -> usize;
-
-    /// Two discs, and the cell offset from where the first one's place is seen from to where the second one's is (length).
-    ///
-    /// # Panics
-    /// May, if there is no pair of that number.
-    fn pair(&self, number: usize) -> (Pair, [P; 2]);
 }
 
 /// Pairs that are found before the law is asked about them: they and their discs stay in the nearest cache.

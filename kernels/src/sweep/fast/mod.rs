@@ -33,19 +33,18 @@ mod advance;
 mod bands;
 mod contacts;
 mod finder;
+mod grid;
 pub mod lattice;
 mod near;
+mod pairs;
 mod sectors;
 mod verlet;
 
 pub use advance::{Advance, Copies, DisplacementLimit, Motion, Passed};
 pub use bands::{Met, Sweep};
 pub use contacts::Discs;
-pub use finder::{Cursor, Finder, Pairs, Rows};
-pub use near::Touches;
-pub use sectors::{Grid, GridError, Sectors};
+pub use finder::{Cursor, Finder, Rows};
+pub use grid::{Grid, GridError};
+pub use pairs::{Pairs, SENTINELS, Touches};
+pub use sectors::Sectors;
 pub use verlet::VerletList;
-
-/// Elements behind the discs' own in every column that a sweep reads: two discs that never touch, which fill up
-/// registers.
-pub const SENTINELS: usize = 2;

@@ -1,42 +1,11 @@
-//! Pairs written out: two discs and the cell offset between them, listed if they are near.
+//! Pairs of discs listed if they are near.
 
-use super::SENTINELS;
-use super::finder::{AT_ONCE, Cursor, MARGIN, Pairs};
-use super::sectors::Grid;
+use super::finder::{AT_ONCE, Cursor, MARGIN};
+use super::grid::Grid;
+use super::pairs::{SENTINELS, Touch, Touches};
 use crate::backend::Precision;
 use crate::isa::Element;
 use std::ops::Range;
-
-/// Two discs that may touch, and the cell offset between where their places are seen from (length).
-#[derive(Clone, Copy, Debug)]
-pub struct Touch<P> {
-    discs: [u32; 2],
-    cell_offset: [P; 2],
-}
-
-/// A list of pairs.
-#[derive(Clone, Debug, Default)]
-pub struct Touches<P>(Vec<Touch<P>>);
-
-impl<P: Precision> Touches<P> {
-    /// Appends a pair.
-    #[inline]
-    pub(super) fn push(&mut self, discs: [u32; 2], cell_offset: [f64; 2]) {
-        self.0.push(Touch { discs, cell_offset: cell_offset.map(P::from_f64) });
-    }
-}
-
-impl<P: Precision> Pairs<P> for &Touches<P> {
-    #[inline(always)]
-    fn count(&self) -> usize {
-        self.0.len()
-    }
-    #[inline(always)]
-    fn pair(&self, number: usize) -> ([u32; 2], [P; 2]) {
-        let Touch { discs, cell_offset } = self.0[number];
-        (discs, cell_offset)
-    }
-}
 
 /// Lists those of the pairs it is given that are nearer than some distance.
 pub(super) struct Near<'a, S, P> {

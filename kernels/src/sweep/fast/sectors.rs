@@ -21,132 +21,16 @@
 //! Inside the box a disc is compared with two stretches, each in one loop; at the rim, where a stretch ends or goes on at the
 //! other side of the box, sector by sector.
 
-use super::finder::{Cursor, Finder, Pairs, Rows};
-use super::near::{Near, Touches};
+use super::finder::{Cursor, Finder, Rows};
+use super::grid::{AHEAD, Grid};
+use super::near::Near;
+use super::pairs::{Pairs, Touches};
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};
-use crate::sweep::lattice::Frame;
 use crate::threads::{PIECE, in_pieces, is_alone, on_threads, over_pieces, pieces, reordered, shared};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
-
-/// Rows of a band, at least.
-pub(super) const BAND: usize = 16;
-
-/// The sectors that lie ahead of a sector in the order of a sweep, itself first: columns and rows.
-const AHEAD: [[isize; 2]; 5] = [[0, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
-
-/// Discs for which a sector is wide enough, on the average: fewer make many empty sectors, more make many pairs to try.
-const OCCUPANTS: f64 = 0.7;
-
-/// Why there are no sectors for a box.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum GridError {
-    /// A periodic side has no room for three: a pair would be met twice.
-    #[error(
-        "the periodic side along {}, {side} long, has no room for three sectors of at least {reach}: a pair would be met \
-         twice",
-        ["x", "y"][*axis]
-    )]
-    PeriodicTooShort {
-        /// The axis.
-        axis: usize,
-        /// Its length (length).
-        side: f64,
-        /// Least width of a sector (length).
-        reach: f64,
-    },
-    /// More sectors than can be numbered.
-    #[error("{columns}×{rows} sectors are more than the 2^32 − 2 that can be numbered")]
-    TooMany {
-        /// Along x.
-        columns: f64,
-        /// Along y.
-        rows: f64,
-    },
-}
-
-/// Which sectors there are.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grid {
-    /// Where they lie.
-    pub frame: Frame,
-    /// Columns and rows.
-    pub counts: [usize; 2],
-    /// Which sides are periodic.
-    pub periodic: [bool; 2],
-}
-
-impl Grid {
-    /// Sectors at least `reach` wide (length), and not much wider than `widest`, for `discs` discs in a box of some sides
-    /// (length).
-    ///
-    /// # Errors
-    /// [`GridError`] if a periodic side has no room for three, or there would be too many to number.
-    pub fn new(
-        origin: [f64; 2],
-        sides: [f64; 2],
-        periodic: [bool; 2],
-        reach: f64,
-        widest: f64,
-        discs: usize,
-    ) -> Result<Grid, GridError> {
-        let room = OCCUPANTS * sides[0] * sides[1] / discs.max(1) as f64;
-        let wide = reach.max(room.sqrt().min(widest));
-        let mut counts = [1.0, 1.0];
-        for axis in 0..2 {
-            let side = sides[axis];
-            let least = if periodic[axis] { 3.0 } else { 1.0 };
-            if periodic[axis] && (side / reach).floor() < least {
-                return Err(GridError::PeriodicTooShort { axis, side, reach });
-            }
-            counts[axis] = (side / wide).floor().max(least);
-        }
-        let [columns, rows] = counts;
-        if columns * rows >= f64::from(u32::MAX) || (columns * rows).is_nan() {
-            return Err(GridError::TooMany { columns, rows });
-        }
-        let edge = [sides[0] / columns, sides[1] / rows];
-        Ok(Grid { frame: Frame { origin, edge }, counts: counts.map(|count| count as usize), periodic })
-    }
-
-    /// The sector that lies at most one column and one row from one.
-    #[inline(always)]
-    fn beside(&self, [column, row]: [usize; 2], [columns, rows]: [isize; 2]) -> Option<[usize; 2]> {
-        let along = |axis: usize, from: usize, by: isize| {
-            let (count, there) = (self.counts[axis] as isize, from as isize + by);
-            // No division: that would cost more than what is done with the sector.
-            let inside = if there < 0 {
-                there + count
-            } else if there >= count {
-                there - count
-            } else {
-                return Some(there as usize);
-            };
-            self.periodic[axis].then_some(inside as usize)
-        };
-        Some([along(0, column, columns)?, along(1, row, rows)?])
-    }
-
-    /// From the centre of a sector to the one that lies `ahead` columns and rows from it (length).
-    #[inline]
-    fn cell_offset(&self, ahead: [isize; 2]) -> [f64; 2] {
-        [0, 1].map(|axis| ahead[axis] as f64 * self.frame.edge[axis])
-    }
-
-    /// Offsets of the sectors ahead, in their order.
-    #[inline]
-    pub(super) fn cell_offsets(&self) -> [[f64; 2]; 5] {
-        AHEAD.map(|ahead| self.cell_offset(ahead))
-    }
-
-    #[inline]
-    pub(super) fn rows(&self) -> Rows {
-        Rows { count: self.counts[1], ahead: 1, band: BAND }
-    }
-}
 
 /// Who is in which sector. The discs of a sector are kept in an order that the caller gives, so that no sum's order depends on
 /// what went before.

@@ -14,9 +14,11 @@
 //! sector to those ahead of it (itself first), and stands for the difference of the places from which the two discs are seen;
 //! so a pair across a periodic side costs no more than any other, and no position is ever wrapped.
 
-use super::finder::{Cursor, Finder, Pairs, Rows};
-use super::near::{Near, Touches};
-use super::sectors::{Grid, Sectors};
+use super::finder::{Cursor, Finder, Rows};
+use super::grid::Grid;
+use super::near::Near;
+use super::pairs::{Pairs, Touches};
+use super::sectors::Sectors;
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};

@@ -23,10 +23,9 @@ mod sparse;
 pub use codes::Codes;
 pub use occupancy::{Occupancy, SPARSE, Taken};
 
-use super::SENTINELS;
-use super::finder::{AT_ONCE, Cursor, Finder, Pairs, Rows};
-use super::near::Touches;
-use super::sectors::Grid;
+use super::finder::{AT_ONCE, Cursor, Finder, Rows};
+use super::grid::Grid;
+use super::pairs::{Pairs, SENTINELS, Touches};
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::backend::dispatch;

@@ -2,9 +2,9 @@
 
 use super::bits::Bits;
 use crate::GROUP;
-use crate::sweep::fast::SENTINELS;
 use crate::sweep::fast::advance::Copies;
-use crate::sweep::fast::sectors::Grid;
+use crate::sweep::fast::grid::Grid;
+use crate::sweep::fast::pairs::SENTINELS;
 use crate::sweep::lattice::{Frame, LatticeShape};
 
 /// The cell is another disc's.

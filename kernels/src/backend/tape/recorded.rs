@@ -1,0 +1,64 @@
+//! A text as recorded: its instructions, and what follows from them alone.
+
+use super::allocation::{FileSizes, allocate};
+use super::folding::fold_loads;
+use super::instruction::{File, Instruction};
+use super::recorder::{Recorder, Recording};
+use crate::isa::{Element, Footprint, Op, OpCounts, Text};
+
+/// A recorded program: straight-line vector instructions with registers, and the passes that execute them.
+#[derive(Clone, Debug)]
+pub struct Tape<L> {
+    pub(super) instructions: Vec<Instruction<L>>,
+    pub(super) sections: Vec<&'static str>,
+    pub(super) sizes: FileSizes,
+    pub(super) passes: Vec<Instruction<L>>,
+    pub(super) pass_sizes: FileSizes,
+}
+
+impl<L: Element> Tape<L> {
+    /// Records `text` by running it once on a machine that computes nothing.
+    pub fn record<T: Text<Lane = L>>(text: &T) -> Self {
+        let recorder = Recorder::new();
+        text.body(Recording(&recorder));
+        let mut instructions = recorder.instructions.into_inner();
+        let mut passes = fold_loads(&instructions);
+        let sizes = allocate(&mut instructions);
+        let pass_sizes = allocate(&mut passes);
+        Tape { instructions, sections: recorder.sections.into_inner(), sizes, passes, pass_sizes }
+    }
+
+    /// The instructions, in order.
+    pub fn instructions(&self) -> &[Instruction<L>] {
+        &self.instructions
+    }
+
+    /// Registers of a file that the program needs at once.
+    pub fn registers(&self, file: File) -> usize {
+        self.sizes[file as usize]
+    }
+
+    /// What is executed, section by section, in the order of the text.
+    pub fn tally(&self) -> Vec<(&'static str, OpCounts)> {
+        let mut tally: Vec<_> = self.sections.iter().map(|&name| (name, OpCounts::default())).collect();
+        for instruction in &self.instructions {
+            instruction.operations().for_each(|op| tally[instruction.section].1.record(op));
+        }
+        tally.retain(|(_, counts)| counts.total() > 0);
+        tally
+    }
+
+    /// Which arrays the program touches, and how far from the own place.
+    pub fn footprint(&self) -> Footprint {
+        let mut footprint = Footprint::default();
+        for instruction in &self.instructions {
+            if let Some(reference) = instruction.reference() {
+                let strided = !matches!(instruction.op(), Op::Gather | Op::Scatter);
+                let writes = matches!(instruction.op(), Op::Store | Op::Scatter);
+                let shift = strided.then_some(reference.shift);
+                footprint.record(reference.array, reference.element, shift, writes);
+            }
+        }
+        footprint
+    }
+}

@@ -1,0 +1,113 @@
+//! What a law may ask of a particle and add to it.
+
+/// An axis of space. A law in two dimensions has x and y.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// The first.
+    X,
+    /// The second.
+    Y,
+    /// The third.
+    Z,
+}
+
+/// A quantity of a particle that a law may ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Field {
+    /// Velocity along an axis.
+    Velocity(Axis),
+    /// Angular velocity in the plane, counter-clockwise.
+    Omega,
+    /// Radius.
+    Radius,
+    /// Inverse mass; 0 for a fixed particle.
+    InverseMass,
+}
+
+/// A sum over partners that a law contributes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sum {
+    /// Force along an axis.
+    Force(Axis),
+    /// Torque in the plane, counter-clockwise.
+    Torque,
+}
+
+impl Axis {
+    /// Every axis, in order.
+    pub const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
+}
+
+impl Field {
+    /// Every field.
+    pub const ALL: [Field; 6] = [
+        Field::Velocity(Axis::X),
+        Field::Velocity(Axis::Y),
+        Field::Velocity(Axis::Z),
+        Field::Omega,
+        Field::Radius,
+        Field::InverseMass,
+    ];
+    /// The fields that there are in two dimensions.
+    pub const PLANAR: [Field; 5] =
+        [Field::Velocity(Axis::X), Field::Velocity(Axis::Y), Field::Omega, Field::Radius, Field::InverseMass];
+
+    /// Whether a particle has it in so many dimensions.
+    #[inline(always)]
+    pub const fn is_in(self, dimensions: usize) -> bool {
+        match self {
+            Field::Velocity(axis) => (axis as usize) < dimensions,
+            Field::Omega => dimensions == 2,
+            Field::Radius | Field::InverseMass => true,
+        }
+    }
+
+    /// The name in errors.
+    #[inline]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Field::Velocity(Axis::X) => "the velocity along x",
+            Field::Velocity(Axis::Y) => "the velocity along y",
+            Field::Velocity(Axis::Z) => "the velocity along z",
+            Field::Omega => "the angular velocity",
+            Field::Radius => "the radius",
+            Field::InverseMass => "the inverse mass",
+        }
+    }
+}
+
+impl Sum {
+    /// Every sum.
+    pub const ALL: [Sum; 4] = [Sum::Force(Axis::X), Sum::Force(Axis::Y), Sum::Force(Axis::Z), Sum::Torque];
+    /// The sums that there are in two dimensions, in the order of their [columns](Self::column).
+    pub const PLANAR: [Sum; 3] = [Sum::Force(Axis::X), Sum::Force(Axis::Y), Sum::Torque];
+
+    /// Whether a particle has it in so many dimensions.
+    #[inline(always)]
+    pub const fn is_in(self, dimensions: usize) -> bool {
+        match self {
+            Sum::Force(axis) => (axis as usize) < dimensions,
+            Sum::Torque => dimensions == 2,
+        }
+    }
+
+    /// Number of its column among those of `DIM` dimensions: the forces axis by axis, then the torque.
+    #[inline(always)]
+    pub const fn column<const DIM: usize>(self) -> usize {
+        match self {
+            Sum::Force(axis) => axis as usize,
+            Sum::Torque => DIM,
+        }
+    }
+
+    /// The name in errors.
+    #[inline]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Sum::Force(Axis::X) => "the force along x",
+            Sum::Force(Axis::Y) => "the force along y",
+            Sum::Force(Axis::Z) => "the force along z",
+            Sum::Torque => "the torque",
+        }
+    }
+}
