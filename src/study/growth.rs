@@ -17,6 +17,8 @@ pub const COMPARABLE: f64 = 0.1;
 const COARSER: f64 = 4.0;
 /// Looks at the runs.
 const LOOKS: u64 = 64;
+/// Where the window ends after fewer looks, runs as long as the window are looked at more closely.
+const FEW: usize = 8;
 /// Steps are halved this often where the scene's own does not serve.
 const HALVINGS: i32 = 3;
 
@@ -64,7 +66,20 @@ pub fn growth(
     let mut tried = vec![];
     for halvings in 0..=HALVINGS {
         let step = subject.step * 0.5f64.powi(halvings);
-        match at_step(subject, &choice, step, most << halvings, each, meter) {
+        let closely = |most: u64| at_step(subject, &choice, step, most, each, meter);
+        let mut found = closely(most << halvings);
+        while let Ok(growth) = &found
+            && growth.ended_by == EndedBy::Growth
+            && growth.times.len() < FEW
+            && growth.times.len() > 1
+        {
+            let looked_at = growth.times.last().map_or(0.0, |time| (time / step).round());
+            if looked_at < LOOKS as f64 {
+                break;
+            }
+            found = closely(looked_at as u64);
+        }
+        match found {
             Ok(growth) => return Ok(growth),
             Err(why) => tried.push((format!("{} with step {step:e}", choice.label()), why)),
         }

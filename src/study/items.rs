@@ -11,7 +11,7 @@ use crate::results::{Effort, Journal, Made};
 pub const ITEMS: &[Item] = &[Item {
     name: NAME,
     doc: "Speed against accuracy of four scenes: which integrator, step and precision for which wish",
-    seconds: [7.0, 85.0],
+    seconds: [8.0, 80.0],
     is_quick: true,
     make: speed_against_accuracy,
 }];
@@ -20,7 +20,7 @@ pub const ITEMS: &[Item] = &[Item {
 fn speed_against_accuracy(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let (budget, repeats, phases) = match effort {
         Effort::Quick => (1.5, 1, 4),
-        Effort::Full => (34.0, 3, 16),
+        Effort::Full => (30.0, 3, 16),
     };
     let effort = work_precision::Effort { budget, repeats, phases, machine: None };
     let shown: Vec<_> =
