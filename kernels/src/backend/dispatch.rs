@@ -1,5 +1,6 @@
 //! Instruction sets, and how work comes into a function compiled for one of them.
 
+use super::estimated::Estimating;
 use super::precision::Precision;
 use super::pulp::Pulp;
 use super::registers::{MAX_LANES, Registers};
@@ -79,23 +80,35 @@ pub(crate) trait Task<L: Precision> {
 
 /// Carries a task into the function compiled for the instruction set.
 pub(crate) fn dispatch<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -> Result<(), ProgramError> {
-    let absent = ProgramError::NoSuchInstructionSet(set.name());
     match set {
         InstructionSet::Scalar => task.on(Scalar::default()),
         InstructionSet::Wide => task.on(Wide::default()),
+        _ => return vectorized(set, OnSimd(task, PhantomData)),
+    }
+    Ok(())
+}
+
+/// As [`dispatch`], on registers that fuse products and sums and estimate inverse roots, where the set has such.
+pub(crate) fn dispatch_estimating<L: Precision, T: Task<L>>(
+    set: InstructionSet,
+    task: T,
+) -> Result<(), ProgramError> {
+    match set {
+        InstructionSet::Scalar | InstructionSet::Wide => dispatch(set, task),
+        _ => vectorized(set, OnEstimating(task, PhantomData)),
+    }
+}
+
+/// Carries a task as `pulp` wants it into the function compiled for a set of `pulp`'s.
+fn vectorized(set: InstructionSet, task: impl WithSimd<Output = ()>) -> Result<(), ProgramError> {
+    let absent = ProgramError::NoSuchInstructionSet(set.name());
+    match set {
         #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx2 => {
-            Simd::vectorize(pulp::x86::V3::try_new().ok_or(absent)?, OnSimd(task, PhantomData))
-        }
+        InstructionSet::Avx2 => Simd::vectorize(pulp::x86::V3::try_new().ok_or(absent)?, task),
         #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx512 => {
-            Simd::vectorize(pulp::x86::V4::try_new().ok_or(absent)?, OnSimd(task, PhantomData))
-        }
+        InstructionSet::Avx512 => Simd::vectorize(pulp::x86::V4::try_new().ok_or(absent)?, task),
         #[cfg(target_arch = "aarch64")]
-        InstructionSet::Neon => {
-            Simd::vectorize(pulp::aarch64::Neon::try_new().ok_or(absent)?, OnSimd(task, PhantomData));
-        }
-        #[allow(unreachable_patterns, reason = "which sets are left depends on the target")]
+        InstructionSet::Neon => Simd::vectorize(pulp::aarch64::Neon::try_new().ok_or(absent)?, task),
         _ => return Err(absent),
     }
     Ok(())
@@ -109,5 +122,16 @@ impl<L: Precision, T: Task<L>> WithSimd for OnSimd<T, L> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         self.0.on(Pulp::<S, L>::new(simd));
+    }
+}
+
+/// A task as `pulp` wants it, on registers that estimate.
+struct OnEstimating<T, L>(T, PhantomData<L>);
+
+impl<L: Precision, T: Task<L>> WithSimd for OnEstimating<T, L> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.0.on(Estimating::<S, L>::new(simd));
     }
 }

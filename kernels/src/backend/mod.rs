@@ -1,6 +1,7 @@
 //! The machines a text runs on: register files (scalar, `pulp`, `wide`) and the tape.
 
 mod dispatch;
+mod estimated;
 mod precision;
 mod pulp;
 mod registers;
@@ -9,7 +10,8 @@ pub mod tape;
 mod wide;
 
 pub use dispatch::{GROUP, InstructionSet};
-pub(crate) use dispatch::{Task, dispatch};
+pub(crate) use dispatch::{Task, dispatch, dispatch_estimating};
+pub use estimated::Estimates;
 pub use precision::Precision;
 pub use pulp::{Pulp, PulpElement};
 pub(crate) use registers::Strip;

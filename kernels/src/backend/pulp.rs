@@ -280,6 +280,20 @@ impl<S: Simd, T: PulpElement> Pulp<S, T> {
 #[derive(Clone, Copy)]
 pub struct Register<S: Simd, T: PulpElement>(S, T::Register<S>);
 
+impl<S: Simd, T: PulpElement> Register<S, T> {
+    /// Of what `pulp` has it made.
+    #[inline(always)]
+    pub(super) fn new(simd: S, value: T::Register<S>) -> Self {
+        Register(simd, value)
+    }
+
+    /// What `pulp` has it made of.
+    #[inline(always)]
+    pub(super) fn value(self) -> T::Register<S> {
+        self.1
+    }
+}
+
 /// One register of truth values.
 #[derive(Clone, Copy)]
 pub struct Truth<S: Simd, T: PulpElement>(S, T::Truth<S>);

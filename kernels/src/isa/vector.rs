@@ -31,6 +31,24 @@ macro_rules! define_vectors {
             )*
             /// `holds` where the predicate holds, else `fails`. Neither is disturbed by a NaN in the other.
             fn select(predicate: Self::Predicate, holds: Self, fails: Self) -> Self;
+
+            /// `self · factor + addend`: two operations, each rounded. Only registers that estimate make one of them.
+            #[inline(always)]
+            fn times_plus(self, factor: Self, addend: Self) -> Self {
+                self * factor + addend
+            }
+
+            /// `addend − self · factor`, likewise.
+            #[inline(always)]
+            fn times_from(self, factor: Self, addend: Self) -> Self {
+                addend - self * factor
+            }
+
+            /// `one/(a √a)`, a the vector itself: three operations. Only registers that estimate take another way.
+            #[inline(always)]
+            fn inverse_three_halves(self, one: Self) -> Self {
+                one / (self * self.sqrt())
+            }
         }
     };
 }

@@ -42,6 +42,15 @@ pub trait Env<const DIM: usize>: Copy {
     fn own_add(self, sum: Sum, value: Self::V);
     /// Subtracts from a sum of the partner. Called only where [`Env::BOTH_PARTNERS`].
     fn partner_sub(self, sum: Sum, place: Self::Place, value: Self::V);
+    /// Adds `a · b` to a sum of the own particle and, where the pair is met once, subtracts it from the partner's.
+    #[inline(always)]
+    fn add_product(self, sum: Sum, place: Self::Place, a: Self::V, b: Self::V) {
+        let product = a * b;
+        self.own_add(sum, product);
+        if Self::BOTH_PARTNERS {
+            self.partner_sub(sum, place, product);
+        }
+    }
     /// Whether penetrations are watched.
     fn watches(self) -> bool;
     /// Reports the penetration (length) of every pair, negative without contact. Called only where [`Env::watches`].

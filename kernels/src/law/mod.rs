@@ -2,6 +2,7 @@
 
 mod environment;
 pub mod granular;
+pub mod gravity;
 mod quantity;
 mod stated;
 

@@ -22,6 +22,8 @@ pub enum Field {
     Radius,
     /// Inverse mass; 0 for a fixed particle.
     InverseMass,
+    /// Mass of a body in space.
+    Mass,
 }
 
 /// A sum over partners that a law contributes to.
@@ -31,6 +33,8 @@ pub enum Sum {
     Force(Axis),
     /// Torque in the plane, counter-clockwise.
     Torque,
+    /// Rate at which the force along an axis changes as the particles move, in space.
+    ForceRate(Axis),
 }
 
 impl Axis {
@@ -40,13 +44,14 @@ impl Axis {
 
 impl Field {
     /// Every field.
-    pub const ALL: [Field; 6] = [
+    pub const ALL: [Field; 7] = [
         Field::Velocity(Axis::X),
         Field::Velocity(Axis::Y),
         Field::Velocity(Axis::Z),
         Field::Omega,
         Field::Radius,
         Field::InverseMass,
+        Field::Mass,
     ];
     /// The fields that there are in two dimensions.
     pub const PLANAR: [Field; 5] =
@@ -58,6 +63,7 @@ impl Field {
         match self {
             Field::Velocity(axis) => (axis as usize) < dimensions,
             Field::Omega => dimensions == 2,
+            Field::Mass => dimensions == 3,
             Field::Radius | Field::InverseMass => true,
         }
     }
@@ -72,13 +78,22 @@ impl Field {
             Field::Omega => "the angular velocity",
             Field::Radius => "the radius",
             Field::InverseMass => "the inverse mass",
+            Field::Mass => "the mass",
         }
     }
 }
 
 impl Sum {
     /// Every sum.
-    pub const ALL: [Sum; 4] = [Sum::Force(Axis::X), Sum::Force(Axis::Y), Sum::Force(Axis::Z), Sum::Torque];
+    pub const ALL: [Sum; 7] = [
+        Sum::Force(Axis::X),
+        Sum::Force(Axis::Y),
+        Sum::Force(Axis::Z),
+        Sum::Torque,
+        Sum::ForceRate(Axis::X),
+        Sum::ForceRate(Axis::Y),
+        Sum::ForceRate(Axis::Z),
+    ];
     /// The sums that there are in two dimensions, in the order of their [columns](Self::column).
     pub const PLANAR: [Sum; 3] = [Sum::Force(Axis::X), Sum::Force(Axis::Y), Sum::Torque];
 
@@ -88,15 +103,18 @@ impl Sum {
         match self {
             Sum::Force(axis) => (axis as usize) < dimensions,
             Sum::Torque => dimensions == 2,
+            Sum::ForceRate(_) => dimensions == 3,
         }
     }
 
-    /// Number of its column among those of `DIM` dimensions: the forces axis by axis, then the torque.
+    /// Number of its column among those of `DIM` dimensions: the forces axis by axis, then the torque or, in space, the
+    /// rates of the forces.
     #[inline(always)]
     pub const fn column<const DIM: usize>(self) -> usize {
         match self {
             Sum::Force(axis) => axis as usize,
             Sum::Torque => DIM,
+            Sum::ForceRate(axis) => DIM + axis as usize,
         }
     }
 
@@ -108,6 +126,9 @@ impl Sum {
             Sum::Force(Axis::Y) => "the force along y",
             Sum::Force(Axis::Z) => "the force along z",
             Sum::Torque => "the torque",
+            Sum::ForceRate(Axis::X) => "the rate of the force along x",
+            Sum::ForceRate(Axis::Y) => "the rate of the force along y",
+            Sum::ForceRate(Axis::Z) => "the rate of the force along z",
         }
     }
 }

@@ -79,6 +79,7 @@ const fn bit_of_field(field: Field) -> u32 {
         Field::Omega => 3,
         Field::Radius => 4,
         Field::InverseMass => 5,
+        Field::Mass => 6,
     }
 }
 
@@ -87,6 +88,7 @@ const fn bit_of_sum(sum: Sum) -> u32 {
     1 << match sum {
         Sum::Force(axis) => axis as u32,
         Sum::Torque => 3,
+        Sum::ForceRate(axis) => 4 + axis as u32,
     }
 }
 
@@ -154,6 +156,11 @@ impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for Stated<E, L> {
     fn partner_sub(self, sum: Sum, place: E::Place, value: E::V) {
         Self::sum::<DIM>(sum);
         self.env.partner_sub(sum, place, value);
+    }
+    #[inline(always)]
+    fn add_product(self, sum: Sum, place: E::Place, a: E::V, b: E::V) {
+        Self::sum::<DIM>(sum);
+        self.env.add_product(sum, place, a, b);
     }
     #[inline(always)]
     fn watches(self) -> bool {

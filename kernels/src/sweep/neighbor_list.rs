@@ -180,6 +180,7 @@ impl<'a, P: Precision> OneByOne<'a, P> {
             Field::Omega => omega[disc],
             Field::Radius => radius[disc],
             Field::InverseMass => inverse_mass[disc],
+            Field::Mass => P::from_f64(1.0) / inverse_mass[disc],
         }
     }
 }

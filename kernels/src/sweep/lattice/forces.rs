@@ -67,6 +67,7 @@ const fn sum_array(sum: Sum) -> Array {
     match sum {
         Sum::Force(axis) => [Array::Fx, Array::Fy][axis as usize],
         Sum::Torque => Array::Torque,
+        Sum::ForceRate(_) => panic!("a law of the plane states no rates of forces"),
     }
 }
 

@@ -16,6 +16,7 @@ pub(super) const fn arrays(field: Field) -> (Array, Array, f64) {
         Field::Radius => (Array::DiscRadius, Array::Radius, 0.0),
         // An effective mass of two empty cells must be a number.
         Field::InverseMass => (Array::DiscInverseMass, Array::InverseMass, 1.0),
+        Field::Mass => panic!("a law of the plane states inverse masses"),
     }
 }
 

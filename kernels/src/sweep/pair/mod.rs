@@ -177,6 +177,7 @@ impl Meeting<'_> {
             Field::Omega => body.omega,
             Field::Radius => body.radius,
             Field::InverseMass => body.inverse_mass,
+            Field::Mass => 1.0 / body.inverse_mass,
         }
     }
 

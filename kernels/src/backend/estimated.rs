@@ -1,0 +1,229 @@
+//! Registers that are fast at the cost of the last bits: products and sums fused, inverse roots from the processor's estimate.
+//!
+//! A sweep on them promises a bound of the error, not bits: what comes out depends on the instruction set.
+//!
+//! The estimate y of 1/√a has the relative error δ, so that e = 1 − a y² is about 2 δ, and
+//!
+//! ```text
+//! 1/(a √a) = y³ (1 − e)^(−3/2) = y³ (1 + 3/2 e + 15/8 e² + 35/16 e³ + ...)
+//! ```
+//!
+//! The correction is folded into the cube: no root is ever rounded by itself. As many terms are taken as the precision needs:
+//! AVX-512 has δ < 2⁻¹⁴ in both precisions, AVX2 δ < 1.5 · 2⁻¹² in single precision only. Where there is no estimate the root
+//! and the quotient are the processor's own.
+
+use super::pulp::{Pulp, PulpElement, Register, Truth};
+use super::registers::Registers;
+use crate::isa::Vector;
+use crate::isa::list::for_each_op;
+use pulp::Simd;
+#[cfg(target_arch = "x86_64")]
+use pulp::x86::{V3, V4};
+#[cfg(target_arch = "x86_64")]
+use std::any::TypeId;
+
+/// A precision in which there is something to fuse and to estimate.
+pub trait Estimates: PulpElement {
+    /// `a · b + c`, rounded once.
+    fn fused<S: Simd>(
+        simd: S,
+        a: Self::Register<S>,
+        b: Self::Register<S>,
+        c: Self::Register<S>,
+    ) -> Self::Register<S>;
+
+    /// `c − a · b`, rounded once.
+    fn fused_from<S: Simd>(
+        simd: S,
+        a: Self::Register<S>,
+        b: Self::Register<S>,
+        c: Self::Register<S>,
+    ) -> Self::Register<S>;
+
+    /// 1/√a to a few digits, and the terms that the correction takes; none where the processor has no such instruction.
+    fn inverse_root<S: Simd>(simd: S, a: Self::Register<S>) -> Option<(Self::Register<S>, &'static [f64])>;
+}
+
+/// The terms of the correction behind the 1.
+const TERMS: [f64; 3] = [3.0 / 2.0, 15.0 / 8.0, 35.0 / 16.0];
+
+/// `work` on the register as the processor's own type, if the instruction set `S` is `Set`.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn on<S: Simd, Set: Simd, R: Copy, Native: Copy>(
+    simd: S,
+    register: R,
+    work: impl FnOnce(Set, Native) -> Native,
+) -> Option<R> {
+    if TypeId::of::<S>() != TypeId::of::<Set>() || size_of::<R>() != size_of::<Native>() {
+        return None;
+    }
+    // SAFETY: S and Set are one type; the register and the processor's type are plain data of one size.
+    let (set, native) = unsafe { (std::mem::transmute_copy(&simd), std::mem::transmute_copy(&register)) };
+    let result = work(set, native);
+    // SAFETY: as above, the other way.
+    Some(unsafe { std::mem::transmute_copy(&result) })
+}
+
+impl Estimates for f32 {
+    #[inline(always)]
+    fn fused<S: Simd>(simd: S, a: S::f32s, b: S::f32s, c: S::f32s) -> S::f32s {
+        simd.mul_add_f32s(a, b, c)
+    }
+    #[inline(always)]
+    fn fused_from<S: Simd>(simd: S, a: S::f32s, b: S::f32s, c: S::f32s) -> S::f32s {
+        simd.mul_add_f32s(simd.neg_f32s(a), b, c)
+    }
+    #[inline(always)]
+    fn inverse_root<S: Simd>(simd: S, a: S::f32s) -> Option<(S::f32s, &'static [f64])> {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if let Some(root) = on(simd, a, |set: V4, a| set.avx512f._mm512_rsqrt14_ps(a)) {
+                return Some((root, &TERMS[..1]));
+            }
+            if let Some(root) = on(simd, a, |set: V3, a| set.avx._mm256_rsqrt_ps(a)) {
+                return Some((root, &TERMS[..2]));
+            }
+        }
+        None
+    }
+}
+
+impl Estimates for f64 {
+    #[inline(always)]
+    fn fused<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
+        simd.mul_add_f64s(a, b, c)
+    }
+    #[inline(always)]
+    fn fused_from<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
+        simd.mul_add_f64s(simd.neg_f64s(a), b, c)
+    }
+    #[inline(always)]
+    fn inverse_root<S: Simd>(simd: S, a: S::f64s) -> Option<(S::f64s, &'static [f64])> {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(root) = on(simd, a, |set: V4, a| set.avx512f._mm512_rsqrt14_pd(a)) {
+            return Some((root, &TERMS));
+        }
+        None
+    }
+}
+
+/// Registers of the instruction set `S` with lanes of `T` that fuse and estimate.
+#[derive(Clone, Copy)]
+pub struct Estimating<S, T>(Pulp<S, T>, S);
+
+impl<S: Simd, T: Estimates> Estimating<S, T> {
+    /// The registers that `simd` proves to exist.
+    #[inline(always)]
+    pub fn new(simd: S) -> Self {
+        Estimating(Pulp::new(simd), simd)
+    }
+}
+
+/// One register.
+#[derive(Clone, Copy)]
+pub struct Estimated<S: Simd, T: PulpElement>(S, Register<S, T>);
+
+impl<S: Simd, T: Estimates> Registers for Estimating<S, T> {
+    type Lane = T;
+    type V = Estimated<S, T>;
+    type Index = T::Index;
+    const LANES: usize = Pulp::<S, T>::LANES;
+
+    #[inline(always)]
+    fn splat(self, value: T) -> Self::V {
+        Estimated(self.1, self.0.splat(value))
+    }
+    #[inline(always)]
+    unsafe fn load(self, from: *const T) -> Self::V {
+        // SAFETY: the caller promises LANES elements.
+        Estimated(self.1, unsafe { self.0.load(from) })
+    }
+    #[inline(always)]
+    unsafe fn store(self, to: *mut T, value: Self::V) {
+        // SAFETY: the caller promises LANES elements that may be written.
+        unsafe { self.0.store(to, value.1) };
+    }
+    #[inline(always)]
+    fn none(self, predicate: Truth<S, T>) -> bool {
+        self.0.none(predicate)
+    }
+    #[inline(always)]
+    fn bits(self, predicate: Truth<S, T>) -> u64 {
+        self.0.bits(predicate)
+    }
+}
+
+macro_rules! define_estimated {
+    (operator { $(($ov:ident, $om:literal, $oc:ident, $od:literal, $trait:ident $of:ident)),* $(,)? }
+     binary { $(($bv:ident, $bm:literal, $bc:ident, $bd:literal, $bf:ident)),* $(,)? }
+     unary { $(($uv:ident, $um:literal, $uc:ident, $ud:literal, $uf:ident)),* $(,)? }
+     compare { $(($cv:ident, $cm:literal, $cc:ident, $cd:literal, $cf:ident)),* $(,)? }
+     connective $connective:tt
+     negation $negation:tt
+     machine $machine:tt) => {
+        $(
+            impl<S: Simd, T: Estimates> std::ops::$trait for Estimated<S, T> {
+                type Output = Self;
+                #[inline(always)]
+                fn $of(self, other: Self) -> Self {
+                    Estimated(self.0, std::ops::$trait::$of(self.1, other.1))
+                }
+            }
+        )*
+
+        impl<S: Simd, T: Estimates> Vector for Estimated<S, T> {
+            type Predicate = Truth<S, T>;
+            $(
+                #[inline(always)]
+                fn $uf(self) -> Self {
+                    Estimated(self.0, self.1.$uf())
+                }
+            )*
+            $(
+                #[inline(always)]
+                fn $bf(self, other: Self) -> Self {
+                    Estimated(self.0, self.1.$bf(other.1))
+                }
+            )*
+            $(
+                #[inline(always)]
+                fn $cf(self, other: Self) -> Truth<S, T> {
+                    self.1.$cf(other.1)
+                }
+            )*
+            #[inline(always)]
+            fn select(predicate: Truth<S, T>, holds: Self, fails: Self) -> Self {
+                Estimated(holds.0, Register::select(predicate, holds.1, fails.1))
+            }
+            #[inline(always)]
+            fn times_plus(self, factor: Self, addend: Self) -> Self {
+                let value = T::fused(self.0, self.1.value(), factor.1.value(), addend.1.value());
+                Estimated(self.0, Register::new(self.0, value))
+            }
+            #[inline(always)]
+            fn times_from(self, factor: Self, addend: Self) -> Self {
+                let value = T::fused_from(self.0, self.1.value(), factor.1.value(), addend.1.value());
+                Estimated(self.0, Register::new(self.0, value))
+            }
+            #[inline(always)]
+            fn inverse_three_halves(self, one: Self) -> Self {
+                let Some((root, terms)) = T::inverse_root(self.0, self.1.value()) else {
+                    return one / (self * self.sqrt());
+                };
+                let root = Estimated(self.0, Register::new(self.0, root));
+                let square = root * root;
+                let error = self.times_from(square, one);
+                let registers = Estimating::<S, T>::new(self.0);
+                let term = |k: usize| registers.splat(T::from_f64(terms[k]));
+                let correction = match terms.len() {
+                    1 => term(0),
+                    2 => error.times_plus(term(1), term(0)),
+                    _ => error.times_plus(error.times_plus(term(2), term(1)), term(0)),
+                };
+                square * root * error.times_plus(correction, one)
+            }
+        }
+    };
+}
+for_each_op!(define_estimated);

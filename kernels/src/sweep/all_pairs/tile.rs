@@ -1,0 +1,333 @@
+//! A band of rows on registers.
+
+use super::Bodies;
+use crate::backend::{GROUP, Precision, Registers, Task};
+use crate::isa::{Element, Vector};
+use crate::law::{Env, Field, Law, Stated, Sum};
+use std::array::from_fn;
+use std::cell::Cell;
+use std::ops::Range;
+
+/// Own bodies that meet the same partners at a time: as many as leave room in the registers for everything else.
+const OWN: usize = 4;
+
+/// A band of rows. Where it is `EXACT`, own sums are kept by 16 lanes.
+pub(super) struct Tile<'a, P, L, const SUMS: usize, const EXACT: bool> {
+    pub(super) law: &'a L,
+    pub(super) bodies: &'a Bodies<'a, P>,
+    /// Rows.
+    pub(super) groups: Range<usize>,
+    /// Sums of all bodies from the first row's on.
+    pub(super) sums: [&'a mut [P]; SUMS],
+    pub(super) observed: bool,
+    /// Energy and virial.
+    pub(super) energy: &'a mut [f64; 2],
+}
+
+/// The sums of a body.
+type Sums<V, const SUMS: usize> = [Cell<V>; SUMS];
+
+/// A register of partners.
+#[derive(Clone, Copy)]
+struct Partner<V> {
+    position: [V; 3],
+    /// Where the law asks for it, else zero.
+    velocity: [V; 3],
+    mass: V,
+}
+
+/// What the law sees. `BOTH`: whether the pair is met once.
+struct Meeting<'a, R: Registers, const SUMS: usize, const BOTH: bool> {
+    registers: R,
+    own: Partner<R::V>,
+    own_sums: &'a Sums<R::V, SUMS>,
+    partner_sums: &'a Sums<R::V, SUMS>,
+    observed: bool,
+    energy: &'a [Cell<R::V>; 2],
+}
+
+impl<R: Registers, const SUMS: usize, const BOTH: bool> Meeting<'_, R, SUMS, BOTH> {
+    /// A quantity. What bodies have not is zero; a law that states such is refused by the sweep.
+    #[inline(always)]
+    fn field(&self, of: &Partner<R::V>, field: Field) -> R::V {
+        match field {
+            Field::Mass => of.mass,
+            Field::Velocity(axis) => of.velocity[axis as usize],
+            Field::Omega | Field::Radius | Field::InverseMass => self.registers.splat(R::Lane::default()),
+        }
+    }
+
+    #[inline(always)]
+    fn add(&self, to: &Cell<R::V>, value: R::V) {
+        to.set(to.get() + value);
+    }
+}
+
+impl<R: Registers, const SUMS: usize, const BOTH: bool> Env<3> for &Meeting<'_, R, SUMS, BOTH> {
+    type V = R::V;
+    type Place = Partner<R::V>;
+    const BOTH_PARTNERS: bool = BOTH;
+
+    #[inline(always)]
+    fn own_position(self) -> [R::V; 3] {
+        self.own.position
+    }
+    #[inline(always)]
+    fn own(self, field: Field) -> R::V {
+        self.field(&self.own, field)
+    }
+    #[inline(always)]
+    fn displacement(self, own: [R::V; 3], place: Partner<R::V>) -> [R::V; 3] {
+        from_fn(|axis| own[axis] - place.position[axis])
+    }
+    #[inline(always)]
+    fn partner(self, field: Field, place: Partner<R::V>) -> R::V {
+        self.field(&place, field)
+    }
+    #[inline(always)]
+    fn uniform(self, value: f64) -> R::V {
+        self.registers.splat(R::Lane::from_f64(value))
+    }
+    #[inline(always)]
+    fn none(self, predicate: <R::V as Vector>::Predicate) -> bool {
+        self.registers.none(predicate)
+    }
+    #[inline(always)]
+    fn own_add(self, sum: Sum, value: R::V) {
+        self.add(&self.own_sums[sum.column::<3>()], value);
+    }
+    #[inline(always)]
+    fn partner_sub(self, sum: Sum, _: Partner<R::V>, value: R::V) {
+        let to = &self.partner_sums[sum.column::<3>()];
+        to.set(to.get() - value);
+    }
+    #[inline(always)]
+    fn add_product(self, sum: Sum, _: Partner<R::V>, a: R::V, b: R::V) {
+        let to = &self.own_sums[sum.column::<3>()];
+        to.set(a.times_plus(b, to.get()));
+        if BOTH {
+            let to = &self.partner_sums[sum.column::<3>()];
+            to.set(a.times_from(b, to.get()));
+        }
+    }
+    #[inline(always)]
+    fn watches(self) -> bool {
+        false
+    }
+    #[inline(always)]
+    fn watch(self, _: R::V) {}
+    #[inline(always)]
+    fn counts_dissipation(self) -> bool {
+        false
+    }
+    #[inline(always)]
+    fn dissipate(self, _: R::V) {}
+    #[inline(always)]
+    fn observes_energy(self) -> bool {
+        self.observed
+    }
+    #[inline(always)]
+    fn energy(self, energy: R::V) {
+        self.add(&self.energy[0], energy);
+    }
+    #[inline(always)]
+    fn virial(self, virial: R::V) {
+        self.add(&self.energy[1], virial);
+    }
+    #[inline(always)]
+    fn section(self, _: &'static str) {}
+}
+
+impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Task<P> for Tile<'_, P, L, SUMS, EXACT> {
+    #[inline(always)]
+    fn on<R: Registers<Lane = P>>(mut self, registers: R) {
+        for group in self.groups.clone() {
+            for first in (0..GROUP).step_by(OWN) {
+                self.row(registers, group, first);
+            }
+        }
+    }
+}
+
+impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, L, SUMS, EXACT> {
+    /// `OWN` bodies of a group, from its `first` on, with those of the group and all behind it.
+    #[inline(always)]
+    fn row<R: Registers<Lane = P>>(&mut self, registers: R, group: usize, first: usize) {
+        let (start, behind) = (group * GROUP, self.bodies.mass.len());
+        // Sums of lane l of part p are those of logical lane p · LANES + l; parts share theirs where bits may depend on the
+        // registers.
+        let kept = const { if EXACT { GROUP / R::LANES } else { 1 } };
+        let zero = registers.splat(P::default());
+        let own_sums: [[Sums<R::V, SUMS>; GROUP]; OWN] =
+            from_fn(|_| from_fn(|_| from_fn(|_| Cell::new(zero))));
+        let energy = [Cell::new(zero), Cell::new(zero)];
+        let nothing: Sums<R::V, SUMS> = from_fn(|_| Cell::new(zero));
+        let own: [Partner<R::V>; OWN] = from_fn(|n| self.own(registers, start + first + n));
+        let observed = self.observed;
+        for part in 0..GROUP / R::LANES {
+            let at = start + part * R::LANES;
+            // SAFETY: the group's entries exist, and a part is one register of them.
+            let partner = unsafe { self.partner(registers, at) };
+            for (n, own) in own.into_iter().enumerate() {
+                let partner = apart(registers, own, partner, (start + first + n).wrapping_sub(at));
+                let own_sums = &own_sums[n][part % kept];
+                let meeting = Meeting::<R, SUMS, false> {
+                    registers,
+                    own,
+                    own_sums,
+                    partner_sums: &nothing,
+                    observed,
+                    energy: &energy,
+                };
+                meet(self.law, &meeting, partner);
+            }
+        }
+        let base = self.groups.start * GROUP;
+        let mut at = start + GROUP;
+        while at < behind {
+            for part in 0..GROUP / R::LANES {
+                let at = at + part * R::LANES;
+                // SAFETY: whole groups exist (checked by AllPairs::sweep), and a part is one register of one.
+                let partner = unsafe { self.partner(registers, at) };
+                // SAFETY: sums have an entry for every body from `base` on.
+                let to: [*mut P; SUMS] = from_fn(|sum| unsafe { self.sums[sum].as_mut_ptr().add(at - base) });
+                // SAFETY: as above, a register of them.
+                let partner_sums: Sums<R::V, SUMS> =
+                    from_fn(|sum| Cell::new(unsafe { registers.load(to[sum]) }));
+                for (n, own) in own.into_iter().enumerate() {
+                    let own_sums = &own_sums[n][part % kept];
+                    let partner_sums = &partner_sums;
+                    let meeting = Meeting::<R, SUMS, true> {
+                        registers,
+                        own,
+                        own_sums,
+                        partner_sums,
+                        observed,
+                        energy: &energy,
+                    };
+                    meet(self.law, &meeting, partner);
+                }
+                for sum in 0..SUMS {
+                    // SAFETY: as for the load.
+                    unsafe { registers.store(to[sum], partner_sums[sum].get()) };
+                }
+            }
+            at += GROUP;
+        }
+        for (n, sums) in own_sums.iter().enumerate() {
+            for sum in 0..SUMS {
+                let mut lanes = [P::default(); GROUP];
+                for (part, sums) in sums.iter().take(kept).enumerate() {
+                    // SAFETY: part · LANES + LANES <= GROUP.
+                    unsafe { registers.store(lanes.as_mut_ptr().add(part * R::LANES), sums[sum].get()) };
+                }
+                let to = &mut self.sums[sum][start + first + n - base];
+                *to = *to + of_lanes(lanes);
+            }
+        }
+        if observed {
+            for (to, sum) in self.energy.iter_mut().zip(energy) {
+                let mut lanes = [P::default(); GROUP];
+                // SAFETY: LANES <= GROUP.
+                unsafe { registers.store(lanes.as_mut_ptr(), sum.get()) };
+                *to += lanes.iter().map(|lane| lane.to_f64()).sum::<f64>();
+            }
+        }
+    }
+
+    /// A body in every lane.
+    #[inline(always)]
+    fn own<R: Registers<Lane = P>>(&self, registers: R, body: usize) -> Partner<R::V> {
+        Self::body(registers, self.bodies, |column| registers.splat(column[body]))
+    }
+
+    /// A register of bodies from `at` on.
+    ///
+    /// # Safety
+    /// They exist.
+    #[inline(always)]
+    unsafe fn partner<R: Registers<Lane = P>>(&self, registers: R, at: usize) -> Partner<R::V> {
+        // SAFETY: the caller promises the bodies, and all columns that the law asks for have as many entries (checked by
+        // AllPairs::sweep).
+        Self::body(registers, self.bodies, |column| unsafe { registers.load(column.as_ptr().add(at)) })
+    }
+
+    /// What the law asks for, `of` a column each.
+    #[inline(always)]
+    fn body<R: Registers<Lane = P>>(
+        registers: R,
+        bodies: &Bodies<'_, P>,
+        of: impl Fn(&[P]) -> R::V,
+    ) -> Partner<R::V> {
+        let velocity = match const { asks_for_velocity(L::FIELDS) } {
+            true => bodies.velocity.map(&of),
+            false => [registers.splat(P::default()); 3],
+        };
+        Partner { position: bodies.position.map(&of), velocity, mass: of(bodies.mass) }
+    }
+}
+
+/// Whether a law that states these fields reads velocities.
+pub(super) const fn asks_for_velocity(fields: &[Field]) -> bool {
+    let mut i = 0;
+    while i < fields.len() {
+        if matches!(fields[i], Field::Velocity(_)) {
+            return true;
+        }
+        i += 1;
+    }
+    false
+}
+
+/// Asks the law about a pair.
+#[inline(always)]
+fn meet<R: Registers, L: Law<3>, const SUMS: usize, const BOTH: bool>(
+    law: &L,
+    meeting: &Meeting<'_, R, SUMS, BOTH>,
+    partner: Partner<R::V>,
+) {
+    let env = Stated::new(meeting, law);
+    let own = law.own(env);
+    law.pair(env, partner, &own);
+}
+
+/// The partners, but that a body's own lane is a body without mass elsewhere: a body does nothing to itself, with or without
+/// softening.
+#[inline(always)]
+fn apart<R: Registers>(
+    registers: R,
+    own: Partner<R::V>,
+    partner: Partner<R::V>,
+    lane: usize,
+) -> Partner<R::V> {
+    if lane >= R::LANES {
+        return partner;
+    }
+    let mut numbers = [R::Lane::default(); GROUP];
+    numbers[lane] = R::Lane::from_f64(1.0);
+    // SAFETY: GROUP entries, and LANES <= GROUP.
+    let one_at_own = unsafe { registers.load(numbers.as_ptr()) };
+    let zero = registers.splat(R::Lane::default());
+    let is_own = zero.less_than(one_at_own);
+    let [x, y, z] = partner.position;
+    let elsewhere = own.position[0] + registers.splat(R::Lane::from_f64(1.0));
+    let elsewhere = R::V::select(is_own, elsewhere, x);
+    Partner {
+        position: [elsewhere, y, z],
+        velocity: partner.velocity,
+        mass: R::V::select(is_own, zero, partner.mass),
+    }
+}
+
+/// The sum of all lanes, halves by halves.
+#[inline(always)]
+fn of_lanes<P: Element>(mut lanes: [P; GROUP]) -> P {
+    let mut half = GROUP / 2;
+    while half > 0 {
+        for lane in 0..half {
+            lanes[lane] = lanes[lane] + lanes[lane + half];
+        }
+        half /= 2;
+    }
+    lanes[0]
+}

@@ -1,0 +1,215 @@
+//! Every pair once, against the sum that is written down.
+
+use rand::RngExt;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::law::gravity::Gravity;
+use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::sweep::all_pairs::{AllPairs, Arithmetic, Bodies, padded};
+
+/// Positions and velocities of bodies at random in a cube, and their masses; padding behind them.
+struct System<P> {
+    count: usize,
+    position: [Vec<P>; 3],
+    velocity: [Vec<P>; 3],
+    mass: Vec<P>,
+}
+
+impl<P: Precision> System<P> {
+    fn random(count: usize, seed: u64) -> Self {
+        let mut random = Stream::new(seed, Purpose::Test, 0);
+        let entries = padded(count);
+        let mut column = |from: f64, to: f64, padding: f64| -> Vec<P> {
+            let bodies: Vec<f64> = (0..count).map(|_| random.random_range(from..to)).collect();
+            bodies.into_iter().chain((count..entries).map(|n| padding * n as f64)).map(P::from_f64).collect()
+        };
+        System {
+            count,
+            position: [0, 1, 2].map(|_| column(-1.0, 1.0, 7.0)),
+            velocity: [0, 1, 2].map(|_| column(-1.0, 1.0, 0.0)),
+            mass: column(0.5 / count as f64, 1.5 / count as f64, 0.0),
+        }
+    }
+
+    /// Sums, energy and virial as the sweep gives them.
+    fn swept<const RATE: bool, const SUMS: usize>(
+        &self,
+        softening: f64,
+        arithmetic: Arithmetic,
+        set: InstructionSet,
+    ) -> ([Vec<P>; SUMS], [f64; 2]) {
+        let bodies = Bodies {
+            position: self.position.each_ref().map(Vec::as_slice),
+            velocity: self.velocity.each_ref().map(Vec::as_slice),
+            mass: &self.mass,
+        };
+        let mut sums: [Vec<P>; SUMS] = std::array::from_fn(|_| vec![P::default(); self.mass.len()]);
+        let law = Gravity::<RATE> { softening };
+        let into = sums.each_mut().map(Vec::as_mut_slice);
+        let energy = AllPairs::<P, SUMS>::new(self.count)
+            .sweep(&law, &bodies, into, true, arithmetic, set)
+            .expect("the processor has the set");
+        (sums, energy)
+    }
+
+    fn vector(column: &[Vec<P>; 3], body: usize) -> [f64; 3] {
+        column.each_ref().map(|axis| axis[body].to_f64())
+    }
+
+    /// The sums of a body, its partners one after the other in double precision, and half its pairs' energy.
+    fn written_down(&self, body: usize, softening: f64) -> ([f64; 6], f64) {
+        let (r, v, m) = (
+            Self::vector(&self.position, body),
+            Self::vector(&self.velocity, body),
+            self.mass[body].to_f64(),
+        );
+        let (mut sums, mut energy) = ([0.0; 6], 0.0);
+        for other in (0..self.count).filter(|&other| other != body) {
+            let (there, velocity) =
+                (Self::vector(&self.position, other), Self::vector(&self.velocity, other));
+            let d = [0, 1, 2].map(|axis| r[axis] - there[axis]);
+            let change = [0, 1, 2].map(|axis| v[axis] - velocity[axis]);
+            let square = d.iter().map(|d| d * d).sum::<f64>() + softening * softening;
+            let along = (0..3).map(|axis| d[axis] * change[axis]).sum::<f64>();
+            let masses = m * self.mass[other].to_f64();
+            for axis in 0..3 {
+                sums[axis] -= masses * d[axis] / square.powf(1.5);
+                let rate = change[axis] / square.powf(1.5) - 3.0 * along * d[axis] / square.powf(2.5);
+                sums[3 + axis] -= masses * rate;
+            }
+            energy -= 0.5 * masses / square.sqrt();
+        }
+        (sums, energy)
+    }
+}
+
+/// The worst deviation from what is written down, relative to the largest sum of its kind.
+fn error<P: Precision, const RATE: bool, const SUMS: usize>(
+    count: usize,
+    softening: f64,
+    arithmetic: Arithmetic,
+    set: InstructionSet,
+) -> f64 {
+    let system = System::<P>::random(count, 5);
+    let (sums, [energy, virial]) = system.swept::<RATE, SUMS>(softening, arithmetic, set);
+    let (mut largest, mut worst, mut potential) = ([0.0_f64; 2], [0.0_f64; 2], 0.0);
+    for body in 0..count {
+        let (expected, share) = system.written_down(body, softening);
+        potential += share;
+        for (number, sum) in sums.iter().enumerate() {
+            let kind = number / 3;
+            largest[kind] = largest[kind].max(expected[number].abs());
+            worst[kind] = worst[kind].max((sum[body].to_f64() - expected[number]).abs());
+        }
+    }
+    let relative = (energy / potential - 1.0).abs();
+    assert!(
+        relative < 20.0 * if P::BYTES == 4 { 1e-6 } else { 1e-14 },
+        "energy of {count}: {energy} {potential}"
+    );
+    if softening == 0.0 {
+        assert!((virial / energy - 1.0).abs() < 1e-5, "the virial of 1/r is its energy: {virial} {energy}");
+    }
+    (0..SUMS / 3).map(|kind| worst[kind] / largest[kind]).fold(0.0, f64::max)
+}
+
+#[test]
+fn sums_are_those_of_all_pairs() {
+    for count in [2, 3, 16, 17, 100, 301] {
+        for softening in [0.0, 0.05] {
+            for set in InstructionSet::available() {
+                for (arithmetic, [single, double]) in
+                    [(Arithmetic::Exact, [3e-6, 3e-15]), (Arithmetic::Estimated, [3e-6, 4e-15])]
+                {
+                    let found = [
+                        error::<f32, false, 3>(count, softening, arithmetic, set),
+                        error::<f64, false, 3>(count, softening, arithmetic, set),
+                        error::<f64, true, 6>(count, softening, arithmetic, set),
+                    ];
+                    let here =
+                        format!("{count} bodies, softening {softening}, {arithmetic:?}, {}", set.name());
+                    assert!(
+                        found[0] < single && found[1] < double && found[2] < 10.0 * double,
+                        "{here}: {found:?}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Energies are summed lane by lane and may differ by rounding; sums may not.
+fn bits<P: Precision, const SUMS: usize>((sums, _): ([Vec<P>; SUMS], [f64; 2])) -> Vec<u64> {
+    sums.iter().flatten().map(|sum| sum.to_f64().to_bits()).collect()
+}
+
+/// The bits of exact sums depend neither on the instruction set nor on the number of threads; those of estimates not on the
+/// latter.
+#[test]
+fn bits_depend_on_the_bodies_alone() {
+    let system = System::<f64>::random(777, 2);
+    let single = System::<f32>::random(777, 2);
+    let on = |threads: usize, work: &(dyn Fn() -> Vec<u64> + Sync)| {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads").install(work)
+    };
+    let exact = |set| {
+        let double = bits(system.swept::<true, 6>(0.01, Arithmetic::Exact, set));
+        [double, bits(single.swept::<false, 3>(0.01, Arithmetic::Exact, set))].concat()
+    };
+    let oracle = on(1, &|| exact(InstructionSet::Scalar));
+    for set in InstructionSet::available() {
+        for threads in [1, 3, 4] {
+            assert!(on(threads, &|| exact(set)) == oracle, "{} on {threads} threads", set.name());
+        }
+        let estimated = || bits(system.swept::<false, 3>(0.01, Arithmetic::Estimated, set));
+        assert!(on(1, &estimated) == on(4, &estimated), "estimates by {}", set.name());
+    }
+}
+
+/// Every pair's forces are each other's opposite: what is left of the sum of all is rounding.
+#[test]
+fn no_momentum_comes_from_nowhere() {
+    let system = System::<f64>::random(1000, 3);
+    for arithmetic in [Arithmetic::Exact, Arithmetic::Estimated] {
+        let (forces, _) = system.swept::<false, 3>(0.01, arithmetic, InstructionSet::best());
+        for axis in forces {
+            let magnitude: f64 = axis.iter().map(|force| force.abs()).sum();
+            assert!(axis.iter().sum::<f64>().abs() < 1e-15 * magnitude);
+        }
+    }
+}
+
+#[test]
+fn columns_that_are_too_short_are_refused() {
+    let (short, zeros) = (vec![0.0_f64; 16], vec![0.0_f64; 32]);
+    let law = Gravity::<true> { softening: 0.1 };
+    let mut sums: [Vec<f64>; 6] = std::array::from_fn(|_| zeros.clone());
+    let mut sweep = |position: &[f64], velocity: &[f64]| {
+        let bodies = Bodies { position: [position; 3], velocity: [velocity; 3], mass: &zeros };
+        let into = sums.each_mut().map(Vec::as_mut_slice);
+        AllPairs::<f64, 6>::new(20).sweep(
+            &law,
+            &bodies,
+            into,
+            false,
+            Arithmetic::Exact,
+            InstructionSet::Scalar,
+        )
+    };
+    assert!(matches!(sweep(&short, &zeros), Err(ProgramError::TooShort { .. })));
+    assert!(matches!(sweep(&zeros, &[]), Err(ProgramError::TooShort { .. })));
+    assert!(sweep(&zeros, &zeros).is_ok());
+    let mut three: [Vec<f64>; 3] = std::array::from_fn(|_| zeros.clone());
+    let bodies = Bodies { position: [&zeros; 3], velocity: [&zeros; 3], mass: &zeros };
+    let into = three.each_mut().map(Vec::as_mut_slice);
+    let rates = AllPairs::<f64, 3>::new(20).sweep(
+        &law,
+        &bodies,
+        into,
+        false,
+        Arithmetic::Exact,
+        InstructionSet::Scalar,
+    );
+    assert!(matches!(rates, Err(ProgramError::Unstated(_))), "there is no room for the rates");
+}
