@@ -114,7 +114,7 @@ pub fn collision(
     let order = |choice: &Choice, i: usize| {
         let of = |error: fn(&OutcomeError) -> [f64; 2]| {
             let own = errors.iter().filter(|error| error.choice == choice.label());
-            fit(&own.map(|it| (it.step, error(it)[i])).collect::<Vec<_>>(), ROUNDING, LARGE)
+            fit(&own.map(|it| (it.step, error(it)[i])).collect::<Vec<_>>(), 0.0, LARGE)
         };
         OutcomeOrder {
             choice: choice.label(),
@@ -127,8 +127,7 @@ pub fn collision(
     Ok(Some(Collision { reference, phases, errors, orders }))
 }
 
-/// Errors that are of rounding, and those that are of no convergence.
-const ROUNDING: f64 = 1e-12;
+/// Errors that are of no convergence.
 const LARGE: f64 = 0.1;
 
 /// Whether a choice differs from another in what decides the order at most.
