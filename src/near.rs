@@ -23,6 +23,13 @@ struct Member {
 }
 
 impl Near {
+    /// Bytes that [`Near::among`] takes for a number of positions: the members, and the table of squares, a power of two of
+    /// entries of which an eighth stays empty.
+    pub fn bytes(positions: usize) -> usize {
+        let entries = (8 * positions / 7 + 1).next_power_of_two();
+        size_of::<Member>() * positions + (size_of::<([i64; 2], u32)>() + 1) * entries
+    }
+
     /// Nothing yet; looks for what is closer than `reach` (length).
     pub fn new(domain: Domain, reach: f64) -> Self {
         // Whole squares fill a side, so that a periodic one closes; 2^30 of them number far more than there are discs.
@@ -32,8 +39,10 @@ impl Near {
     }
 
     /// All of these positions, numbered from 0 on.
-    pub fn among(domain: Domain, positions: impl Iterator<Item = [f64; 2]>, reach: f64) -> Self {
+    pub fn among(domain: Domain, positions: impl ExactSizeIterator<Item = [f64; 2]>, reach: f64) -> Self {
         let mut near = Near::new(domain, reach);
+        near.members.reserve_exact(positions.len());
+        near.last.reserve(positions.len());
         positions.zip(0..).for_each(|(position, number)| near.add(number, position));
         near
     }

@@ -327,7 +327,7 @@ fn pipe(
             domain.length(1)
         );
         let error = stated.spot(&CLEAR_WIDTH).error(Reason::Outside, message);
-        return Err(error.advising("raise the second of domain.lengths(), or lower clear_width"));
+        return Err(error.advising("raise the second of domain.sides, or lower clear_width"));
     }
     let count = grain_count(stated, amount, domain.length(0) * clear_width, grains)?;
     let rows = [(axis - reach, 0.0), (axis + reach, 0.5)];
@@ -361,7 +361,7 @@ fn above_floor(
             readable(floor + fill_height)
         );
         let error = stated.spot(&FILL_HEIGHT).error(Reason::Outside, message);
-        return Err(error.advising("raise the second of domain.lengths(), or lower fill_height"));
+        return Err(error.advising("raise the second of domain.sides, or lower fill_height"));
     }
     let count = grain_count(stated, amount, domain.length(0) * fill_height, grains)?;
     let walls = lined(stated, domain, &[(centres, 0.0)], count, (lining, grains))?;

@@ -8,21 +8,20 @@ use super::assemble::{contacts, model_following_energy};
 use super::check::Checked;
 use super::{Contacts, Discs, FastSearch, Model, Scheme};
 use crate::memory::{Foreseen, available};
+use crate::near::Near;
 use crate::particles::Particle;
 use crate::scene::Precision;
 use stripmine_kernels::sweep::fast::lattice::SPARSE;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
 /// Bytes of the program itself: its text, its threads, its files.
-const PROGRAM: f64 = 11.5e6;
+const PROGRAM: f64 = 12.5e6;
 /// Bytes of a large page, of which long arrays of the programs are made.
 const LARGE: f64 = (1 << 21) as f64;
 /// Bytes of the programs themselves, and of the large page that their short arrays share.
 const SHARED: f64 = 3.5e6;
 /// Bytes of a scene's disc.
 const DISC: f64 = size_of::<Particle>() as f64;
-/// Bytes of a list in a bin of linked cells, and of what the allocator gives to the few numbers in it.
-const BIN: [f64; 2] = [24.0, 32.0];
 
 /// The memory that a run of a checked scene takes at most.
 pub fn foreseen(checked: &Checked) -> Foreseen {
@@ -36,12 +35,11 @@ pub fn foreseen(checked: &Checked) -> Foreseen {
             (programs + of.rival(options.skin), columns)
         }
     };
-    // Either is gone before the other comes, but for what was in the bins, which the allocator keeps.
-    let [bins, few] = of.bins();
-    let observing = DISC * of.discs + bins;
+    // Either is gone before the other comes.
+    let observing = DISC * of.discs + Near::bytes(checked.particles.len()) as f64;
     let writing = columns + of.followed();
     Foreseen {
-        needed: (kept + engine + few + observing.max(writing)) as u64,
+        needed: (kept + engine + observing.max(writing)) as u64,
         available: available(),
         what: format!("{} discs in {} cells", checked.particles.len(), checked.geometry.shape.cells()),
         remedy: "take fewer discs, a smaller box or machine.precision = \"f32\"; where most cells are empty, search.by = \
@@ -109,15 +107,6 @@ impl Sizes {
     fn neighbours(&self, distance: f64) -> f64 {
         let density = self.discs / (self.sides[0] * self.sides[1]);
         (density * std::f64::consts::PI * distance * distance).min(self.discs)
-    }
-
-    /// Linked cells for everything in contact: the bins, and what is in them.
-    fn bins(&self) -> [f64; 2] {
-        let share = self.sides[0] * self.sides[1] / (self.discs + 1.0);
-        let wide = self.reach.max(share.sqrt());
-        let [columns, rows] = self.sides.map(|side| (side / wide).clamp(1.0, f64::from(u16::MAX)).floor());
-        let bins = columns * rows;
-        [BIN[0] * bins, BIN[1] * bins * -(-self.discs / bins).exp_m1()]
     }
 
     /// Bytes that a fast method keeps, and of the columns of its checkpoints.
