@@ -11,6 +11,7 @@ use crate::model::machine::MachineModel;
 use crate::particles::Particles;
 use crate::results::{Effort, Made};
 use crate::scene::{Output, SceneErrors, Values, Vocabulary, Warning};
+use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -159,6 +160,31 @@ impl Fact {
     }
 }
 
+/// A step that theory says not to pass.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepLimit {
+    /// What it is called.
+    pub name: &'static str,
+    /// The step (time).
+    pub step: f64,
+    /// What becomes of longer ones.
+    pub beyond: Beyond,
+    /// Where it comes from, with its numbers.
+    pub why: String,
+}
+
+/// What becomes of a step beyond a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Beyond {
+    /// Errors grow from step to step.
+    Unstable,
+    /// Motion is followed badly.
+    Inaccurate,
+    /// Particles pass each other unseen.
+    Unseen,
+}
+
 /// What a simulation is started for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
@@ -202,6 +228,11 @@ pub trait Prepared: Send + Sync {
 
     /// What the scene has no need of, with the reason.
     fn left_out(&self) -> &[String];
+
+    /// What bounds the step, by theory; none where there is no step, or theory says nothing.
+    fn step_limits(&self) -> Vec<StepLimit> {
+        vec![]
+    }
 
     /// The memory that a run takes.
     fn memory(&self) -> Foreseen;

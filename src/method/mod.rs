@@ -11,7 +11,8 @@ mod trials;
 
 pub use clock::{Clock, Every, Schedule, Until};
 pub use entry::{
-    Bench, BenchOption, Entry, Fact, Item, Prepared, Progress, Purpose, Quantity, Simulation, Snapshot, Verb,
+    Bench, BenchOption, Beyond, Entry, Fact, Item, Prepared, Progress, Purpose, Quantity, Simulation,
+    Snapshot, StepLimit, Verb,
 };
 pub use failure::{Culprit, Failure, FailureKind};
 pub use list::{METHODS, Methods, load, method, prepare, vocabularies};
