@@ -2,7 +2,8 @@
 //! says of it. Studies of speed, accuracy and stability know a method by this alone.
 
 use super::entry::Prepared;
-use crate::scene::{Key, Values};
+use crate::particles::Particles;
+use crate::scene::{Key, SceneErrors, Values};
 
 /// How the scenes of a method may be run, and what is measured of them.
 #[derive(Debug)]
@@ -14,8 +15,8 @@ pub struct Trials {
     /// The settings of the reference, one for each axis it names, the most accurate there is; and of a second one with
     /// another integrator, against which it is held.
     pub references: [&'static [(&'static str, &'static str)]; 2],
-    /// The quantity that is the error of the energy's balance, and those whose magnitudes add up to its scale.
-    pub balance: Option<(&'static str, &'static [&'static str])>,
+    /// The balance of energy, where the method observes one.
+    pub balance: Option<Balance>,
     /// Quantities that have a mean in a run: what is left of a comparison once trajectories have parted.
     pub observables: &'static [&'static str],
     /// Whether particles rotate, and their moment of inertia over m R² if so.
@@ -24,6 +25,66 @@ pub struct Trials {
     pub theory: fn(&Values, &dyn Prepared, &Setting) -> Option<Theory>,
     /// Scenes that `reproduce` shows: name, preset and overrides.
     pub shown: &'static [(&'static str, &'static str, &'static [&'static str])],
+    /// What a map of stability may vary beside the step.
+    pub parameters: &'static [Parameter],
+    /// As the entry's `prepare`, but whatever the step is: what theory foresees of it refuses nothing.
+    pub at_any_step: fn(Values) -> Result<Box<dyn Prepared>, SceneErrors>,
+    /// Maps that `reproduce` shows.
+    pub mapped: &'static [Mapped],
+}
+
+/// The balance of energy, by names of quantities.
+#[derive(Clone, Copy, Debug)]
+pub struct Balance {
+    /// Its error: the energy that there is, less what there should be.
+    pub error: &'static str,
+    /// Energies whose magnitudes add up to what moves.
+    pub energies: &'static [&'static str],
+    /// Work since the start, whose magnitudes add up to what has come from outside.
+    pub inputs: &'static [&'static str],
+}
+
+/// Something of a scene that a map of stability varies beside the step.
+#[derive(Debug)]
+pub struct Parameter {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is, for an axis.
+    pub label: &'static str,
+    /// Its unit, empty for pure numbers.
+    pub unit: &'static str,
+    /// The least and the largest value that it may have.
+    pub bounds: [f64; 2],
+    /// Whether equal ratios lie at equal distances on an axis.
+    pub is_logarithmic: bool,
+    /// From where to where a map goes if nothing else is asked for; none where the scene has nothing of the kind.
+    pub range: fn(&Values) -> Option<[f64; 2]>,
+    /// How a scene comes to have a value.
+    pub change: Change,
+    /// Values that theory names, with what they are.
+    pub marks: fn(&Values) -> Vec<(f64, String)>,
+}
+
+/// How a scene comes to have a value of a parameter.
+#[derive(Debug)]
+pub enum Change {
+    /// By overrides.
+    Overrides(fn(f64) -> Vec<String>),
+    /// By another start, made of the scene's own.
+    Start(fn(&Particles, f64) -> Particles),
+}
+
+/// A map of stability that `reproduce` shows.
+#[derive(Debug)]
+pub struct Mapped {
+    /// Its name.
+    pub name: &'static str,
+    /// The preset.
+    pub preset: &'static str,
+    /// Overrides.
+    pub overrides: &'static [&'static str],
+    /// The parameter that is varied.
+    pub parameter: &'static str,
 }
 
 /// Something that may be chosen.

@@ -64,6 +64,9 @@ static TRIALS: Trials = Trials {
     inertia: |_| None,
     theory: |_, _, _| None,
     shown: &[],
+    parameters: &[],
+    at_any_step: ENTRY.prepare,
+    mapped: &[],
 };
 
 static VOCABULARY: Vocabulary = Vocabulary {

@@ -2,6 +2,7 @@
 
 use super::balance::{Balance, Work};
 use super::check::Checked;
+use super::check::Estimates;
 use super::document::Document;
 use super::engine::Engine;
 use super::{
@@ -33,6 +34,14 @@ impl Document {
     /// As [`check`](Self::check).
     pub fn prepare(self) -> Result<Box<dyn Prepared>, SceneErrors> {
         Ok(Box::new(Discs(self.check()?)))
+    }
+
+    /// The same, but whatever the step is: what is foreseen of it refuses nothing.
+    ///
+    /// # Errors
+    /// As [`check`](Self::check).
+    pub fn prepare_at_any_step(self) -> Result<Box<dyn Prepared>, SceneErrors> {
+        Ok(Box::new(Discs(self.check_at_any_step()?)))
     }
 }
 
@@ -116,7 +125,8 @@ impl Prepared for Discs {
     }
 
     fn started_from(&self, particles: Particles) -> Box<dyn Prepared> {
-        Box::new(Discs(Checked { particles, ..self.0.clone() }))
+        let estimates = Estimates::of(&self.0.scene, &particles);
+        Box::new(Discs(Checked { particles, estimates, ..self.0.clone() }))
     }
 }
 

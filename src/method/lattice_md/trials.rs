@@ -1,10 +1,14 @@
 //! How granular discs may be run, and what theory says of the error.
 
 use super::benches::QUANTITIES;
-use super::keys::{FRICTION, INERTIA, NORMAL_DAMPING, SHEAR_DAMPING};
+use super::document::Document;
+use super::keys::{FRICTION, INERTIA, MAX_PENETRATION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
 use super::options::Inertia;
-use crate::method::{Axis, Decides, Prepared, Purpose, Setting, Theory, Trials};
-use crate::scene::{DT, Values};
+use crate::method::{
+    Axis, Balance, Change, Decides, Mapped, Parameter, Prepared, Purpose, Setting, Theory, Trials,
+};
+use crate::particles::{Kind, Particles};
+use crate::scene::{DT, PACKING_FRACTION, PRECISION, Precision, RADIUS_SPREAD, Values};
 use crate::words::Words;
 
 macro_rules! settings {
@@ -21,7 +25,11 @@ pub(super) static TRIALS: Trials = Trials {
         &[("integrator", "gear6"), ("precision", "f64")],
         &[("integrator", "gear5"), ("precision", "f64")],
     ],
-    balance: Some(("balance_error", &["kinetic", "rotational", "elastic"])),
+    balance: Some(Balance {
+        error: "balance_error",
+        energies: &["kinetic", "rotational", "elastic"],
+        inputs: &["gravity_work", "wall_work"],
+    }),
     observables: &["temperature", "flow", "contacts"],
     inertia,
     theory,
@@ -31,7 +39,152 @@ pub(super) static TRIALS: Trials = Trials {
         ("pipe-small", "pipe-small", &[]),
         ("shaken-box", "shaken-box", &[]),
     ],
+    parameters: PARAMETERS,
+    at_any_step: |values| Document::read(values)?.prepare_at_any_step(),
+    mapped: MAPPED,
 };
+
+const MAPPED: &[Mapped] = &[
+    Mapped { name: "two-discs", preset: "two-discs", overrides: &["run.time=3.2"], parameter: "damping" },
+    Mapped {
+        name: "dense-gas",
+        preset: "dense-gas",
+        overrides: &["particles.count=100"],
+        parameter: "speed",
+    },
+    Mapped { name: "pipe-small", preset: "pipe-small", overrides: &[], parameter: "damping" },
+    Mapped { name: "shaken-box", preset: "shaken-box", overrides: &[], parameter: "stiffness" },
+    Mapped {
+        name: "sizes",
+        preset: "dense-gas",
+        overrides: &["particles.count=100", "search.by=lattice", "particles.packing_fraction=0.5"],
+        parameter: "size-ratio",
+    },
+    Mapped {
+        name: "single-precision",
+        preset: "dense-gas",
+        overrides: &["particles.count=100", "machine.precision=f32"],
+        parameter: "distance-from-origin",
+    },
+];
+
+/// What a map may vary. A value that a scene cannot have is refused by its check, and stands so in the map.
+const PARAMETERS: &[Parameter] = &[
+    Parameter {
+        name: "stiffness",
+        label: "stiffness of contacts",
+        unit: "force/length^1.5",
+        bounds: [1e-300, 1e300],
+        is_logarithmic: true,
+        range: |values| around(values.number(&STIFFNESS)?, 30.0),
+        change: Change::Overrides(|value| vec![format!("law.stiffness={value:?}")]),
+        marks: |_| vec![],
+    },
+    Parameter {
+        name: "damping",
+        label: "normal damping",
+        unit: "1/time",
+        bounds: [0.0, 1e300],
+        is_logarithmic: true,
+        range: |values| around(values.number(&NORMAL_DAMPING)?, 30.0),
+        change: Change::Overrides(|value| vec![format!("law.normal_damping={value:?}")]),
+        marks: |_| vec![],
+    },
+    Parameter {
+        name: "shear-damping",
+        label: "tangential damping",
+        unit: "1/time",
+        bounds: [0.0, 1e300],
+        is_logarithmic: true,
+        range: |values| around(values.number(&SHEAR_DAMPING)?, 30.0),
+        change: Change::Overrides(|value| vec![format!("law.shear_damping={value:?}")]),
+        marks: |_| vec![],
+    },
+    Parameter {
+        name: "friction",
+        label: "coefficient of friction",
+        unit: "",
+        bounds: [0.0, 1e3],
+        is_logarithmic: false,
+        range: |values| (values.number(&FRICTION)? > 0.0).then_some([0.0, 2.0]),
+        change: Change::Overrides(|value| vec![format!("law.friction={value:?}")]),
+        marks: |_| vec![],
+    },
+    Parameter {
+        name: "density",
+        label: "packing fraction",
+        unit: "",
+        bounds: [1e-3, 0.907],
+        is_logarithmic: false,
+        range: |values| values.gives(&PACKING_FRACTION).then_some([0.05, 0.85]),
+        change: Change::Overrides(|value| vec![format!("particles.packing_fraction={value:?}")]),
+        marks: |_| vec![],
+    },
+    Parameter {
+        name: "speed",
+        label: "speeds at the start, over the scene's own",
+        unit: "",
+        bounds: [0.0, 1e12],
+        is_logarithmic: true,
+        range: |_| Some([0.1, 100.0]),
+        change: Change::Start(faster),
+        marks: |_| vec![],
+    },
+    Parameter {
+        name: "size-ratio",
+        label: "largest radius over smallest",
+        unit: "",
+        bounds: [1.0, 3.0],
+        is_logarithmic: false,
+        range: |values| values.value(&RADIUS_SPREAD).map(|_| [1.0, 1.6]),
+        change: Change::Overrides(|ratio| {
+            let cut = (ratio - 1.0) / (ratio + 1.0);
+            vec![format!("particles.radius_spread={:?}", 0.5 * cut), format!("particles.radius_cut={cut:?}")]
+        }),
+        marks: largest_ratio,
+    },
+    Parameter {
+        name: "distance-from-origin",
+        label: "distance of the box from the origin of coordinates",
+        unit: "length",
+        bounds: [0.0, 1e12],
+        is_logarithmic: true,
+        range: |values| (values.choice(&PRECISION)? != Precision::F64.word()).then_some([10.0, 1e6]),
+        change: Change::Overrides(|value| {
+            vec![
+                format!("domain.origin=[{value:?}, {value:?}]"),
+                "machine.engine=programs".to_owned(),
+                "machine.coordinates=absolute".to_owned(),
+            ]
+        }),
+        marks: |_| vec![],
+    },
+];
+
+/// The ratio of radii beyond which cells that hold no two of the smallest discs are smaller than the largest radius, which the
+/// source takes for the side of a cell: √2 (1 − max_penetration). BP93.
+fn largest_ratio(values: &Values) -> Vec<(f64, String)> {
+    let ratio = values.number(&MAX_PENETRATION).map(|depth| std::f64::consts::SQRT_2 * (1.0 - depth));
+    ratio
+        .map(|ratio| (ratio, format!("{ratio:.4}: what the lattice of 5 × 5 cells bears")))
+        .into_iter()
+        .collect()
+}
+
+/// From a part of a value to a multiple of it.
+fn around(value: f64, factor: f64) -> Option<[f64; 2]> {
+    (value > 0.0).then_some([value / factor, value * factor])
+}
+
+/// The same start with velocities and spins times a factor.
+fn faster(particles: &Particles, factor: f64) -> Particles {
+    let mut start = particles.clone();
+    for disc in start.all_mut().iter_mut().filter(|disc| disc.kind == Kind::Grain) {
+        disc.velocity = disc.velocity.map(|part| factor * part);
+        disc.omega *= factor;
+    }
+    start
+}
 
 const AXES: &[Axis] = &[
     Axis {

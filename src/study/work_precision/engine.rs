@@ -117,11 +117,11 @@ impl Work<'_> {
         let course = Course { steps, looks: LOOKS.min(steps), each };
         let (mut worst, mut scale) = (0.0, 0.0);
         let see = |simulation: &dyn Simulation| {
-            let Some((error, parts)) = self.subject.trials.balance else { return };
+            let Some(balance) = self.subject.trials.balance else { return };
             let values = simulation.observe();
             let value = |name: &str| self.subject.quantity(name).map_or(0.0, |place| values[place].abs());
-            worst = f64::max(worst, value(error));
-            scale = f64::max(scale, parts.iter().map(|part| value(part)).sum());
+            worst = f64::max(worst, value(balance.error));
+            scale = f64::max(scale, balance.energies.iter().map(|part| value(part)).sum());
         };
         let machine = self.effort.machine.as_ref();
         let end = follow(scene.as_ref(), Purpose::Run, course, machine, self.meter, see);

@@ -73,7 +73,7 @@ const DEEPEST_REST: f64 = 0.003;
 
 impl Estimates {
     /// For a scene and its discs.
-    pub(super) fn of(scene: &Scene, particles: &Particles) -> Estimates {
+    pub(in crate::method::lattice_md) fn of(scene: &Scene, particles: &Particles) -> Estimates {
         let grains = particles.grains();
         let number = grains.len().max(1) as f64;
         let square: f64 =
