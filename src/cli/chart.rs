@@ -2,13 +2,15 @@
 
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say};
 use crate::method::Methods;
+use crate::method::Progress;
 use crate::model::machines;
 use crate::origin::Provenance;
+use crate::results::Made;
 use crate::results::{Folder, Journal};
 use crate::signals;
-use crate::study::Subject;
-use crate::study::work_precision::section::{NAME, made};
-use crate::study::work_precision::{Effort, work_precision};
+use crate::study::stability::{self, parameter, stability};
+use crate::study::work_precision::{self, work_precision};
+use crate::study::{Subject, stability::section as map_section, work_precision::section as diagram_section};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -17,6 +19,10 @@ use std::time::{Duration, Instant};
 const BUDGET: std::ops::RangeInclusive<i64> = 1..=86_400;
 /// Timed runs of each.
 const REPEATS: std::ops::RangeInclusive<i64> = 1..=100;
+/// Values, and steps, of a map.
+const SIZE: std::ops::RangeInclusive<i64> = 3..=200;
+/// Seeds of its edges.
+const SEEDS: std::ops::RangeInclusive<i64> = 1..=100;
 /// Starts a step of a collision.
 const PHASES: u32 = 16;
 /// Progress moves at least this often.
@@ -37,6 +43,7 @@ pub(super) struct ChartVerb {
 #[derive(Subcommand)]
 enum Study {
     WorkPrecision(WorkPrecisionVerb),
+    Stability(StabilityVerb),
 }
 
 /// The error of a scene over its cost, for every way to run it and every step; which way for which wish
@@ -62,10 +69,43 @@ struct WorkPrecisionVerb {
     out: Option<PathBuf>,
 }
 
+/// Where a scene works, over the step and a second parameter: edges by bisection, failures by kind, theory beside them
+#[derive(Args)]
+struct StabilityVerb {
+    /// A preset's name, or a scene file
+    scene: String,
+    /// Overrides a value; may be given several times
+    #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
+    overrides: Vec<String>,
+    /// What is varied beside the step, such as stiffness, damping, density, speed; one that does not exist names them all
+    #[arg(long, value_name = "NAME", default_value = "stiffness")]
+    over: String,
+    /// From where to where it goes; a range about the scene's own value by default
+    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"])]
+    range: Option<Vec<f64>>,
+    /// Values, and steps
+    #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u16).range(SIZE))]
+    size: u16,
+    /// Seeds of the edges
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(SEEDS))]
+    seeds: u16,
+    /// Edges are found within this part of the step
+    #[arg(long, default_value_t = 0.05)]
+    tolerance: f64,
+    /// Processor seconds that it may take about; runs are shorter than the scene where it is not enough
+    #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u32).range(BUDGET))]
+    budget: u32,
+    /// Folder for data, tables and figures; the scene's name with `.stability` by default. A study that was interrupted goes on
+    /// there
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
 impl ChartVerb {
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
         match &self.what {
             Study::WorkPrecision(verb) => verb.run(common, methods),
+            Study::Stability(verb) => verb.run(common, methods),
         }
     }
 }
@@ -74,29 +114,80 @@ impl WorkPrecisionVerb {
     fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
         let machine = self.machine.as_deref().map(machines::find).transpose()?;
         let subject = Subject::load(&self.scene, &self.overrides, methods)?;
-        let stem = Path::new(&self.scene).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let out = self.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.{NAME}")));
-        // Before anything takes its time.
-        let folder = Folder::open(&out, &[NAME], true)?;
         let named = machine.as_ref().map_or("", |machine| machine.title());
         let options = format!("budget {} repeats {} machine {named}", self.budget, self.repeats);
-        let journal = Journal::open(&out, &subject.identity(NAME, &options))?;
+        let (budget, repeats) = (f64::from(self.budget), self.repeats.into());
+        let effort = work_precision::Effort { budget, repeats, phases: PHASES, machine };
+        let place = Place { name: diagram_section::NAME, scene: &self.scene, out: self.out.as_deref() };
+        place.study(common, &subject, &options, |journal, progress, stem, again| {
+            let data = work_precision(&subject, &effort, journal, progress)?;
+            diagram_section::made(&[(stem, data)], again)
+        })
+    }
+}
+
+impl StabilityVerb {
+    fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
+        let subject = Subject::load(&self.scene, &self.overrides, methods)?;
+        let parameter = parameter(&subject, &self.over)?;
+        let range = self.range.as_ref().map(|ends| [ends[0], ends[1]]);
+        let effort = stability::Effort {
+            budget: f64::from(self.budget),
+            size: self.size.into(),
+            seeds: self.seeds.into(),
+            tolerance: self.tolerance,
+            range,
+        };
+        let again = range.map_or(String::new(), |[low, high]| format!(" --range {low} {high}"));
+        let options = format!(
+            "--over {}{again} --size {} --seeds {} --tolerance {} --budget {}",
+            self.over, self.size, self.seeds, self.tolerance, self.budget
+        );
+        let place = Place { name: map_section::NAME, scene: &self.scene, out: self.out.as_deref() };
+        place.study(common, &subject, &options, |journal, progress, stem, again| {
+            let data = stability(&subject, parameter, &effort, journal, progress)?;
+            map_section::made(&[(stem, data)], format!("{again} {options}"))
+        })
+    }
+}
+
+/// Where a study's results go.
+struct Place<'p> {
+    /// The study.
+    name: &'static str,
+    /// The scene, as it is named on the command line.
+    scene: &'p str,
+    /// The folder that was asked for.
+    out: Option<&'p Path>,
+}
+
+impl Place<'_> {
+    /// Makes a study of the finished runs in its folder, with progress, the scene's stem and the command that makes it.
+    fn study(
+        &self,
+        common: &Common,
+        subject: &Subject,
+        options: &str,
+        make: impl FnOnce(&Journal, Progress<'_>, String, String) -> Result<Made, Failure>,
+    ) -> Result<(), Failure> {
+        let stem = Path::new(self.scene).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let out = self.out.map_or_else(|| PathBuf::from(format!("{stem}.{}", self.name)), Path::to_owned);
+        // Before anything takes its time.
+        let folder = Folder::open(&out, &[self.name], true)?;
+        let journal = Journal::open(&out, &subject.identity(self.name, options))?;
         if !common.quiet && !journal.is_empty() {
             say(format_args!("going on with {} finished runs in {}", journal.len(), out.display()));
         }
-        let effort =
-            Effort { budget: f64::from(self.budget), repeats: self.repeats.into(), phases: PHASES, machine };
-        let bar = progress(common, NAME);
+        let bar = progress(common, self.name);
         bar.enable_steady_tick(TICK);
         let start = Instant::now();
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
-        let data = work_precision(&subject, &effort, &journal, &show)?;
+        let again = format!("stripmine chart {} {}", self.name, subject.arguments());
+        let made = make(&journal, &show, stem, again)?;
         let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
-        let again = format!("stripmine chart {NAME} {}", subject.arguments());
-        let made = made(&[(stem, data)], again)?;
         let path = signals::whole(|| {
             let path = folder.write(&made, &provenance)?;
-            folder.write_page(&[NAME]).map(|()| path)
+            folder.write_page(&[self.name]).map(|()| path)
         })?;
         clear_progress();
         if !common.quiet {

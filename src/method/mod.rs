@@ -16,4 +16,4 @@ pub use entry::{
 };
 pub use failure::{Culprit, Failure, FailureKind};
 pub use list::{METHODS, Methods, load, method, prepare, vocabularies};
-pub use trials::{Axis, Balance, Change, Decides, Mapped, Parameter, Setting, Theory, Trials};
+pub use trials::{Axis, Balance, Decides, Mapped, Parameter, Setting, Theory, Trials};

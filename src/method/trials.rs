@@ -2,7 +2,6 @@
 //! says of it. Studies of speed, accuracy and stability know a method by this alone.
 
 use super::entry::Prepared;
-use crate::particles::Particles;
 use crate::scene::{Key, SceneErrors, Values};
 
 /// How the scenes of a method may be run, and what is measured of them.
@@ -59,19 +58,10 @@ pub struct Parameter {
     pub is_logarithmic: bool,
     /// From where to where a map goes if nothing else is asked for; none where the scene has nothing of the kind.
     pub range: fn(&Values) -> Option<[f64; 2]>,
-    /// How a scene comes to have a value.
-    pub change: Change,
+    /// The overrides by which a scene comes to have a value.
+    pub overrides: fn(&Values, f64) -> Vec<String>,
     /// Values that theory names, with what they are.
     pub marks: fn(&Values) -> Vec<(f64, String)>,
-}
-
-/// How a scene comes to have a value of a parameter.
-#[derive(Debug)]
-pub enum Change {
-    /// By overrides.
-    Overrides(fn(f64) -> Vec<String>),
-    /// By another start, made of the scene's own.
-    Start(fn(&Particles, f64) -> Particles),
 }
 
 /// A map of stability that `reproduce` shows.

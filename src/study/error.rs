@@ -30,9 +30,35 @@ pub enum StudyError {
         /// Steps up to the first row.
         first: u64,
     },
+    /// The method lets nothing of that name vary.
+    #[error("`{name}` is nothing that may be varied beside the step\n  help: one of {}", known.join(", "))]
+    NoSuchParameter {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: Vec<&'static str>,
+    },
+    /// The scene has nothing of what is to be varied, so that no range suggests itself.
+    #[error(
+        "the scene has no {0} of its own to vary\n  help: choose a range: --range LOW HIGH; or something else: --over NAME"
+    )]
+    NothingOfTheKind(&'static str),
+    /// A range that cannot be.
+    #[error(
+        "--range {} {} is none for {name}: it rises, from {:e} at the least to {:e} at the most",
+        range[0], range[1], bounds[0], bounds[1]
+    )]
+    OutOfRange {
+        /// What is to be varied.
+        name: &'static str,
+        /// What was asked for.
+        range: [f64; 2],
+        /// What may be.
+        bounds: [f64; 2],
+    },
     /// No run came to its end.
     #[error(
-        "no run of the scene came to its end; tried were:{}\n  help: lower integrator.dt, or mend what the failures name",
+        "no run of the scene came to its end as it should; tried were:{}\n  help: lower integrator.dt, or mend what the failures name",
         tried.iter().map(|(what, why)| format!("\n  {what}: {why}")).collect::<String>()
     )]
     EveryRunFails {
@@ -47,7 +73,10 @@ pub enum StudyError {
 impl Reported for StudyError {
     fn class(&self) -> Class {
         match self {
-            StudyError::NothingToVary(_) => Class::Usage,
+            StudyError::NothingToVary(_)
+            | StudyError::NoSuchParameter { .. }
+            | StudyError::NothingOfTheKind(_)
+            | StudyError::OutOfRange { .. } => Class::Usage,
             StudyError::Scene(errors) => errors.class(),
             StudyError::Physics(failure) => failure.class(),
             StudyError::OverBeforeOutput { .. } | StudyError::EveryRunFails { .. } => Class::Precondition,

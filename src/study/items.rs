@@ -1,20 +1,29 @@
 //! What `reproduce` makes of studies.
 
-use super::Subject;
-use super::work_precision::section::{NAME, made};
+use super::stability::{self, parameter, stability};
 use super::work_precision::{self, work_precision};
+use super::{Subject, stability::section as map_section, work_precision::section as diagram_section};
 use crate::console::Failure;
 use crate::method::{Item, METHODS, Progress};
 use crate::results::{Effort, Journal, Made};
 
 /// Every item, in the order of the page.
-pub const ITEMS: &[Item] = &[Item {
-    name: NAME,
-    doc: "Speed against accuracy of four scenes: which integrator, step and precision for which wish",
-    seconds: [8.0, 80.0],
-    is_quick: true,
-    make: speed_against_accuracy,
-}];
+pub const ITEMS: &[Item] = &[
+    Item {
+        name: diagram_section::NAME,
+        doc: "Speed against accuracy of four scenes: which integrator, step and precision for which wish",
+        seconds: [8.0, 80.0],
+        is_quick: true,
+        make: speed_against_accuracy,
+    },
+    Item {
+        name: map_section::NAME,
+        doc: "Where the method works: maps over the step and a second parameter, beside theory",
+        seconds: [8.0, 100.0],
+        is_quick: true,
+        make: where_it_works,
+    },
+];
 
 /// The scenes that methods state for it.
 fn speed_against_accuracy(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
@@ -32,5 +41,24 @@ fn speed_against_accuracy(effort: Effort, progress: Progress<'_>) -> Result<Made
         let share = |part: f64| progress((at as f64 + part) / shown.len() as f64);
         scenes.push(((*name).to_owned(), work_precision(&subject, &effort, &Journal::none(), &share)?));
     }
-    made(&scenes, format!("stripmine reproduce --only {NAME}"))
+    diagram_section::made(&scenes, format!("stripmine reproduce --only {}", diagram_section::NAME))
+}
+
+/// The maps that methods state for it.
+fn where_it_works(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let effort = match effort {
+        Effort::Quick => stability::Effort { budget: 1.5, size: 6, seeds: 1, tolerance: 0.2, range: None },
+        Effort::Full => stability::Effort { budget: 30.0, size: 24, seeds: 3, tolerance: 0.05, range: None },
+    };
+    let mapped: Vec<_> =
+        METHODS.iter().filter_map(|method| method.trials).flat_map(|trials| trials.mapped).collect();
+    let mut maps = vec![];
+    for (at, map) in mapped.iter().enumerate() {
+        let overrides: Vec<String> = map.overrides.iter().map(|&text| text.to_owned()).collect();
+        let subject = Subject::load(map.preset, &overrides, METHODS)?;
+        let parameter = parameter(&subject, map.parameter)?;
+        let share = |part: f64| progress((at as f64 + part) / mapped.len() as f64);
+        maps.push((map.name.to_owned(), stability(&subject, parameter, &effort, &Journal::none(), &share)?));
+    }
+    map_section::made(&maps, format!("stripmine reproduce --only {}", map_section::NAME))
 }

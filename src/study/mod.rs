@@ -1,5 +1,6 @@
 //! Studies that any method joins by stating its trials: speed against accuracy. They know methods by their entries alone.
 
+mod averages;
 mod choice;
 mod collision;
 mod error;
@@ -8,6 +9,7 @@ mod items;
 mod meter;
 mod observables;
 mod orders;
+pub mod stability;
 mod state;
 mod subject;
 mod trial;

@@ -1,17 +1,15 @@
 //! What is left of a comparison once trajectories have parted: means over time, with error bars from independent seeds.
 
+use super::averages::{Averages, LOOKS, Means, PROFILE};
 use super::choice::Choice;
 use super::meter::Meter;
-use super::state::State;
 use super::subject::Subject;
 use super::trial::{Course, follow};
-use crate::domain::Domain;
 use crate::method::{Purpose, Simulation};
 use crate::results::{Journal, JournalError};
 use crate::statistics::Spread;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 
 /// Seeds, each an independent start.
 pub const SEEDS: [u64; 4] = [1, 2, 3, 4];
@@ -19,13 +17,6 @@ pub const SEEDS: [u64; 4] = [1, 2, 3, 4];
 pub const CHANCE: f64 = 0.05;
 /// Student's t for that, and one seed less than there are.
 const STUDENT: f64 = 3.182;
-/// Looks of a run; means are over the second half.
-const LOOKS: u64 = 64;
-/// Bins of the density profile along each side.
-const BINS: usize = 8;
-/// The name of the density profile among the observables.
-pub const PROFILE: &str = "density profile";
-
 /// Steps that are tried, in steps of the scene, and that of the reference.
 pub const STEPS: [f64; 4] = [4.0, 2.0, 1.0, 0.5];
 /// The step of the reference, in steps of the scene.
@@ -65,9 +56,6 @@ pub struct Observables {
     /// What failed, and why.
     pub failed: Vec<(String, f64, String)>,
 }
-
-/// Means over time of a run: a value for each observable, and the profile.
-type Means = BTreeMap<String, Vec<f64>>;
 
 /// Runs every way to run the scene with every seed for `steps` own steps.
 ///
@@ -138,40 +126,17 @@ fn means(
         subject.prepared_as(choice, factor * subject.step, &seeded).map_err(|errors| errors.to_string())?;
     let domain = prepared.domain();
     let course = Course { steps: (steps as f64 / factor) as u64, looks: LOOKS, each };
-    let (mut looks, mut sums) = (0, Means::new());
-    let observed = |name: &&&str, values: &[f64]| Some(*values.get(subject.quantity(name)?)?);
+    let mut averages = Averages::new(subject, domain);
     let see = |simulation: &dyn Simulation| {
-        looks += 1;
-        if looks <= LOOKS / 2 {
-            return;
-        }
-        let values = simulation.observe();
-        let named = subject.trials.observables.iter();
-        let means = named.filter_map(|name| Some(((*name).to_owned(), vec![observed(&name, &values)?])));
-        let profile = profile(&State::of(&simulation.particles()), &domain);
-        for (name, values) in means.chain([(PROFILE.to_owned(), profile)]) {
-            let sum = sums.entry(name).or_insert_with(|| vec![0.0; values.len()]);
-            let share = 1.0 / (LOOKS + 1 - LOOKS / 2) as f64;
-            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += share * value);
+        if averages.are_due() {
+            averages.add(simulation, &simulation.observe());
+        } else {
+            averages.pass();
         }
     };
     follow(prepared.as_ref(), Purpose::Measurement, course, None, meter, see)
         .map_err(|failure| failure.what())?;
-    Ok(sums)
-}
-
-/// The share of the particles in each bin, along one side of the box and then the other, times the bins: 1 where they are even.
-fn profile(state: &State, domain: &Domain) -> Vec<f64> {
-    let mut bins = vec![0.0; 2 * BINS];
-    for position in state.positions() {
-        let inside = domain.wrapped(position);
-        for axis in 0..2 {
-            let place = (inside[axis] - domain.origin[axis]) / domain.length(axis);
-            let bin = ((place * BINS as f64).max(0.0) as usize).min(BINS - 1);
-            bins[axis * BINS + bin] += BINS as f64 / state.len().max(1) as f64;
-        }
-    }
-    bins
+    Ok(averages.means())
 }
 
 /// Whether a mean is known to a tenth; a profile always is.

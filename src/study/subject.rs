@@ -84,12 +84,28 @@ impl Subject {
         step: f64,
         more: &[String],
     ) -> Result<Box<dyn Prepared>, SceneErrors> {
+        Ok(prepare(self.values_as(choice, step, more)?, self.methods)?.0)
+    }
+
+    /// The same, whatever is foreseen of the step.
+    ///
+    /// # Errors
+    /// [`SceneErrors`]: why it cannot be run so.
+    pub fn prepared_at_any_step(
+        &self,
+        choice: &Choice,
+        step: f64,
+        more: &[String],
+    ) -> Result<Box<dyn Prepared>, SceneErrors> {
+        (self.trials.at_any_step)(self.values_as(choice, step, more)?)
+    }
+
+    fn values_as(&self, choice: &Choice, step: f64, more: &[String]) -> Result<Values, SceneErrors> {
         let mut overrides = self.overrides.clone();
         overrides.extend(choice.overrides());
         overrides.push(format!("{}={step:?}", self.trials.step.path()));
         overrides.extend_from_slice(more);
-        let values = Values::load(&self.what, &overrides, &vocabularies(self.methods))?;
-        Ok(prepare(values, self.methods)?.0)
+        Values::load(&self.what, &overrides, &vocabularies(self.methods))
     }
 
     /// The setting of the axis that decides the order, of a way to run it.

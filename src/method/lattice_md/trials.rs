@@ -4,11 +4,11 @@ use super::benches::QUANTITIES;
 use super::document::Document;
 use super::keys::{FRICTION, INERTIA, MAX_PENETRATION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
 use super::options::Inertia;
-use crate::method::{
-    Axis, Balance, Change, Decides, Mapped, Parameter, Prepared, Purpose, Setting, Theory, Trials,
+use crate::method::{Axis, Balance, Decides, Mapped, Parameter, Prepared, Purpose, Setting, Theory, Trials};
+use crate::scene::{
+    DT, Key, PACKING_FRACTION, PRECISION, Precision, RADIUS_SPREAD, SPEED, TEMPERATURE, VELOCITIES, Value,
+    Values,
 };
-use crate::particles::{Kind, Particles};
-use crate::scene::{DT, PACKING_FRACTION, PRECISION, Precision, RADIUS_SPREAD, Values};
 use crate::words::Words;
 
 macro_rules! settings {
@@ -77,7 +77,7 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [1e-300, 1e300],
         is_logarithmic: true,
         range: |values| around(values.number(&STIFFNESS)?, 30.0),
-        change: Change::Overrides(|value| vec![format!("law.stiffness={value:?}")]),
+        overrides: |_, value| vec![format!("law.stiffness={value:?}")],
         marks: |_| vec![],
     },
     Parameter {
@@ -87,7 +87,7 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [0.0, 1e300],
         is_logarithmic: true,
         range: |values| around(values.number(&NORMAL_DAMPING)?, 30.0),
-        change: Change::Overrides(|value| vec![format!("law.normal_damping={value:?}")]),
+        overrides: |_, value| vec![format!("law.normal_damping={value:?}")],
         marks: |_| vec![],
     },
     Parameter {
@@ -97,7 +97,7 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [0.0, 1e300],
         is_logarithmic: true,
         range: |values| around(values.number(&SHEAR_DAMPING)?, 30.0),
-        change: Change::Overrides(|value| vec![format!("law.shear_damping={value:?}")]),
+        overrides: |_, value| vec![format!("law.shear_damping={value:?}")],
         marks: |_| vec![],
     },
     Parameter {
@@ -107,7 +107,7 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [0.0, 1e3],
         is_logarithmic: false,
         range: |values| (values.number(&FRICTION)? > 0.0).then_some([0.0, 2.0]),
-        change: Change::Overrides(|value| vec![format!("law.friction={value:?}")]),
+        overrides: |_, value| vec![format!("law.friction={value:?}")],
         marks: |_| vec![],
     },
     Parameter {
@@ -117,7 +117,7 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [1e-3, 0.907],
         is_logarithmic: false,
         range: |values| values.gives(&PACKING_FRACTION).then_some([0.05, 0.85]),
-        change: Change::Overrides(|value| vec![format!("particles.packing_fraction={value:?}")]),
+        overrides: |_, value| vec![format!("particles.packing_fraction={value:?}")],
         marks: |_| vec![],
     },
     Parameter {
@@ -126,8 +126,8 @@ const PARAMETERS: &[Parameter] = &[
         unit: "",
         bounds: [0.0, 1e12],
         is_logarithmic: true,
-        range: |_| Some([0.1, 100.0]),
-        change: Change::Start(faster),
+        range: |values| (!faster(values, 1.0).is_empty()).then_some([0.1, 100.0]),
+        overrides: faster,
         marks: |_| vec![],
     },
     Parameter {
@@ -137,10 +137,10 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [1.0, 3.0],
         is_logarithmic: false,
         range: |values| values.value(&RADIUS_SPREAD).map(|_| [1.0, 1.6]),
-        change: Change::Overrides(|ratio| {
+        overrides: |_, ratio| {
             let cut = (ratio - 1.0) / (ratio + 1.0);
             vec![format!("particles.radius_spread={:?}", 0.5 * cut), format!("particles.radius_cut={cut:?}")]
-        }),
+        },
         marks: largest_ratio,
     },
     Parameter {
@@ -150,13 +150,13 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [0.0, 1e12],
         is_logarithmic: true,
         range: |values| (values.choice(&PRECISION)? != Precision::F64.word()).then_some([10.0, 1e6]),
-        change: Change::Overrides(|value| {
+        overrides: |_, value| {
             vec![
                 format!("domain.origin=[{value:?}, {value:?}]"),
                 "machine.engine=programs".to_owned(),
                 "machine.coordinates=absolute".to_owned(),
             ]
-        }),
+        },
         marks: |_| vec![],
     },
 ];
@@ -176,14 +176,21 @@ fn around(value: f64, factor: f64) -> Option<[f64; 2]> {
     (value > 0.0).then_some([value / factor, value * factor])
 }
 
-/// The same start with velocities and spins times a factor.
-fn faster(particles: &Particles, factor: f64) -> Particles {
-    let mut start = particles.clone();
-    for disc in start.all_mut().iter_mut().filter(|disc| disc.kind == Kind::Grain) {
-        disc.velocity = disc.velocity.map(|part| factor * part);
-        disc.omega *= factor;
-    }
-    start
+/// The overrides that make the discs of the start faster by a factor.
+fn faster(values: &Values, factor: f64) -> Vec<String> {
+    let scaled = |key: &Key, power: i32| {
+        let value = values.number(key)?;
+        Some(format!("{}={:?}", key.path(), value * factor.powi(power)))
+    };
+    let listed = match values.value(&VELOCITIES) {
+        Some(Value::Pairs(all)) => {
+            let pair = |[x, y]: &[f64; 2]| format!("[{:?}, {:?}]", factor * x, factor * y);
+            let all: Vec<String> = all.iter().map(pair).collect();
+            Some(format!("{}=[{}]", VELOCITIES.path(), all.join(", ")))
+        }
+        _ => None,
+    };
+    [scaled(&TEMPERATURE, 2), scaled(&SPEED, 1), listed].into_iter().flatten().collect()
 }
 
 const AXES: &[Axis] = &[

@@ -1,0 +1,177 @@
+//! The matrix by which a scheme takes a spring and damper through one step, and when its powers grow.
+
+use crate::method::lattice_md::model::{GearValues, Scheme};
+use stripmine_kernels::integrator::gear::{Acceleration, Gear};
+use stripmine_kernels::integrator::single::Single;
+use stripmine_kernels::integrator::velocity_verlet::VelocityVerlet;
+use stripmine_kernels::integrator::{self, DERIVATIVES};
+
+/// Most values that a scheme carries.
+type Matrix = [[f64; DERIVATIVES]; DERIVATIVES];
+
+/// Errors grow where a disturbance gains this much during half a period of the spring.
+const GAIN: f64 = 0.1;
+/// Powers of the matrix are taken up to two to this.
+const SQUARINGS: i32 = 40;
+/// What rounding may make of a factor 1.
+const ROUNDING: f64 = 1e-9;
+/// Bisections of a limit.
+const BISECTIONS: u32 = 50;
+
+/// The largest magnitude of an eigenvalue of the matrix of one step of x″ = −ω² x − γ x′; `spring` is (ω dt)², `damper` γ dt.
+pub fn spectral_radius(scheme: Scheme, spring: f64, damper: f64) -> f64 {
+    let kind = if damper == 0.0 { Acceleration::OfPositions } else { Acceleration::OfVelocities };
+    match scheme {
+        Scheme::Gear(GearValues::Four) => radius_of(Gear::<4>::new(kind), scheme.values(), spring, damper),
+        Scheme::Gear(GearValues::Five) => radius_of(Gear::<5>::new(kind), scheme.values(), spring, damper),
+        Scheme::Gear(GearValues::Six) => radius_of(Gear::<6>::new(kind), scheme.values(), spring, damper),
+        Scheme::VelocityVerlet => radius_of(VelocityVerlet, scheme.values(), spring, damper),
+    }
+}
+
+/// The same for a scheme that carries `values` derivatives.
+fn radius_of<C: integrator::Scheme>(scheme: C, values: usize, spring: f64, damper: f64) -> f64 {
+    let mut matrix = [[0.0; DERIVATIVES]; DERIVATIVES];
+    for column in 0..values {
+        let mut single = Single::new(scheme, 1.0);
+        single.row[column] = 1.0;
+        single.step(|position, velocity| -spring * position - damper * velocity);
+        (0..values).for_each(|row| matrix[row][column] = single.row[row]);
+    }
+    largest_eigenvalue(matrix)
+}
+
+/// By the norm of a high power: ‖A^n‖^(1/n).
+fn largest_eigenvalue(mut matrix: Matrix) -> f64 {
+    let mut logarithm = 0.0;
+    for squaring in 0..SQUARINGS {
+        let norm = matrix.iter().flatten().fold(0.0, |norm: f64, entry| norm.max(entry.abs()));
+        if norm == 0.0 {
+            return 0.0;
+        }
+        if !norm.is_finite() {
+            return f64::INFINITY;
+        }
+        logarithm += libm::log(norm) * 0.5f64.powi(squaring);
+        matrix.iter_mut().flatten().for_each(|entry| *entry /= norm);
+        matrix = squared(&matrix);
+    }
+    libm::exp(logarithm)
+}
+
+fn squared(matrix: &Matrix) -> Matrix {
+    let product = |row: usize, column: usize| (0..DERIVATIVES).map(|k| matrix[row][k] * matrix[k][column]).sum();
+    std::array::from_fn(|row| std::array::from_fn(|column| product(row, column)))
+}
+
+/// The largest step (time) up to which errors do not grow on a spring of frequency² `spring` (1/time²) and a damper of rate
+/// `damper` (1/time): by more than a tenth within half a period of the spring, or at all where there is none. None where there is
+/// neither spring nor damper.
+pub fn largest_step(scheme: Scheme, spring: f64, damper: f64) -> Option<f64> {
+    let frequency = spring.sqrt().max(damper);
+    if frequency.is_nan() || frequency <= 0.0 || frequency.is_infinite() {
+        return None;
+    }
+    let grows = |scaled: f64| {
+        let dt = scaled / frequency;
+        let radius = spectral_radius(scheme, spring * dt * dt, damper * dt);
+        let half_period = std::f64::consts::PI / (spring.sqrt() * dt);
+        if half_period.is_infinite() { radius > 1.0 + ROUNDING } else { radius.powf(half_period.max(1.0)) > 1.0 + GAIN }
+    };
+    // Steps rise until errors grow; no scheme bears more than a few radians.
+    let mut high = 1.0 / 64.0;
+    while !grows(high) {
+        high *= 1.0625;
+        if high > 64.0 {
+            return None;
+        }
+    }
+    let mut low = high / 1.0625;
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        *(if grows(middle) { &mut high } else { &mut low }) = middle;
+    }
+    Some(low / frequency)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stripmine_kernels::backend::Registers;
+    use stripmine_kernels::integrator::Context;
+
+    const GEAR: [Scheme; 3] = [
+        Scheme::Gear(GearValues::Four),
+        Scheme::Gear(GearValues::Five),
+        Scheme::Gear(GearValues::Six),
+    ];
+
+    #[test]
+    fn velocity_verlet_bears_two_radians_of_a_spring() {
+        for below in [0.1, 1.0, 1.9] {
+            let radius = spectral_radius(Scheme::VelocityVerlet, below * below, 0.0);
+            assert!((radius - 1.0).abs() < 1e-8, "{radius}");
+        }
+        assert!(spectral_radius(Scheme::VelocityVerlet, 2.1 * 2.1, 0.0) > 1.1);
+        let limit = largest_step(Scheme::VelocityVerlet, 4.0, 0.0).unwrap();
+        assert!((limit - 1.0).abs() < 0.01, "{limit}");
+    }
+
+    /// The eigenvalues of velocity Verlet on a spring alone are those of λ² − (2 − ω² dt²) λ + 1.
+    #[test]
+    fn radii_are_those_of_the_characteristic_polynomial() {
+        for spring in [4.5f64, 6.0, 10.0] {
+            let half = 1.0 - 0.5 * spring;
+            let expected = half.abs() + (half * half - 1.0).sqrt();
+            let radius = spectral_radius(Scheme::VelocityVerlet, spring, 0.0);
+            assert!((radius / expected - 1.0).abs() < 1e-9, "{radius} {expected}");
+        }
+    }
+
+    #[test]
+    fn drag_is_borne_as_far_as_measured() {
+        for (scheme, measured) in GEAR.into_iter().zip([0.55, 0.31, 0.17]) {
+            let limit = largest_step(scheme, 0.0, 1.0).unwrap();
+            assert!((limit - measured).abs() < 0.01, "{scheme:?} {limit}");
+        }
+    }
+
+    /// A scheme with a wrong coefficient.
+    #[derive(Clone, Copy)]
+    struct Wrong;
+
+    impl integrator::Scheme for Wrong {
+        const CARRIED: usize = 4;
+
+        fn scales(dt: f64) -> [f64; DERIVATIVES] {
+            <Gear<4> as integrator::Scheme>::scales(dt)
+        }
+
+        fn begin<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V) {
+            integrator::Scheme::begin(&right(), context, row, acceleration);
+        }
+
+        fn correct<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V) {
+            let before = row[1];
+            integrator::Scheme::correct(&right(), context, row, acceleration);
+            // The velocity is corrected in the wrong direction.
+            row[1] = before - (row[1] - before);
+        }
+
+        fn predict<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES]) {
+            integrator::Scheme::predict(&right(), context, row);
+        }
+    }
+
+    fn right() -> Gear<4> {
+        Gear::new(Acceleration::OfPositions)
+    }
+
+    #[test]
+    fn a_wrong_coefficient_is_found_out() {
+        let radius = radius_of(right(), 4, 0.01, 0.0);
+        assert!(radius < 1.001, "{radius}");
+        let radius = radius_of(Wrong, 4, 0.01, 0.0);
+        assert!(radius > 1.5, "{radius}");
+    }
+}

@@ -1,0 +1,75 @@
+//! Means over the second half of a run: of the quantities that a method states, and of the density along each side.
+
+use super::state::State;
+use super::subject::Subject;
+use crate::domain::Domain;
+use crate::method::Simulation;
+use std::collections::BTreeMap;
+
+/// Looks of a run; means are over the second half.
+pub const LOOKS: u64 = 64;
+/// Bins of the density profile along each side.
+const BINS: usize = 8;
+/// The name of the density profile among the means.
+pub const PROFILE: &str = "density profile";
+
+/// Means over time of a run: a value for each observable, and the profile.
+pub type Means = BTreeMap<String, Vec<f64>>;
+
+/// Means in the making.
+pub struct Averages<'s> {
+    subject: &'s Subject,
+    domain: Domain,
+    looks: u64,
+    means: Means,
+}
+
+impl<'s> Averages<'s> {
+    /// Of a run in a box, before the first of its [`LOOKS`] + 1 looks.
+    pub fn new(subject: &'s Subject, domain: Domain) -> Self {
+        Averages { subject, domain, looks: 0, means: Means::new() }
+    }
+
+    /// Whether the next look counts.
+    pub fn are_due(&self) -> bool {
+        self.looks >= LOOKS / 2
+    }
+
+    /// Takes a look that does not count.
+    pub fn pass(&mut self) {
+        self.looks += 1;
+    }
+
+    /// Takes a look that counts, at which `values` were observed.
+    pub fn add(&mut self, simulation: &dyn Simulation, values: &[f64]) {
+        self.looks += 1;
+        let observed = |name: &str| Some(vec![*values.get(self.subject.quantity(name)?)?]);
+        let named = self.subject.trials.observables.iter();
+        let observed = named.filter_map(|name| Some(((*name).to_owned(), observed(name)?)));
+        let profile = profile(&State::of(&simulation.particles()), &self.domain);
+        let share = 1.0 / (LOOKS + 1 - LOOKS / 2) as f64;
+        for (name, values) in observed.chain([(PROFILE.to_owned(), profile)]) {
+            let sum = self.means.entry(name).or_insert_with(|| vec![0.0; values.len()]);
+            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += share * value);
+        }
+    }
+
+    /// The means, after the last look.
+    pub fn means(self) -> Means {
+        self.means
+    }
+}
+
+/// The share of the particles in each bin, along one side of the box and then the other, times the bins: 1 where they are even.
+fn profile(state: &State, domain: &Domain) -> Vec<f64> {
+    let mut bins = vec![0.0; 2 * BINS];
+    for position in state.positions() {
+        let inside = domain.wrapped(position);
+        for axis in 0..2 {
+            let place = (inside[axis] - domain.origin[axis]) / domain.length(axis);
+            let bin = ((place * BINS as f64).max(0.0) as usize).min(BINS - 1);
+            bins[axis * BINS + bin] += BINS as f64 / state.len().max(1) as f64;
+        }
+    }
+    bins
+}

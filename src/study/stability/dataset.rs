@@ -1,0 +1,161 @@
+//! What came out.
+
+use super::boundary::Edge;
+use super::outcome::{Cell, Class, Foreseen};
+use crate::method::{Beyond, Parameter};
+use crate::statistics::median;
+use serde::Serialize;
+
+/// The dataset.
+#[derive(Clone, Debug, Serialize)]
+pub struct Stability {
+    /// The scene, as it is named on a command line.
+    pub scene: String,
+    /// How it is run.
+    pub way: String,
+    /// Its own step (time).
+    pub step: f64,
+    /// The time of each run (time).
+    pub duration: f64,
+    /// What is left out for want of time, in words.
+    pub left_out: Option<String>,
+    /// What is varied beside the step.
+    pub parameter: Varied,
+    /// Its values, rising.
+    pub values: Vec<f64>,
+    /// The steps, rising (time).
+    pub steps: Vec<f64>,
+    /// `map[i][j]`: what became of value i with step j, from the first seed.
+    pub map: Vec<Vec<Cell>>,
+    /// Edges at each value.
+    pub boundaries: Vec<Boundary>,
+    /// How far apart the two ends of an edge are at most, in parts of the step.
+    pub tolerance: f64,
+    /// What theory says of the step.
+    pub limits: Vec<Limit>,
+    /// Values of the parameter that theory names.
+    pub marks: Vec<(f64, String)>,
+    /// The edges of every integrator, at the scene's own value.
+    pub schemes: Vec<SchemeLimit>,
+    /// Values at which nothing is known of what is right, and why.
+    pub unjudged: Vec<(f64, String)>,
+    /// Seeds of the edges.
+    pub seeds: Vec<u64>,
+}
+
+/// What is varied.
+#[derive(Clone, Debug, Serialize)]
+pub struct Varied {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is.
+    pub label: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Whether equal ratios lie at equal distances.
+    pub is_logarithmic: bool,
+}
+
+impl From<&Parameter> for Varied {
+    fn from(parameter: &Parameter) -> Varied {
+        let Parameter { name, label, unit, is_logarithmic, .. } = *parameter;
+        Varied { name, label, unit, is_logarithmic }
+    }
+}
+
+/// The edges at a value, for each seed.
+#[derive(Clone, Debug, Serialize)]
+pub struct Boundary {
+    /// Up to which step runs are right.
+    pub works: Vec<Edge>,
+    /// Up to which step runs come to their end.
+    pub ends: Vec<Edge>,
+}
+
+/// The middle of edges over seeds, with the lowest and the highest (time); none unless every seed has one.
+pub fn over_seeds(edges: &[Edge]) -> Option<[f64; 3]> {
+    let steps: Option<Vec<f64>> = edges.iter().map(|edge| edge.step()).collect();
+    let mut steps = steps.filter(|steps| !steps.is_empty())?;
+    steps.sort_by(f64::total_cmp);
+    Some([median(steps.iter().copied()), steps[0], steps[steps.len() - 1]])
+}
+
+/// A limit that theory gives.
+#[derive(Clone, Debug, Serialize)]
+pub struct Limit {
+    /// What it is called.
+    pub name: &'static str,
+    /// What becomes of longer steps.
+    pub beyond: Beyond,
+    /// Where it comes from, at the last value.
+    pub why: String,
+    /// Value and step (time).
+    pub points: Vec<(f64, f64)>,
+}
+
+/// The edges of an integrator.
+#[derive(Clone, Debug, Serialize)]
+pub struct SchemeLimit {
+    /// Its name.
+    pub scheme: String,
+    /// The edges.
+    pub edges: Boundary,
+    /// What becomes of the first step that is no longer right, in the first seed.
+    pub first: Option<Class>,
+    /// The step beyond which theory says that errors grow (time), and its name.
+    pub theory: Option<(f64, &'static str)>,
+}
+
+/// How many places of a class there are, and what was said of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Said {
+    /// Places.
+    pub all: usize,
+    /// Of which the program refuses to run the scene.
+    pub refused: usize,
+    /// Of which it warns before the run.
+    pub warned_before: usize,
+    /// Of which the run itself warns, and nothing was said before.
+    pub warned_by_run_alone: usize,
+    /// Of which the run itself warns.
+    pub warned_by_run: usize,
+}
+
+impl Said {
+    /// Places of which nothing is said.
+    pub fn unsaid(self) -> usize {
+        self.all - self.refused - self.warned_before - self.warned_by_run_alone
+    }
+}
+
+impl Stability {
+    /// Every place.
+    pub fn cells(&self) -> impl Iterator<Item = &Cell> {
+        self.map.iter().flatten()
+    }
+
+    /// What was said of the places of some classes.
+    pub fn said(&self, belongs: impl Fn(Class) -> bool) -> Said {
+        self.cells().filter(|cell| belongs(cell.class)).fold(Said::default(), |mut said, cell| {
+            said.all += 1;
+            let warned = !cell.warned.is_empty();
+            said.warned_by_run += usize::from(warned);
+            match cell.foreseen {
+                Foreseen::Refused => said.refused += 1,
+                Foreseen::Warned => said.warned_before += 1,
+                Foreseen::Nothing => said.warned_by_run_alone += usize::from(warned),
+            }
+            said
+        })
+    }
+
+    /// The smallest step of theory beyond which errors grow, at a value (time), and its name.
+    pub fn unstable_beyond(&self, value: f64) -> Option<(f64, &'static str)> {
+        let unstable = self.limits.iter().filter(|limit| limit.beyond == Beyond::Unstable);
+        let at = unstable.filter_map(|limit| {
+            let (_, step) = limit.points.iter().find(|(known, _)| *known == value)?;
+            Some((*step, limit.name))
+        });
+        at.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+}

@@ -1,0 +1,229 @@
+//! Where a method works: over the step and a second parameter.
+//!
+//! Every place of a grid is run and judged: what stops it, whether energy comes from nowhere, and whether means over time are
+//! those of runs with a fine step. The edges of what works and of what comes to its end are found by bisection, from several
+//! seeds. What theory says of the step is drawn in, and what the program says of it, before and during a run, is held against
+//! what became of it.
+
+mod boundary;
+pub mod conclusions;
+mod dataset;
+mod outcome;
+mod reference;
+pub mod section;
+mod survey;
+
+pub use boundary::Edge;
+pub use dataset::{Boundary, Limit, Said, SchemeLimit, Stability, over_seeds};
+pub use outcome::{Cell, Class, Foreseen};
+
+use super::choice::Choice;
+use super::meter::Meter;
+use super::trial::probed;
+use super::{StudyError, Subject};
+use crate::method::{Decides, Parameter, Progress};
+use crate::results::{Journal, JournalError};
+use crate::statistics::median;
+use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use survey::{Case, Known, Survey};
+
+/// Steps go from this part of the scene's own to this multiple.
+const STEPS: [f64; 2] = [0.5, 128.0];
+/// Steps of a probe at most.
+const PROBED: u64 = 4096;
+/// Steps of the scene's own that a run lasts at least, if the scene does: eight of the largest.
+const LEAST: f64 = 1024.0;
+/// Runs that an edge takes about, each as long as one with four own steps.
+const EDGE: f64 = 8.0 / 4.0;
+/// Failures that an error names at most.
+const TRIED: usize = 8;
+
+/// How much is done.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Processor seconds that it may take about.
+    pub budget: f64,
+    /// Values of the parameter, and steps.
+    pub size: usize,
+    /// Seeds of the edges.
+    pub seeds: u64,
+    /// How far apart the two ends of an edge are at most, in parts of the step.
+    pub tolerance: f64,
+    /// From where to where the parameter goes; none for its own range.
+    pub range: Option<[f64; 2]>,
+}
+
+/// What a scene lets vary, by name.
+///
+/// # Errors
+/// [`StudyError`] if it has nothing of that name.
+pub fn parameter(subject: &Subject, name: &str) -> Result<&'static Parameter, StudyError> {
+    let parameters = subject.trials.parameters;
+    parameters.iter().find(|parameter| parameter.name == name).ok_or_else(|| StudyError::NoSuchParameter {
+        name: name.to_owned(),
+        known: parameters.iter().map(|parameter| parameter.name).collect(),
+    })
+}
+
+/// Values from one end of a range to the other.
+fn ladder([low, high]: [f64; 2], count: usize, is_logarithmic: bool) -> Vec<f64> {
+    let last = count.saturating_sub(1).max(1) as f64;
+    let at = |i: usize| {
+        let part = i as f64 / last;
+        let value = if is_logarithmic { low * (high / low).powf(part) } else { low + (high - low) * part };
+        // Values are read again as they are written; few digits are enough.
+        format!("{value:.5e}").parse().unwrap_or(value)
+    };
+    (0..count).map(at).collect()
+}
+
+fn range(subject: &Subject, parameter: &Parameter, asked: Option<[f64; 2]>) -> Result<[f64; 2], StudyError> {
+    let Some(range) = asked.or_else(|| (parameter.range)(&subject.values)) else {
+        return Err(StudyError::NothingOfTheKind(parameter.name));
+    };
+    let [low, high] = range;
+    let [least, most] = parameter.bounds;
+    let is_allowed = least <= low && low < high && high <= most && (low > 0.0 || !parameter.is_logarithmic);
+    if !is_allowed {
+        return Err(StudyError::OutOfRange { name: parameter.name, range, bounds: parameter.bounds });
+    }
+    Ok(range)
+}
+
+/// Surveys a scene.
+///
+/// # Errors
+/// [`StudyError`] if the parameter is none of the scene's, nothing works anywhere, or finished runs cannot be kept.
+pub fn stability(
+    subject: &Subject,
+    parameter: &'static Parameter,
+    effort: &Effort,
+    journal: &Journal,
+    progress: Progress<'_>,
+) -> Result<Stability, StudyError> {
+    let range = range(subject, parameter, effort.range)?;
+    let values = ladder(range, effort.size, parameter.is_logarithmic);
+    let steps = ladder(STEPS.map(|factor| factor * subject.step), effort.size, true);
+    let meter = Meter::new(effort.budget, progress);
+    let schemes = schemes(subject);
+    let each: f64 = journal.recall("probe", || Ok::<_, JournalError>(rate(subject, parameter, &values)))?;
+    let units = units(subject, &steps, effort, schemes.len());
+    let least = LEAST.min(subject.steps as f64);
+    let own_steps = (effort.budget / (each * units)).max(least).min(subject.steps as f64);
+    meter.expect(each * units * own_steps);
+    let duration = own_steps * subject.step;
+    let survey = Survey { subject, parameter, journal, meter: &meter, steps: &steps, duration, each };
+    let seeds: Vec<u64> = (1..=effort.seeds).collect();
+    let own = |value: f64| Case { choice: &subject.own, value: Some(value) };
+    let column = |&value: &f64| -> Result<(Vec<Cell>, Boundary, Option<String>), JournalError> {
+        let known = survey.known(Some(value))?;
+        let cells = steps.par_iter().map(|&step| survey.cell(own(value), &known, step, 1));
+        let cells: Vec<Cell> = cells.collect::<Result<_, JournalError>>()?;
+        let first = |is_so: fn(Class) -> bool| {
+            cells.iter().position(|cell| !is_so(cell.class)).unwrap_or(cells.len())
+        };
+        let guesses = [first(|class| class == Class::Works), first(Class::ends)];
+        let boundary = survey.boundary(own(value), &known, guesses, &seeds, effort.tolerance)?;
+        Ok((cells, boundary, known.err()))
+    };
+    let columns: Vec<_> = values.par_iter().map(column).collect::<Result<_, JournalError>>()?;
+    let (mut map, mut boundaries, mut unjudged) = (vec![], vec![], vec![]);
+    for (&value, (cells, boundary, why)) in values.iter().zip(columns) {
+        map.push(cells);
+        boundaries.push(boundary);
+        unjudged.extend(why.map(|why| (value, why)));
+    }
+    if map.iter().flatten().all(|cell| cell.class != Class::Works) {
+        return Err(StudyError::EveryRunFails { tried: tried(&values, &steps, &map, parameter) });
+    }
+    let known: Known = survey.known(None)?;
+    let scheme = |i: usize| survey.scheme(&schemes[i], &known, &seeds, effort.tolerance);
+    let schemes = (0..schemes.len()).into_par_iter().map(scheme).collect::<Result<_, JournalError>>()?;
+    Ok(Stability {
+        scene: subject.arguments(),
+        way: subject.own.label(),
+        step: subject.step,
+        duration,
+        left_out: (own_steps < 0.99 * subject.steps as f64)
+            .then(|| format!("what comes after {own_steps:.0} of the scene's {} steps", subject.steps)),
+        parameter: parameter.into(),
+        limits: limits(&survey, &values, own),
+        marks: (parameter.marks)(&subject.values).into_iter().filter(|(at, _)| inside(*at, range)).collect(),
+        values,
+        steps: steps.clone(),
+        map,
+        boundaries,
+        tolerance: effort.tolerance,
+        schemes,
+        unjudged,
+        seeds,
+    })
+}
+
+fn inside(value: f64, [low, high]: [f64; 2]) -> bool {
+    low <= value && value <= high
+}
+
+/// The scene's own way to run, with every integrator.
+fn schemes(subject: &Subject) -> Vec<Choice> {
+    let axes = subject.trials.axes.iter().filter(|axis| axis.decides == Decides::Order);
+    axes.flat_map(|axis| axis.settings.iter().map(|setting| subject.own.with(&[(axis.name, setting.name)])))
+        .collect()
+}
+
+/// Seconds of a step: the middle over the ends and the middle of what is varied.
+fn rate(subject: &Subject, parameter: &Parameter, values: &[f64]) -> f64 {
+    let at = [0, values.len() / 2, values.len() - 1].map(|place| values[place]);
+    let of = |value: f64| {
+        let overrides = (parameter.overrides)(&subject.values, value);
+        let scene = subject.prepared_at_any_step(&subject.own, subject.step, &overrides).ok()?;
+        probed(scene.as_ref(), subject.steps.min(PROBED)).ok()
+    };
+    let rates: Vec<f64> = at.into_iter().filter_map(of).collect();
+    if rates.is_empty() { SLOW } else { median(rates.into_iter()) }
+}
+
+/// Seconds of a step where none could be timed.
+const SLOW: f64 = 1e-3;
+
+/// What all runs cost together, in runs of the scene's own step.
+fn units(subject: &Subject, steps: &[f64], effort: &Effort, schemes: usize) -> f64 {
+    let cost = |step: &f64| subject.step / step;
+    let column: f64 = steps.iter().map(cost).sum();
+    let reference = reference::SEEDS as f64 * cost(&steps[0]);
+    let (values, seeds) = (effort.size as f64, effort.seeds as f64);
+    values * (column + reference + seeds * EDGE) + reference + schemes as f64 * seeds * EDGE
+}
+
+fn limits<'c>(survey: &Survey<'_>, values: &[f64], own: impl Fn(f64) -> Case<'c>) -> Vec<Limit> {
+    let mut limits: Vec<Limit> = vec![];
+    for &value in values {
+        for found in survey.limits(own(value)) {
+            let point = (value, found.step);
+            match limits.iter_mut().find(|limit| limit.name == found.name) {
+                Some(limit) => {
+                    limit.points.push(point);
+                    limit.why = found.why;
+                }
+                None => limits.push(Limit {
+                    name: found.name,
+                    beyond: found.beyond,
+                    why: found.why,
+                    points: vec![point],
+                }),
+            }
+        }
+    }
+    limits
+}
+
+/// What was tried, one run a value.
+fn tried(values: &[f64], steps: &[f64], map: &[Vec<Cell>], parameter: &Parameter) -> Vec<(String, String)> {
+    let every = values.len().div_ceil(TRIED).max(1);
+    let first = |(value, cells): (&f64, &Vec<Cell>)| {
+        let Cell { class, what, .. } = cells.first()?;
+        let tried = format!("{} = {value:e}, step {:e}", parameter.name, steps[0]);
+        Some((tried, format!("{}: {what}", class.name())))
+    };
+    values.iter().zip(map).step_by(every).filter_map(first).collect()
+}

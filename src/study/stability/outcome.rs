@@ -1,0 +1,188 @@
+//! What becomes of a run, and which kind of failure that is.
+
+use super::reference::Expected;
+use crate::method::FailureKind;
+use crate::study::averages::Means;
+use serde::{Deserialize, Serialize};
+
+/// The energy is wrong where its balance is off by more than this part of the energy that passed through.
+pub const DRIFT: f64 = 0.1;
+
+/// What becomes of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Class {
+    /// It comes to its end, and its means are those of the reference.
+    Works,
+    /// It comes to its end with means that are wrong, and nothing stops it.
+    Silent,
+    /// It comes to its end with less energy than there should be.
+    EnergyLoss,
+    /// It comes to its end with more energy than there should be.
+    EnergyGrowth,
+    /// A contact is too deep.
+    Penetration,
+    /// A particle moves so far in a step that contacts pass unseen.
+    MaskOutrun,
+    /// Two particles are where one may be.
+    SharedCell,
+    /// A particle leaves the box.
+    ParticleLost,
+    /// Numbers that are none.
+    NonFinite,
+    /// Something else stops it.
+    Stopped,
+    /// The scene cannot be, whatever the step.
+    Refused,
+}
+
+impl Class {
+    /// Every class, from what works on.
+    pub const ALL: [Class; 11] = [
+        Class::Works,
+        Class::Silent,
+        Class::EnergyLoss,
+        Class::EnergyGrowth,
+        Class::Penetration,
+        Class::MaskOutrun,
+        Class::SharedCell,
+        Class::ParticleLost,
+        Class::NonFinite,
+        Class::Stopped,
+        Class::Refused,
+    ];
+
+    /// What it is called.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Class::Works => "works",
+            Class::Silent => "wrong but silent",
+            Class::EnergyLoss => "energy lost",
+            Class::EnergyGrowth => "energy growth",
+            Class::Penetration => "penetration",
+            Class::MaskOutrun => "mask outrun",
+            Class::SharedCell => "two in a cell",
+            Class::ParticleLost => "particle lost",
+            Class::NonFinite => "non-finite",
+            Class::Stopped => "stopped otherwise",
+            Class::Refused => "no such scene",
+        }
+    }
+
+    /// Whether the run comes to its end.
+    pub const fn ends(self) -> bool {
+        matches!(self, Class::Works | Class::Silent | Class::EnergyLoss | Class::EnergyGrowth)
+    }
+
+    /// Whether the run comes to its end and is wrong: what a user may take for a result.
+    pub const fn is_unseen(self) -> bool {
+        self.ends() && !matches!(self, Class::Works)
+    }
+
+    /// The class of what stops a run.
+    pub fn of(kind: FailureKind) -> Class {
+        match kind {
+            FailureKind::NotFinite | FailureKind::Overflow => Class::NonFinite,
+            FailureKind::OutOfBox => Class::ParticleLost,
+            FailureKind::Conflict => Class::SharedCell,
+            FailureKind::TooDeep => Class::Penetration,
+            FailureKind::LongStep => Class::MaskOutrun,
+            _ => Class::Stopped,
+        }
+    }
+}
+
+/// What the program says of a step before it runs the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Foreseen {
+    /// Nothing.
+    Nothing,
+    /// It warns.
+    Warned,
+    /// It refuses to run it.
+    Refused,
+}
+
+/// A run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ran {
+    /// What was said before.
+    pub foreseen: Foreseen,
+    /// How it ended.
+    pub end: End,
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum End {
+    /// It was never begun, or stopped, and why.
+    Broken(Class, String),
+    /// It came to its end.
+    Whole {
+        /// Means over its second half.
+        means: Means,
+        /// The error of its energy over the energy that passed through; none where that is not followed.
+        energy: Option<f64>,
+        /// Names of the checks that warned.
+        warned: Vec<String>,
+    },
+}
+
+/// A place of a map.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Cell {
+    /// What became of it.
+    pub class: Class,
+    /// What was seen, in a line.
+    pub what: String,
+    /// What was said before.
+    pub foreseen: Foreseen,
+    /// Names of the checks that warned on the way.
+    pub warned: Vec<String>,
+}
+
+impl Ran {
+    /// The run held against what is expected of it.
+    pub fn judged(&self, expected: Option<&Expected>) -> Cell {
+        let cell = |class: Class, what: String, warned: &[String]| Cell {
+            class,
+            what,
+            foreseen: self.foreseen,
+            warned: warned.to_vec(),
+        };
+        match &self.end {
+            End::Broken(class, what) => cell(*class, what.clone(), &[]),
+            End::Whole { means, energy, warned } => {
+                let drift = energy.unwrap_or(0.0);
+                if drift.abs() > DRIFT || drift.is_nan() {
+                    let class = if drift < 0.0 { Class::EnergyLoss } else { Class::EnergyGrowth };
+                    let what = format!("the energy is off by {:.0} % of what passed through", 100.0 * drift);
+                    return cell(class, what, warned);
+                }
+                match expected.and_then(|expected| expected.worst(means)) {
+                    Some(off) => cell(Class::Silent, off, warned),
+                    None => cell(Class::Works, String::new(), warned),
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn whole(energy: f64) -> Ran {
+        let end = End::Whole { means: Means::new(), energy: Some(energy), warned: vec![] };
+        Ran { foreseen: Foreseen::Nothing, end }
+    }
+
+    #[test]
+    fn wrong_energies_are_found_by_their_sign() {
+        let class = |energy: f64| whole(energy).judged(None).class;
+        assert_eq!(class(0.09), Class::Works);
+        assert_eq!([class(0.11), class(f64::NAN)], [Class::EnergyGrowth; 2]);
+        assert_eq!(class(-0.11), Class::EnergyLoss);
+    }
+}

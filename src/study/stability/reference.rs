@@ -1,0 +1,126 @@
+//! What is expected of the means of a run that is right: by runs with a fine step, over seeds.
+
+use crate::statistics::Spread;
+use crate::study::averages::Means;
+
+/// Runs that the expectation is made of, each from a seed of its own.
+pub const SEEDS: u64 = 8;
+/// Student's t for one run of a thousand to be off by chance, and one seed less than there are.
+const STUDENT: f64 = 5.408;
+/// What is off by less than this part of the mean is not called wrong.
+pub const TOLERANCE: f64 = 0.05;
+/// A mean that is not known to this part of itself tells nothing.
+const KNOWN: f64 = 0.1;
+
+/// Between which values the mean of a single run lies, in all but one of a thousand.
+#[derive(Clone, Debug, PartialEq)]
+struct Interval {
+    observable: String,
+    middle: Vec<f64>,
+    /// Of a single value: how far it may be off. Of several: how large the root of the mean square may be.
+    reach: f64,
+    scale: f64,
+}
+
+/// What is expected of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expected(Vec<Interval>);
+
+fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len().max(1) as f64;
+    (values.map(|value| value * value).sum::<f64>() / count).sqrt()
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    rms(a.iter().zip(b).map(|(a, b)| a - b))
+}
+
+fn middle<'m>(runs: impl Iterator<Item = &'m Vec<f64>>) -> Vec<f64> {
+    let runs: Vec<&Vec<f64>> = runs.collect();
+    (0..runs[0].len()).map(|i| runs.iter().map(|run| run[i]).sum::<f64>() / runs.len() as f64).collect()
+}
+
+impl Expected {
+    /// By the means of several runs; none of fewer than three.
+    pub fn of(runs: &[Means]) -> Option<Expected> {
+        let first = runs.first().filter(|_| runs.len() > 2)?;
+        Some(Expected(first.keys().filter_map(|name| Interval::of(name, runs)).collect()))
+    }
+
+    /// The mean that is farthest off by more than it may be, in words; none if none is.
+    pub fn worst(&self, means: &Means) -> Option<String> {
+        let off = self.0.iter().filter_map(|interval| {
+            let value = means.get(&interval.observable)?;
+            let off = distance(value, &interval.middle);
+            // What is no number is off, too.
+            let is_inside = off <= interval.reach.max(TOLERANCE * interval.scale);
+            (!is_inside).then_some((interval, off))
+        });
+        let parts = |(interval, off): &(&Interval, f64)| off / interval.scale;
+        let (interval, off) = off.max_by(|a, b| parts(a).total_cmp(&parts(b)))?;
+        Some(format!(
+            "the mean {} is off by {:.0} %, and may be by {:.0} %",
+            interval.observable,
+            100.0 * off / interval.scale,
+            100.0 * (interval.reach / interval.scale).max(TOLERANCE)
+        ))
+    }
+}
+
+impl Interval {
+    fn of(name: &str, runs: &[Means]) -> Option<Interval> {
+        let values: Vec<&Vec<f64>> = runs.iter().filter_map(|run| run.get(name)).collect();
+        let all = middle(values.iter().copied());
+        let scale = rms(all.iter().copied());
+        let count = values.len() as f64;
+        let wider = (1.0 + 1.0 / count).sqrt();
+        let reach = if all.len() == 1 {
+            let spread = Spread::of(&values.iter().map(|value| value[0]).collect::<Vec<_>>());
+            let error = spread.error.filter(|error| *error < KNOWN * scale)?;
+            STUDENT * error * count.sqrt() * wider
+        } else {
+            // How far each is from the middle of the others.
+            let apart: Vec<f64> = (0..values.len())
+                .map(|own| {
+                    let others = values.iter().enumerate().filter(|(other, _)| *other != own);
+                    distance(values[own], &middle(others.map(|(_, value)| *value)))
+                })
+                .collect();
+            let spread = Spread::of(&apart);
+            spread.mean + STUDENT * spread.error.unwrap_or(0.0) * count.sqrt() * wider
+        };
+        Some(Interval { observable: name.to_owned(), middle: all, reach, scale })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn runs(values: [[f64; 2]; 8]) -> Vec<Means> {
+        let of = |[a, b]: [f64; 2]| Means::from([("a".to_owned(), vec![a]), ("b".to_owned(), vec![a, b])]);
+        values.into_iter().map(of).collect()
+    }
+
+    /// By hand: ±1 eight times has the standard deviation 1.069, so that a run may be off by 5.408 · 1.069 · 1.061 = 6.13.
+    #[test]
+    fn a_mean_is_wrong_beyond_what_chance_makes_and_beyond_the_tolerance() {
+        let expected = Expected::of(&runs(
+            [1.0, -1.0]
+                .repeat(4)
+                .try_into()
+                .map_or([[0.0; 2]; 8], |s: [f64; 8]| s.map(|s| [100.0 + s, 100.0 - s])),
+        ));
+        let off = |a: f64| expected.as_ref().unwrap().worst(&Means::from([("a".to_owned(), vec![a])]));
+        assert_eq!([off(106.1), off(93.9)], [None, None]);
+        assert_eq!(off(106.2).unwrap(), "the mean a is off by 6 %, and may be by 6 %");
+        assert!(off(f64::NAN).is_some());
+        let certain = Expected::of(&runs([[100.0, 50.0]; 8])).unwrap();
+        let off = |a: f64| certain.worst(&Means::from([("a".to_owned(), vec![a])]));
+        assert!(off(104.9).is_none() && off(105.1).is_some());
+        // What is about zero by chance alone tells nothing.
+        let unknown = Expected::of(&runs([[1.0, 1.0], [-1.0, 1.0]].repeat(4).try_into().unwrap())).unwrap();
+        assert!(unknown.worst(&Means::from([("a".to_owned(), vec![50.0])])).is_none());
+        assert_eq!(Expected::of(&runs([[0.0; 2]; 8])[..2]), None);
+    }
+}

@@ -1,0 +1,110 @@
+//! The picture of a map.
+
+use super::super::dataset::{Stability, over_seeds};
+use super::super::outcome::Class;
+use crate::method::Beyond;
+use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::study::work_precision::conclusions::short;
+
+/// The hue of what was measured, and of theory.
+const INK: usize = 6;
+
+/// The hue and with it the marker of a class.
+fn hue(class: Class) -> usize {
+    match class {
+        Class::Works => 5,
+        Class::Silent => 1,
+        Class::EnergyLoss => 4,
+        Class::EnergyGrowth => 3,
+        Class::Penetration => 2,
+        Class::MaskOutrun => 0,
+        Class::SharedCell => 7,
+        Class::ParticleLost => 10,
+        Class::NonFinite => 13,
+        Class::Stopped => 11,
+        Class::Refused => 6,
+    }
+}
+
+/// The map: a marker for what became of each place, edges with bars over the seeds, and theory.
+pub fn map(name: &str, data: &Stability) -> Figure {
+    let classes = Class::ALL.into_iter().map(|class| of_class(data, class));
+    let edges = [("edge of what works", Style::Line), ("edge of what comes to an end", Style::Dashed)];
+    let edges = edges.into_iter().enumerate().map(|(which, (name, style))| Series {
+        name: name.into(),
+        style,
+        hue: INK,
+        points: edge(data, which),
+    });
+    let limits = data.limits.iter().enumerate().map(|(place, limit)| Series {
+        name: format!("theory: {}", limit.name),
+        style: if limit.beyond == Beyond::Unstable { Style::Line } else { Style::Dashed },
+        hue: place,
+        points: shown(data, limit.points.iter().map(|&(x, y)| Point::at(x, y))),
+    });
+    let ends = [data.steps[0], data.steps[data.steps.len() - 1]];
+    let marks = data.marks.iter().map(|(at, what)| Series {
+        name: what.clone(),
+        style: Style::Dashed,
+        hue: INK,
+        points: ends.map(|step| Point::at(*at, step)).to_vec(),
+    });
+    let own = Series {
+        name: "the scene's own step".into(),
+        style: Style::Dashed,
+        hue: 2,
+        points: [data.values[0], data.values[data.values.len() - 1]]
+            .map(|x| Point::at(x, data.step))
+            .to_vec(),
+    };
+    let all = classes.chain(edges).chain(limits).chain(marks).chain([own]);
+    let unit = (!data.parameter.unit.is_empty()).then_some(data.parameter.unit);
+    let x = match data.parameter.is_logarithmic {
+        true => Axis::logarithmic(data.parameter.label, unit),
+        false => Axis::linear(data.parameter.label, unit),
+    };
+    Figure {
+        name: format!("{}_stability", name.replace('-', "_")),
+        title: format!("{name}: where it works, over the step and the {}", data.parameter.label),
+        caption: format!(
+            "{} × {} runs of a time of {}, {}; bisected edges from {} seeds, bars from the lowest to the highest. The scene's own step \
+             is {}.",
+            data.values.len(),
+            data.steps.len(),
+            short(data.duration),
+            data.way,
+            data.seeds.len(),
+            short(data.step)
+        ),
+        picture: Picture::Chart(Chart {
+            x,
+            y: Axis::logarithmic("step", Some("time")),
+            series: all.filter(|series| !series.points.is_empty()).collect(),
+            bands: vec![],
+        }),
+    }
+}
+
+fn of_class(data: &Stability, class: Class) -> Series {
+    let mut points = vec![];
+    for (value, cells) in data.values.iter().zip(&data.map) {
+        let own = data.steps.iter().zip(cells).filter(|(_, cell)| cell.class == class);
+        points.extend(own.map(|(step, _)| Point::at(*value, *step)));
+    }
+    Series { name: class.name().into(), style: Style::Points, hue: hue(class), points }
+}
+
+/// The edge of what works (0) or of what comes to an end (1).
+fn edge(data: &Stability, which: usize) -> Vec<Point> {
+    let at = data.values.iter().zip(&data.boundaries).filter_map(|(&value, boundary)| {
+        let [middle, low, high] = over_seeds([&boundary.works, &boundary.ends][which])?;
+        Some(Point { x: value, y: middle, spread: (which == 0).then_some([low, high]) })
+    });
+    at.collect()
+}
+
+/// Points within the steps of the map.
+fn shown(data: &Stability, points: impl Iterator<Item = Point>) -> Vec<Point> {
+    let [low, high] = [data.steps[0], data.steps[data.steps.len() - 1]];
+    points.filter(|point| low <= point.y && point.y <= high).collect()
+}
