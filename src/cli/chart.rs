@@ -8,7 +8,7 @@ use crate::origin::Provenance;
 use crate::results::Made;
 use crate::results::{Folder, Journal};
 use crate::signals;
-use crate::study::stability::{self, parameter, stability};
+use crate::study::stability::{self, Over, stability};
 use crate::study::work_precision::{self, work_precision};
 use crate::study::{Subject, stability::section as map_section, work_precision::section as diagram_section};
 use clap::{Args, Subcommand};
@@ -129,14 +129,13 @@ impl WorkPrecisionVerb {
 impl StabilityVerb {
     fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
         let subject = Subject::load(&self.scene, &self.overrides, methods)?;
-        let parameter = parameter(&subject, &self.over)?;
         let range = self.range.as_ref().map(|ends| [ends[0], ends[1]]);
+        let over = Over::of(&subject, &self.over, range)?;
         let effort = stability::Effort {
             budget: f64::from(self.budget),
             size: self.size.into(),
             seeds: self.seeds.into(),
             tolerance: self.tolerance,
-            range,
         };
         let again = range.map_or(String::new(), |[low, high]| format!(" --range {low} {high}"));
         let options = format!(
@@ -145,7 +144,7 @@ impl StabilityVerb {
         );
         let place = Place { name: map_section::NAME, scene: &self.scene, out: self.out.as_deref() };
         place.study(common, &subject, &options, |journal, progress, stem, again| {
-            let data = stability(&subject, parameter, &effort, journal, progress)?;
+            let data = stability(&subject, over, &effort, journal, progress)?;
             map_section::made(&[(stem, data)], format!("{again} {options}"))
         })
     }

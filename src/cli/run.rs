@@ -1,8 +1,8 @@
 //! `stripmine run`: one simulation into a folder.
 
-use crate::console::{Common, Failure, bar, clear_progress, print, print_json, warn};
-use crate::method::{Methods, prepare, vocabularies};
-use crate::run::{Ending, Existing, Summary, chosen_otherwise, run};
+use crate::console::{Common, Failure, bar, clear_progress, print, print_json, say, warn};
+use crate::method::{Methods, Prepared, prepare, vocabularies};
+use crate::run::{Ending, Existing, Summary, chosen_otherwise, forecast, run};
 use crate::scene::Values;
 use crate::signals;
 use clap::Args;
@@ -51,6 +51,9 @@ impl RunVerb {
             (_, true) => Existing::Overwrite,
             _ => Existing::Refuse,
         };
+        if !common.quiet {
+            before(prepared.as_ref());
+        }
         let bar = bar(common, 0, "{wide_bar} {pos}/{len} [{elapsed}, ETA {eta}]");
         let progress = |done, all| {
             bar.set_length(all);
@@ -74,6 +77,14 @@ impl RunVerb {
             }
             Ending::Interrupted { clock } => Err(Failure::Interrupted { step: clock.steps, folder }),
         }
+    }
+}
+
+/// Says what is to be expected.
+fn before(prepared: &dyn Prepared) {
+    let facts = forecast::of_the_step(prepared).into_iter().chain(forecast::of_the_time(prepared));
+    for (label, words) in facts.filter_map(|fact| fact.words) {
+        say(format_args!("expected: {label}: {words}"));
     }
 }
 

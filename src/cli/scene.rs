@@ -4,6 +4,7 @@ use crate::console::{Common, Failure, print, print_json, warn};
 use crate::method::{Fact, Methods, Prepared, load, method};
 use crate::report::table::{Cell, Table};
 use crate::report::terminal;
+use crate::run::forecast;
 use crate::scene::{Fallback, Key, Preset, SECTIONS};
 use clap::{Args, Subcommand};
 use serde::Serialize;
@@ -95,12 +96,13 @@ fn table(name: &str, facts: &[Fact], prepared: &dyn Prepared) -> Table {
     let rows = facts.iter().filter_map(|fact| fact.words.as_ref());
     let chosen = prepared.choices().iter().map(|choice| format!("chosen: {choice}"));
     let left_out = prepared.left_out().iter().map(|what| format!("left out: {what}"));
+    let limits = prepared.step_limits().into_iter().map(|limit| format!("{}: {}", limit.name, limit.why));
     Table {
         name: "scene".into(),
         title: format!("{name}: nothing forbids it"),
         columns: ["of the scene", "value"].map(str::to_owned).to_vec(),
         rows: rows.map(|(label, words)| vec![Cell::from(*label), Cell::Text(words.clone())]).collect(),
-        notes: chosen.chain(left_out).collect(),
+        notes: chosen.chain(left_out).chain(limits).collect(),
     }
 }
 
@@ -110,14 +112,16 @@ fn check(name: &str, overrides: &[String], common: &Common, methods: Methods) ->
     if !common.quiet {
         prepared.warnings().iter().for_each(warn);
     }
-    let facts = prepared.facts();
+    let mut facts = prepared.facts();
+    facts.extend(forecast::of_the_step(prepared.as_ref()));
+    facts.extend(forecast::of_the_time(prepared.as_ref()));
     if !common.json {
         return print(&terminal::render(&table(name, &facts, prepared.as_ref())));
     }
     let mut data = Map::new();
     data.insert("scene".to_owned(), json!(name));
     data.insert("method".to_owned(), json!(entry.vocabulary.keys.method));
-    data.extend(facts.into_iter().filter_map(|fact| fact.data).map(|(name, value)| (name.to_owned(), value)));
+    data.extend(forecast::as_data(facts));
     data.insert("choices".to_owned(), json!(prepared.choices()));
     data.insert("left_out".to_owned(), json!(prepared.left_out()));
     data.insert("warnings".to_owned(), json!(prepared.warnings()));

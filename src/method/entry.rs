@@ -167,6 +167,8 @@ pub struct StepLimit {
     pub name: &'static str,
     /// The step (time).
     pub step: f64,
+    /// The scene's own step in parts of it.
+    pub share: f64,
     /// What becomes of longer ones.
     pub beyond: Beyond,
     /// Where it comes from, with its numbers.
@@ -183,6 +185,19 @@ pub enum Beyond {
     Inaccurate,
     /// Particles pass each other unseen.
     Unseen,
+}
+
+/// What a check has found along a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunWarning {
+    /// The name of the check.
+    pub check: &'static str,
+    /// What was found.
+    pub value: f64,
+    /// What it is held against.
+    pub limit: f64,
+    /// What was found, in a sentence with what to do.
+    pub message: String,
 }
 
 /// What a simulation is started for.
@@ -232,6 +247,11 @@ pub trait Prepared: Send + Sync {
     /// What bounds the step, by theory; none where there is no step, or theory says nothing.
     fn step_limits(&self) -> Vec<StepLimit> {
         vec![]
+    }
+
+    /// How wrong a run is expected to be, and by what measure; none where nothing is known of it.
+    fn expected_error(&self) -> Option<Fact> {
+        None
     }
 
     /// The memory that a run takes.
@@ -303,7 +323,7 @@ pub trait Simulation: Send {
     fn summary(&self) -> Map<String, Value>;
 
     /// What happened on the way that seldom means well.
-    fn warnings(&self) -> Vec<String>;
+    fn warnings(&self) -> Vec<RunWarning>;
 
     /// The last state, in a line.
     fn in_words(&self) -> String;

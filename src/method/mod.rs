@@ -6,14 +6,16 @@ pub mod failure;
 pub mod lattice_md;
 mod list;
 mod pairwise;
+mod probe;
 pub mod throughput;
 mod trials;
 
 pub use clock::{Clock, Every, Schedule, Until};
 pub use entry::{
-    Bench, BenchOption, Beyond, Entry, Fact, Item, Prepared, Progress, Purpose, Quantity, Simulation,
-    Snapshot, StepLimit, Verb,
+    Bench, BenchOption, Beyond, Entry, Fact, Item, Prepared, Progress, Purpose, Quantity, RunWarning,
+    Simulation, Snapshot, StepLimit, Verb,
 };
 pub use failure::{Culprit, Failure, FailureKind};
 pub use list::{METHODS, Methods, load, method, prepare, vocabularies};
+pub use probe::probed;
 pub use trials::{Axis, Balance, Decides, Mapped, Parameter, Setting, Theory, Trials};

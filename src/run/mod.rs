@@ -3,6 +3,7 @@
 //! request, LAMMPS files.
 
 mod folder;
+pub mod forecast;
 mod frames;
 mod identity;
 mod recorder;

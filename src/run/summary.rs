@@ -1,6 +1,7 @@
 //! What a run says of itself at the end.
 
-use crate::method::{Failure, Prepared, Simulation};
+use super::forecast;
+use crate::method::{Failure, Prepared, RunWarning, Simulation};
 use crate::origin::{Origin, host};
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -25,6 +26,10 @@ pub struct Summary {
     pub left_out: Vec<String>,
     /// What was warned about.
     pub warnings: Vec<String>,
+    /// What was warned about at the end, with numbers.
+    pub checks: Vec<RunWarning>,
+    /// What was to be expected of the step, by name.
+    pub foreseen: Map<String, Value>,
     /// What was out of the ordinary along the run's sessions: another version of the program, an older checkpoint and the
     /// like; known once it is written.
     pub notes: Vec<String>,
@@ -57,7 +62,8 @@ impl Summary {
     ) -> Summary {
         let clock = simulation.clock();
         let mut warnings: Vec<String> = prepared.warnings().iter().map(ToString::to_string).collect();
-        warnings.extend(simulation.warnings());
+        let checks = simulation.warnings();
+        warnings.extend(checks.iter().map(|check| check.message.clone()));
         Summary {
             origin: Origin::here(),
             host: host(),
@@ -67,6 +73,8 @@ impl Summary {
             choices: prepared.choices().to_vec(),
             left_out: prepared.left_out().to_vec(),
             warnings,
+            checks,
+            foreseen: forecast::as_data(forecast::of_the_step(prepared)),
             notes: vec![],
             failure: failure.cloned(),
             steps: clock.steps,

@@ -1,6 +1,6 @@
 //! What `reproduce` makes of studies.
 
-use super::stability::{self, parameter, stability};
+use super::stability::{self, Over, stability};
 use super::work_precision::{self, work_precision};
 use super::{Subject, stability::section as map_section, work_precision::section as diagram_section};
 use crate::console::Failure;
@@ -47,8 +47,8 @@ fn speed_against_accuracy(effort: Effort, progress: Progress<'_>) -> Result<Made
 /// The maps that methods state for it.
 fn where_it_works(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let effort = match effort {
-        Effort::Quick => stability::Effort { budget: 1.5, size: 6, seeds: 1, tolerance: 0.2, range: None },
-        Effort::Full => stability::Effort { budget: 30.0, size: 24, seeds: 3, tolerance: 0.05, range: None },
+        Effort::Quick => stability::Effort { budget: 1.5, size: 6, seeds: 1, tolerance: 0.2 },
+        Effort::Full => stability::Effort { budget: 30.0, size: 24, seeds: 3, tolerance: 0.05 },
     };
     let mapped: Vec<_> =
         METHODS.iter().filter_map(|method| method.trials).flat_map(|trials| trials.mapped).collect();
@@ -56,9 +56,9 @@ fn where_it_works(effort: Effort, progress: Progress<'_>) -> Result<Made, Failur
     for (at, map) in mapped.iter().enumerate() {
         let overrides: Vec<String> = map.overrides.iter().map(|&text| text.to_owned()).collect();
         let subject = Subject::load(map.preset, &overrides, METHODS)?;
-        let parameter = parameter(&subject, map.parameter)?;
+        let over = Over::of(&subject, map.parameter, None)?;
         let share = |part: f64| progress((at as f64 + part) / mapped.len() as f64);
-        maps.push((map.name.to_owned(), stability(&subject, parameter, &effort, &Journal::none(), &share)?));
+        maps.push((map.name.to_owned(), stability(&subject, over, &effort, &Journal::none(), &share)?));
     }
     map_section::made(&maps, format!("stripmine reproduce --only {}", map_section::NAME))
 }

@@ -88,21 +88,3 @@ pub fn timed(prepared: &dyn Prepared, course: Course, meter: &Meter<'_>) -> Resu
     }
     Ok(spent.as_secs_f64() / f64::from(runs))
 }
-
-/// Processor seconds of a step, from the first few.
-///
-/// # Errors
-/// [`Failure`] if it breaks.
-pub fn probed(prepared: &dyn Prepared, most: u64) -> Result<f64, Failure> {
-    let mut simulation = prepared.start(Purpose::Measurement)?;
-    let before = cpu_time::ProcessTime::now();
-    let mut steps = 1;
-    loop {
-        simulation.advance(&[Until::Steps(steps)], &AtomicBool::new(false))?;
-        let spent = before.elapsed();
-        if spent > 2 * LONG_ENOUGH || steps >= most {
-            return Ok(spent.as_secs_f64() / steps as f64);
-        }
-        steps = (2 * steps).min(most);
-    }
-}

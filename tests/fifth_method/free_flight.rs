@@ -9,7 +9,7 @@ use stripmine::io::checkpoint::Column;
 use stripmine::memory::Foreseen;
 use stripmine::method::{
     Axis, Bench, BenchOption, Clock, Decides, Entry, Every, Fact, Failure, Prepared, Purpose, Quantity,
-    Schedule, Setting, Simulation, Snapshot, Trials, Until,
+    RunWarning, Schedule, Setting, Simulation, Snapshot, Trials, Until,
 };
 use stripmine::particles::Particles;
 use stripmine::scene::{
@@ -272,7 +272,7 @@ impl Simulation for Flying {
         Map::from_iter([("discs".to_owned(), json!(self.discs.len()))])
     }
 
-    fn warnings(&self) -> Vec<String> {
+    fn warnings(&self) -> Vec<RunWarning> {
         vec![]
     }
 

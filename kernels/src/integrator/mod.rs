@@ -1,6 +1,7 @@
 //! Integrators, one file each, and what they share: F/m + g, and what a scheme may know beside the state.
 
 pub mod gear;
+pub mod single;
 pub mod velocity_verlet;
 
 use crate::backend::Registers;

@@ -47,7 +47,15 @@ impl<C: Scheme> Single<C> {
     }
 
     fn context(&self) -> Context<'static, Scalar<f64>> {
-        Context { registers: Scalar::default(), dt: self.dt, seed: 0, step: 0, ids: &[], freedom: 0, inverse: 1.0 }
+        Context {
+            registers: Scalar::default(),
+            dt: self.dt,
+            seed: 0,
+            step: 0,
+            ids: &[],
+            freedom: 0,
+            inverse: 1.0,
+        }
     }
 }
 

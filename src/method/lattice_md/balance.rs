@@ -42,6 +42,11 @@ impl Work {
         Work { domain, gravity, start: inner(seen), from }
     }
 
+    /// The energy that there was at the start, and what gravity and walls have put in or taken out since.
+    pub(super) fn passed(&self, balance: &Balance) -> f64 {
+        self.start + balance.gravity_work.abs() + balance.wall_work.abs()
+    }
+
     /// The balance of a moment, with the particles as the state has them: consistent with the crossings counted.
     pub(super) fn balance(&self, seen: &Observation, particles: &Particles, engine: &dyn Engine) -> Balance {
         let crossings = engine.crossings();

@@ -1,17 +1,23 @@
 //! A checked scene and its simulation, as every method offers them.
 
 use super::balance::{Balance, Work};
-use super::check::Checked;
-use super::check::Estimates;
+use super::check::{Checked, Estimates};
+use super::checks;
 use super::document::Document;
 use super::engine::Engine;
+use super::facts::{expected_error, facts};
+use super::lookout::Lookout;
+use super::theory::limits::step_limits;
 use super::{
     Lengths, Model, Total, Totals, assemble, assemble_following_energy, ledger, memory, model, programs,
 };
 use crate::domain::Domain;
 use crate::io::checkpoint::Counter;
-use crate::memory::{Foreseen, in_words};
-use crate::method::{Clock, Every, Fact, Failure, Prepared, Purpose, Schedule, Simulation, Snapshot, Until};
+use crate::memory::Foreseen;
+use crate::method::{
+    Clock, Every, Fact, Failure, Prepared, Purpose, RunWarning, Schedule, Simulation, Snapshot, StepLimit,
+    Until,
+};
 use crate::model::clock;
 use crate::model::machine::MachineModel;
 use crate::observe::{Observation, Scenery};
@@ -96,6 +102,14 @@ impl Prepared for Discs {
         &self.0.left_out
     }
 
+    fn step_limits(&self) -> Vec<StepLimit> {
+        step_limits(&self.0)
+    }
+
+    fn expected_error(&self) -> Option<Fact> {
+        expected_error(&self.0)
+    }
+
     fn memory(&self) -> Foreseen {
         memory::foreseen(&self.0)
     }
@@ -121,76 +135,14 @@ impl Prepared for Discs {
             Purpose::Run => assemble_following_energy(&self.0)?,
             Purpose::Measurement => assemble(&self.0)?,
         };
-        Ok(Box::new(Running::new(&self.0, engine)))
+        let lookout = (purpose == Purpose::Run).then(|| Lookout::of(&self.0));
+        Ok(Box::new(Running::new(&self.0, engine, lookout)))
     }
 
     fn started_from(&self, particles: Particles) -> Box<dyn Prepared> {
         let estimates = Estimates::of(&self.0.scene, &particles);
         Box::new(Discs(Checked { particles, estimates, ..self.0.clone() }))
     }
-}
-
-fn facts(checked: &Checked) -> Vec<Fact> {
-    let Checked { scene, domain, particles, alike, geometry, estimates: e, .. } = checked;
-    let sides = |[x, y]: [f64; 2]| format!("{x:.6} × {y:.6}");
-    let or_none = |value: Option<f64>, words: fn(f64) -> String| value.map_or("nothing moves".into(), words);
-    let (grains, walls) = (particles.grain_count(), particles.len() - particles.grain_count());
-    let memory = memory::foreseen(checked);
-    let left = memory.available.map(|bytes| format!(" of {} left", in_words(bytes)));
-    let mut facts = vec![
-        Fact::new("units", scene.units.as_str(), "units", scene.units.as_str()),
-        Fact::new("grains", grains, "grains", grains.to_string()),
-        Fact::new("wall_discs", walls, "wall discs", walls.to_string()),
-        Fact::data("discs_alike", *alike),
-        Fact::new("radii", json!(geometry.radii), "radii", {
-            format!("{:.6} to {:.6}", geometry.radii[0], geometry.radii[1])
-        }),
-        Fact::data("origin", json!(domain.corner())),
-        Fact::new("sides", json!(domain.lengths()), "box", sides(domain.lengths())),
-        Fact::data("periodic", json!(domain.periodic())),
-        Fact::data("search", scene.search.by.word()),
-        Fact::data("engine", scene.machine.engine.word()),
-    ];
-    if scene.needs_lattice() {
-        facts.extend(lattice_facts(checked));
-    }
-    facts.extend([
-        Fact::data("dt", scene.integrator.dt),
-        Fact::new("steps", scene.run.steps, "steps", {
-            format!("{} of {} are {:.6}", scene.run.steps, scene.integrator.dt, scene.duration())
-        }),
-        Fact::data("duration", scene.duration()),
-        Fact::new("estimates", json!(e), "approach speed", format!("{:.4e}", e.approach_speed)),
-        Fact::words("steps per contact", or_none(e.steps_per_contact, |steps| format!("{steps:.1}"))),
-        Fact::words("penetration of an impact", format!("{:.4}", e.impact_penetration)),
-        Fact::new("memory", json!(memory), "memory of a run", {
-            in_words(memory.needed) + &left.unwrap_or_default()
-        }),
-        Fact::words("damping γ dt, dense 3 γ dt, limit", {
-            format!("{:.4}, {:.4}, {}", e.damping, e.network_damping, e.damping_limit)
-        }),
-    ]);
-    facts
-}
-
-/// What there is to be said of the lattice of a scene that needs one.
-fn lattice_facts(checked: &Checked) -> Vec<Fact> {
-    let geometry = &checked.geometry;
-    let sides = |[x, y]: [f64; 2]| format!("{x:.6} × {y:.6}");
-    let [columns, rows] = [geometry.shape.columns(), geometry.shape.rows()];
-    let mask = 2 * geometry.mask.half_width() + 1;
-    let [shortest, longest] = geometry.edge_bounds;
-    vec![
-        Fact::data("columns", columns),
-        Fact::data("rows", rows),
-        Fact::new("cells", columns * rows, "cells", format!("{columns} × {rows} = {}", columns * rows)),
-        Fact::new("cell_edges", json!(geometry.frame.edge), "cell", sides(geometry.frame.edge)),
-        Fact::new("cell_edge_bounds", json!(geometry.edge_bounds), "cell edge allowed", {
-            format!("{shortest:.6} to {longest:.6}")
-        }),
-        Fact::new("mask", mask, "mask", format!("{mask} × {mask}")),
-        Fact::new("occupancy", geometry.occupancy, "occupancy", format!("{:.4}", geometry.occupancy)),
-    ]
 }
 
 /// A simulation of granular discs, observed.
@@ -204,10 +156,12 @@ struct Running {
     /// Columns and rows of the lattice, where the scene needs one, and discs for each cell.
     lattice: Option<([usize; 2], f64)>,
     discs: [usize; 2],
+    /// What is looked at now and then, in a run.
+    lookout: Option<Lookout>,
 }
 
 impl Running {
-    fn new(checked: &Checked, engine: Box<dyn Engine>) -> Running {
+    fn new(checked: &Checked, engine: Box<dyn Engine>, lookout: Option<Lookout>) -> Running {
         let Checked { scene, particles, geometry, .. } = checked;
         let model = model(checked);
         let scenery = Scenery::of(&model);
@@ -223,6 +177,7 @@ impl Running {
             work,
             lattice: scene.needs_lattice().then_some((cells, geometry.occupancy)),
             discs: [grains, particles.len() - grains],
+            lookout,
         }
     }
 
@@ -282,6 +237,11 @@ impl Simulation for Running {
                 break;
             }
             self.engine.step()?;
+            if let Some(lookout) = &mut self.lookout
+                && Lookout::is_due(self.engine.steps())
+            {
+                lookout.look(&self.engine.particles());
+            }
         }
         Ok(())
     }
@@ -323,7 +283,8 @@ impl Simulation for Running {
             Total::Count(count) => (name.to_owned(), Counter::Count(count)),
             Total::Sum(sum) => (name.to_owned(), Counter::Sum(sum)),
         });
-        Snapshot { counters: counters.collect(), columns: self.engine.state() }
+        let looked = self.lookout.iter().flat_map(Lookout::counters);
+        Snapshot { counters: counters.chain(looked).collect(), columns: self.engine.state() }
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
@@ -332,6 +293,9 @@ impl Simulation for Running {
             Counter::Sum(sum) => Some(Total::Sum(*sum)),
         });
         let totals = totals.map_err(|name| format!("the total {name} is missing"))?;
+        if let Some(lookout) = &mut self.lookout {
+            lookout.restore(&snapshot.counters)?;
+        }
         self.engine.restore(clock.steps, totals, snapshot.columns)
     }
 
@@ -374,31 +338,15 @@ impl Simulation for Running {
         entries.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
     }
 
-    fn warnings(&self) -> Vec<String> {
-        let totals = self.engine.totals();
-        let mut warnings = Vec::new();
-        if totals.deep_disc_steps > 0 {
-            warnings.push(format!(
-                "contacts were deeper than law.max_penetration = {}: {} disc-steps, the deepest {:.4} at step {}; the \
-                 contact law and the lattice are exact only for shallow contacts: stiffen them or slow the discs",
-                self.max_penetration, totals.deep_disc_steps, totals.deepest, totals.deepest_step
-            ));
-        }
-        if totals.long_steps > 0 {
-            warnings.push(format!(
-                "{} times a disc moved so far in a step that contacts deeper than law.max_penetration may have passed unseen: \
-                 lower dt, or slow the discs",
-                totals.long_steps
-            ));
-        }
-        if totals.shared_cells > 0 {
-            warnings.push(format!(
-                "{} times a disc was in a lattice cell that was another's, and was kept beside the lattice: exact, but \
-                 slower the more there are",
-                totals.shared_cells
-            ));
-        }
-        warnings
+    fn warnings(&self) -> Vec<RunWarning> {
+        let (_, balance) = self.seen();
+        let energy = self.lookout.as_ref().and_then(|_| checks::energy(&balance, self.work.passed(&balance)));
+        let looked = self.lookout.iter().flat_map(Lookout::warnings);
+        checks::counted(&self.engine.totals(), self.max_penetration)
+            .into_iter()
+            .chain(looked)
+            .chain(energy)
+            .collect()
     }
 
     fn in_words(&self) -> String {

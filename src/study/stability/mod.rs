@@ -19,9 +19,8 @@ pub use outcome::{Cell, Class, Foreseen};
 
 use super::choice::Choice;
 use super::meter::Meter;
-use super::trial::probed;
 use super::{StudyError, Subject};
-use crate::method::{Decides, Parameter, Progress};
+use crate::method::{Decides, Parameter, Progress, probed};
 use crate::results::{Journal, JournalError};
 use crate::statistics::median;
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
@@ -49,20 +48,40 @@ pub struct Effort {
     pub seeds: u64,
     /// How far apart the two ends of an edge are at most, in parts of the step.
     pub tolerance: f64,
-    /// From where to where the parameter goes; none for its own range.
-    pub range: Option<[f64; 2]>,
 }
 
-/// What a scene lets vary, by name.
-///
-/// # Errors
-/// [`StudyError`] if it has nothing of that name.
-pub fn parameter(subject: &Subject, name: &str) -> Result<&'static Parameter, StudyError> {
-    let parameters = subject.trials.parameters;
-    parameters.iter().find(|parameter| parameter.name == name).ok_or_else(|| StudyError::NoSuchParameter {
-        name: name.to_owned(),
-        known: parameters.iter().map(|parameter| parameter.name).collect(),
-    })
+/// What is varied, and from where to where.
+#[derive(Clone, Copy, Debug)]
+pub struct Over {
+    parameter: &'static Parameter,
+    range: [f64; 2],
+}
+
+impl Over {
+    /// What a scene lets vary, by name; over a range that is asked for, or about the scene's own value.
+    ///
+    /// # Errors
+    /// [`StudyError`] if it has nothing of that name, or the range is none.
+    pub fn of(subject: &Subject, name: &str, asked: Option<[f64; 2]>) -> Result<Over, StudyError> {
+        let all = subject.trials.parameters;
+        let parameter = all.iter().find(|parameter| parameter.name == name).ok_or_else(|| {
+            StudyError::NoSuchParameter {
+                name: name.to_owned(),
+                known: all.iter().map(|parameter| parameter.name).collect(),
+            }
+        })?;
+        let Some(range) = asked.or_else(|| (parameter.range)(&subject.values)) else {
+            return Err(StudyError::NothingOfTheKind(parameter.name));
+        };
+        let [low, high] = range;
+        let [least, most] = parameter.bounds;
+        let is_allowed =
+            least <= low && low < high && high <= most && (low > 0.0 || !parameter.is_logarithmic);
+        if !is_allowed {
+            return Err(StudyError::OutOfRange { name: parameter.name, range, bounds: parameter.bounds });
+        }
+        Ok(Over { parameter, range })
+    }
 }
 
 /// Values from one end of a range to the other.
@@ -77,31 +96,17 @@ fn ladder([low, high]: [f64; 2], count: usize, is_logarithmic: bool) -> Vec<f64>
     (0..count).map(at).collect()
 }
 
-fn range(subject: &Subject, parameter: &Parameter, asked: Option<[f64; 2]>) -> Result<[f64; 2], StudyError> {
-    let Some(range) = asked.or_else(|| (parameter.range)(&subject.values)) else {
-        return Err(StudyError::NothingOfTheKind(parameter.name));
-    };
-    let [low, high] = range;
-    let [least, most] = parameter.bounds;
-    let is_allowed = least <= low && low < high && high <= most && (low > 0.0 || !parameter.is_logarithmic);
-    if !is_allowed {
-        return Err(StudyError::OutOfRange { name: parameter.name, range, bounds: parameter.bounds });
-    }
-    Ok(range)
-}
-
 /// Surveys a scene.
 ///
 /// # Errors
-/// [`StudyError`] if the parameter is none of the scene's, nothing works anywhere, or finished runs cannot be kept.
+/// [`StudyError`] if nothing works anywhere, or finished runs cannot be kept.
 pub fn stability(
     subject: &Subject,
-    parameter: &'static Parameter,
+    Over { parameter, range }: Over,
     effort: &Effort,
     journal: &Journal,
     progress: Progress<'_>,
 ) -> Result<Stability, StudyError> {
-    let range = range(subject, parameter, effort.range)?;
     let values = ladder(range, effort.size, parameter.is_logarithmic);
     let steps = ladder(STEPS.map(|factor| factor * subject.step), effort.size, true);
     let meter = Meter::new(effort.budget, progress);

@@ -190,7 +190,7 @@ impl Survey<'_> {
                 energy = Some(value(&balance.error));
             }
             if looks == LOOKS {
-                warned = simulation.warnings();
+                warned = simulation.warnings().iter().map(|warning| warning.check.to_owned()).collect();
             }
             looks += 1;
         };

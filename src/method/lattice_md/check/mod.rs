@@ -5,6 +5,7 @@ mod motion;
 
 pub use geometry::Geometry;
 pub use motion::Estimates;
+pub(super) use motion::{FASTEST, FEWEST_STEPS, LEAST_STEPS, MUCH_LOST, NETWORK, rounding};
 
 use super::choice::{self, Choice};
 use super::document::Document;

@@ -6,6 +6,8 @@ use crate::method::lattice_md::document::Document;
 use crate::method::lattice_md::keys::{COORDINATES, FRICTION, SHEAR_DAMPING, STIFFNESS};
 use crate::method::lattice_md::model::{GearValues, OnLongStep, Scheme};
 use crate::method::lattice_md::scene::{Inertia, Integrator, Scene};
+use crate::method::lattice_md::theory::contact::HertzContact;
+use crate::method::lattice_md::theory::step_matrix::largest_step;
 use crate::particles::{Particle, Particles, longest_step};
 use crate::scene::{
     DT, GRAVITY, INSTRUCTION_SET, Key, PRECISION, Precision, Reason, SceneError, WallMotion, Warning,
@@ -36,15 +38,10 @@ pub struct Estimates {
     pub damping_limit: f64,
 }
 
-/// Largest γ dt for which a scheme is stable for pure drag.
+/// Largest γ dt for which a scheme is stable for pure drag: 0.55, 0.31 and 0.17 with Gear's 4, 5 and 6 values. Beyond 1 a step
+/// would turn a velocity round, though velocity Verlet is stable up to 2.
 fn damping_limit(scheme: Scheme) -> f64 {
-    match scheme {
-        Scheme::Gear(GearValues::Four) => 0.55,
-        Scheme::Gear(GearValues::Five) => 0.31,
-        Scheme::Gear(GearValues::Six) => 0.17,
-        // v is multiplied by 1 − γ dt: below 1 it does not even change its sign.
-        Scheme::VelocityVerlet => 1.0,
-    }
+    largest_step(scheme, 0.0, 1.0).unwrap_or(1.0).min(1.0)
 }
 
 fn scheme_in_words(scheme: Scheme) -> String {
@@ -55,17 +52,17 @@ fn scheme_in_words(scheme: Scheme) -> String {
 }
 
 /// A disc in a dense network of contacts feels up to this many times γ_N.
-const NETWORK: f64 = 3.0;
+pub(in crate::method::lattice_md) const NETWORK: f64 = 3.0;
 
 /// Fewer steps a contact follow it badly: `pipe` has 17, and half its dt changes no statistics.
-const LEAST_STEPS: f64 = 15.0;
+pub(in crate::method::lattice_md) const LEAST_STEPS: f64 = 15.0;
 
 /// With fewer steps a contact a collision changes the energy by tens of percent: 15 (Gear of 4 values), 18 (5), 9 (6) and 1 %
 /// (velocity Verlet) with this number.
-const FEWEST_STEPS: f64 = 3.0;
+pub(in crate::method::lattice_md) const FEWEST_STEPS: f64 = 3.0;
 
 /// How much faster than typical the fastest approach is.
-const FASTEST: f64 = 3.0;
+pub(in crate::method::lattice_md) const FASTEST: f64 = 3.0;
 
 /// Deepest that a grain may rest in another, as a fraction of its radius, for columns of grains to stay within
 /// `max_penetration` of 0.1.
@@ -92,17 +89,14 @@ impl Estimates {
         let fall = (2.0 * gravity * radius).sqrt();
         let speed = (2.0 * square).sqrt().max(fall).max(walls);
         let stiffness = scene.law.contact.stiffness;
-        let effective = 0.5 * mass;
-        // Undamped Hertz contact.
-        let duration = (speed > 0.0)
-            .then(|| 3.218 * (effective * effective / (stiffness * stiffness * speed)).powf(0.2));
-        let depth = (1.25 * effective * speed * speed / stiffness).powf(0.4);
+        let contact = HertzContact { speed, stiffness, effective_mass: 0.5 * mass };
+        let duration = (speed > 0.0).then(|| contact.duration());
         let damping = scene.law.contact.normal_damping * scene.integrator.dt;
         Estimates {
             approach_speed: speed,
             contact_duration: duration,
             steps_per_contact: duration.map(|duration| duration / scene.integrator.dt),
-            impact_penetration: depth / (2.0 * radius),
+            impact_penetration: contact.depth() / (2.0 * radius),
             resting_depth: (heaviest * gravity / stiffness).powf(2.0 / 3.0) / radius,
             damping,
             network_damping: NETWORK * damping,
@@ -120,7 +114,7 @@ pub(super) fn instability(document: &Document) -> Option<SceneError> {
     (gamma * dt > limit).then(|| {
         let message = format!(
             "unstable: normal_damping·dt = {gamma}·{dt} = {:.4} for a single contact, but {name} is stable below \
-             about {limit}",
+             about {limit:.2}",
             gamma * dt
         );
         let error = document.values.spot(&DT).error(Reason::Stability, message);
@@ -206,7 +200,7 @@ pub(super) fn long_steps(
 const MOST_LOST: f64 = 1e-2;
 
 /// Part of a step that rounding a position may take: more is warned of.
-const MUCH_LOST: f64 = 1e-3;
+pub(in crate::method::lattice_md) const MUCH_LOST: f64 = 1e-3;
 
 /// Whether the state's positions are measured from the origin.
 fn are_absolute(scene: &Scene) -> bool {
@@ -222,14 +216,21 @@ fn lost_motion(
     estimates: &Estimates,
 ) -> Option<(f64, f64)> {
     let typical = estimates.approach_speed / std::f64::consts::SQRT_2 * scene.integrator.dt;
-    if scene.machine.precision != Precision::F32 || typical == 0.0 {
-        return None;
-    }
+    (typical > 0.0).then_some((rounding(scene, domain, geometry)?, typical))
+}
+
+/// By how much a position is rounded at most (length), where the state is in single precision.
+pub(in crate::method::lattice_md) fn rounding(
+    scene: &Scene,
+    domain: &Domain,
+    geometry: &Geometry,
+) -> Option<f64> {
     let farthest = |axis: usize| match are_absolute(scene) {
         true => domain.origin[axis].abs() + domain.length(axis),
         false => 0.5 * geometry.widest_cell[axis],
     };
-    Some((0.5 * f64::from(f32::EPSILON) * farthest(0).max(farthest(1)), typical))
+    let is_single = scene.machine.precision == Precision::F32;
+    is_single.then(|| 0.5 * f64::from(f32::EPSILON) * farthest(0).max(farthest(1)))
 }
 
 /// What seldom ends well.
@@ -251,7 +252,7 @@ pub(super) fn warnings(
         warn(
             &DT,
             format!(
-                "3·normal_damping·dt = {:.4} in a dense packing, but {} is stable below about {limit}",
+                "3·normal_damping·dt = {:.4} in a dense packing, but {} is stable below about {limit:.2}",
                 estimates.network_damping,
                 scheme_in_words(scheme)
             ),

@@ -60,7 +60,8 @@ fn largest_eigenvalue(mut matrix: Matrix) -> f64 {
 }
 
 fn squared(matrix: &Matrix) -> Matrix {
-    let product = |row: usize, column: usize| (0..DERIVATIVES).map(|k| matrix[row][k] * matrix[k][column]).sum();
+    let product =
+        |row: usize, column: usize| (0..DERIVATIVES).map(|k| matrix[row][k] * matrix[k][column]).sum();
     std::array::from_fn(|row| std::array::from_fn(|column| product(row, column)))
 }
 
@@ -76,7 +77,11 @@ pub fn largest_step(scheme: Scheme, spring: f64, damper: f64) -> Option<f64> {
         let dt = scaled / frequency;
         let radius = spectral_radius(scheme, spring * dt * dt, damper * dt);
         let half_period = std::f64::consts::PI / (spring.sqrt() * dt);
-        if half_period.is_infinite() { radius > 1.0 + ROUNDING } else { radius.powf(half_period.max(1.0)) > 1.0 + GAIN }
+        if half_period.is_infinite() {
+            radius > 1.0 + ROUNDING
+        } else {
+            radius.powf(half_period.max(1.0)) > 1.0 + GAIN
+        }
     };
     // Steps rise until errors grow; no scheme bears more than a few radians.
     let mut high = 1.0 / 64.0;
@@ -100,11 +105,8 @@ mod tests {
     use stripmine_kernels::backend::Registers;
     use stripmine_kernels::integrator::Context;
 
-    const GEAR: [Scheme; 3] = [
-        Scheme::Gear(GearValues::Four),
-        Scheme::Gear(GearValues::Five),
-        Scheme::Gear(GearValues::Six),
-    ];
+    const GEAR: [Scheme; 3] =
+        [Scheme::Gear(GearValues::Four), Scheme::Gear(GearValues::Five), Scheme::Gear(GearValues::Six)];
 
     #[test]
     fn velocity_verlet_bears_two_radians_of_a_spring() {
@@ -147,15 +149,26 @@ mod tests {
             <Gear<4> as integrator::Scheme>::scales(dt)
         }
 
-        fn begin<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V) {
+        fn begin<R: Registers>(
+            &self,
+            context: &Context<'_, R>,
+            row: &mut [R::V; DERIVATIVES],
+            acceleration: R::V,
+        ) {
             integrator::Scheme::begin(&right(), context, row, acceleration);
         }
 
-        fn correct<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V) {
-            let before = row[1];
+        fn correct<R: Registers>(
+            &self,
+            context: &Context<'_, R>,
+            row: &mut [R::V; DERIVATIVES],
+            acceleration: R::V,
+        ) {
+            let before = *row;
             integrator::Scheme::correct(&right(), context, row, acceleration);
-            // The velocity is corrected in the wrong direction.
-            row[1] = before - (row[1] - before);
+            // The acceleration is corrected three times as much as it should be.
+            let once = row[2] - before[2];
+            row[2] = row[2] + once + once;
         }
 
         fn predict<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES]) {

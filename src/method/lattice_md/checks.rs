@@ -1,0 +1,86 @@
+//! What a run is warned of: what its counts and its energy say that seldom means well.
+
+use super::Totals;
+use super::balance::Balance;
+use crate::method::RunWarning;
+
+/// The balance of energy may be off by this part of what passed through.
+const BALANCED: f64 = 0.01;
+
+/// What was counted.
+pub(super) fn counted(totals: &Totals, max_penetration: f64) -> Vec<RunWarning> {
+    let mut warnings = Vec::new();
+    let mut warn = |check, value: f64, limit, message| {
+        warnings.push(RunWarning { check, value, limit, message });
+    };
+    if totals.deep_disc_steps > 0 {
+        let message = format!(
+            "contacts were deeper than law.max_penetration = {max_penetration}: {} disc-steps, the deepest {:.4} at step {}; the \
+             contact law and the lattice are exact only for shallow contacts: stiffen them or slow the discs",
+            totals.deep_disc_steps, totals.deepest, totals.deepest_step
+        );
+        warn("deep-contacts", totals.deepest, max_penetration, message);
+    }
+    if totals.long_steps > 0 {
+        let message = format!(
+            "{} times a disc moved so far in a step that contacts deeper than law.max_penetration may have passed unseen: \
+             lower dt, or slow the discs",
+            totals.long_steps
+        );
+        warn("long-steps", totals.long_steps as f64, 0.0, message);
+    }
+    if totals.shared_cells > 0 {
+        let message = format!(
+            "{} times a disc was in a lattice cell that was another's, and was kept beside the lattice: exact, but \
+             slower the more there are",
+            totals.shared_cells
+        );
+        warn("shared-cells", totals.shared_cells as f64, 0.0, message);
+    }
+    warnings
+}
+
+/// An energy that the integration has made or lost, where `passed` is what there was and what has come from outside.
+pub(super) fn energy(balance: &Balance, passed: f64) -> Option<RunWarning> {
+    let off = balance.balance_error / passed;
+    // An energy that is no number is off, too.
+    let is_balanced = passed == 0.0 || off.abs() <= BALANCED;
+    (!is_balanced).then(|| {
+        let [has, is_wrong] = if off < 0.0 { ["lost", "too little"] } else { ["made", "too much"] };
+        let message = format!(
+            "the integration has {has} {:.2} % of the energy that passed through, {:.3e} {is_wrong}: lower dt, or choose another \
+             integrator",
+            100.0 * off.abs(),
+            balance.balance_error.abs()
+        );
+        RunWarning { check: "energy-balance", value: off, limit: BALANCED, message }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn energy_that_is_made_or_lost_is_said_with_its_number() {
+        let off = |balance_error: f64| {
+            let balance = Balance { balance_error, ..Balance::default() };
+            energy(&balance, 2.0).map(|warning| (warning.value, warning.message))
+        };
+        assert_eq!(off(0.019), None);
+        let (value, message) = off(0.05).unwrap();
+        assert!(value == 0.025 && message.contains("has made 2.50 %"), "{message}");
+        assert!(off(-0.05).unwrap().1.contains("has lost 2.50 %"));
+        assert!(off(f64::NAN).is_some());
+        assert_eq!(energy(&Balance::default(), 0.0), None);
+    }
+
+    #[test]
+    fn what_was_not_counted_is_not_said() {
+        assert_eq!(counted(&Totals::default(), 0.1), []);
+        let mut totals = Totals::default();
+        totals.long_steps = 3;
+        let [warning] = counted(&totals, 0.1).try_into().unwrap();
+        assert!(warning.check == "long-steps" && warning.value == 3.0, "{warning:?}");
+    }
+}

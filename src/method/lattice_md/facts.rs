@@ -1,0 +1,87 @@
+//! What there is to be said of a scene.
+
+use super::check::Checked;
+use super::memory;
+use super::theory::limits;
+use super::theory::trial_contact::contact_error;
+use crate::memory::in_words;
+use crate::method::Fact;
+use crate::words::Words;
+use serde_json::json;
+
+/// Every fact of a scene.
+pub(super) fn facts(checked: &Checked) -> Vec<Fact> {
+    let Checked { scene, domain, particles, alike, geometry, estimates: e, .. } = checked;
+    let sides = |[x, y]: [f64; 2]| format!("{x:.6} × {y:.6}");
+    let or_none = |value: Option<f64>, words: fn(f64) -> String| value.map_or("nothing moves".into(), words);
+    let (grains, walls) = (particles.grain_count(), particles.len() - particles.grain_count());
+    let memory = memory::foreseen(checked);
+    let left = memory.available.map(|bytes| format!(" of {} left", in_words(bytes)));
+    let mut facts = vec![
+        Fact::new("units", scene.units.as_str(), "units", scene.units.as_str()),
+        Fact::new("grains", grains, "grains", grains.to_string()),
+        Fact::new("wall_discs", walls, "wall discs", walls.to_string()),
+        Fact::data("discs_alike", *alike),
+        Fact::new("radii", json!(geometry.radii), "radii", {
+            format!("{:.6} to {:.6}", geometry.radii[0], geometry.radii[1])
+        }),
+        Fact::data("origin", json!(domain.corner())),
+        Fact::new("sides", json!(domain.lengths()), "box", sides(domain.lengths())),
+        Fact::data("periodic", json!(domain.periodic())),
+        Fact::data("search", scene.search.by.word()),
+        Fact::data("engine", scene.machine.engine.word()),
+    ];
+    if scene.needs_lattice() {
+        facts.extend(lattice_facts(checked));
+    }
+    facts.extend([
+        Fact::data("dt", scene.integrator.dt),
+        Fact::new("steps", scene.run.steps, "steps", {
+            format!("{} of {} are {:.6}", scene.run.steps, scene.integrator.dt, scene.duration())
+        }),
+        Fact::data("duration", scene.duration()),
+        Fact::new("estimates", json!(e), "approach speed", format!("{:.4e}", e.approach_speed)),
+        Fact::words("steps per contact", or_none(e.steps_per_contact, |steps| format!("{steps:.1}"))),
+        Fact::words("penetration of an impact", format!("{:.4}", e.impact_penetration)),
+        Fact::new("memory", json!(memory), "memory of a run", {
+            in_words(memory.needed) + &left.unwrap_or_default()
+        }),
+        Fact::words("damping γ dt, dense 3 γ dt, limit", {
+            format!("{:.4}, {:.4}, {:.2}", e.damping, e.network_damping, e.damping_limit)
+        }),
+    ]);
+    facts
+}
+
+/// What there is to be said of the lattice of a scene that needs one.
+fn lattice_facts(checked: &Checked) -> Vec<Fact> {
+    let geometry = &checked.geometry;
+    let sides = |[x, y]: [f64; 2]| format!("{x:.6} × {y:.6}");
+    let [columns, rows] = [geometry.shape.columns(), geometry.shape.rows()];
+    let mask = 2 * geometry.mask.half_width() + 1;
+    let [shortest, longest] = geometry.edge_bounds;
+    vec![
+        Fact::data("columns", columns),
+        Fact::data("rows", rows),
+        Fact::new("cells", columns * rows, "cells", format!("{columns} × {rows} = {}", columns * rows)),
+        Fact::new("cell_edges", json!(geometry.frame.edge), "cell", sides(geometry.frame.edge)),
+        Fact::new("cell_edge_bounds", json!(geometry.edge_bounds), "cell edge allowed", {
+            format!("{shortest:.6} to {longest:.6}")
+        }),
+        Fact::new("mask", mask, "mask", format!("{mask} × {mask}")),
+        Fact::new("occupancy", geometry.occupancy, "occupancy", format!("{:.4}", geometry.occupancy)),
+    ]
+}
+
+/// By how much a contact at the typical speed is followed wrongly; none where nothing moves.
+pub(super) fn expected_error(checked: &Checked) -> Option<Fact> {
+    let Checked { scene, estimates, .. } = checked;
+    let (contact, integrator) = (limits::contact(checked, 1.0), &scene.integrator);
+    let error = contact_error(contact, &scene.law.contact, integrator.scheme, integrator.dt)?;
+    let most = if error.step > integrator.dt { "at most " } else { "" };
+    let words = format!(
+        "{most}{:.1e} of its energy, falling as dt^{:.1}; by {} trials at {:.3e}",
+        error.energy, error.order, error.phases, estimates.approach_speed
+    );
+    Some(Fact::new("expected_error", json!(error), "error of a contact", words))
+}

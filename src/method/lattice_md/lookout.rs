@@ -1,0 +1,112 @@
+//! What is looked at now and then in a run, because it costs too much to be looked at in every step: speeds, and with them how
+//! many steps a contact takes and what rounding takes of a step.
+
+use super::check::{Checked, LEAST_STEPS, MUCH_LOST, rounding};
+use super::theory::contact::HertzContact;
+use super::theory::limits;
+use crate::io::checkpoint::Counter;
+use crate::method::RunWarning;
+use crate::particles::Particles;
+use std::collections::BTreeMap;
+
+/// Steps from one look to the next: a look costs less than a step.
+const EVERY: u64 = 256;
+/// Names of the counters.
+const COUNTERS: [&str; 2] = ["looked.fastest", "looked.slowest"];
+
+/// What was seen of the speeds so far.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Lookout {
+    contact: HertzContact,
+    dt: f64,
+    /// By how much a position is rounded (length), where that is in single precision.
+    rounding: Option<f64>,
+    /// The largest and the smallest typical speed of approach, √2 of the root mean square speed (length/time).
+    typical: [f64; 2],
+}
+
+impl Lookout {
+    /// At the start of a scene.
+    pub(super) fn of(checked: &Checked) -> Lookout {
+        let mut lookout = Lookout {
+            contact: limits::contact(checked, 1.0),
+            dt: checked.scene.integrator.dt,
+            rounding: rounding(&checked.scene, &checked.domain, &checked.geometry),
+            typical: [0.0, f64::INFINITY],
+        };
+        lookout.look(&checked.particles);
+        lookout
+    }
+
+    /// Whether it is time for a look.
+    pub(super) fn is_due(step: u64) -> bool {
+        step.is_multiple_of(EVERY)
+    }
+
+    /// Looks at the discs.
+    pub(super) fn look(&mut self, particles: &Particles) {
+        let grains = particles.grains();
+        let squares: f64 =
+            grains.iter().map(|disc| disc.velocity.iter().map(|part| part * part).sum::<f64>()).sum();
+        let typical = (2.0 * squares / grains.len().max(1) as f64).sqrt();
+        let [most, least] = self.typical;
+        self.typical = [most.max(typical), least.min(typical)];
+    }
+
+    /// What was seen, for a checkpoint.
+    pub(super) fn counters(&self) -> impl Iterator<Item = (String, Counter)> {
+        COUNTERS.iter().zip(self.typical).map(|(name, speed)| ((*name).to_owned(), Counter::Sum(speed)))
+    }
+
+    /// Takes up what was seen before.
+    ///
+    /// # Errors
+    /// A sentence, if it is not there.
+    pub(super) fn restore(&mut self, counters: &BTreeMap<String, Counter>) -> Result<(), String> {
+        for (name, speed) in COUNTERS.into_iter().zip(&mut self.typical) {
+            let Some(Counter::Sum(value)) = counters.get(name) else {
+                return Err(format!("the counter {name} is missing"));
+            };
+            *speed = *value;
+        }
+        Ok(())
+    }
+
+    /// What is to be said of it.
+    pub(super) fn warnings(&self) -> Vec<RunWarning> {
+        let [most, least] = self.typical;
+        let contact = HertzContact { speed: most, ..self.contact };
+        let steps = contact.duration() / self.dt;
+        let mut warnings = vec![];
+        if steps < LEAST_STEPS {
+            let message = format!(
+                "discs typically met at up to {most:.3e}, where a contact lasts {:.3e}, {steps:.1} steps: below {LEAST_STEPS} \
+                 collisions change the energy by percents; a dt of {:.3e} gives as many",
+                contact.duration(),
+                contact.duration() / LEAST_STEPS
+            );
+            warnings.push(RunWarning {
+                check: "steps-per-contact",
+                value: steps,
+                limit: LEAST_STEPS,
+                message,
+            });
+        }
+        let step = least / std::f64::consts::SQRT_2 * self.dt;
+        if let Some(rounding) = self.rounding
+            && rounding > MUCH_LOST * step
+        {
+            let message = format!(
+                "positions in single precision are rounded by up to {rounding:.1e}, where discs typically moved as little as \
+                 {step:.1e} in a step: \"mixed\" or \"f64\" loses no motion"
+            );
+            warnings.push(RunWarning {
+                check: "rounding",
+                value: rounding / step,
+                limit: MUCH_LOST,
+                message,
+            });
+        }
+        warnings
+    }
+}

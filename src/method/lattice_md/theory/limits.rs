@@ -1,0 +1,131 @@
+//! What bounds the step of a scene.
+
+use super::contact::HertzContact;
+use super::step_matrix::largest_step;
+use crate::method::lattice_md::check::{Checked, FASTEST, FEWEST_STEPS, LEAST_STEPS, NETWORK};
+use crate::method::{Beyond, StepLimit};
+use crate::particles::longest_step;
+
+/// Without gravity and dissipation discs have several contacts at once above this packing fraction.
+const DENSE: f64 = 0.5;
+
+/// Every limit of a scene's step.
+pub fn step_limits(checked: &Checked) -> Vec<StepLimit> {
+    let all = [
+        one_contact(checked),
+        packing(checked),
+        friction(checked),
+        followed(checked),
+        fewest(checked),
+        mask(checked),
+    ];
+    all.into_iter().flatten().collect()
+}
+
+/// A head-on contact of the lightest grains at the typical speed of approach times a factor.
+pub fn contact(checked: &Checked, faster: f64) -> HertzContact {
+    let masses = checked.particles.grains().iter().map(|disc| disc.mass);
+    HertzContact {
+        speed: faster * checked.estimates.approach_speed,
+        stiffness: checked.scene.law.contact.stiffness,
+        effective_mass: 0.5 * masses.fold(f64::INFINITY, f64::min),
+    }
+}
+
+fn one_contact(checked: &Checked) -> Option<StepLimit> {
+    let (scheme, damping) = (checked.scene.integrator.scheme, checked.scene.law.contact.normal_damping);
+    let contact = contact(checked, FASTEST);
+    let step = largest_step(scheme, contact.stiffest(), damping)?;
+    let why = format!(
+        "largest eigenvalue of the step matrix of {} on the spring and damper of a contact at {FASTEST} times the typical speed, \
+         {:.3e}: ω = {:.3e}, γ = {damping:.3e}",
+        scheme.name(),
+        contact.speed,
+        contact.stiffest().sqrt()
+    );
+    Some(StepLimit {
+        name: "one contact",
+        step,
+        share: checked.scene.integrator.dt / step,
+        beyond: Beyond::Unstable,
+        why,
+    })
+}
+
+/// Where discs press each other from all sides.
+fn packing(checked: &Checked) -> Option<StepLimit> {
+    let (scheme, law) = (checked.scene.integrator.scheme, &checked.scene.law.contact);
+    let discs = checked.particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius.powi(2));
+    let is_dense = discs.sum::<f64>() > DENSE * checked.domain.area();
+    let settles = checked.scene.domain.gravity != [0.0; 2] || law.normal_damping > 0.0;
+    if checked.particles.grain_count() < 3 || !(is_dense || settles) {
+        return None;
+    }
+    let contact = contact(checked, 1.0);
+    let step = largest_step(scheme, NETWORK * contact.stiffest(), NETWORK * law.normal_damping)?;
+    let why = format!(
+        "the same with {NETWORK} times spring and damper of a contact at the typical speed, {:.3e}: a disc pressed from all sides",
+        contact.speed
+    );
+    Some(StepLimit {
+        name: "dense packing",
+        step,
+        share: checked.scene.integrator.dt / step,
+        beyond: Beyond::Unstable,
+        why,
+    })
+}
+
+/// Both surfaces of a pair slow down: γ_S M_eff (1/m + 1/m + R²/I + R²/I).
+fn friction(checked: &Checked) -> Option<StepLimit> {
+    let law = &checked.scene.law;
+    let rate = law.contact.shear_damping * (1.0 + 1.0 / law.inertia.factor());
+    let step = largest_step(checked.scene.integrator.scheme, 0.0, rate).filter(|_| law.has_friction())?;
+    let why = format!("the same on the drag of friction between two surfaces, {rate:.3e} a unit of time");
+    Some(StepLimit {
+        name: "drag of friction",
+        step,
+        share: checked.scene.integrator.dt / step,
+        beyond: Beyond::Unstable,
+        why,
+    })
+}
+
+fn of_duration(checked: &Checked, name: &'static str, steps: f64) -> Option<StepLimit> {
+    let contact = contact(checked, 1.0);
+    let duration = contact.duration();
+    let why =
+        format!("an undamped contact at the typical speed, {:.3e}, lasts {duration:.3e}", contact.speed);
+    let is_known = duration.is_finite() && duration > 0.0;
+    let step = duration / steps;
+    is_known.then(|| StepLimit {
+        name,
+        step,
+        share: checked.scene.integrator.dt / step,
+        beyond: Beyond::Inaccurate,
+        why,
+    })
+}
+
+fn followed(checked: &Checked) -> Option<StepLimit> {
+    of_duration(checked, "15 steps a contact", LEAST_STEPS)
+}
+
+fn fewest(checked: &Checked) -> Option<StepLimit> {
+    of_duration(checked, "3 steps a contact", FEWEST_STEPS)
+}
+
+/// How far the fastest disc of the start may move before contacts pass unseen.
+fn mask(checked: &Checked) -> Option<StepLimit> {
+    let speeds = checked.particles.all().iter().map(|disc| disc.velocity[0].hypot(disc.velocity[1]));
+    let fastest = speeds.fold(0.0, f64::max).max(checked.estimates.approach_speed);
+    let depth = checked.scene.law.max_penetration;
+    let longest = longest_step(checked.geometry.radii[0], depth);
+    let why = format!(
+        "a disc at {fastest:.3e} may move {longest:.3e} in a step; beyond, contacts deeper than law.max_penetration = {depth} could \
+         pass unseen"
+    );
+    let step = longest / fastest;
+    let share = checked.scene.integrator.dt / step;
+    (fastest > 0.0).then(|| StepLimit { name: "mask", step, share, beyond: Beyond::Unseen, why })
+}

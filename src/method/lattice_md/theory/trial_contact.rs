@@ -1,0 +1,141 @@
+//! Trial contacts: two typical grains that meet head on, followed by the scene's own scheme and step.
+
+use super::contact::HertzContact;
+use crate::method::lattice_md::model::{GearValues, Scheme};
+use stripmine_kernels::integrator;
+use stripmine_kernels::integrator::gear::{Acceleration, Gear};
+use stripmine_kernels::integrator::single::Single;
+use stripmine_kernels::integrator::velocity_verlet::VelocityVerlet;
+use stripmine_kernels::law::granular::Contact;
+
+/// Contacts begin at this many places of a step.
+const PHASES: u32 = 16;
+/// The step of the reference, in steps.
+const REFERENCE: f64 = 1.0 / 16.0;
+/// Contacts are followed in this many steps at most.
+const MOST: f64 = 1000.0;
+/// A contact that lasts longer than this many undamped ones does not end.
+const ENDLESS: f64 = 20.0;
+
+/// By how much a contact is followed wrongly.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct ContactError {
+    /// Error of the energy after the contact, over the energy before: root of the mean square over the phases of the step.
+    pub energy: f64,
+    /// The power of the step with which it falls, from half the step.
+    pub order: f64,
+    /// The step that was tried (time): the scene's own, or as long as a thousandth of the contact if that is longer.
+    pub step: f64,
+    /// Contacts that were tried for it.
+    pub phases: u32,
+}
+
+/// Tries a contact; none where nothing moves, or discs do not part again.
+pub fn contact_error(hertz: HertzContact, law: &Contact, scheme: Scheme, dt: f64) -> Option<ContactError> {
+    let duration = hertz.duration();
+    if !(duration.is_finite() && duration > 0.0) {
+        return None;
+    }
+    let step = dt.max(duration / MOST);
+    let trial = Trial { hertz, damping: law.normal_damping, pulls: !law.cohesionless };
+    let after =
+        |step: f64, phase: u32| trial.energy_after(scheme, step, f64::from(phase) / f64::from(PHASES));
+    let reference = after(REFERENCE * step, 0)?;
+    let error = |step: f64| {
+        let off = (0..PHASES).map(|phase| Some((after(step, phase)? - reference).powi(2)));
+        Some((off.sum::<Option<f64>>()? / f64::from(PHASES)).sqrt())
+    };
+    let energy = error(step)?;
+    let order = libm::log2(energy / error(0.5 * step)?);
+    Some(ContactError { energy, order, step, phases: PHASES })
+}
+
+struct Trial {
+    hertz: HertzContact,
+    damping: f64,
+    /// Whether separating discs pull.
+    pulls: bool,
+}
+
+impl Trial {
+    /// The energy after the contact over that before, if the contact begins a part `phase` of a step late.
+    fn energy_after(&self, scheme: Scheme, step: f64, phase: f64) -> Option<f64> {
+        let kind = if self.damping == 0.0 { Acceleration::OfPositions } else { Acceleration::OfVelocities };
+        match scheme {
+            Scheme::Gear(GearValues::Four) => self.followed(Gear::<4>::new(kind), step, phase),
+            Scheme::Gear(GearValues::Five) => self.followed(Gear::<5>::new(kind), step, phase),
+            Scheme::Gear(GearValues::Six) => self.followed(Gear::<6>::new(kind), step, phase),
+            Scheme::VelocityVerlet => self.followed(VelocityVerlet, step, phase),
+        }
+    }
+
+    /// The acceleration of the overlap.
+    fn acceleration(&self, overlap: f64, velocity: f64) -> f64 {
+        if overlap <= 0.0 {
+            return 0.0;
+        }
+        let HertzContact { stiffness, effective_mass, .. } = self.hertz;
+        let push = stiffness / effective_mass * overlap * overlap.sqrt() + self.damping * velocity;
+        -if self.pulls { push } else { push.max(0.0) }
+    }
+
+    fn followed<C: integrator::Scheme>(&self, scheme: C, step: f64, phase: f64) -> Option<f64> {
+        let speed = self.hertz.speed;
+        // A whole step before the contact, and a part more: the derivatives of the start are those of free flight.
+        let gap = (1.0 + phase) * speed * step;
+        let mut single = Single::new(scheme, step).starting(-gap, speed, |_, _| 0.0);
+        let most = (ENDLESS * self.hertz.duration() / step) as u64 + 64;
+        for _ in 0..most {
+            single.step(|overlap, velocity| self.acceleration(overlap, velocity));
+            let [overlap, velocity] = single.motion();
+            if !velocity.is_finite() {
+                return None;
+            }
+            // Discs that have passed through each other are not apart.
+            if overlap < -gap && velocity < 0.0 {
+                return Some((velocity / speed).powi(2));
+            }
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stripmine_kernels::law::granular::ContactArm;
+
+    fn error(damping: f64, scheme: Scheme, steps: f64) -> ContactError {
+        let hertz = HertzContact { speed: 0.5, stiffness: 1e4, effective_mass: 0.5 };
+        let law = Contact {
+            stiffness: 1e4,
+            normal_damping: damping,
+            shear_damping: 0.0,
+            friction: 0.0,
+            cohesionless: true,
+            arm: ContactArm::Radius,
+        };
+        contact_error(hertz, &law, scheme, hertz.duration() / steps).unwrap()
+    }
+
+    /// The kink of Hertz's force leaves velocity Verlet an order of 2½, the jump of the damping any scheme one of 1.
+    #[test]
+    fn errors_fall_as_the_law_lets_them() {
+        let elastic = error(0.0, Scheme::VelocityVerlet, 60.0);
+        assert!((elastic.order - 2.5).abs() < 0.3, "{elastic:?}");
+        for scheme in [Scheme::VelocityVerlet, Scheme::Gear(GearValues::Five)] {
+            let damped = error(4.0, scheme, 60.0);
+            assert!((damped.order - 1.0).abs() < 0.3, "{damped:?}");
+        }
+    }
+
+    #[test]
+    fn few_steps_a_contact_err_much_and_many_little() {
+        let scheme = Scheme::Gear(GearValues::Four);
+        let [few, many] = [4.0, 100.0].map(|steps| error(0.0, scheme, steps).energy);
+        assert!(few > 0.03 && many < 1e-3, "{few} {many}");
+        // Beyond a thousand steps what is said is an upper bound.
+        let finest = error(0.0, scheme, 1e6);
+        assert!(finest.energy <= many && finest.step > 0.0);
+    }
+}
