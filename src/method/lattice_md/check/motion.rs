@@ -267,7 +267,7 @@ pub(super) fn warnings(
             warn(
                 &SHEAR_DAMPING,
                 format!(
-                    "{words}·shear_damping·dt = {:.4} for a contact that rolls, stable below about {limit}",
+                    "{words}·shear_damping·dt = {:.4} for a contact that rolls, stable below about {limit:.2}",
                     rate * dt
                 ),
                 format!("dt below {:.4e}, or a smaller shear_damping", limit / rate),

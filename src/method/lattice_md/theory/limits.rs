@@ -127,5 +127,5 @@ fn mask(checked: &Checked) -> Option<StepLimit> {
     );
     let step = longest / fastest;
     let share = checked.scene.integrator.dt / step;
-    (fastest > 0.0).then(|| StepLimit { name: "mask", step, share, beyond: Beyond::Unseen, why })
+    (fastest > 0.0).then_some(StepLimit { name: "mask", step, share, beyond: Beyond::Unseen, why })
 }

@@ -32,11 +32,12 @@ pub fn spectral_radius(scheme: Scheme, spring: f64, damper: f64) -> f64 {
 /// The same for a scheme that carries `values` derivatives.
 fn radius_of<C: integrator::Scheme>(scheme: C, values: usize, spring: f64, damper: f64) -> f64 {
     let mut matrix = [[0.0; DERIVATIVES]; DERIVATIVES];
-    for column in 0..values {
+    // Transposed, which has the same eigenvalues.
+    for (unit, image) in matrix.iter_mut().enumerate().take(values) {
         let mut single = Single::new(scheme, 1.0);
-        single.row[column] = 1.0;
+        single.row[unit] = 1.0;
         single.step(|position, velocity| -spring * position - damper * velocity);
-        (0..values).for_each(|row| matrix[row][column] = single.row[row]);
+        image[..values].copy_from_slice(&single.row[..values]);
     }
     largest_eigenvalue(matrix)
 }

@@ -19,8 +19,8 @@ fn hue(class: Class) -> usize {
         Class::Penetration => 2,
         Class::MaskOutrun => 0,
         Class::SharedCell => 7,
-        Class::ParticleLost => 10,
-        Class::NonFinite => 13,
+        Class::ParticleLost => 9,
+        Class::NonFinite => 10,
         Class::Stopped => 11,
         Class::Refused => 6,
     }

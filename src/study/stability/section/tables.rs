@@ -73,8 +73,9 @@ fn schemes(maps: &Maps) -> Table {
         ],
         rows.collect(),
         &[
-            "Works: comes to an end with an energy that is off by at most 10 % of what passed through, and means that are those of runs \
-             with the smallest step, by more than which chance is off once in a thousand, and at least 5 %.",
+            "Works: the run comes to an end, its energy is off by at most 10 % of what passed through, and its means are those of runs \
+             with the smallest step: by at most 5 %, or by what chance alone exceeds once in a thousand runs. What is off by more is \
+             confirmed by another seed.",
         ],
     )
 }

@@ -1,0 +1,253 @@
+//! Where methods work, what a run is warned of, and what is said before it: as a user meets it.
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+fn stripmine(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stripmine"));
+    command.args(arguments).stdin(Stdio::null()).output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn succeeds(output: &Output) -> Value {
+    assert!(output.status.success(), "{}", said(output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn map(scene: &str, out: &Path, more: &[&str]) -> Output {
+    let begin = ["chart", "stability", scene, "--json", "--out", out.to_str().unwrap(), "--size", "6"];
+    let rest = ["--seeds", "2", "--tolerance", "0.2", "--budget", "4"];
+    stripmine(&[&begin[..], &rest, more].concat())
+}
+
+fn classes(data: &Value) -> Vec<&str> {
+    let columns = data["map"].as_array().unwrap().iter();
+    columns.flat_map(|cells| cells.as_array().unwrap()).map(|cell| cell["class"].as_str().unwrap()).collect()
+}
+
+/// Two discs that fly side by side and never meet.
+fn apart(folder: &Path) -> PathBuf {
+    let text = r#"format = 2
+units = "reduced"
+[method]
+kind = "lattice-md"
+[domain]
+sides = [12.0, 8.0]
+[particles]
+generate = "list"
+positions = [[3.0, 2.0], [3.0, 6.0]]
+velocities = [[0.2, 0.0], [0.2, 0.0]]
+radius = 0.5
+mass = 1.0
+[law]
+stiffness = 100.0
+[integrator]
+dt = 2e-3
+[run]
+time = 4.0
+thermo_every = 10
+"#;
+    let path = folder.join("apart.toml");
+    fs::write(&path, text).unwrap();
+    path
+}
+
+#[test]
+fn a_scene_that_is_stable_everywhere_shows_no_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = apart(folder.path());
+    let data = succeeds(&map(scene.to_str().unwrap(), &folder.path().join("map"), &[]));
+    let data = &data["apart"];
+    assert!(classes(data).iter().all(|class| *class == "works"), "{data}");
+    let edges = data["boundaries"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .chain(data["schemes"].as_array().unwrap().iter().map(|it| &it["edges"]));
+    for edge in edges {
+        assert!(edge["works"].as_array().unwrap().iter().all(|edge| edge == "above"), "{edge}");
+    }
+}
+
+/// Within a factor: contacts are no springs, and accuracy may end sooner.
+#[test]
+fn what_works_ends_where_theory_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("map");
+    let data = succeeds(&map("two-discs", &out, &["--over", "damping", "--set", "run.time=3.2"]));
+    let data = &data["two-discs"];
+    let found = classes(data);
+    assert!(found.contains(&"works") && found.contains(&"mask-outrun"), "{found:?}");
+    assert!(found.contains(&"energy-growth") || found.contains(&"silent"), "{found:?}");
+    for scheme in data["schemes"].as_array().unwrap() {
+        let works = scheme["edges"]["works"][0]["between"][0].as_f64().unwrap();
+        let theory = scheme["theory"][0].as_f64().unwrap();
+        assert!(works < 5.0 * theory && works > 0.2 * theory, "{scheme}");
+    }
+    let cells = fs::read_to_string(out.join("host/stability/cells.csv")).unwrap();
+    assert_eq!(cells.lines().count(), 37);
+    for file in ["edges.csv", "two_discs_stability.svg", "two_discs_stability.png", "data.json"] {
+        assert!(out.join("host/stability").join(file).exists(), "{file}");
+    }
+    // A finished study is only read again.
+    let again = map("two-discs", &out, &["--over", "damping", "--set", "run.time=3.2"]);
+    assert!(said(&again).contains("going on with") && succeeds(&again)["two-discs"] == *data);
+}
+
+#[test]
+fn maps_that_cannot_be_are_refused_with_what_may_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = apart(folder.path());
+    let refused = |more: &[&str], code: i32, words: &[&str]| {
+        let out = folder.path().join("refused");
+        let output = map(scene.to_str().unwrap(), &out, more);
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(code), "{more:?}: {said}");
+        assert!(words.iter().all(|word| said.contains(word)), "{more:?}: {said}");
+        let _ = fs::remove_dir_all(out);
+    };
+    refused(&["--over", "colour"], 2, &["colour", "stiffness, damping"]);
+    refused(&["--over", "damping"], 2, &["has no damping", "--range"]);
+    refused(&["--range", "5", "1"], 2, &["--range 5 1", "rises"]);
+    refused(&["--range", "0", "1"], 2, &["--range 0 1"]);
+    refused(&["--over", "size-ratio", "--range", "0.5", "2"], 2, &["size-ratio", "from 1e0"]);
+    refused(&["--tolerance", "0"], 2, &["tolerance"]);
+    let other = folder.path().join("other");
+    assert!(map(scene.to_str().unwrap(), &other, &[]).status.success());
+    let output = map(scene.to_str().unwrap(), &other, &["--range", "1", "2"]);
+    assert!(
+        output.status.code() == Some(2) && said(&output).contains("choose another --out"),
+        "{}",
+        said(&output)
+    );
+}
+
+/// Discs so soft that they pass through each other, whatever the step.
+#[test]
+fn a_scene_that_fails_at_every_step_says_what_was_tried() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = map("two-discs", &folder.path().join("map"), &["--range", "1e-6", "1e-5"]);
+    let said = said(&output);
+    assert_eq!(output.status.code(), Some(4), "{said}");
+    assert!(
+        said.contains("tried were")
+            && said.contains("stiffness = 1e-6, step 5e-4")
+            && said.contains("overlap"),
+        "{said}"
+    );
+}
+
+fn run(scene: &str, folder: &Path, more: &[&str]) -> Value {
+    let out = folder.join("run");
+    let begin = ["run", scene, "--json", "--quiet", "--overwrite", "--out", out.to_str().unwrap()];
+    succeeds(&stripmine(&[&begin[..], more].concat()))
+}
+
+fn checks(summary: &Value) -> Vec<&str> {
+    summary["checks"].as_array().unwrap().iter().map(|check| check["check"].as_str().unwrap()).collect()
+}
+
+#[test]
+fn a_run_says_what_is_wrong_with_it_and_nothing_of_a_good_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |scene: &str, more: &[&str]| run(scene, folder.path(), more);
+    assert_eq!(checks(&of("two-discs", &[])), [] as [&str; 0]);
+    let coarse = of("two-discs", &["--set", "integrator.dt=0.015"]);
+    assert!(
+        checks(&coarse).contains(&"steps-per-contact") && checks(&coarse).contains(&"energy-balance"),
+        "{coarse}"
+    );
+    let check = coarse["checks"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|check| check["check"] == "steps-per-contact")
+        .unwrap();
+    let (steps, limit) = (check["value"].as_f64().unwrap(), check["limit"].as_f64().unwrap());
+    assert!(steps > 3.0 && steps < limit && limit == 15.0, "{check}");
+    let warnings = coarse["warnings"].as_array().unwrap();
+    assert!(warnings.iter().any(|text| text == &check["message"]), "{warnings:?}");
+    // Steps so small that single precision rounds them away.
+    let small = ["machine.precision=f32", "particles.count=64", "run.steps=100", "integrator.dt=1e-4"];
+    let small: Vec<&str> = small.iter().flat_map(|set| ["--set", set]).collect();
+    assert!(checks(&of("dense-gas", &small)).contains(&"rounding"));
+}
+
+/// What was seen is in the checkpoint: a run that is resumed says what one in a piece says.
+#[test]
+fn a_resumed_run_says_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = |out: &Path, steps: &str, more: &[&str]| {
+        let steps = format!("run.steps={steps}");
+        let out = out.to_str().unwrap().to_owned();
+        let begin = [
+            "run",
+            "dense-gas",
+            "--json",
+            "--quiet",
+            "--set",
+            "particles.count=64",
+            "--set",
+            "integrator.dt=0.04",
+        ];
+        let all: Vec<&str> = begin
+            .iter()
+            .copied()
+            .chain(["--set", steps.as_str(), "--out", out.as_str()])
+            .chain(more.iter().copied())
+            .collect();
+        succeeds(&stripmine(&all))
+    };
+    let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
+    let whole = arguments(&whole, "2000", &[]);
+    arguments(&parts, "700", &[]);
+    let resumed = arguments(&parts, "2000", &["--resume"]);
+    assert!(!checks(&whole).is_empty());
+    assert_eq!(whole["checks"], resumed["checks"]);
+}
+
+#[test]
+fn what_is_to_be_expected_is_said_before_a_run() {
+    let facts = succeeds(&stripmine(&["scene", "check", "pipe-small", "--json"]));
+    let limits = facts["step_limits"].as_array().unwrap();
+    let share =
+        |name: &str| limits.iter().find(|limit| limit["name"] == name).unwrap()["share"].as_f64().unwrap();
+    // Six values are unstable in the dense plug of this pipe, four are not.
+    assert!(
+        share("dense packing") < 1.0 && share("dense packing") > 0.3 && share("mask") < 0.1,
+        "{limits:?}"
+    );
+    let six =
+        succeeds(&stripmine(&["scene", "check", "pipe-small", "--json", "--set", "integrator.values=6"]));
+    let dense = six["step_limits"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|limit| limit["name"] == "dense packing")
+        .unwrap()
+        .clone();
+    assert!(dense["share"].as_f64().unwrap() > 1.0 && dense["beyond"] == "unstable", "{dense}");
+    let error = &facts["expected_error"];
+    assert!(
+        error["energy"].as_f64().unwrap() < 0.1 && (error["order"].as_f64().unwrap() - 1.0).abs() < 0.3,
+        "{error}"
+    );
+    assert!(facts["expected_time"]["seconds"].as_f64().unwrap() > 0.0);
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let output = stripmine(&["run", "two-discs", "--set", "run.steps=100", "--out", out.to_str().unwrap()]);
+    let text = said(&output);
+    for word in ["expected: one contact: dt is", "expected: error of a contact", "expected: time of a run"] {
+        assert!(text.contains(word), "{text}");
+    }
+    let summary: Value =
+        serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    assert!(
+        summary["foreseen"]["step_limits"].is_array() && summary["foreseen"]["expected_error"].is_object()
+    );
+}
