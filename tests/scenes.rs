@@ -329,7 +329,7 @@ fn the_verbs_print_presets_keys_and_checks() {
     let data: serde_json::Value = serde_json::from_slice(&refused.stdout).unwrap();
     assert_eq!(data["errors"][0]["reason"], "range");
     for (overrides, words) in [
-        (&["integrator.values=6"][..], &["0.3000 in a dense packing", "0.17", "5.6667e-5"][..]),
+        (&["integrator.values=6"][..], &["0.3000 in a dense packing", "0.16", "5.4446e-5"][..]),
         (&["integrator.dt=2e-4"], &["steps"]),
         (&["law.shear_damping=0"], &["law.friction: "]),
         (&["law.friction=0"], &["law.shear_damping has no effect"]),

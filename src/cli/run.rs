@@ -51,6 +51,7 @@ impl RunVerb {
             (_, true) => Existing::Overwrite,
             _ => Existing::Refuse,
         };
+        prepared.memory().fits("scene")?;
         if !common.quiet {
             before(prepared.as_ref());
         }

@@ -3,6 +3,7 @@
 use super::error::{Mistakes, Place, Spot};
 use super::key_set::KeySet;
 use super::keys::{Fallback, Key, Value};
+use super::rules::is_used;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::de::DeValue;
 
@@ -84,6 +85,11 @@ impl Values {
     /// What was given for a key, if it was given well.
     pub fn given(&self, key: &Key) -> Option<&Value> {
         self.entry(key).map(|entry| &entry.value)
+    }
+
+    /// Whether a key means anything in this scene.
+    pub fn is_used(&self, key: &Key) -> bool {
+        is_used(self, key.used) == Some(true)
     }
 
     /// Whether a key was given, but not well.

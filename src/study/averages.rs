@@ -22,12 +22,13 @@ pub struct Averages<'s> {
     domain: Domain,
     looks: u64,
     means: Means,
+    speed: f64,
 }
 
 impl<'s> Averages<'s> {
     /// Of a run in a box, before the first of its [`LOOKS`] + 1 looks.
     pub fn new(subject: &'s Subject, domain: Domain) -> Self {
-        Averages { subject, domain, looks: 0, means: Means::new() }
+        Averages { subject, domain, looks: 0, means: Means::new(), speed: 0.0 }
     }
 
     /// Whether the next look counts.
@@ -46,12 +47,19 @@ impl<'s> Averages<'s> {
         let observed = |name: &str| Some(vec![*values.get(self.subject.quantity(name)?)?]);
         let named = self.subject.trials.observables.iter();
         let observed = named.filter_map(|name| Some(((*name).to_owned(), observed(name)?)));
-        let profile = profile(&State::of(&simulation.particles()), &self.domain);
+        let state = State::of(&simulation.particles());
+        let profile = profile(&state, &self.domain);
         let share = 1.0 / (LOOKS + 1 - LOOKS / 2) as f64;
+        self.speed += share * state.speed();
         for (name, values) in observed.chain([(PROFILE.to_owned(), profile)]) {
             let sum = self.means.entry(name).or_insert_with(|| vec![0.0; values.len()]);
             sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += share * value);
         }
+    }
+
+    /// The mean of the root mean square speed (length/time), after the last look: what mean velocities are held against.
+    pub fn speed(&self) -> f64 {
+        self.speed
     }
 
     /// The means, after the last look.

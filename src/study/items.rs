@@ -52,13 +52,18 @@ fn where_it_works(effort: Effort, progress: Progress<'_>) -> Result<Made, Failur
     };
     let mapped: Vec<_> =
         METHODS.iter().filter_map(|method| method.trials).flat_map(|trials| trials.mapped).collect();
-    let mut maps = vec![];
-    for (at, map) in mapped.iter().enumerate() {
+    // Every scene is read before the first takes its time.
+    let mut surveys = vec![];
+    for map in mapped {
         let overrides: Vec<String> = map.overrides.iter().map(|&text| text.to_owned()).collect();
         let subject = Subject::load(map.preset, &overrides, METHODS)?;
         let over = Over::of(&subject, map.parameter, None)?;
-        let share = |part: f64| progress((at as f64 + part) / mapped.len() as f64);
-        maps.push((map.name.to_owned(), stability(&subject, over, &effort, &Journal::none(), &share)?));
+        surveys.push((map.name.to_owned(), subject, over));
+    }
+    let (mut maps, all) = (vec![], surveys.len() as f64);
+    for (at, (name, subject, over)) in surveys.into_iter().enumerate() {
+        let share = |part: f64| progress((at as f64 + part) / all);
+        maps.push((name, stability(&subject, over, &effort, &Journal::none(), &share)?));
     }
     map_section::made(&maps, format!("stripmine reproduce --only {}", map_section::NAME))
 }

@@ -58,6 +58,13 @@ impl State {
         [(sum / self.0.len().max(1) as f64).sqrt(), largest.sqrt()]
     }
 
+    /// Root of the mean square speed (length/time).
+    pub fn speed(&self) -> f64 {
+        let squares: f64 =
+            self.0.iter().map(|body| body.velocity.iter().map(|part| part * part).sum::<f64>()).sum();
+        (squares / self.0.len().max(1) as f64).sqrt()
+    }
+
     /// Momentum, and the sum of its magnitudes (mass · length/time).
     pub fn momentum(&self) -> ([f64; 2], f64) {
         let sum = |axis: usize| self.0.iter().map(|body| body.mass * body.velocity[axis]).sum();

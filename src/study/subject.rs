@@ -19,6 +19,7 @@ pub struct Subject {
     pub prepared: Box<dyn Prepared>,
     /// The names of the quantities that its method observes.
     pub quantities: Vec<&'static str>,
+    units: Vec<&'static str>,
     /// How the scene itself is run.
     pub own: Choice,
     /// Its own step (time).
@@ -57,6 +58,7 @@ impl Subject {
             values,
             prepared,
             quantities: entry.quantities.iter().map(|quantity| quantity.name).collect(),
+            units: entry.quantities.iter().map(|quantity| quantity.unit).collect(),
             own,
             step,
             steps,
@@ -111,6 +113,11 @@ impl Subject {
     /// The setting of the axis that decides the order, of a way to run it.
     pub fn theory(&self, setting: &Setting) -> Option<crate::method::Theory> {
         (self.trials.theory)(&self.values, self.prepared.as_ref(), setting)
+    }
+
+    /// Whether a quantity is a velocity: a mean of it means nothing but beside the speeds.
+    pub fn is_velocity(&self, name: &str) -> bool {
+        self.quantity(name).is_some_and(|place| self.units[place] == "length/time")
     }
 
     /// The place of a quantity among those observed.

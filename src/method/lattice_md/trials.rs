@@ -55,9 +55,15 @@ const MAPPED: &[Mapped] = &[
     Mapped { name: "pipe-small", preset: "pipe-small", overrides: &[], parameter: "damping" },
     Mapped { name: "shaken-box", preset: "shaken-box", overrides: &[], parameter: "stiffness" },
     Mapped {
-        name: "sizes",
-        preset: "dense-gas",
-        overrides: &["particles.count=100", "search.by=lattice", "particles.packing_fraction=0.5"],
+        name: "wide-sizes",
+        preset: "wide-sizes",
+        overrides: &[
+            "domain.sides=[14.0, 14.0]",
+            "search.by=lattice",
+            "search.mask=5",
+            "particles.radius_spread=0.02",
+            "particles.radius_cut=0.04",
+        ],
         parameter: "size-ratio",
     },
     Mapped {
@@ -136,7 +142,7 @@ const PARAMETERS: &[Parameter] = &[
         unit: "",
         bounds: [1.0, 3.0],
         is_logarithmic: false,
-        range: |values| values.value(&RADIUS_SPREAD).map(|_| [1.0, 1.6]),
+        range: |values| values.is_used(&RADIUS_SPREAD).then_some([1.0, 1.6]),
         overrides: |_, ratio| {
             let cut = (ratio - 1.0) / (ratio + 1.0);
             vec![format!("particles.radius_spread={:?}", 0.5 * cut), format!("particles.radius_cut={cut:?}")]

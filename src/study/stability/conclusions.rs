@@ -108,7 +108,7 @@ fn why(data: &Stability, ratio: f64) -> String {
     // What is beyond the edge says what ended it.
     let beyond = data.map.iter().filter_map(|cells| {
         let place = cells.iter().position(|cell| cell.class != Class::Works)?;
-        Some(cells[place].class)
+        Some(cells[place].class).filter(|class| *class != Class::Refused)
     });
     let beyond: Vec<Class> = beyond.collect();
     let Some(most) =

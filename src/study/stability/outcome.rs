@@ -122,6 +122,8 @@ pub enum End {
     Whole {
         /// Means over its second half.
         means: Means,
+        /// The root mean square speed over it (length/time).
+        speed: f64,
         /// The error of its energy over the energy that passed through; none where that is not followed.
         energy: Option<f64>,
         /// Names of the checks that warned.
@@ -153,7 +155,7 @@ impl Ran {
         };
         match &self.end {
             End::Broken(class, what) => cell(*class, what.clone(), &[]),
-            End::Whole { means, energy, warned } => {
+            End::Whole { means, energy, warned, .. } => {
                 let drift = energy.unwrap_or(0.0);
                 if drift.abs() > DRIFT || drift.is_nan() {
                     let class = if drift < 0.0 { Class::EnergyLoss } else { Class::EnergyGrowth };
@@ -174,7 +176,7 @@ mod tests {
     use super::*;
 
     fn whole(energy: f64) -> Ran {
-        let end = End::Whole { means: Means::new(), energy: Some(energy), warned: vec![] };
+        let end = End::Whole { means: Means::new(), speed: 1.0, energy: Some(energy), warned: vec![] };
         Ran { foreseen: Foreseen::Nothing, end }
     }
 

@@ -41,10 +41,11 @@ fn middle<'m>(runs: impl Iterator<Item = &'m Vec<f64>>) -> Vec<f64> {
 }
 
 impl Expected {
-    /// By the means of several runs; none of fewer than three.
-    pub fn of(runs: &[Means]) -> Option<Expected> {
+    /// By the means of several runs; none of fewer than three. `at_least` is what a mean is held against if it is itself smaller.
+    pub fn of(runs: &[Means], at_least: impl Fn(&str) -> f64) -> Option<Expected> {
         let first = runs.first().filter(|_| runs.len() > 2)?;
-        Some(Expected(first.keys().filter_map(|name| Interval::of(name, runs)).collect()))
+        let interval = |name: &String| Interval::of(name, runs, at_least(name));
+        Some(Expected(first.keys().filter_map(interval).collect()))
     }
 
     /// The mean that is farthest off by more than it may be, in words; none if none is.
@@ -68,10 +69,10 @@ impl Expected {
 }
 
 impl Interval {
-    fn of(name: &str, runs: &[Means]) -> Option<Interval> {
+    fn of(name: &str, runs: &[Means], at_least: f64) -> Option<Interval> {
         let values: Vec<&Vec<f64>> = runs.iter().filter_map(|run| run.get(name)).collect();
         let all = middle(values.iter().copied());
-        let scale = rms(all.iter().copied());
+        let scale = rms(all.iter().copied()).max(at_least);
         let count = values.len() as f64;
         let wider = (1.0 + 1.0 / count).sqrt();
         let reach = if all.len() == 1 {
@@ -102,25 +103,27 @@ mod tests {
         values.into_iter().map(of).collect()
     }
 
+    fn around(off: [f64; 2], middle: f64) -> Vec<Means> {
+        runs(std::array::from_fn(|run| [middle + off[run % 2], middle - off[run % 2]]))
+    }
+
     /// By hand: ±1 eight times has the standard deviation 1.069, so that a run may be off by 5.408 · 1.069 · 1.061 = 6.13.
     #[test]
     fn a_mean_is_wrong_beyond_what_chance_makes_and_beyond_the_tolerance() {
-        let expected = Expected::of(&runs(
-            [1.0, -1.0]
-                .repeat(4)
-                .try_into()
-                .map_or([[0.0; 2]; 8], |s: [f64; 8]| s.map(|s| [100.0 + s, 100.0 - s])),
-        ));
-        let off = |a: f64| expected.as_ref().unwrap().worst(&Means::from([("a".to_owned(), vec![a])]));
+        let expected = Expected::of(&around([1.0, -1.0], 100.0), |_| 0.0).unwrap();
+        let off = |a: f64| expected.worst(&Means::from([("a".to_owned(), vec![a])]));
         assert_eq!([off(106.1), off(93.9)], [None, None]);
         assert_eq!(off(106.2).unwrap(), "the mean a is off by 6 %, and may be by 6 %");
         assert!(off(f64::NAN).is_some());
-        let certain = Expected::of(&runs([[100.0, 50.0]; 8])).unwrap();
+        let certain = Expected::of(&runs([[100.0, 50.0]; 8]), |_| 0.0).unwrap();
         let off = |a: f64| certain.worst(&Means::from([("a".to_owned(), vec![a])]));
         assert!(off(104.9).is_none() && off(105.1).is_some());
-        // What is about zero by chance alone tells nothing.
-        let unknown = Expected::of(&runs([[1.0, 1.0], [-1.0, 1.0]].repeat(4).try_into().unwrap())).unwrap();
-        assert!(unknown.worst(&Means::from([("a".to_owned(), vec![50.0])])).is_none());
-        assert_eq!(Expected::of(&runs([[0.0; 2]; 8])[..2]), None);
+        // What is about zero by chance alone tells nothing, but beside what it may be held against.
+        let off = |at_least: f64| {
+            let expected = Expected::of(&around([1.0, -1.0], 0.0), |_| at_least).unwrap();
+            expected.worst(&Means::from([("a".to_owned(), vec![50.0])])).is_some()
+        };
+        assert_eq!([off(0.0), off(100.0)], [false, true]);
+        assert_eq!(Expected::of(&runs([[0.0; 2]; 8])[..2], |_| 0.0), None);
     }
 }

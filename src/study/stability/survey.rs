@@ -7,6 +7,7 @@ use super::reference::{Expected, SEEDS};
 use crate::method::{Beyond, Decides, Parameter, Prepared, Purpose, Simulation, StepLimit};
 use crate::results::{Journal, JournalError};
 use crate::scene::SceneErrors;
+use crate::statistics::Spread;
 use crate::study::averages::{Averages, LOOKS, Means};
 use crate::study::choice::Choice;
 use crate::study::meter::Meter;
@@ -53,11 +54,15 @@ impl Survey<'_> {
                 .map(|seed| self.run(Case { choice: &choice, value }, self.steps[0], seed + 1));
             let runs: Vec<Ran> = runs.collect::<Result<_, JournalError>>()?;
             let means = |ran: &Ran| match &ran.end {
-                End::Whole { means, .. } => Ok(means.clone()),
+                End::Whole { means, speed, .. } => Ok((means.clone(), *speed)),
                 End::Broken(_, what) => Err(what.clone()),
             };
-            match runs.iter().map(means).collect::<Result<Vec<Means>, String>>() {
-                Ok(means) => return Ok(Expected::of(&means).ok_or_else(|| "too few runs".to_owned())),
+            match runs.iter().map(means).collect::<Result<(Vec<Means>, Vec<f64>), String>>() {
+                Ok((means, speeds)) => {
+                    let speed = Spread::of(&speeds).mean;
+                    let at_least = |name: &str| if self.subject.is_velocity(name) { speed } else { 0.0 };
+                    return Ok(Expected::of(&means, at_least).ok_or_else(|| "too few runs".to_owned()));
+                }
                 Err(what) => why = what,
             }
         }
@@ -208,7 +213,7 @@ impl Survey<'_> {
         let end = match follow(scene.as_ref(), Purpose::Run, course, None, self.meter, see) {
             Ok(_) => {
                 let energy = energy.filter(|_| scale > 0.0).map(|error| error / scale);
-                End::Whole { means: averages.means(), energy, warned }
+                End::Whole { speed: averages.speed(), means: averages.means(), energy, warned }
             }
             Err(failure) => {
                 let what = failure.what();

@@ -38,7 +38,7 @@ pub struct Estimates {
     pub damping_limit: f64,
 }
 
-/// Largest γ dt for which a scheme is stable for pure drag: 0.55, 0.31 and 0.17 with Gear's 4, 5 and 6 values. Beyond 1 a step
+/// Largest γ dt for which a scheme is stable for pure drag: 0.545, 0.300 and 0.163 with Gear's 4, 5 and 6 values. Beyond 1 a step
 /// would turn a velocity round, though velocity Verlet is stable up to 2.
 fn damping_limit(scheme: Scheme) -> f64 {
     largest_step(scheme, 0.0, 1.0).unwrap_or(1.0).min(1.0)

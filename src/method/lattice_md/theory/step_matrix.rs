@@ -131,11 +131,12 @@ mod tests {
         }
     }
 
+    /// 6/11, 3/10 and, from runs, 0.163.
     #[test]
     fn drag_is_borne_as_far_as_measured() {
-        for (scheme, measured) in GEAR.into_iter().zip([0.55, 0.31, 0.17]) {
+        for (scheme, measured) in GEAR.into_iter().zip([6.0 / 11.0, 0.3, 0.1633]) {
             let limit = largest_step(scheme, 0.0, 1.0).unwrap();
-            assert!((limit - measured).abs() < 0.01, "{scheme:?} {limit}");
+            assert!((limit - measured).abs() < 1e-4, "{scheme:?} {limit}");
         }
     }
 
