@@ -176,6 +176,12 @@ fn a_run_says_what_is_wrong_with_it_and_nothing_of_a_good_one() {
     let small = ["machine.precision=f32", "particles.count=64", "run.steps=100", "integrator.dt=1e-4"];
     let small: Vec<&str> = small.iter().flat_map(|set| ["--set", set]).collect();
     assert!(checks(&of("dense-gas", &small)).contains(&"rounding"));
+    // Discs at rest have no motion to lose.
+    let still = apart(folder.path());
+    let still = still.to_str().unwrap();
+    let sets = ["particles.velocities=[[0.0, 0.0], [0.0, 0.0]]", "machine.precision=f32"];
+    let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", set]).collect();
+    assert_eq!(checks(&of(still, &sets)), [] as [&str; 0]);
 }
 
 /// What was seen is in the checkpoint: a run that is resumed says what one in a piece says.

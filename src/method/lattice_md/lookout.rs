@@ -21,7 +21,8 @@ pub(super) struct Lookout {
     dt: f64,
     /// By how much a position is rounded (length), where that is in single precision.
     rounding: Option<f64>,
-    /// The largest and the smallest typical speed of approach, √2 of the root mean square speed (length/time).
+    /// The largest and the smallest typical speed of approach, √2 of the root mean square speed (length/time); the smallest of
+    /// the looks at which anything moved, because discs at rest have no motion to lose.
     typical: [f64; 2],
 }
 
@@ -50,7 +51,7 @@ impl Lookout {
             grains.iter().map(|disc| disc.velocity.iter().map(|part| part * part).sum::<f64>()).sum();
         let typical = (2.0 * squares / grains.len().max(1) as f64).sqrt();
         let [most, least] = self.typical;
-        self.typical = [most.max(typical), least.min(typical)];
+        self.typical = [most.max(typical), if typical > 0.0 { least.min(typical) } else { least }];
     }
 
     /// What was seen, for a checkpoint.
