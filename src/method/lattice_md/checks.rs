@@ -44,7 +44,7 @@ pub(super) fn counted(totals: &Totals, max_penetration: f64) -> Vec<RunWarning> 
 pub(super) fn energy(balance: &Balance, passed: f64) -> Option<RunWarning> {
     let off = balance.balance_error / passed;
     // An energy that is no number is off, too.
-    let is_balanced = passed == 0.0 || off.abs() <= BALANCED;
+    let is_balanced = balance.balance_error == 0.0 || off.abs() <= BALANCED;
     (!is_balanced).then(|| {
         let [has, is_wrong] = if off < 0.0 { ["lost", "too little"] } else { ["made", "too much"] };
         let message = format!(

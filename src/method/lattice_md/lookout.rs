@@ -6,7 +6,7 @@ use super::theory::contact::HertzContact;
 use super::theory::limits;
 use crate::io::checkpoint::Counter;
 use crate::method::RunWarning;
-use crate::particles::Particles;
+use crate::particles::{Particle, Particles};
 use std::collections::BTreeMap;
 
 /// Steps from one look to the next: a look costs less than a step.
@@ -47,11 +47,16 @@ impl Lookout {
     /// Looks at the discs.
     pub(super) fn look(&mut self, particles: &Particles) {
         let grains = particles.grains();
-        let squares: f64 =
-            grains.iter().map(|disc| disc.velocity.iter().map(|part| part * part).sum::<f64>()).sum();
-        let typical = (2.0 * squares / grains.len().max(1) as f64).sqrt();
+        let count = grains.len().max(1) as f64;
+        let mean = |of: &dyn Fn(&Particle) -> f64| grains.iter().map(of).sum::<f64>() / count;
+        let square = mean(&|disc| disc.velocity.iter().map(|part| part * part).sum());
+        // What flies together does not meet; but it may meet walls.
+        let has_walls = particles.len() > grains.len();
+        let drift =
+            if has_walls { 0.0 } else { (0..2).map(|axis| mean(&|disc| disc.velocity[axis]).powi(2)).sum() };
+        let [approach, moving] = [square - drift, square].map(|square: f64| (2.0 * square.max(0.0)).sqrt());
         let [most, least] = self.typical;
-        self.typical = [most.max(typical), if typical > 0.0 { least.min(typical) } else { least }];
+        self.typical = [most.max(approach), if moving > 0.0 { least.min(moving) } else { least }];
     }
 
     /// What was seen, for a checkpoint.
