@@ -21,7 +21,6 @@ pub(super) const QUANTITIES: &[Quantity] = quantities! {
     "virial", "mass·length²/time", "Impulse times distance of the centres, summed over the collisions since the start.";
     "compressibility", "", "Z = p A/(N kT): 1 + virial/(2 N kT t) since the start, with the temperature as it is.";
     "collision_rate", "1/time", "Collisions of a disc in a unit of time since the start: twice the collisions of pairs over the discs.";
-    "mean_free_time", "time", "Its inverse; infinite before the first.";
 };
 
 /// The benchmark.

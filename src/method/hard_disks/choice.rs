@@ -9,7 +9,7 @@ use stripmine_kernels::mask::Mask;
 pub fn mask(name: &str) -> Option<Mask> {
     match name {
         "min" => Some(Mask::square(2)),
-        _ => name.parse().ok().map(Mask::round),
+        _ => name.strip_prefix('r')?.parse().ok().map(Mask::round),
     }
 }
 
@@ -85,7 +85,7 @@ mod tests {
         let cost = |name: &str, radii: [f64; 2]| {
             candidates(&domain, radii, 10).into_iter().find(|it| it.name == name).unwrap().predictions
         };
-        assert!(cost("min", [0.5; 2]).is_finite() && cost("10", [0.5; 2]).is_infinite());
+        assert!(cost("min", [0.5; 2]).is_finite() && cost("r10", [0.5; 2]).is_infinite());
         // Discs three times as large reach beyond 5 × 5 cells of the smallest.
         assert!(cost("min", [0.25, 0.75]).is_infinite());
     }

@@ -80,7 +80,12 @@ pub struct Engine {
     remaps: u64,
     /// Discs that have lost their partner, while an event is dealt with.
     lost: Vec<u32>,
+    /// The discs' speeds when the grid was filled (length/time).
+    speeds: Vec<f64>,
 }
+
+/// Distances that may not be exceeded are taken this much larger.
+const ROUNDED_UP: f64 = 1.0 + 1e-9;
 
 impl Engine {
     /// Begins at a time.
@@ -111,6 +116,7 @@ impl Engine {
             whole_slack,
             remaps: 0,
             lost: vec![],
+            speeds: vec![],
         };
         engine.remap(time)?;
         Ok(engine)
@@ -131,18 +137,23 @@ impl Engine {
         self.grid.occupancy()
     }
 
-    /// The next event, if it comes no later than `until` (time).
+    /// The time of the last event, or up to which it is known that there is none.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// The next event, if it comes no later than `until` (time) and before the grid has been filled `most` times in all.
     ///
     /// # Errors
     /// [`Stopped`]: what must not be.
-    pub fn next(&mut self, until: f64) -> Result<Option<Happened>, Stopped> {
+    pub fn next(&mut self, until: f64, most: u64) -> Result<Option<Happened>, Stopped> {
         loop {
             let first = self.tree.first();
             let event = self.events[first as usize];
             // ISO99 (6), with the largest speed kept up to date.
-            let horizon = self.since + self.slack / (2.0 * self.fastest);
+            let horizon = self.horizon();
             if event.time > until.min(horizon) {
-                if until <= horizon {
+                if until <= horizon || self.remaps >= most {
                     return Ok(None);
                 }
                 // Rounding may put the horizon just before the last event.
@@ -155,6 +166,11 @@ impl Engine {
             self.time = event.time;
             return Ok(Some(self.happen(first, event)));
         }
+    }
+
+    /// Up to when the masks show every partner (time). Nothing later is predicted.
+    fn horizon(&self) -> f64 {
+        self.since + self.slack / (2.0 * self.fastest)
     }
 
     fn happen(&mut self, first: u32, event: Event) -> Happened {
@@ -192,11 +208,12 @@ impl Engine {
     fn repair(&mut self, changed: [u32; 2]) {
         let [a, b] = changed;
         let mut lost = std::mem::take(&mut self.lost);
+        let (now, horizon) = (self.time, self.horizon());
         for &disc in if a == b { &changed[..1] } else { &changed[..] } {
             let mut own = self.at_wall(disc);
             let Engine { grid, discs, events, tree, domain, .. } = self;
             for other in grid.around(disc) {
-                let time = pair(domain, discs, disc, other);
+                let time = pair(domain, discs, [disc, other], now, horizon);
                 let theirs = Event { time, with: Partner::Disc(other) };
                 if theirs.is_before(&own) {
                     own = theirs;
@@ -235,9 +252,10 @@ impl Engine {
 
     /// What a disc meets next, of all that its mask shows.
     fn predicted(&self, disc: u32) -> Event {
+        let horizon = self.horizon();
         self.grid.around(disc).fold(self.at_wall(disc), |next, other| {
-            let event =
-                Event { time: pair(&self.domain, &self.discs, disc, other), with: Partner::Disc(other) };
+            let time = pair(&self.domain, &self.discs, [disc, other], self.time, horizon);
+            let event = Event { time, with: Partner::Disc(other) };
             if event.is_before(&next) { event } else { next }
         })
     }
@@ -253,14 +271,25 @@ impl Engine {
         for disc in 0..self.discs.len() as u32 {
             self.events[disc as usize] = self.at_wall(disc);
         }
-        // Each pair once.
-        for disc in 0..self.discs.len() as u32 {
-            for other in self.grid.around(disc).filter(|&other| other > disc) {
-                let time = pair(&self.domain, &self.discs, disc, other);
+        let (now, horizon, ahead) = (time, self.horizon(), self.slack / (2.0 * self.fastest));
+        let Engine { grid, discs, events, domain, speeds, .. } = self;
+        speeds.clear();
+        speeds.extend(discs.iter().map(Disc::speed));
+        // Each pair once, if it may meet so soon at all.
+        for disc in 0..discs.len() as u32 {
+            let (own, speed, here) = (&discs[disc as usize], speeds[disc as usize], grid.place(disc));
+            for other in grid.around(disc).filter(|&other| other > disc) {
+                let [dx, dy] = domain.displacement(here, grid.place(other));
+                let reach = own.radius + discs[other as usize].radius;
+                let near = (reach + (speed + speeds[other as usize]) * ahead) * ROUNDED_UP;
+                if dx * dx + dy * dy > near * near {
+                    continue;
+                }
+                let time = pair(domain, discs, [disc, other], now, horizon);
                 for (one, with) in [(disc, other), (other, disc)] {
                     let event = Event { time, with: Partner::Disc(with) };
-                    if event.is_before(&self.events[one as usize]) {
-                        self.events[one as usize] = event;
+                    if event.is_before(&events[one as usize]) {
+                        events[one as usize] = event;
                     }
                 }
             }
@@ -273,9 +302,9 @@ impl Engine {
 
 /// When two discs meet, by their numbers.
 #[inline(always)]
-fn pair(domain: &Domain, discs: &[Disc], disc: u32, other: u32) -> f64 {
+fn pair(domain: &Domain, discs: &[Disc], [disc, other]: [u32; 2], now: f64, horizon: f64) -> f64 {
     let [a, b] = [disc.min(other), disc.max(other)];
-    meeting(domain, &discs[a as usize], &discs[b as usize])
+    meeting(domain, &discs[a as usize], &discs[b as usize], now, horizon)
 }
 
 #[cfg(test)]
@@ -285,14 +314,17 @@ mod tests {
     use stripmine_kernels::noise::{Purpose, Stream};
 
     /// Every pair and every wall, again and again.
-    fn naive(domain: &Domain, law: &Law, discs: &mut [Disc]) -> Happened {
+    fn naive(domain: &Domain, law: &Law, discs: &mut [Disc], now: f64) -> Happened {
         let count = discs.len() as u32;
         let mut next = (f64::INFINITY, 0, Partner::Wall(0));
         for a in 0..count {
             let (time, axis) = wall(domain, &discs[a as usize]);
             let meetings = (0..count).filter(|&b| b != a).map(|b| {
                 let [first, second] = [a.min(b), a.max(b)];
-                (meeting(domain, &discs[first as usize], &discs[second as usize]), Partner::Disc(b))
+                (
+                    meeting(domain, &discs[first as usize], &discs[second as usize], now, f64::INFINITY),
+                    Partner::Disc(b),
+                )
             });
             let all = meetings.chain([(time, Partner::Wall(axis as u8))]);
             for (time, with) in all {
@@ -347,11 +379,17 @@ mod tests {
                 let law = Law { restitution, wall_restitution: 1.0, contact_duration: 0.0 };
                 let discs = random(&domain, 30, spread, seed as u64);
                 let mut oracle = discs.clone();
-                let events: Vec<Happened> = (0..600).map(|_| naive(&domain, &law, &mut oracle)).collect();
+                let mut now = 0.0;
+                let mut next = || {
+                    let event = naive(&domain, &law, &mut oracle, now);
+                    now = event.time;
+                    event
+                };
+                let events: Vec<Happened> = (0..600).map(|_| next()).collect();
                 for mask in &masks {
                     let mut engine = Engine::new(domain, law, discs.clone(), mask, 0.0).unwrap();
                     for (number, event) in events.iter().enumerate() {
-                        let found = engine.next(f64::INFINITY).unwrap().unwrap();
+                        let found = engine.next(f64::INFINITY, u64::MAX).unwrap().unwrap();
                         assert_eq!(found, *event, "event {number}, {} places", mask.offsets().len());
                         cases += 1;
                     }
@@ -376,7 +414,7 @@ mod tests {
         let mut engine = Engine::new(domain, law, discs, &Mask::round(3), 0.0).unwrap();
         let mut time = 0.0;
         for _ in 0..100_000 {
-            time = engine.next(f64::INFINITY).unwrap().unwrap().time;
+            time = engine.next(f64::INFINITY, u64::MAX).unwrap().unwrap().time;
         }
         let after = engine.discs();
         assert!(

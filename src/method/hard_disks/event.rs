@@ -32,7 +32,7 @@ impl Disc {
 
     /// Its speed (length/time).
     pub fn speed(&self) -> f64 {
-        self.velocity[0].hypot(self.velocity[1])
+        (self.velocity[0] * self.velocity[0] + self.velocity[1] * self.velocity[1]).sqrt()
     }
 
     /// Brings it to a time.
@@ -62,13 +62,16 @@ pub struct Impact {
     pub was_made_elastic: bool,
 }
 
-/// When two discs meet, at the earliest from the later of their local times on; infinite if they do not. `a` is the one with
-/// the smaller number.
+/// When two discs meet that have not met up to `now` (time); infinite if they do not, or if it is clear at once that they do not
+/// before the `horizon` (time). Of the images across periodic sides those meet that are the nearest now; the time follows from
+/// the later of the local times on, and so does not depend on when it is asked for. `a` is the one with the smaller number.
 #[inline(always)]
-pub fn meeting(domain: &Domain, a: &Disc, b: &Disc) -> f64 {
+pub fn meeting(domain: &Domain, a: &Disc, b: &Disc, now: f64, horizon: f64) -> f64 {
     let from = a.time.max(b.time);
-    let [dx, dy] = domain.displacement(a.at(from), b.at(from));
+    let ([ax, ay], [bx, by]) = (a.at(from), b.at(from));
     let [u, v] = [b.velocity[0] - a.velocity[0], b.velocity[1] - a.velocity[1]];
+    let dx = nearest(domain.sides[0], bx - ax, (now - from) * u);
+    let dy = nearest(domain.sides[1], by - ay, (now - from) * v);
     let approach = dx * u + dy * v;
     // Most pairs move apart.
     if approach >= 0.0 {
@@ -77,12 +80,27 @@ pub fn meeting(domain: &Domain, a: &Disc, b: &Disc) -> f64 {
     let reach = a.radius + b.radius;
     // Discs that rounding has brought into each other meet at once.
     let apart = (dx * dx + dy * dy - reach * reach).max(0.0);
+    // The root below is no larger than the approach.
+    if apart > -2.0 * approach * (horizon - from) {
+        return f64::INFINITY;
+    }
     let speed = u * u + v * v;
     let discriminant = approach * approach - speed * apart;
     if discriminant < 0.0 {
         return f64::INFINITY;
     }
     from + apart / (discriminant.sqrt() - approach)
+}
+
+/// The way to that image of a disc that is nearest after it has moved on by `moved` (length).
+#[inline(always)]
+fn nearest(side: Side, way: f64, moved: f64) -> f64 {
+    match side {
+        Side::Periodic(side) if (way + moved).abs() > 0.5 * side => {
+            way - ((way + moved) / side).round() * side
+        }
+        _ => way,
+    }
 }
 
 /// When a disc meets a closed side, and along which axis; infinite where there is none ahead.
@@ -134,6 +152,10 @@ mod tests {
         Disc { position, velocity, time: 0.0, radius: 0.5, mass: 1.0, met: f64::NEG_INFINITY }
     }
 
+    fn when(domain: &Domain, a: &Disc, b: &Disc) -> f64 {
+        meeting(domain, a, b, 0.0, f64::INFINITY)
+    }
+
     const LAW: Law = Law { restitution: 1.0, wall_restitution: 1.0, contact_duration: 0.0 };
 
     /// By hand: head on, at half a radius off the line of centres, and past each other.
@@ -141,13 +163,25 @@ mod tests {
     fn pairs_meet_where_they_touch() {
         let domain = Domain::planar([0.0; 2], [20.0; 2], [true; 2]);
         let still = disc([5.0, 5.0], [0.0; 2]);
-        assert_eq!(meeting(&domain, &still, &disc([8.0, 5.0], [-2.0, 0.0])), 1.0);
-        let off = meeting(&domain, &still, &disc([8.0, 5.5], [-1.0, 0.0]));
+        assert_eq!(when(&domain, &still, &disc([8.0, 5.0], [-2.0, 0.0])), 1.0);
+        let off = when(&domain, &still, &disc([8.0, 5.5], [-1.0, 0.0]));
         assert!((off - (3.0 - 0.75f64.sqrt())).abs() < 1e-15, "{off}");
-        assert_eq!(meeting(&domain, &still, &disc([8.0, 6.1], [-1.0, 0.0])), f64::INFINITY);
-        assert_eq!(meeting(&domain, &still, &disc([8.0, 5.0], [1.0, 0.0])), f64::INFINITY);
+        assert_eq!(when(&domain, &still, &disc([8.0, 6.1], [-1.0, 0.0])), f64::INFINITY);
+        assert_eq!(when(&domain, &still, &disc([8.0, 5.0], [1.0, 0.0])), f64::INFINITY);
+        // Two are left out where the horizon is clearly nearer.
+        let before = |horizon: f64| meeting(&domain, &still, &disc([8.0, 5.0], [-2.0, 0.0]), 0.0, horizon);
+        assert_eq!([before(1.0), before(0.3)], [1.0, f64::INFINITY]);
         // Across a periodic side.
-        assert_eq!(meeting(&domain, &disc([1.0, 5.0], [0.0; 2]), &disc([18.0, 5.0], [1.0, 0.0])), 2.0);
+        assert_eq!(when(&domain, &disc([1.0, 5.0], [0.0; 2]), &disc([18.0, 5.0], [1.0, 0.0])), 2.0);
+    }
+
+    /// Two discs that part meet again on the other side of the box.
+    #[test]
+    fn the_nearest_image_is_that_of_now() {
+        let domain = Domain::planar([0.0; 2], [20.0; 2], [true; 2]);
+        let (a, b) = (disc([9.0, 5.0], [-1.0, 0.0]), disc([11.0, 5.0], [1.0, 0.0]));
+        let at = |now: f64| meeting(&domain, &a, &b, now, f64::INFINITY);
+        assert_eq!([at(0.0), at(5.0), at(8.0)], [f64::INFINITY, 8.5, 8.5]);
     }
 
     /// Energy and momentum stay; what e < 1 takes is (1 − e²) of the energy of the approach.
@@ -164,7 +198,7 @@ mod tests {
         };
         for restitution in [1.0, 0.5] {
             let mut after = start;
-            let time = meeting(&domain, &start[0], &start[1]);
+            let time = when(&domain, &start[0], &start[1]);
             let [a, b] = &mut after;
             let impact = collide(&domain, &Law { restitution, ..LAW }, a, b, time);
             assert!((0..2).all(|axis| (momentum(&after, axis) - momentum(&start, axis)).abs() < 1e-15));
@@ -178,7 +212,7 @@ mod tests {
             let taken = 0.5 * 0.75 * approach * approach * (1.0 - restitution * restitution);
             assert!((energy(&start) - energy(&after) - taken).abs() < 1e-14);
             assert!((impact.virial - (1.0 + restitution) * 0.75 * -approach * 1.2).abs() < 1e-14);
-            assert_eq!(meeting(&domain, &after[0], &after[1]), f64::INFINITY);
+            assert_eq!(when(&domain, &after[0], &after[1]), f64::INFINITY);
         }
     }
 

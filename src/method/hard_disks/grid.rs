@@ -51,6 +51,8 @@ pub struct Grid {
     discs: Vec<u32>,
     /// The cell of each disc.
     cell: Vec<u32>,
+    /// The place of each disc when it was put there (length).
+    places: Vec<[f64; 2]>,
     /// From a cell to those of its mask.
     offsets: Vec<isize>,
 }
@@ -68,6 +70,7 @@ impl Grid {
             width,
             discs: vec![EMPTY; width * height],
             cell: vec![],
+            places: vec![],
             offsets: mask.offsets().iter().map(|it| offset(it.columns, it.rows)).collect(),
         }
     }
@@ -79,6 +82,7 @@ impl Grid {
     pub fn fill(&mut self, discs: &[Disc], time: f64) -> Result<(), [u32; 2]> {
         self.discs.fill(EMPTY);
         self.cell.clear();
+        self.places.clear();
         for (number, disc) in discs.iter().enumerate() {
             let at = self.domain.wrapped(disc.at(time));
             let [column, row] = [0, 1].map(|axis| {
@@ -91,6 +95,7 @@ impl Grid {
             }
             self.discs[cell] = number as u32;
             self.cell.push(cell as u32);
+            self.places.push(at);
         }
         self.mirror();
         Ok(())
@@ -110,6 +115,12 @@ impl Grid {
             self.discs.copy_within(rows * width..(rows + margin) * width, 0);
             self.discs.copy_within(margin * width..2 * margin * width, (rows + margin) * width);
         }
+    }
+
+    /// Where a disc was when it was put into its cell (length).
+    #[inline(always)]
+    pub fn place(&self, disc: u32) -> [f64; 2] {
+        self.places[disc as usize]
     }
 
     /// The discs in the mask around one.

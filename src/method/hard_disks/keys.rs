@@ -14,7 +14,7 @@ const ALWAYS: Use = None;
 const MOST_EVENTS: u64 = 1_000_000_000_000_000;
 
 /// The masks, by the names that scenes give them.
-pub(super) const MASKS: &[&str] = &["auto", "min", "3", "4", "5", "6", "7", "8", "9", "10"];
+pub(super) const MASKS: &[&str] = &["auto", "min", "r3", "r4", "r5", "r6", "r7", "r8", "r9", "r10"];
 
 define_keys! {
     /// Collisions, search and duration.
@@ -27,7 +27,7 @@ define_keys! {
         "A collision that comes sooner than this after another one of either disc is elastic, against inelastic collapse (the TC model); 0 for none.";
 
     MASK = "search" "mask", Choice(MASKS), "", Is("\"auto\""), ALWAYS,
-        "Cells around a disc in which it looks for partners: min is 5 × 5, a number the round mask of that radius. A larger one is filled less often; auto takes what costs least by the source's reckoning.";
+        "Cells around a disc in which it looks for partners: min is 5 × 5, r3 to r10 are the round masks of these radii. A larger one is filled less often; auto takes what costs least by the source's reckoning.";
 
     EVENTS = "run" "events", Whole(1, MOST_EVENTS), "", Otherwise("from `time`"), ALWAYS,
         "Collisions to do, of pairs and at walls.";

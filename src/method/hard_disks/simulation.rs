@@ -16,8 +16,8 @@ use stripmine_kernels::mask::Mask;
 
 /// Events between looks at whether a run is to be interrupted.
 const UNHEARD: u64 = 4096;
-/// Without an event for this many flights through a radius nothing will ever happen: discs fly beside each other.
-const IDLE: f64 = 1e6;
+/// After the grid was filled this often without an event nothing will ever happen: discs fly beside each other.
+const IDLE: u64 = 200_000;
 
 /// Discs under way.
 pub(super) struct Running {
@@ -31,6 +31,8 @@ pub(super) struct Running {
     domain: Domain,
     law: Law,
     mask: Mask,
+    /// How often the grid was filled up to the last event.
+    filled: u64,
     /// The particles of the start, and the place among them of each disc.
     particles: Particles,
     places: Vec<usize>,
@@ -65,6 +67,7 @@ impl Running {
             mask,
             particles: checked.particles.clone(),
             places,
+            filled: 0,
             seconds: 0.0,
         })
     }
@@ -77,13 +80,6 @@ impl Running {
             self.totals.made_elastic += u64::from(impact.was_made_elastic);
             self.totals.virial += impact.virial;
         }
-    }
-
-    /// The time in which a typical disc flies through the smallest radius.
-    fn crossing(&self) -> f64 {
-        let discs = self.engine.discs();
-        let squares: f64 = discs.iter().map(|disc| disc.speed().powi(2)).sum();
-        self.smallest_radius / (squares / discs.len() as f64).sqrt()
     }
 
     fn failure(&self, why: Stopped) -> Failure {
@@ -152,15 +148,15 @@ impl Simulation for Running {
             Until::Steps(_) | Until::Events(_) => None,
         });
         let end = end.fold(f64::INFINITY, f64::min);
-        let mut idle_until = self.clock.time + IDLE * self.crossing();
         while !until.iter().any(|moment| moment.has_come(&self.clock)) {
             if self.clock.events.is_multiple_of(UNHEARD) && interrupted.load(Ordering::Relaxed) {
                 break;
             }
-            match self.engine.next(end.min(idle_until)) {
+            match self.engine.next(end, self.filled + IDLE) {
                 Err(why) => return Err(self.failure(why)),
                 Ok(Some(happened)) => {
                     self.count(&happened);
+                    self.filled = self.engine.remaps();
                     let (engine, radius) = (&self.engine, self.smallest_radius);
                     let crossing = || {
                         let squares: f64 = engine.discs().iter().map(|disc| disc.speed().powi(2)).sum();
@@ -169,14 +165,14 @@ impl Simulation for Running {
                     if let Some(collapse) = self.watch.see(happened.time, crossing) {
                         return Err(self.collapsed(&happened, collapse));
                     }
-                    if self.clock.events.is_multiple_of(UNHEARD) {
-                        idle_until = self.clock.time + IDLE * self.crossing();
-                    }
                 }
-                Ok(None) if end <= idle_until => self.clock.time = end,
+                Ok(None) if end.is_finite() && self.engine.remaps() < self.filled + IDLE => {
+                    self.clock.time = end;
+                }
                 Ok(None) => {
                     let message = format!(
-                        "no disc will meet another one or a side: nothing happened up to {idle_until:?}"
+                        "no disc meets another one or a side: nothing happened up to {:?}",
+                        self.engine.time()
                     );
                     let remedy = "ask for a time instead of events, or give the discs other velocities";
                     return Err(Failure::new(FailureKind::Idle, message, remedy).at(self.clock));
@@ -226,7 +222,6 @@ impl Simulation for Running {
             virial,
             pressure,
             rate,
-            1.0 / rate,
         ]
     }
 
@@ -280,6 +275,7 @@ impl Simulation for Running {
         let engine = Engine::new(self.domain, self.law, discs, &self.mask, clock.time);
         self.engine = engine.map_err(|why| self.failure(why).what())?;
         self.clock = clock;
+        self.filled = 0;
         self.watch = Watch::new(clock.time);
         Ok(())
     }
