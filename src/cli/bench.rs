@@ -36,6 +36,9 @@ pub(super) struct BenchVerb {
     /// Side of a lattice cell; the largest that the geometry allows by default
     #[arg(long, allow_negative_numbers = true)]
     cell_edge: Option<f64>,
+    /// Mask of cells around a disc, such as min or r3; the cheapest by default
+    #[arg(long)]
+    mask: Option<String>,
     /// Steps of each repeat; about a second's worth by default
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     steps: Option<u64>,
@@ -65,6 +68,7 @@ impl BenchVerb {
             ("execution", self.execution.clone()),
             ("instruction-set", self.instruction_set.clone()),
             ("frictionless", self.frictionless.then(String::new)),
+            ("mask", self.mask.clone()),
             ("cell-edge", self.cell_edge.map(|edge| edge.to_string())),
         ]
     }

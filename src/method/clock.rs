@@ -106,7 +106,12 @@ impl Every {
         match self {
             Every::Never => None,
             Every::Steps(steps) => Some(Until::Steps((clock.steps / steps + 1) * steps)),
-            Every::Time(time) => Some(Until::Time(((clock.time / time).floor() + 1.0) * time)),
+            Every::Time(time) => {
+                let whole = (clock.time / time).floor();
+                // The quotient may be rounded down to the multiple that the clock shows.
+                let next = (whole + 1.0) * time;
+                Some(Until::Time(if next > clock.time { next } else { (whole + 2.0) * time }))
+            }
         }
     }
 }
@@ -135,6 +140,13 @@ mod tests {
         assert_eq!(Every::steps(10).next(&at(0, 0.0)), Some(Until::Steps(10)));
         assert_eq!(Every::steps(10).next(&at(10, 0.0)), Some(Until::Steps(20)));
         assert_eq!(Every::Time(0.5).next(&at(0, 0.5)), Some(Until::Time(1.0)));
+        // Every multiple is followed by a later one.
+        let mut now = 0.0;
+        for _ in 0..10_000 {
+            let Some(Until::Time(next)) = Every::Time(0.05).next(&at(0, now)) else { panic!("there is one") };
+            assert!(next > now && next < now + 0.11, "{now} {next}");
+            now = next;
+        }
         assert!(Until::Steps(5).has_come(&at(5, 0.0)) && !Until::Steps(5).has_passed(&at(5, 0.0)));
         assert_eq!(Until::Time(2.0).progress(&at(0, 0.5)), (250_000, 1_000_000));
     }

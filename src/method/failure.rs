@@ -29,6 +29,12 @@ pub enum FailureKind {
     NoSectors,
     /// The machine refused a program.
     Machine,
+    /// An event that lies before one that has happened.
+    BackInTime,
+    /// Collisions without end in a finite time.
+    InelasticCollapse,
+    /// Nothing will ever happen.
+    Idle,
 }
 
 impl FailureKind {
@@ -43,6 +49,9 @@ impl FailureKind {
             FailureKind::Overflow => "overflow",
             FailureKind::NoSectors => "no-sectors",
             FailureKind::Machine => "machine",
+            FailureKind::BackInTime => "back-in-time",
+            FailureKind::InelasticCollapse => "inelastic-collapse",
+            FailureKind::Idle => "idle",
         }
     }
 }

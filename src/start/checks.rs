@@ -96,8 +96,14 @@ impl Deep {
     }
 }
 
-/// Pairs that overlap deeper than `limit`, a fraction of the sum of the radii.
-pub fn overlaps(stated: &Stated<'_>, domain: &Domain, particles: &Particles, limit: f64) -> Vec<SceneError> {
+/// Pairs that overlap deeper than `limit`, a fraction of the sum of the radii; `reason` says why they must not.
+pub fn overlaps(
+    stated: &Stated<'_>,
+    domain: &Domain,
+    particles: &Particles,
+    limit: f64,
+    reason: &str,
+) -> Vec<SceneError> {
     let Some([_, largest]) = particles.radii() else { return Vec::new() };
     let mut near = Near::new(*domain, 2.0 * largest);
     let discs = particles.all();
@@ -126,8 +132,7 @@ pub fn overlaps(stated: &Stated<'_>, domain: &Domain, particles: &Particles, lim
         });
         let reach = discs[first].radius + discs[second].radius;
         let message = format!(
-            "{a} and {b} overlap at the start by {penetration:.4} of the sum of their radii, {:.4e}; the limit is \
-             law.max_penetration = {limit}",
+            "{a} and {b} overlap at the start by {penetration:.4} of the sum of their radii, {:.4e}; {reason}",
             penetration * reach
         );
         let least = format!("centres at least {:.6e} apart", (1.0 - limit) * reach);

@@ -93,7 +93,8 @@ fn check(mut document: Document, steps: Steps) -> Result<Checked, SceneErrors> {
     if let Some(Made { domain, particles, .. }) = &made {
         errors.extend(start::outside(&stated, domain, particles));
         let limit = document.scene.law.max_penetration;
-        errors.extend(start::overlaps(&stated, domain, particles, limit));
+        let reason = format!("the limit is law.max_penetration = {limit}");
+        errors.extend(start::overlaps(&stated, domain, particles, limit, &reason));
     }
     let radii = made.as_ref().and_then(|made| made.particles.radii());
     let radii = start::radii(&document.scene.start, radii);

@@ -1,0 +1,190 @@
+//! The exclusive grid: cells that hold at most one disc's centre, and a mask of cells that holds whatever a disc may meet. ISO99.
+
+use super::event::Disc;
+use crate::domain::{Domain, Side};
+use stripmine_kernels::mask::Mask;
+
+/// Stands for no disc.
+pub const EMPTY: u32 = u32::MAX;
+
+/// Sizes of the grid of a box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sizes {
+    /// Cells along x and y.
+    pub cells: [usize; 2],
+    /// Sides of a cell (length).
+    pub edge: [f64; 2],
+}
+
+impl Sizes {
+    /// For discs no smaller than a radius: the fewest cells of which none holds two centres. ISO99 (2)–(5), with σ a radius.
+    ///
+    /// # As printed
+    /// The names of the number of cells and of their side are swapped in (2)–(5).
+    pub fn new(domain: &Domain, smallest_radius: f64) -> Sizes {
+        let cells = [0, 1]
+            .map(|axis| (domain.length(axis) / (std::f64::consts::SQRT_2 * smallest_radius)) as usize + 1);
+        Sizes { cells, edge: [0, 1].map(|axis| domain.length(axis) / cells[axis] as f64) }
+    }
+
+    /// Within which distance of a disc a mask shows every other one (length): r_NL.
+    pub fn reach(&self, mask: &Mask) -> f64 {
+        f64::from(mask.reach_squared()).sqrt() * self.edge[0].min(self.edge[1])
+    }
+
+    /// Whether periodic sides have enough cells for a mask not to meet itself.
+    pub fn bears(&self, domain: &Domain, mask: &Mask) -> bool {
+        let least = 2 * mask.half_width() as usize + 1;
+        (0..2).all(|axis| !domain.is_periodic(axis) || self.cells[axis] >= least)
+    }
+}
+
+/// Where the discs were when they were last put into cells.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    domain: Domain,
+    sizes: Sizes,
+    /// Cells beyond each side, which show what lies across a periodic one.
+    margin: usize,
+    width: usize,
+    /// The disc in each cell, row by row, with the margins.
+    discs: Vec<u32>,
+    /// The cell of each disc.
+    cell: Vec<u32>,
+    /// The place of each disc when it was put there (length).
+    places: Vec<[f64; 2]>,
+    /// From a cell to those of its mask.
+    offsets: Vec<isize>,
+}
+
+impl Grid {
+    /// Of a box, for a mask; no disc is in it.
+    pub fn new(domain: Domain, sizes: Sizes, mask: &Mask) -> Grid {
+        let margin = mask.half_width() as usize;
+        let [width, height] = sizes.cells.map(|cells| cells + 2 * margin);
+        let offset = |columns: i32, rows: i32| columns as isize + rows as isize * width as isize;
+        Grid {
+            domain,
+            sizes,
+            margin,
+            width,
+            discs: vec![EMPTY; width * height],
+            cell: vec![],
+            places: vec![],
+            offsets: mask.offsets().iter().map(|it| offset(it.columns, it.rows)).collect(),
+        }
+    }
+
+    /// Puts every disc into the cell of its position at a time.
+    ///
+    /// # Errors
+    /// Two discs that are in one cell.
+    pub fn fill(&mut self, discs: &[Disc], time: f64) -> Result<(), [u32; 2]> {
+        self.discs.fill(EMPTY);
+        self.cell.clear();
+        self.places.clear();
+        for (number, disc) in discs.iter().enumerate() {
+            let at = self.domain.wrapped(disc.at(time));
+            let [column, row] = [0, 1].map(|axis| {
+                let along = ((at[axis] - self.domain.origin[axis]) / self.sizes.edge[axis]) as usize;
+                along.min(self.sizes.cells[axis] - 1) + self.margin
+            });
+            let cell = row * self.width + column;
+            if self.discs[cell] != EMPTY {
+                return Err([self.discs[cell], number as u32]);
+            }
+            self.discs[cell] = number as u32;
+            self.cell.push(cell as u32);
+            self.places.push(at);
+        }
+        self.mirror();
+        Ok(())
+    }
+
+    /// Shows in the margins what lies across periodic sides.
+    fn mirror(&mut self) {
+        let ([columns, rows], margin, width) = (self.sizes.cells, self.margin, self.width);
+        let is_periodic = |axis: usize| matches!(self.domain.sides[axis], Side::Periodic(_));
+        if is_periodic(0) {
+            for row in self.discs.chunks_exact_mut(width) {
+                row.copy_within(columns..columns + margin, 0);
+                row.copy_within(margin..2 * margin, columns + margin);
+            }
+        }
+        if is_periodic(1) {
+            self.discs.copy_within(rows * width..(rows + margin) * width, 0);
+            self.discs.copy_within(margin * width..2 * margin * width, (rows + margin) * width);
+        }
+    }
+
+    /// Where a disc was when it was put into its cell (length).
+    #[inline(always)]
+    pub fn place(&self, disc: u32) -> [f64; 2] {
+        self.places[disc as usize]
+    }
+
+    /// The discs in the mask around one.
+    #[inline(always)]
+    pub fn around(&self, disc: u32) -> impl Iterator<Item = u32> + '_ {
+        let cell = self.cell[disc as usize] as usize;
+        let there = move |&offset: &isize| self.discs[cell.wrapping_add_signed(offset)];
+        self.offsets.iter().map(there).filter(|&other| other != EMPTY)
+    }
+
+    /// Cells for each disc, about.
+    pub fn occupancy(&self) -> f64 {
+        let [columns, rows] = self.sizes.cells;
+        self.cell.len() as f64 / (columns * rows) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::RngExt;
+    use stripmine_kernels::noise::{Purpose, Stream};
+
+    fn disc(position: [f64; 2]) -> Disc {
+        Disc { position, velocity: [0.0; 2], time: 0.0, radius: 0.5, mass: 1.0, met: f64::NEG_INFINITY }
+    }
+
+    /// Discs at random places: whatever is within reach is in the mask, also across periodic sides.
+    #[test]
+    fn a_mask_shows_everything_within_its_reach() {
+        let mut stream = Stream::new(11, Purpose::Test, 0);
+        for (periodic, mask) in [
+            ([true, true], Mask::square(2)),
+            ([true, false], Mask::round(3)),
+            ([false, false], Mask::round(5)),
+        ] {
+            let domain = Domain::planar([-1.0, 2.0], [14.0, 11.3], periodic);
+            let sizes = Sizes::new(&domain, 0.5);
+            assert!(sizes.bears(&domain, &mask) && sizes.edge.iter().all(|edge| *edge < 0.5 * 2f64.sqrt()));
+            let mut discs: Vec<Disc> = vec![];
+            while discs.len() < 60 {
+                let at =
+                    [0, 1].map(|axis| domain.origin[axis] + stream.random_range(0.0..domain.length(axis)));
+                if discs.iter().all(|other| domain.distance(other.position, at) > 1.0) {
+                    discs.push(disc(at));
+                }
+            }
+            let mut grid = Grid::new(domain, sizes, &mask);
+            grid.fill(&discs, 0.0).unwrap();
+            for (number, here) in discs.iter().enumerate() {
+                let seen: Vec<u32> = grid.around(number as u32).collect();
+                for (other, there) in discs.iter().enumerate().filter(|(other, _)| *other != number) {
+                    let distance = domain.distance(here.position, there.position);
+                    assert!(distance >= sizes.reach(&mask) || seen.contains(&(other as u32)), "{distance}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn two_in_a_cell_are_named() {
+        let domain = Domain::planar([0.0; 2], [10.0; 2], [true; 2]);
+        let mut grid = Grid::new(domain, Sizes::new(&domain, 0.5), &Mask::square(2));
+        let discs = [disc([5.0, 5.0]), disc([1.0, 1.0]), disc([5.01, 5.01])];
+        assert_eq!(grid.fill(&discs, 0.0), Err([0, 2]));
+    }
+}

@@ -1,0 +1,282 @@
+//! A scene of hard discs, held against what the method demands.
+
+use super::choice::{candidates, mask};
+use super::event::Disc;
+use super::grid::Sizes;
+use super::keys::{EVENTS, MASK};
+use super::scene::Scene;
+use super::simulation::Running;
+use crate::domain::{Domain, Side};
+use crate::memory::{Foreseen, available, in_words};
+use crate::method::{Fact, Failure, Prepared, Purpose, Schedule, Simulation, Until};
+use crate::particles::{Kind, Particle, Particles};
+use crate::scene::{
+    GENERATE, Output, RADIUS, Read, Reason, SceneError, SceneErrors, Values, WallMotion, Warning,
+};
+use crate::start::{Stated, make, outside, overlaps};
+use serde_json::{Map, Value, json};
+use std::path::Path;
+use stripmine_kernels::mask::Mask;
+
+/// Discs may overlap by this part of the sum of their radii at the start: rounding.
+const ROUNDING: f64 = 1e-12;
+/// Bytes of the program itself.
+const PROGRAM: f64 = 12.5e6;
+
+/// A checked scene.
+#[derive(Clone)]
+pub(super) struct Checked {
+    pub(super) scene: Scene,
+    pub(super) domain: Domain,
+    pub(super) particles: Particles,
+    pub(super) mask: Mask,
+    warnings: Vec<Warning>,
+    choices: Vec<String>,
+}
+
+/// Makes the discs of a scene and holds it against every precondition.
+///
+/// # Errors
+/// [`SceneErrors`]: every precondition that does not hold.
+pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> {
+    let (mut scene, mut read) = (Scene::default(), Read::new(&values));
+    scene.bind(&mut read);
+    read.done()?;
+    let stated =
+        Stated { values: &values, domain: &scene.domain, start: &scene.start, walls: WallMotion::Fixed };
+    let made = make(&stated)?;
+    let (domain, particles) = (made.domain, made.particles);
+    let mut errors = outside(&stated, &domain, &particles);
+    errors.extend(overlaps(&stated, &domain, &particles, ROUNDING, "hard discs do not overlap"));
+    errors.extend(beyond_sides(&values, &domain, &particles));
+    errors.extend(fixed(&values, &particles));
+    errors.extend(nothing_moves(&values, &scene, &particles));
+    let mut choices = vec![];
+    let chosen = particles
+        .radii()
+        .map(|radii| serving(&values, &mut scene, &domain, radii, particles.len(), &mut choices));
+    let mask = match chosen {
+        Some(Ok(mask)) => mask,
+        Some(Err(error)) => {
+            errors.push(error);
+            Mask::square(2)
+        }
+        None => {
+            errors.push(values.spot(&RADIUS).error(Reason::Geometry, "there is nothing to simulate"));
+            Mask::square(2)
+        }
+    };
+    SceneErrors::none_of(errors)?;
+    Ok(Box::new(Checked { scene, domain, particles, mask, warnings: made.warnings, choices }))
+}
+
+/// Discs that reach beyond closed sides.
+fn beyond_sides(values: &Values, domain: &Domain, particles: &Particles) -> Option<SceneError> {
+    let beyond = |disc: &&Particle| {
+        (0..2).any(|axis| match domain.sides[axis] {
+            Side::Closed(side) => {
+                let along = disc.position[axis] - domain.origin[axis];
+                along < disc.radius * (1.0 - ROUNDING) || along > side - disc.radius * (1.0 - ROUNDING)
+            }
+            _ => false,
+        })
+    };
+    let first = particles.all().iter().find(beyond)?;
+    let [x, y] = first.place();
+    let message = format!(
+        "disc {} at ({x}, {y}) with radius {} reaches beyond a side that is not periodic",
+        first.id, first.radius
+    );
+    let error = values.spot(&GENERATE).error(Reason::Placement, message);
+    Some(error.advising("make the sides periodic, or list discs at least a radius away from the sides"))
+}
+
+/// Discs that nothing moves.
+fn fixed(values: &Values, particles: &Particles) -> Option<SceneError> {
+    let count = particles.len() - particles.grain_count();
+    (count > 0).then(|| {
+        let message = format!("{count} wall discs, but every hard disc moves");
+        let error = values.spot(&GENERATE).error(Reason::Contradiction, message);
+        error.expecting("generate = \"hexagonal\", \"random\" or \"list\", or a file without wall discs")
+    })
+}
+
+/// Discs at rest, which have no events.
+fn nothing_moves(values: &Values, scene: &Scene, particles: &Particles) -> Option<SceneError> {
+    let moves = particles.all().iter().any(|disc| disc.velocity != [0.0; 3]);
+    (!moves && matches!(scene.run.until, Until::Events(_))).then(|| {
+        let error =
+            values.spot(&EVENTS).error(Reason::Contradiction, "no disc moves: nothing will ever happen");
+        error.advising("give the discs a temperature or velocities, or ask for a time")
+    })
+}
+
+/// The mask that was asked for, or the cheapest.
+fn serving(
+    values: &Values,
+    scene: &mut Scene,
+    domain: &Domain,
+    radii: [f64; 2],
+    count: usize,
+    choices: &mut Vec<String>,
+) -> Result<Mask, SceneError> {
+    let all = candidates(domain, radii, count);
+    let serve: Vec<&str> = all.iter().filter(|it| it.predictions.is_finite()).map(|it| it.name).collect();
+    let refused = |message: String| {
+        let error = values.spot(&MASK).error(Reason::Geometry, message);
+        match serve.as_slice() {
+            [] => error.advising("take a larger box, or radii that differ less"),
+            names => error.expecting(format!("one of {}", names.join(", "))),
+        }
+    };
+    let Sizes { cells: [columns, rows], .. } = Sizes::new(domain, radii[0]);
+    let in_words = format!("{columns} × {rows} cells, discs of radii {:.4} to {:.4}", radii[0], radii[1]);
+    match all.iter().find(|it| it.name == scene.mask) {
+        Some(own) if own.predictions.is_finite() => {}
+        Some(own) => {
+            return Err(refused(format!(
+                "mask {} does not serve {in_words}: it meets itself across a periodic side, or discs reach beyond it",
+                own.name
+            )));
+        }
+        None => {
+            let best = all.iter().min_by(|a, b| a.predictions.total_cmp(&b.predictions));
+            let Some(best) = best.filter(|best| best.predictions.is_finite()) else {
+                return Err(refused(format!("no mask serves {in_words}")));
+            };
+            best.name.clone_into(&mut scene.mask);
+            choices.push(format!(
+                "search.mask = \"{}\": about {:.0} predictions a collision, the fewest of all masks",
+                best.name, best.predictions
+            ));
+        }
+    }
+    mask(&scene.mask).ok_or_else(|| refused(format!("no mask is called {}", scene.mask)))
+}
+
+impl Checked {
+    /// The discs by id, as events see them at the start; and for each the place of its particle.
+    pub(super) fn discs(&self) -> (Vec<Disc>, Vec<usize>) {
+        let all = self.particles.all();
+        let mut order: Vec<usize> = (0..all.len()).collect();
+        order.sort_by_key(|&place| all[place].id);
+        let disc = |&place: &usize| Disc {
+            position: self.domain.wrapped(all[place].place()),
+            velocity: all[place].planar_velocity(),
+            time: 0.0,
+            radius: all[place].radius,
+            mass: all[place].mass,
+            met: f64::NEG_INFINITY,
+        };
+        (order.iter().map(disc).collect(), order)
+    }
+
+    fn packing_fraction(&self) -> f64 {
+        let discs = self.particles.all().iter();
+        discs.map(|disc| std::f64::consts::PI * disc.radius.powi(2)).sum::<f64>() / self.domain.area()
+    }
+}
+
+impl Prepared for Checked {
+    fn scene(&self) -> String {
+        self.scene.to_toml()
+    }
+
+    fn schedule(&self) -> Schedule {
+        self.scene.run.schedule()
+    }
+
+    fn output(&self) -> Output {
+        self.scene.output
+    }
+
+    fn domain(&self) -> Domain {
+        self.domain
+    }
+
+    fn particles(&self) -> &Particles {
+        &self.particles
+    }
+
+    fn seed(&self) -> Option<u64> {
+        self.scene.start.seed()
+    }
+
+    fn start_file(&self) -> Option<&Path> {
+        self.scene.start.file()
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let [x, y] = self.domain.lengths();
+        let [low, high] = self.particles.radii().unwrap_or([0.0; 2]);
+        let sizes = Sizes::new(&self.domain, low);
+        let [columns, rows] = sizes.cells;
+        let memory = self.memory();
+        let left = memory.available.map(|bytes| format!(" of {} left", in_words(bytes)));
+        let discs = self.particles.len();
+        vec![
+            Fact::new("units", self.scene.units.as_str(), "units", self.scene.units.as_str()),
+            Fact::new("grains", discs, "discs", discs.to_string()),
+            Fact::new("radii", json!([low, high]), "radii", format!("{low:.6} to {high:.6}")),
+            Fact::new("sides", json!([x, y]), "box", format!("{x:.6} × {y:.6}")),
+            Fact::data("periodic", json!(self.domain.periodic())),
+            Fact::new("packing_fraction", self.packing_fraction(), "packing fraction", {
+                format!("{:.4}", self.packing_fraction())
+            }),
+            Fact::new("cells", columns * rows, "cells", format!("{columns} × {rows} = {}", columns * rows)),
+            Fact::new("mask", self.scene.mask.as_str(), "mask", {
+                format!("{}, {} places", self.scene.mask, self.mask.offsets().len())
+            }),
+            Fact::words("end", self.scene.run.until.to_string()),
+            Fact::new("memory", json!(memory), "memory of a run", {
+                in_words(memory.needed) + &left.unwrap_or_default()
+            }),
+        ]
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    fn choices(&self) -> &[String] {
+        &self.choices
+    }
+
+    fn left_out(&self) -> &[String] {
+        &[]
+    }
+
+    fn memory(&self) -> Foreseen {
+        let discs = self.particles.len() as f64;
+        let sizes = Sizes::new(&self.domain, self.particles.radii().map_or(1.0, |[low, _]| low));
+        let margin = 2 * self.mask.half_width() as usize;
+        let cells: f64 = sizes.cells.iter().map(|&cells| (cells + margin) as f64).product();
+        // A disc, its event, its node and its cell; the scene's particles, twice; what is written of them.
+        let disc = size_of::<Disc>() as f64 + 16.0 + 8.0 + 4.0 + 3.0 * size_of::<Particle>() as f64 + 100.0;
+        Foreseen {
+            needed: (PROGRAM + disc * discs + 4.0 * cells) as u64,
+            available: available(),
+            what: format!("{} hard discs", self.particles.len()),
+            remedy: "take fewer discs",
+        }
+    }
+
+    fn settings(&self) -> Map<String, Value> {
+        let settings = [
+            ("packing_fraction", json!(self.packing_fraction())),
+            ("precision", json!("f64")),
+            ("mask", json!(self.scene.mask)),
+            ("restitution", json!(self.scene.law.restitution)),
+        ];
+        settings.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
+    }
+
+    fn start(&self, _: Purpose) -> Result<Box<dyn Simulation>, Failure> {
+        Ok(Box::new(Running::new(self)?))
+    }
+
+    fn started_from(&self, particles: Particles) -> Box<dyn Prepared> {
+        debug_assert!(particles.all().iter().all(|disc| disc.kind == Kind::Grain));
+        Box::new(Checked { particles, ..self.clone() })
+    }
+}

@@ -1,0 +1,9 @@
+//! Scenes to start from.
+
+use crate::scene::Preset;
+
+/// Every preset of this method.
+pub(super) const PRESETS: &[Preset] = &[
+    Preset { name: "hard-disks", text: include_str!("presets/hard-disks.toml") },
+    Preset { name: "cooling-gas", text: include_str!("presets/cooling-gas.toml") },
+];

@@ -1,0 +1,95 @@
+//! A complete binary tree over the discs, in which the smaller of two keys goes up: the smallest of all is at the root.
+
+/// The tree. Leaves are discs, by number.
+#[derive(Clone, Debug)]
+pub struct Tournament {
+    /// The winner of each node; the root is 1, the children of k are 2k and 2k + 1. Leaves are not kept.
+    winners: Vec<u32>,
+    /// Leaves: a power of two.
+    leaves: usize,
+}
+
+/// Stands for no disc.
+const NOBODY: u32 = u32::MAX;
+
+impl Tournament {
+    /// Of `count` discs, of which `time` gives the key; ties go to the smaller number.
+    pub fn new(count: usize, time: impl Fn(u32) -> f64) -> Tournament {
+        let leaves = count.next_power_of_two().max(2);
+        let mut tree = Tournament { winners: vec![NOBODY; leaves], leaves };
+        for node in (1..leaves).rev() {
+            tree.winners[node] = tree.play(node, count, &time);
+        }
+        tree
+    }
+
+    /// The disc with the smallest key.
+    #[inline]
+    pub fn first(&self) -> u32 {
+        self.winners[1]
+    }
+
+    /// Makes all keys known again.
+    pub fn renew(&mut self, count: usize, time: impl Fn(u32) -> f64) {
+        for node in (1..self.leaves).rev() {
+            self.winners[node] = self.play(node, count, &time);
+        }
+    }
+
+    /// The key of a disc is another.
+    #[inline]
+    pub fn update(&mut self, disc: u32, count: usize, time: impl Fn(u32) -> f64) {
+        let mut node = (self.leaves + disc as usize) / 2;
+        while node > 0 {
+            let winner = self.play(node, count, &time);
+            // Above, nothing changes for a disc that neither won nor wins.
+            if winner == self.winners[node] && winner != disc {
+                return;
+            }
+            self.winners[node] = winner;
+            node /= 2;
+        }
+    }
+
+    #[inline(always)]
+    fn play(&self, node: usize, count: usize, time: &impl Fn(u32) -> f64) -> u32 {
+        let entrant = |child: usize| {
+            if child >= self.leaves {
+                let disc = child - self.leaves;
+                if disc < count { disc as u32 } else { NOBODY }
+            } else {
+                self.winners[child]
+            }
+        };
+        let [left, right] = [entrant(2 * node), entrant(2 * node + 1)];
+        match (left, right) {
+            (left, NOBODY) => left,
+            (NOBODY, right) => right,
+            (left, right) if time(right) < time(left) => right,
+            (left, _) => left,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::RngExt;
+    use stripmine_kernels::noise::{Purpose, Stream};
+
+    #[test]
+    fn the_first_is_the_smallest_after_every_change() {
+        let mut stream = Stream::new(7, Purpose::Test, 0);
+        for count in [1usize, 2, 3, 17, 64, 100] {
+            let mut keys: Vec<f64> = (0..count).map(|_| stream.random_range(0..8) as f64).collect();
+            let mut tree = Tournament::new(count, |disc| keys[disc as usize]);
+            for _ in 0..500 {
+                let smallest = (0..count).min_by(|&a, &b| keys[a].total_cmp(&keys[b])).unwrap();
+                assert_eq!(tree.first() as usize, smallest, "{keys:?}");
+                let changed = stream.random_range(0..count);
+                keys[changed] = stream.random_range(0..8) as f64;
+                tree.update(changed as u32, count, |disc| keys[disc as usize]);
+            }
+        }
+    }
+}

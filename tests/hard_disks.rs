@@ -1,0 +1,154 @@
+//! Event-driven hard discs, as a user meets them: physics against outside values, resumption, and what is refused.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+fn stripmine(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stripmine"));
+    command.args(arguments).stdin(Stdio::null()).output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn run(scene: &str, out: &Path, more: &[&str]) -> Value {
+    let begin = ["run", scene, "--json", "--quiet", "--out", out.to_str().unwrap()];
+    let output = stripmine(&[&begin[..], more].concat());
+    assert!(output.status.success(), "{}", said(&output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The columns of thermo.csv by name.
+fn column(folder: &Path, name: &str) -> Vec<f64> {
+    let text = fs::read_to_string(folder.join("thermo.csv")).unwrap();
+    let mut lines = text.lines();
+    let place = lines.next().unwrap().split(',').position(|column| column == name).unwrap();
+    lines.map(|line| line.split(',').nth(place).unwrap().parse().unwrap()).collect()
+}
+
+/// Z and the collision rate of a fluid at ν = 0.50 and 0.30, measured with two independent codes (the figures of the specification
+/// of ISO99: Z = 4.1094 and 2.0632, ω = 7.017 and 2.3995), from the second half of a run of 2·10⁵ collisions: to 2 %.
+#[test]
+fn the_pressure_of_a_fluid_is_that_of_other_programs() {
+    let folder = tempfile::tempdir().unwrap();
+    for (packing, pressure, rate) in [("0.50", 4.1094, 7.017), ("0.30", 2.0632, 2.3995)] {
+        let out = folder.path().join(packing);
+        let set = [format!("particles.packing_fraction={packing}"), "run.events=200000".to_owned()];
+        let summary =
+            run("hard-disks", &out, &["--set", &set[0], "--set", &set[1], "--set", "run.thermo_every=2"]);
+        let [time, virial, collisions, temperature, energy] =
+            ["time", "virial", "collisions", "temperature", "energy_error"].map(|name| column(&out, name));
+        let count = summary["discs"].as_f64().unwrap();
+        let (first, last) = (time.len() / 2, time.len() - 1);
+        let [flown, virial, collisions] = [&time, &virial, &collisions].map(|it| it[last] - it[first]);
+        let z = 1.0 + virial / (2.0 * count * temperature[last] * flown);
+        let thermal = temperature[last].sqrt();
+        let omega = 2.0 * collisions / (count * flown) / thermal;
+        assert!((z / pressure - 1.0).abs() < 0.02, "Z = {z}");
+        assert!((omega / rate - 1.0).abs() < 0.02, "ω = {omega}");
+        assert!(energy.iter().all(|error| error.abs() < 1e-12), "{energy:?}");
+        assert_eq!(summary["checks"], serde_json::json!([]));
+    }
+}
+
+/// Haff's law, T = T₀ exp(−(1 − e²) collisions/N), as long as the gas is even: to 4 % over four collisions a disc.
+#[test]
+fn a_cooling_gas_follows_haffs_law() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let summary = run("cooling-gas", &out, &["--set", "run.events=5000", "--set", "run.thermo_every=0.05"]);
+    let count = summary["discs"].as_f64().unwrap();
+    let (collisions, temperature) = (column(&out, "collisions"), column(&out, "temperature"));
+    // The lattice of the start is no gas yet: from one collision a disc on.
+    let begun = collisions.iter().position(|collisions| *collisions > count).unwrap();
+    assert!(temperature.len() > begun + 5);
+    for (now, found) in collisions.iter().zip(&temperature).skip(begun) {
+        let law = temperature[begun] * (-(1.0 - 0.81) * (now - collisions[begun]) / count).exp();
+        assert!((found / law - 1.0).abs() < 0.04, "{now}: {found}, {law}");
+    }
+}
+
+/// Whatever the mask, and in however many parts: the same bits.
+#[test]
+fn masks_and_resumption_change_no_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let last_frame = |name: &str, parts: &[&str], mask: &str| {
+        let out = folder.path().join(name);
+        for (number, time) in parts.iter().enumerate() {
+            let set = [format!("run.time={time}"), format!("search.mask={mask}")];
+            let mut more = vec!["--set", &set[0], "--set", &set[1], "--set", "particles.count=200"];
+            if number > 0 {
+                more.push("--resume");
+            }
+            run("hard-disks", &out, &more);
+        }
+        let text = fs::read_to_string(out.join("trajectory.xyz")).unwrap();
+        text[text.rfind("Lattice").unwrap()..].to_owned()
+    };
+    let whole = last_frame("whole", &["10"], "min");
+    assert!(whole.lines().count() > 200);
+    assert_eq!(last_frame("parts", &["3.7", "6.1", "10"], "min"), whole);
+    assert_eq!(last_frame("round", &["10"], "r4"), whole);
+}
+
+/// Three discs between two others in a line, very dissipative: they collide without end, and that is said with the pair.
+#[test]
+fn inelastic_collapse_is_found_out_and_cured() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("collapse.toml");
+    // One dimension, three particles: collapse for e < 7 − 4 √3 = 0.0718 (McNamara and Young).
+    let text = "format = 2\nunits = \"reduced\"\n[method]\nkind = \"hard-disks\"\n[domain]\nsides = [40.0, 10.0]\n[particles]\n\
+                generate = \"list\"\npositions = [[10.0, 5.0], [13.5, 5.0], [18.0, 5.0]]\nvelocities = [[1.0, 0.0], [0.0, 0.0], \
+                [-1.0, 0.0]]\nradius = 0.5\nmass = 1.0\n[law]\nrestitution = 0.01\n[run]\nevents = 100000\nthermo_every = 0\nsnapshot_every = 0\ncheckpoint_every = 0\n";
+    fs::write(&scene, text).unwrap();
+    let path = scene.to_str().unwrap();
+    let out = folder.path().join("run");
+    let refused = stripmine(&["run", path, "--out", out.to_str().unwrap()]);
+    let message = said(&refused);
+    assert_eq!(refused.status.code(), Some(4), "{message}");
+    assert!(message.contains("inelastic collapse") && message.contains("contact_duration"), "{message}");
+    let cured = ["--set", "law.contact_duration=1e-3", "--set", "run.events=20"];
+    let summary = run(path, &folder.path().join("cured"), &cured);
+    assert_eq!(summary["checks"][0]["check"], "made-elastic");
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_what_may_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let refused = |scene: &str, set: &[&str], code: i32, words: &[&str]| {
+        let mut arguments = vec!["run", scene, "--out", out.to_str().unwrap()];
+        set.iter().for_each(|text| arguments.extend(["--set", text]));
+        let output = stripmine(&arguments);
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(code), "{set:?}: {said}");
+        assert!(words.iter().all(|word| said.contains(word)), "{set:?}: {said}");
+    };
+    refused("hard-disks", &["law.restitution=1.5"], 3, &["law.restitution", "1"]);
+    refused("hard-disks", &["law.restitution=0"], 3, &["without end"]);
+    refused("hard-disks", &["domain.gravity=[0.0, -1.0]"], 3, &["fly straight", "lattice-md"]);
+    refused("hard-disks", &["particles.count=20", "search.mask=r10"], 3, &["r10 does not serve", "one of"]);
+    refused("hard-disks", &["particles.temperature=0"], 3, &["no disc moves"]);
+    let list = |positions: &str| {
+        let scene = folder.path().join("list.toml");
+        let text = format!(
+            "format = 2\nunits = \"reduced\"\n[method]\nkind = \"hard-disks\"\n[domain]\nsides = [20.0, 20.0]\nperiodic = [false, true]\n\
+             [particles]\ngenerate = \"list\"\npositions = {positions}\nvelocities = [[0.0, 1.0], [0.0, 1.0]]\nradius = 0.5\nmass = 1.0\n\
+             [run]\nevents = 10\nthermo_every = 0\nsnapshot_every = 0\ncheckpoint_every = 0\n"
+        );
+        fs::write(&scene, text).unwrap();
+        scene.to_str().unwrap().to_owned()
+    };
+    refused(
+        &list("[[5.0, 5.0], [5.9, 5.0]]"),
+        &[],
+        3,
+        &["overlap at the start", "hard discs do not overlap"],
+    );
+    refused(&list("[[0.3, 5.0], [5.9, 5.0]]"), &[], 3, &["reaches beyond a side"]);
+    // Discs that fly beside each other meet nothing, ever.
+    refused(&list("[[5.0, 5.0], [8.0, 5.0]]"), &[], 4, &["nothing happened up to"]);
+}
