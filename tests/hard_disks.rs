@@ -128,7 +128,7 @@ fn what_cannot_be_is_refused_with_what_may_be() {
         assert!(words.iter().all(|word| said.contains(word)), "{set:?}: {said}");
     };
     refused("hard-disks", &["law.restitution=1.5"], 3, &["law.restitution", "1"]);
-    refused("hard-disks", &["law.restitution=0"], 3, &["without end"]);
+    refused("hard-disks", &["law.restitution=0"], 3, &["above 0 and at most 1"]);
     refused("hard-disks", &["domain.gravity=[0.0, -1.0]"], 3, &["fly straight", "lattice-md"]);
     refused("hard-disks", &["particles.count=20", "search.mask=r10"], 3, &["r10 does not serve", "one of"]);
     refused("hard-disks", &["particles.temperature=0"], 3, &["no disc moves"]);

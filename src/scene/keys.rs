@@ -58,6 +58,8 @@ pub enum Bounds {
     Within(f64),
     /// Zero or more, below the bound.
     UpTo(f64),
+    /// Above zero, at most a bound.
+    AtMost(f64),
 }
 
 impl Bounds {
@@ -70,6 +72,7 @@ impl Bounds {
                 Bounds::NonNegative => value >= 0.0,
                 Bounds::Within(bound) => 0.0 < value && value < bound,
                 Bounds::UpTo(bound) => (0.0..bound).contains(&value),
+                Bounds::AtMost(bound) => 0.0 < value && value <= bound,
             }
     }
 
@@ -80,6 +83,7 @@ impl Bounds {
             Bounds::NonNegative => "0 or more".to_owned(),
             Bounds::Within(bound) => format!("above 0 and below {bound}"),
             Bounds::UpTo(bound) => format!("0 or more and below {bound}"),
+            Bounds::AtMost(bound) => format!("above 0 and at most {bound}"),
         }
     }
 }

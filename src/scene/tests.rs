@@ -32,6 +32,8 @@ fn dimensional_keys_have_units() {
         "friction",
         "max_penetration",
         "stop_penetration",
+        "restitution",
+        "wall_restitution",
     ];
     for key in METHODS.iter().flat_map(|method| method.vocabulary.keys.keys()) {
         let measures = matches!(key.kind, Number(_) | Pair(_) | Pairs | Numbers(_));

@@ -1,6 +1,6 @@
 //! The keys that are this method's own, and what they demand of each other.
 
-use crate::scene::Bounds::{NonNegative, UpTo};
+use crate::scene::Bounds::{AtMost, NonNegative};
 use crate::scene::Fallback::{Is, Otherwise};
 use crate::scene::Kind::{Choice, Number, Whole};
 use crate::scene::keys::define_keys;
@@ -19,9 +19,9 @@ pub(super) const MASKS: &[&str] = &["auto", "min", "r3", "r4", "r5", "r6", "r7",
 define_keys! {
     /// Collisions, search and duration.
     static OWN;
-    RESTITUTION = "law" "restitution", Number(UpTo(1.0)), "", Is("1.0"), ALWAYS,
+    RESTITUTION = "law" "restitution", Number(AtMost(1.0)), "", Is("1.0"), ALWAYS,
         "Relative normal speed of two discs after a collision over that before.";
-    WALL_RESTITUTION = "law" "wall_restitution", Number(UpTo(1.0)), "", Is("1.0"), ALWAYS,
+    WALL_RESTITUTION = "law" "wall_restitution", Number(AtMost(1.0)), "", Is("1.0"), ALWAYS,
         "The same at sides that are not periodic.";
     CONTACT_DURATION = "law" "contact_duration", Number(NonNegative), "time", Is("0.0"), ALWAYS,
         "A collision that comes sooner than this after another one of either disc is elastic, against inelastic collapse (the TC model); 0 for none.";
@@ -67,14 +67,6 @@ fn own_rules(values: &Values) -> Vec<SceneError> {
         errors.push(
             error.expecting("gravity = [0.0, 0.0]").advising("method.kind = \"lattice-md\" has gravity"),
         );
-    }
-    for key in [&RESTITUTION, &WALL_RESTITUTION] {
-        if values.number(key) == Some(0.0) {
-            let message = "discs that do not part again meet without end";
-            errors.push(
-                values.spot(key).error(Reason::Range, message).expecting("a restitution above 0, at most 1"),
-            );
-        }
     }
     errors
 }
