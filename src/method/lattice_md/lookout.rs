@@ -9,8 +9,8 @@ use crate::method::RunWarning;
 use crate::particles::{Particle, Particles};
 use std::collections::BTreeMap;
 
-/// Steps from one look to the next: a look costs less than a step.
-const EVERY: u64 = 256;
+/// Steps from one look to the next: a look costs as much as some twenty steps.
+const EVERY: u64 = 1024;
 /// Names of the counters.
 const COUNTERS: [&str; 2] = ["looked.fastest", "looked.slowest"];
 
