@@ -149,6 +149,7 @@ fn what_cannot_be_is_refused_with_what_may_be() {
         &["overlap at the start", "hard discs do not overlap"],
     );
     refused(&list("[[0.3, 5.0], [5.9, 5.0]]"), &[], 3, &["reaches beyond a side"]);
-    // Discs that fly beside each other meet nothing, ever.
+    // Discs that fly beside each other meet nothing, ever: not for events, but a time passes.
+    run(&list("[[5.0, 5.0], [8.0, 5.0]]"), &folder.path().join("beside"), &["--set", "run.time=50"]);
     refused(&list("[[5.0, 5.0], [8.0, 5.0]]"), &[], 4, &["nothing happened up to"]);
 }

@@ -12,6 +12,7 @@ mod orders;
 pub mod stability;
 mod state;
 mod subject;
+mod tables;
 mod trial;
 pub mod work_precision;
 

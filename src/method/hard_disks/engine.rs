@@ -401,7 +401,7 @@ mod tests {
         assert_eq!(cases, 3 * 2 * 3 * 600);
     }
 
-    /// 10⁵ collisions of 100 discs: energy stays to rounding, momentum too, and nothing overlaps.
+    /// 10⁵ collisions of 80 discs: energy stays to rounding, momentum too, and nothing overlaps.
     #[test]
     fn energy_and_momentum_stay() {
         let domain = Domain::planar([0.0; 2], [13.0, 12.0], [true; 2]);

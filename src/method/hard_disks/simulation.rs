@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use stripmine_kernels::mask::Mask;
 
-/// Events between looks at whether a run is to be interrupted.
+/// Events, or fillings of the grid, between looks at whether a run is to be interrupted.
 const UNHEARD: u64 = 4096;
 /// After the grid was filled this often without an event nothing will ever happen: discs fly beside each other.
 const IDLE: u64 = 200_000;
@@ -80,6 +80,11 @@ impl Running {
             self.totals.made_elastic += u64::from(impact.was_made_elastic);
             self.totals.virial += impact.virial;
         }
+    }
+
+    /// Whether nothing has happened for so long that nothing will.
+    fn is_idle(&self) -> bool {
+        self.engine.remaps() > self.filled + IDLE
     }
 
     fn failure(&self, why: Stopped) -> Failure {
@@ -148,11 +153,13 @@ impl Simulation for Running {
             Until::Steps(_) | Until::Events(_) => None,
         });
         let end = end.fold(f64::INFINITY, f64::min);
+        let awaits_events = until.iter().any(|moment| matches!(moment, Until::Events(_)));
         while !until.iter().any(|moment| moment.has_come(&self.clock)) {
             if self.clock.events.is_multiple_of(UNHEARD) && interrupted.load(Ordering::Relaxed) {
                 break;
             }
-            match self.engine.next(end, self.filled + IDLE) {
+            let unheard = self.engine.remaps() + UNHEARD;
+            match self.engine.next(end, unheard) {
                 Err(why) => return Err(self.failure(why)),
                 Ok(Some(happened)) => {
                     self.count(&happened);
@@ -166,8 +173,11 @@ impl Simulation for Running {
                         return Err(self.collapsed(&happened, collapse));
                     }
                 }
-                Ok(None) if end.is_finite() && self.engine.remaps() < self.filled + IDLE => {
-                    self.clock.time = end;
+                Ok(None) if self.engine.remaps() < unheard && end.is_finite() => self.clock.time = end,
+                Ok(None) if self.engine.remaps() >= unheard && !(awaits_events && self.is_idle()) => {
+                    if interrupted.load(Ordering::Relaxed) {
+                        break;
+                    }
                 }
                 Ok(None) => {
                     let message = format!(
@@ -209,13 +219,14 @@ impl Simulation for Running {
         let Totals { collisions, virial, .. } = self.totals;
         let time = self.clock.time;
         let rate = if time > 0.0 { 2.0 * collisions as f64 / (count * time) } else { 0.0 };
-        let pressure = if time > 0.0 { 1.0 + virial / (2.0 * count * temperature * time) } else { 1.0 };
+        // Without collisions an ideal gas, even one at rest.
+        let pressure = if collisions > 0 { 1.0 + virial / (2.0 * count * temperature * time) } else { 1.0 };
         vec![
             time,
             self.clock.events as f64,
             collisions as f64,
             kinetic,
-            kinetic / self.kinetic - 1.0,
+            if self.kinetic > 0.0 { kinetic / self.kinetic - 1.0 } else { 0.0 },
             temperature,
             momentum[0],
             momentum[1],

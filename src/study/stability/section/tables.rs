@@ -4,26 +4,13 @@ use super::super::boundary::Edge;
 use super::super::dataset::{Stability, over_seeds};
 use super::super::outcome::{Class, Foreseen};
 use crate::report::{Cell, Table};
+use crate::study::tables::{table, text};
 
 type Maps = [(String, Stability)];
 
 /// Every table of the page.
 pub fn of(maps: &Maps) -> Vec<Table> {
     [schemes(maps), said(maps)].into_iter().filter(|table| !table.rows.is_empty()).collect()
-}
-
-fn table(name: &str, title: &str, columns: &[&str], rows: Vec<Vec<Cell>>, notes: &[&str]) -> Table {
-    Table {
-        name: name.into(),
-        title: title.into(),
-        columns: columns.iter().map(|&column| column.to_owned()).collect(),
-        rows,
-        notes: notes.iter().map(|&note| note.to_owned()).collect(),
-    }
-}
-
-fn text(text: impl Into<String>) -> Cell {
-    Cell::Text(text.into())
 }
 
 /// Edges as multiples of the scene's own step: the middle, the lowest and the highest over the seeds.

@@ -6,6 +6,7 @@ use super::super::measures::Measure;
 use crate::report::{Cell, Table};
 use crate::study::growth::EndedBy;
 use crate::study::orders::Fitted;
+use crate::study::tables::{table, text};
 
 type Scenes = [(String, WorkPrecision)];
 
@@ -21,20 +22,6 @@ pub fn of(scenes: &Scenes) -> Vec<Table> {
         failed(scenes),
     ];
     all.into_iter().filter(|table| !table.rows.is_empty()).collect()
-}
-
-fn table(name: &str, title: &str, columns: &[&str], rows: Vec<Vec<Cell>>, notes: &[&str]) -> Table {
-    Table {
-        name: name.into(),
-        title: title.into(),
-        columns: columns.iter().map(|&column| column.to_owned()).collect(),
-        rows,
-        notes: notes.iter().map(|&note| note.to_owned()).collect(),
-    }
-}
-
-fn text(text: impl Into<String>) -> Cell {
-    Cell::Text(text.into())
 }
 
 fn number(value: Option<f64>, decimals: usize) -> Cell {
