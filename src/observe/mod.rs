@@ -6,7 +6,8 @@ use crate::domain::Domain;
 use crate::near::Near;
 use crate::particles::{Kind, Particle, Particles};
 use serde::Serialize;
-use stripmine_kernels::law::granular::Contact;
+use stripmine_kernels::law::granular::{Contact, Disc, Granular};
+use stripmine_kernels::sweep::pair::{Body, Pair};
 
 /// The scene as observers see it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +43,9 @@ pub struct Observation {
     pub momentum_y: f64,
     /// Kinetic energy a grain and dimension, about the mean motion.
     pub temperature: f64,
+    /// Pressure of the grains (force/length): (N T + ½ Σ F_N |r_i − r_j|)/A over the contacts between grains, with the
+    /// temperature T and the area A of the whole box.
+    pub pressure: f64,
     /// Mean velocity of the grains along gravity, or along x without gravity (length/time).
     pub flow: f64,
     /// The deepest contact (fraction of the sum of the radii).
@@ -81,12 +85,19 @@ impl Observation {
             let along = if strength > 0.0 { gravity.map(|g| g / strength) } else { [1.0, 0.0] };
             seen.flow = (sum_velocity[0] * along[0] + sum_velocity[1] * along[1]) / n;
         }
-        for (_, _, penetration, reach) in contacts(particles, &domain) {
+        let all = particles.all();
+        let mut virial = 0.0;
+        for (i, j, penetration, reach) in contacts(particles, &domain) {
             let depth = penetration * reach;
             seen.contacts += 1;
             seen.elastic += contact.energy(|number| number, depth);
             seen.deepest_penetration = seen.deepest_penetration.max(penetration);
+            if all[j].kind == Kind::Grain {
+                virial += virial_of(&contact, &domain, &all[i], &all[j]);
+            }
         }
+        let area = domain.length(0) * domain.length(1);
+        seen.pressure = (grains.len() as f64 * seen.temperature + 0.5 * virial) / area;
         seen
     }
 
@@ -94,6 +105,22 @@ impl Observation {
     pub fn energy(&self) -> f64 {
         self.kinetic + self.rotational + self.elastic + self.gravitational
     }
+}
+
+/// (r_i − r_j)·F_i of two grains in contact (energy), damping included. Friction acts across the way between the centres
+/// and has no part in it.
+fn virial_of(contact: &Contact, domain: &Domain, grain: &Particle, partner: &Particle) -> f64 {
+    let body = |particle: &Particle, [x, y]: [f64; 2]| Body {
+        velocity: particle.planar_velocity(),
+        radius: particle.radius,
+        inverse_mass: 1.0 / particle.mass,
+        ..Body::at(x, y)
+    };
+    // The law reads each disc's own radius and mass.
+    let alike = Disc { radius: grain.radius, inverse_mass: 1.0 / grain.mass };
+    let law = Granular::<false, false> { contact: *contact, disc: alike };
+    let apart = domain.displacement(grain.place(), partner.place());
+    Pair { bodies: [body(grain, apart), body(partner, [0.0; 2])] }.energy_and_virial(&law)[1]
 }
 
 /// Pairs in contact with at least one grain: the two, the penetration (fraction of the sum of the radii) and that sum

@@ -90,6 +90,7 @@ pub(super) const QUANTITIES: &[Quantity] = quantities! {
     "momentum_x", "mass·length/time", "Momentum of the grains along x.";
     "momentum_y", "mass·length/time", "Momentum of the grains along y.";
     "temperature", "energy", "Kinetic energy a grain and dimension, about the mean motion.";
+    "pressure", "force/length", "Pressure of the grains, of their motion and of the contacts between them, over the area of the whole box.";
     "flow", "length/time", "Mean velocity of the grains along gravity, or along x without gravity.";
     "deepest_penetration", "", "The deepest contact, as a fraction of the sum of the radii.";
     "contacts", "", "Contacts with at least one grain.";

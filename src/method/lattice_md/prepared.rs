@@ -270,6 +270,7 @@ impl Simulation for Running {
             seen.momentum_x,
             seen.momentum_y,
             seen.temperature,
+            seen.pressure,
             seen.flow,
             seen.deepest_penetration,
             seen.contacts as f64,

@@ -30,7 +30,7 @@ pub(super) static TRIALS: Trials = Trials {
         energies: &["kinetic", "rotational", "elastic"],
         inputs: &["gravity_work", "wall_work"],
     }),
-    observables: &["temperature", "flow", "contacts"],
+    observables: &["temperature", "pressure", "flow", "contacts"],
     inertia,
     theory,
     shown: &[
