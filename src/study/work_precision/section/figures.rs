@@ -22,7 +22,10 @@ pub fn of(name: &str, data: &WorkPrecision) -> Vec<Figure> {
         clocks(&file, name, data),
         growth(&file, name, data),
     ];
-    figures.push(data.collision.as_ref().and_then(|collision| outcomes(&file, name, data, collision)));
+    if let Some(collision) = &data.collision {
+        figures.push(outcomes(&file, name, data, collision));
+        figures.extend((0..OUTCOMES.len()).map(|which| outcome_over_cost(&file, name, data, collision, which)));
+    }
     figures.push(data.observables.as_ref().and_then(|all| means(&file, name, data, all)));
     // A chart without a point is no chart.
     let is_drawn = |figure: &Figure| match &figure.picture {
@@ -287,6 +290,51 @@ fn outcomes(file: &str, name: &str, data: &WorkPrecision, collision: &Collision)
             x: Axis::logarithmic("step", None),
             y: Axis::logarithmic("error of the restitution", None),
             series: spread.chain(mean).collect(),
+            bands: vec![],
+        }),
+    })
+}
+
+/// Errors of what comes out of a collision over the cost, by the processor time that a step of the same way takes.
+fn outcome_over_cost(
+    file: &str,
+    name: &str,
+    data: &WorkPrecision,
+    collision: &Collision,
+    which: usize,
+) -> Option<Figure> {
+    let schemes = || data.ways.iter().map(|way| way.scheme.clone());
+    let mut all = vec![];
+    for (at, way) in data.ways.iter().enumerate() {
+        let own = data.runs.iter().filter(|run| run.way == at);
+        let of_a_step: Vec<f64> = own.filter_map(|run| Some(run.cost()? * run.step)).collect();
+        if of_a_step.is_empty() {
+            continue;
+        }
+        let of_a_step = median(of_a_step.into_iter());
+        let errors = collision.errors.iter().filter(|error| error.choice == way.label);
+        let points = errors.map(|error| Point::at(of_a_step / error.step, error.spread[which]));
+        all.push(Series {
+            name: way.scheme.clone(),
+            style: Style::Joined,
+            hue: place(schemes(), &way.scheme),
+            points: points.filter(|point| point.y > 0.0).collect(),
+        });
+    }
+    all.retain(|series| !series.points.is_empty());
+    let (outcome, unit) = (OUTCOMES[which], [None, Some("rad")][which]);
+    Some(Figure {
+        name: format!("{file}_{outcome}_cost"),
+        title: format!("{name}: error of the {outcome} over the cost"),
+        caption: format!(
+            "Root of the mean square over {} starts, each a part of a step later than the one before. The cost is that of the \
+             scene's steps.",
+            collision.phases
+        ),
+        picture: Picture::Chart(Chart {
+            x: axis_of_cost(),
+            y: Axis::logarithmic(&format!("error of the {outcome}"), unit),
+            series: all,
             bands: vec![],
         }),
     })
