@@ -51,7 +51,7 @@ impl RunVerb {
             (_, true) => Existing::Overwrite,
             _ => Existing::Refuse,
         };
-        prepared.memory().fits("scene")?;
+        prepared.memory().fits(&self.scene)?;
         if !common.quiet {
             before(prepared.as_ref());
         }
@@ -83,7 +83,8 @@ impl RunVerb {
 
 /// Says what is to be expected.
 fn before(prepared: &dyn Prepared) {
-    let facts = forecast::of_the_step(prepared).into_iter().chain(forecast::of_the_time(prepared));
+    let of_this_host = forecast::of_the_time(prepared).into_iter().chain([forecast::of_the_memory(prepared)]);
+    let facts = forecast::of_the_step(prepared).into_iter().chain(of_this_host);
     for (label, words) in facts.filter_map(|fact| fact.words) {
         say(format_args!("expected: {label}: {words}"));
     }

@@ -1,5 +1,6 @@
 //! What is to be expected of a run, before it begins: the step against its limits, its error, how long it takes.
 
+use crate::memory::in_words;
 use crate::method::{Beyond, Clock, Every, Fact, Failure, Prepared, Purpose, Until};
 use indicatif::HumanDuration;
 use serde_json::{Map, Value, json};
@@ -30,6 +31,14 @@ pub fn of_the_step(prepared: &dyn Prepared) -> Vec<Fact> {
     facts.extend(said);
     facts.extend(prepared.expected_error());
     facts
+}
+
+/// The memory that it takes, and what this host has left.
+pub fn of_the_memory(prepared: &dyn Prepared) -> Fact {
+    let memory = prepared.memory();
+    let left = memory.available.map(|bytes| format!(" of {} left", in_words(bytes)));
+    let words = in_words(memory.needed) + &left.unwrap_or_default();
+    Fact::new("memory", json!(memory), "memory of a run", words)
 }
 
 /// How long it takes on this host, by its first steps and one row of observables; none where it has no given number of steps, or

@@ -7,7 +7,7 @@ use super::keys::{EVENTS, MASK};
 use super::scene::Scene;
 use super::simulation::Running;
 use crate::domain::{Domain, Side};
-use crate::memory::{Foreseen, available, in_words};
+use crate::memory::{Foreseen, available};
 use crate::method::{Fact, Failure, Prepared, Purpose, Schedule, Simulation, Until};
 use crate::particles::{Kind, Particle, Particles};
 use crate::scene::{
@@ -211,8 +211,6 @@ impl Prepared for Checked {
         let [low, high] = self.particles.radii().unwrap_or([0.0; 2]);
         let sizes = Sizes::new(&self.domain, low);
         let [columns, rows] = sizes.cells;
-        let memory = self.memory();
-        let left = memory.available.map(|bytes| format!(" of {} left", in_words(bytes)));
         let discs = self.particles.len();
         vec![
             Fact::new("units", self.scene.units.as_str(), "units", self.scene.units.as_str()),
@@ -228,9 +226,6 @@ impl Prepared for Checked {
                 format!("{}, {} places", self.scene.mask, self.mask.offsets().len())
             }),
             Fact::words("end", self.scene.run.until.to_string()),
-            Fact::new("memory", json!(memory), "memory of a run", {
-                in_words(memory.needed) + &left.unwrap_or_default()
-            }),
         ]
     }
 

@@ -1,10 +1,8 @@
 //! What there is to be said of a scene.
 
 use super::check::Checked;
-use super::memory;
 use super::theory::limits;
 use super::theory::trial_contact::contact_error;
-use crate::memory::in_words;
 use crate::method::Fact;
 use crate::words::Words;
 use serde_json::json;
@@ -15,8 +13,6 @@ pub(super) fn facts(checked: &Checked) -> Vec<Fact> {
     let sides = |[x, y]: [f64; 2]| format!("{x:.6} × {y:.6}");
     let or_none = |value: Option<f64>, words: fn(f64) -> String| value.map_or("nothing moves".into(), words);
     let (grains, walls) = (particles.grain_count(), particles.len() - particles.grain_count());
-    let memory = memory::foreseen(checked);
-    let left = memory.available.map(|bytes| format!(" of {} left", in_words(bytes)));
     let mut facts = vec![
         Fact::new("units", scene.units.as_str(), "units", scene.units.as_str()),
         Fact::new("grains", grains, "grains", grains.to_string()),
@@ -43,9 +39,6 @@ pub(super) fn facts(checked: &Checked) -> Vec<Fact> {
         Fact::new("estimates", json!(e), "approach speed", format!("{:.4e}", e.approach_speed)),
         Fact::words("steps per contact", or_none(e.steps_per_contact, |steps| format!("{steps:.1}"))),
         Fact::words("penetration of an impact", format!("{:.4}", e.impact_penetration)),
-        Fact::new("memory", json!(memory), "memory of a run", {
-            in_words(memory.needed) + &left.unwrap_or_default()
-        }),
         Fact::words("damping γ dt, dense 3 γ dt, limit", {
             format!("{:.4}, {:.4}, {:.2}", e.damping, e.network_damping, e.damping_limit)
         }),
