@@ -13,6 +13,8 @@ pub enum Purpose {
     Thermostat = 2,
     /// Random cases of tests.
     Test = 3,
+    /// Velocities off thermal walls.
+    Wall = 4,
 }
 
 /// Philox 4x32 with ten rounds (Salmon et al., SC11): four random words from a counter of four and a key of two.

@@ -20,10 +20,15 @@ define_words! {
 }
 
 define_keys! {
-    /// Precision and instructions.
+    /// Precision.
     pub static ARITHMETIC;
     PRECISION = "machine" "precision", Choice(Precision::WORDS), "", Is("\"f64\""), None,
         "Precision; mixed keeps the state in f64 and computes forces in f32.";
+}
+
+define_keys! {
+    /// Instructions.
+    pub static INSTRUCTIONS;
     INSTRUCTION_SET = "machine" "instruction_set", Choice(&["auto", "scalar", "wide", "neon", "avx2", "avx512"]), "",
         Is("\"auto\""), None,
         "The SIMD instructions; auto takes the widest that the processor has.";
@@ -36,6 +41,11 @@ pub fn bind_arithmetic(
     instruction_set: &mut Option<InstructionSet>,
 ) {
     binding.choice(&PRECISION, precision);
+    bind_instructions(binding, instruction_set);
+}
+
+/// Meets the key of the instructions; none is the widest set there is.
+pub fn bind_instructions(binding: &mut dyn Binding, instruction_set: &mut Option<InstructionSet>) {
     let mut name = instruction_set.map_or("auto", InstructionSet::name).to_owned();
     binding.word(&INSTRUCTION_SET, &mut name);
     *instruction_set = InstructionSet::ALL.iter().copied().find(|set| set.name() == name);

@@ -36,7 +36,9 @@ pub use general::{
 };
 pub use key_set::{KeySet, Rivals, SECTIONS};
 pub use keys::{Bounds, Fallback, Key, Kind, Use, Value};
-pub use machine::{ARITHMETIC, INSTRUCTION_SET, PRECISION, Precision, bind_arithmetic};
+pub use machine::{
+    ARITHMETIC, INSTRUCTION_SET, INSTRUCTIONS, PRECISION, Precision, bind_arithmetic, bind_instructions,
+};
 pub use values::Values;
 pub use vocabulary::{Preset, Renamed, Vocabulary};
 

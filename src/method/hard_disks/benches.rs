@@ -43,6 +43,16 @@ pub(super) const BENCHES: &[Bench] = &[Bench {
             values: &[],
             overrides: |fraction| vec![format!("particles.packing_fraction={fraction}")],
         },
+        BenchOption {
+            name: "engine",
+            values: &[],
+            overrides: |engine| vec![format!("machine.engine={engine}")],
+        },
+        BenchOption {
+            name: "instruction-set",
+            values: &[],
+            overrides: |set| vec![format!("machine.instruction_set={set}")],
+        },
         BenchOption { name: "mask", values: &[], overrides: |mask| vec![format!("search.mask={mask}")] },
     ],
     overrides: &[],

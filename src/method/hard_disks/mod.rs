@@ -1,17 +1,19 @@
 //! ISO99: event-driven hard discs, exact between collisions.
 
 mod benches;
-mod choice;
 mod collapse;
 mod engine;
 mod entry;
 mod event;
-mod grid;
+mod fast;
 mod keys;
+mod options;
+#[cfg(test)]
+mod oracle;
 mod prepared;
 mod presets;
+mod reference;
 mod scene;
 mod simulation;
-mod tournament;
 
 pub use entry::ENTRY;

@@ -1,9 +1,10 @@
 //! A scene of hard discs, held against what the method demands.
 
-use super::choice::{candidates, mask};
-use super::event::Disc;
-use super::grid::Sizes;
-use super::keys::{EVENTS, MASK};
+use super::fast;
+use super::keys::{ENGINE, EVENTS, MASK, MASKS};
+use super::options::EngineChoice;
+use super::reference::choice::{candidates, mask};
+use super::reference::grid::Sizes;
 use super::scene::Scene;
 use super::simulation::Running;
 use crate::domain::{Domain, Side};
@@ -15,7 +16,9 @@ use crate::scene::{
 };
 use crate::start::{Stated, make, outside, overlaps};
 use serde_json::{Map, Value, json};
+use crate::words::Words;
 use std::path::Path;
+use stripmine_kernels::flight::Disc;
 use stripmine_kernels::mask::Mask;
 
 /// Discs may overlap by this part of the sum of their radii at the start: rounding.
@@ -29,7 +32,8 @@ pub(super) struct Checked {
     pub(super) scene: Scene,
     pub(super) domain: Domain,
     pub(super) particles: Particles,
-    pub(super) mask: Mask,
+    /// The mask, where events are found the source's way.
+    pub(super) mask: Option<Mask>,
     warnings: Vec<Warning>,
     choices: Vec<String>,
 }
@@ -52,20 +56,14 @@ pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> 
     errors.extend(fixed(&values, &particles));
     errors.extend(nothing_moves(&values, &scene, &particles));
     let mut choices = vec![];
-    let chosen = particles
-        .radii()
-        .map(|radii| serving(&values, &mut scene, &domain, radii, particles.len(), &mut choices));
-    let mask = match chosen {
-        Some(Ok(mask)) => mask,
-        Some(Err(error)) => {
-            errors.push(error);
-            Mask::square(2)
-        }
-        None => {
-            errors.push(values.spot(&RADIUS).error(Reason::Geometry, "there is nothing to simulate"));
-            Mask::square(2)
-        }
+    let mask = match particles.radii() {
+        Some(radii) => way_of(&values, &mut scene, &domain, radii, &particles, &mut choices),
+        None => Err(values.spot(&RADIUS).error(Reason::Geometry, "there is nothing to simulate")),
     };
+    let mask = mask.unwrap_or_else(|error| {
+        errors.push(error);
+        None
+    });
     SceneErrors::none_of(errors)?;
     Ok(Box::new(Checked { scene, domain, particles, mask, warnings: made.warnings, choices }))
 }
@@ -109,6 +107,46 @@ fn nothing_moves(values: &Values, scene: &Scene, particles: &Particles) -> Optio
             values.spot(&EVENTS).error(Reason::Contradiction, "no disc moves: nothing will ever happen");
         error.advising("give the discs a temperature or velocities, or ask for a time")
     })
+}
+
+/// How events are found: the mask of the source's way; none for the fast one.
+fn way_of(
+    values: &Values,
+    scene: &mut Scene,
+    domain: &Domain,
+    radii: [f64; 2],
+    particles: &Particles,
+    choices: &mut Vec<String>,
+) -> Result<Option<Mask>, SceneError> {
+    let all = particles.all().iter().map(|disc| disc.radius);
+    let leash = fast::leash(&scene.arena(*domain), all);
+    let small = "the box is too small for lists: a disc would see others across two of its sides";
+    let way = match (scene.engine, leash) {
+        (EngineChoice::Fast, None) => {
+            let error = values.spot(&ENGINE).error(Reason::Geometry, small);
+            return Err(error.expecting("engine = \"reference\" or \"auto\", or a larger box"));
+        }
+        (EngineChoice::Auto, None) => {
+            choices.push(format!("machine.engine = \"reference\": {small}"));
+            EngineChoice::Reference
+        }
+        (EngineChoice::Auto, _) if values.gives(&MASK) && scene.mask != MASKS[0] => {
+            choices.push("machine.engine = \"reference\": a mask is given".to_owned());
+            EngineChoice::Reference
+        }
+        (EngineChoice::Auto, _) => EngineChoice::Fast,
+        (given, _) => given,
+    };
+    scene.engine = way;
+    if way == EngineChoice::Fast {
+        return Ok(None);
+    }
+    if scene.open_top {
+        let message = "the exclusive grid has a cell for every place, and no box has so many without a ceiling";
+        let error = values.spot(&ENGINE).error(Reason::Contradiction, message);
+        return Err(error.expecting("engine = \"fast\""));
+    }
+    serving(values, scene, domain, radii, particles.len(), choices).map(Some)
 }
 
 /// The mask that was asked for, or the cheapest.
@@ -166,7 +204,7 @@ impl Checked {
             time: 0.0,
             radius: all[place].radius,
             mass: all[place].mass,
-            met: f64::NEG_INFINITY,
+            events: 0,
         };
         (order.iter().map(disc).collect(), order)
     }
@@ -209,10 +247,8 @@ impl Prepared for Checked {
     fn facts(&self) -> Vec<Fact> {
         let [x, y] = self.domain.lengths();
         let [low, high] = self.particles.radii().unwrap_or([0.0; 2]);
-        let sizes = Sizes::new(&self.domain, low);
-        let [columns, rows] = sizes.cells;
         let discs = self.particles.len();
-        vec![
+        let mut facts = vec![
             Fact::new("units", self.scene.units.as_str(), "units", self.scene.units.as_str()),
             Fact::new("grains", discs, "discs", discs.to_string()),
             Fact::new("radii", json!([low, high]), "radii", format!("{low:.6} to {high:.6}")),
@@ -221,12 +257,17 @@ impl Prepared for Checked {
             Fact::new("packing_fraction", self.packing_fraction(), "packing fraction", {
                 format!("{:.4}", self.packing_fraction())
             }),
-            Fact::new("cells", columns * rows, "cells", format!("{columns} × {rows} = {}", columns * rows)),
-            Fact::new("mask", self.scene.mask.as_str(), "mask", {
-                format!("{}, {} places", self.scene.mask, self.mask.offsets().len())
-            }),
+            Fact::new("engine", self.scene.engine.word(), "engine", self.scene.engine.word()),
             Fact::words("end", self.scene.run.until.to_string()),
-        ]
+        ];
+        if let Some(mask) = &self.mask {
+            let [columns, rows] = Sizes::new(&self.domain, low).cells;
+            let cells = format!("{columns} × {rows} = {}", columns * rows);
+            facts.push(Fact::new("cells", columns * rows, "cells", cells));
+            let places = format!("{}, {} places", self.scene.mask, mask.offsets().len());
+            facts.push(Fact::new("mask", self.scene.mask.as_str(), "mask", places));
+        }
+        facts
     }
 
     fn warnings(&self) -> &[Warning] {
@@ -243,13 +284,21 @@ impl Prepared for Checked {
 
     fn memory(&self) -> Foreseen {
         let discs = self.particles.len() as f64;
-        let sizes = Sizes::new(&self.domain, self.particles.radii().map_or(1.0, |[low, _]| low));
-        let margin = 2 * self.mask.half_width() as usize;
-        let cells: f64 = sizes.cells.iter().map(|&cells| (cells + margin) as f64).product();
-        // A disc, its event, its node and its cell; the scene's particles, twice; what is written of them.
-        let disc = size_of::<Disc>() as f64 + 16.0 + 8.0 + 4.0 + 3.0 * size_of::<Particle>() as f64 + 100.0;
+        let of_engine = match &self.mask {
+            Some(mask) => {
+                let sizes = Sizes::new(&self.domain, self.particles.radii().map_or(1.0, |[low, _]| low));
+                let margin = 2 * mask.half_width() as usize;
+                let cells: f64 = sizes.cells.iter().map(|&cells| (cells + margin) as f64).product();
+                // An event, a node, a cell and a place a disc.
+                4.0 * cells + (16.0 + 8.0 + 4.0 + 24.0) * discs
+            }
+            // List, time, partner, place, numbers and cells; discs and keys once more while they are sorted.
+            None => (64.0 + 9.2 + 4.0 + 16.0 + 8.0 + 8.0 + 80.0) * discs,
+        };
+        // A disc; the scene's particles, three times; what is written of them.
+        let disc = size_of::<Disc>() as f64 + 3.0 * size_of::<Particle>() as f64 + 100.0;
         Foreseen {
-            needed: (PROGRAM + disc * discs + 4.0 * cells) as u64,
+            needed: (PROGRAM + disc * discs + of_engine) as u64,
             available: available(),
             what: format!("{} hard discs", self.particles.len()),
             remedy: "take fewer discs",
@@ -260,7 +309,9 @@ impl Prepared for Checked {
         let settings = [
             ("packing_fraction", json!(self.packing_fraction())),
             ("precision", json!("f64")),
-            ("mask", json!(self.scene.mask)),
+            ("engine", json!(self.scene.engine.word())),
+            ("mask", json!(self.mask.as_ref().map(|_| &self.scene.mask))),
+            ("instruction_set", json!(self.scene.instructions().name())),
             ("restitution", json!(self.scene.law.restitution)),
         ];
         settings.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()

@@ -1,9 +1,12 @@
 //! What a scene of this method says, as plain data.
 
-use super::event::Law;
+use super::event::{Arena, Law, Thermal};
 use super::keys::*;
+use super::options::EngineChoice;
+use crate::domain::Side;
 use crate::method::{Every, Schedule, Until};
-use crate::scene::{Binding, Domain, Output, Start, WallMotion, Write, bind_heading};
+use crate::scene::{Binding, Domain, Output, Start, WallMotion, Write, bind_heading, bind_instructions};
+use stripmine_kernels::InstructionSet;
 
 /// What is simulated. Units are the scene's own; `units` names them.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +19,12 @@ pub struct Scene {
     pub start: Start,
     /// What collisions do.
     pub law: Law,
+    /// Whether there is no ceiling.
+    pub open_top: bool,
+    /// How events are found.
+    pub engine: EngineChoice,
+    /// The instructions; the widest set that there is if none.
+    pub instruction_set: Option<InstructionSet>,
     /// The mask by its name.
     pub mask: String,
     /// How long, and how often something is written.
@@ -43,7 +52,10 @@ impl Default for Scene {
             units: String::new(),
             domain: Domain::default(),
             start: Start::default(),
-            law: Law { restitution: 1.0, wall_restitution: 1.0, contact_duration: 0.0 },
+            law: Law { restitution: 1.0, wall_restitution: 1.0, contact_duration: 0.0, thermal: None },
+            open_top: false,
+            engine: EngineChoice::default(),
+            instruction_set: None,
             mask: String::new(),
             run: Run {
                 until: Until::Events(0),
@@ -98,9 +110,38 @@ impl Scene {
         binding.number(&RESTITUTION, &mut self.law.restitution);
         binding.number(&WALL_RESTITUTION, &mut self.law.wall_restitution);
         binding.number(&CONTACT_DURATION, &mut self.law.contact_duration);
+        self.bind_thermal(binding);
+        binding.switch(&OPEN_TOP, &mut self.open_top);
+        binding.choice(&ENGINE, &mut self.engine);
+        bind_instructions(binding, &mut self.instruction_set);
         binding.word(&MASK, &mut self.mask);
         self.run.bind(binding);
         self.output.bind(binding);
+    }
+
+    /// What its discs fly in, in a box.
+    pub(super) fn arena(&self, domain: crate::domain::Domain) -> Arena {
+        let mut arena = Arena::new(domain, self.domain.gravity, self.law);
+        if self.open_top {
+            arena.domain.sides[1] = Side::Open;
+        }
+        arena
+    }
+
+    /// The instructions of a run.
+    pub(super) fn instructions(&self) -> InstructionSet {
+        self.instruction_set.unwrap_or_else(InstructionSet::best)
+    }
+
+    fn bind_thermal(&mut self, binding: &mut dyn Binding) {
+        let known = self.law.thermal;
+        let name = THERMAL_SIDES.iter().find(|name| known.is_some() && side(name) == known.map(|it| it.side));
+        let mut name = (*name.unwrap_or(&THERMAL_SIDES[0])).to_owned();
+        let mut temperature = known.map_or(1.0, |thermal| thermal.temperature);
+        binding.word(&THERMAL_SIDE, &mut name);
+        binding.number(&WALL_TEMPERATURE, &mut temperature);
+        let seed = self.start.seed().unwrap_or(0);
+        self.law.thermal = side(&name).map(|side| Thermal { side, temperature, seed });
     }
 
     /// The whole scene as TOML, defaults written out. Parsing it gives an equal scene.

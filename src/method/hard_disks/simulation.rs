@@ -2,9 +2,10 @@
 
 use super::collapse::{Collapse, Watch};
 use super::engine::{Engine, Happened, Partner, Stopped};
-use super::event::{Disc, Law};
+use super::event::Arena;
+use super::fast::Fast;
+use super::reference::Reference;
 use super::prepared::Checked;
-use crate::domain::Domain;
 use crate::io::checkpoint::{Column, Counter};
 use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
 use crate::particles::{Particles, in_space};
@@ -12,7 +13,10 @@ use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
+use stripmine_kernels::flight::Disc;
 use stripmine_kernels::mask::Mask;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::isa::ProgramError;
 
 /// Events, or fillings of the grid, between looks at whether a run is to be interrupted.
 const UNHEARD: u64 = 4096;
@@ -21,22 +25,36 @@ const IDLE: u64 = 200_000;
 
 /// Discs under way.
 pub(super) struct Running {
-    engine: Engine,
+    engine: Box<dyn Engine>,
+    way: Way,
+    arena: Arena,
     clock: Clock,
     totals: Totals,
     watch: Watch,
     /// Kinetic energy at the start.
     kinetic: f64,
-    smallest_radius: f64,
-    domain: Domain,
-    law: Law,
-    mask: Mask,
-    /// How often the grid was filled up to the last event.
+    /// How often partners were found up to the last event.
     filled: u64,
     /// The particles of the start, and the place among them of each disc.
     particles: Particles,
     places: Vec<usize>,
     seconds: f64,
+}
+
+/// How events are found.
+#[derive(Clone, Debug)]
+enum Way {
+    Fast(InstructionSet),
+    Reference(Mask),
+}
+
+impl Way {
+    fn begin(&self, arena: Arena, discs: Vec<Disc>, time: f64) -> Result<Box<dyn Engine>, Stopped> {
+        Ok(match self {
+            Way::Fast(set) => Box::new(Fast::new(arena, discs, *set, time)?),
+            Way::Reference(mask) => Box::new(Reference::new(arena, discs, mask, time)?),
+        })
+    }
 }
 
 /// What is counted and summed up.
@@ -50,26 +68,41 @@ struct Totals {
 impl Running {
     pub(super) fn new(checked: &Checked) -> Result<Running, Failure> {
         let (discs, places) = checked.discs();
-        let kinetic = kinetic(&discs);
-        let smallest_radius = discs.iter().map(|disc| disc.radius).fold(f64::INFINITY, f64::min);
-        let (domain, law, mask) = (checked.domain, checked.scene.law, checked.mask.clone());
-        let stopped = |why| failure(why, &discs, &checked.particles, &places, Clock::default());
-        let engine = Engine::new(domain, law, discs.clone(), &mask, 0.0).map_err(stopped)?;
+        let arena = checked.scene.arena(checked.domain);
+        let kinetic = kinetic(discs.iter(), &arena, 0.0);
+        let watch = Watch::new(0.0, crossing(discs.iter()), discs.len());
+        let way = match &checked.mask {
+            Some(mask) => Way::Reference(mask.clone()),
+            None => {
+                let set = checked.scene.instructions();
+                if !set.is_available() {
+                    return Err(ProgramError::NoSuchInstructionSet(set.name()).into());
+                }
+                Way::Fast(set)
+            }
+        };
+        let stopped = |why| {
+            failure(why, &|disc| discs[disc as usize], &checked.particles, &places, Clock::default())
+        };
+        let engine = way.begin(arena, discs.clone(), 0.0).map_err(stopped)?;
         Ok(Running {
             engine,
+            way,
+            arena,
             clock: Clock::default(),
             totals: Totals::default(),
-            watch: Watch::new(0.0),
+            watch,
             kinetic,
-            smallest_radius,
-            domain,
-            law,
-            mask,
             particles: checked.particles.clone(),
             places,
             filled: 0,
             seconds: 0.0,
         })
+    }
+
+    /// The discs by their numbers.
+    fn discs(&self) -> impl Iterator<Item = &Disc> {
+        (0..self.engine.count() as u32).map(|number| self.engine.disc(number))
     }
 
     fn count(&mut self, happened: &Happened) {
@@ -84,11 +117,11 @@ impl Running {
 
     /// Whether nothing has happened for so long that nothing will.
     fn is_idle(&self) -> bool {
-        self.engine.remaps() > self.filled + IDLE
+        self.engine.fillings() > self.filled + IDLE
     }
 
     fn failure(&self, why: Stopped) -> Failure {
-        failure(why, self.engine.discs(), &self.particles, &self.places, self.clock)
+        failure(why, &|disc| *self.engine.disc(disc), &self.particles, &self.places, self.clock)
     }
 
     fn collapsed(&self, happened: &Happened, Collapse { events, duration }: Collapse) -> Failure {
@@ -112,21 +145,43 @@ impl Running {
     }
 
     fn culprit(&self, disc: u32) -> Culprit {
-        culprit(disc, self.engine.discs(), &self.particles, &self.places)
+        culprit(disc, self.engine.disc(disc), &self.particles, &self.places)
     }
 }
 
-fn kinetic(discs: &[Disc]) -> f64 {
-    discs.iter().map(|disc| 0.5 * disc.mass * disc.velocity.iter().map(|v| v * v).sum::<f64>()).sum()
+/// Kinetic energy at a time.
+fn kinetic<'d>(discs: impl Iterator<Item = &'d Disc>, arena: &Arena, time: f64) -> f64 {
+    let energy = |disc: &Disc| {
+        let [u, v] = disc.velocity_at(&arena.space, time);
+        0.5 * disc.mass * (u * u + v * v)
+    };
+    discs.map(energy).sum()
 }
 
-fn culprit(disc: u32, discs: &[Disc], particles: &Particles, places: &[usize]) -> Culprit {
-    let Disc { position, velocity, .. } = discs[disc as usize];
-    Culprit { id: particles.all()[places[disc as usize]].id, position, velocity }
+/// The time in which a typical disc flies through the radius of the smallest.
+fn crossing<'d>(discs: impl Iterator<Item = &'d Disc>) -> f64 {
+    let (mut count, mut squares, mut smallest) = (0.0, 0.0, f64::INFINITY);
+    for disc in discs {
+        count += 1.0;
+        squares += disc.speed().powi(2);
+        smallest = disc.radius.min(smallest);
+    }
+    smallest / (squares / count).sqrt()
 }
 
-fn failure(why: Stopped, discs: &[Disc], particles: &Particles, places: &[usize], clock: Clock) -> Failure {
-    let named = |disc: u32| culprit(disc, discs, particles, places);
+fn culprit(number: u32, disc: &Disc, particles: &Particles, places: &[usize]) -> Culprit {
+    let Disc { position, velocity, .. } = *disc;
+    Culprit { id: particles.all()[places[number as usize]].id, position, velocity }
+}
+
+fn failure(
+    why: Stopped,
+    disc: &dyn Fn(u32) -> Disc,
+    particles: &Particles,
+    places: &[usize],
+    clock: Clock,
+) -> Failure {
+    let named = |number: u32| culprit(number, &disc(number), particles, places);
     match why {
         Stopped::SharedCell(pair) => {
             let [a, b] = pair.map(named);
@@ -134,6 +189,12 @@ fn failure(why: Stopped, discs: &[Disc], particles: &Particles, places: &[usize]
                 format!("{a} and {b} have their centres in one cell of the exclusive grid: they overlap");
             let remedy = "this must not happen between hard discs: report it with the scene";
             Failure::new(FailureKind::Conflict, message, remedy).at(clock).of(2, [a, b])
+        }
+        Stopped::Crowded(disc, most) => {
+            let who = named(disc);
+            let message = format!("{who} has more than {most} others around it, and a list holds no more");
+            let remedy = "set machine.engine = \"reference\", or take radii that differ less";
+            Failure::new(FailureKind::Conflict, message, remedy).at(clock).of(1, [who])
         }
         Stopped::BackInTime(disc, time, now) => {
             let who = named(disc);
@@ -158,23 +219,21 @@ impl Simulation for Running {
             if self.clock.events.is_multiple_of(UNHEARD) && interrupted.load(Ordering::Relaxed) {
                 break;
             }
-            let unheard = self.engine.remaps() + UNHEARD;
+            let unheard = self.engine.fillings() + UNHEARD;
             match self.engine.next(end, unheard) {
                 Err(why) => return Err(self.failure(why)),
                 Ok(Some(happened)) => {
                     self.count(&happened);
-                    self.filled = self.engine.remaps();
-                    let (engine, radius) = (&self.engine, self.smallest_radius);
-                    let crossing = || {
-                        let squares: f64 = engine.discs().iter().map(|disc| disc.speed().powi(2)).sum();
-                        radius / (squares / engine.discs().len() as f64).sqrt()
-                    };
+                    self.filled = self.engine.fillings();
+                    let engine = &self.engine;
+                    let crossing =
+                        || crossing((0..engine.count() as u32).map(|number| engine.disc(number)));
                     if let Some(collapse) = self.watch.see(happened.time, crossing) {
                         return Err(self.collapsed(&happened, collapse));
                     }
                 }
-                Ok(None) if self.engine.remaps() < unheard && end.is_finite() => self.clock.time = end,
-                Ok(None) if self.engine.remaps() >= unheard && !(awaits_events && self.is_idle()) => {
+                Ok(None) if self.engine.fillings() < unheard && end.is_finite() => self.clock.time = end,
+                Ok(None) if self.engine.fillings() >= unheard && !(awaits_events && self.is_idle()) => {
                     if interrupted.load(Ordering::Relaxed) {
                         break;
                     }
@@ -200,24 +259,23 @@ impl Simulation for Running {
     fn particles(&self) -> Particles {
         let mut particles = self.particles.clone();
         let all = particles.all_mut();
-        for (disc, &place) in self.engine.discs().iter().zip(&self.places) {
-            all[place].position = in_space(self.domain.wrapped(disc.at(self.clock.time)));
-            all[place].velocity = in_space(disc.velocity);
+        let time = self.clock.time;
+        for (disc, &place) in self.discs().zip(&self.places) {
+            all[place].position = in_space(self.arena.place(disc, time));
+            all[place].velocity = in_space(disc.velocity_at(&self.arena.space, time));
         }
         particles
     }
 
     fn observe(&self) -> Vec<f64> {
-        let discs = self.engine.discs();
-        let count = discs.len() as f64;
-        let sum = |of: &dyn Fn(&Disc) -> f64| discs.iter().map(of).sum::<f64>();
+        let (count, time, space) = (self.engine.count() as f64, self.clock.time, &self.arena.space);
+        let sum = |of: &dyn Fn(&Disc) -> f64| self.discs().map(of).sum::<f64>();
         let mass = sum(&|disc| disc.mass);
-        let momentum = [0, 1].map(|axis| sum(&|disc| disc.mass * disc.velocity[axis]));
-        let kinetic = kinetic(discs);
+        let momentum = [0, 1].map(|axis| sum(&|disc| disc.mass * disc.velocity_at(space, time)[axis]));
+        let kinetic = kinetic(self.discs(), &self.arena, time);
         let drift = momentum.iter().map(|p| p * p).sum::<f64>() / (2.0 * mass);
         let temperature = (kinetic - drift) / count;
         let Totals { collisions, virial, .. } = self.totals;
-        let time = self.clock.time;
         let rate = if time > 0.0 { 2.0 * collisions as f64 / (count * time) } else { 0.0 };
         // Without collisions an ideal gas, even one at rest.
         let pressure = if collisions > 0 { 1.0 + virial / (2.0 * count * temperature * time) } else { 1.0 };
@@ -237,10 +295,10 @@ impl Simulation for Running {
     }
 
     fn snapshot(&self) -> Snapshot {
-        let discs = self.engine.discs();
-        let column = |name: &str, of: &dyn Fn(&Disc) -> f64| {
-            (name.to_owned(), Column::F64(discs.iter().map(of).collect()))
+        let column = |(name, of): (&str, Field)| {
+            (name.to_owned(), Column::F64(self.discs().map(|disc| *of(&mut { *disc })).collect()))
         };
+        let events = Column::U64(self.discs().map(|disc| disc.events).collect());
         let Totals { collisions, made_elastic, virial } = self.totals;
         let counters = [
             ("collisions", Counter::Count(collisions)),
@@ -249,20 +307,13 @@ impl Simulation for Running {
         ];
         Snapshot {
             counters: counters.map(|(name, counter)| (name.to_owned(), counter)).into_iter().collect(),
-            columns: vec![
-                column("x", &|disc| disc.position[0]),
-                column("y", &|disc| disc.position[1]),
-                column("vx", &|disc| disc.velocity[0]),
-                column("vy", &|disc| disc.velocity[1]),
-                column("local_time", &|disc| disc.time),
-                column("met", &|disc| disc.met),
-            ],
+            columns: FIELDS.map(column).into_iter().chain([("events".to_owned(), events)]).collect(),
         }
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
         let Snapshot { counters, columns } = snapshot;
-        let mut discs = self.engine.discs().to_vec();
+        let mut discs: Vec<Disc> = self.discs().copied().collect();
         for (name, of) in FIELDS {
             let column = columns.iter().find(|(there, _)| there == name);
             let Some((_, Column::F64(values))) = column.filter(|(_, values)| values.len() == discs.len())
@@ -271,6 +322,11 @@ impl Simulation for Running {
             };
             discs.iter_mut().zip(values).for_each(|(disc, &value)| *of(disc) = value);
         }
+        let events = columns.iter().find(|(there, _)| there == "events");
+        let Some((_, Column::U64(events))) = events.filter(|(_, values)| values.len() == discs.len()) else {
+            return Err("the column events is missing".to_owned());
+        };
+        discs.iter_mut().zip(events).for_each(|(disc, &count)| disc.events = count);
         let count = |name: &str| match counters.get(name) {
             Some(Counter::Count(count)) => Ok(*count),
             _ => Err(format!("the counter {name} is missing")),
@@ -283,11 +339,11 @@ impl Simulation for Running {
             made_elastic: count("made_elastic")?,
             virial: *virial,
         };
-        let engine = Engine::new(self.domain, self.law, discs, &self.mask, clock.time);
+        self.watch = Watch::new(clock.time, crossing(discs.iter()), discs.len());
+        let engine = self.way.begin(self.arena, discs, clock.time);
         self.engine = engine.map_err(|why| self.failure(why).what())?;
         self.clock = clock;
         self.filled = 0;
-        self.watch = Watch::new(clock.time);
         Ok(())
     }
 
@@ -310,10 +366,9 @@ impl Simulation for Running {
             ("collisions", json!(collisions)),
             ("made_elastic", json!(made_elastic)),
             ("virial", json!(virial)),
-            ("remaps", json!(self.engine.remaps())),
-            ("occupancy", json!(self.engine.occupancy())),
         ];
-        entries.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
+        let figures = self.engine.figures().into_iter().map(|(name, value)| (name, json!(value)));
+        entries.into_iter().chain(figures).map(|(name, value)| (name.to_owned(), value)).collect()
     }
 
     fn warnings(&self) -> Vec<RunWarning> {
@@ -321,7 +376,7 @@ impl Simulation for Running {
         let message = format!(
             "{made_elastic} of {collisions} collisions were made elastic, because another one of either disc was less than \
              law.contact_duration = {} ago",
-            self.law.contact_duration
+            self.arena.law.contact_duration
         );
         let warning = RunWarning { check: "made-elastic", value: made_elastic as f64, limit: 0.0, message };
         if made_elastic > 0 { vec![warning] } else { vec![] }
@@ -343,11 +398,10 @@ impl Simulation for Running {
 type Field = fn(&mut Disc) -> &mut f64;
 
 /// What a checkpoint holds of a disc.
-const FIELDS: [(&str, Field); 6] = [
+const FIELDS: [(&str, Field); 5] = [
     ("x", |disc| &mut disc.position[0]),
     ("y", |disc| &mut disc.position[1]),
     ("vx", |disc| &mut disc.velocity[0]),
     ("vy", |disc| &mut disc.velocity[1]),
     ("local_time", |disc| &mut disc.time),
-    ("met", |disc| &mut disc.met),
 ];

@@ -9,7 +9,7 @@ use crate::scene::Fallback::{Is, Otherwise, Required};
 use crate::scene::Kind::{Choice, Number, OneOf, Switch};
 use crate::scene::keys::define_keys;
 use crate::scene::{
-    ARITHMETIC, DISC_RIVALS, DISCS, DURATION, HEADING, Key, KeySet, OUTPUT, PLANAR_DOMAIN, Reason, Renamed,
+    ARITHMETIC, DISC_RIVALS, DISCS, DURATION, HEADING, INSTRUCTIONS, Key, KeySet, OUTPUT, PLANAR_DOMAIN, Reason, Renamed,
     STEP, STEPPED_RUN, SceneError, Use, Values, Vocabulary, disagreements, too_many_steps,
 };
 use crate::words::Words;
@@ -79,7 +79,7 @@ define_keys! {
 pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     keys: KeySet {
         method: "lattice-md",
-        groups: &[HEADING, PLANAR_DOMAIN, DISCS, OWN, STEP, ARITHMETIC, STEPPED_RUN, OUTPUT],
+        groups: &[HEADING, PLANAR_DOMAIN, DISCS, OWN, STEP, ARITHMETIC, INSTRUCTIONS, STEPPED_RUN, OUTPUT],
         rivals: &[DISC_RIVALS, DURATION],
     },
     rules: &[disagreements, too_many_steps, own_rules],

@@ -1,7 +1,8 @@
 //! The exclusive grid: cells that hold at most one disc's centre, and a mask of cells that holds whatever a disc may meet. ISO99.
 
-use super::event::Disc;
 use crate::domain::{Domain, Side};
+use crate::method::hard_disks::event::Arena;
+use stripmine_kernels::flight::Disc;
 use stripmine_kernels::mask::Mask;
 
 /// Stands for no disc.
@@ -42,7 +43,7 @@ impl Sizes {
 /// Where the discs were when they were last put into cells.
 #[derive(Clone, Debug)]
 pub struct Grid {
-    domain: Domain,
+    arena: Arena,
     sizes: Sizes,
     /// Cells beyond each side, which show what lies across a periodic one.
     margin: usize,
@@ -59,12 +60,12 @@ pub struct Grid {
 
 impl Grid {
     /// Of a box, for a mask; no disc is in it.
-    pub fn new(domain: Domain, sizes: Sizes, mask: &Mask) -> Grid {
+    pub fn new(arena: Arena, sizes: Sizes, mask: &Mask) -> Grid {
         let margin = mask.half_width() as usize;
         let [width, height] = sizes.cells.map(|cells| cells + 2 * margin);
         let offset = |columns: i32, rows: i32| columns as isize + rows as isize * width as isize;
         Grid {
-            domain,
+            arena,
             sizes,
             margin,
             width,
@@ -84,9 +85,9 @@ impl Grid {
         self.cell.clear();
         self.places.clear();
         for (number, disc) in discs.iter().enumerate() {
-            let at = self.domain.wrapped(disc.at(time));
+            let at = self.arena.place(disc, time);
             let [column, row] = [0, 1].map(|axis| {
-                let along = ((at[axis] - self.domain.origin[axis]) / self.sizes.edge[axis]) as usize;
+                let along = ((at[axis] - self.arena.domain.origin[axis]) / self.sizes.edge[axis]) as usize;
                 along.min(self.sizes.cells[axis] - 1) + self.margin
             });
             let cell = row * self.width + column;
@@ -104,7 +105,7 @@ impl Grid {
     /// Shows in the margins what lies across periodic sides.
     fn mirror(&mut self) {
         let ([columns, rows], margin, width) = (self.sizes.cells, self.margin, self.width);
-        let is_periodic = |axis: usize| matches!(self.domain.sides[axis], Side::Periodic(_));
+        let is_periodic = |axis: usize| matches!(self.arena.domain.sides[axis], Side::Periodic(_));
         if is_periodic(0) {
             for row in self.discs.chunks_exact_mut(width) {
                 row.copy_within(columns..columns + margin, 0);
@@ -141,11 +142,17 @@ impl Grid {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::method::hard_disks::event::Law;
     use rand::RngExt;
     use stripmine_kernels::noise::{Purpose, Stream};
 
+    fn arena(domain: Domain) -> Arena {
+        let law = Law { restitution: 1.0, wall_restitution: 1.0, contact_duration: 0.0, thermal: None };
+        Arena::new(domain, [0.0; 2], law)
+    }
+
     fn disc(position: [f64; 2]) -> Disc {
-        Disc { position, velocity: [0.0; 2], time: 0.0, radius: 0.5, mass: 1.0, met: f64::NEG_INFINITY }
+        Disc { position, velocity: [0.0; 2], time: 0.0, radius: 0.5, mass: 1.0, events: 0 }
     }
 
     /// Discs at random places: whatever is within reach is in the mask, also across periodic sides.
@@ -168,7 +175,7 @@ mod tests {
                     discs.push(disc(at));
                 }
             }
-            let mut grid = Grid::new(domain, sizes, &mask);
+            let mut grid = Grid::new(arena(domain), sizes, &mask);
             grid.fill(&discs, 0.0).unwrap();
             for (number, here) in discs.iter().enumerate() {
                 let seen: Vec<u32> = grid.around(number as u32).collect();
@@ -183,7 +190,7 @@ mod tests {
     #[test]
     fn two_in_a_cell_are_named() {
         let domain = Domain::planar([0.0; 2], [10.0; 2], [true; 2]);
-        let mut grid = Grid::new(domain, Sizes::new(&domain, 0.5), &Mask::square(2));
+        let mut grid = Grid::new(arena(domain), Sizes::new(&domain, 0.5), &Mask::square(2));
         let discs = [disc([5.0, 5.0]), disc([1.0, 1.0]), disc([5.01, 5.01])];
         assert_eq!(grid.fill(&discs, 0.0), Err([0, 2]));
     }

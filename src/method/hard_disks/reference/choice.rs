@@ -1,7 +1,7 @@
 //! Which mask: the fewest predictions a collision, by the source's reckoning.
 
 use super::grid::Sizes;
-use super::keys::MASKS;
+use crate::method::hard_disks::keys::MASKS;
 use crate::domain::Domain;
 use stripmine_kernels::mask::Mask;
 

@@ -1,0 +1,219 @@
+//! Discs in free flight, and when two of them meet: one text for a pair and for a disc with all its candidates.
+//!
+//! The arithmetic is canonical. A disc's position, velocity and local time change at its own events only, and the time of a
+//! pair's event depends on nothing but the states of both. So every way to find events gives the same ones, to the bit.
+
+mod partners;
+
+use crate::backend::{Registers, Scalar};
+use crate::isa::{Predicate, Vector};
+pub use partners::{Earliest, MOST_PARTNERS, earliest};
+
+/// A disc, as it was after its last event. One line of the cache.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub struct Disc {
+    /// Centre at its local time, inside the box along periodic sides (length).
+    pub position: [f64; 2],
+    /// Velocity at its local time (length/time).
+    pub velocity: [f64; 2],
+    /// Its local time: that of its last event.
+    pub time: f64,
+    /// Radius (length).
+    pub radius: f64,
+    /// Mass (mass).
+    pub mass: f64,
+    /// Its events since the start.
+    pub events: u64,
+}
+
+/// What discs fly through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Space {
+    /// Lengths of the periodic sides along x and y; 0 along an axis without (length).
+    sides: [f64; 2],
+    /// Their inverses; 0 along an axis without (1/length).
+    inverse_sides: [f64; 2],
+    /// Acceleration of all discs; none where they fly straight (length/time²).
+    gravity: Option<[f64; 2]>,
+}
+
+impl Space {
+    /// With the lengths of its periodic sides, none along axes without (length), and an acceleration (length/time²).
+    #[inline]
+    pub fn new(periods: [Option<f64>; 2], gravity: [f64; 2]) -> Space {
+        Space {
+            sides: periods.map(|period| period.unwrap_or(0.0)),
+            inverse_sides: periods.map(|period| period.map_or(0.0, |period| 1.0 / period)),
+            gravity: (gravity != [0.0; 2]).then_some(gravity),
+        }
+    }
+
+    /// The acceleration of all discs (length/time²).
+    #[inline(always)]
+    pub fn gravity(&self) -> Option<[f64; 2]> {
+        self.gravity
+    }
+}
+
+impl Disc {
+    /// Where it is at a time, as if nothing happened until then; beyond periodic sides too (length).
+    #[inline(always)]
+    pub fn at(&self, space: &Space, time: f64) -> [f64; 2] {
+        Flight::of(self).at(Scalar::default(), space, time).0
+    }
+
+    /// Its velocity then (length/time).
+    #[inline(always)]
+    pub fn velocity_at(&self, space: &Space, time: f64) -> [f64; 2] {
+        Flight::of(self).at(Scalar::default(), space, time).1
+    }
+
+    /// Its speed at its local time (length/time).
+    #[inline(always)]
+    pub fn speed(&self) -> f64 {
+        (self.velocity[0] * self.velocity[0] + self.velocity[1] * self.velocity[1]).sqrt()
+    }
+}
+
+/// What of a disc decides when it meets another one.
+#[derive(Clone, Copy)]
+struct Flight<V> {
+    position: [V; 2],
+    velocity: [V; 2],
+    time: V,
+    radius: V,
+}
+
+impl Flight<f64> {
+    #[inline(always)]
+    fn of(disc: &Disc) -> Self {
+        let Disc { position, velocity, time, radius, .. } = *disc;
+        Flight { position, velocity, time, radius }
+    }
+}
+
+impl<V: Vector> Flight<V> {
+    /// Position and velocity at a time.
+    #[inline(always)]
+    fn at<R: Registers<Lane = f64, V = V>>(&self, registers: R, space: &Space, time: V) -> ([V; 2], [V; 2]) {
+        let flown = time - self.time;
+        let [[x, y], [u, v]] = [self.position, self.velocity];
+        let Some(gravity) = space.gravity else {
+            return ([x + flown * u, y + flown * v], [u, v]);
+        };
+        let [gx, gy] = gravity.map(|g| registers.splat(g));
+        let half = registers.splat(0.5) * flown;
+        let (gained_x, gained_y) = (gx * flown, gy * flown);
+        let position = [x + (flown * u + half * gained_x), y + (flown * v + half * gained_y)];
+        (position, [u + gained_x, v + gained_y])
+    }
+}
+
+/// When two discs meet that have not met up to `now` (time); infinite if they do not, or if it is clear at once that they do not
+/// before the `horizon` (time). Of the images across periodic sides those meet that are the nearest now; the time follows from
+/// the later of the local times on, and so does not depend on when it is asked for, nor on which of the two is named first.
+#[inline(always)]
+pub fn meeting(space: &Space, a: &Disc, b: &Disc, now: f64, horizon: f64) -> f64 {
+    meetings(Scalar::default(), space, &Flight::of(a), &Flight::of(b), now, horizon)
+}
+
+/// The text of [`meeting`].
+#[inline(always)]
+fn meetings<R: Registers<Lane = f64>>(
+    registers: R,
+    space: &Space,
+    a: &Flight<R::V>,
+    b: &Flight<R::V>,
+    now: f64,
+    horizon: f64,
+) -> R::V {
+    let uniform = |value: f64| registers.splat(value);
+    let (zero, never) = (uniform(0.0), uniform(f64::INFINITY));
+    let from = a.time.max(b.time);
+    let ([ax, ay], [au, av]) = a.at(registers, space, from);
+    let ([bx, by], [bu, bv]) = b.at(registers, space, from);
+    let [u, v] = [bu - au, bv - av];
+    let ahead = uniform(now) - from;
+    let nearest = |axis: usize, way: R::V, speed: R::V| {
+        let periods = (way + ahead * speed) * uniform(space.inverse_sides[axis]);
+        // To the nearest whole number.
+        let whole = (periods + periods).truncate() - periods.truncate();
+        way - whole * uniform(space.sides[axis])
+    };
+    let dx = nearest(0, bx - ax, u);
+    let dy = nearest(1, by - ay, v);
+    let approach = dx * u + dy * v;
+    let approaches = approach.less_than(zero);
+    // Most pairs move apart.
+    if registers.none(approaches) {
+        return never;
+    }
+    let reach = a.radius + b.radius;
+    // Discs that rounding has brought into each other meet at once.
+    let apart = (dx * dx + dy * dy - reach * reach).max(zero);
+    // The root below is no larger than the approach.
+    let soon = apart.less_equal(uniform(-2.0) * approach * (uniform(horizon) - from));
+    let speed = u * u + v * v;
+    let discriminant = approach * approach - speed * apart;
+    let meets = approaches.and(soon).and(zero.less_equal(discriminant));
+    if registers.none(meets) {
+        return never;
+    }
+    let after = apart / (discriminant.max(zero).sqrt() - approach);
+    R::V::select(meets, from + after, never)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn disc(position: [f64; 2], velocity: [f64; 2]) -> Disc {
+        Disc { position, velocity, time: 0.0, radius: 0.5, mass: 1.0, events: 0 }
+    }
+
+    const PERIODIC: [Option<f64>; 2] = [Some(20.0); 2];
+
+    fn when(space: &Space, a: &Disc, b: &Disc) -> f64 {
+        meeting(space, a, b, 0.0, f64::INFINITY)
+    }
+
+    /// By hand: head on, at half a radius off the line of centres, and past each other.
+    #[test]
+    fn pairs_meet_where_they_touch() {
+        let space = Space::new(PERIODIC, [0.0; 2]);
+        let still = disc([5.0, 5.0], [0.0; 2]);
+        assert_eq!(when(&space, &still, &disc([8.0, 5.0], [-2.0, 0.0])), 1.0);
+        let off = when(&space, &still, &disc([8.0, 5.5], [-1.0, 0.0]));
+        assert!((off - (3.0 - 0.75f64.sqrt())).abs() < 1e-15, "{off}");
+        assert_eq!(when(&space, &still, &disc([8.0, 6.1], [-1.0, 0.0])), f64::INFINITY);
+        assert_eq!(when(&space, &still, &disc([8.0, 5.0], [1.0, 0.0])), f64::INFINITY);
+        // Two are left out where the horizon is clearly nearer.
+        let before = |horizon: f64| meeting(&space, &still, &disc([8.0, 5.0], [-2.0, 0.0]), 0.0, horizon);
+        assert_eq!([before(1.0), before(0.3)], [1.0, f64::INFINITY]);
+        // Across a periodic side.
+        assert_eq!(when(&space, &disc([1.0, 5.0], [0.0; 2]), &disc([18.0, 5.0], [1.0, 0.0])), 2.0);
+    }
+
+    /// Two discs that part meet again on the other side of the box.
+    #[test]
+    fn the_nearest_image_is_that_of_now() {
+        let space = Space::new(PERIODIC, [0.0; 2]);
+        let (a, b) = (disc([9.0, 5.0], [-1.0, 0.0]), disc([11.0, 5.0], [1.0, 0.0]));
+        let at = |now: f64| meeting(&space, &a, &b, now, f64::INFINITY);
+        assert_eq!([at(0.0), at(5.0), at(8.0)], [f64::INFINITY, 8.5, 8.5]);
+    }
+
+    /// What falls together meets as if nothing fell, whatever the local times.
+    #[test]
+    fn gravity_changes_no_meeting_of_two() {
+        let falling = Space::new([None; 2], [0.0, -2.0]);
+        let (a, b) = (disc([0.0, 9.0], [0.0, 0.0]), disc([3.0, 9.0], [-1.0, 0.0]));
+        assert_eq!(when(&falling, &a, &b), 2.0);
+        // The same flight, seen from a later moment of one of them.
+        let (position, velocity) = (b.at(&falling, 0.5), b.velocity_at(&falling, 0.5));
+        let later = Disc { position, velocity, time: 0.5, ..b };
+        assert!((when(&falling, &a, &later) - 2.0).abs() < 1e-15);
+        assert_eq!(a.at(&falling, 2.0), [0.0, 5.0]);
+    }
+}

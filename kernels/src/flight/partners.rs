@@ -1,0 +1,177 @@
+//! A disc and all that it may meet next, a register of partners at a time.
+
+use super::{Disc, Flight, Space, meetings};
+use crate::backend::{InstructionSet, Registers, Task, dispatch};
+use crate::isa::{Predicate, ProgramError, Vector};
+use std::array::from_fn;
+
+/// Partners of a disc at most.
+pub const MOST_PARTNERS: usize = 64;
+
+/// What comes first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Earliest {
+    /// When the first partner is met (time); infinite if none is.
+    pub time: f64,
+    /// The partners that are met then, a bit each.
+    pub partners: u64,
+    /// The partners that are met no later than what they were known to meet first, a bit each.
+    pub surprised: u64,
+}
+
+/// Whom of its `partners` the disc `own` meets first, with the time of every meeting in `times`; infinite ones as in
+/// [`meeting`](super::meeting). `known` is the time of what each disc is known to meet first.
+///
+/// # Errors
+/// [`ProgramError`] if this processor has no such instructions.
+///
+/// # Panics
+/// If there are more partners than [`MOST_PARTNERS`], or a number lies beyond the discs.
+#[inline]
+pub fn earliest(
+    set: InstructionSet,
+    space: &Space,
+    discs: &[Disc],
+    known: &[f64],
+    (own, partners): (u32, &[u32]),
+    now: f64,
+    times: &mut [f64; MOST_PARTNERS],
+) -> Result<Earliest, ProgramError> {
+    assert!(partners.len() <= MOST_PARTNERS, "{} partners", partners.len());
+    let mut found = Earliest { time: f64::INFINITY, partners: 0, surprised: 0 };
+    dispatch(set, Search { space, discs, known, own, partners, now, times, found: &mut found })?;
+    Ok(found)
+}
+
+struct Search<'a> {
+    space: &'a Space,
+    discs: &'a [Disc],
+    known: &'a [f64],
+    own: u32,
+    partners: &'a [u32],
+    now: f64,
+    times: &'a mut [f64; MOST_PARTNERS],
+    found: &'a mut Earliest,
+}
+
+/// Numbers of a register on their way to it; at a line of its own.
+#[repr(align(64))]
+struct Lanes([f64; 16]);
+
+impl Task<f64> for Search<'_> {
+    #[inline(always)]
+    fn on<R: Registers<Lane = f64>>(self, registers: R) {
+        let Search { space, discs, known, own, partners, now, times, found } = self;
+        let disc = &discs[own as usize];
+        let splat = |value: f64| registers.splat(value);
+        let flight = Flight {
+            position: disc.position.map(splat),
+            velocity: disc.velocity.map(splat),
+            time: splat(disc.time),
+            radius: splat(disc.radius),
+        };
+        let mut least = splat(f64::INFINITY);
+        for begin in (0..partners.len()).step_by(R::LANES) {
+            // Lanes beyond the last partner meet the disc itself, which is never.
+            let numbers: [usize; 16] = from_fn(|lane| {
+                let number = if lane < R::LANES { partners.get(begin + lane) } else { None };
+                *number.unwrap_or(&own) as usize
+            });
+            let column = |of: &dyn Fn(&Disc) -> f64| {
+                let mut lanes = Lanes([0.0; 16]);
+                for lane in 0..R::LANES {
+                    lanes.0[lane] = of(&discs[numbers[lane]]);
+                }
+                // SAFETY: there are sixteen numbers, and a register has at most as many lanes.
+                unsafe { registers.load(lanes.0.as_ptr()) }
+            };
+            let others = Flight {
+                position: [column(&|it| it.position[0]), column(&|it| it.position[1])],
+                velocity: [column(&|it| it.velocity[0]), column(&|it| it.velocity[1])],
+                time: column(&|it| it.time),
+                radius: column(&|it| it.radius),
+            };
+            let met = meetings(registers, space, &flight, &others, now, f64::INFINITY);
+            // SAFETY: a whole number of registers fits, for their lanes are a power of two up to sixteen.
+            unsafe { registers.store(times.as_mut_ptr().add(begin), met) };
+            let mut theirs = Lanes([f64::NEG_INFINITY; 16]);
+            for lane in 0..R::LANES.min(partners.len() - begin) {
+                theirs.0[lane] = known[numbers[lane]];
+            }
+            // SAFETY: as above.
+            let theirs = unsafe { registers.load(theirs.0.as_ptr()) };
+            let finite = met.less_than(splat(f64::INFINITY));
+            let sooner = met.less_equal(theirs).and(finite);
+            found.surprised |= registers.bits(sooner) << begin;
+            least = least.min(met);
+        }
+        let mut lanes = Lanes([f64::INFINITY; 16]);
+        // SAFETY: there are sixteen numbers, and a register has at most as many lanes.
+        unsafe { registers.store(lanes.0.as_mut_ptr(), least) };
+        let first = lanes.0[..R::LANES].iter().fold(f64::INFINITY, |least, &time| least.min(time));
+        found.time = first;
+        if first < f64::INFINITY {
+            for begin in (0..partners.len()).step_by(R::LANES) {
+                // SAFETY: this register was stored above.
+                let met = unsafe { registers.load(times.as_ptr().add(begin)) };
+                found.partners |= registers.bits(met.equal(splat(first))) << begin;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::meeting;
+    use super::*;
+    use crate::noise::{Purpose, Stream};
+    use rand::RngExt;
+
+    /// The bits of the pair's own text, on every instruction set.
+    #[test]
+    fn all_partners_at_a_time_are_each_of_them() {
+        let mut stream = Stream::new(3, Purpose::Test, 0);
+        let mut meetings = 0;
+        for gravity in [[0.0; 2], [0.5, -1.0]] {
+            let space = Space::new([Some(12.0), None], gravity);
+            for count in [1usize, 2, 7, 8, 9, 16, 31, 64] {
+                let mut draw = |low: f64, high: f64| stream.random_range(low..high);
+                let discs: Vec<Disc> = (0..=count)
+                    .map(|_| Disc {
+                        position: [draw(0.0, 12.0), draw(0.0, 12.0)],
+                        velocity: [draw(-1.0, 1.0), draw(-1.0, 1.0)],
+                        time: draw(0.0, 3.0),
+                        radius: draw(0.2, 0.5),
+                        mass: 1.0,
+                        events: 0,
+                    })
+                    .collect();
+                let known: Vec<f64> = discs.iter().map(|_| draw(3.0, 9.0)).collect();
+                let partners: Vec<u32> = (1..=count as u32).collect();
+                let times = |set: InstructionSet| {
+                    let mut times = [0.0; MOST_PARTNERS];
+                    let found =
+                        earliest(set, &space, &discs, &known, (0, &partners), 3.0, &mut times).unwrap();
+                    (found, times[..count].to_vec())
+                };
+                let expected: Vec<f64> = discs[1..]
+                    .iter()
+                    .map(|disc| meeting(&space, &discs[0], disc, 3.0, f64::INFINITY))
+                    .collect();
+                meetings += expected.iter().filter(|time| time.is_finite()).count();
+                let least = expected.iter().copied().fold(f64::INFINITY, f64::min);
+                for set in InstructionSet::available() {
+                    let (found, times) = times(set);
+                    assert_eq!(times, expected, "{set:?}");
+                    assert_eq!(found.time, least);
+                    for (lane, time) in expected.iter().enumerate() {
+                        let is = |bits: u64| bits >> lane & 1 == 1;
+                        assert_eq!(is(found.partners), *time == least && time.is_finite());
+                        assert_eq!(is(found.surprised), *time <= known[lane + 1] && time.is_finite());
+                    }
+                }
+            }
+        }
+        assert!(meetings > 10, "{meetings}");
+    }
+}

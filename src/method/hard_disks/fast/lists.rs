@@ -1,0 +1,278 @@
+//! Which discs a disc may meet: lists around the places where discs were registered, each renewed when its own disc has moved
+//! away from there by a distance, and by nothing else.
+//!
+//! A disc that is within `leash` of its registered place meets only discs registered within the sum of the radii and twice the
+//! leash: those are in its list, and it is in theirs.
+
+use crate::domain::{Domain, Side};
+
+/// Stands for no disc.
+const NONE: u32 = u32::MAX;
+/// Entries of a row that is filled on average to this part.
+const FILLED: f64 = 0.6;
+
+/// The lists.
+#[derive(Clone, Debug)]
+pub struct Lists {
+    domain: Domain,
+    leash: f64,
+    /// Where each disc was registered (length).
+    places: Vec<[f64; 2]>,
+    /// How many discs are in each list, and then which, a row each.
+    rows: Vec<u32>,
+    stride: usize,
+    cells: Cells,
+}
+
+/// Discs by the cells of their registered places. Rows and columns of cells are counted round the grid, so that a side without end
+/// needs no more cells: discs that share a cell by that are far from each other, which their distance tells.
+#[derive(Clone, Debug)]
+struct Cells {
+    counts: [usize; 2],
+    edge: [f64; 2],
+    /// The first disc of each cell, row by row.
+    first: Vec<u32>,
+    /// The next disc of the same cell.
+    next: Vec<u32>,
+}
+
+/// Cells between the ends of what a disc sees: two on each side of its own.
+const AROUND: isize = 2;
+
+/// How far discs may go from where they were registered (length): such that lists hold about `most` discs, and that no disc sees
+/// another one across two sides. None in a box too small for any.
+pub fn leash(domain: &Domain, radii: impl Iterator<Item = f64> + Clone, most: f64) -> Option<f64> {
+    let (count, largest, sum) = radii.fold((0.0, 0.0_f64, 0.0), |(count, largest, sum), radius| {
+        (count + 1.0, radius.max(largest), sum + radius)
+    });
+    let bounded = (0..2).all(|axis| domain.length(axis).is_finite());
+    // Where there is no end, discs are as dense as they can be near its other end.
+    let density = if bounded { count / domain.area() } else { 0.5 / (largest * largest) };
+    let sight = ((most + 1.0) / (std::f64::consts::PI * density)).sqrt();
+    let wanted = 0.5 * (sight - 2.0 * sum / count);
+    let periodic = (0..2).filter(|&axis| domain.is_periodic(axis)).map(|axis| domain.length(axis));
+    // Registered within the sum of radii and two leashes, discs are within two more: less than half a side.
+    let bound = periodic.fold(f64::INFINITY, f64::min) / 8.0 - 0.5 * largest;
+    let leash = wanted.max(0.1 * largest).min(0.9 * bound);
+    (leash >= 0.05 * largest).then_some(leash)
+}
+
+impl Lists {
+    /// Of no disc yet; with room for lists of about `most` discs, and for discs that are `largest` (length).
+    pub fn new(domain: Domain, count: usize, leash: f64, largest: f64, most: f64, stride: usize) -> Lists {
+        let sight = 2.0 * (largest + leash) * (1.0 + 1e-9);
+        let least = (((most / FILLED) as usize + 1).next_multiple_of(16)).max(16);
+        Lists {
+            domain,
+            leash,
+            places: vec![[0.0; 2]; count],
+            rows: vec![0; count * stride.max(least)],
+            stride: stride.max(least),
+            cells: Cells::new(&domain, count, sight / AROUND as f64),
+        }
+    }
+
+    /// How long a row is.
+    pub fn stride(&self) -> usize {
+        self.stride
+    }
+
+    /// How far a disc may go from where it was registered (length).
+    #[inline(always)]
+    pub fn leash(&self) -> f64 {
+        self.leash
+    }
+
+    /// Where a disc was registered (length).
+    #[inline(always)]
+    pub fn place(&self, disc: u32) -> [f64; 2] {
+        self.places[disc as usize]
+    }
+
+    /// The discs that a disc may meet.
+    #[inline(always)]
+    pub fn of(&self, disc: u32) -> &[u32] {
+        let row = &self.rows[disc as usize * self.stride..][..self.stride];
+        &row[1..=row[0] as usize]
+    }
+
+    /// The first line of the list of a disc.
+    #[inline(always)]
+    pub fn row(&self, disc: u32) -> *const u32 {
+        self.rows.as_ptr().wrapping_add(disc as usize * self.stride)
+    }
+
+    /// Registers discs that are registered nowhere, at `places` inside the box (length); the list of a disc is that of those
+    /// before it, and they have it in theirs.
+    ///
+    /// # Errors
+    /// A disc whose list is full.
+    pub fn begin(&mut self, places: &[[f64; 2]], radius: impl Fn(u32) -> f64) -> Result<(), u32> {
+        for (disc, &place) in places.iter().enumerate() {
+            self.enter(disc as u32, place, &radius)?;
+        }
+        Ok(())
+    }
+
+    /// A disc is registered at another place inside the box (length).
+    ///
+    /// # Errors
+    /// A disc whose list is full.
+    pub fn renew(&mut self, disc: u32, place: [f64; 2], radius: impl Fn(u32) -> f64) -> Result<(), u32> {
+        self.cells.remove(disc, self.cells.of(&self.domain, self.places[disc as usize]));
+        let begin = disc as usize * self.stride;
+        for entry in 1..=self.rows[begin] as usize {
+            let other = self.rows[begin + entry];
+            self.strike(other, disc);
+        }
+        self.rows[begin] = 0;
+        self.enter(disc, place, &radius)
+    }
+
+    fn enter(&mut self, disc: u32, place: [f64; 2], radius: &impl Fn(u32) -> f64) -> Result<(), u32> {
+        self.places[disc as usize] = place;
+        let at = self.cells.coordinates(&self.domain, place);
+        let reach = radius(disc) + 2.0 * self.leash;
+        for rows in -AROUND..=AROUND {
+            for columns in -AROUND..=AROUND {
+                let mut other = self.cells.first[self.cells.round([at[0] + columns, at[1] + rows])];
+                while other != NONE {
+                    let [dx, dy] = self.domain.displacement(place, self.places[other as usize]);
+                    let near = (reach + radius(other)) * (1.0 + 1e-9);
+                    if dx * dx + dy * dy < near * near {
+                        self.add(disc, other)?;
+                        self.add(other, disc)?;
+                    }
+                    other = self.cells.next[other as usize];
+                }
+            }
+        }
+        self.cells.add(disc, self.cells.round(at));
+        Ok(())
+    }
+
+    fn add(&mut self, to: u32, disc: u32) -> Result<(), u32> {
+        let row = &mut self.rows[to as usize * self.stride..][..self.stride];
+        let filled = row[0] as usize + 1;
+        *row.get_mut(filled).ok_or(to)? = disc;
+        row[0] = filled as u32;
+        Ok(())
+    }
+
+    fn strike(&mut self, from: u32, disc: u32) {
+        let row = &mut self.rows[from as usize * self.stride..][..self.stride];
+        let filled = row[0] as usize;
+        if let Some(entry) = row[1..=filled].iter().position(|&other| other == disc) {
+            row[1 + entry] = row[filled];
+            row[0] -= 1;
+        }
+    }
+}
+
+impl Cells {
+    fn new(domain: &Domain, count: usize, least_edge: f64) -> Cells {
+        let most = (count as f64).sqrt().max(8.0);
+        let counts = [0, 1].map(|axis| match domain.sides[axis] {
+            Side::Open | Side::Flat => most as usize,
+            Side::Periodic(side) | Side::Closed(side) => ((side / least_edge) as usize).max(1),
+        });
+        let edge = [0, 1].map(|axis| match domain.sides[axis] {
+            Side::Open | Side::Flat => least_edge,
+            Side::Periodic(side) | Side::Closed(side) => side / counts[axis] as f64,
+        });
+        // Where fewer cells than a disc sees lie along a side, they would be seen twice.
+        let counts = counts.map(|along| along.max(2 * AROUND as usize + 1));
+        Cells { counts, edge, first: vec![NONE; counts[0] * counts[1]], next: vec![NONE; count] }
+    }
+
+    #[inline(always)]
+    fn coordinates(&self, domain: &Domain, place: [f64; 2]) -> [isize; 2] {
+        [0, 1].map(|axis| ((place[axis] - domain.origin[axis]) / self.edge[axis]).floor() as isize)
+    }
+
+    #[inline(always)]
+    fn round(&self, at: [isize; 2]) -> usize {
+        let [column, row] = [0, 1].map(|axis| {
+            let count = self.counts[axis] as isize;
+            let along = at[axis];
+            // Mostly inside.
+            if (0..count).contains(&along) { along as usize } else { along.rem_euclid(count) as usize }
+        });
+        row * self.counts[0] + column
+    }
+
+    fn of(&self, domain: &Domain, place: [f64; 2]) -> usize {
+        self.round(self.coordinates(domain, place))
+    }
+
+    fn add(&mut self, disc: u32, cell: usize) {
+        self.next[disc as usize] = self.first[cell];
+        self.first[cell] = disc;
+    }
+
+    fn remove(&mut self, disc: u32, cell: usize) {
+        let after = self.next[disc as usize];
+        let mut other = self.first[cell];
+        if other == disc {
+            self.first[cell] = after;
+            return;
+        }
+        while other != NONE {
+            let next = self.next[other as usize];
+            if next == disc {
+                self.next[other as usize] = after;
+                return;
+            }
+            other = next;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::RngExt;
+    use stripmine_kernels::noise::{Purpose, Stream};
+
+    /// Against all pairs, as discs move about, in boxes of every kind of side.
+    #[test]
+    fn lists_hold_what_is_near_and_nothing_twice() {
+        let mut stream = Stream::new(11, Purpose::Test, 0);
+        let open = Domain {
+            origin: [-3.0, 2.0, 0.0],
+            sides: [Side::Periodic(30.0), Side::Open, Side::Flat],
+        };
+        let planar = |periodic| Domain::planar([-3.0, 2.0], [30.0, 25.0], periodic);
+        let mut pairs = 0;
+        for domain in [open, planar([true, true]), planar([true, false])] {
+            let count = 150;
+            let radii: Vec<f64> = (0..count).map(|_| stream.random_range(0.3..0.5)).collect();
+            let leash = leash(&domain, radii.iter().copied(), 6.0).unwrap();
+            let mut draw = || {
+                let along = |axis: usize| domain.length(axis).min(90.0);
+                [0, 1].map(|axis| domain.origin[axis] + stream.random_range(0.0..along(axis)))
+            };
+            let mut places: Vec<[f64; 2]> = (0..count).map(|_| draw()).collect();
+            let radius = |disc: u32| radii[disc as usize];
+            let mut lists = Lists::new(domain, count, leash, 0.5, 6.0, 64);
+            lists.begin(&places, radius).unwrap();
+            for moved in 0..400 {
+                let disc = moved % count;
+                places[disc] = draw();
+                lists.renew(disc as u32, places[disc], radius).unwrap();
+                for a in [disc, (disc + 7) % count] {
+                    let mut listed = lists.of(a as u32).to_vec();
+                    listed.sort_unstable();
+                    let near = |&b: &u32| {
+                        let reach = radii[a] + radii[b as usize] + 2.0 * leash;
+                        b as usize != a && domain.distance(places[a], places[b as usize]) < reach
+                    };
+                    let expected: Vec<u32> = (0..count as u32).filter(near).collect();
+                    assert_eq!(listed, expected);
+                    pairs += expected.len();
+                }
+            }
+        }
+        assert!(pairs > 5_000, "{pairs}");
+    }
+}

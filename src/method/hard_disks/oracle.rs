@@ -1,0 +1,181 @@
+//! What every engine is held against: all pairs and all walls, again and again.
+
+use super::engine::{Engine, Happened, Partner};
+use super::event::{Arena, Law, Thermal};
+use super::fast::{Fast, leash};
+use super::reference::Reference;
+use crate::domain::{Domain, Side};
+use rand::RngExt;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::flight::{Disc, meeting};
+use stripmine_kernels::mask::Mask;
+use stripmine_kernels::noise::{Purpose, Stream};
+
+const LAW: Law = Law { restitution: 1.0, wall_restitution: 1.0, contact_duration: 0.0, thermal: None };
+
+/// The next event of all.
+fn naive(arena: &Arena, discs: &mut [Disc], now: f64) -> Happened {
+    let count = discs.len() as u32;
+    let mut next = (f64::INFINITY, 0, Partner::Wall(0));
+    for a in 0..count {
+        let (time, axis) = arena.wall(&discs[a as usize]);
+        let meetings = (0..count).filter(|&b| b != a).map(|b| {
+            let [one, other] = [a, b].map(|disc| &discs[disc as usize]);
+            (meeting(&arena.space, one, other, now, f64::INFINITY), Partner::Disc(b))
+        });
+        let all = meetings.chain([(time, Partner::Wall(axis as u8))]);
+        for (time, with) in all {
+            if (time, a, with) < next {
+                next = (time, a, with);
+            }
+        }
+    }
+    let (time, first, with) = next;
+    match with {
+        Partner::Wall(axis) => Happened::at_wall(arena, (first, &mut discs[first as usize]), axis, time),
+        Partner::Disc(other) => {
+            let [a, b] = [first.min(other), first.max(other)];
+            let (left, right) = discs.split_at_mut(b as usize);
+            Happened::collision(arena, (a, &mut left[a as usize]), (b, &mut right[0]), time)
+        }
+    }
+}
+
+/// Discs at random places with random velocities; radii and masses differ by up to `spread`.
+fn random(domain: &Domain, count: usize, spread: f64, seed: u64) -> Vec<Disc> {
+    let mut stream = Stream::new(seed, Purpose::Test, 1);
+    let mut discs: Vec<Disc> = vec![];
+    while discs.len() < count {
+        let radius = 0.5 * (1.0 + spread * stream.random_range(0.0..1.0));
+        let position = [0, 1].map(|axis| {
+            let room = domain.length(axis).min(20.0) - 2.0 * radius;
+            domain.origin[axis] + radius + stream.random_range(0.0..1.0) * room
+        });
+        if discs.iter().all(|it| domain.distance(it.position, position) > radius + it.radius) {
+            let velocity = [0, 1].map(|_| stream.random_range(-1.0..1.0));
+            let mass = 4.0 * radius * radius;
+            discs.push(Disc { position, velocity, time: 0.0, radius, mass, events: 0 });
+        }
+    }
+    discs
+}
+
+/// Both engines, the source's with several masks, and the fast one with every instruction set.
+fn engines(arena: Arena, discs: &[Disc]) -> Vec<(String, Box<dyn Engine>)> {
+    let mut engines: Vec<(String, Box<dyn Engine>)> = vec![];
+    if arena.domain.sides[1] != Side::Open {
+        for mask in [Mask::square(2), Mask::round(3), Mask::round(4)] {
+            let name = format!("{} places", mask.offsets().len());
+            let engine = Reference::new(arena, discs.to_vec(), &mask, 0.0).unwrap();
+            engines.push((name, Box::new(engine)));
+        }
+    }
+    if leash(&arena, discs.iter().map(|disc| disc.radius)).is_some() {
+        for set in InstructionSet::available() {
+            let engine = Fast::new(arena, discs.to_vec(), set, 0.0).unwrap();
+            engines.push((set.name().to_owned(), Box::new(engine)));
+        }
+    }
+    engines
+}
+
+/// Holds both engines against all pairs: every event, and every disc at the end. Gives how many were fast.
+fn hold(arena: Arena, discs: &[Disc], events: usize) -> usize {
+    let (mut oracle, mut now) = (discs.to_vec(), 0.0);
+    let events: Vec<Happened> = (0..events)
+        .map(|_| {
+            let event = naive(&arena, &mut oracle, now);
+            now = event.time;
+            event
+        })
+        .collect();
+    let mut fast = 0;
+    for (name, mut engine) in engines(arena, discs) {
+        for (number, event) in events.iter().enumerate() {
+            let found = engine.next(f64::INFINITY, u64::MAX).unwrap().unwrap();
+            assert_eq!(found, *event, "event {number}, {name}, {:?}", arena.domain);
+        }
+        for (number, disc) in oracle.iter().enumerate() {
+            assert_eq!(engine.disc(number as u32), disc);
+        }
+        fast += usize::from(InstructionSet::ALL.iter().any(|set| set.name() == name));
+    }
+    fast
+}
+
+/// The same events at the same times, to the bit, whatever the sides, the sizes, the restitution and gravity.
+#[test]
+fn events_are_those_of_all_pairs() {
+    let mut fast = 0;
+    for (seed, periodic) in [[true, true], [true, false], [false, false]].into_iter().enumerate() {
+        for (spread, restitution) in [(0.0, 1.0), (0.1, 0.9)] {
+            let law = Law { restitution, ..LAW };
+            for (sides, count) in [([9.0, 8.0], 30), ([14.0, 13.0], 40)] {
+                let domain = Domain::planar([-2.0, 1.0], sides, periodic);
+                let gravity = if periodic[1] { [0.0; 2] } else { [0.0, -0.3] };
+                for gravity in [[0.0; 2], gravity] {
+                    let discs = random(&domain, count, spread, seed as u64);
+                    fast += hold(Arena::new(domain, gravity, law), &discs, 500);
+                }
+            }
+        }
+    }
+    assert!(fast > 12, "{fast}");
+}
+
+/// Without a ceiling, over a floor that gives back its temperature.
+#[test]
+fn events_above_a_hot_floor_are_those_of_all_pairs() {
+    let domain = Domain { origin: [0.0; 3], sides: [Side::Periodic(14.0), Side::Open, Side::Flat] };
+    let thermal = Thermal { side: (1, false), temperature: 2.0, seed: 4 };
+    let law = Law { restitution: 0.95, thermal: Some(thermal), ..LAW };
+    let discs = random(&domain, 60, 0.2, 9);
+    assert!(hold(Arena::new(domain, [0.0, -0.5], law), &discs, 3_000) > 0);
+}
+
+/// Discs that start on a square lattice with velocities along it meet by pairs at one time, again and again.
+#[test]
+fn meetings_at_one_time_come_in_the_order_of_the_numbers() {
+    let domain = Domain::planar([0.0; 2], [24.0; 2], [true; 2]);
+    let disc = |number: u32| Disc {
+        position: [f64::from(number % 6) * 4.0 + 2.0, f64::from(number / 6) * 4.0 + 2.0],
+        velocity: [if number % 2 == 0 { 1.0 } else { -1.0 }, 0.0],
+        time: 0.0,
+        radius: 0.5,
+        mass: 1.0,
+        events: 0,
+    };
+    // Shuffled, so that the order of the numbers is not that of the places.
+    let discs: Vec<Disc> = (0..36).map(|number| disc(number * 23 % 36)).collect();
+    assert!(hold(Arena::new(domain, [0.0; 2], LAW), &discs, 300) > 0);
+}
+
+/// 10⁵ collisions of 200 discs: energy stays to rounding, momentum too, nothing overlaps, and both engines agree to the end.
+#[test]
+fn energy_and_momentum_stay() {
+    let domain = Domain::planar([0.0; 2], [19.0, 18.0], [true; 2]);
+    let discs = random(&domain, 200, 0.1, 5);
+    let arena = Arena::new(domain, [0.0; 2], LAW);
+    let energy = |discs: &[Disc]| -> f64 { discs.iter().map(|it| 0.5 * it.mass * it.speed().powi(2)).sum() };
+    let momentum = |discs: &[Disc]| -> f64 { discs.iter().map(|it| it.mass * it.velocity[0]).sum() };
+    let before = [energy(&discs), momentum(&discs)];
+    let mut source = Reference::new(arena, discs.clone(), &Mask::square(2), 0.0).unwrap();
+    let mut fast = Fast::new(arena, discs, InstructionSet::best(), 0.0).unwrap();
+    let mut time = 0.0;
+    for number in 0..100_000 {
+        let [one, other] = [
+            source.next(f64::INFINITY, u64::MAX).unwrap().unwrap(),
+            fast.next(f64::INFINITY, u64::MAX).unwrap().unwrap(),
+        ];
+        assert_eq!(one, other, "event {number}");
+        time = one.time;
+    }
+    let after: Vec<Disc> = (0..fast.count() as u32).map(|number| *fast.disc(number)).collect();
+    assert!((energy(&after) / before[0] - 1.0).abs() < 1e-12 && (momentum(&after) - before[1]).abs() < 1e-11);
+    for (number, a) in after.iter().enumerate() {
+        for b in &after[number + 1..] {
+            let apart = domain.distance(arena.place(a, time), arena.place(b, time));
+            assert!(apart > (a.radius + b.radius) * (1.0 - 1e-12), "{apart}");
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! The source's engine: local minima over masks of the exclusive grid, a complete binary tree, local times, and no events for
+//! leaving a cell. ISO99.
+
+pub mod choice;
+pub mod grid;
+mod tournament;
+
+use super::engine::{Engine, Happened, Partner, Stopped};
+use super::event::Arena;
+use grid::{Grid, Sizes};
+use stripmine_kernels::flight::{Disc, Space, meeting};
+use stripmine_kernels::mask::Mask;
+use tournament::Tournament;
+
+/// What a disc will meet next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Event {
+    /// When (time); infinite if nothing.
+    time: f64,
+    /// What.
+    with: Partner,
+}
+
+impl Event {
+    /// Nothing.
+    const NONE: Event = Event { time: f64::INFINITY, with: Partner::Wall(0) };
+
+    /// Whether it comes before another one of the same disc; of two at one time, that with the smaller number.
+    #[inline(always)]
+    fn is_before(&self, other: &Event) -> bool {
+        self.time < other.time || self.time == other.time && self.with < other.with
+    }
+}
+
+/// Discs under way.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    arena: Arena,
+    discs: Vec<Disc>,
+    grid: Grid,
+    events: Vec<Event>,
+    tree: Tournament,
+    /// The time of the last event, or up to which it is known that there is none.
+    time: f64,
+    /// What two discs may approach each other by until the masks miss one (length), at the time `since`.
+    slack: f64,
+    since: f64,
+    /// No disc is faster (length/time).
+    fastest: f64,
+    /// r_NL − 2 σ_max (length): the slack of a new grid.
+    whole_slack: f64,
+    /// How often the grid was filled.
+    remaps: u64,
+    /// Discs that have lost their partner, while an event is dealt with.
+    lost: Vec<u32>,
+    /// When the grid was filled. Speeds are those in a frame that falls from then on: gravity changes none of them.
+    filled: f64,
+    /// The discs' speeds when the grid was filled (length/time).
+    speeds: Vec<f64>,
+}
+
+/// Distances that may not be exceeded are taken this much larger.
+const ROUNDED_UP: f64 = 1.0 + 1e-9;
+
+impl Reference {
+    /// Begins at a time.
+    ///
+    /// # Errors
+    /// [`Stopped`] if discs overlap so much that they share a cell.
+    pub fn new(
+        arena: Arena,
+        discs: Vec<Disc>,
+        mask: &Mask,
+        time: f64,
+    ) -> Result<Reference, Stopped> {
+        let radii = || discs.iter().map(|disc| disc.radius);
+        let sizes = Sizes::new(&arena.domain, radii().fold(f64::INFINITY, f64::min));
+        let whole_slack = sizes.reach(mask) - 2.0 * radii().fold(0.0, f64::max);
+        let mut engine = Reference {
+            grid: Grid::new(arena, sizes, mask),
+            events: vec![Event::NONE; discs.len()],
+            tree: Tournament::new(discs.len(), |_| f64::INFINITY),
+            arena,
+            discs,
+            time,
+            slack: 0.0,
+            since: time,
+            fastest: 0.0,
+            whole_slack,
+            remaps: 0,
+            lost: vec![],
+            filled: time,
+            speeds: vec![],
+        };
+        engine.remap(time)?;
+        Ok(engine)
+    }
+
+    /// Up to when the masks show every partner (time). Nothing later is predicted.
+    fn horizon(&self) -> f64 {
+        self.since + self.slack / (2.0 * self.fastest)
+    }
+
+    fn happen(&mut self, first: u32, event: Event) -> Happened {
+        let Event { time, with } = event;
+        match with {
+            Partner::Wall(axis) => {
+                let disc = &mut self.discs[first as usize];
+                let happened = Happened::at_wall(&self.arena, (first, disc), axis, time);
+                self.heed(first);
+                self.repair([first, first]);
+                happened
+            }
+            Partner::Disc(other) => {
+                let [a, b] = [first.min(other), first.max(other)];
+                let (left, right) = self.discs.split_at_mut(b as usize);
+                let pair = ((a, &mut left[a as usize]), (b, &mut right[0]));
+                let happened = Happened::collision(&self.arena, pair.0, pair.1, time);
+                self.heed(a);
+                self.heed(b);
+                self.repair([a, b]);
+                happened
+            }
+        }
+    }
+
+    /// The dynamic upper cut-off: a disc that is faster than all shortens the time for which masks are whole.
+    fn heed(&mut self, disc: u32) {
+        let speed = self.speed(&self.discs[disc as usize]);
+        if speed > self.fastest {
+            self.slack -= 2.0 * self.fastest * (self.time - self.since);
+            self.since = self.time;
+            self.fastest = speed;
+        }
+    }
+
+    /// A speed in the frame that falls since the grid was filled (length/time).
+    fn speed(&self, disc: &Disc) -> f64 {
+        let [u, v] = disc.velocity_at(&self.arena.space, self.filled);
+        (u * u + v * v).sqrt()
+    }
+
+    /// Finds the next events of discs whose motion has changed, and of those that expected to meet them.
+    fn repair(&mut self, changed: [u32; 2]) {
+        let [a, b] = changed;
+        let mut lost = std::mem::take(&mut self.lost);
+        let (now, horizon) = (self.time, self.horizon());
+        for &disc in if a == b { &changed[..1] } else { &changed[..] } {
+            let mut own = self.at_wall(disc);
+            let Reference { grid, discs, events, tree, arena, .. } = self;
+            for other in grid.around(disc) {
+                let time = pair(&arena.space, discs, [disc, other], now, horizon);
+                let theirs = Event { time, with: Partner::Disc(other) };
+                if theirs.is_before(&own) {
+                    own = theirs;
+                }
+                if other == a || other == b {
+                    continue;
+                }
+                let known = events[other as usize];
+                let ours = Event { time, with: Partner::Disc(disc) };
+                if known.with == Partner::Disc(disc) {
+                    lost.push(other);
+                } else if ours.is_before(&known) {
+                    events[other as usize] = ours;
+                    tree.update(other, events.len(), |disc| events[disc as usize].time);
+                }
+            }
+            self.renew(disc, own);
+        }
+        for disc in lost.drain(..) {
+            self.renew(disc, self.predicted(disc));
+        }
+        self.lost = lost;
+    }
+
+    /// The next event of a disc is another.
+    fn renew(&mut self, disc: u32, event: Event) {
+        let Reference { events, tree, .. } = self;
+        events[disc as usize] = event;
+        tree.update(disc, events.len(), |disc| events[disc as usize].time);
+    }
+
+    fn at_wall(&self, disc: u32) -> Event {
+        let (time, axis) = self.arena.wall(&self.discs[disc as usize]);
+        Event { time, with: Partner::Wall(axis as u8) }
+    }
+
+    /// What a disc meets next, of all that its mask shows.
+    fn predicted(&self, disc: u32) -> Event {
+        let horizon = self.horizon();
+        self.grid.around(disc).fold(self.at_wall(disc), |next, other| {
+            let time = pair(&self.arena.space, &self.discs, [disc, other], self.time, horizon);
+            let event = Event { time, with: Partner::Disc(other) };
+            if event.is_before(&next) { event } else { next }
+        })
+    }
+
+    /// Fills the grid with the discs as they are at a time, and finds what each meets next.
+    fn remap(&mut self, time: f64) -> Result<(), Stopped> {
+        self.grid.fill(&self.discs, time).map_err(Stopped::SharedCell)?;
+        self.time = time;
+        self.since = time;
+        self.slack = self.whole_slack;
+        self.filled = time;
+        let mut speeds = std::mem::take(&mut self.speeds);
+        speeds.clear();
+        speeds.extend(self.discs.iter().map(|disc| self.speed(disc)));
+        self.fastest = speeds.iter().copied().fold(0.0, f64::max);
+        self.speeds = speeds;
+        self.remaps += 1;
+        for disc in 0..self.discs.len() as u32 {
+            self.events[disc as usize] = self.at_wall(disc);
+        }
+        let (now, horizon, ahead) = (time, self.horizon(), self.slack / (2.0 * self.fastest));
+        let Reference { grid, discs, events, arena, speeds, .. } = self;
+        // Each pair once, if it may meet so soon at all.
+        for disc in 0..discs.len() as u32 {
+            let (own, speed, here) = (&discs[disc as usize], speeds[disc as usize], grid.place(disc));
+            for other in grid.around(disc).filter(|&other| other > disc) {
+                let [dx, dy] = arena.domain.displacement(here, grid.place(other));
+                let reach = own.radius + discs[other as usize].radius;
+                let near = (reach + (speed + speeds[other as usize]) * ahead) * ROUNDED_UP;
+                if dx * dx + dy * dy > near * near {
+                    continue;
+                }
+                let time = pair(&arena.space, discs, [disc, other], now, horizon);
+                for (one, with) in [(disc, other), (other, disc)] {
+                    let event = Event { time, with: Partner::Disc(with) };
+                    if event.is_before(&events[one as usize]) {
+                        events[one as usize] = event;
+                    }
+                }
+            }
+        }
+        let events = &self.events;
+        self.tree.renew(events.len(), |disc| events[disc as usize].time);
+        Ok(())
+    }
+}
+
+impl Engine for Reference {
+    fn count(&self) -> usize {
+        self.discs.len()
+    }
+
+    fn disc(&self, number: u32) -> &Disc {
+        &self.discs[number as usize]
+    }
+
+    fn next(&mut self, until: f64, most: u64) -> Result<Option<Happened>, Stopped> {
+        loop {
+            let first = self.tree.first();
+            let event = self.events[first as usize];
+            // ISO99 (6), with the largest speed kept up to date.
+            let horizon = self.horizon();
+            if event.time > until.min(horizon) {
+                if until <= horizon || self.remaps >= most {
+                    return Ok(None);
+                }
+                // Rounding may put the horizon just before the last event.
+                self.remap(horizon.max(self.time))?;
+                continue;
+            }
+            if event.time < self.time {
+                return Err(Stopped::BackInTime(first, event.time, self.time));
+            }
+            self.time = event.time;
+            return Ok(Some(self.happen(first, event)));
+        }
+    }
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn fillings(&self) -> u64 {
+        self.remaps
+    }
+
+    fn figures(&self) -> Vec<(&'static str, f64)> {
+        vec![("remaps", self.remaps as f64), ("occupancy", self.grid.occupancy())]
+    }
+}
+
+/// When two discs meet, by their numbers.
+#[inline(always)]
+fn pair(space: &Space, discs: &[Disc], [disc, other]: [u32; 2], now: f64, horizon: f64) -> f64 {
+    let [a, b] = [disc.min(other), disc.max(other)];
+    meeting(space, &discs[a as usize], &discs[b as usize], now, horizon)
+}
