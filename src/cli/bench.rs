@@ -24,8 +24,8 @@ pub(super) struct BenchVerb {
     /// Integrator, such as gear4, gear5, gear6 or velocity-verlet
     #[arg(long)]
     integrator: Option<String>,
-    /// What steps the particles; the fastest by default
-    #[arg(long, value_parser = ["auto", "fast", "programs"])]
+    /// What moves the particles: auto, fast, or programs of lattice MD, reference of hard discs; the fastest by default
+    #[arg(long)]
     engine: Option<String>,
     /// How programs are executed: eager, strip:N or chained; implies programs
     #[arg(long)]
@@ -39,8 +39,8 @@ pub(super) struct BenchVerb {
     /// Mask of cells around a disc, such as min or r3; the cheapest by default
     #[arg(long)]
     mask: Option<String>,
-    /// Steps of each repeat; about a second's worth by default
-    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    /// Steps, or collisions, of each repeat; about a second's worth by default
+    #[arg(long, visible_alias = "collisions", value_parser = clap::value_parser!(u64).range(1..))]
     steps: Option<u64>,
     /// Repeats
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]

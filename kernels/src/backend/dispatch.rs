@@ -72,14 +72,19 @@ impl InstructionSet {
     }
 }
 
-/// A task compiled once for each register file.
-pub(crate) trait Task<L: Precision> {
+/// A task compiled once for each register file. All that it calls on its way to registers is to be inlined into it: a function
+/// of its own is compiled for the build's target.
+pub trait Task<L: Precision> {
     /// The task on one register file.
     fn on<R: Registers<Lane = L>>(self, registers: R);
 }
 
 /// Carries a task into the function compiled for the instruction set.
-pub(crate) fn dispatch<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -> Result<(), ProgramError> {
+///
+/// # Errors
+/// [`ProgramError`] if this processor has no such instructions.
+#[inline]
+pub fn dispatch<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -> Result<(), ProgramError> {
     match set {
         InstructionSet::Scalar => task.on(Scalar::default()),
         InstructionSet::Wide => task.on(Wide::default()),

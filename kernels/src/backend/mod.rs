@@ -9,8 +9,8 @@ mod scalar;
 pub mod tape;
 mod wide;
 
-pub use dispatch::{GROUP, InstructionSet};
-pub(crate) use dispatch::{Task, dispatch, dispatch_estimating};
+pub(crate) use dispatch::dispatch_estimating;
+pub use dispatch::{GROUP, InstructionSet, Task, dispatch};
 pub use estimated::Estimates;
 pub use precision::Precision;
 pub use pulp::{Pulp, PulpElement};

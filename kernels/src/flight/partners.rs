@@ -1,8 +1,8 @@
 //! A disc and all that it may meet next, a register of partners at a time.
 
 use super::{Disc, Flight, Space, meetings};
-use crate::backend::{InstructionSet, Registers, Task, dispatch};
-use crate::isa::{Predicate, ProgramError, Vector};
+use crate::backend::Registers;
+use crate::isa::{Predicate, Vector};
 use std::array::from_fn;
 
 /// Partners of a disc at most.
@@ -22,110 +22,115 @@ pub struct Earliest {
 /// Whom of its `partners` the disc `own` meets first, with the time of every meeting in `times`; infinite ones as in
 /// [`meeting`](super::meeting). `known` is the time of what each disc is known to meet first.
 ///
-/// # Errors
-/// [`ProgramError`] if this processor has no such instructions.
-///
 /// # Panics
 /// If there are more partners than [`MOST_PARTNERS`], or a number lies beyond the discs.
-#[inline]
-pub fn earliest(
-    set: InstructionSet,
+#[inline(always)]
+pub fn earliest<R: Registers<Lane = f64>>(
+    registers: R,
     space: &Space,
     discs: &[Disc],
     known: &[f64],
     (own, partners): (u32, &[u32]),
     now: f64,
     times: &mut [f64; MOST_PARTNERS],
-) -> Result<Earliest, ProgramError> {
+) -> Earliest {
     assert!(partners.len() <= MOST_PARTNERS, "{} partners", partners.len());
-    let mut found = Earliest { time: f64::INFINITY, partners: 0, surprised: 0 };
-    dispatch(set, Search { space, discs, known, own, partners, now, times, found: &mut found })?;
-    Ok(found)
+    let known = &known[..discs.len()];
+    let disc = &discs[own as usize];
+    let splat = |value: f64| registers.splat(value);
+    let flight = Flight {
+        position: disc.position.map(splat),
+        velocity: disc.velocity.map(splat),
+        time: splat(disc.time),
+        radius: splat(disc.radius),
+    };
+    let mut least = splat(f64::INFINITY);
+    let mut surprised = 0;
+    for begin in (0..partners.len()).step_by(R::LANES) {
+        // Lanes beyond the last partner meet the disc itself, which is never.
+        let numbers: [usize; 16] = from_fn(|lane| {
+            let number = if lane < R::LANES { partners.get(begin + lane) } else { None };
+            *number.unwrap_or(&own) as usize
+        });
+        let column = |of: &dyn Fn(usize) -> f64| {
+            let mut lanes = Lanes([0.0; 16]);
+            for lane in 0..R::LANES {
+                lanes.0[lane] = of(numbers[lane]);
+            }
+            // SAFETY: there are sixteen numbers, and a register has at most as many lanes.
+            unsafe { registers.load(lanes.0.as_ptr()) }
+        };
+        let others = Flight {
+            position: [column(&|it| discs[it].position[0]), column(&|it| discs[it].position[1])],
+            velocity: [column(&|it| discs[it].velocity[0]), column(&|it| discs[it].velocity[1])],
+            time: column(&|it| discs[it].time),
+            radius: column(&|it| discs[it].radius),
+        };
+        let met = meetings(registers, space, &flight, &others, now, f64::INFINITY);
+        // SAFETY: a whole number of registers fits, for their lanes are a power of two up to sixteen.
+        unsafe { registers.store(times.as_mut_ptr().add(begin), met) };
+        let finite = met.less_than(splat(f64::INFINITY));
+        let sooner = met.less_equal(column(&|it| known[it])).and(finite);
+        surprised |= registers.bits(sooner) << begin;
+        least = least.min(met);
+    }
+    let mut lanes = Lanes([f64::INFINITY; 16]);
+    // SAFETY: there are sixteen numbers, and a register has at most as many lanes.
+    unsafe { registers.store(lanes.0.as_mut_ptr(), least) };
+    let time = smallest(&lanes.0, R::LANES);
+    let mut first = 0;
+    if time < f64::INFINITY {
+        for begin in (0..partners.len()).step_by(R::LANES) {
+            // SAFETY: this register was stored above.
+            let met = unsafe { registers.load(times.as_ptr().add(begin)) };
+            first |= registers.bits(met.equal(splat(time))) << begin;
+        }
+    }
+    Earliest { time, partners: first, surprised }
 }
 
-struct Search<'a> {
-    space: &'a Space,
-    discs: &'a [Disc],
-    known: &'a [f64],
-    own: u32,
-    partners: &'a [u32],
-    now: f64,
-    times: &'a mut [f64; MOST_PARTNERS],
-    found: &'a mut Earliest,
+/// The smallest of the first numbers, by halves.
+#[inline(always)]
+fn smallest(numbers: &[f64; 16], count: usize) -> f64 {
+    let mut halves = *numbers;
+    let mut left = count;
+    while left > 1 {
+        left /= 2;
+        for lane in 0..left {
+            halves[lane] = if halves[lane + left] < halves[lane] { halves[lane + left] } else { halves[lane] };
+        }
+    }
+    halves[0]
 }
 
 /// Numbers of a register on their way to it; at a line of its own.
 #[repr(align(64))]
 struct Lanes([f64; 16]);
 
-impl Task<f64> for Search<'_> {
-    #[inline(always)]
-    fn on<R: Registers<Lane = f64>>(self, registers: R) {
-        let Search { space, discs, known, own, partners, now, times, found } = self;
-        let disc = &discs[own as usize];
-        let splat = |value: f64| registers.splat(value);
-        let flight = Flight {
-            position: disc.position.map(splat),
-            velocity: disc.velocity.map(splat),
-            time: splat(disc.time),
-            radius: splat(disc.radius),
-        };
-        let mut least = splat(f64::INFINITY);
-        for begin in (0..partners.len()).step_by(R::LANES) {
-            // Lanes beyond the last partner meet the disc itself, which is never.
-            let numbers: [usize; 16] = from_fn(|lane| {
-                let number = if lane < R::LANES { partners.get(begin + lane) } else { None };
-                *number.unwrap_or(&own) as usize
-            });
-            let column = |of: &dyn Fn(&Disc) -> f64| {
-                let mut lanes = Lanes([0.0; 16]);
-                for lane in 0..R::LANES {
-                    lanes.0[lane] = of(&discs[numbers[lane]]);
-                }
-                // SAFETY: there are sixteen numbers, and a register has at most as many lanes.
-                unsafe { registers.load(lanes.0.as_ptr()) }
-            };
-            let others = Flight {
-                position: [column(&|it| it.position[0]), column(&|it| it.position[1])],
-                velocity: [column(&|it| it.velocity[0]), column(&|it| it.velocity[1])],
-                time: column(&|it| it.time),
-                radius: column(&|it| it.radius),
-            };
-            let met = meetings(registers, space, &flight, &others, now, f64::INFINITY);
-            // SAFETY: a whole number of registers fits, for their lanes are a power of two up to sixteen.
-            unsafe { registers.store(times.as_mut_ptr().add(begin), met) };
-            let mut theirs = Lanes([f64::NEG_INFINITY; 16]);
-            for lane in 0..R::LANES.min(partners.len() - begin) {
-                theirs.0[lane] = known[numbers[lane]];
-            }
-            // SAFETY: as above.
-            let theirs = unsafe { registers.load(theirs.0.as_ptr()) };
-            let finite = met.less_than(splat(f64::INFINITY));
-            let sooner = met.less_equal(theirs).and(finite);
-            found.surprised |= registers.bits(sooner) << begin;
-            least = least.min(met);
-        }
-        let mut lanes = Lanes([f64::INFINITY; 16]);
-        // SAFETY: there are sixteen numbers, and a register has at most as many lanes.
-        unsafe { registers.store(lanes.0.as_mut_ptr(), least) };
-        let first = lanes.0[..R::LANES].iter().fold(f64::INFINITY, |least, &time| least.min(time));
-        found.time = first;
-        if first < f64::INFINITY {
-            for begin in (0..partners.len()).step_by(R::LANES) {
-                // SAFETY: this register was stored above.
-                let met = unsafe { registers.load(times.as_ptr().add(begin)) };
-                found.partners |= registers.bits(met.equal(splat(first))) << begin;
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::meeting;
     use super::*;
+    use crate::backend::{InstructionSet, Task, dispatch};
     use crate::noise::{Purpose, Stream};
     use rand::RngExt;
+
+    struct Search<'a> {
+        space: &'a Space,
+        discs: &'a [Disc],
+        known: &'a [f64],
+        partners: &'a [u32],
+        times: &'a mut [f64; MOST_PARTNERS],
+        found: &'a mut Option<Earliest>,
+    }
+
+    impl Task<f64> for Search<'_> {
+        #[inline(always)]
+        fn on<R: Registers<Lane = f64>>(self, registers: R) {
+            let Search { space, discs, known, partners, times, found } = self;
+            *found = Some(earliest(registers, space, discs, known, (0, partners), 3.0, times));
+        }
+    }
 
     /// The bits of the pair's own text, on every instruction set.
     #[test]
@@ -150,9 +155,12 @@ mod tests {
                 let partners: Vec<u32> = (1..=count as u32).collect();
                 let times = |set: InstructionSet| {
                     let mut times = [0.0; MOST_PARTNERS];
-                    let found =
-                        earliest(set, &space, &discs, &known, (0, &partners), 3.0, &mut times).unwrap();
-                    (found, times[..count].to_vec())
+                    let (space, discs, known, partners) = (&space, &discs, &known, &partners);
+                    let mut found = None;
+                    let search =
+                        Search { space, discs, known, partners, times: &mut times, found: &mut found };
+                    dispatch(set, search).unwrap();
+                    (found.unwrap(), times[..count].to_vec())
                 };
                 let expected: Vec<f64> = discs[1..]
                     .iter()

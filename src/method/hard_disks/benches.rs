@@ -30,7 +30,7 @@ pub(super) const BENCHES: &[Bench] = &[Bench {
     preset: "hard-disks",
     rate: "collisions_per_second",
     until: Until::Events,
-    amount: |_| 500_000,
+    amount: |_| 2_000_000,
     defaults: &[("particles", "2500"), ("packing-fraction", "0.50")],
     options: &[
         BenchOption {
@@ -45,7 +45,7 @@ pub(super) const BENCHES: &[Bench] = &[Bench {
         },
         BenchOption {
             name: "engine",
-            values: &[],
+            values: &["auto", "fast", "reference"],
             overrides: |engine| vec![format!("machine.engine={engine}")],
         },
         BenchOption {

@@ -1,6 +1,7 @@
 //! What every way to find events offers, and what it says of them. All give the same events at the same times, to the bit.
 
 use super::event::{Arena, Impact};
+use stripmine_kernels::InstructionSet;
 use stripmine_kernels::flight::Disc;
 
 /// A way to find events, with the discs under way. Discs are known by their numbers, in the order of their ids.
@@ -61,6 +62,8 @@ pub enum Stopped {
     BackInTime(u32, f64, f64),
     /// A disc has more others around it than can be listed.
     Crowded(u32, usize),
+    /// This processor has no such instructions.
+    NoInstructions(InstructionSet),
 }
 
 impl Happened {

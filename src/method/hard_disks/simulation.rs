@@ -73,13 +73,7 @@ impl Running {
         let watch = Watch::new(0.0, crossing(discs.iter()), discs.len());
         let way = match &checked.mask {
             Some(mask) => Way::Reference(mask.clone()),
-            None => {
-                let set = checked.scene.instructions();
-                if !set.is_available() {
-                    return Err(ProgramError::NoSuchInstructionSet(set.name()).into());
-                }
-                Way::Fast(set)
-            }
+            None => Way::Fast(checked.scene.instructions()),
         };
         let stopped = |why| {
             failure(why, &|disc| discs[disc as usize], &checked.particles, &places, Clock::default())
@@ -196,6 +190,7 @@ fn failure(
             let remedy = "set machine.engine = \"reference\", or take radii that differ less";
             Failure::new(FailureKind::Conflict, message, remedy).at(clock).of(1, [who])
         }
+        Stopped::NoInstructions(set) => ProgramError::NoSuchInstructionSet(set.name()).into(),
         Stopped::BackInTime(disc, time, now) => {
             let who = named(disc);
             let message = format!("the next event of {who} is at {time:?}, before the last one at {now:?}");

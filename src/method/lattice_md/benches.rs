@@ -61,7 +61,7 @@ const OPTIONS: &[BenchOption] = options! {
         Some(values) => vec![format!("integrator.values={values}")],
         None => vec![format!("integrator.kind={name}")],
     };
-    "engine", [], |engine| vec![format!("machine.engine={engine}")];
+    "engine", ["auto", "fast", "programs"], |engine| vec![format!("machine.engine={engine}")];
     "execution", [], |execution| {
         vec!["machine.engine=programs".to_owned(), format!("machine.execution={execution}")]
     };

@@ -96,12 +96,6 @@ impl Lists {
         &row[1..=row[0] as usize]
     }
 
-    /// The first line of the list of a disc.
-    #[inline(always)]
-    pub fn row(&self, disc: u32) -> *const u32 {
-        self.rows.as_ptr().wrapping_add(disc as usize * self.stride)
-    }
-
     /// Registers discs that are registered nowhere, at `places` inside the box (length); the list of a disc is that of those
     /// before it, and they have it in theirs.
     ///

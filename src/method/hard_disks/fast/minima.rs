@@ -21,7 +21,11 @@ impl Group {
     /// Its members that are a number, a bit each.
     #[inline(always)]
     fn members(&self, number: f64) -> u32 {
-        (0..GROUP).fold(0, |bits, member| bits | u32::from(self.0[member] == number) << member)
+        let mut bits = 0;
+        for member in 0..GROUP {
+            bits |= u32::from(self.0[member] == number) << member;
+        }
+        bits
     }
 }
 
@@ -56,7 +60,7 @@ impl Minima {
     }
 
     /// A number is another.
-    #[inline]
+    #[inline(always)]
     pub fn set(&mut self, place: usize, number: f64) {
         let (mut place, mut number) = (place, number);
         for level in &mut self.levels {
@@ -70,11 +74,21 @@ impl Minima {
         }
     }
 
-    /// Hears of every place of a number: of the smallest, or of one that there is not.
-    #[inline]
+    /// The places of a number, of the smallest or of one that there is not: the first, and whether there are more.
+    #[inline(always)]
+    pub fn first(&self, number: f64) -> (usize, bool) {
+        let (mut place, mut more) = (0, false);
+        for level in self.levels.iter().rev() {
+            let members = level[place].members(number);
+            more |= members & (members.wrapping_sub(1)) != 0;
+            place = GROUP * place + members.trailing_zeros().min(GROUP as u32 - 1) as usize;
+        }
+        (place, more)
+    }
+
+    /// Hears of every place of a number.
     pub fn places(&self, number: f64, mut hear: impl FnMut(usize)) {
-        let top = self.levels.len() - 1;
-        self.below(top, 0, number, &mut hear);
+        self.below(self.levels.len() - 1, 0, number, &mut hear);
     }
 
     fn below(&self, level: usize, group: usize, number: f64, hear: &mut impl FnMut(usize)) {
@@ -86,36 +100,6 @@ impl Minima {
                 _ => self.below(level - 1, place, number, hear),
             }
             members &= members - 1;
-        }
-    }
-
-    /// Hears of places whose numbers are below `bound`, of `most` at most.
-    pub fn places_below(&self, bound: f64, most: usize, mut hear: impl FnMut(usize)) {
-        let mut left = most;
-        self.those_below(self.levels.len() - 1, 0, bound, &mut left, &mut hear);
-    }
-
-    fn those_below(
-        &self,
-        level: usize,
-        group: usize,
-        bound: f64,
-        left: &mut usize,
-        hear: &mut impl FnMut(usize),
-    ) {
-        for member in 0..GROUP {
-            if *left == 0 {
-                return;
-            }
-            if self.levels[level][group].0[member] < bound {
-                let place = GROUP * group + member;
-                if level == 0 {
-                    hear(place);
-                    *left -= 1;
-                } else {
-                    self.those_below(level - 1, place, bound, left, hear);
-                }
-            }
         }
     }
 }
@@ -142,10 +126,9 @@ mod tests {
                 tree.places(least, |place| found.push(place));
                 let expected: Vec<usize> = (0..count).filter(|&place| numbers[place] == least).collect();
                 assert_eq!(found, expected);
-                let mut below = vec![];
-                tree.places_below(20.0, 5, |place| below.push(place));
-                let expected: Vec<usize> = (0..count).filter(|&place| numbers[place] < 20.0).take(5).collect();
-                assert_eq!(below, expected);
+                if least < f64::INFINITY {
+                    assert_eq!(tree.first(least), (expected[0], expected.len() > 1));
+                }
                 assert_eq!(&tree.numbers()[..count], numbers);
             }
         }

@@ -14,6 +14,7 @@ use crate::method::hard_disks::event::Arena;
 use lists::Lists;
 use minima::Minima;
 use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend::{Registers, Task, dispatch};
 use stripmine_kernels::flight::{Disc, Earliest, MOST_PARTNERS, earliest, meeting};
 
 /// Discs that a list holds on average.
@@ -41,6 +42,8 @@ pub struct Fast {
     /// When each disc has its next event (time), and with what.
     times: Minima,
     partners: Vec<u32>,
+    /// When a disc meets each of its list (time), while it is predicted.
+    met: Box<[f64; MOST_PARTNERS]>,
     /// The time of the last event.
     time: f64,
     renewals: u64,
@@ -69,6 +72,7 @@ impl Fast {
             largest,
             times: Minima::new(count),
             partners: vec![RENEWAL; count],
+            met: Box::new([f64::INFINITY; MOST_PARTNERS]),
             time,
             renewals: 0,
             events: 0,
@@ -100,10 +104,8 @@ impl Fast {
         self.partners = vec![RENEWAL; count];
         self.renewals += count as u64;
         self.sorted_until = self.events + SORTED_AFTER * count as u64;
-        for disc in 0..count as u32 {
-            self.predict(disc, time)?;
-        }
-        Ok(())
+        let found = dispatch(self.set, All { engine: self, time });
+        found.map_err(|_| Stopped::NoInstructions(self.set))
     }
 
     /// Puts discs that are near each other near each other in memory: by the digits of their coordinates in turn (Morton).
@@ -130,14 +132,12 @@ impl Fast {
     }
 
     /// Finds the next event of a disc at a time, and tells those who meet it sooner than what they expected.
-    #[inline]
-    fn predict(&mut self, disc: u32, now: f64) -> Result<(), Stopped> {
-        let Fast { arena, discs, numbers, lists, times, partners, .. } = self;
+    #[inline(always)]
+    fn predict<R: Registers<Lane = f64>>(&mut self, registers: R, disc: u32, now: f64) {
+        let Fast { arena, discs, numbers, lists, times, partners, met, .. } = self;
         let row = lists.of(disc);
-        let mut met = [f64::INFINITY; MOST_PARTNERS];
-        let found = earliest(self.set, &arena.space, discs, times.numbers(), (disc, row), now, &mut met);
-        // Only what was asked for on start can be missing, and that was refused then.
-        let Earliest { time, partners: first, mut surprised } = found.unwrap_or(NOTHING);
+        let found = earliest(registers, &arena.space, discs, times.numbers(), (disc, row), now, met);
+        let Earliest { time, partners: first, mut surprised } = found;
         let own = &discs[disc as usize];
         let (mut next, mut with) = (time, RENEWAL);
         if time < f64::INFINITY {
@@ -175,31 +175,93 @@ impl Fast {
         }
         partners[disc as usize] = with;
         times.set(disc as usize, next);
-        Ok(())
     }
 
-    /// The list of a disc is renewed at a time.
-    fn renew(&mut self, disc: u32, time: f64) -> Result<(), Stopped> {
+    /// The list of a disc is renewed at a time; whether there was room for that. If not, all have begun with longer ones.
+    fn renew(&mut self, disc: u32, time: f64) -> Result<bool, Stopped> {
         let place = self.arena.place(&self.discs[disc as usize], time);
         self.renewals += 1;
         let discs = &self.discs;
         match self.lists.renew(disc, place, |disc| discs[disc as usize].radius) {
-            Ok(()) => self.predict(disc, time),
-            // A list is full: longer ones for all.
-            Err(_) => self.begin(time),
+            Ok(()) => Ok(true),
+            Err(_) => self.begin(time).map(|()| false),
+        }
+    }
+
+    /// As [`Engine::next`].
+    #[inline(always)]
+    fn next_on<R: Registers<Lane = f64>>(
+        &mut self,
+        registers: R,
+        until: f64,
+        most: u64,
+    ) -> Result<Option<Happened>, Stopped> {
+        let most = most.saturating_mul(self.discs.len() as u64);
+        loop {
+            let time = self.times.smallest();
+            if time > until || time == f64::INFINITY {
+                return Ok(None);
+            }
+            let first = self.first(time);
+            if time < self.time {
+                return Err(Stopped::BackInTime(self.numbers[first as usize], time, self.time));
+            }
+            // Whose motion or list has changed, twice the same where it is one.
+            let (changed, happened) = match self.partners[first as usize] {
+                RENEWAL => {
+                    if self.renewals >= most {
+                        return Ok(None);
+                    }
+                    if !self.renew(first, time)? {
+                        continue;
+                    }
+                    ([first; 2], None)
+                }
+                wall if wall >= WALL[0] => {
+                    let number = self.numbers[first as usize];
+                    let disc = &mut self.discs[first as usize];
+                    let axis = (wall - WALL[0]) as u8;
+                    ([first; 2], Some(Happened::at_wall(&self.arena, (number, disc), axis, time)))
+                }
+                other => {
+                    let (low, high) = (first.min(other), first.max(other));
+                    let (left, right) = self.discs.split_at_mut(high as usize);
+                    let (a, b) = (&mut left[low as usize], &mut right[0]);
+                    if meeting(&self.arena.space, a, b, time, f64::INFINITY) == time {
+                        let [p, q] = [low, high].map(|disc| self.numbers[disc as usize]);
+                        let happened = Happened::collision(&self.arena, (p, a), (q, b), time);
+                        ([first, other], Some(happened))
+                    } else {
+                        // The other one has changed its motion since.
+                        ([first; 2], None)
+                    }
+                }
+            };
+            let is_one = changed[0] == changed[1];
+            for disc in changed.into_iter().take(if is_one { 1 } else { 2 }) {
+                self.predict(registers, disc, time);
+            }
+            if happened.is_some() {
+                self.time = time;
+                self.events += 1;
+                if self.events > self.sorted_until {
+                    self.begin(time)?;
+                }
+                return Ok(happened);
+            }
         }
     }
 
     /// The disc whose event comes first: of several at that time, that with the smallest number.
-    #[inline]
+    #[inline(always)]
     fn first(&self, time: f64) -> u32 {
+        let (place, more) = self.times.first(time);
+        if more { self.first_by_number(time) } else { place as u32 }
+    }
+
+    fn first_by_number(&self, time: f64) -> u32 {
         let mut first = (u32::MAX, u32::MAX);
-        self.times.places(time, |place| {
-            // Behind the last disc are places of infinite times.
-            if let Some(&number) = self.numbers.get(place) {
-                first = first.min((number, place as u32));
-            }
-        });
+        self.times.places(time, |place| first = first.min((self.numbers[place], place as u32)));
         first.1
     }
 }
@@ -214,57 +276,11 @@ impl Engine for Fast {
     }
 
     fn next(&mut self, until: f64, most: u64) -> Result<Option<Happened>, Stopped> {
-        loop {
-            let time = self.times.smallest();
-            if time > until || time == f64::INFINITY {
-                return Ok(None);
-            }
-            let first = self.first(time);
-            if time < self.time {
-                return Err(Stopped::BackInTime(self.numbers[first as usize], time, self.time));
-            }
-            match self.partners[first as usize] {
-                RENEWAL => {
-                    if self.fillings() >= most {
-                        return Ok(None);
-                    }
-                    self.renew(first, time)?;
-                }
-                wall if wall >= WALL[0] => {
-                    let number = self.numbers[first as usize];
-                    let disc = &mut self.discs[first as usize];
-                    let happened =
-                        Happened::at_wall(&self.arena, (number, disc), (wall - WALL[0]) as u8, time);
-                    self.time = time;
-                    self.events += 1;
-                    self.predict(first, time)?;
-                    return Ok(Some(happened));
-                }
-                other => {
-                    let [one, another] = [first, other].map(|disc| &self.discs[disc as usize]);
-                    if meeting(&self.arena.space, one, another, time, f64::INFINITY) != time {
-                        // The other one has changed its motion since.
-                        self.predict(first, time)?;
-                        continue;
-                    }
-                    let numbers = [first, other].map(|disc| self.numbers[disc as usize]);
-                    let (low, high) = (first.min(other), first.max(other));
-                    let (left, right) = self.discs.split_at_mut(high as usize);
-                    let (a, b) = (&mut left[low as usize], &mut right[0]);
-                    let numbers = if low == first { numbers } else { [numbers[1], numbers[0]] };
-                    let happened =
-                        Happened::collision(&self.arena, (numbers[0], a), (numbers[1], b), time);
-                    self.time = time;
-                    self.events += 1;
-                    self.predict(first, time)?;
-                    self.predict(other, time)?;
-                    if self.events > self.sorted_until {
-                        self.begin(time)?;
-                    }
-                    return Ok(Some(happened));
-                }
-            }
-        }
+        let set = self.set;
+        let mut found = Ok(None);
+        let missing = |_| Stopped::NoInstructions(set);
+        dispatch(set, Next { engine: self, until, most, found: &mut found }).map_err(missing)?;
+        found
     }
 
     fn time(&self) -> f64 {
@@ -291,7 +307,35 @@ pub fn leash(arena: &Arena, radii: impl Iterator<Item = f64> + Clone) -> Option<
     lists::leash(&arena.domain, radii, LISTED)
 }
 
-const NOTHING: Earliest = Earliest { time: f64::INFINITY, partners: 0, surprised: 0 };
+/// The next event, compiled for an instruction set.
+struct Next<'e> {
+    engine: &'e mut Fast,
+    until: f64,
+    most: u64,
+    found: &'e mut Result<Option<Happened>, Stopped>,
+}
+
+impl Task<f64> for Next<'_> {
+    #[inline(always)]
+    fn on<R: Registers<Lane = f64>>(self, registers: R) {
+        *self.found = self.engine.next_on(registers, self.until, self.most);
+    }
+}
+
+/// What every disc meets next, from a time on.
+struct All<'e> {
+    engine: &'e mut Fast,
+    time: f64,
+}
+
+impl Task<f64> for All<'_> {
+    #[inline(always)]
+    fn on<R: Registers<Lane = f64>>(self, registers: R) {
+        for disc in 0..self.engine.discs.len() as u32 {
+            self.engine.predict(registers, disc, self.time);
+        }
+    }
+}
 
 /// When a disc that is where it should be at `now` may be farther than `leash` from where it was registered (time).
 #[inline]
