@@ -5,6 +5,7 @@
 //! leash: those are in its list, and it is in theirs.
 
 use crate::domain::{Domain, Side};
+use stripmine_kernels::isa::AlignedColumn;
 
 /// Stands for no disc.
 const NONE: u32 = u32::MAX;
@@ -17,9 +18,9 @@ pub struct Lists {
     domain: Domain,
     leash: f64,
     /// Where each disc was registered (length).
-    places: Vec<[f64; 2]>,
+    places: AlignedColumn<[f64; 2]>,
     /// How many discs are in each list, and then which, a row each.
-    rows: Vec<u32>,
+    rows: AlignedColumn<u32>,
     stride: usize,
     cells: Cells,
 }
@@ -31,10 +32,13 @@ struct Cells {
     counts: [usize; 2],
     edge: [f64; 2],
     /// The first disc of each cell, row by row.
-    first: Vec<u32>,
+    first: AlignedColumn<u32>,
     /// The next disc of the same cell.
-    next: Vec<u32>,
+    next: AlignedColumn<u32>,
 }
+
+/// Discs that are found around one at most: more than a list holds.
+const FOUND: usize = 128;
 
 /// Cells between the ends of what a disc sees: two on each side of its own.
 const AROUND: isize = 2;
@@ -65,8 +69,8 @@ impl Lists {
         Lists {
             domain,
             leash,
-            places: vec![[0.0; 2]; count],
-            rows: vec![0; count * stride.max(least)],
+            places: AlignedColumn::filled(10, [0.0; 2], count),
+            rows: empty_rows(count, stride.max(least)),
             stride: stride.max(least),
             cells: Cells::new(&domain, count, sight / AROUND as f64),
         }
@@ -96,6 +100,13 @@ impl Lists {
         &row[1..=row[0] as usize]
     }
 
+    /// Asks for the line of the list of a disc and that of its place.
+    #[inline(always)]
+    pub fn prefetch(&self, disc: usize) {
+        self.rows.prefetch(disc * self.stride);
+        self.places.prefetch(disc);
+    }
+
     /// Registers discs that are registered nowhere, at `places` inside the box (length); the list of a disc is that of those
     /// before it, and they have it in theirs.
     ///
@@ -119,6 +130,7 @@ impl Lists {
             let other = self.rows[begin + entry];
             self.strike(other, disc);
         }
+        self.rows[begin..begin + self.stride].fill(NONE);
         self.rows[begin] = 0;
         self.enter(disc, place, &radius)
     }
@@ -127,19 +139,27 @@ impl Lists {
         self.places[disc as usize] = place;
         let at = self.cells.coordinates(&self.domain, place);
         let reach = radius(disc) + 2.0 * self.leash;
-        for rows in -AROUND..=AROUND {
-            for columns in -AROUND..=AROUND {
-                let mut other = self.cells.first[self.cells.round([at[0] + columns, at[1] + rows])];
+        let [columns, rows] = [0, 1].map(|axis| self.cells.around(axis, at[axis]));
+        // Those near enough are written one over the other until one is: a branch for each would be a matter of luck.
+        let (mut found, mut count) = ([0; FOUND], 0);
+        for row in rows {
+            for column in columns {
+                let mut other = self.cells.first[row * self.cells.counts[0] + column];
                 while other != NONE {
                     let [dx, dy] = self.domain.displacement(place, self.places[other as usize]);
                     let near = (reach + radius(other)) * (1.0 + 1e-9);
-                    if dx * dx + dy * dy < near * near {
-                        self.add(disc, other)?;
-                        self.add(other, disc)?;
+                    found[count] = other;
+                    count += usize::from(dx * dx + dy * dy < near * near);
+                    if count == FOUND {
+                        return Err(disc);
                     }
                     other = self.cells.next[other as usize];
                 }
             }
+        }
+        for &other in &found[..count] {
+            self.add(disc, other)?;
+            self.add(other, disc)?;
         }
         self.cells.add(disc, self.cells.round(at));
         Ok(())
@@ -156,11 +176,19 @@ impl Lists {
     fn strike(&mut self, from: u32, disc: u32) {
         let row = &mut self.rows[from as usize * self.stride..][..self.stride];
         let filled = row[0] as usize;
-        if let Some(entry) = row[1..=filled].iter().position(|&other| other == disc) {
-            row[1 + entry] = row[filled];
-            row[0] -= 1;
-        }
+        // Without a branch for each entry: where it is, is a matter of luck.
+        let at: u32 = row[1..].iter().zip(1..).map(|(&other, entry)| if other == disc { entry } else { 0 }).sum();
+        row[at as usize] = row[filled];
+        row[filled] = NONE;
+        row[0] = filled as u32 - 1;
     }
+}
+
+/// Rows without an entry: their count, and what stands for no disc.
+fn empty_rows(count: usize, stride: usize) -> AlignedColumn<u32> {
+    let mut rows = AlignedColumn::filled(11, NONE, count * stride);
+    rows.iter_mut().step_by(stride).for_each(|entries| *entries = 0);
+    rows
 }
 
 impl Cells {
@@ -176,12 +204,24 @@ impl Cells {
         });
         // Where fewer cells than a disc sees lie along a side, they would be seen twice.
         let counts = counts.map(|along| along.max(2 * AROUND as usize + 1));
-        Cells { counts, edge, first: vec![NONE; counts[0] * counts[1]], next: vec![NONE; count] }
+        Cells { counts, edge, first: AlignedColumn::filled(12, NONE, counts[0] * counts[1]), next: AlignedColumn::filled(13, NONE, count) }
     }
 
     #[inline(always)]
     fn coordinates(&self, domain: &Domain, place: [f64; 2]) -> [isize; 2] {
-        [0, 1].map(|axis| ((place[axis] - domain.origin[axis]) / self.edge[axis]).floor() as isize)
+        // Nothing is below the origin of a box.
+        [0, 1].map(|axis| ((place[axis] - domain.origin[axis]) / self.edge[axis]) as isize)
+    }
+
+    /// The columns or rows that a disc in one of them sees.
+    #[inline(always)]
+    fn around(&self, axis: usize, at: isize) -> [usize; 2 * AROUND as usize + 1] {
+        let count = self.counts[axis] as isize;
+        let at = if at < count { at } else { at % count };
+        std::array::from_fn(|step| {
+            let along = at + step as isize - AROUND;
+            (if along < 0 { along + count } else if along >= count { along - count } else { along }) as usize
+        })
     }
 
     #[inline(always)]

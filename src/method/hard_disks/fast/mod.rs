@@ -1,47 +1,71 @@
 //! The fast engine: the same events as the source's, found by lists of each disc's own, predictions a register of partners at a
-//! time, and a tree of groups of eight times.
+//! time, and a queue of which only the next few events are sorted.
 //!
 //! - A disc has one event: the first of its collisions, its wall, or the moment when its list has to be renewed.
-//! - What a disc expected of another one that has changed its motion is not looked for at once. When its time comes, the pair's
-//!   time is worked out from both states once more: being canonical, it is the same to the bit if it still holds.
+//! - What a disc expected of another one that has changed its motion is not looked for at once, but when its time comes: by
+//!   then most such discs have found something that comes sooner.
 //! - Discs lie in memory in the order of their places, and are put so once more now and then.
 
 mod lists;
-mod minima;
+mod queue;
 
+use crate::domain::Side;
 use crate::method::hard_disks::engine::{Engine, Happened, Stopped};
 use crate::method::hard_disks::event::Arena;
 use lists::Lists;
-use minima::Minima;
+use queue::Queue;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::{Registers, Task, dispatch};
-use stripmine_kernels::flight::{Disc, Earliest, MOST_PARTNERS, earliest, meeting};
+use stripmine_kernels::isa::AlignedColumn;
+use stripmine_kernels::flight::{Disc, Earliest, MOST_PARTNERS, earliest};
 
 /// Discs that a list holds on average.
-const LISTED: f64 = 9.0;
+const LISTED: f64 = 8.0;
 /// Discs are sorted by their places after this many events of each.
 const SORTED_AFTER: u64 = 200;
+
+/// Of more discs than these not all are in the caches next to a core: then what is needed is asked for in time.
+const OUT_OF_REACH: usize = 6_000;
+/// How many events ahead: for a disc and its list, for the discs of the list, and for those of the disc that it meets.
+const AHEAD: [usize; 3] = [40, 24, 12];
 
 /// What a disc expects beside other discs, which are known by their places in memory.
 const WALL: [u32; 2] = [u32::MAX - 2, u32::MAX - 1];
 /// Its list has to be renewed.
 const RENEWAL: u32 = u32::MAX;
 
+/// What a disc expects.
+#[derive(Clone, Copy, Debug)]
+struct Expected {
+    /// Another disc by its place in memory, or one of the above.
+    with: u32,
+    /// How many events the other disc had had, of which it may have more when the time comes: then nothing is as expected.
+    events: u32,
+}
+
+impl Expected {
+    const RENEWAL: Expected = Expected { with: RENEWAL, events: 0 };
+}
+
 /// Discs under way.
 pub struct Fast {
     arena: Arena,
     set: InstructionSet,
     /// By places in memory.
-    discs: Vec<Disc>,
+    discs: AlignedColumn<Disc>,
     /// The number of each, and where each number is.
-    numbers: Vec<u32>,
+    numbers: AlignedColumn<u32>,
     places: Vec<u32>,
     lists: Lists,
     leash: f64,
     largest: f64,
-    /// When each disc has its next event (time), and with what.
-    times: Minima,
-    partners: Vec<u32>,
+    /// Whether all radii are the same.
+    alike: bool,
+    /// How far ahead of where they are discs are registered (length).
+    flight: f64,
+    /// When each disc has its next event, and with what.
+    queue: Queue,
+    partners: AlignedColumn<Expected>,
     /// When a disc meets each of its list (time), while it is predicted.
     met: Box<[f64; MOST_PARTNERS]>,
     /// The time of the last event.
@@ -61,17 +85,21 @@ impl Fast {
         let count = discs.len();
         let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
         let leash = leash(&arena, discs.iter().map(|disc| disc.radius)).unwrap_or(0.1 * largest);
+        let alike = discs.iter().all(|disc| disc.radius == largest);
+        let flight = 0.9 * leash.min(free_path(count as f64, largest, arena.domain.area()));
         let mut engine = Fast {
             lists: Lists::new(arena.domain, 0, leash, largest, LISTED, 0),
             arena,
             set,
-            discs,
-            numbers: (0..count as u32).collect(),
+            discs: AlignedColumn::new(0, discs),
+            numbers: AlignedColumn::new(1, 0..count as u32),
             places: vec![0; count],
             leash,
             largest,
-            times: Minima::new(count),
-            partners: vec![RENEWAL; count],
+            alike,
+            flight,
+            queue: Queue::new(count),
+            partners: AlignedColumn::filled(2, Expected::RENEWAL, count),
             met: Box::new([f64::INFINITY; MOST_PARTNERS]),
             time,
             renewals: 0,
@@ -87,7 +115,7 @@ impl Fast {
         self.sort(time);
         let count = self.discs.len();
         let mut stride = self.lists.stride();
-        let places: Vec<[f64; 2]> = self.discs.iter().map(|disc| self.arena.place(disc, time)).collect();
+        let places: Vec<[f64; 2]> = self.discs.iter().map(|disc| self.registered(disc, time)).collect();
         loop {
             let (domain, discs) = (self.arena.domain, &self.discs);
             self.lists = Lists::new(domain, count, self.leash, self.largest, LISTED, stride);
@@ -100,8 +128,8 @@ impl Fast {
                 (self.leash, stride) = (0.7 * self.leash, 0);
             }
         }
-        self.times = Minima::new(count);
-        self.partners = vec![RENEWAL; count];
+        self.queue = Queue::new(count);
+        self.partners.fill(Expected::RENEWAL);
         self.renewals += count as u64;
         self.sorted_until = self.events + SORTED_AFTER * count as u64;
         let found = dispatch(self.set, All { engine: self, time });
@@ -118,10 +146,10 @@ impl Fast {
             x | y << 1
         };
         let mut order: Vec<(u64, u32)> =
-            self.discs.iter().zip(&self.numbers).map(|(disc, &number)| (key(disc), number)).collect();
+            self.discs.iter().zip(self.numbers.iter()).map(|(disc, &number)| (key(disc), number)).collect();
         order.sort_unstable();
-        let mut by_number = self.discs.clone();
-        for (disc, &number) in self.discs.iter().zip(&self.numbers) {
+        let mut by_number = self.discs.to_vec();
+        for (disc, &number) in self.discs.iter().zip(self.numbers.iter()) {
             by_number[number as usize] = *disc;
         }
         for (place, (_, number)) in order.into_iter().enumerate() {
@@ -134,9 +162,9 @@ impl Fast {
     /// Finds the next event of a disc at a time, and tells those who meet it sooner than what they expected.
     #[inline(always)]
     fn predict<R: Registers<Lane = f64>>(&mut self, registers: R, disc: u32, now: f64) {
-        let Fast { arena, discs, numbers, lists, times, partners, met, .. } = self;
+        let Fast { arena, discs, numbers, lists, queue, partners, met, .. } = self;
         let row = lists.of(disc);
-        let found = earliest(registers, &arena.space, discs, times.numbers(), (disc, row), now, met);
+        let found = earliest(registers, &arena.space, discs, queue.times(), (disc, row), now, met);
         let Earliest { time, partners: first, mut surprised } = found;
         let own = &discs[disc as usize];
         let (mut next, mut with) = (time, RENEWAL);
@@ -163,29 +191,78 @@ impl Fast {
         while surprised != 0 {
             let lane = surprised.trailing_zeros() as usize;
             let (other, time) = (row[lane], met[lane]);
-            let expected = partners[other as usize];
-            let is_before = time < times.numbers()[other as usize]
+            let expected = partners[other as usize].with;
+            let is_before = time < queue.times()[other as usize]
                 || expected >= WALL[0]
                 || expected != disc && numbers[disc as usize] < numbers[expected as usize];
             if is_before {
-                partners[other as usize] = disc;
-                times.set(other as usize, time);
+                partners[other as usize] = Expected { with: disc, events: own.events as u32 };
+                queue.set(other as usize, numbers[other as usize], time);
             }
             surprised &= surprised - 1;
         }
-        partners[disc as usize] = with;
-        times.set(disc as usize, next);
+        let events = discs.get(with as usize).map_or(0, |other| other.events as u32);
+        partners[disc as usize] = Expected { with, events };
+        queue.set(disc as usize, numbers[disc as usize], next);
     }
 
     /// The list of a disc is renewed at a time; whether there was room for that. If not, all have begun with longer ones.
     fn renew(&mut self, disc: u32, time: f64) -> Result<bool, Stopped> {
-        let place = self.arena.place(&self.discs[disc as usize], time);
+        let place = self.registered(&self.discs[disc as usize], time);
         self.renewals += 1;
-        let discs = &self.discs;
-        match self.lists.renew(disc, place, |disc| discs[disc as usize].radius) {
+        let Fast { lists, discs, alike, largest, .. } = self;
+        // Discs that are all alike need not be looked at.
+        let radius = |disc: u32| if *alike { *largest } else { discs[disc as usize].radius };
+        match lists.renew(disc, place, radius) {
             Ok(()) => Ok(true),
             Err(_) => self.begin(time).map(|()| false),
         }
+    }
+
+    /// Asks for what the next events will need: first the lines of their discs, then those of the discs around them.
+    #[inline(always)]
+    fn look_ahead(&self) {
+        let Fast { discs, lists, queue, partners, .. } = self;
+        if let Some(disc) = queue.coming(AHEAD[0]) {
+            let disc = disc as usize;
+            discs.prefetch(disc);
+            partners.prefetch(disc);
+            lists.prefetch(disc);
+        }
+        if let Some(disc) = queue.coming(AHEAD[1]) {
+            let with = partners[disc as usize].with as usize;
+            lists.prefetch(with);
+            for &other in lists.of(disc) {
+                discs.prefetch(other as usize);
+                queue.prefetch(other as usize);
+            }
+        }
+        if let Some(disc) = queue.coming(AHEAD[2]) {
+            match partners[disc as usize].with {
+                RENEWAL => lists.of(disc).iter().for_each(|&other| lists.prefetch(other as usize)),
+                with if (with as usize) < discs.len() => {
+                    for &other in lists.of(with) {
+                        discs.prefetch(other as usize);
+                        queue.prefetch(other as usize);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Where a disc is registered: ahead of where it is, by what it will fly before it leaves its list or collides.
+    #[inline(always)]
+    fn registered(&self, disc: &Disc, time: f64) -> [f64; 2] {
+        let ([x, y], [u, v]) = (disc.at(&self.arena.space, time), disc.velocity_at(&self.arena.space, time));
+        let speed = (u * u + v * v).sqrt();
+        let flight = if speed > 0.0 { self.flight / speed } else { 0.0 };
+        let ahead = [x + flight * u, y + flight * v];
+        let domain = &self.arena.domain;
+        domain.wrapped([0, 1].map(|axis| match domain.sides[axis] {
+            Side::Periodic(_) => ahead[axis],
+            _ => ahead[axis].clamp(domain.origin[axis], domain.origin[axis] + domain.length(axis)),
+        }))
     }
 
     /// As [`Engine::next`].
@@ -198,16 +275,19 @@ impl Fast {
     ) -> Result<Option<Happened>, Stopped> {
         let most = most.saturating_mul(self.discs.len() as u64);
         loop {
-            let time = self.times.smallest();
-            if time > until || time == f64::INFINITY {
+            let Some((time, first)) = self.queue.first(registers, &self.numbers) else { return Ok(None) };
+            if time > until {
                 return Ok(None);
             }
-            let first = self.first(time);
+            if self.discs.len() > OUT_OF_REACH {
+                self.look_ahead();
+            }
             if time < self.time {
                 return Err(Stopped::BackInTime(self.numbers[first as usize], time, self.time));
             }
             // Whose motion or list has changed, twice the same where it is one.
-            let (changed, happened) = match self.partners[first as usize] {
+            let Expected { with, events } = self.partners[first as usize];
+            let (changed, happened) = match with {
                 RENEWAL => {
                     if self.renewals >= most {
                         return Ok(None);
@@ -227,7 +307,8 @@ impl Fast {
                     let (low, high) = (first.min(other), first.max(other));
                     let (left, right) = self.discs.split_at_mut(high as usize);
                     let (a, b) = (&mut left[low as usize], &mut right[0]);
-                    if meeting(&self.arena.space, a, b, time, f64::INFINITY) == time {
+                    let met = if other < first { &a } else { &b };
+                    if met.events as u32 == events {
                         let [p, q] = [low, high].map(|disc| self.numbers[disc as usize]);
                         let happened = Happened::collision(&self.arena, (p, a), (q, b), time);
                         ([first, other], Some(happened))
@@ -250,19 +331,6 @@ impl Fast {
                 return Ok(happened);
             }
         }
-    }
-
-    /// The disc whose event comes first: of several at that time, that with the smallest number.
-    #[inline(always)]
-    fn first(&self, time: f64) -> u32 {
-        let (place, more) = self.times.first(time);
-        if more { self.first_by_number(time) } else { place as u32 }
-    }
-
-    fn first_by_number(&self, time: f64) -> u32 {
-        let mut first = (u32::MAX, u32::MAX);
-        self.times.places(time, |place| first = first.min((self.numbers[place], place as u32)));
-        first.1
     }
 }
 
@@ -335,6 +403,15 @@ impl Task<f64> for All<'_> {
             self.engine.predict(registers, disc, self.time);
         }
     }
+}
+
+/// The mean free path (length) of `count` discs of a radius (length) in an area (length²), by Enskog's theory with Henderson's contact
+/// value; what one disc has in its square where the area is without end.
+fn free_path(count: f64, radius: f64, area: f64) -> f64 {
+    let density = if area.is_finite() { count / area } else { 0.25 / (radius * radius) };
+    let packing = (std::f64::consts::PI * radius * radius * density).min(0.9);
+    let contact_value = (1.0 - 7.0 * packing / 16.0) / (1.0 - packing).powi(2);
+    1.0 / (8.0_f64.sqrt() * density * 2.0 * radius * contact_value)
 }
 
 /// When a disc that is where it should be at `now` may be farther than `leash` from where it was registered (time).

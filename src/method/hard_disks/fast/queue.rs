@@ -1,0 +1,252 @@
+//! When each disc has its next event, and in which order they come.
+//!
+//! The next few events are kept sorted; all others only by groups, of which a time is known that none of them comes before. So
+//! the next event is known long before the one at hand is dealt with, and the processor works at both.
+
+use stripmine_kernels::backend::Registers;
+use stripmine_kernels::isa::{AlignedColumn, Vector};
+
+/// Members of a group: two lines of the cache.
+const GROUP: usize = 16;
+
+/// Levels at most: for 16⁸ discs.
+const DEEPEST: usize = 8;
+
+/// Numbers of a group.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Group([f64; GROUP]);
+
+impl Group {
+    const NONE: Group = Group([f64::INFINITY; GROUP]);
+
+    /// The members below a bound, a bit each.
+    #[inline(always)]
+    fn below<R: Registers<Lane = f64>>(&self, registers: R, bound: f64) -> u32 {
+        let bound = registers.splat(bound);
+        let mut bits = 0;
+        for begin in (0..GROUP).step_by(R::LANES) {
+            // SAFETY: a group is a whole number of registers.
+            let some = unsafe { registers.load(self.0.as_ptr().add(begin)) };
+            bits |= registers.bits(some.less_than(bound)) << begin;
+        }
+        bits as u32
+    }
+
+    /// The smallest of the members that are not below a bound.
+    #[inline(always)]
+    fn smallest_from<R: Registers<Lane = f64>>(&self, registers: R, bound: f64) -> f64 {
+        let (bound, never) = (registers.splat(bound), registers.splat(f64::INFINITY));
+        let mut least = never;
+        for begin in (0..GROUP).step_by(R::LANES) {
+            // SAFETY: a group is a whole number of registers.
+            let some = unsafe { registers.load(self.0.as_ptr().add(begin)) };
+            least = least.min(R::V::select(some.less_than(bound), never, some));
+        }
+        let mut lanes = [f64::INFINITY; 8];
+        // SAFETY: a register of numbers of 64 bits has eight lanes at most.
+        unsafe { registers.store(lanes.as_mut_ptr(), least) };
+        let least = |a: f64, b: f64| if b < a { b } else { a };
+        let [a, b, c, d, e, f, g, h] = lanes;
+        least(least(least(a, e), least(c, g)), least(least(b, f), least(d, h)))
+    }
+}
+
+/// An event among the next ones: the bits of its time, which order as the times do, the number of the disc and its place.
+type Entry = (u64, u32, u32);
+
+/// The queue.
+#[derive(Clone, Debug)]
+pub struct Queue {
+    /// The times, and above them, level by level, what none of a group comes before, but those that are among the next ones.
+    levels: Vec<AlignedColumn<Group>>,
+    /// The next events in order, and how many of them are over. Some hold no more: the disc has another time.
+    next: Vec<Entry>,
+    over: usize,
+    /// All events before this time are among the next ones.
+    end: f64,
+    /// How much time they span, and how many there should be.
+    span: f64,
+    wanted: usize,
+}
+
+impl Queue {
+    /// Of `count` discs that have no event.
+    pub fn new(count: usize) -> Queue {
+        let groups = |members: usize, level| {
+            AlignedColumn::filled(level, Group::NONE, members.div_ceil(GROUP).max(1))
+        };
+        let mut levels = vec![groups(count, 3)];
+        while let Some(last) = levels.last().filter(|last| last.len() > 1) {
+            let above = groups(last.len(), 3 + levels.len());
+            levels.push(above);
+        }
+        let wanted = ((count as f64).sqrt() as usize / 2).clamp(8, 256);
+        // As many as are wanted come out soon, whatever the unit of time.
+        Queue { levels, next: vec![], over: 0, end: 0.0, span: f64::MIN_POSITIVE, wanted }
+    }
+
+    /// When each disc has its next event (time); infinite ones behind them.
+    #[inline(always)]
+    pub fn times(&self) -> &[f64] {
+        let groups = &self.levels[0];
+        // SAFETY: a group is its numbers, as large together and aligned more strictly.
+        unsafe { std::slice::from_raw_parts(groups.as_ptr().cast::<f64>(), groups.len() * GROUP) }
+    }
+
+    /// The next event of a disc, by its place and its number, is at a time (at least 0).
+    #[inline(always)]
+    pub fn set(&mut self, place: usize, number: u32, time: f64) {
+        self.levels[0][place / GROUP].0[place % GROUP] = time;
+        if time < self.end {
+            return self.insert((time.to_bits(), number, place as u32));
+        }
+        let mut place = place;
+        for level in &mut self.levels[1..] {
+            place /= GROUP;
+            let known = &mut level[place / GROUP].0[place % GROUP];
+            if time >= *known {
+                return;
+            }
+            *known = time;
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn insert(&mut self, entry: Entry) {
+        let at = self.over + self.next[self.over..].partition_point(|other| *other < entry);
+        self.next.insert(at, entry);
+    }
+
+    /// The first event: its time and the place of the disc; of several at that time, that of the disc with the smallest number.
+    #[inline(always)]
+    pub fn first<R: Registers<Lane = f64>>(&mut self, registers: R, numbers: &[u32]) -> Option<(f64, u32)> {
+        loop {
+            while let Some(&(bits, _, place)) = self.next.get(self.over) {
+                let time = f64::from_bits(bits);
+                if self.times()[place as usize] == time {
+                    return Some((time, place));
+                }
+                self.over += 1;
+            }
+            if !self.fill(registers, numbers) {
+                return None;
+            }
+        }
+    }
+
+    /// Asks for the line of the time of a disc.
+    #[inline(always)]
+    pub fn prefetch(&self, place: usize) {
+        self.levels[0].prefetch(place / GROUP);
+    }
+
+    /// The place of the disc whose event comes so many events after the next one, as far as that is known.
+    #[inline(always)]
+    pub fn coming(&self, ahead: usize) -> Option<u32> {
+        self.next.get(self.over + ahead).map(|&(_, _, place)| place)
+    }
+
+    /// Sorts the next events; whether there are any left.
+    #[inline(always)]
+    fn fill<R: Registers<Lane = f64>>(&mut self, registers: R, numbers: &[u32]) -> bool {
+        let top = self.levels.len() - 1;
+        let begin = self.levels[top][0].smallest_from(registers, f64::NEG_INFINITY).max(self.end);
+        if begin == f64::INFINITY {
+            return false;
+        }
+        self.end = (begin + self.span).max(begin.next_up());
+        self.next.clear();
+        self.over = 0;
+        self.take(registers, numbers);
+        self.next.sort_unstable();
+        match self.next.len() {
+            few if few < self.wanted / 2 => self.span *= 1.5,
+            many if many > 2 * self.wanted => self.span *= 0.7,
+            _ => {}
+        }
+        true
+    }
+
+    /// Puts all that comes before the end among the next events, and makes known what the others do not come before.
+    #[inline(always)]
+    fn take<R: Registers<Lane = f64>>(&mut self, registers: R, numbers: &[u32]) {
+        let Queue { levels, next, end, .. } = self;
+        let top = levels.len() - 1;
+        // The way down: the group of each level, and its members that are still to be visited.
+        let mut path = [(0, 0); DEEPEST];
+        let mut level = top;
+        path[top] = (0, levels[top][0].below(registers, *end));
+        loop {
+            let (group, members) = path[level];
+            if level > 0 && members != 0 {
+                path[level].1 = members & (members - 1);
+                let child = GROUP * group + members.trailing_zeros() as usize;
+                level -= 1;
+                let members = levels[level][child].below(registers, *end);
+                path[level] = (child, members);
+                if let Some(below) = level.checked_sub(1) {
+                    let mut left = members;
+                    while left != 0 {
+                        levels[below].prefetch(GROUP * child + left.trailing_zeros() as usize);
+                        left &= left - 1;
+                    }
+                }
+                continue;
+            }
+            let mut left = members;
+            while left != 0 {
+                let member = left.trailing_zeros() as usize;
+                let place = GROUP * group + member;
+                next.push((levels[0][group].0[member].to_bits(), numbers[place], place as u32));
+                left &= left - 1;
+            }
+            let least = levels[level][group].smallest_from(registers, *end);
+            if level == top {
+                return;
+            }
+            level += 1;
+            levels[level][group / GROUP].0[group % GROUP] = least;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::RngExt;
+    use stripmine_kernels::backend::Scalar;
+    use stripmine_kernels::noise::{Purpose, Stream};
+
+    /// Against a list that is searched, with times that are equal now and then, as they come and as they change.
+    #[test]
+    fn events_come_in_order_whatever_changes() {
+        let mut stream = Stream::new(7, Purpose::Test, 0);
+        for count in [1usize, 2, 16, 17, 300, 5000] {
+            let mut times = vec![f64::INFINITY; count];
+            // Numbers are the places the other way round.
+            let numbers: Vec<u32> = (0..count as u32).rev().collect();
+            let mut queue = Queue::new(count);
+            let mut now = 0.0;
+            for _ in 0..3000 {
+                for _ in 0..stream.random_range(1..4) {
+                    let changed = stream.random_range(0..count);
+                    times[changed] = match stream.random_range(0..20) {
+                        0 => f64::INFINITY,
+                        1 => now,
+                        _ => now + f64::from(stream.random_range(0..200)) / 16.0,
+                    };
+                    queue.set(changed, numbers[changed], times[changed]);
+                }
+                let first = (0..count)
+                    .filter(|&place| times[place] < f64::INFINITY)
+                    .min_by(|&a, &b| (times[a], numbers[a]).partial_cmp(&(times[b], numbers[b])).unwrap());
+                let expected = first.map(|place| (times[place], place as u32));
+                assert_eq!(queue.first(Scalar::default(), &numbers), expected);
+                assert_eq!(&queue.times()[..count], times);
+                now = expected.map_or(now, |(time, _)| time);
+            }
+        }
+    }
+}
