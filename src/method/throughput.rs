@@ -159,6 +159,11 @@ impl Running {
         Ok(())
     }
 
+    /// Work in a second of processor time of the last repeat; not a number before the first.
+    pub fn last_rate(&self) -> f64 {
+        self.repeats.last().map_or(f64::NAN, |repeat| repeat.work / repeat.cpu)
+    }
+
     fn advance(&mut self, steps: u64) -> Result<(), Failure> {
         let moment = (self.bench.until)(steps).after(&self.simulation.clock());
         self.simulation.advance(&[moment], &AtomicBool::new(false))

@@ -1,6 +1,7 @@
 //! The entry of hard discs in the list of methods.
 
 use super::benches::{BENCHES, QUANTITIES};
+use super::items::ITEMS;
 use super::keys::VOCABULARY;
 use super::prepared::prepare;
 use crate::method::Entry;
@@ -13,7 +14,7 @@ pub static ENTRY: Entry = Entry {
     quantities: QUANTITIES,
     prepare,
     benches: BENCHES,
-    items: &[],
+    items: ITEMS,
     verbs: &[],
     charts: &[],
     trials: None,

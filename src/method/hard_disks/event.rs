@@ -31,8 +31,6 @@ pub struct Thermal {
 /// What a collision was.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
-    /// Impulse (mass · length/time).
-    pub impulse: f64,
     /// Impulse times the distance of the centres (mass · length²/time): what it adds to the virial.
     pub virial: f64,
     /// Whether it was made elastic because another one was so short a time ago.
@@ -110,15 +108,16 @@ impl Arena {
         self.advance(a, time);
         self.advance(b, time);
         let [dx, dy] = self.domain.displacement(a.position, b.position);
-        let distance = (dx * dx + dy * dy).sqrt();
-        let [nx, ny] = [dx / distance, dy / distance];
-        let separation = (b.velocity[0] - a.velocity[0]) * nx + (b.velocity[1] - a.velocity[1]) * ny;
+        // Along the line of the centres without its length: no root, and no rounding of a direction that would heat or cool.
+        let square = dx * dx + dy * dy;
+        let closing = (b.velocity[0] - a.velocity[0]) * dx + (b.velocity[1] - a.velocity[1]) * dy;
         let effective = a.mass * b.mass / (a.mass + b.mass);
-        let impulse = ((-1.0 - restitution) * effective * separation).max(0.0);
+        let virial = ((-1.0 - restitution) * effective * closing).max(0.0);
+        let impulse = virial / square;
         let [of_a, of_b] = [impulse / a.mass, impulse / b.mass];
-        a.velocity = [a.velocity[0] - of_a * nx, a.velocity[1] - of_a * ny];
-        b.velocity = [b.velocity[0] + of_b * nx, b.velocity[1] + of_b * ny];
-        Impact { impulse, virial: impulse * distance, was_made_elastic }
+        a.velocity = [a.velocity[0] - of_a * dx, a.velocity[1] - of_a * dy];
+        b.velocity = [b.velocity[0] + of_b * dx, b.velocity[1] + of_b * dy];
+        Impact { virial, was_made_elastic }
     }
 
     /// A disc is thrown back by a closed side across an axis, or given back by a thermal one; `number` is the disc's. What the

@@ -6,6 +6,7 @@ mod engine;
 mod entry;
 mod event;
 mod fast;
+mod items;
 mod keys;
 mod options;
 #[cfg(test)]
@@ -14,6 +15,8 @@ mod prepared;
 mod presets;
 mod reference;
 mod scene;
+mod sections;
 mod simulation;
+mod study;
 
 pub use entry::ENTRY;

@@ -2,6 +2,7 @@
 //! it does on short ones, and how long it waits, where they say what others do that touch as much.
 
 use super::fit;
+use crate::statistics::non_negative;
 use super::point::{BEYOND, Point};
 use crate::model::host::Factors;
 use std::collections::BTreeMap;
@@ -87,7 +88,7 @@ pub(super) fn fit_costs<'a>(points: impl Iterator<Item = Parts<'a>>) -> BTreeMap
                 row[at] = PRIOR_COSTS * usual[at].max(0.01);
                 (row, if at < 2 { row[at] } else { 0.0 })
             });
-            costs = fit::non_negative(&measured.chain(known).collect::<Vec<_>>());
+            costs = non_negative(&measured.chain(known).collect::<Vec<_>>());
         }
         let [computing, waiting, beyond @ ..] = costs;
         Factors { computing, waiting, beyond }

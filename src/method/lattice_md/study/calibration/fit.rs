@@ -1,4 +1,4 @@
-//! Fits: a line with confidence intervals, and non-negative least squares.
+//! Fits: a line with confidence intervals.
 
 use crate::model::host::{Estimate, PassCost};
 
@@ -35,37 +35,6 @@ fn student(freedom: usize) -> f64 {
     TABLE.get(freedom - 1).copied().unwrap_or(2.0)
 }
 
-/// The non-negative `x` of least `|A x - b|`, by coordinate descent on the normal equations; rows are (features, value).
-pub(super) fn non_negative<const N: usize>(rows: &[([f64; N], f64)]) -> [f64; N] {
-    let mut square = [[0.0; N]; N];
-    let mut right = [0.0; N];
-    for (features, value) in rows {
-        for i in 0..N {
-            right[i] += features[i] * value;
-            for j in 0..N {
-                square[i][j] += features[i] * features[j];
-            }
-        }
-    }
-    let mut x = [0.0; N];
-    for _ in 0..5000 {
-        let mut moved = 0.0_f64;
-        for k in 0..N {
-            if square[k][k] <= 0.0 {
-                continue;
-            }
-            let others: f64 = (0..N).filter(|&j| j != k).map(|j| square[k][j] * x[j]).sum();
-            let next = ((right[k] - others) / square[k][k]).max(0.0);
-            moved = moved.max((next - x[k]).abs() * square[k][k].sqrt());
-            x[k] = next;
-        }
-        if moved < 1e-12 {
-            break;
-        }
-    }
-    x
-}
-
 /// The middle one.
 pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
@@ -95,15 +64,5 @@ mod tests {
         // s = 2, n = 4: 3.18 · 2 / √4.
         let parts = [8.0, 8.0, 12.0, 12.0].map(|part: f64| 10.0 + (part - 10.0) * 0.75_f64.sqrt());
         assert!((half_interval(parts) - 3.18).abs() < 1e-9, "{}", half_interval(parts));
-    }
-
-    #[test]
-    fn least_squares_finds_what_is_there_and_nothing_negative() {
-        let rows: Vec<([f64; 2], f64)> =
-            [[1.0, 2.0], [2.0, 1.0], [3.0, 5.0]].map(|row| (row, 2.0 * row[0] + 0.5 * row[1])).to_vec();
-        let [a, b] = non_negative(&rows);
-        assert!((a - 2.0).abs() < 1e-6 && (b - 0.5).abs() < 1e-6, "{a} {b}");
-        let against: Vec<([f64; 2], f64)> = rows.iter().map(|&(row, _)| (row, row[0] - row[1])).collect();
-        assert!(non_negative(&against).iter().all(|&x| x >= 0.0));
     }
 }

@@ -3,7 +3,8 @@
 
 use super::capacities::candidates;
 use super::factors::{fit_costs, fit_factors};
-use super::fit::{self, median};
+use super::fit::median;
+use crate::statistics::non_negative;
 use super::point::{ARRAYS, BACK, BEYOND, Beyond, Charged, Costs, FIRST, LINES, Point, streamed};
 use crate::model::host::{Factors, Level, Transfer, overlapped};
 use std::collections::BTreeMap;
@@ -136,7 +137,7 @@ fn fit_passes(points: &[Point]) -> Costs {
             let rest = (point.ns - point.start - point.computing).max(0.0);
             (point.features.map(|feature| feature * scale), rest * scale)
         });
-        costs = Some(fit::non_negative(&rows.collect::<Vec<_>>()));
+        costs = Some(non_negative(&rows.collect::<Vec<_>>()));
     }
     costs.unwrap_or_default()
 }
@@ -150,7 +151,7 @@ fn fit_lines(points: &[Point], costs: &mut Costs) {
         let rest = || (point.ns - point.waiting(costs)) / point.ns;
         own.iter().any(|&own| own > 0.0).then(|| (own, rest()))
     });
-    let lines: [f64; BEYOND] = fit::non_negative(&rows.collect::<Vec<_>>());
+    let lines: [f64; BEYOND] = non_negative(&rows.collect::<Vec<_>>());
     costs[LINES..].copy_from_slice(&lines);
 }
 
@@ -183,7 +184,7 @@ fn fit_loops(points: &[Point], passes: &Costs) -> Loops {
                 row[1..LINES].iter_mut().for_each(|feature| *feature *= streams);
                 (row, (point.ns - point.start - computing).max(0.0) * scale)
             });
-            costs = fit::non_negative(&rows.collect::<Vec<_>>());
+            costs = non_negative(&rows.collect::<Vec<_>>());
         }
         let error =
             mean(points, points.iter().map(|point| point.deviation(point.overlapping(&costs, overlap))));

@@ -1,6 +1,7 @@
 //! Compiled loops: the programs of a step on vectors in the first-level cache, and their classes of operations.
 
 use super::fit;
+use crate::statistics::non_negative;
 use super::large::{self, Ran, SCENES};
 use super::passes::{Lane, estimate};
 use super::step::{ELEMENTS, INTERPRETED, Near, STRIPPED, STRIPS, Step, executions};
@@ -235,7 +236,7 @@ impl Loops {
                     )
                 })
                 .collect();
-            let costs = fit::non_negative(&rows);
+            let costs = non_negative(&rows);
             for (counts, ns) in &loops {
                 let sum: f64 = names.iter().zip(costs).map(|(name, cost)| count(counts, name) * cost).sum();
                 residuals.push((sum / ns - 1.0).abs());

@@ -1,6 +1,7 @@
 //! Work whose amount depends on the data: the fast engine and the neighbour lists, on drill scenes of their own.
 
 use super::fit;
+use crate::statistics::non_negative;
 use crate::method::lattice_md::Checked;
 use crate::method::lattice_md::Phase;
 use crate::method::lattice_md::study::noise_monitor::NoiseMonitor;
@@ -161,7 +162,7 @@ fn per_unit(done: &[Vec<Done>]) -> Vec<Vec<(&'static str, f64)>> {
                 (amounts.values().map(|amount| weight * slower * amount), weight * ns)
             })
         });
-        units = fit::non_negative(&rows.collect::<Vec<_>>());
+        units = non_negative(&rows.collect::<Vec<_>>());
         // Of many discs few steps are run, and no lists may have been made: as of fewer discs, then.
         let mut last = 1.0;
         for (done, slower) in done.iter().zip(&mut slower) {

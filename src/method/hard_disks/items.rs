@@ -1,0 +1,64 @@
+//! What can be reproduced of this method: each item a study and its section of the report.
+
+use super::sections;
+use super::study::{atmosphere, cooling, fluid, masks, rates};
+use crate::console::Failure;
+use crate::method::{Item, Progress};
+use crate::results::{Effort, Made};
+
+macro_rules! items {
+    ($($name:literal, $seconds:expr, $make:ident, $doc:literal;)*) => {
+        &[$(Item { name: $name, doc: $doc, seconds: $seconds, is_quick: true, make: $make }),*]
+    };
+}
+
+/// Every item, in the order of the page: name, seconds that it takes about (quick and in full), and what makes it.
+pub(super) const ITEMS: &[Item] = items! {
+    "hard-disks-fluid", [3.0, 60.0], pressure, "Hard discs: pressure and collision rate of the fluid";
+    "hard-disks-rates", [4.0, 70.0], speed, "Hard discs: collisions a second, the fast engine and the source's";
+    "hard-disks-masks", [3.0, 40.0], comparison, "Hard discs: cost over mask and density, and the source's formula";
+    "hard-disks-cooling", [2.0, 10.0], haff, "Hard discs: Haff's law, and inelastic collapse";
+    "hard-disks-atmosphere", [2.0, 20.0], open_system, "Hard discs above a hot floor, without a ceiling";
+};
+
+fn pressure(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let effort = match effort {
+        Effort::Quick => fluid::Effort { discs: 1000, collisions: 200_000 },
+        Effort::Full => fluid::Effort { discs: 10_000, collisions: 10_000_000 },
+    };
+    let data = fluid::fluids(&effort, progress)?;
+    Made::new(sections::fluid::section(&data), &data)
+}
+
+fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let packing_fractions = vec![0.10, 0.30, 0.50, 0.65, 0.70];
+    let effort = match effort {
+        Effort::Quick => rates::Effort { discs: vec![2500], packing_fractions, rounds: 1, collisions: 50_000 },
+        Effort::Full => {
+            rates::Effort { discs: vec![2500, 250_000], packing_fractions, rounds: 3, collisions: 250_000 }
+        }
+    };
+    let data = rates::rates(&effort, progress)?;
+    Made::new(sections::rates::section(&data), &data)
+}
+
+fn comparison(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let (densities, turns): (&[f64], _) = match effort {
+        Effort::Quick => (&[0.10, 0.50], (1, 10_000)),
+        Effort::Full => (&[0.02, 0.10, 0.30, 0.50, 0.70], (3, 40_000)),
+    };
+    let data = masks::masks(2500, densities, turns, progress)?;
+    Made::new(sections::masks::section(&data), &data)
+}
+
+fn haff(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let discs = if effort == Effort::Full { 10_000 } else { 1_000 };
+    let data = cooling::cooling(discs, 12.0, progress)?;
+    Made::new(sections::cooling::section(&data), &data)
+}
+
+fn open_system(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let looks = if effort == Effort::Full { 1000 } else { 50 };
+    let data = atmosphere::atmosphere(looks, progress)?;
+    Made::new(sections::atmosphere::section(&data), &data)
+}

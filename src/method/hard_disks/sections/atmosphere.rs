@@ -1,0 +1,99 @@
+//! Discs above a hot floor, without a ceiling.
+
+use crate::method::hard_disks::study::atmosphere::{Atmosphere, Profile};
+use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::{Cell, Section, Table, Verdict};
+
+/// What came out.
+pub fn section(data: &Atmosphere) -> Section {
+    let dilute = &data.profiles[0];
+    let agrees = (dilute.mean_height - 1.0).abs() < 0.1 && (dilute.temperature - 1.0).abs() < 0.1;
+    Section {
+        name: "hard-disks-atmosphere".into(),
+        title: "Hard discs: above a hot floor, without a ceiling".into(),
+        says: "ISO99, section 3: a system that is open above, as discs under gravity over a source of energy. In the dilute limit \
+               the density falls with the height as exp(−m g y/kT)."
+            .into(),
+        came_out: format!(
+            "{} discs in {} layers: mean height {:.3} kT/(m g) where the barometric law has 1, temperature {:.3} of the floor's; with \
+             {} layers the discs' own room lifts it to {:.2}. With restitution {} the gas above cools to {:.3}.",
+            dilute.discs,
+            dilute.layers,
+            dilute.mean_height,
+            dilute.temperature,
+            data.profiles[2].layers,
+            data.profiles[2].mean_height,
+            data.restitution,
+            data.granular.temperature
+        ),
+        verdict: if agrees { Verdict::Reproduced } else { Verdict::Partly },
+        again: "stripmine reproduce --only hard-disks-atmosphere".into(),
+        figures: vec![figure(data)],
+        tables: vec![table(data)],
+        excerpt: None,
+        film: None,
+        seeds: vec![1],
+        depends_on_host: false,
+        provenance: None,
+    }
+}
+
+fn named(data: &Atmosphere) -> impl Iterator<Item = (String, &Profile)> {
+    let elastic = data.profiles.iter().map(|profile| (format!("{} layers", profile.layers), profile));
+    elastic.chain([(format!("{} layers, e = {}", data.granular.layers, data.restitution), &data.granular)])
+}
+
+fn figure(data: &Atmosphere) -> Figure {
+    let heights = &data.profiles[0].heights;
+    let barometric = heights.iter().map(|&height| Point::at(height, (-height).exp()));
+    let mut series = vec![Series {
+        name: "barometric law".into(),
+        style: Style::Line,
+        hue: 6,
+        points: barometric.collect(),
+    }];
+    series.extend(named(data).enumerate().map(|(hue, (name, profile))| Series {
+        name,
+        style: Style::Points,
+        hue,
+        points: profile
+            .heights
+            .iter()
+            .zip(&profile.densities)
+            .filter(|(_, [mean, error])| mean > error)
+            .map(|(&x, &[mean, error])| Point { x, y: mean, spread: Some([mean - error, mean + error]) })
+            .collect(),
+    }));
+    Figure {
+        name: "profiles".into(),
+        title: "Density over the height".into(),
+        caption: format!("Means of {} looks; bars are standard errors, as if looks were independent.", data.looks),
+        picture: Picture::Chart(Chart {
+            x: Axis::linear("height over kT/(m g)", None),
+            y: Axis::logarithmic("density over the barometric one at the floor", None),
+            series,
+            bands: vec![],
+        }),
+    }
+}
+
+fn table(data: &Atmosphere) -> Table {
+    let rows = named(data).map(|(name, profile)| {
+        vec![
+            Cell::Text(name),
+            Cell::Count(profile.discs as u64),
+            Cell::Number(profile.mean_height, 3),
+            Cell::Number(profile.temperature, 3),
+            Cell::Number(profile.highest, 1),
+        ]
+    });
+    let columns =
+        ["discs", "how many", "mean height over kT/(m g)", "temperature over the floor's", "highest seen"];
+    Table {
+        name: "atmosphere".into(),
+        title: "Discs above a hot floor".into(),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+        notes: vec![],
+    }
+}

@@ -1,0 +1,7 @@
+//! How the report shows what is measured of hard discs.
+
+pub mod atmosphere;
+pub mod cooling;
+pub mod fluid;
+pub mod masks;
+pub mod rates;
