@@ -4,6 +4,7 @@ use super::benches::{BENCHES, QUANTITIES};
 use super::items::ITEMS;
 use super::keys::VOCABULARY;
 use super::prepared::prepare;
+use super::verbs::CHARTS;
 use crate::method::Entry;
 
 /// Event-driven hard discs.
@@ -16,6 +17,6 @@ pub static ENTRY: Entry = Entry {
     benches: BENCHES,
     items: ITEMS,
     verbs: &[],
-    charts: &[],
+    charts: CHARTS,
     trials: None,
 };

@@ -1,7 +1,9 @@
 //! What can be reproduced of this method: each item a study and its section of the report.
 
 use super::sections;
+use super::study::soft_hard::{Question, soft_hard};
 use super::study::{atmosphere, cooling, fluid, masks, rates};
+use super::verbs::question;
 use crate::console::Failure;
 use crate::method::{Item, Progress};
 use crate::results::{Effort, Made};
@@ -19,6 +21,7 @@ pub(super) const ITEMS: &[Item] = items! {
     "hard-disks-masks", [3.0, 40.0], comparison, "Hard discs: cost over mask and density, and the source's formula";
     "hard-disks-cooling", [2.0, 10.0], haff, "Hard discs: Haff's law, and inelastic collapse";
     "hard-disks-atmosphere", [2.0, 20.0], open_system, "Hard discs above a hot floor, without a ceiling";
+    "soft-hard", [4.0, 60.0], limit, "Soft discs of growing stiffness against hard ones";
 };
 
 fn pressure(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
@@ -61,4 +64,15 @@ fn open_system(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> 
     let looks = if effort == Effort::Full { 1000 } else { 50 };
     let data = atmosphere::atmosphere(looks, progress)?;
     Made::new(sections::atmosphere::section(&data), &data)
+}
+
+fn limit(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let question = match effort {
+        Effort::Quick => {
+            Question { discs: 200, stiffnesses: vec![1e3, 1e4, 1e5], seeds: 2, time: 4.0, ..question() }
+        }
+        Effort::Full => question(),
+    };
+    let data = soft_hard(&question, progress)?;
+    Made::new(sections::soft_hard::section(&data, "stripmine reproduce --only soft-hard".into()), &data)
 }

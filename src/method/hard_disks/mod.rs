@@ -18,5 +18,6 @@ mod scene;
 mod sections;
 mod simulation;
 mod study;
+mod verbs;
 
 pub use entry::ENTRY;

@@ -5,3 +5,4 @@ pub mod cooling;
 pub mod fluid;
 pub mod masks;
 pub mod rates;
+pub mod soft_hard;

@@ -5,6 +5,7 @@ pub mod cooling;
 pub mod fluid;
 pub mod masks;
 pub mod rates;
+pub mod soft_hard;
 
 use super::benches::QUANTITIES;
 use super::keys::VOCABULARY;
