@@ -129,7 +129,12 @@ fn what_cannot_be_is_refused_with_what_may_be() {
     };
     refused("hard-disks", &["law.restitution=1.5"], 3, &["law.restitution", "1"]);
     refused("hard-disks", &["law.restitution=0"], 3, &["above 0 and at most 1"]);
-    refused("hard-disks", &["domain.gravity=[0.0, -1.0]"], 3, &["fly straight", "lattice-md"]);
+    refused("hard-disks", &["domain.gravity=[0.0, -1.0]"], 3, &["nothing stops the fall", "periodic = [true, false]"]);
+    refused("hard-disks", &["domain.open_top=true"], 3, &["needs a floor"]);
+    refused("hard-disks", &["law.thermal_side=top"], 3, &["that side is periodic"]);
+    refused("hard-disks", &["law.wall_temperature=2"], 3, &["law.wall_temperature"]);
+    refused("hot-floor", &["machine.engine=reference"], 3, &["no box has so many", "fast"]);
+    refused("hard-disks", &["particles.count=20", "machine.engine=fast"], 3, &["too small for lists", "reference"]);
     refused("hard-disks", &["particles.count=20", "search.mask=r10"], 3, &["r10 does not serve", "one of"]);
     refused("hard-disks", &["particles.temperature=0"], 3, &["no disc moves"]);
     let list = |positions: &str| {

@@ -17,6 +17,7 @@ pub use entry::{
     Simulation, Snapshot, StepLimit, Verb,
 };
 pub use failure::{Culprit, Failure, FailureKind};
+pub use hard_disks::compress;
 pub use list::{METHODS, Methods, load, method, prepare, vocabularies};
 pub use probe::probed;
 pub use trials::{Axis, Balance, Decides, Mapped, Parameter, Setting, Theory, Trials};

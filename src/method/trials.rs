@@ -18,6 +18,8 @@ pub struct Trials {
     pub balance: Option<Balance>,
     /// Quantities that have a mean in a run: what is left of a comparison once trajectories have parted.
     pub observables: &'static [&'static str],
+    /// Those of them that come and go with single contacts: looks at them have a mean only over independent seeds.
+    pub fluctuating: &'static [&'static str],
     /// Whether particles rotate, and their moment of inertia over m R² if so.
     pub inertia: fn(&Values) -> Option<f64>,
     /// The order of convergence of positions that theory gives for a setting of the axis that decides it.

@@ -8,10 +8,10 @@ use super::keys::{Use, define_keys};
 use crate::words::{Words, define_words};
 
 const ALWAYS: Use = None;
-const GENERATED: Use = Some((&GENERATE, &["random", "hexagonal", "pipe", "box", "list"]));
-const DRAWN: Use = Some((&GENERATE, &["random", "hexagonal", "pipe", "box"]));
-const PLACED: Use = Some((&GENERATE, &["random", "pipe", "box"]));
-pub(super) const SIDED: Use = Some((&GENERATE, &["random", "pipe", "box", "list", "file"]));
+const GENERATED: Use = Some((&GENERATE, &["random", "compressed", "hexagonal", "pipe", "box", "list"]));
+const DRAWN: Use = Some((&GENERATE, &["random", "compressed", "hexagonal", "pipe", "box"]));
+const PLACED: Use = Some((&GENERATE, &["random", "compressed", "pipe", "box"]));
+pub(super) const SIDED: Use = Some((&GENERATE, &["random", "compressed", "pipe", "box", "list", "file"]));
 const WALLED: Use = Some((&GENERATE, &["pipe", "box", "list"]));
 const LINED: Use = Some((&GENERATE, &["pipe", "box"]));
 const HOLDING: Use = Some((&GENERATE, &["pipe", "box", "list", "file"]));
@@ -23,9 +23,9 @@ const OSCILLATING: Use = Some((&WALL_MOTION, &["oscillating"]));
 define_keys! {
     /// The discs of a scene in the plane.
     pub static DISCS;
-    GENERATE = "particles" "generate", Choice(&["random", "hexagonal", "pipe", "box", "list"]), "",
+    GENERATE = "particles" "generate", Choice(&["random", "compressed", "hexagonal", "pipe", "box", "list"]), "",
         Otherwise("read `file`"), ALWAYS,
-        "How discs are made: at random without overlap; on a shaken hexagonal lattice; in a pipe along x between two rows of wall discs; above a floor of wall discs; as listed.";
+        "How discs are made: at random without overlap; so, but small, and grown while they move and collide, for packing fractions up to 0.88; on a shaken hexagonal lattice; in a pipe along x between two rows of wall discs; above a floor of wall discs; as listed.";
     FILE = "particles" "file", Text, "", Otherwise("generated"), ALWAYS,
         "Start file, extended XYZ with id, pos, velo, radius, mass, omega; relative to the scene file.",
         implies (&GENERATE, "file");

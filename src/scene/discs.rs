@@ -14,6 +14,8 @@ define_words! {
     enum Origin {
         /// At random.
         Random = "random",
+        /// Grown while they move.
+        Compressed = "compressed",
         /// On a hexagonal lattice.
         Hexagonal = "hexagonal",
         /// In a pipe.
@@ -45,6 +47,13 @@ pub enum Start {
     },
     /// At random in the box, without overlap.
     Random {
+        /// How many.
+        amount: Amount,
+        /// The discs.
+        grains: Grains,
+    },
+    /// At random in the box, but small, and then grown while they move and collide.
+    Compressed {
         /// How many.
         amount: Amount,
         /// The discs.
@@ -175,7 +184,7 @@ pub enum WallMotion {
 impl WallMotion {
     /// Meets its keys, where a start may have walls.
     pub fn bind(&mut self, binding: &mut dyn Binding, start: &Start) {
-        if matches!(start, Start::Random { .. } | Start::Hexagonal { .. }) {
+        if matches!(start, Start::Random { .. } | Start::Compressed { .. } | Start::Hexagonal { .. }) {
             return;
         }
         let (mut motion, mut amplitude, mut frequency) = match *self {
@@ -198,6 +207,7 @@ impl Start {
     fn origin(&self) -> Origin {
         match self {
             Start::Random { .. } => Origin::Random,
+            Start::Compressed { .. } => Origin::Compressed,
             Start::Hexagonal { .. } => Origin::Hexagonal,
             Start::Pipe { .. } => Origin::Pipe,
             Start::Box { .. } => Origin::Box,
@@ -210,6 +220,7 @@ impl Start {
         let (amount, grains, lining) = (Amount::default(), Grains::default(), Lining::default());
         match origin {
             Origin::Random => Start::Random { amount, grains },
+            Origin::Compressed => Start::Compressed { amount, grains },
             Origin::Hexagonal => Start::Hexagonal { count: 0, packing_fraction: 0.0, grains },
             Origin::Pipe => Start::Pipe { amount, grains, lining, clear_width: 0.0 },
             Origin::Box => Start::Box { amount, grains, lining, fill_height: 0.0 },
@@ -237,7 +248,7 @@ impl Start {
                 binding.number(&PACKING_FRACTION, packing_fraction);
                 grains.bind(binding, false);
             }
-            Start::Random { amount, grains } => {
+            Start::Random { amount, grains } | Start::Compressed { amount, grains } => {
                 amount.bind(binding);
                 grains.bind(binding, true);
             }
@@ -262,6 +273,7 @@ impl Start {
             Start::File(_) | Start::List(_) => None,
             Start::Hexagonal { grains, .. }
             | Start::Random { grains, .. }
+            | Start::Compressed { grains, .. }
             | Start::Pipe { grains, .. }
             | Start::Box { grains, .. } => Some(grains.seed),
         }

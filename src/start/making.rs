@@ -1,6 +1,6 @@
 //! The discs of a scene.
 
-use super::{Stated, readable};
+use super::{Stated, Uncompressed, readable};
 use crate::domain::Domain;
 use crate::io::extxyz;
 use crate::memory;
@@ -43,7 +43,7 @@ pub fn radii(start: &Start, found: Option<[f64; 2]>) -> Option<[f64; 2]> {
     };
     let with = |[low, high]: [f64; 2], radius: f64| [low.min(radius), high.max(radius)];
     match start {
-        Start::Random { grains, .. } => Some(spread(grains)),
+        Start::Random { grains, .. } | Start::Compressed { grains, .. } => Some(spread(grains)),
         Start::Pipe { grains, lining, .. } | Start::Box { grains, lining, .. } => {
             Some(with(spread(grains), lining.radius))
         }
@@ -77,11 +77,12 @@ pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
             on_lattice(stated, *count, *packing_fraction, grains)
         }
         Start::Random { amount, grains } => {
-            let count = grain_count(stated, *amount, domain.area(), grains)?;
+            let count = grain_count(stated, *amount, domain.area(), grains, JAMMING)?;
             let far = [0, 1].map(|axis| domain.origin[axis] + domain.length(axis));
             let discs = fill(stated, &domain, [domain.corner(), far], &[], count, grains)?;
             (domain, Particles::new(discs))
         }
+        Start::Compressed { amount, grains } => (domain, compressed(stated, &domain, *amount, grains)?),
         Start::Pipe { amount, grains, lining, clear_width } => {
             (domain, pipe(stated, &domain, *amount, grains, lining, *clear_width)?)
         }
@@ -230,10 +231,51 @@ fn on_lattice(
     (Domain::planar(origin, sides, stated.domain.periodic), packing.particles)
 }
 
-/// How many grains fill an area that is open to them.
-fn grain_count(stated: &Stated<'_>, amount: Amount, open: f64, grains: &Grains) -> Result<usize, SceneError> {
-    /// Beyond it random sequential placement jams, however large the box.
-    const JAMMING: f64 = 0.547;
+/// Beyond this packing fraction random sequential placement jams, however large the box.
+const JAMMING: f64 = 0.547;
+/// Beyond this one discs that grow find no order in which they fit, in any time worth waiting for.
+const COMPRESSED: f64 = 0.88;
+/// The packing fraction at which discs begin to grow.
+const SPARSE: f64 = 0.35;
+
+/// Discs placed while they are small, and grown.
+fn compressed(
+    stated: &Stated<'_>,
+    domain: &Domain,
+    amount: Amount,
+    grains: &Grains,
+) -> Result<Particles, SceneError> {
+    let count = grain_count(stated, amount, domain.area(), grains, COMPRESSED)?;
+    let packing = count as f64 * PI * grains.radius * grains.radius / domain.area();
+    let scale = (SPARSE / packing).sqrt().min(0.9);
+    let far = [0, 1].map(|axis| domain.origin[axis] + domain.length(axis));
+    let small = Grains { radius: scale * grains.radius, ..*grains };
+    let mut discs = fill(stated, domain, [domain.corner(), far], &[], count, &small)?;
+    discs.iter_mut().for_each(|disc| disc.radius /= scale);
+    (stated.compress)(domain, &mut discs, scale, grains.seed).map_err(|why| {
+        let spot = stated.spot(&GENERATE);
+        match why {
+            Uncompressed::Jammed { reached } => {
+                let message = format!("{count} discs grew to a packing fraction of {reached:.4} of {packing:.4}, and jam");
+                spot.error(Reason::Placement, message).advising("lower count or packing_fraction, or take another seed")
+            }
+            Uncompressed::TooSmall => {
+                let message = "the box is too small for discs to grow in: each would see others across two sides";
+                spot.error(Reason::Placement, message).advising("take a larger box, or generate = \"hexagonal\"")
+            }
+        }
+    })?;
+    Ok(Particles::new(discs))
+}
+
+/// How many grains fill an area that is open to them, at most up to a packing fraction.
+fn grain_count(
+    stated: &Stated<'_>,
+    amount: Amount,
+    open: f64,
+    grains: &Grains,
+    most: f64,
+) -> Result<usize, SceneError> {
     let share = PI * grains.radius * grains.radius / open;
     let (count, key): (f64, &Key) = match amount {
         Amount::Count(count) => (count as f64, &COUNT),
@@ -248,11 +290,15 @@ fn grain_count(stated: &Stated<'_>, amount: Amount, open: f64, grains: &Grains) 
         return Err(refuse(format!("no disc: one alone fills {share:.4} of the area open to grains")));
     }
     // Few discs in a small box may do better than many in a large one.
-    if fraction > JAMMING * (1.0 + 2.0 / count.sqrt()) {
-        let error = refuse(format!(
-            "{count} discs fill {fraction:.4} of the area open to grains; random placement jams at about {JAMMING}"
-        ));
-        return Err(error.advising("place fewer discs, or start from generate = \"hexagonal\""));
+    let compresses = most == COMPRESSED;
+    let bound = if compresses { most } else { most * (1.0 + 2.0 / count.sqrt()) };
+    if fraction > bound {
+        let how = if compresses { "discs that grow find their places up to about" } else { "random placement jams at about" };
+        let error = refuse(format!("{count} discs fill {fraction:.4} of the area open to grains; {how} {most}"));
+        return Err(error.advising(match compresses {
+            true => "place fewer discs, or start from generate = \"hexagonal\"",
+            false => "place fewer discs, or start from generate = \"compressed\" or \"hexagonal\"",
+        }));
     }
     placeable(stated, count, key)?;
     Ok(count as usize)
@@ -329,7 +375,7 @@ fn pipe(
         let error = stated.spot(&CLEAR_WIDTH).error(Reason::Outside, message);
         return Err(error.advising("raise the second of domain.sides, or lower clear_width"));
     }
-    let count = grain_count(stated, amount, domain.length(0) * clear_width, grains)?;
+    let count = grain_count(stated, amount, domain.length(0) * clear_width, grains, JAMMING)?;
     let rows = [(axis - reach, 0.0), (axis + reach, 0.5)];
     let walls = lined(stated, domain, &rows, count, (lining, grains))?;
     let end = domain.origin[0] + domain.length(0);
@@ -363,7 +409,7 @@ fn above_floor(
         let error = stated.spot(&FILL_HEIGHT).error(Reason::Outside, message);
         return Err(error.advising("raise the second of domain.sides, or lower fill_height"));
     }
-    let count = grain_count(stated, amount, domain.length(0) * fill_height, grains)?;
+    let count = grain_count(stated, amount, domain.length(0) * fill_height, grains, JAMMING)?;
     let walls = lined(stated, domain, &[(centres, 0.0)], count, (lining, grains))?;
     let room = [[domain.origin[0], floor], [domain.origin[0] + domain.length(0), floor + fill_height]];
     let mut discs = fill(stated, domain, room, &walls, count, grains)?;

@@ -6,6 +6,7 @@ mod making;
 pub use checks::{noun, outside, overlaps, readable};
 pub use making::{Made, make, radii};
 
+use crate::particles::Particle;
 use crate::scene::{Domain, Key, Spot, Start, Values, WallMotion};
 
 /// What a scene states of its start, with the places where it does.
@@ -19,6 +20,23 @@ pub struct Stated<'s> {
     pub start: &'s Start,
     /// The motion of wall discs.
     pub walls: WallMotion,
+    /// What lets grains grow.
+    pub compress: Compress,
+}
+
+/// Lets grains in a box grow from a scale of their radii (below 1) to the whole, with a seed; their places change.
+pub type Compress = fn(&crate::domain::Domain, &mut [Particle], f64, u64) -> Result<(), Uncompressed>;
+
+/// Why grains did not come to their radii.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Uncompressed {
+    /// They leave each other no more room.
+    Jammed {
+        /// The packing fraction that was reached.
+        reached: f64,
+    },
+    /// The box is too small for so large ones.
+    TooSmall,
 }
 
 impl Stated<'_> {

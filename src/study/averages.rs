@@ -45,7 +45,9 @@ impl<'s> Averages<'s> {
     pub fn add(&mut self, simulation: &dyn Simulation, values: &[f64]) {
         self.looks += 1;
         let observed = |name: &str| Some(vec![*values.get(self.subject.quantity(name)?)?]);
-        let named = self.subject.trials.observables.iter();
+        let trials = self.subject.trials;
+        let is_known = self.subject.prepared.seed().is_some();
+        let named = trials.observables.iter().filter(|name| is_known || !trials.fluctuating.contains(name));
         let observed = named.filter_map(|name| Some(((*name).to_owned(), observed(name)?)));
         let state = State::of(&simulation.particles());
         let profile = profile(&state, &self.domain);

@@ -9,7 +9,7 @@ use stripmine::io::checkpoint::Column;
 use stripmine::memory::Foreseen;
 use stripmine::method::{
     Axis, Bench, BenchOption, Clock, Decides, Entry, Every, Fact, Failure, Prepared, Purpose, Quantity,
-    RunWarning, Schedule, Setting, Simulation, Snapshot, Trials, Until,
+    RunWarning, Schedule, Setting, Simulation, Snapshot, Trials, Until, compress,
 };
 use stripmine::particles::Particles;
 use stripmine::scene::{
@@ -61,6 +61,7 @@ static TRIALS: Trials = Trials {
     references: [&[("integrator", "drift")], &[("integrator", "drift")]],
     balance: None,
     observables: &["kinetic"],
+    fluctuating: &[],
     inertia: |_| None,
     theory: |_, _, _| None,
     shown: &[],
@@ -119,7 +120,7 @@ impl Flight {
         flight.bind(&mut read);
         read.done()?;
         let (domain, start) = (&flight.domain, &flight.start);
-        let stated = Stated { values: &values, domain, start, walls: WallMotion::Fixed };
+        let stated = Stated { values: &values, domain, start, walls: WallMotion::Fixed, compress };
         let made = make(&stated)?;
         SceneErrors::none_of(outside(&stated, &made.domain, &made.particles))?;
         Ok(Flight { bounds: Some(made.domain), made: made.particles, ..flight })

@@ -22,6 +22,8 @@ fn is_small(scene: &Scene) -> bool {
         Start::File(_) | Start::List(_) => true,
         Start::Hexagonal { count, .. } => *count as f64 <= MOST,
         Start::Random { amount, grains } => few(amount, grains),
+        // Growing takes its time.
+        Start::Compressed { .. } => false,
         Start::Pipe { amount, grains, lining, .. } | Start::Box { amount, grains, lining, .. } => {
             few(amount, grains) && lined(lining)
         }

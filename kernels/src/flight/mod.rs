@@ -36,6 +36,25 @@ pub struct Space {
     inverse_sides: [f64; 2],
     /// Acceleration of all discs; none where they fly straight (length/time²).
     gravity: Option<[f64; 2]>,
+    /// How the radii grow, if they do.
+    growth: Option<Growth>,
+}
+
+/// Discs that grow while they move: radii are those of the discs times a scale that is linear in time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Growth {
+    /// The scale at the time 0.
+    pub from: f64,
+    /// How fast it grows (1/time).
+    pub rate: f64,
+}
+
+impl Growth {
+    /// The scale at a time.
+    #[inline(always)]
+    pub fn scale(&self, time: f64) -> f64 {
+        self.from + self.rate * time
+    }
 }
 
 impl Space {
@@ -46,7 +65,20 @@ impl Space {
             sides: periods.map(|period| period.unwrap_or(0.0)),
             inverse_sides: periods.map(|period| period.map_or(0.0, |period| 1.0 / period)),
             gravity: (gravity != [0.0; 2]).then_some(gravity),
+            growth: None,
         }
+    }
+
+    /// The same, of discs that grow.
+    #[inline]
+    pub fn growing(self, growth: Growth) -> Space {
+        Space { growth: Some(growth), ..self }
+    }
+
+    /// How the radii grow, if they do.
+    #[inline(always)]
+    pub fn growth(&self) -> Option<Growth> {
+        self.growth
     }
 
     /// The acceleration of all discs (length/time²).
@@ -143,18 +175,27 @@ fn meetings<R: Registers<Lane = f64>>(
     };
     let dx = nearest(0, bx - ax, u);
     let dy = nearest(1, by - ay, v);
-    let approach = dx * u + dy * v;
-    let approaches = approach.less_than(zero);
+    let (mut reach, mut approach, mut speed) = (a.radius + b.radius, dx * u + dy * v, u * u + v * v);
+    let mut approaches = approach.less_than(zero);
+    if let Some(growth) = space.growth {
+        // The distance at which they touch grows.
+        let swelling = reach * uniform(growth.rate);
+        reach = reach * (uniform(growth.from) + uniform(growth.rate) * from);
+        approach = approach - reach * swelling;
+        speed = speed - swelling * swelling;
+        approaches = approach.less_than(zero).not().and(zero.less_equal(speed)).not();
+    }
     // Most pairs move apart.
     if registers.none(approaches) {
         return never;
     }
-    let reach = a.radius + b.radius;
     // Discs that rounding has brought into each other meet at once.
     let apart = (dx * dx + dy * dy - reach * reach).max(zero);
-    // The root below is no larger than the approach.
-    let soon = apart.less_equal(uniform(-2.0) * approach * (uniform(horizon) - from));
-    let speed = u * u + v * v;
+    // The root below is no larger than the approach; of discs that grow nothing is said beforehand.
+    let soon = match space.growth {
+        None => apart.less_equal(uniform(-2.0) * approach * (uniform(horizon) - from)),
+        Some(_) => approaches,
+    };
     let discriminant = approach * approach - speed * apart;
     let meets = approaches.and(soon).and(zero.less_equal(discriminant));
     if registers.none(meets) {
@@ -202,6 +243,19 @@ mod tests {
         let (a, b) = (disc([9.0, 5.0], [-1.0, 0.0]), disc([11.0, 5.0], [1.0, 0.0]));
         let at = |now: f64| meeting(&space, &a, &b, now, f64::INFINITY);
         assert_eq!([at(0.0), at(5.0), at(8.0)], [f64::INFINITY, 8.5, 8.5]);
+    }
+
+    /// Discs at rest meet by growing, and such as part more slowly than they grow; others do not.
+    #[test]
+    fn discs_that_grow_meet_sooner() {
+        let growing = |rate: f64| Space::new([None; 2], [0.0; 2]).growing(Growth { from: 0.5, rate });
+        let (a, b) = (disc([0.0; 2], [0.0; 2]), disc([1.0, 0.0], [0.0; 2]));
+        assert_eq!(when(&growing(0.25), &a, &b), 2.0);
+        let leaving = disc([1.0, 0.0], [0.2, 0.0]);
+        assert!((when(&growing(0.25), &a, &leaving) - 10.0).abs() < 1e-12);
+        assert_eq!(when(&growing(0.15), &a, &leaving), f64::INFINITY);
+        let coming = disc([1.0, 0.0], [-0.25, 0.0]);
+        assert_eq!(when(&growing(0.25), &a, &coming), 1.0);
     }
 
     /// What falls together meets as if nothing fell, whatever the local times.

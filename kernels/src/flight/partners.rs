@@ -47,24 +47,27 @@ pub fn earliest<R: Registers<Lane = f64>>(
     let mut least = splat(f64::INFINITY);
     let mut surprised = 0;
     for begin in (0..partners.len()).step_by(R::LANES) {
-        // Lanes beyond the last partner meet the disc itself, which is never.
+        // Lanes beyond the last partner stand for the disc itself, without a radius: they meet never.
         let numbers: [usize; 16] = from_fn(|lane| {
             let number = if lane < R::LANES { partners.get(begin + lane) } else { None };
             *number.unwrap_or(&own) as usize
         });
-        let column = |of: &dyn Fn(usize) -> f64| {
+        let by_lane = |of: &dyn Fn(usize) -> f64| {
             let mut lanes = Lanes([0.0; 16]);
             for lane in 0..R::LANES {
-                lanes.0[lane] = of(numbers[lane]);
+                lanes.0[lane] = of(lane);
             }
             // SAFETY: there are sixteen numbers, and a register has at most as many lanes.
             unsafe { registers.load(lanes.0.as_ptr()) }
         };
+        let column = |of: &dyn Fn(usize) -> f64| by_lane(&|lane| of(numbers[lane]));
+        let here = partners.len() - begin;
+        let radius = |lane: usize| if lane < here { discs[numbers[lane]].radius } else { f64::NAN };
         let others = Flight {
             position: [column(&|it| discs[it].position[0]), column(&|it| discs[it].position[1])],
             velocity: [column(&|it| discs[it].velocity[0]), column(&|it| discs[it].velocity[1])],
             time: column(&|it| discs[it].time),
-            radius: column(&|it| discs[it].radius),
+            radius: by_lane(&radius),
         };
         let met = meetings(registers, space, &flight, &others, now, f64::INFINITY);
         // SAFETY: a whole number of registers fits, for their lanes are a power of two up to sixteen.
@@ -109,7 +112,7 @@ struct Lanes([f64; 16]);
 
 #[cfg(test)]
 mod tests {
-    use super::super::meeting;
+    use super::super::{Growth, meeting};
     use super::*;
     use crate::backend::{InstructionSet, Task, dispatch};
     use crate::noise::{Purpose, Stream};
@@ -137,8 +140,9 @@ mod tests {
     fn all_partners_at_a_time_are_each_of_them() {
         let mut stream = Stream::new(3, Purpose::Test, 0);
         let mut meetings = 0;
-        for gravity in [[0.0; 2], [0.5, -1.0]] {
+        for (gravity, rate) in [([0.0; 2], 0.0), ([0.5, -1.0], 0.0), ([0.0; 2], 0.3)] {
             let space = Space::new([Some(12.0), None], gravity);
+            let space = if rate > 0.0 { space.growing(Growth { from: 0.5, rate }) } else { space };
             for count in [1usize, 2, 7, 8, 9, 16, 31, 64] {
                 let mut draw = |low: f64, high: f64| stream.random_range(low..high);
                 let discs: Vec<Disc> = (0..=count)

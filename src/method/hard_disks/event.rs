@@ -1,7 +1,7 @@
 //! What discs fly between, and what their events do to them. Nothing here knows how events are found.
 
 use crate::domain::{Domain, Side};
-use stripmine_kernels::flight::{Disc, Space};
+use stripmine_kernels::flight::{Disc, Growth, Space};
 use stripmine_kernels::noise::{Purpose, normals};
 
 /// What collisions do.
@@ -58,6 +58,20 @@ impl Arena {
         Arena { domain, space: Space::new([0, 1].map(period), gravity), law }
     }
 
+    /// The same, of discs that grow.
+    pub fn growing(self, growth: Growth) -> Arena {
+        Arena { space: self.space.growing(growth), ..self }
+    }
+
+    /// The radius of a disc at a time (length), and how fast it grows (length/time).
+    #[inline]
+    fn radius(&self, disc: &Disc, time: f64) -> [f64; 2] {
+        match self.space.growth() {
+            None => [disc.radius, 0.0],
+            Some(growth) => [disc.radius * growth.scale(time), disc.radius * growth.rate],
+        }
+    }
+
     /// Where a disc is at a time, inside the box along periodic sides (length).
     pub fn place(&self, disc: &Disc, time: f64) -> [f64; 2] {
         self.domain.wrapped(disc.at(&self.space, time))
@@ -93,10 +107,11 @@ impl Arena {
     fn wall_along(&self, disc: &Disc, axis: usize, side: Option<f64>) -> f64 {
         let (low, v) = (self.domain.origin[axis], disc.velocity[axis]);
         let g = self.space.gravity().map_or(0.0, |gravity| gravity[axis]);
-        let above = (disc.position[axis] - disc.radius - low).max(0.0);
-        let below = side.map(|side| (low + side - disc.radius - disc.position[axis]).max(0.0));
-        let to_low = fall(above, -v, -g);
-        let to_high = below.map_or(f64::INFINITY, |below| fall(below, v, g));
+        let [radius, swelling] = self.radius(disc, disc.time);
+        let above = (disc.position[axis] - radius - low).max(0.0);
+        let below = side.map(|side| (low + side - radius - disc.position[axis]).max(0.0));
+        let to_low = fall(above, swelling - v, -g);
+        let to_high = below.map_or(f64::INFINITY, |below| fall(below, swelling + v, g));
         disc.time + to_low.min(to_high)
     }
 
@@ -111,6 +126,11 @@ impl Arena {
         // Along the line of the centres without its length: no root, and no rounding of a direction that would heat or cool.
         let square = dx * dx + dy * dy;
         let closing = (b.velocity[0] - a.velocity[0]) * dx + (b.velocity[1] - a.velocity[1]) * dy;
+        let closing = match self.space.growth() {
+            None => closing,
+            // As surfaces that swell see it.
+            Some(growth) => closing - (a.radius + b.radius) * growth.rate * square.sqrt(),
+        };
         let effective = a.mass * b.mass / (a.mass + b.mass);
         let virial = ((-1.0 - restitution) * effective * closing).max(0.0);
         let impulse = virial / square;
@@ -126,9 +146,12 @@ impl Arena {
         let too_soon = self.is_too_soon(disc, time);
         self.advance(disc, time);
         let v = disc.velocity[axis];
-        // At both ends of a side a disc flies outwards; one at rest under gravity lies on the side it is drawn to.
+        // At both ends of a side a disc flies outwards; one at rest under gravity lies on the side it is drawn to. One that grows
+        // may fly inwards, but is near one of them.
+        let [_, swelling] = self.radius(disc, time);
         let g = self.space.gravity().map_or(0.0, |gravity| gravity[axis]);
-        let is_high = v > 0.0 || v == 0.0 && g > 0.0;
+        let middle = self.domain.origin[axis] + 0.5 * self.domain.length(axis);
+        let is_high = if swelling > 0.0 { disc.position[axis] > middle } else { v > 0.0 || v == 0.0 && g > 0.0 };
         match self.law.thermal {
             Some(thermal) if thermal.side == (axis, is_high) => {
                 let [across, along] = thermal.velocity(disc, number);
@@ -137,7 +160,8 @@ impl Arena {
             }
             _ => {
                 let restitution = if too_soon { 1.0 } else { self.law.wall_restitution };
-                disc.velocity[axis] = -restitution * v;
+                let inwards = if is_high { -swelling } else { swelling };
+                disc.velocity[axis] = inwards - restitution * (v - inwards);
             }
         }
         disc.mass * (disc.velocity[axis] - v).abs()

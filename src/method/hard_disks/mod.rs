@@ -2,6 +2,7 @@
 
 mod benches;
 mod collapse;
+mod compress;
 mod engine;
 mod entry;
 mod event;
@@ -20,4 +21,5 @@ mod simulation;
 mod study;
 mod verbs;
 
+pub use compress::compress;
 pub use entry::ENTRY;

@@ -1,5 +1,6 @@
 //! A scene of hard discs, held against what the method demands.
 
+use super::compress::compress;
 use super::fast;
 use super::keys::{ENGINE, EVENTS, MASK, MASKS};
 use super::options::EngineChoice;
@@ -47,7 +48,7 @@ pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> 
     scene.bind(&mut read);
     read.done()?;
     let stated =
-        Stated { values: &values, domain: &scene.domain, start: &scene.start, walls: WallMotion::Fixed };
+        Stated { values: &values, domain: &scene.domain, start: &scene.start, walls: WallMotion::Fixed, compress };
     let made = make(&stated)?;
     let (domain, particles) = (made.domain, made.particles);
     let mut errors = outside(&stated, &domain, &particles);

@@ -31,6 +31,7 @@ pub(super) static TRIALS: Trials = Trials {
         inputs: &["gravity_work", "wall_work"],
     }),
     observables: &["temperature", "pressure", "flow", "contacts"],
+    fluctuating: &["pressure"],
     inertia,
     theory,
     shown: &[

@@ -14,6 +14,7 @@ use super::scene::{By, Scene};
 use crate::domain::Domain;
 use crate::particles::{Kind, Particle, Particles};
 use crate::scene::{RADIUS, Reason, SceneError, SceneErrors, Values, Warning};
+use crate::method::compress;
 use crate::start::{self, Made, Stated};
 use crate::words::Words;
 
@@ -82,7 +83,7 @@ fn check(mut document: Document, steps: Steps) -> Result<Checked, SceneErrors> {
     let mut errors = Vec::new();
     let mut choices: Vec<String> = choice::engine(&mut document.scene).into_iter().collect();
     let Document { scene, values } = &document;
-    let stated = Stated { values, domain: &scene.domain, start: &scene.start, walls: scene.walls };
+    let stated = Stated { values, domain: &scene.domain, start: &scene.start, walls: scene.walls, compress };
     let made = match start::make(&stated) {
         Ok(made) => Some(made),
         Err(error) => {

@@ -1,0 +1,143 @@
+//! Dense starts: discs grow while they move and collide (Lubachevsky and Stillinger), until they have the radii that they should.
+
+use super::engine::Engine;
+use super::event::{Arena, Law};
+use super::fast::{Fast, leash};
+use crate::domain::Domain;
+use crate::particles::{Particle, in_space};
+use crate::start::Uncompressed;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::flight::{Disc, Growth};
+use stripmine_kernels::noise::{Purpose, normals};
+
+/// Radii grow by this part of themselves while a typical disc flies through the mean radius: fast while there is room, slowly where
+/// order has to find its place.
+const GROWTH: [f64; 2] = [0.02, 0.001];
+/// The packing fraction from which on they grow slowly.
+const CROWDED: f64 = 0.65;
+/// Radii grow this much beyond what they should be (relative), so that rounding lets none overlap.
+const BEYOND: f64 = 1e-9;
+/// Events of each disc after which velocities are brought back to the temperature: growth heats.
+const BETWEEN: u64 = 20;
+/// Events of each disc after which there is no more hope.
+const MOST: u64 = 40_000;
+
+/// Lets discs grow from `scale` times their radii to the whole, by which their positions change; velocities are left as they are.
+///
+/// # Errors
+/// [`Uncompressed`]: how far they came, or why they cannot.
+pub fn compress(domain: &Domain, grains: &mut [Particle], scale: f64, seed: u64) -> Result<(), Uncompressed> {
+    let count = grains.len() as u64;
+    let mean = grains.iter().map(|grain| grain.radius).sum::<f64>() / count.max(1) as f64;
+    let area: f64 = grains.iter().map(|grain| std::f64::consts::PI * grain.radius * grain.radius).sum();
+    let packing = area / domain.area();
+    let law = Law { restitution: 1.0, wall_restitution: 1.0, contact_duration: 0.0, thermal: None };
+    let arena = Arena::new(*domain, [0.0; 2], law);
+    if leash(&arena, grains.iter().map(|grain| grain.radius)).is_none() {
+        return Err(Uncompressed::TooSmall);
+    }
+    // Masses are of no matter here: all are 1, and so is kT; speeds are in mean radii.
+    let mut discs: Vec<Disc> = grains
+        .iter()
+        .map(|grain| Disc {
+            position: domain.wrapped(grain.place()),
+            velocity: normals(seed, Purpose::Placement, grain.id, 2).map(|v| mean * v),
+            time: 0.0,
+            radius: grain.radius * (1.0 + BEYOND),
+            mass: 1.0,
+            events: 0,
+        })
+        .collect();
+    let (mut scale, mut events) = (scale, 0);
+    while scale < 1.0 {
+        let crowded = packing * scale * scale > CROWDED;
+        let rate = GROWTH[usize::from(crowded)];
+        let end = (1.0 - scale) / rate;
+        let growing = arena.growing(Growth { from: scale, rate });
+        let begun = Fast::new(growing, discs.clone(), InstructionSet::best(), 0.0);
+        let mut engine = begun.map_err(|_| Uncompressed::TooSmall)?;
+        let mut time = end;
+        for _ in 0..BETWEEN * count / 2 {
+            match engine.next(end, u64::MAX) {
+                Ok(Some(happened)) => time = happened.time,
+                Ok(None) => {
+                    time = end;
+                    break;
+                }
+                Err(_) => return Err(Uncompressed::Jammed { reached: packing * scale * scale }),
+            }
+        }
+        events += BETWEEN;
+        scale = if time == end { 1.0 } else { scale + rate * time };
+        for (number, disc) in discs.iter_mut().enumerate() {
+            let after = engine.disc(number as u32);
+            (disc.position, disc.velocity) = (growing.place(after, time), after.velocity);
+        }
+        let square: f64 = discs.iter().map(|disc| disc.speed().powi(2)).sum();
+        let cooled = mean / (square / (2.0 * count as f64)).sqrt();
+        for disc in &mut discs {
+            disc.velocity = disc.velocity.map(|v| cooled * v);
+        }
+        if events > MOST {
+            return Err(Uncompressed::Jammed { reached: packing * scale * scale });
+        }
+    }
+    for (grain, disc) in grains.iter_mut().zip(&discs) {
+        grain.position = in_space(disc.position);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::particles::Kind;
+    use crate::placement::{Filling, random};
+
+    fn start(domain: Domain, packing: f64, spread: f64, scale: f64) -> Vec<Particle> {
+        let mean = 0.5;
+        let count = (packing * domain.area() / (std::f64::consts::PI * mean * mean)) as usize;
+        let [x, y] = domain.lengths();
+        let filling = Filling {
+            domain,
+            room: [[0.0; 2], [x, y]],
+            obstacles: &[],
+            count,
+            radius: scale * mean,
+            spread,
+            cut: 2.0 * spread,
+            mass: 1.0,
+            seed: 3,
+        };
+        let mut grains = random(&filling).unwrap();
+        grains.iter_mut().for_each(|grain| grain.radius /= scale);
+        assert!(grains.iter().all(|grain| grain.kind == Kind::Grain));
+        grains
+    }
+
+    /// Nothing overlaps, and nothing reaches beyond a closed side, at packing fractions that no random placement reaches.
+    #[test]
+    fn discs_grow_until_they_have_their_radii() {
+        for (packing, spread, periodic) in [(0.70, 0.0, [true; 2]), (0.75, 0.1, [true; 2]), (0.70, 0.1, [false; 2])] {
+            let domain = Domain::planar([0.0; 2], [16.0, 15.0], periodic);
+            let mut grains = start(domain, packing, spread, 0.6);
+            compress(&domain, &mut grains, 0.6, 3).unwrap();
+            for (number, a) in grains.iter().enumerate() {
+                for b in &grains[number + 1..] {
+                    assert!(domain.distance(a.place(), b.place()) >= a.radius + b.radius);
+                }
+                for axis in (0..2).filter(|&axis| !periodic[axis]) {
+                    let along = a.position[axis];
+                    assert!(along >= a.radius && along <= domain.length(axis) - a.radius);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_box_that_is_too_small_says_so() {
+        let domain = Domain::planar([0.0; 2], [2.1; 2], [true; 2]);
+        let mut grains = start(domain, 0.6, 0.0, 0.6);
+        assert_eq!(compress(&domain, &mut grains, 0.6, 3), Err(Uncompressed::TooSmall));
+    }
+}
