@@ -71,14 +71,14 @@ fn a_cooling_gas_follows_haffs_law() {
     }
 }
 
-/// Whatever the mask, and in however many parts: the same bits.
+/// Whatever the engine and the mask, and in however many parts: the same bits.
 #[test]
-fn masks_and_resumption_change_no_bit() {
+fn engines_masks_and_resumption_change_no_bit() {
     let folder = tempfile::tempdir().unwrap();
-    let last_frame = |name: &str, parts: &[&str], mask: &str| {
+    let last_frame = |name: &str, parts: &[&str], way: &str| {
         let out = folder.path().join(name);
         for (number, time) in parts.iter().enumerate() {
-            let set = [format!("run.time={time}"), format!("search.mask={mask}")];
+            let set = [format!("run.time={time}"), way.to_owned()];
             let mut more = vec!["--set", &set[0], "--set", &set[1], "--set", "particles.count=200"];
             if number > 0 {
                 more.push("--resume");
@@ -88,10 +88,38 @@ fn masks_and_resumption_change_no_bit() {
         let text = fs::read_to_string(out.join("trajectory.xyz")).unwrap();
         text[text.rfind("Lattice").unwrap()..].to_owned()
     };
-    let whole = last_frame("whole", &["10"], "min");
+    let whole = last_frame("whole", &["10"], "machine.engine=reference");
     assert!(whole.lines().count() > 200);
-    assert_eq!(last_frame("parts", &["3.7", "6.1", "10"], "min"), whole);
-    assert_eq!(last_frame("round", &["10"], "r4"), whole);
+    assert_eq!(last_frame("parts", &["3.7", "6.1", "10"], "search.mask=min"), whole);
+    assert_eq!(last_frame("round", &["10"], "search.mask=r4"), whole);
+    assert_eq!(last_frame("fast", &["10"], "machine.engine=fast"), whole);
+    assert_eq!(last_frame("fast-parts", &["2.2", "7.3", "10"], "machine.engine=fast"), whole);
+    assert_eq!(last_frame("scalar", &["10"], "machine.instruction_set=scalar"), whole);
+}
+
+/// Discs that grow come to a packing fraction of 0.85, in every direction the same; where they jam, that is said.
+#[test]
+fn dense_starts_are_grown() {
+    let folder = tempfile::tempdir().unwrap();
+    let grown = ["--set", "particles.generate=compressed", "--set", "domain.sides=[20.0, 20.0]"];
+    let with = |out: &str, more: &[&'static str]| {
+        let out = folder.path().join(out).display().to_string();
+        let mut arguments = vec!["run".to_owned(), "hard-disks".to_owned(), "--out".to_owned(), out];
+        arguments.extend(grown.iter().chain(more).map(|&text| text.to_owned()));
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        stripmine(&arguments)
+    };
+    let dense = with(
+        "dense",
+        &["--set", "particles.packing_fraction=0.85", "--set", "run.events=20000", "--json", "--quiet"],
+    );
+    assert!(dense.status.success(), "{}", said(&dense));
+    let summary: Value = serde_json::from_slice(&dense.stdout).unwrap();
+    assert!(summary["discs"].as_f64().unwrap() > 430.0, "{summary}");
+    let jammed =
+        with("jammed", &["--set", "particles.packing_fraction=0.88", "--set", "particles.radius_spread=0.1"]);
+    assert_eq!(jammed.status.code(), Some(3));
+    assert!(said(&jammed).contains("and jam"), "{}", said(&jammed));
 }
 
 /// Three discs between two others in a line, very dissipative: they collide without end, and that is said with the pair.
@@ -129,12 +157,22 @@ fn what_cannot_be_is_refused_with_what_may_be() {
     };
     refused("hard-disks", &["law.restitution=1.5"], 3, &["law.restitution", "1"]);
     refused("hard-disks", &["law.restitution=0"], 3, &["above 0 and at most 1"]);
-    refused("hard-disks", &["domain.gravity=[0.0, -1.0]"], 3, &["nothing stops the fall", "periodic = [true, false]"]);
+    refused(
+        "hard-disks",
+        &["domain.gravity=[0.0, -1.0]"],
+        3,
+        &["nothing stops the fall", "periodic = [true, false]"],
+    );
     refused("hard-disks", &["domain.open_top=true"], 3, &["needs a floor"]);
     refused("hard-disks", &["law.thermal_side=top"], 3, &["that side is periodic"]);
     refused("hard-disks", &["law.wall_temperature=2"], 3, &["law.wall_temperature"]);
     refused("hot-floor", &["machine.engine=reference"], 3, &["no box has so many", "fast"]);
-    refused("hard-disks", &["particles.count=20", "machine.engine=fast"], 3, &["too small for lists", "reference"]);
+    refused(
+        "hard-disks",
+        &["particles.count=4", "particles.packing_fraction=0.7", "machine.engine=fast"],
+        3,
+        &["too small for lists"],
+    );
     refused("hard-disks", &["particles.count=20", "search.mask=r10"], 3, &["r10 does not serve", "one of"]);
     refused("hard-disks", &["particles.temperature=0"], 3, &["no disc moves"]);
     let list = |positions: &str| {

@@ -234,7 +234,7 @@ fn on_lattice(
 /// Beyond this packing fraction random sequential placement jams, however large the box.
 const JAMMING: f64 = 0.547;
 /// Beyond this one discs that grow find no order in which they fit, in any time worth waiting for.
-const COMPRESSED: f64 = 0.88;
+const COMPRESSED: f64 = 0.885;
 /// The packing fraction at which discs begin to grow.
 const SPARSE: f64 = 0.35;
 
@@ -256,12 +256,17 @@ fn compressed(
         let spot = stated.spot(&GENERATE);
         match why {
             Uncompressed::Jammed { reached } => {
-                let message = format!("{count} discs grew to a packing fraction of {reached:.4} of {packing:.4}, and jam");
-                spot.error(Reason::Placement, message).advising("lower count or packing_fraction, or take another seed")
+                let message = format!(
+                    "{count} discs grew to a packing fraction of {reached:.4} of {packing:.4}, and jam"
+                );
+                spot.error(Reason::Placement, message)
+                    .advising("lower count or packing_fraction, or take another seed")
             }
             Uncompressed::TooSmall => {
-                let message = "the box is too small for discs to grow in: each would see others across two sides";
-                spot.error(Reason::Placement, message).advising("take a larger box, or generate = \"hexagonal\"")
+                let message =
+                    "the box is too small for discs to grow in: each would see others across two sides";
+                spot.error(Reason::Placement, message)
+                    .advising("take a larger box, or generate = \"hexagonal\"")
             }
         }
     })?;
@@ -293,8 +298,13 @@ fn grain_count(
     let compresses = most == COMPRESSED;
     let bound = if compresses { most } else { most * (1.0 + 2.0 / count.sqrt()) };
     if fraction > bound {
-        let how = if compresses { "discs that grow find their places up to about" } else { "random placement jams at about" };
-        let error = refuse(format!("{count} discs fill {fraction:.4} of the area open to grains; {how} {most}"));
+        let how = if compresses {
+            "discs that grow find their places up to about"
+        } else {
+            "random placement jams at about"
+        };
+        let error =
+            refuse(format!("{count} discs fill {fraction:.4} of the area open to grains; {how} {most}"));
         return Err(error.advising(match compresses {
             true => "place fewer discs, or start from generate = \"hexagonal\"",
             false => "place fewer discs, or start from generate = \"compressed\" or \"hexagonal\"",

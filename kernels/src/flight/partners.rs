@@ -100,7 +100,8 @@ fn smallest(numbers: &[f64; 16], count: usize) -> f64 {
     while left > 1 {
         left /= 2;
         for lane in 0..left {
-            halves[lane] = if halves[lane + left] < halves[lane] { halves[lane + left] } else { halves[lane] };
+            halves[lane] =
+                if halves[lane + left] < halves[lane] { halves[lane + left] } else { halves[lane] };
         }
     }
     halves[0]

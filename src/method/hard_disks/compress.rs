@@ -118,7 +118,9 @@ mod tests {
     /// Nothing overlaps, and nothing reaches beyond a closed side, at packing fractions that no random placement reaches.
     #[test]
     fn discs_grow_until_they_have_their_radii() {
-        for (packing, spread, periodic) in [(0.70, 0.0, [true; 2]), (0.75, 0.1, [true; 2]), (0.70, 0.1, [false; 2])] {
+        for (packing, spread, periodic) in
+            [(0.70, 0.0, [true; 2]), (0.75, 0.1, [true; 2]), (0.70, 0.1, [false; 2])]
+        {
             let domain = Domain::planar([0.0; 2], [16.0, 15.0], periodic);
             let mut grains = start(domain, packing, spread, 0.6);
             compress(&domain, &mut grains, 0.6, 3).unwrap();

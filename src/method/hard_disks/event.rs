@@ -151,7 +151,8 @@ impl Arena {
         let [_, swelling] = self.radius(disc, time);
         let g = self.space.gravity().map_or(0.0, |gravity| gravity[axis]);
         let middle = self.domain.origin[axis] + 0.5 * self.domain.length(axis);
-        let is_high = if swelling > 0.0 { disc.position[axis] > middle } else { v > 0.0 || v == 0.0 && g > 0.0 };
+        let is_high =
+            if swelling > 0.0 { disc.position[axis] > middle } else { v > 0.0 || v == 0.0 && g > 0.0 };
         match self.law.thermal {
             Some(thermal) if thermal.side == (axis, is_high) => {
                 let [across, along] = thermal.velocity(disc, number);
@@ -302,6 +303,9 @@ mod tests {
             arena.rebound(&mut rising, number, 1, 0.0);
             assert_eq!(rising.velocity, [0.0, -1.0]);
         }
-        assert!((squares[0] / 1.5 - 1.0).abs() < 0.05 && (squares[1] / 3.0 - 1.0).abs() < 0.05, "{squares:?}");
+        assert!(
+            (squares[0] / 1.5 - 1.0).abs() < 0.05 && (squares[1] / 3.0 - 1.0).abs() < 0.05,
+            "{squares:?}"
+        );
     }
 }

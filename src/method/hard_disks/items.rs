@@ -9,34 +9,33 @@ use crate::method::{Item, Progress};
 use crate::results::{Effort, Made};
 
 macro_rules! items {
-    ($($name:literal, $seconds:expr, $make:ident, $doc:literal;)*) => {
-        &[$(Item { name: $name, doc: $doc, seconds: $seconds, is_quick: true, make: $make }),*]
+    ($($name:literal, $seconds:expr, $is_quick:literal, $make:ident, $doc:literal;)*) => {
+        &[$(Item { name: $name, doc: $doc, seconds: $seconds, is_quick: $is_quick, make: $make }),*]
     };
 }
 
-/// Every item, in the order of the page: name, seconds that it takes about (quick and in full), and what makes it.
+/// Every item, in the order of the page: name, seconds that it takes about (quick and in full), whether it is made
+/// where only little time is given (what is the same everywhere is made in full or not at all), and what makes it.
 pub(super) const ITEMS: &[Item] = items! {
-    "hard-disks-fluid", [3.0, 60.0], pressure, "Hard discs: pressure and collision rate of the fluid";
-    "hard-disks-rates", [4.0, 70.0], speed, "Hard discs: collisions a second, the fast engine and the source's";
-    "hard-disks-masks", [3.0, 40.0], comparison, "Hard discs: cost over mask and density, and the source's formula";
-    "hard-disks-cooling", [2.0, 10.0], haff, "Hard discs: Haff's law, and inelastic collapse";
-    "hard-disks-atmosphere", [2.0, 20.0], open_system, "Hard discs above a hot floor, without a ceiling";
-    "soft-hard", [4.0, 60.0], limit, "Soft discs of growing stiffness against hard ones";
+    "hard-disks-fluid", [30.0, 30.0], false, pressure, "Hard discs: pressure and collision rate of the fluid";
+    "hard-disks-rates", [4.0, 70.0], true, speed, "Hard discs: collisions a second, the fast engine and the source's";
+    "hard-disks-masks", [3.0, 40.0], true, comparison, "Hard discs: cost over mask and density, and the source's formula";
+    "hard-disks-cooling", [6.0, 6.0], false, haff, "Hard discs: Haff's law, and inelastic collapse";
+    "hard-disks-atmosphere", [25.0, 25.0], false, open_system, "Hard discs above a hot floor, without a ceiling";
+    "soft-hard", [2.0, 20.0], true, limit, "Soft discs of growing stiffness against hard ones";
 };
 
-fn pressure(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let effort = match effort {
-        Effort::Quick => fluid::Effort { discs: 1000, collisions: 200_000 },
-        Effort::Full => fluid::Effort { discs: 10_000, collisions: 10_000_000 },
-    };
-    let data = fluid::fluids(&effort, progress)?;
+fn pressure(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let data = fluid::fluids(&fluid::Effort { discs: 10_000, collisions: 10_000_000 }, progress)?;
     Made::new(sections::fluid::section(&data), &data)
 }
 
 fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let packing_fractions = vec![0.10, 0.30, 0.50, 0.65, 0.70];
     let effort = match effort {
-        Effort::Quick => rates::Effort { discs: vec![2500], packing_fractions, rounds: 1, collisions: 50_000 },
+        Effort::Quick => {
+            rates::Effort { discs: vec![2500], packing_fractions, rounds: 1, collisions: 50_000 }
+        }
         Effort::Full => {
             rates::Effort { discs: vec![2500, 250_000], packing_fractions, rounds: 3, collisions: 250_000 }
         }
@@ -54,15 +53,13 @@ fn comparison(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     Made::new(sections::masks::section(&data), &data)
 }
 
-fn haff(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let discs = if effort == Effort::Full { 10_000 } else { 1_000 };
-    let data = cooling::cooling(discs, 12.0, progress)?;
+fn haff(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let data = cooling::cooling(10_000, 12.0, progress)?;
     Made::new(sections::cooling::section(&data), &data)
 }
 
-fn open_system(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let looks = if effort == Effort::Full { 1000 } else { 50 };
-    let data = atmosphere::atmosphere(looks, progress)?;
+fn open_system(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let data = atmosphere::atmosphere(1000, progress)?;
     Made::new(sections::atmosphere::section(&data), &data)
 }
 

@@ -1,15 +1,15 @@
 //! The keys that are this method's own, and what they demand of each other.
 
-use crate::scene::Bounds::{AtMost, NonNegative, Positive};
 use super::options::EngineChoice;
-use crate::words::Words;
+use crate::scene::Bounds::{AtMost, NonNegative, Positive};
 use crate::scene::Fallback::{Is, Otherwise};
 use crate::scene::Kind::{Choice, Number, Switch, Whole};
 use crate::scene::keys::define_keys;
 use crate::scene::{
-    DISC_RIVALS, DISCS, GRAVITY, HEADING, INSTRUCTIONS, KeySet, OUTPUT, PERIODIC, PLANAR_DOMAIN, Reason, Rivals, SceneError, Use,
-    Value, Values, Vocabulary, disagreements,
+    DISC_RIVALS, DISCS, GRAVITY, HEADING, INSTRUCTIONS, KeySet, OUTPUT, PERIODIC, PLANAR_DOMAIN, Reason,
+    Rivals, SceneError, Use, Value, Values, Vocabulary, disagreements,
 };
+use crate::words::Words;
 
 const ALWAYS: Use = None;
 const HEATED: Use = Some((&THERMAL_SIDE, &["left", "right", "bottom", "top"]));

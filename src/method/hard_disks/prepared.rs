@@ -9,23 +9,21 @@ use super::reference::grid::Sizes;
 use super::scene::Scene;
 use super::simulation::Running;
 use crate::domain::{Domain, Side};
-use crate::memory::{Foreseen, available};
+use crate::memory::{Foreseen, PROGRAM, available};
 use crate::method::{Fact, Failure, Prepared, Purpose, Schedule, Simulation, Until};
 use crate::particles::{Kind, Particle, Particles};
 use crate::scene::{
     GENERATE, Output, RADIUS, Read, Reason, SceneError, SceneErrors, Values, WallMotion, Warning,
 };
 use crate::start::{Stated, make, outside, overlaps};
-use serde_json::{Map, Value, json};
 use crate::words::Words;
+use serde_json::{Map, Value, json};
 use std::path::Path;
 use stripmine_kernels::flight::Disc;
 use stripmine_kernels::mask::Mask;
 
 /// Discs may overlap by this part of the sum of their radii at the start: rounding.
 const ROUNDING: f64 = 1e-12;
-/// Bytes of the program itself.
-const PROGRAM: f64 = 12.5e6;
 
 /// A checked scene.
 #[derive(Clone)]
@@ -47,8 +45,13 @@ pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> 
     let (mut scene, mut read) = (Scene::default(), Read::new(&values));
     scene.bind(&mut read);
     read.done()?;
-    let stated =
-        Stated { values: &values, domain: &scene.domain, start: &scene.start, walls: WallMotion::Fixed, compress };
+    let stated = Stated {
+        values: &values,
+        domain: &scene.domain,
+        start: &scene.start,
+        walls: WallMotion::Fixed,
+        compress,
+    };
     let made = make(&stated)?;
     let (domain, particles) = (made.domain, made.particles);
     let mut errors = outside(&stated, &domain, &particles);
@@ -143,7 +146,8 @@ fn way_of(
         return Ok(None);
     }
     if scene.open_top {
-        let message = "the exclusive grid has a cell for every place, and no box has so many without a ceiling";
+        let message =
+            "the exclusive grid has a cell for every place, and no box has so many without a ceiling";
         let error = values.spot(&ENGINE).error(Reason::Contradiction, message);
         return Err(error.expecting("engine = \"fast\""));
     }

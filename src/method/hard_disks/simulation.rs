@@ -4,8 +4,8 @@ use super::collapse::{Collapse, Watch};
 use super::engine::{Engine, Happened, Partner, Stopped};
 use super::event::Arena;
 use super::fast::Fast;
-use super::reference::Reference;
 use super::prepared::Checked;
+use super::reference::Reference;
 use crate::io::checkpoint::{Column, Counter};
 use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
 use crate::particles::{Particles, in_space};
@@ -13,10 +13,10 @@ use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
-use stripmine_kernels::flight::Disc;
-use stripmine_kernels::mask::Mask;
 use stripmine_kernels::InstructionSet;
+use stripmine_kernels::flight::Disc;
 use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::mask::Mask;
 
 /// Events, or fillings of the grid, between looks at whether a run is to be interrupted.
 const UNHEARD: u64 = 4096;
@@ -75,9 +75,8 @@ impl Running {
             Some(mask) => Way::Reference(mask.clone()),
             None => Way::Fast(checked.scene.instructions()),
         };
-        let stopped = |why| {
-            failure(why, &|disc| discs[disc as usize], &checked.particles, &places, Clock::default())
-        };
+        let stopped =
+            |why| failure(why, &|disc| discs[disc as usize], &checked.particles, &places, Clock::default());
         let engine = way.begin(arena, discs.clone(), 0.0).map_err(stopped)?;
         Ok(Running {
             engine,
@@ -221,8 +220,7 @@ impl Simulation for Running {
                     self.count(&happened);
                     self.filled = self.engine.fillings();
                     let engine = &self.engine;
-                    let crossing =
-                        || crossing((0..engine.count() as u32).map(|number| engine.disc(number)));
+                    let crossing = || crossing((0..engine.count() as u32).map(|number| engine.disc(number)));
                     if let Some(collapse) = self.watch.see(happened.time, crossing) {
                         return Err(self.collapsed(&happened, collapse));
                     }

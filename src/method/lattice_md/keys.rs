@@ -9,8 +9,8 @@ use crate::scene::Fallback::{Is, Otherwise, Required};
 use crate::scene::Kind::{Choice, Number, OneOf, Switch};
 use crate::scene::keys::define_keys;
 use crate::scene::{
-    ARITHMETIC, DISC_RIVALS, DISCS, DURATION, HEADING, INSTRUCTIONS, Key, KeySet, OUTPUT, PLANAR_DOMAIN, Reason, Renamed,
-    STEP, STEPPED_RUN, SceneError, Use, Values, Vocabulary, disagreements, too_many_steps,
+    ARITHMETIC, DISC_RIVALS, DISCS, DURATION, HEADING, INSTRUCTIONS, Key, KeySet, OUTPUT, PLANAR_DOMAIN,
+    Reason, Renamed, STEP, STEPPED_RUN, SceneError, Use, Values, Vocabulary, disagreements, too_many_steps,
 };
 use crate::words::Words;
 use stripmine_kernels::law::granular::ContactArm;

@@ -7,15 +7,13 @@
 use super::assemble::{contacts, model_following_energy};
 use super::check::Checked;
 use super::{Contacts, Discs, FastSearch, Model, Scheme};
-use crate::memory::{Foreseen, available};
+use crate::memory::{Foreseen, PROGRAM, available};
 use crate::near::Near;
 use crate::particles::Particle;
 use crate::scene::Precision;
 use stripmine_kernels::sweep::fast::lattice::SPARSE;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
-/// Bytes of the program itself: its text, its threads, its files.
-const PROGRAM: f64 = 12.5e6;
 /// Bytes of a large page, of which long arrays of the programs are made.
 const LARGE: f64 = (1 << 21) as f64;
 /// Bytes of the programs themselves, and of the large page that their short arrays share.

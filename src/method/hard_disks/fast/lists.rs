@@ -177,7 +177,8 @@ impl Lists {
         let row = &mut self.rows[from as usize * self.stride..][..self.stride];
         let filled = row[0] as usize;
         // Without a branch for each entry: where it is, is a matter of luck.
-        let at: u32 = row[1..].iter().zip(1..).map(|(&other, entry)| if other == disc { entry } else { 0 }).sum();
+        let at: u32 =
+            row[1..].iter().zip(1..).map(|(&other, entry)| if other == disc { entry } else { 0 }).sum();
         row[at as usize] = row[filled];
         row[filled] = NONE;
         row[0] = filled as u32 - 1;
@@ -204,7 +205,12 @@ impl Cells {
         });
         // Where fewer cells than a disc sees lie along a side, they would be seen twice.
         let counts = counts.map(|along| along.max(2 * AROUND as usize + 1));
-        Cells { counts, edge, first: AlignedColumn::filled(12, NONE, counts[0] * counts[1]), next: AlignedColumn::filled(13, NONE, count) }
+        Cells {
+            counts,
+            edge,
+            first: AlignedColumn::filled(12, NONE, counts[0] * counts[1]),
+            next: AlignedColumn::filled(13, NONE, count),
+        }
     }
 
     #[inline(always)]
@@ -220,7 +226,13 @@ impl Cells {
         let at = if at < count { at } else { at % count };
         std::array::from_fn(|step| {
             let along = at + step as isize - AROUND;
-            (if along < 0 { along + count } else if along >= count { along - count } else { along }) as usize
+            (if along < 0 {
+                along + count
+            } else if along >= count {
+                along - count
+            } else {
+                along
+            }) as usize
         })
     }
 
@@ -272,10 +284,7 @@ mod tests {
     #[test]
     fn lists_hold_what_is_near_and_nothing_twice() {
         let mut stream = Stream::new(11, Purpose::Test, 0);
-        let open = Domain {
-            origin: [-3.0, 2.0, 0.0],
-            sides: [Side::Periodic(30.0), Side::Open, Side::Flat],
-        };
+        let open = Domain { origin: [-3.0, 2.0, 0.0], sides: [Side::Periodic(30.0), Side::Open, Side::Flat] };
         let planar = |periodic| Domain::planar([-3.0, 2.0], [30.0, 25.0], periodic);
         let mut pairs = 0;
         for domain in [open, planar([true, true]), planar([true, false])] {

@@ -16,8 +16,8 @@ use lists::Lists;
 use queue::Queue;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::{Registers, Task, dispatch};
-use stripmine_kernels::isa::AlignedColumn;
 use stripmine_kernels::flight::{Disc, Earliest, MOST_PARTNERS, earliest};
+use stripmine_kernels::isa::AlignedColumn;
 
 /// Discs that a list holds on average.
 const LISTED: f64 = 8.0;

@@ -73,9 +73,8 @@ pub struct Queue {
 impl Queue {
     /// Of `count` discs that have no event.
     pub fn new(count: usize) -> Queue {
-        let groups = |members: usize, level| {
-            AlignedColumn::filled(level, Group::NONE, members.div_ceil(GROUP).max(1))
-        };
+        let groups =
+            |members: usize, level| AlignedColumn::filled(level, Group::NONE, members.div_ceil(GROUP).max(1));
         let mut levels = vec![groups(count, 3)];
         while let Some(last) = levels.last().filter(|last| last.len() > 1) {
             let above = groups(last.len(), 3 + levels.len());

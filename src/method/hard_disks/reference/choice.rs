@@ -1,8 +1,8 @@
 //! Which mask: the fewest predictions a collision, by the source's reckoning.
 
 use super::grid::Sizes;
-use crate::method::hard_disks::keys::MASKS;
 use crate::domain::Domain;
+use crate::method::hard_disks::keys::MASKS;
 use stripmine_kernels::mask::Mask;
 
 /// The mask of a name; none for `auto`.

@@ -67,12 +67,7 @@ impl Reference {
     ///
     /// # Errors
     /// [`Stopped`] if discs overlap so much that they share a cell.
-    pub fn new(
-        arena: Arena,
-        discs: Vec<Disc>,
-        mask: &Mask,
-        time: f64,
-    ) -> Result<Reference, Stopped> {
+    pub fn new(arena: Arena, discs: Vec<Disc>, mask: &Mask, time: f64) -> Result<Reference, Stopped> {
         let radii = || discs.iter().map(|disc| disc.radius);
         let sizes = Sizes::new(&arena.domain, radii().fold(f64::INFINITY, f64::min));
         let whole_slack = sizes.reach(mask) - 2.0 * radii().fold(0.0, f64::max);

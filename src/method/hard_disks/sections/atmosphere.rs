@@ -52,22 +52,27 @@ fn figure(data: &Atmosphere) -> Figure {
         hue: 6,
         points: barometric.collect(),
     }];
-    series.extend(named(data).enumerate().map(|(hue, (name, profile))| Series {
-        name,
-        style: Style::Points,
-        hue,
-        points: profile
-            .heights
-            .iter()
-            .zip(&profile.densities)
-            .filter(|(_, [mean, error])| mean > error)
-            .map(|(&x, &[mean, error])| Point { x, y: mean, spread: Some([mean - error, mean + error]) })
-            .collect(),
+    series.extend(named(data).enumerate().map(|(hue, (name, profile))| {
+        Series {
+            name,
+            style: Style::Points,
+            hue,
+            points: profile
+                .heights
+                .iter()
+                .zip(&profile.densities)
+                .filter(|(_, [mean, error])| *mean > 2.0 * error)
+                .map(|(&x, &[mean, error])| Point { x, y: mean, spread: Some([mean - error, mean + error]) })
+                .collect(),
+        }
     }));
     Figure {
         name: "profiles".into(),
         title: "Density over the height".into(),
-        caption: format!("Means of {} looks; bars are standard errors, as if looks were independent.", data.looks),
+        caption: format!(
+            "Means of {} looks; bars are standard errors, as if looks were independent.",
+            data.looks
+        ),
         picture: Picture::Chart(Chart {
             x: Axis::linear("height over kT/(m g)", None),
             y: Axis::logarithmic("density over the barometric one at the floor", None),

@@ -47,11 +47,13 @@ fn curve(name: &str, hue: usize, style: Style, of: impl Fn(f64) -> f64) -> Serie
 }
 
 fn pressure(data: &Fluids) -> Figure {
-    let measured = data.states.iter().map(|state| Point::at(state.packing_fraction, state.compressibility.value));
+    let measured =
+        data.states.iter().map(|state| Point::at(state.packing_fraction, state.compressibility.value));
     Figure {
         name: "pressure".into(),
         title: "Compressibility of the fluid".into(),
-        caption: "Z = p A/(N kT) from the virial of the collisions; error bars are smaller than the points.".into(),
+        caption: "Z = p A/(N kT) from the virial of the collisions; error bars are smaller than the points."
+            .into(),
         picture: Picture::Chart(Chart {
             x: Axis::linear("packing fraction ν", None),
             y: Axis::logarithmic("compressibility Z", None),
@@ -81,7 +83,8 @@ fn differences(data: &Fluids) -> Figure {
             })
             .collect(),
     };
-    let known = |nu: f64| data.states.iter().find(|state| state.packing_fraction == nu).map(|state| state.known[0]);
+    let known =
+        |nu: f64| data.states.iter().find(|state| state.packing_fraction == nu).map(|state| state.known[0]);
     let of_law = |name: &str, hue: usize, law: fn(f64) -> f64| Series {
         name: name.into(),
         style: Style::Dashed,
@@ -96,14 +99,17 @@ fn differences(data: &Fluids) -> Figure {
     Figure {
         name: "differences".into(),
         title: "How far from what other programs have measured".into(),
-        caption: "Bars hold the mean in 95 of 100 studies. What is known is itself good to about 0.1 %.".into(),
+        caption: "Bars hold the mean in 95 of 100 studies. What is known is itself good to about 0.1 %."
+            .into(),
         picture: Picture::Chart(Chart {
             x: Axis::linear("packing fraction ν", None),
             y: Axis::linear("difference", Some("%")),
             series: vec![
                 of_law("Henderson's Z", 2, henderson),
                 of_law("Luding's Z", 3, luding),
-                series("Z", 0, -0.003, &|at| relative(data.states[at].compressibility, data.states[at].known[0])),
+                series("Z", 0, -0.003, &|at| {
+                    relative(data.states[at].compressibility, data.states[at].known[0])
+                }),
                 series("ω", 1, 0.003, &|at| relative(data.states[at].rate, data.states[at].known[1])),
             ],
             bands: vec![],

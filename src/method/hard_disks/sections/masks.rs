@@ -93,8 +93,10 @@ fn table(data: &Masks) -> Table {
 }
 
 fn constants(data: &Masks) -> Table {
-    let rows =
-        TERMS.iter().zip(data.constants).map(|(term, constant)| vec![Cell::from(*term), Cell::Number(1e9 * constant, 2)]);
+    let rows = TERMS
+        .iter()
+        .zip(data.constants)
+        .map(|(term, constant)| vec![Cell::from(*term), Cell::Number(1e9 * constant, 2)]);
     Table {
         name: "constants".into(),
         title: "The source's formula of the cost, fitted".into(),

@@ -60,7 +60,8 @@ fn stiffness_axis() -> Axis {
 /// An observable of the soft discs, and that of the hard ones as a line.
 fn over_stiffness(data: &SoftHard, name: &str, title: &str, label: &str, of: fn(&Model) -> Mean) -> Figure {
     let soft = || data.models.iter().filter_map(|model| Some((model.stiffness?, model)));
-    let ends: Vec<f64> = [soft().next(), soft().last()].into_iter().flatten().map(|(stiffness, _)| stiffness).collect();
+    let ends: Vec<f64> =
+        [soft().next(), soft().next_back()].into_iter().flatten().map(|(stiffness, _)| stiffness).collect();
     let mut series = vec![Series {
         name: "soft discs".into(),
         style: Style::Points,
@@ -73,18 +74,9 @@ fn over_stiffness(data: &SoftHard, name: &str, title: &str, label: &str, of: fn(
             .collect(),
     }];
     if let Some(hard) = data.hard() {
-        let [mean, error] = of(hard);
-        for (name, y, style) in [
-            ("hard discs".to_owned(), mean, Style::Line),
-            ("hard discs, two standard errors".to_owned(), mean - 2.0 * error, Style::Dashed),
-            (String::new(), mean + 2.0 * error, Style::Dashed),
-        ] {
-            if !name.is_empty() || error > 0.0 {
-                let name = if name.is_empty() { "the same".to_owned() } else { name };
-                let points = ends.iter().map(|&x| Point::at(x, y)).collect();
-                series.push(Series { name, style, hue: 1, points });
-            }
-        }
+        let [mean, _] = of(hard);
+        let points = ends.iter().map(|&x| Point::at(x, mean)).collect();
+        series.push(Series { name: "hard discs".into(), style: Style::Dashed, hue: 1, points });
     }
     if name == "pressure" {
         series.push(Series {
@@ -98,13 +90,19 @@ fn over_stiffness(data: &SoftHard, name: &str, title: &str, label: &str, of: fn(
         name: name.into(),
         title: title.into(),
         caption: format!("{} seeds; bars are two standard errors.", data.question.seeds),
-        picture: Picture::Chart(Chart { x: stiffness_axis(), y: Axis::linear(label, None), series, bands: vec![] }),
+        picture: Picture::Chart(Chart {
+            x: stiffness_axis(),
+            y: Axis::linear(label, None),
+            series,
+            bands: vec![],
+        }),
     }
 }
 
 fn cost(data: &SoftHard) -> Figure {
     let soft = || data.models.iter().filter_map(|model| Some((model.stiffness?, model)));
-    let ends: Vec<f64> = [soft().next(), soft().last()].into_iter().flatten().map(|(stiffness, _)| stiffness).collect();
+    let ends: Vec<f64> =
+        [soft().next(), soft().next_back()].into_iter().flatten().map(|(stiffness, _)| stiffness).collect();
     let mut series = vec![Series {
         name: "soft discs, 40 steps a contact".into(),
         style: Style::Joined,
@@ -134,7 +132,8 @@ fn cost(data: &SoftHard) -> Figure {
 
 fn table(data: &SoftHard) -> Table {
     let rows = data.models.iter().map(|model| {
-        let number = |value: Option<f64>, digits| value.map_or(Cell::Nothing, |value| Cell::Number(value, digits));
+        let number =
+            |value: Option<f64>, digits| value.map_or(Cell::Nothing, |value| Cell::Number(value, digits));
         vec![
             model.stiffness.map_or(Cell::from("hard"), |stiffness| Cell::Text(format!("{stiffness:e}"))),
             number(model.damping, 3),

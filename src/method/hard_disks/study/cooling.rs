@@ -135,7 +135,8 @@ fn fate(discs: u64, restitution: f64, contact_duration: f64) -> Result<Fate, Fai
     let mut gas = begin(0.0)?;
     let count = gas.0.particles().grain_count() as f64;
     let events = (100.0 * count) as u64;
-    let ended = gas.0.advance(&[crate::method::Until::Events(events)], &std::sync::atomic::AtomicBool::new(false));
+    let ended =
+        gas.0.advance(&[crate::method::Until::Events(events)], &std::sync::atomic::AtomicBool::new(false));
     let collapse = match ended {
         Ok(()) => None,
         Err(failure) if failure.kind == FailureKind::InelasticCollapse => Some(failure.what()),
@@ -148,7 +149,8 @@ fn fate(discs: u64, restitution: f64, contact_duration: f64) -> Result<Fate, Fai
             let mut cured = begin(contact_duration)?;
             cured.events(events)?;
             let summary = cured.0.summary();
-            let [made, all] = ["made_elastic", "collisions"].map(|name| summary[name].as_f64().unwrap_or(f64::NAN));
+            let [made, all] =
+                ["made_elastic", "collisions"].map(|name| summary[name].as_f64().unwrap_or(f64::NAN));
             Some(made / all)
         }
     };

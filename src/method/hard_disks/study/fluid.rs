@@ -84,7 +84,8 @@ pub fn henderson(packing_fraction: f64) -> f64 {
 /// Luding's, Z = 1 + 2 ν g₄ with g₄ = g − ν³/(128 (1 − ν)⁴) and g = (1 − 7ν/16)/(1 − ν)².
 pub fn luding(packing_fraction: f64) -> f64 {
     let nu = packing_fraction;
-    let contact_value = (1.0 - 7.0 * nu / 16.0) / (1.0 - nu).powi(2) - nu.powi(3) / (128.0 * (1.0 - nu).powi(4));
+    let contact_value =
+        (1.0 - 7.0 * nu / 16.0) / (1.0 - nu).powi(2) - nu.powi(3) / (128.0 * (1.0 - nu).powi(4));
     1.0 + 2.0 * nu * contact_value
 }
 

@@ -146,10 +146,20 @@ mod tests {
     fn the_formula_is_found_again() {
         let constants = [1e-7, 2e-9, 3e-8, 3e-9];
         let mut costs = vec![];
-        for (candidates, fillings) in [(8.0, 0.01), (13.0, 0.004), (30.0, 0.001), (90.0, 0.0003), (5.0, 0.1), (70.0, 0.02)] {
-            let mut cost =
-                Cost { mask: "", places: 0, candidates, packing_fraction: 0.5, seconds: 0.0, fillings, fitted: 0.0 };
-            cost.seconds = terms(&cost, 100).iter().zip(constants).map(|(term, constant)| term * constant).sum();
+        for (candidates, fillings) in
+            [(8.0, 0.01), (13.0, 0.004), (30.0, 0.001), (90.0, 0.0003), (5.0, 0.1), (70.0, 0.02)]
+        {
+            let mut cost = Cost {
+                mask: "",
+                places: 0,
+                candidates,
+                packing_fraction: 0.5,
+                seconds: 0.0,
+                fillings,
+                fitted: 0.0,
+            };
+            cost.seconds =
+                terms(&cost, 100).iter().zip(constants).map(|(term, constant)| term * constant).sum();
             costs.push(cost);
         }
         for (found, constant) in fit(&costs, 100).into_iter().zip(constants) {

@@ -193,11 +193,13 @@ impl Way {
             }
         };
         let entry = METHODS.iter().find(|entry| entry.vocabulary.keys.method == method);
-        let entry = entry.ok_or_else(|| Failure::from(crate::method::Failure::new(
-            crate::method::FailureKind::Idle,
-            format!("there is no method {method}"),
-            "this must not happen: report it",
-        )))?;
+        let entry = entry.ok_or_else(|| {
+            Failure::from(crate::method::Failure::new(
+                crate::method::FailureKind::Idle,
+                format!("there is no method {method}"),
+                "this must not happen: report it",
+            ))
+        })?;
         Ok((entry.prepare)(Values::load(preset, &overrides, &[entry.vocabulary])?)?)
     }
 
@@ -223,7 +225,8 @@ impl Way {
         let compressibility = match self {
             Way::Soft { .. } => pressure / LOOKS as f64,
             Way::Hard => {
-                1.0 + (fluid.value("virial") - virial) / (2.0 * discs as f64 * fluid.value("temperature") * flown)
+                1.0 + (fluid.value("virial") - virial)
+                    / (2.0 * discs as f64 * fluid.value("temperature") * flown)
             }
         };
         let prepared = self.prepared(question, seed, false)?;

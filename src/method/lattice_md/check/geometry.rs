@@ -359,7 +359,9 @@ fn ratio_spot(document: &Document) -> Spot {
     let keys: &[&Key] = match &document.scene.start {
         Start::File(_) => &[&FILE],
         Start::List(list) if list.wall_positions.is_empty() => &[&RADII, &RADIUS],
-        Start::Random { .. } | Start::Compressed { .. } | Start::Hexagonal { .. } => &[&RADIUS_CUT, &RADIUS_SPREAD, &RADIUS],
+        Start::Random { .. } | Start::Compressed { .. } | Start::Hexagonal { .. } => {
+            &[&RADIUS_CUT, &RADIUS_SPREAD, &RADIUS]
+        }
         Start::Pipe { grains, .. } | Start::Box { grains, .. } if grains.cut > 0.2 => {
             &[&RADIUS_CUT, &WALL_RADIUS, &RADIUS]
         }

@@ -12,9 +12,9 @@ use super::document::Document;
 use super::keys::{SEARCH, VOCABULARY};
 use super::scene::{By, Scene};
 use crate::domain::Domain;
+use crate::method::compress;
 use crate::particles::{Kind, Particle, Particles};
 use crate::scene::{RADIUS, Reason, SceneError, SceneErrors, Values, Warning};
-use crate::method::compress;
 use crate::start::{self, Made, Stated};
 use crate::words::Words;
 

@@ -24,7 +24,8 @@ pub fn of(name: &str, data: &WorkPrecision) -> Vec<Figure> {
     ];
     if let Some(collision) = &data.collision {
         figures.push(outcomes(&file, name, data, collision));
-        figures.extend((0..OUTCOMES.len()).map(|which| outcome_over_cost(&file, name, data, collision, which)));
+        figures
+            .extend((0..OUTCOMES.len()).map(|which| outcome_over_cost(&file, name, data, collision, which)));
     }
     figures.push(data.observables.as_ref().and_then(|all| means(&file, name, data, all)));
     // A chart without a point is no chart.

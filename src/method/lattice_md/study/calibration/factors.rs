@@ -2,9 +2,9 @@
 //! it does on short ones, and how long it waits, where they say what others do that touch as much.
 
 use super::fit;
-use crate::statistics::non_negative;
 use super::point::{BEYOND, Point};
 use crate::model::host::Factors;
+use crate::statistics::non_negative;
 use std::collections::BTreeMap;
 
 /// Factors that are tried: the step of the logarithm, and the number of steps to either side.

@@ -4,9 +4,9 @@
 use super::capacities::candidates;
 use super::factors::{fit_costs, fit_factors};
 use super::fit::median;
-use crate::statistics::non_negative;
 use super::point::{ARRAYS, BACK, BEYOND, Beyond, Charged, Costs, FIRST, LINES, Point, streamed};
 use crate::model::host::{Factors, Level, Transfer, overlapped};
+use crate::statistics::non_negative;
 use std::collections::BTreeMap;
 
 /// The levels that suit best.

@@ -1,7 +1,6 @@
 //! Compiled loops: the programs of a step on vectors in the first-level cache, and their classes of operations.
 
 use super::fit;
-use crate::statistics::non_negative;
 use super::large::{self, Ran, SCENES};
 use super::passes::{Lane, estimate};
 use super::step::{ELEMENTS, INTERPRETED, Near, STRIPPED, STRIPS, Step, executions};
@@ -13,6 +12,7 @@ use crate::method::lattice_md::study::phase_times::{QUIET, Run};
 use crate::method::lattice_md::{Arrays, Lengths, programs};
 use crate::method::throughput::MeasurementError;
 use crate::model::host::{Estimate, Factors, LoopCosts, PassCost, ProgramCost, class_counts};
+use crate::statistics::non_negative;
 use std::collections::BTreeMap;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::{Memory, OpClass};

@@ -1,7 +1,6 @@
 //! Work whose amount depends on the data: the fast engine and the neighbour lists, on drill scenes of their own.
 
 use super::fit;
-use crate::statistics::non_negative;
 use crate::method::lattice_md::Checked;
 use crate::method::lattice_md::Phase;
 use crate::method::lattice_md::study::noise_monitor::NoiseMonitor;
@@ -10,6 +9,7 @@ use crate::method::lattice_md::study::phase_times::{
 };
 use crate::method::throughput::MeasurementError;
 use crate::model::host::{Amounts, RatePoint, Rates};
+use crate::statistics::non_negative;
 use std::collections::BTreeMap;
 
 /// NP of the drill scenes: close enough to each other that no level of memory ends unseen between two of them.
