@@ -40,6 +40,24 @@ pub fn median(values: impl Iterator<Item = f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
+/// The probability that independent values of a distribution lie at least as far from it as these do, by the largest
+/// difference of the distribution functions (Kolmogorov and Smirnov, with Stephens' correction for few values).
+pub fn kolmogorov_smirnov(mut values: Vec<f64>, distribution: impl Fn(f64) -> f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let count = values.len() as f64;
+    let distance = values.iter().zip(0..).map(|(&value, before)| {
+        let expected = distribution(value);
+        (expected - f64::from(before) / count).max(f64::from(before + 1) / count - expected)
+    });
+    let distance = distance.fold(0.0, f64::max);
+    let scaled = (count.sqrt() + 0.12 + 0.11 / count.sqrt()) * distance;
+    if scaled < 0.2 {
+        return 1.0;
+    }
+    let term = |k: i32| 2.0 * (-1f64).powi(k - 1) * (-2.0 * f64::from(k * k) * scaled * scaled).exp();
+    (1..=100).map(term).sum::<f64>().clamp(0.0, 1.0)
+}
+
 /// The value below which a share of rising values lies; none of none.
 pub fn quantile(rising: &[f64], share: f64) -> Option<f64> {
     let last = rising.len().checked_sub(1)?;
@@ -104,6 +122,22 @@ mod tests {
         assert_eq!(Spread::of(&[3.0]).error, None);
         let spread = Spread::of(&[1.0, 3.0]);
         assert_eq!((spread.mean, spread.error, spread.lowest, spread.highest), (2.0, Some(1.0), 1.0, 3.0));
+    }
+
+    /// Critical distances of the tables (Stephens 1974): 1.358 and 1.628 for 5 and 1 of 100; and values that are even.
+    #[test]
+    fn the_probability_of_a_distance_is_that_of_the_tables() {
+        for (scaled, p) in [(1.358, 0.05), (1.628, 0.01)] {
+            let count = 10_000;
+            let shift = scaled / (100.0 + 0.12 + 0.0011);
+            let values = (0..count).map(|at| (f64::from(at) + 0.5) / f64::from(count)).collect();
+            let found = kolmogorov_smirnov(values, |x: f64| (x + shift - 0.5 / f64::from(count)).min(1.0));
+            assert!((found / p - 1.0).abs() < 0.02, "{found} {p}");
+        }
+        assert_eq!(
+            kolmogorov_smirnov((0..100).map(|at| (f64::from(at) + 0.5) / 100.0).collect(), |x| x),
+            1.0
+        );
     }
 
     #[test]

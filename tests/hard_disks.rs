@@ -97,6 +97,61 @@ fn engines_masks_and_resumption_change_no_bit() {
     assert_eq!(last_frame("scalar", &["10"], "machine.instruction_set=scalar"), whole);
 }
 
+/// The log has a row for each event, with the momentum that changed hands, and is cut and gone on with on resumption.
+#[test]
+fn every_collision_is_logged() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |name: &str, parts: &[&str]| {
+        let out = folder.path().join(name);
+        for (number, events) in parts.iter().enumerate() {
+            let set = format!("run.events={events}");
+            let mut more = vec![
+                "--set",
+                &set,
+                "--set",
+                "output.collisions=true",
+                "--set",
+                "domain.periodic=[true, false]",
+            ];
+            more.extend(["--set", "particles.count=100", "--set", "particles.generate=random"]);
+            more.extend(["--set", "domain.sides=[16.0, 16.0]"]);
+            if number > 0 {
+                more.push("--resume");
+            }
+            run("hard-disks", &out, &more);
+        }
+        fs::read_to_string(out.join("events.csv")).unwrap()
+    };
+    let whole = rows("whole", &["3000"]);
+    assert_eq!(rows("parts", &["1000", "3000"]), whole);
+    assert_eq!(whole.lines().count(), 3001);
+    let places: Vec<&str> = whole.lines().next().unwrap().split(',').collect();
+    let of = |row: &str, name: &str| {
+        row.split(',').nth(places.iter().position(|place| *place == name).unwrap()).unwrap().to_owned()
+    };
+    let mut last = std::collections::HashMap::new();
+    let (mut seen, mut sides) = (0, 0);
+    for row in whole.lines().skip(1) {
+        let number = |name: &str| of(row, name).parse::<f64>().unwrap();
+        let (time, disc, partner) = (number("time"), of(row, "disc"), of(row, "partner"));
+        // Unit masses and diameters: a disc of speed below 6 gives no more than its momentum twice.
+        assert!(number("impulse_x").hypot(number("impulse_y")) < 12.0);
+        let before = last.insert(disc, time).unwrap_or(0.0);
+        assert!((number("free_time") - (time - before)).abs() < 1e-9);
+        match partner.as_str() {
+            "bottom" => assert!(number("impulse_y") > 0.0 && number("y").abs() < 1e-9),
+            "top" => assert!(number("impulse_y") < 0.0),
+            _ => {
+                let before = last.insert(partner.clone(), time).unwrap_or(0.0);
+                assert!((number("partner_free_time") - (time - before)).abs() < 1e-9);
+                seen += 1;
+            }
+        }
+        sides += usize::from(partner == "top" || partner == "bottom");
+    }
+    assert!(seen > 1000 && sides > 50, "{seen} {sides}");
+}
+
 /// Discs that grow come to a packing fraction of 0.85, in every direction the same; where they jam, that is said.
 #[test]
 fn dense_starts_are_grown() {

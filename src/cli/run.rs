@@ -91,8 +91,12 @@ fn before(prepared: &dyn Prepared) {
 }
 
 fn text(summary: &Summary, folder: &Path) -> String {
-    let Summary { steps, time, seconds, in_words, .. } = summary;
-    let mut text = format!("{steps} steps in {seconds:.2} s, time {time:.6}: {in_words}\n");
+    let Summary { steps, events, time, seconds, in_words, .. } = summary;
+    let done = match (steps, events) {
+        (0, 1..) => format!("{events} events"),
+        _ => format!("{steps} steps"),
+    };
+    let mut text = format!("{done} in {seconds:.2} s, time {time:.6}: {in_words}\n");
     for choice in &summary.choices {
         text.push_str(&format!("chosen: {choice}\n"));
     }

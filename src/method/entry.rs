@@ -260,6 +260,11 @@ pub trait Prepared: Send + Sync {
     /// How it is run: precision, integrator and the like, by the names that `bench --json` gives them.
     fn settings(&self) -> Map<String, Value>;
 
+    /// The names of the columns of `events.csv`, where the scene asks for a row for each event.
+    fn event_columns(&self) -> Option<&'static str> {
+        None
+    }
+
     /// Begins.
     ///
     /// # Errors
@@ -321,6 +326,11 @@ pub trait Simulation: Send {
 
     /// What there is to be said at the end: the method's own entries of `summary.json`.
     fn summary(&self) -> Map<String, Value>;
+
+    /// The rows of `events.csv` since this was last asked, each with its end of line.
+    fn take_events(&mut self) -> String {
+        String::new()
+    }
 
     /// What happened on the way that seldom means well.
     fn warnings(&self) -> Vec<RunWarning>;

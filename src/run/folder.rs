@@ -30,6 +30,8 @@ pub(super) const TRAJECTORY: &str = "trajectory.xyz";
 pub(super) const DUMP: &str = "dump.lammpstrj";
 /// The last state for LAMMPS.
 pub(super) const DATA: &str = "final.data";
+/// A row for each event.
+pub(super) const EVENTS: &str = "events.csv";
 /// The scene with every value spelled out.
 pub(super) const SCENE: &str = "scene.toml";
 /// What the run says of itself.
@@ -39,7 +41,8 @@ pub(super) const SUMMARY: &str = "summary.json";
 const PREVIOUS: &str = "run.checkpoint.previous";
 
 /// Everything that a run may have written.
-const FILES: [&str; 9] = [LIST, SCENE, THERMO, TRAJECTORY, DUMP, DATA, SUMMARY, CHECKPOINT, PREVIOUS];
+const FILES: [&str; 10] =
+    [LIST, SCENE, THERMO, TRAJECTORY, EVENTS, DUMP, DATA, SUMMARY, CHECKPOINT, PREVIOUS];
 
 /// What a run writes whatever its scene.
 const ALWAYS: [&str; 7] = [LIST, SCENE, THERMO, TRAJECTORY, SUMMARY, CHECKPOINT, PREVIOUS];

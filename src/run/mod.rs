@@ -1,6 +1,6 @@
 //! A run: advance, observe, record; checkpoints, interruption, resumption. What it writes is a folder of its own:
 //! `scene.toml`, `thermo.csv`, `trajectory.xyz`, `summary.json`, `run.checkpoint`, a list of all this (`run.files`) and, on
-//! request, LAMMPS files.
+//! request, LAMMPS files and a row for each event (`events.csv`).
 
 mod folder;
 pub mod forecast;
@@ -252,7 +252,9 @@ pub fn run(
         }
         let mut moments = vec![until, stride(until).after(&simulation.clock())];
         moments.extend(recorder.due());
-        let failed = match simulation.advance(&moments, interrupted) {
+        let advanced = simulation.advance(&moments, interrupted);
+        recorder.log(&simulation.take_events())?;
+        let failed = match advanced {
             Ok(()) => recorder.write_what_is_due(simulation.as_ref())?,
             Err(failure) => Some(failure),
         };

@@ -1,13 +1,13 @@
 //! The folder of a run: what is written when.
 
-use super::folder::{DATA, DUMP, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY};
+use super::folder::{DATA, DUMP, EVENTS, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY};
 use super::frames::Frames;
 use super::identity::{BITS, Identity, same_scene};
 use super::{Existing, RunError, Summary};
 use crate::domain::Domain;
 use crate::io::checkpoint::{Checkpoint, Counter, Latest, NAME, read_latest};
 use crate::io::extxyz::{self, Frame};
-use crate::io::growing_file::Mark;
+use crate::io::growing_file::{GrowingFile, Mark};
 use crate::io::table_file::TableFile;
 use crate::io::{FileError, lammps};
 use crate::method::{Clock, Failure, FailureKind, Prepared, Quantity, Schedule, Simulation, Snapshot, Until};
@@ -18,7 +18,7 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// The counter of events in a checkpoint.
-const EVENTS: &str = "events";
+const EVENT_COUNT: &str = "events";
 
 /// Writes the files of a run.
 pub(super) struct Recorder {
@@ -34,6 +34,7 @@ pub(super) struct Recorder {
     thermo: TableFile,
     trajectory: Frames,
     dump: Option<Frames>,
+    events: Option<GrowingFile>,
     /// What was out of the ordinary, in the order of the run's sessions.
     notes: Vec<String>,
     /// Which of them are of this session.
@@ -47,6 +48,7 @@ struct Growing {
     thermo: TableFile,
     trajectory: Frames,
     dump: Option<Frames>,
+    events: Option<GrowingFile>,
 }
 
 impl Recorder {
@@ -95,14 +97,15 @@ impl Recorder {
     ) -> Result<Recorder, RunError> {
         folder.clear()?;
         let output = prepared.output();
-        folder.claim(&on_request(&output))?;
+        folder.claim(&on_request(prepared))?;
         let thermo = TableFile::create(folder.file(THERMO), &columns(quantities))?;
         let trajectory = Frames::create(folder.file(TRAJECTORY), extxyz::write)?;
         let dump = match output.lammps_dump {
             true => Some(Frames::create(folder.file(DUMP), lammps::write_dump)?),
             false => None,
         };
-        let growing = Growing { thermo, trajectory, dump };
+        let events = begin_events(&folder, prepared)?;
+        let growing = Growing { thermo, trajectory, dump, events };
         let mut recorder =
             Recorder::with(folder, (prepared, quantities), growing, &simulation.clock(), notes);
         recorder.new_notes = recorder.notes.len();
@@ -117,7 +120,7 @@ impl Recorder {
     fn with(
         folder: RunFolder,
         (prepared, quantities): (&dyn Prepared, &'static [Quantity]),
-        Growing { thermo, trajectory, dump }: Growing,
+        Growing { thermo, trajectory, dump, events }: Growing,
         clock: &Clock,
         notes: Vec<String>,
     ) -> Recorder {
@@ -135,6 +138,7 @@ impl Recorder {
             thermo,
             trajectory,
             dump,
+            events,
             notes,
             new_notes: 0,
             checkpointed: None,
@@ -163,7 +167,7 @@ impl Recorder {
                 checkpoint.step
             ));
         }
-        let events = match checkpoint.counters.remove(EVENTS) {
+        let events = match checkpoint.counters.remove(EVENT_COUNT) {
             Some(Counter::Count(events)) => events,
             _ => 0,
         };
@@ -202,6 +206,10 @@ impl Recorder {
                 }
                 Err(_) => None,
             },
+            events: match mark(EVENTS) {
+                Ok(mark) => Some(GrowingFile::resume(folder.file(EVENTS), mark)?),
+                Err(_) => None,
+            },
         };
         let snapshot = Snapshot {
             counters: std::mem::take(&mut checkpoint.counters),
@@ -210,7 +218,7 @@ impl Recorder {
         simulation.restore(clock, snapshot).map_err(foreign)?;
 
         let output = prepared.output();
-        folder.claim(&on_request(&output))?;
+        folder.claim(&on_request(prepared))?;
         growing.thermo.cut()?;
         growing.trajectory.cut()?;
         match &mut growing.dump {
@@ -220,6 +228,13 @@ impl Recorder {
         }
         if growing.dump.is_none() && output.lammps_dump {
             growing.dump = Some(Frames::create(folder.file(DUMP), lammps::write_dump)?);
+        }
+        match &mut growing.events {
+            Some(events) => events.cut()?,
+            None => {
+                folder.remove_own(EVENTS)?;
+                growing.events = begin_events(&folder, prepared)?;
+            }
         }
         // They speak of an end that is not reached yet.
         folder.remove_own(SUMMARY)?;
@@ -269,6 +284,15 @@ impl Recorder {
             self.checkpoint(simulation)?;
         }
         Ok(None)
+    }
+
+    /// Adds rows of events, where the scene asks for them.
+    pub(super) fn log(&mut self, rows: &str) -> Result<(), RunError> {
+        if let Some(events) = self.events.as_mut() {
+            let written = events.write_all(rows.as_bytes());
+            written.map_err(FileError::at(events.path(), "writing events"))?;
+        }
+        Ok(())
     }
 
     /// A row of observables, unless one of them is no finite number.
@@ -334,6 +358,9 @@ impl Recorder {
             let (mark, last) = dump.sync()?;
             keep(DUMP, mark, last);
         }
+        if let Some(events) = &mut self.events {
+            keep(EVENTS, events.sync()?, None);
+        }
         Ok(counters)
     }
 
@@ -345,7 +372,7 @@ impl Recorder {
         }
         let mut counters = self.sync()?;
         counters.insert("bits".to_owned(), Counter::Count(BITS));
-        counters.insert(EVENTS.to_owned(), Counter::Count(clock.events));
+        counters.insert(EVENT_COUNT.to_owned(), Counter::Count(clock.events));
         let snapshot = simulation.snapshot();
         counters.extend(snapshot.counters);
         let checkpoint = Checkpoint {
@@ -404,9 +431,22 @@ fn columns(quantities: &'static [Quantity]) -> Vec<&'static str> {
     quantities.iter().map(|quantity| quantity.name).collect()
 }
 
+/// The file of events with its heading, where the scene asks for them.
+fn begin_events(folder: &RunFolder, prepared: &dyn Prepared) -> Result<Option<GrowingFile>, RunError> {
+    let Some(columns) = prepared.event_columns() else { return Ok(None) };
+    let mut file = GrowingFile::create(folder.file(EVENTS))?;
+    writeln!(file, "{columns}").map_err(FileError::at(file.path(), "writing"))?;
+    Ok(Some(file))
+}
+
 /// The files that a scene asks for beyond what every run writes.
-fn on_request(output: &Output) -> Vec<&'static str> {
-    let asked = [(output.lammps_dump, DUMP), (output.lammps_data, DATA)];
+fn on_request(prepared: &dyn Prepared) -> Vec<&'static str> {
+    let output = prepared.output();
+    let asked = [
+        (output.lammps_dump, DUMP),
+        (output.lammps_data, DATA),
+        (prepared.event_columns().is_some(), EVENTS),
+    ];
     asked.into_iter().filter_map(|(asked, name)| asked.then_some(name)).collect()
 }
 

@@ -51,6 +51,8 @@ pub struct Happened {
     pub impact: Option<Impact>,
     /// What a wall has done to the disc (mass · length/time); 0 between discs.
     pub thrust: f64,
+    /// Time since the event before, of the disc and of the one that it met.
+    pub free: [f64; 2],
 }
 
 /// Why the discs stop.
@@ -71,14 +73,16 @@ impl Happened {
     #[inline]
     pub fn collision(arena: &Arena, a: (u32, &mut Disc), b: (u32, &mut Disc), time: f64) -> Happened {
         let ((a, one), (b, other)) = if a.0 < b.0 { (a, b) } else { (b, a) };
+        let free = [time - one.time, time - other.time];
         let impact = arena.collide(one, other, time);
-        Happened { time, disc: a, with: Partner::Disc(b), impact: Some(impact), thrust: 0.0 }
+        Happened { time, disc: a, with: Partner::Disc(b), impact: Some(impact), thrust: 0.0, free }
     }
 
     /// A disc meets a closed side across an axis.
     #[inline]
     pub fn at_wall(arena: &Arena, (number, disc): (u32, &mut Disc), axis: u8, time: f64) -> Happened {
+        let free = [time - disc.time, 0.0];
         let thrust = arena.rebound(disc, number, axis.into(), time);
-        Happened { time, disc: number, with: Partner::Wall(axis), impact: None, thrust }
+        Happened { time, disc: number, with: Partner::Wall(axis), impact: None, thrust, free }
     }
 }

@@ -31,6 +31,8 @@ pub struct Thermal {
 /// What a collision was.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
+    /// What the disc with the smaller number is given (mass · length/time).
+    pub impulse: [f64; 2],
     /// Impulse times the distance of the centres (mass · length²/time): what it adds to the virial.
     pub virial: f64,
     /// Whether it was made elastic because another one was so short a time ago.
@@ -137,7 +139,7 @@ impl Arena {
         let [of_a, of_b] = [impulse / a.mass, impulse / b.mass];
         a.velocity = [a.velocity[0] - of_a * dx, a.velocity[1] - of_a * dy];
         b.velocity = [b.velocity[0] + of_b * dx, b.velocity[1] + of_b * dy];
-        Impact { virial, was_made_elastic }
+        Impact { impulse: [-impulse * dx, -impulse * dy], virial, was_made_elastic }
     }
 
     /// A disc is thrown back by a closed side across an axis, or given back by a thermal one; `number` is the disc's. What the

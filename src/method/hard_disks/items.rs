@@ -2,7 +2,7 @@
 
 use super::sections;
 use super::study::soft_hard::{Question, soft_hard};
-use super::study::{atmosphere, cooling, fluid, masks, rates};
+use super::study::{atmosphere, cooling, fluid, masks, rates, structure};
 use super::verbs::question;
 use crate::console::Failure;
 use crate::method::{Item, Progress};
@@ -18,6 +18,7 @@ macro_rules! items {
 /// where only little time is given (what is the same everywhere is made in full or not at all), and what makes it.
 pub(super) const ITEMS: &[Item] = items! {
     "hard-disks-fluid", [30.0, 30.0], false, pressure, "Hard discs: pressure and collision rate of the fluid";
+    "hard-disks-structure", [20.0, 20.0], false, melting, "Hard discs: order, free times and speeds on both sides of melting";
     "hard-disks-rates", [4.0, 70.0], true, speed, "Hard discs: collisions a second, the fast engine and the source's";
     "hard-disks-masks", [3.0, 40.0], true, comparison, "Hard discs: cost over mask and density, and the source's formula";
     "hard-disks-cooling", [6.0, 6.0], false, haff, "Hard discs: Haff's law, and inelastic collapse";
@@ -28,6 +29,11 @@ pub(super) const ITEMS: &[Item] = items! {
 fn pressure(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let data = fluid::fluids(&fluid::Effort { discs: 10_000, collisions: 10_000_000 }, progress)?;
     Made::new(sections::fluid::section(&data), &data)
+}
+
+fn melting(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let data = structure::structures(4096, progress)?;
+    Made::new(sections::structure::section(&data), &data)
 }
 
 fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {

@@ -45,6 +45,9 @@ define_keys! {
     MASK = "search" "mask", Choice(MASKS), "", Is("\"auto\""), ALWAYS,
         "Cells around a disc in which it looks for partners: min is 5 × 5, r3 to r10 are the round masks of these radii. A larger one is filled less often; auto takes what costs least by the source's reckoning.";
 
+    COLLISION_LOG = "output" "collisions", Switch, "", Is("false"), ALWAYS,
+        "A row for each collision as events.csv: when, which discs, where, with what impulse, and the free times before it.";
+
     EVENTS = "run" "events", Whole(1, MOST_EVENTS), "", Otherwise("from `time`"), ALWAYS,
         "Collisions to do, of pairs and at walls.";
     TIME = "run" "time", Number(NonNegative), "time", Otherwise("from `events`"), ALWAYS,

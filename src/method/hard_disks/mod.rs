@@ -2,6 +2,7 @@
 
 mod benches;
 mod collapse;
+mod collision_log;
 mod compress;
 mod engine;
 mod entry;

@@ -1,5 +1,6 @@
 //! A scene of hard discs, held against what the method demands.
 
+use super::collision_log::COLUMNS;
 use super::compress::compress;
 use super::fast;
 use super::keys::{ENGINE, EVENTS, MASK, MASKS};
@@ -322,8 +323,12 @@ impl Prepared for Checked {
         settings.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
     }
 
-    fn start(&self, _: Purpose) -> Result<Box<dyn Simulation>, Failure> {
-        Ok(Box::new(Running::new(self)?))
+    fn event_columns(&self) -> Option<&'static str> {
+        self.scene.collision_log.then_some(COLUMNS)
+    }
+
+    fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
+        Ok(Box::new(Running::new(self, self.scene.collision_log && purpose == Purpose::Run)?))
     }
 
     fn started_from(&self, particles: Particles) -> Box<dyn Prepared> {

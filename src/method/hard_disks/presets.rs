@@ -6,5 +6,6 @@ use crate::scene::Preset;
 pub(super) const PRESETS: &[Preset] = &[
     Preset { name: "hard-disks", text: include_str!("presets/hard-disks.toml") },
     Preset { name: "cooling-gas", text: include_str!("presets/cooling-gas.toml") },
+    Preset { name: "melting", text: include_str!("presets/melting.toml") },
     Preset { name: "hot-floor", text: include_str!("presets/hot-floor.toml") },
 ];

@@ -31,6 +31,8 @@ pub struct Scene {
     pub run: Run,
     /// Which files are written.
     pub output: Output,
+    /// Whether every collision is written.
+    pub collision_log: bool,
 }
 
 /// How long a run takes, and how often something is written (time; 0 is never).
@@ -64,6 +66,7 @@ impl Default for Scene {
                 checkpoint_every: 0.0,
             },
             output: Output::default(),
+            collision_log: false,
         }
     }
 }
@@ -117,6 +120,7 @@ impl Scene {
         binding.word(&MASK, &mut self.mask);
         self.run.bind(binding);
         self.output.bind(binding);
+        binding.switch(&COLLISION_LOG, &mut self.collision_log);
     }
 
     /// What its discs fly in, in a box.

@@ -1,6 +1,7 @@
 //! Hard discs under way, observed.
 
 use super::collapse::{Collapse, Watch};
+use super::collision_log::Log;
 use super::engine::{Engine, Happened, Partner, Stopped};
 use super::event::Arena;
 use super::fast::Fast;
@@ -38,6 +39,8 @@ pub(super) struct Running {
     /// The particles of the start, and the place among them of each disc.
     particles: Particles,
     places: Vec<usize>,
+    /// Rows of collisions, where they are asked for.
+    log: Option<Log>,
     seconds: f64,
 }
 
@@ -66,7 +69,8 @@ struct Totals {
 }
 
 impl Running {
-    pub(super) fn new(checked: &Checked) -> Result<Running, Failure> {
+    /// Discs at their start; `logs` whether every collision is kept until it is taken.
+    pub(super) fn new(checked: &Checked, logs: bool) -> Result<Running, Failure> {
         let (discs, places) = checked.discs();
         let arena = checked.scene.arena(checked.domain);
         let kinetic = kinetic(discs.iter(), &arena, 0.0);
@@ -89,6 +93,7 @@ impl Running {
             particles: checked.particles.clone(),
             places,
             filled: 0,
+            log: logs.then(Log::default),
             seconds: 0.0,
         })
     }
@@ -105,6 +110,11 @@ impl Running {
             self.totals.collisions += 1;
             self.totals.made_elastic += u64::from(impact.was_made_elastic);
             self.totals.virial += impact.virial;
+        }
+        if let Some(log) = &mut self.log {
+            let all = self.particles.all();
+            let id = |disc: u32| all[self.places[disc as usize]].id;
+            log.add(self.clock.events, happened, &self.arena, &|disc| self.engine.disc(disc), &id);
         }
     }
 
@@ -362,6 +372,10 @@ impl Simulation for Running {
         ];
         let figures = self.engine.figures().into_iter().map(|(name, value)| (name, json!(value)));
         entries.into_iter().chain(figures).map(|(name, value)| (name.to_owned(), value)).collect()
+    }
+
+    fn take_events(&mut self) -> String {
+        self.log.as_mut().map(Log::take).unwrap_or_default()
     }
 
     fn warnings(&self) -> Vec<RunWarning> {

@@ -6,3 +6,4 @@ pub mod fluid;
 pub mod masks;
 pub mod rates;
 pub mod soft_hard;
+pub mod structure;

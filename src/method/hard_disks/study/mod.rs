@@ -6,6 +6,7 @@ pub mod fluid;
 pub mod masks;
 pub mod rates;
 pub mod soft_hard;
+pub mod structure;
 
 use super::benches::QUANTITIES;
 use super::keys::VOCABULARY;

@@ -1,0 +1,64 @@
+//! Rows of `events.csv`: a collision each.
+
+use super::engine::{Happened, Partner};
+use super::event::Arena;
+use std::fmt::Write;
+use stripmine_kernels::flight::Disc;
+
+/// The columns. `partner` is an id or the name of a side; the point is that of contact; the impulse is what `disc` was given, by a side only
+/// across it;
+/// free times are those since the event before of either disc, the first ones since the start.
+pub(super) const COLUMNS: &str =
+    "event,time,disc,partner,x,y,impulse_x,impulse_y,free_time,partner_free_time";
+
+/// Rows not yet taken.
+#[derive(Debug, Default)]
+pub(super) struct Log(String);
+
+impl Log {
+    /// Adds what has just happened, as event number `event`; discs are given by their numbers, as they now are.
+    pub(super) fn add<'d>(
+        &mut self,
+        event: u64,
+        happened: &Happened,
+        arena: &Arena,
+        disc: &dyn Fn(u32) -> &'d Disc,
+        id: &dyn Fn(u32) -> u32,
+    ) {
+        let Happened { time, disc: number, with, impact, thrust, free } = *happened;
+        let own = disc(number);
+        let (partner, towards, impulse) = match with {
+            Partner::Disc(other) => {
+                let whole = arena.domain.displacement(own.position, disc(other).position);
+                let share = own.radius / (own.radius + disc(other).radius);
+                let impulse = impact.map_or([0.0; 2], |impact| impact.impulse);
+                (id(other).to_string(), whole.map(|d| share * d), impulse)
+            }
+            Partner::Wall(axis) => {
+                let axis = usize::from(axis);
+                let middle = arena.domain.origin[axis] + 0.5 * arena.domain.length(axis);
+                let is_high = own.position[axis] > middle;
+                let mut impulse = [0.0; 2];
+                impulse[axis] = if is_high { -thrust } else { thrust };
+                let mut towards = [0.0; 2];
+                towards[axis] = if is_high { own.radius } else { -own.radius };
+                let side = [["left", "right"], ["bottom", "top"]][axis][usize::from(is_high)];
+                (side.to_owned(), towards, impulse)
+            }
+        };
+        let [x, y] = [0, 1].map(|axis| own.position[axis] + towards[axis]);
+        let [across, along] = impulse;
+        let free = match with {
+            Partner::Disc(_) => format!("{:?},{:?}", free[0], free[1]),
+            Partner::Wall(_) => format!("{:?},", free[0]),
+        };
+        let id = id(number);
+        // A string takes whatever is written.
+        let _ = writeln!(self.0, "{event},{time:?},{id},{partner},{x:?},{y:?},{across:?},{along:?},{free}");
+    }
+
+    /// The rows since this was last asked.
+    pub(super) fn take(&mut self) -> String {
+        std::mem::take(&mut self.0)
+    }
+}
