@@ -7,6 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::granular::Contact;
+use stripmine_kernels::law::lennard_jones::LennardJones;
 use stripmine_kernels::law::{Axis, Env, Field, Law, Stated, Sum, check};
 use stripmine_kernels::sweep::pair::Pair;
 use stripmine_kernels::{Execution, InstructionSet};
@@ -259,4 +260,45 @@ fn the_energy_is_that_of_the_force_and_the_virial_is_the_forces() {
         }
     }
     assert!(touching > 100, "{touching} touch, {apart} do not");
+}
+
+/// The Lennard-Jones force is minus the slope of its energy, the same on both with opposite signs, and nothing beyond the cut-off, where
+/// the energy comes to 0; with the cut-off at 2^(1/6) σ the force does too.
+#[test]
+fn lennard_jones_forces_are_slopes_of_the_energy() {
+    let sigma = 0.7;
+    for (cutoff, only_repels) in [(2.5 * sigma, false), (2f64.powf(1.0 / 6.0) * sigma, true)] {
+        let law = LennardJones::new(1.3, sigma, cutoff);
+        let at = |distance: f64| {
+            let angle = 0.4f64;
+            let mut pair = Pair::touching();
+            pair.bodies[0].position = [1.0, 2.0];
+            pair.bodies[1].position = [1.0 + distance * angle.cos(), 2.0 + distance * angle.sin()];
+            let [own, partner] = pair.sums(&law);
+            assert_eq!([own[0], own[1], own[2]], [-partner[0], -partner[1], 0.0]);
+            // Positive where the particles repel each other.
+            let outwards = -(own[0] * angle.cos() + own[1] * angle.sin());
+            let [energy, virial] = pair.energy_and_virial(&law);
+            assert!((virial - outwards * distance).abs() <= 1e-13 * (1.0 + virial.abs()));
+            (outwards, energy)
+        };
+        for step in 0..200 {
+            let distance = sigma * (0.85 + 0.01 * f64::from(step));
+            let (force, energy) = at(distance);
+            if distance >= cutoff {
+                assert_eq!((force, energy), (0.0, 0.0));
+                continue;
+            }
+            let sixth = (sigma / distance).powi(6);
+            let shift = 5.2 * (sigma / cutoff).powi(6) * ((sigma / cutoff).powi(6) - 1.0);
+            assert!((energy - (5.2 * sixth * (sixth - 1.0) - shift)).abs() < 1e-12 * (1.0 + energy.abs()));
+            assert!(!only_repels || force >= 0.0);
+            let h = 1e-6 * distance;
+            if distance + h < cutoff {
+                let slope = (at(distance - h).1 - at(distance + h).1) / (2.0 * h);
+                assert!((force - slope).abs() < 1e-6 * (1.0 + force.abs()), "{distance}: {force} {slope}");
+            }
+        }
+        assert!(at(cutoff * (1.0 - 1e-12)).1.abs() < 1e-10);
+    }
 }

@@ -2,9 +2,9 @@
 
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Registers;
-use stripmine_kernels::integrator::{Context, DERIVATIVES, Inertia, Scheme};
-use stripmine_kernels::isa::Vector;
-use stripmine_kernels::noise::{Purpose, normals};
+use stripmine_kernels::integrator::langevin::{Baoab, Bath, Stochastic};
+use stripmine_kernels::integrator::{Context, DERIVATIVES, Draws, Inertia, Scheme};
+use stripmine_kernels::noise::{Purpose, draw};
 use stripmine_kernels::sweep::fast::{Advance, DisplacementLimit, Motion};
 
 /// Moves discs by dt times noise, along x by the first number and along y by the second.
@@ -13,72 +13,18 @@ struct Diffusion;
 
 impl Scheme for Diffusion {
     const CARRIED: usize = 2;
-    const DRAWS: bool = true;
+    const DRAWS: Draws = Draws::InPredictor;
 
     fn scales(_: f64) -> [f64; DERIVATIVES] {
         [1.0; DERIVATIVES]
     }
 
-    fn begin<R: Registers>(&self, _: &Context<'_, R>, _: &mut [R::V; DERIVATIVES], _: R::V) {}
+    fn begin<R: Registers>(&self, _: &Context<R>, _: &mut [R::V; DERIVATIVES], _: R::V) {}
 
-    fn correct<R: Registers>(&self, _: &Context<'_, R>, _: &mut [R::V; DERIVATIVES], _: R::V) {}
+    fn correct<R: Registers>(&self, _: &Context<R>, _: &mut [R::V; DERIVATIVES], _: R::V) {}
 
-    fn predict<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES]) {
-        let noise = context.normals(Purpose::Test)[context.freedom()];
-        row[0] = row[0] + context.uniform(context.dt()) * noise;
-    }
-}
-
-/// Langevin dynamics, m a = F − m·rate·v + noise, by half a kick, half a drift, friction and noise, half a drift, the forces
-/// and half a kick (BAOAB; Leimkuhler & Matthews 2013).
-#[derive(Clone, Copy, Debug)]
-struct Baoab {
-    /// Friction (1/time).
-    rate: f64,
-    /// kT (energy).
-    temperature: f64,
-}
-
-impl Baoab {
-    fn half_kick<R: Registers>(context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES]) {
-        row[1] = row[1] + context.uniform(0.5 * context.dt()) * row[2];
-    }
-
-    fn half_drift<R: Registers>(context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES]) {
-        row[0] = row[0] + context.uniform(0.5 * context.dt()) * row[1];
-    }
-}
-
-impl Scheme for Baoab {
-    const CARRIED: usize = 2;
-    const DRAWS: bool = true;
-
-    fn scales(_: f64) -> [f64; DERIVATIVES] {
-        [1.0; DERIVATIVES]
-    }
-
-    fn begin<R: Registers>(&self, _: &Context<'_, R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V) {
-        row[2] = acceleration;
-    }
-
-    fn correct<R: Registers>(
-        &self,
-        context: &Context<'_, R>,
-        row: &mut [R::V; DERIVATIVES],
-        acceleration: R::V,
-    ) {
-        row[2] = acceleration;
-        Self::half_kick(context, row);
-    }
-
-    fn predict<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES]) {
-        let kept = libm::exp(-self.rate * context.dt());
-        let spread = context.uniform(self.temperature * (1.0 - kept * kept)) * context.inverse();
-        let noise = context.normals(Purpose::Test)[context.freedom()];
-        Self::half_kick(context, row);
-        Self::half_drift(context, row);
-        row[1] = context.uniform(kept) * row[1] + spread.sqrt() * noise;
-        Self::half_drift(context, row);
+    fn predict<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES]) {
+        row[0] = row[0] + context.uniform(context.dt()) * context.normal();
     }
 }
 
@@ -86,6 +32,13 @@ const DT: f64 = 0.125;
 const SEED: u64 = 11;
 const STEPS: u64 = 3;
 const INVERSE_MASS: f64 = 2.0;
+
+/// The two numbers of a disc in a step.
+fn normals(id: u32, step: u64) -> [f64; 2] {
+    let (mut x, mut y) = ([0.0], [0.0]);
+    draw(SEED, Purpose::Thermostat, step, &[id], [&mut x, &mut y]);
+    [x[0], y[0]]
+}
 
 /// Places of the discs after some steps, by id; `force` is that at a place along each axis.
 fn places<C: Scheme>(
@@ -134,7 +87,7 @@ fn noise_depends_on_seed_disc_and_step_alone() {
     let mut expected = vec![[0.0; 2]; n as usize];
     for (id, place) in expected.iter_mut().enumerate() {
         for step in 1..=STEPS {
-            let drawn = normals(SEED, Purpose::Test, id as u32, step);
+            let drawn = normals(id as u32, step);
             (0..2).for_each(|axis| place[axis] += DT * drawn[axis]);
         }
     }
@@ -146,42 +99,74 @@ fn noise_depends_on_seed_disc_and_step_alone() {
     }
 }
 
-/// The same scheme in plain numbers, disc by disc.
-fn naive_baoab(Baoab { rate, temperature }: Baoab, dt: f64, id: u32, steps: u64, stiffness: f64) -> [f64; 2] {
+const BATH: Bath = Bath { friction: 0.75, temperature: 0.75 };
+
+/// BAOAB in plain numbers, disc by disc.
+fn naive_baoab(id: u32, steps: u64, stiffness: f64) -> [f64; 2] {
     let (mut r, mut v) = ([0.0; 2], [0.0; 2]);
-    let kept = libm::exp(-rate * dt);
-    let spread = (temperature * (1.0 - kept * kept) * INVERSE_MASS).sqrt();
+    let kept = libm::exp(-BATH.friction * INVERSE_MASS * DT);
+    let spread = (BATH.temperature * (1.0 - kept * kept) * INVERSE_MASS).sqrt();
     for step in 1..=steps {
-        let noise = normals(SEED, Purpose::Test, id, step);
+        let noise = normals(id, step);
         for axis in 0..2 {
             let pull = |r: f64| -stiffness * r * INVERSE_MASS;
-            v[axis] += 0.5 * dt * pull(r[axis]);
-            r[axis] += 0.5 * dt * v[axis];
+            v[axis] += 0.5 * DT * pull(r[axis]);
+            r[axis] += 0.5 * DT * v[axis];
             v[axis] = kept * v[axis] + spread * noise[axis];
-            r[axis] += 0.5 * dt * v[axis];
-            v[axis] += 0.5 * dt * pull(r[axis]);
+            r[axis] += 0.5 * DT * v[axis];
+            v[axis] += 0.5 * DT * pull(r[axis]);
         }
     }
     r
 }
 
-/// A scheme with friction and noise is a file of its own and nothing else: it gets force, mass, step and noise.
-#[test]
-fn a_langevin_scheme_moves_discs_as_in_plain_numbers() {
-    let scheme = Baoab { rate: 1.5, temperature: 0.75 };
-    let ids: Vec<u32> = (0..1003).rev().collect();
-    let expected: Vec<[f64; 2]> = (0..1003).map(|id| naive_baoab(scheme, DT, id, 40, 3.0)).collect();
-    for set in InstructionSet::available() {
-        let found = places(&motion(scheme, DT), |r| -3.0 * r, (&ids, 40), set);
-        assert!(found == expected, "{}", set.name());
+/// The source's scheme likewise, friction by the velocity after half a kick or, as printed, by that of the step before.
+fn naive_stochastic(id: u32, steps: u64, stiffness: f64, old: bool) -> [f64; 2] {
+    let strength = (2.0 * BATH.friction * BATH.temperature / DT).sqrt();
+    let (mut r, mut v) = ([0.0; 2], [0.0; 2]);
+    let noise = normals(id, 0);
+    let mut a = noise.map(|noise| (strength * noise - BATH.friction * 0.0) * INVERSE_MASS);
+    for step in 1..=steps {
+        let noise = normals(id, step);
+        for axis in 0..2 {
+            v[axis] += 0.5 * DT * a[axis];
+            r[axis] += DT * v[axis];
+            if step == steps {
+                continue;
+            }
+            let slowed = if old { v[axis] - 0.5 * DT * a[axis] } else { v[axis] };
+            let pull = -stiffness * r[axis] * INVERSE_MASS;
+            a[axis] = pull + (strength * noise[axis] - BATH.friction * slowed) * INVERSE_MASS;
+            v[axis] += 0.5 * DT * a[axis];
+        }
     }
+    r
+}
+
+/// A scheme with friction and noise gets force, mass and noise, and moves discs as plain numbers have it.
+#[test]
+fn langevin_schemes_move_discs_as_in_plain_numbers() {
+    fn hold<C: Scheme>(scheme: C, expected: impl Fn(u32) -> [f64; 2]) {
+        let ids: Vec<u32> = (0..1003).rev().collect();
+        let expected: Vec<[f64; 2]> = (0..1003).map(expected).collect();
+        for set in InstructionSet::available() {
+            let found = places(&motion(scheme, DT), |r| -3.0 * r, (&ids, 40), set);
+            for (found, expected) in found.iter().zip(&expected) {
+                assert!((0..2).all(|axis| (found[axis] - expected[axis]).abs() < 1e-12), "{}", set.name());
+            }
+        }
+    }
+    hold(Baoab::new(BATH, DT, 1.0 / INVERSE_MASS), |id| naive_baoab(id, 40, 3.0));
+    hold(Stochastic::<false> { bath: BATH }, |id| naive_stochastic(id, 40, 3.0, false));
+    hold(Stochastic::<true> { bath: BATH }, |id| naive_stochastic(id, 40, 3.0, true));
 }
 
 /// In a harmonic trap BAOAB has ⟨r²⟩ = kT/k for every step, here of ω dt = 0.7.
 #[test]
-fn a_langevin_scheme_has_the_width_of_boltzmann_in_a_trap() {
-    let scheme = Baoab { rate: 1.0, temperature: 0.5 };
+fn baoab_has_the_width_of_boltzmann_in_a_trap() {
+    let bath = Bath { friction: 0.5, temperature: 0.5 };
     let ids: Vec<u32> = (0..8000).collect();
+    let scheme = Baoab::new(bath, 0.5, 0.5);
     let found = places(&motion(scheme, 0.5), |r| -r, (&ids, 60), InstructionSet::best());
     let width = found.as_flattened().iter().map(|r| r * r).sum::<f64>() / 16_000.0;
     // The mean of 16 000 squares has a standard error of 1.1 %.

@@ -35,6 +35,8 @@ pub enum FailureKind {
     InelasticCollapse,
     /// Nothing will ever happen.
     Idle,
+    /// More particles were thrown out than the scene allows.
+    Lost,
 }
 
 impl FailureKind {
@@ -52,6 +54,7 @@ impl FailureKind {
             FailureKind::BackInTime => "back-in-time",
             FailureKind::InelasticCollapse => "inelastic-collapse",
             FailureKind::Idle => "idle",
+            FailureKind::Lost => "lost",
         }
     }
 }

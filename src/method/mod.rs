@@ -4,6 +4,7 @@ mod clock;
 mod entry;
 pub mod failure;
 pub mod hard_disks;
+pub mod langevin;
 pub mod lattice_md;
 mod list;
 mod pairwise;

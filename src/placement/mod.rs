@@ -1,8 +1,10 @@
 //! Initial states: where discs are and how fast they start.
 
+mod mesh;
 mod random;
 mod rows;
 
+pub use mesh::mesh;
 pub(crate) use random::stir;
 pub use random::{Filling, Jammed, random};
 pub use rows::{Row, row};

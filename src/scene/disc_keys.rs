@@ -8,14 +8,17 @@ use super::keys::{Use, define_keys};
 use crate::words::{Words, define_words};
 
 const ALWAYS: Use = None;
-const GENERATED: Use = Some((&GENERATE, &["random", "compressed", "hexagonal", "pipe", "box", "list"]));
-const DRAWN: Use = Some((&GENERATE, &["random", "compressed", "hexagonal", "pipe", "box"]));
+const GENERATED: Use =
+    Some((&GENERATE, &["random", "compressed", "mesh", "hexagonal", "pipe", "box", "list"]));
+const DRAWN: Use = Some((&GENERATE, &["random", "compressed", "mesh", "hexagonal", "pipe", "box"]));
 const PLACED: Use = Some((&GENERATE, &["random", "compressed", "pipe", "box"]));
-pub(super) const SIDED: Use = Some((&GENERATE, &["random", "compressed", "pipe", "box", "list", "file"]));
+pub(super) const SIDED: Use =
+    Some((&GENERATE, &["random", "compressed", "mesh", "pipe", "box", "list", "file"]));
 const WALLED: Use = Some((&GENERATE, &["pipe", "box", "list"]));
 const LINED: Use = Some((&GENERATE, &["pipe", "box"]));
 const HOLDING: Use = Some((&GENERATE, &["pipe", "box", "list", "file"]));
 const PIPE: Use = Some((&GENERATE, &["pipe"]));
+const MESH: Use = Some((&GENERATE, &["mesh"]));
 const BOX: Use = Some((&GENERATE, &["box"]));
 const LIST: Use = Some((&GENERATE, &["list"]));
 const OSCILLATING: Use = Some((&WALL_MOTION, &["oscillating"]));
@@ -23,9 +26,9 @@ const OSCILLATING: Use = Some((&WALL_MOTION, &["oscillating"]));
 define_keys! {
     /// The discs of a scene in the plane.
     pub static DISCS;
-    GENERATE = "particles" "generate", Choice(&["random", "compressed", "hexagonal", "pipe", "box", "list"]), "",
+    GENERATE = "particles" "generate", Choice(&["random", "compressed", "mesh", "hexagonal", "pipe", "box", "list"]), "",
         Otherwise("read `file`"), ALWAYS,
-        "How discs are made: at random without overlap; so, but small, and grown while they move and collide, for packing fractions up to 0.88; on a shaken hexagonal lattice; in a pipe along x between two rows of wall discs; above a floor of wall discs; as listed.";
+        "How discs are made: at random without overlap; so, but small, and grown while they move and collide, for packing fractions up to 0.88; at places of a square mesh, drawn at random; on a shaken hexagonal lattice; in a pipe along x between two rows of wall discs; above a floor of wall discs; as listed.";
     FILE = "particles" "file", Text, "", Otherwise("generated"), ALWAYS,
         "Start file, extended XYZ with id, pos, velo, radius, mass, omega; relative to the scene file.",
         implies (&GENERATE, "file");
@@ -49,6 +52,8 @@ define_keys! {
         "Standard deviation of each component of Gaussian velocities; no spin.";
     CLEAR_WIDTH = "particles" "clear_width", Number(Positive), "length", Required, PIPE,
         "Width of the pipe between the surfaces of its wall discs; its axis is the middle of the box.";
+    SPACING = "particles" "spacing", Number(Positive), "length", Otherwise("2 `radius`"), MESH,
+        "Distance of neighbouring places of the mesh, at least; the nearest that divides the sides is taken.";
     FILL_HEIGHT = "particles" "fill_height", Number(Positive), "length", Required, BOX,
         "Height above the floor up to which grains are placed.";
     POSITIONS = "particles" "positions", Pairs, "length", Required, LIST,
@@ -77,6 +82,7 @@ define_keys! {
 pub static DISC_RIVALS: &[Rivals] = &[
     Rivals { keys: &[&GENERATE, &FILE], used: ALWAYS, needed: true },
     Rivals { keys: &[&COUNT, &PACKING_FRACTION], used: PLACED, needed: true },
+    Rivals { keys: &[&COUNT, &PACKING_FRACTION], used: MESH, needed: true },
     Rivals { keys: &[&TEMPERATURE, &SPEED], used: ALWAYS, needed: false },
 ];
 

@@ -16,6 +16,8 @@ define_words! {
         Random = "random",
         /// Grown while they move.
         Compressed = "compressed",
+        /// At places of a mesh.
+        Mesh = "mesh",
         /// On a hexagonal lattice.
         Hexagonal = "hexagonal",
         /// In a pipe.
@@ -58,6 +60,15 @@ pub enum Start {
         amount: Amount,
         /// The discs.
         grains: Grains,
+    },
+    /// At places of a square mesh, drawn at random, no place twice.
+    Mesh {
+        /// How many.
+        amount: Amount,
+        /// The discs.
+        grains: Grains,
+        /// Distance of neighbouring places (length), at least.
+        spacing: f64,
     },
     /// At random in a pipe along x between two rows of wall discs, the upper row shifted by half a spacing.
     Pipe {
@@ -184,7 +195,10 @@ pub enum WallMotion {
 impl WallMotion {
     /// Meets its keys, where a start may have walls.
     pub fn bind(&mut self, binding: &mut dyn Binding, start: &Start) {
-        if matches!(start, Start::Random { .. } | Start::Compressed { .. } | Start::Hexagonal { .. }) {
+        if matches!(
+            start,
+            Start::Random { .. } | Start::Compressed { .. } | Start::Mesh { .. } | Start::Hexagonal { .. }
+        ) {
             return;
         }
         let (mut motion, mut amplitude, mut frequency) = match *self {
@@ -208,6 +222,7 @@ impl Start {
         match self {
             Start::Random { .. } => Origin::Random,
             Start::Compressed { .. } => Origin::Compressed,
+            Start::Mesh { .. } => Origin::Mesh,
             Start::Hexagonal { .. } => Origin::Hexagonal,
             Start::Pipe { .. } => Origin::Pipe,
             Start::Box { .. } => Origin::Box,
@@ -221,6 +236,7 @@ impl Start {
         match origin {
             Origin::Random => Start::Random { amount, grains },
             Origin::Compressed => Start::Compressed { amount, grains },
+            Origin::Mesh => Start::Mesh { amount, grains, spacing: 0.0 },
             Origin::Hexagonal => Start::Hexagonal { count: 0, packing_fraction: 0.0, grains },
             Origin::Pipe => Start::Pipe { amount, grains, lining, clear_width: 0.0 },
             Origin::Box => Start::Box { amount, grains, lining, fill_height: 0.0 },
@@ -252,6 +268,11 @@ impl Start {
                 amount.bind(binding);
                 grains.bind(binding, true);
             }
+            Start::Mesh { amount, grains, spacing } => {
+                amount.bind(binding);
+                grains.bind(binding, false);
+                or_else(binding, &SPACING, spacing, 2.0 * grains.radius);
+            }
             Start::Pipe { amount, grains, lining, clear_width } => {
                 amount.bind(binding);
                 grains.bind(binding, true);
@@ -274,6 +295,7 @@ impl Start {
             Start::Hexagonal { grains, .. }
             | Start::Random { grains, .. }
             | Start::Compressed { grains, .. }
+            | Start::Mesh { grains, .. }
             | Start::Pipe { grains, .. }
             | Start::Box { grains, .. } => Some(grains.seed),
         }
@@ -304,6 +326,14 @@ impl Amount {
 }
 
 impl Grains {
+    /// Standard deviation of each component of the velocity of a disc of a mass (length/time).
+    pub fn deviation(&self, mass: f64) -> f64 {
+        match self.speed {
+            Speed::Deviation(speed) => speed,
+            Speed::Temperature(kt) => (kt / mass).sqrt(),
+        }
+    }
+
     fn bind(&mut self, binding: &mut dyn Binding, spread: bool) {
         binding.number(&RADIUS, &mut self.radius);
         binding.number(&MASS, &mut self.mass);

@@ -5,11 +5,12 @@ use crate::domain::Domain;
 use crate::io::extxyz;
 use crate::memory;
 use crate::particles::{Kind, Particle, Particles, in_space};
-use crate::placement::{Filling, Row, hexagonal, random, row, stir};
+use crate::placement::{Filling, Row, hexagonal, mesh, random, row, stir};
 use crate::quoted;
 use crate::scene::{
     Amount, CLEAR_WIDTH, COUNT, FILE, FILL_HEIGHT, GENERATE, Grains, Key, Lining, List, ORIGIN,
-    PACKING_FRACTION, PERIODIC, Reason, SIDES, SceneError, Speed, Start, WALL_SPACING, WallMotion, Warning,
+    PACKING_FRACTION, PERIODIC, Reason, SIDES, SPACING, SceneError, Speed, Start, WALL_SPACING, WallMotion,
+    Warning,
 };
 use std::f64::consts::PI;
 
@@ -47,7 +48,7 @@ pub fn radii(start: &Start, found: Option<[f64; 2]>) -> Option<[f64; 2]> {
         Start::Pipe { grains, lining, .. } | Start::Box { grains, lining, .. } => {
             Some(with(spread(grains), lining.radius))
         }
-        Start::Hexagonal { grains, .. } => Some([grains.radius; 2]),
+        Start::Hexagonal { grains, .. } | Start::Mesh { grains, .. } => Some([grains.radius; 2]),
         Start::List(_) | Start::File(_) => found,
     }
 }
@@ -81,6 +82,9 @@ pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
             let far = [0, 1].map(|axis| domain.origin[axis] + domain.length(axis));
             let discs = fill(stated, &domain, [domain.corner(), far], &[], count, grains)?;
             (domain, Particles::new(discs))
+        }
+        Start::Mesh { amount, grains, spacing } => {
+            (domain, on_mesh(stated, &domain, *amount, grains, *spacing)?)
         }
         Start::Compressed { amount, grains } => (domain, compressed(stated, &domain, *amount, grains)?),
         Start::Pipe { amount, grains, lining, clear_width } => {
@@ -178,6 +182,60 @@ fn from_file(stated: &Stated<'_>, domain: &Domain, path: &std::path::Path) -> Re
         return Err(error.expecting(format!("periodic = {found:?}")));
     }
     Ok(frame.particles)
+}
+
+/// Discs at places of a square mesh, drawn at random.
+fn on_mesh(
+    stated: &Stated<'_>,
+    domain: &Domain,
+    amount: Amount,
+    grains: &Grains,
+    spacing: f64,
+) -> Result<Particles, SceneError> {
+    let counts = [0, 1].map(|axis| (domain.length(axis) / spacing).floor().max(1.0));
+    let key = if stated.values.gives(&COUNT) { &COUNT } else { &PACKING_FRACTION };
+    let count = match amount {
+        Amount::Count(count) => count as f64,
+        Amount::PackingFraction(fraction) => {
+            (fraction * domain.area() / (PI * grains.radius * grains.radius)).round()
+        }
+    };
+    let refuse = |message: String| stated.spot(key).error(Reason::Placement, message);
+    if count > MOST || count < 1.0 {
+        return Err(refuse(format!(
+            "{count:.4e} discs are none, or more than the {MOST:.3e} that can be numbered"
+        )));
+    }
+    if count > counts[0] * counts[1] {
+        let message = format!(
+            "{count} discs, but the mesh has {} × {} = {} places {spacing} apart",
+            counts[0],
+            counts[1],
+            counts[0] * counts[1]
+        );
+        return Err(refuse(message).advising("take fewer discs, a larger box or a smaller particles.spacing"));
+    }
+    if counts[0] * counts[1] > MOST {
+        let message = format!(
+            "a mesh of {} × {} places is more than the {MOST:.3e} that can be numbered",
+            counts[0], counts[1]
+        );
+        let error = stated.spot(&SPACING).error(Reason::Placement, message);
+        return Err(error.advising("set a larger particles.spacing"));
+    }
+    placeable(stated, count, key)?;
+    let edge = [0, 1].map(|axis| domain.length(axis) / counts[axis]);
+    let places = mesh(counts.map(|count| count as usize), count as usize, grains.seed);
+    let at = |[column, row]: [usize; 2]| {
+        [0, 1].map(|axis| domain.origin[axis] + ([column, row][axis] as f64 + 0.5) * edge[axis])
+    };
+    let of = [grains.radius, grains.mass];
+    let discs =
+        places.into_iter().zip(1..).map(|(place, id)| disc(id, Kind::Grain, at(place), grains.radius, of));
+    let mut discs: Vec<Particle> = discs.collect();
+    let balanced = domain.periodic() == [true; 2] && discs.len() > 1;
+    stir(&mut discs, grains.seed, balanced, |disc| grains.deviation(disc.mass));
+    Ok(Particles::new(discs))
 }
 
 fn disc(id: u32, kind: Kind, position: [f64; 2], radius: f64, [unit, mass]: [f64; 2]) -> Particle {
@@ -322,7 +380,7 @@ fn fill(
     count: usize,
     grains: &Grains,
 ) -> Result<Vec<Particle>, SceneError> {
-    let Grains { radius, spread, cut, mass, seed, speed } = *grains;
+    let Grains { radius, spread, cut, mass, seed, .. } = *grains;
     let cut = if spread > 0.0 { cut } else { 0.0 };
     let filling = Filling { domain: *domain, room, obstacles, count, radius, spread, cut, mass, seed };
     let mut discs = random(&filling).map_err(|jammed| {
@@ -331,10 +389,7 @@ fn fill(
     })?;
     // Where walls take up momentum there is none to balance.
     let balanced = domain.periodic() == [true; 2] && obstacles.is_empty() && discs.len() > 1;
-    stir(&mut discs, seed, balanced, |disc| match speed {
-        Speed::Deviation(speed) => speed,
-        Speed::Temperature(kt) => (kt / disc.mass).sqrt(),
-    });
+    stir(&mut discs, seed, balanced, |disc| grains.deviation(disc.mass));
     Ok(discs)
 }
 

@@ -104,28 +104,18 @@ impl<const VALUES: usize> Scheme for Gear<VALUES> {
     }
 
     #[inline(always)]
-    fn begin<R: Registers>(
-        &self,
-        context: &Context<'_, R>,
-        row: &mut [R::V; DERIVATIVES],
-        acceleration: R::V,
-    ) {
+    fn begin<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V) {
         row[2] = acceleration * context.uniform(scales(context.dt())[2]);
     }
 
     #[inline(always)]
-    fn correct<R: Registers>(
-        &self,
-        context: &Context<'_, R>,
-        row: &mut [R::V; DERIVATIVES],
-        acceleration: R::V,
-    ) {
+    fn correct<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V) {
         let difference = acceleration * context.uniform(scales(context.dt())[2]) - row[2];
         add_difference::<R::V, VALUES>(&self.coefficients, |c| context.uniform(c), row, difference);
     }
 
     #[inline(always)]
-    fn predict<R: Registers>(&self, _: &Context<'_, R>, row: &mut [R::V; DERIVATIVES]) {
+    fn predict<R: Registers>(&self, _: &Context<R>, row: &mut [R::V; DERIVATIVES]) {
         advance::<R::V, VALUES>(row);
     }
 }

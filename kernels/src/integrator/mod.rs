@@ -1,12 +1,12 @@
 //! Integrators, one file each, and what they share: F/m + g, and what a scheme may know beside the state.
 
 pub mod gear;
+pub mod langevin;
 pub mod single;
 pub mod velocity_verlet;
 
 use crate::backend::Registers;
 use crate::isa::{Array, Counter, Element, Machine, Slot, Vector};
-use crate::noise::{self, Purpose};
 
 /// Most entries that a row of the state has: the position and its derivatives.
 pub const DERIVATIVES: usize = 6;
@@ -81,18 +81,15 @@ fn gathered_acceleration<S: Element, P: Element, M: Machine>(
 
 /// What a scheme may know beside a row of the state: of the step, and of the discs in the lanes.
 #[derive(Clone, Copy, Debug)]
-pub struct Context<'a, R: Registers> {
+pub struct Context<R: Registers> {
     pub(crate) registers: R,
     pub(crate) dt: f64,
-    pub(crate) seed: u64,
-    pub(crate) step: u64,
-    /// As many as lanes, where the scheme [draws](Scheme::DRAWS).
-    pub(crate) ids: &'a [u32],
     pub(crate) freedom: usize,
     pub(crate) inverse: R::V,
+    pub(crate) normal: R::V,
 }
 
-impl<R: Registers> Context<'_, R> {
+impl<R: Registers> Context<R> {
     /// The same number in every lane.
     #[inline(always)]
     pub fn uniform(&self, value: f64) -> R::V {
@@ -117,22 +114,23 @@ impl<R: Registers> Context<'_, R> {
         self.inverse
     }
 
-    /// Two independent standard normal numbers for every disc. They depend on the run's seed, the purpose, the disc's id and
-    /// the step alone: the same for every degree of freedom, whatever the registers and the order of the discs.
-    ///
-    /// # Panics
-    /// If the scheme does not say that it [draws](Scheme::DRAWS).
+    /// A standard normal number for every disc, of its own for each degree of freedom, where the scheme [draws](Scheme::DRAWS)
+    /// at this place; no number elsewhere. It depends on the run's seed, the disc's id and the step alone.
     #[inline(always)]
-    pub fn normals(&self, purpose: Purpose) -> [R::V; 2] {
-        assert!(self.ids.len() >= R::LANES, "a scheme that draws says so");
-        let mut lanes = [[R::Lane::default(); crate::GROUP]; 2];
-        for (lane, &id) in self.ids.iter().enumerate().take(R::LANES) {
-            let drawn = noise::normals(self.seed, purpose, id, self.step);
-            (0..2).for_each(|number| lanes[number][lane] = R::Lane::from_f64(drawn[number]));
-        }
-        // SAFETY: each holds GROUP numbers, and a register has no more lanes than that.
-        lanes.map(|lanes| unsafe { self.registers.load(lanes.as_ptr()) })
+    pub fn normal(&self) -> R::V {
+        self.normal
     }
+}
+
+/// Where a scheme draws a random number for each degree of freedom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Draws {
+    /// Nowhere.
+    Never,
+    /// In the corrector, and at the start.
+    InCorrector,
+    /// In the predictor.
+    InPredictor,
 }
 
 /// A predictor and a corrector for one degree of freedom.
@@ -142,26 +140,16 @@ impl<R: Registers> Context<'_, R> {
 pub trait Scheme: Copy + Send + Sync {
     /// How many derivatives a step hands on to the next, where corrector and next predictor are one.
     const CARRIED: usize;
-    /// Whether it draws random numbers, for which the discs' ids are needed.
-    const DRAWS: bool = false;
+    /// Where it draws random numbers, for which the discs' ids are needed.
+    const DRAWS: Draws = Draws::Never;
 
     /// The scales s_k of the row for steps of `dt` (time). That of the position is 1.
     fn scales(dt: f64) -> [f64; DERIVATIVES];
 
     /// Takes up the acceleration of the start (length/time²): the row is that of the start already.
-    fn begin<R: Registers>(
-        &self,
-        context: &Context<'_, R>,
-        row: &mut [R::V; DERIVATIVES],
-        acceleration: R::V,
-    );
+    fn begin<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V);
     /// Corrects the predicted row with the acceleration found (length/time²).
-    fn correct<R: Registers>(
-        &self,
-        context: &Context<'_, R>,
-        row: &mut [R::V; DERIVATIVES],
-        acceleration: R::V,
-    );
+    fn correct<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V);
     /// Predicts the row one step ahead.
-    fn predict<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES]);
+    fn predict<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES]);
 }

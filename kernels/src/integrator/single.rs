@@ -46,15 +46,14 @@ impl<C: Scheme> Single<C> {
         self.row = row;
     }
 
-    fn context(&self) -> Context<'static, Scalar<f64>> {
+    fn context(&self) -> Context<Scalar<f64>> {
         Context {
             registers: Scalar::default(),
             dt: self.dt,
-            seed: 0,
-            step: 0,
-            ids: &[],
             freedom: 0,
             inverse: 1.0,
+            // Theory is of the motion without noise.
+            normal: 0.0,
         }
     }
 }

@@ -23,36 +23,36 @@ impl Scheme for VelocityVerlet {
     }
 
     #[inline(always)]
-    fn begin<R: Registers>(&self, _: &Context<'_, R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V) {
+    fn begin<R: Registers>(&self, _: &Context<R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V) {
         row[2] = acceleration;
     }
 
     #[inline(always)]
-    fn correct<R: Registers>(
-        &self,
-        context: &Context<'_, R>,
-        row: &mut [R::V; DERIVATIVES],
-        acceleration: R::V,
-    ) {
+    fn correct<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V) {
         kick(|value| context.uniform(value), context.dt(), row, acceleration);
     }
 
     #[inline(always)]
-    fn predict<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES]) {
+    fn predict<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES]) {
         drift(|value| context.uniform(value), context.dt(), row);
     }
 }
 
 /// The second half kick.
 #[inline(always)]
-fn kick<V: Vector>(uniform: impl Fn(f64) -> V, dt: f64, row: &mut [V; DERIVATIVES], acceleration: V) {
+pub(super) fn kick<V: Vector>(
+    uniform: impl Fn(f64) -> V,
+    dt: f64,
+    row: &mut [V; DERIVATIVES],
+    acceleration: V,
+) {
     row[1] = row[1] + acceleration * uniform(0.5 * dt);
     row[2] = acceleration;
 }
 
 /// The first half kick and the drift.
 #[inline(always)]
-fn drift<V: Vector>(uniform: impl Fn(f64) -> V, dt: f64, row: &mut [V; DERIVATIVES]) {
+pub(super) fn drift<V: Vector>(uniform: impl Fn(f64) -> V, dt: f64, row: &mut [V; DERIVATIVES]) {
     row[1] = row[1] + row[2] * uniform(0.5 * dt);
     row[0] = row[0] + row[1] * uniform(dt);
 }

@@ -3,6 +3,7 @@
 mod environment;
 pub mod granular;
 pub mod gravity;
+pub mod lennard_jones;
 mod quantity;
 mod stated;
 

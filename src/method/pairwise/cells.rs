@@ -11,7 +11,7 @@ use stripmine_kernels::sweep::fast::Grid;
 
 /// What was found when discs were looked for: changes of cells, and discs that belong to no cell.
 #[derive(Default)]
-struct Looked {
+pub(super) struct Looked {
     moves: Vec<Move>,
     strays: Vec<Move>,
 }
@@ -108,7 +108,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     }
 
     /// Looks for the cells that the places of some discs lie in.
-    fn look(&self, discs: impl Iterator<Item = usize>) -> Looked {
+    pub(super) fn look(&self, discs: impl Iterator<Item = usize>) -> Looked {
         let mut looked = Looked::default();
         for disc in discs {
             let cell = self.search.cells().cell(disc).unwrap_or_default();
@@ -123,7 +123,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     }
 
     /// The changes of cells that were found; a failure if a disc belongs to no cell.
-    fn changes_of(&self, looked: Vec<Looked>) -> Result<Vec<Move>, Failure> {
+    pub(super) fn changes_of(&self, looked: Vec<Looked>) -> Result<Vec<Move>, Failure> {
         let strays = || looked.iter().flat_map(|looked| &looked.strays);
         match strays().min_by_key(|from| self.state.number(from.disc)) {
             Some(&first) => Err(self.stray(first, strays().count() as u64)),
@@ -184,7 +184,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     }
 
     /// Whether a disc is beyond an open side.
-    fn is_outside(&self, disc: usize) -> bool {
+    pub(super) fn is_outside(&self, disc: usize) -> bool {
         let cell = self.search.cells().cell(disc).unwrap_or_default();
         let from = Move { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
         self.in_its_cell(from).is_none()

@@ -32,7 +32,7 @@ pub struct Engine<S, P, Q, D> {
     /// Changes of cells since the discs were put in order.
     pub(super) changes: usize,
     /// Whether the state is predicted and its forces are not yet known.
-    awaits_forces: bool,
+    pub(super) awaits_forces: bool,
     /// Discs that are so near to an open side that they may leave through it before lists are made again.
     pub(super) rim: Vec<u32>,
     pub(super) elapsed: Elapsed,
@@ -268,7 +268,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Named for Engine<
     }
 
     fn id(&self, disc: usize) -> u32 {
-        self.start.all()[self.state.number(disc)].id
+        self.state.id(disc)
     }
 
     fn position(&self, disc: usize) -> [f64; 2] {
@@ -340,7 +340,7 @@ impl<S: Precision> WithScheme for Correcting<'_, S> {
     fn with<C: Scheme>(self, scheme: C) -> [S; DERIVATIVES] {
         let Correcting { system, state, steps, freedom, disc, row, force } = self;
         let inverse = system.inertia.inverse(freedom, S::from_f64, || state.inverse(freedom)[disc]);
-        let who = (steps, state.numbers()[disc]);
+        let who = (steps, state.id(disc));
         motion(system, scheme).corrected(who, freedom, row, force, inverse)
     }
 }

@@ -18,6 +18,7 @@ mod columns;
 mod crossings;
 mod elapsed;
 mod engine;
+mod losing;
 mod named;
 mod saved;
 pub mod search;

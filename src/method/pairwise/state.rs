@@ -30,10 +30,12 @@ pub struct State<S> {
     inverse: [Vec<S>; 2],
     /// Which of the scene's discs each is.
     numbers: Vec<u32>,
+    /// The ids of the discs, by which they draw random numbers.
+    ids: Vec<u32>,
     grains: usize,
 }
 
-/// What a pass moves: columns, inverse masses and moments of inertia, and which of the scene's discs each is.
+/// What a pass moves: columns, inverse masses and moments of inertia, and ids.
 type Moved<'a, S> = (&'a mut [Vec<Vec<S>>], [&'a [S]; 2], &'a [u32]);
 
 impl<S: Precision> State<S> {
@@ -76,6 +78,7 @@ impl<S: Precision> State<S> {
             radius,
             inverse,
             numbers,
+            ids: discs.iter().map(|disc| disc.id).collect(),
             grains: particles.grain_count(),
         }
     }
@@ -130,6 +133,11 @@ impl<S: Precision> State<S> {
         &self.inverse[freedom / 2]
     }
 
+    /// The id of a disc.
+    pub fn id(&self, disc: usize) -> u32 {
+        self.ids[disc]
+    }
+
     /// Which of the scene's discs each is.
     pub fn numbers(&self) -> &[u32] {
         &self.numbers
@@ -137,7 +145,7 @@ impl<S: Precision> State<S> {
 
     /// What a pass moves.
     pub fn for_advance(&mut self) -> Moved<'_, S> {
-        (&mut self.columns, [&self.inverse[0], &self.inverse[1]], &self.numbers)
+        (&mut self.columns, [&self.inverse[0], &self.inverse[1]], &self.ids)
     }
 
     /// The discs as a sweep reads them.
@@ -164,5 +172,6 @@ impl<S: Precision> State<S> {
             }
         }
         self.numbers = reordered(&self.numbers, order);
+        self.ids = reordered(&self.ids, order);
     }
 }

@@ -21,11 +21,15 @@
 use crate::InstructionSet;
 use crate::backend::{Precision, Registers, Scalar};
 use crate::backend::{Task, dispatch};
-use crate::integrator::{Context, DERIVATIVES, Inertia, Scheme, acceleration};
+use crate::integrator::{Context, DERIVATIVES, Draws, Inertia, Scheme, acceleration};
 use crate::isa::{Element, Predicate, ProgramError, Vector, same};
+use crate::noise::{self, Purpose};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
+
+/// Discs whose random numbers are drawn at once: they stay in the first-level cache. A multiple of every register's lanes.
+const AT_ONCE: usize = 256;
 
 /// Discs that one thread moves at a time.
 const BAND: usize = 1024;
@@ -82,17 +86,20 @@ pub struct Copies<'a> {
 }
 
 impl<C: Scheme> Motion<C> {
-    /// What the scheme may know of one degree of freedom of the discs `ids` in a step.
+    /// What the scheme may know of one degree of freedom.
     #[inline(always)]
-    fn context<'a, R: Registers>(
-        &self,
-        registers: R,
-        step: u64,
-        ids: &'a [u32],
-        freedom: usize,
-        inverse: R::V,
-    ) -> Context<'a, R> {
-        Context { registers, dt: self.dt, seed: self.seed, step, ids, freedom, inverse }
+    fn context<R: Registers>(&self, registers: R, freedom: usize, inverse: R::V, normal: R::V) -> Context<R> {
+        Context { registers, dt: self.dt, freedom, inverse, normal }
+    }
+
+    /// The random numbers of some discs along x and y in the pass that corrects the step numbered `step`.
+    #[inline(always)]
+    fn draw<S: Element>(&self, step: u64, ids: &[u32], to: [&mut [S]; 2]) {
+        match C::DRAWS {
+            Draws::Never => {}
+            Draws::InCorrector => noise::draw(self.seed, Purpose::Thermostat, step, ids, to),
+            Draws::InPredictor => noise::draw(self.seed, Purpose::Thermostat, step + 1, ids, to),
+        }
     }
 
     /// The row of one degree of freedom of the disc `id`, corrected in the step numbered `step`: from the predicted one (its
@@ -106,8 +113,11 @@ impl<C: Scheme> Motion<C> {
         force: S,
         inverse: S,
     ) -> [S; DERIVATIVES] {
-        let ids = [id];
-        let context = self.context(Scalar::<S>::default(), step, &ids, freedom, inverse);
+        let [mut x, mut y] = [[S::from_f64(f64::NAN)]; 2];
+        if C::DRAWS == Draws::InCorrector {
+            self.draw(step, &[id], [&mut x, &mut y]);
+        }
+        let context = self.context(Scalar::<S>::default(), freedom, inverse, [x, y, y][freedom][0]);
         let mut row = predicted;
         let acceleration =
             acceleration(|value| context.uniform(value), self.gravity, freedom, force, inverse);
@@ -155,7 +165,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
         set: InstructionSet,
     ) -> Result<Passed, ProgramError> {
         let Advance { motion, discs, corrected, longest_step, inverse, step, ids, .. } = self;
-        assert!(!C::DRAWS || ids.len() >= discs, "an id for every disc that moves");
+        assert!(C::DRAWS == Draws::Never || ids.len() >= discs, "an id for every disc that moves");
         let freedoms = self.state.len();
         assert!((2..=3).contains(&freedoms) && self.sums.len() == freedoms, "2 or 3 degrees of freedom");
         let vary = motion.inertia == Inertia::Varying;
@@ -253,28 +263,49 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Task<S> for Pas
     #[inline(always)]
     fn on<R: Registers<Lane = S>>(mut self, registers: R) {
         let Range { start: mut first, end } = self.range.clone();
-        while first + R::LANES <= end {
-            self.register(registers, first);
-            first += R::LANES;
+        let mut noise = [[S::default(); AT_ONCE]; 2];
+        while first < end {
+            let some = first..(first + AT_ONCE).min(end);
+            if C::DRAWS != Draws::Never {
+                let [x, y] = &mut noise;
+                self.motion.draw(self.arrays.step, &self.arrays.ids[some.clone()], [x, y]);
+            }
+            while first + R::LANES <= some.end {
+                let [x, y] = [0, 1].map(|axis| &noise[axis][first - some.start..]);
+                self.register(registers, first, [x, y]);
+                first += R::LANES;
+            }
+            self.elements(first..some.end, [0, 1].map(|axis| &noise[axis][first - some.start..]));
+            first = some.end;
         }
-        self.elements(first..end);
     }
 }
 
 impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, C, FREEDOMS> {
     /// What fills no register, disc by disc: the same bits, so not worth a copy for every register file.
     #[inline(never)]
-    fn elements(&mut self, discs: Range<usize>) {
-        discs.for_each(|disc| self.register(Scalar::<S>::default(), disc));
+    fn elements(&mut self, discs: Range<usize>, [x, y]: [&[S]; 2]) {
+        for (number, disc) in discs.enumerate() {
+            self.register(Scalar::<S>::default(), disc, [&x[number..], &y[number..]]);
+        }
     }
 
+    /// The discs of a register from `first` on, with their random numbers along x and y.
     #[allow(clippy::needless_range_loop, reason = "columns side by side, under one number")]
     #[inline(always)]
-    fn register<R: Registers<Lane = S>>(&mut self, registers: R, first: usize) {
+    fn register<R: Registers<Lane = S>>(&mut self, registers: R, first: usize, noise: [&[S]; 2]) {
         let Pass { motion, arrays, corrected, .. } = *self;
         let uniform = |value: f64| registers.splat(S::from_f64(value));
         let (mut place, mut velocity) = ([uniform(0.0); 2], [uniform(0.0); 2]);
-        let ids = if C::DRAWS { &arrays.ids[first..first + R::LANES] } else { &[] };
+        let nothing = uniform(f64::NAN);
+        let normals = match C::DRAWS {
+            Draws::Never => [nothing; 2],
+            _ => noise.map(|numbers| {
+                assert!(numbers.len() >= R::LANES);
+                // SAFETY: there are as many as lanes.
+                unsafe { registers.load(numbers.as_ptr()) }
+            }),
+        };
         for freedom in 0..FREEDOMS {
             // SAFETY: Advance has checked that every sum has an entry for every disc that moves; the discs of a register are
             // such ones, and this thread alone works on them.
@@ -283,7 +314,10 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 // SAFETY: where discs vary, Advance has checked that these columns have an entry for every disc that moves.
                 unsafe { registers.load(arrays.inverse[freedom / 2].add(first)) }
             });
-            let context = |step: u64| motion.context(registers, step, ids, freedom, inverse);
+            let context = |place: Draws| {
+                let normal = if C::DRAWS == place { normals[freedom.min(1)] } else { nothing };
+                motion.context(registers, freedom, inverse, normal)
+            };
             let acceleration = acceleration(uniform, motion.gravity, freedom, force, inverse);
             let mut row = [uniform(0.0); DERIVATIVES];
             for k in 0..C::CARRIED {
@@ -291,11 +325,11 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 row[k] = unsafe { registers.load(arrays.columns[freedom][k].add(first)) };
             }
             if corrected {
-                motion.scheme.begin(&context(arrays.step), &mut row, acceleration);
+                motion.scheme.begin(&context(Draws::InCorrector), &mut row, acceleration);
             } else {
-                motion.scheme.correct(&context(arrays.step), &mut row, acceleration);
+                motion.scheme.correct(&context(Draws::InCorrector), &mut row, acceleration);
             }
-            motion.scheme.predict(&context(arrays.step + 1), &mut row);
+            motion.scheme.predict(&context(Draws::InPredictor), &mut row);
             for k in 0..C::CARRIED {
                 // SAFETY: it was loaded from there, and this thread alone works on these discs.
                 unsafe { registers.store(arrays.columns[freedom][k].add(first), row[k]) };

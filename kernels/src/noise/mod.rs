@@ -1,6 +1,10 @@
 //! Random numbers that are a function of where they are used: counter-based, so that they depend on no order of
 //! computation, no thread and no vector width.
 
+mod drawing;
+
+pub use drawing::draw;
+
 use std::convert::Infallible;
 
 /// What a random number is for; equal counters of different purposes are unrelated.
@@ -18,7 +22,7 @@ pub enum Purpose {
 }
 
 /// Philox 4x32 with ten rounds (Salmon et al., SC11): four random words from a counter of four and a key of two.
-#[inline]
+#[inline(always)]
 pub fn philox4x32(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
     for _ in 0..10 {
         let product = |multiplier: u64, word: u32| multiplier * u64::from(word);
@@ -34,13 +38,17 @@ pub fn philox4x32(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
     counter
 }
 
+/// The fourth word of a counter: its top byte keeps purposes apart, the two below it blocks; 40 bits count steps.
+#[inline(always)]
+fn top_word(purpose: Purpose, step: u64, block: u16) -> u32 {
+    debug_assert!(step < 1 << 40, "a run of 2^40 steps is out of reach");
+    (purpose as u32) << 24 | u32::from(block) << 8 | (step >> 32) as u32 & 0xFF
+}
+
 /// The random words of (seed, purpose, id, step) and of the `block`-th four of them.
 #[inline]
 fn words(seed: u64, purpose: Purpose, id: u32, step: u64, block: u16) -> [u32; 4] {
-    // The top byte of the fourth word keeps purposes apart, the two below it blocks; 40 bits count steps.
-    debug_assert!(step < 1 << 40, "a run of 2^40 steps is out of reach");
-    let top = (purpose as u32) << 24 | u32::from(block) << 8 | (step >> 32) as u32 & 0xFF;
-    philox4x32([id, step as u32, 0, top], [seed as u32, (seed >> 32) as u32])
+    philox4x32([id, step as u32, 0, top_word(purpose, step, block)], [seed as u32, (seed >> 32) as u32])
 }
 
 /// A uniform number in (0, 1), of 53 random bits; never 0, so that its logarithm exists.

@@ -1,0 +1,245 @@
+//! Law, scheme and search of a scene, put together: what steps the particles.
+
+use super::options::{By, PairLaw, SchemeKind};
+use super::prepared::Checked;
+use crate::domain::Domain;
+use crate::io::checkpoint::Column;
+use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, Search, SectorSearch};
+use crate::method::pairwise::{Dynamics, Elapsed, Engine, System, WithLaw, WithScheme};
+use crate::method::{Failure, FailureKind};
+use crate::particles::Particles;
+use crate::scene::Precision;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend;
+use stripmine_kernels::integrator::Inertia;
+use stripmine_kernels::integrator::langevin::{Baoab, Bath, Stochastic};
+use stripmine_kernels::law::Asked;
+use stripmine_kernels::law::lennard_jones::LennardJones;
+use stripmine_kernels::mask::Mask;
+use stripmine_kernels::sweep::fast::{Grid, Met};
+use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
+
+/// How pairs are found, with all that is needed for it.
+#[derive(Clone, Debug)]
+pub(super) enum Found {
+    /// On a lattice.
+    Lattice(LatticeShape, Frame),
+    /// In sectors.
+    Sectors(Grid),
+    /// In lists, made of sectors, up to so much beyond the cut-off (length).
+    Lists(Grid, f64),
+}
+
+impl Found {
+    /// The word for it.
+    pub(super) fn by(&self) -> By {
+        match self {
+            Found::Lattice(..) => By::Lattice,
+            Found::Sectors(_) => By::Sectors,
+            Found::Lists(..) => By::NeighborList,
+        }
+    }
+}
+
+/// Particles of one kind in a bath.
+#[derive(Clone, Copy, Debug)]
+struct InBath {
+    law: LennardJones,
+    scheme: SchemeKind,
+    bath: Bath,
+    dt: f64,
+    mass: f64,
+}
+
+impl Dynamics for InBath {
+    fn with_law<W: WithLaw>(&self, work: W) -> W::Output {
+        work.with(self.law)
+    }
+
+    fn with_scheme<W: WithScheme>(&self, work: W) -> W::Output {
+        let InBath { scheme, bath, dt, mass, .. } = *self;
+        match scheme {
+            SchemeKind::Baoab => work.with(Baoab::new(bath, dt, mass)),
+            SchemeKind::Stochastic => work.with(Stochastic::<false> { bath }),
+            SchemeKind::AsPrinted => work.with(Stochastic::<true> { bath }),
+        }
+    }
+}
+
+/// What steps particles.
+pub(super) trait Stepper: Send {
+    /// The predicted state of the next step.
+    fn advance(&mut self) -> Result<(), Failure>;
+    /// Forces on it; without pairs there are none.
+    fn meet(&mut self, asked: Asked) -> Result<Met, Failure>;
+    /// Particles that belong to no cell, or of which something is no finite number, by their place among the particles.
+    fn unfit(&self) -> Vec<usize>;
+    /// Brings cells up to date from the places as predicted.
+    fn settle(&mut self) -> Result<(), Failure>;
+    /// Steps, periods and seconds.
+    fn elapsed(&self) -> &Elapsed;
+    /// The same, to be changed.
+    fn elapsed_mut(&mut self) -> &mut Elapsed;
+    /// The particles inside the box.
+    fn particles(&self) -> Particles;
+    /// The particles where the periods counted as crossed are to be added.
+    fn standing(&self) -> Particles;
+    /// Everything that the next step depends on.
+    fn columns(&self) -> Vec<(String, Column)>;
+    /// Takes columns up.
+    fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String>;
+    /// Entries of the lists, and how often they were made.
+    fn lists(&self) -> Option<(usize, u64)>;
+}
+
+struct Stepping<S, P, Q> {
+    engine: Engine<S, P, Q, InBath>,
+    has_pairs: bool,
+}
+
+impl<S: backend::Precision, P: backend::Precision, Q: Search<S, P>> Stepper for Stepping<S, P, Q> {
+    fn advance(&mut self) -> Result<(), Failure> {
+        self.engine.advance().map(drop)
+    }
+
+    fn meet(&mut self, asked: Asked) -> Result<Met, Failure> {
+        match self.has_pairs {
+            true => self.engine.meet(asked),
+            false => {
+                self.engine.meet_nothing();
+                Ok(Met::default())
+            }
+        }
+    }
+
+    fn unfit(&self) -> Vec<usize> {
+        self.engine.unfit()
+    }
+
+    fn settle(&mut self) -> Result<(), Failure> {
+        self.engine.settle()
+    }
+
+    fn elapsed(&self) -> &Elapsed {
+        self.engine.elapsed()
+    }
+
+    fn elapsed_mut(&mut self) -> &mut Elapsed {
+        self.engine.elapsed_mut()
+    }
+
+    fn particles(&self) -> Particles {
+        self.engine.particles()
+    }
+
+    fn standing(&self) -> Particles {
+        self.engine.standing()
+    }
+
+    fn columns(&self) -> Vec<(String, Column)> {
+        self.engine.columns()
+    }
+
+    fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
+        self.engine.restore(steps, columns)
+    }
+
+    fn lists(&self) -> Option<(usize, u64)> {
+        self.engine.lists()
+    }
+}
+
+/// Particles of a checked scene, some of them or all, at their start.
+///
+/// # Errors
+/// [`Failure`] if the start breaks a precondition, or the processor lacks the instructions.
+pub(super) fn stepper(
+    checked: &Checked,
+    particles: Particles,
+    follows: bool,
+) -> Result<Box<dyn Stepper>, Failure> {
+    match checked.scene.precision {
+        Precision::F64 => of_precision::<f64, f64>(checked, particles, follows),
+        Precision::F32 => of_precision::<f32, f32>(checked, particles, follows),
+        Precision::Mixed => of_precision::<f64, f32>(checked, particles, follows),
+    }
+}
+
+fn of_precision<S: backend::Precision, P: backend::Precision>(
+    checked: &Checked,
+    particles: Particles,
+    follows: bool,
+) -> Result<Box<dyn Stepper>, Failure> {
+    let Checked { scene, domain, mass, reach, found, .. } = checked;
+    let (domain, mass, reach): (Domain, f64, f64) = (*domain, *mass, *reach);
+    let dynamics = InBath {
+        law: LennardJones::new(scene.strength, checked.diameter, reach),
+        scheme: scene.scheme,
+        bath: scene.bath,
+        dt: scene.dt,
+        mass,
+    };
+    let system = System {
+        domain,
+        dt: scene.dt,
+        gravity: [0.0; 2],
+        freedoms: 2,
+        inertia: Inertia::Equal { inverse_mass: 1.0 / mass, inverse_inertia: 0.0 },
+        inertia_factor: 0.5,
+        radius: Some(0.5 * reach),
+        reach,
+        longest_step: f64::INFINITY,
+        followed: [follows; 2],
+        seed: checked.seed,
+    };
+    let count = particles.len();
+    let set = scene.instructions();
+    let has_pairs = scene.law != PairLaw::None;
+    fn boxed<S: backend::Precision, P: backend::Precision, Q: Search<S, P> + 'static>(
+        (dynamics, system, set): (InBath, System, InstructionSet),
+        search: Q,
+        particles: Particles,
+        has_pairs: bool,
+    ) -> Result<Box<dyn Stepper>, Failure> {
+        let engine = Engine::<S, P, Q, _>::new(dynamics, system, search, set, particles)?;
+        Ok(Box::new(Stepping { engine, has_pairs }))
+    }
+    let all = (dynamics, system, set);
+    match found.clone() {
+        Found::Lattice(shape, frame) => {
+            // Each particle has the room of the cut-off to itself; those that come nearer share a cell.
+            let radii = std::iter::repeat_n(0.5 * reach, count);
+            let search = LatticeSearch::<P>::new::<S>(shape, frame, OnConflict::Resolve, radii);
+            boxed::<S, P, _>(all, search, particles, has_pairs)
+        }
+        Found::Sectors(grid) => {
+            boxed::<S, P, _>(all, SectorSearch::<P>::new::<S>(grid, count, reach), particles, has_pairs)
+        }
+        Found::Lists(grid, skin) => {
+            boxed::<S, P, _>(all, ListSearch::<S, P>::new(grid, count, reach, skin), particles, has_pairs)
+        }
+    }
+}
+
+/// The lattice for pairs up to `reach` (length) apart of which hardly any comes nearer than `nearest`; none where the box has none.
+pub(super) fn lattice_of(domain: &Domain, reach: f64, nearest: f64) -> Option<(LatticeShape, Frame)> {
+    const HALF_WIDTH: u32 = 2;
+    let least = reach / f64::from(HALF_WIDTH);
+    if least > nearest / std::f64::consts::SQRT_2 {
+        return None;
+    }
+    let counts = [0, 1].map(|axis| (domain.length(axis) / least).floor());
+    let edge = [0, 1].map(|axis| domain.length(axis) / counts[axis]);
+    if counts.iter().any(|&count| count < 1.0 || count > f64::from(u32::MAX)) {
+        return None;
+    }
+    let mask = Mask::square(HALF_WIDTH);
+    let [columns, rows] = counts.map(|count| count as usize);
+    let shape = LatticeShape::new(columns, rows, &mask, domain.periodic()).ok()?;
+    Some((shape, Frame { origin: domain.corner(), edge }))
+}
+
+/// Whether a failure is of particles that were thrown out, so that a run may go on without them.
+pub(super) fn is_loss(failure: &Failure) -> bool {
+    matches!(failure.kind, FailureKind::OutOfBox | FailureKind::NotFinite)
+}

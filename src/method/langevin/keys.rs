@@ -1,0 +1,78 @@
+//! The keys that are this method's own, and what they demand of each other.
+
+use super::options::{By, PairLaw, SchemeKind};
+use crate::scene::Bounds::{NonNegative, Positive};
+use crate::scene::Fallback::{Is, Otherwise};
+use crate::scene::Kind::{Choice, Number, Switch, Whole};
+use crate::scene::keys::define_keys;
+use crate::scene::{
+    ARITHMETIC, DISC_RIVALS, DISCS, DURATION, GRAVITY, HEADING, INSTRUCTIONS, KeySet, OUTPUT, PERIODIC,
+    PLANAR_DOMAIN, Reason, STEP, STEPPED_RUN, SceneError, Use, Value, Values, Vocabulary, disagreements,
+    too_many_steps,
+};
+use crate::words::Words;
+
+const ALWAYS: Use = None;
+const WITH_PAIRS: Use = Some((&LAW, &["wca", "lennard-jones"]));
+const LISTS: Use = Some((&SEARCH, &["auto", "neighbor-list"]));
+const SECTORS: Use = Some((&SEARCH, &["auto", "sectors"]));
+
+define_keys! {
+    /// Law, bath, search and integrator.
+    static OWN;
+    LAW = "law" "kind", Choice(PairLaw::WORDS), "", Is("\"wca\""), ALWAYS,
+        "The pair law: none; Lennard-Jones cut off at its minimum, which only repels (wca); or cut off at 2.5 diameters and shifted. The diameter σ is twice particles.radius.";
+    STRENGTH = "law" "strength", Number(Positive), "energy", Is("1.0"), WITH_PAIRS,
+        "Depth ε of the pair potential.";
+    DRAG = "law" "drag", Number(NonNegative), "mass/time", Is("1.0"), ALWAYS,
+        "Friction γ of the bath.";
+    BATH_TEMPERATURE = "law" "bath_temperature", Number(NonNegative), "energy", Is("1.0"), ALWAYS,
+        "Temperature kT of the bath.";
+
+    SEARCH = "search" "by", Choice(By::WORDS), "", Is("\"auto\""), ALWAYS,
+        "How pairs are found: on a lattice of cells that are one particle's each (wca only), in sectors, or by lists of neighbours; auto takes the fastest that the scene allows.";
+    PER_SIDE = "search" "sectors", Whole(3, 1_000_000), "", Otherwise("as is fastest"), SECTORS,
+        "Sectors along each side; none may be narrower than the cut-off.";
+    SKIN = "search" "skin", Number(Positive), "length", Otherwise("by the density"), LISTS,
+        "Listed pairs are up to this much farther apart than the cut-off.";
+
+    INTEGRATOR = "integrator" "kind", Choice(SchemeKind::WORDS), "", Is("\"baoab\""), ALWAYS,
+        "baoab; or the source's velocity Verlet with friction and noise in the acceleration (stochastic), also with friction by the velocity of the step before, as printed, which heats.";
+
+    MOST_LOST = "run" "most_lost", Whole(0, 2_147_483_647), "", Is("0"), ALWAYS,
+        "So many particles may be lost: thrown out of the box farther than a period, or to no finite place. They are counted and listed, and the run goes on without them.";
+    LOSSES = "output" "losses", Switch, "", Is("true"), ALWAYS,
+        "A row for each particle lost, as events.csv.";
+}
+
+/// What the scenes of this method may say.
+pub(super) static VOCABULARY: Vocabulary = Vocabulary {
+    keys: KeySet {
+        method: "langevin",
+        groups: &[HEADING, PLANAR_DOMAIN, DISCS, OWN, STEP, ARITHMETIC, INSTRUCTIONS, STEPPED_RUN, OUTPUT],
+        rivals: &[DISC_RIVALS, DURATION],
+    },
+    rules: &[disagreements, too_many_steps, own_rules],
+    presets: super::presets::PRESETS,
+    renamed: &[],
+};
+
+/// What the method has no place for.
+fn own_rules(values: &Values) -> Vec<SceneError> {
+    let mut errors = vec![];
+    let refused = |key, message: &str| values.spot(key).error(Reason::Contradiction, message.to_owned());
+    if matches!(values.value(&PERIODIC), Some(Value::Switches(periodic)) if periodic != [true; 2]) {
+        let error = refused(&PERIODIC, "`domain.periodic` is false, but the bath has no walls");
+        errors.push(error.expecting("periodic = [true, true]"));
+    }
+    if matches!(values.value(&GRAVITY), Some(Value::Pair(gravity)) if gravity != [0.0; 2]) {
+        let error =
+            refused(&GRAVITY, "`domain.gravity` is not 0, but nothing stops the fall across a periodic side");
+        errors.push(error.expecting("gravity = [0.0, 0.0]"));
+    }
+    if values.gives(&PER_SIDE) && values.gives(&SKIN) {
+        let error = refused(&PER_SIDE, "`search.sectors` and `search.skin` are of two ways to find pairs");
+        errors.push(error.advising("leave one out"));
+    }
+    errors
+}

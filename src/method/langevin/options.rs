@@ -1,0 +1,52 @@
+//! The words of this method's keys.
+
+use crate::words::define_words;
+
+define_words! {
+    /// What particles do to each other.
+    pub enum PairLaw {
+        /// Nothing.
+        None = "none",
+        /// Repulsion: Lennard-Jones cut off at its minimum (WCA).
+        Wca = "wca",
+        /// Lennard-Jones, cut off at 2.5 diameters.
+        LennardJones = "lennard-jones",
+    }
+}
+
+define_words! {
+    /// How pairs are found.
+    pub enum By {
+        /// As is fastest.
+        Auto = "auto",
+        /// On a lattice of cells that are one particle's each.
+        Lattice = "lattice",
+        /// In sectors.
+        Sectors = "sectors",
+        /// In lists.
+        NeighborList = "neighbor-list",
+    }
+}
+
+define_words! {
+    /// The integrator.
+    pub enum SchemeKind {
+        /// Kick, drift, bath, drift, kick.
+        Baoab = "baoab",
+        /// The source's: velocity Verlet with the bath in the acceleration.
+        Stochastic = "stochastic",
+        /// The same with friction by the velocity of the step before, as the source prints it.
+        AsPrinted = "as-printed",
+    }
+}
+
+impl PairLaw {
+    /// The cut-off over the diameter; none without pairs.
+    pub fn cutoff(self) -> Option<f64> {
+        match self {
+            PairLaw::None => None,
+            PairLaw::Wca => Some(1.122_462_048_309_373),
+            PairLaw::LennardJones => Some(2.5),
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! Particles in a bath under way, observed; what is thrown out is counted, and the run goes on without it.
+
+use super::dynamics::{Stepper, is_loss, stepper};
+use super::losses::Losses;
+use super::prepared::Checked;
+use crate::io::checkpoint::{Column, Counter};
+use crate::method::{Clock, Failure, FailureKind, Purpose, RunWarning, Simulation, Snapshot, Until};
+use crate::particles::{Particle, Particles};
+use serde_json::{Map, Value, json};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::atomic::{AtomicBool, Ordering};
+use stripmine_kernels::law::Asked;
+
+/// Columns that are sums of forces; those of a step that is made again begin with none.
+const SUMS: [&str; 3] = ["Fx", "Fy", "torque"];
+/// Energy and virial of the pairs in a checkpoint.
+const OF_PAIRS: [&str; 2] = ["potential", "virial"];
+
+/// Particles under way.
+pub(super) struct Running {
+    checked: Checked,
+    purpose: Purpose,
+    stepper: Box<dyn Stepper>,
+    /// The particles of the start that are still there.
+    start: Particles,
+    losses: Losses,
+    /// Energy and virial of the pairs (energy), as of the last step, in a run.
+    of_pairs: [f64; 2],
+    /// Particles moved so far: particles times steps.
+    work: u64,
+}
+
+impl Running {
+    /// At the start.
+    ///
+    /// # Errors
+    /// [`Failure`] if it breaks a precondition already.
+    pub(super) fn new(checked: &Checked, purpose: Purpose) -> Result<Running, Failure> {
+        let follows = purpose == Purpose::Run;
+        let start = checked.particles.clone();
+        let stepper = stepper(checked, start.clone(), follows)?;
+        let losses = Losses::new(follows && checked.scene.losses);
+        let checked = checked.clone();
+        let mut running = Running { checked, purpose, stepper, start, losses, of_pairs: [0.0; 2], work: 0 };
+        running.meet()?;
+        Ok(running)
+    }
+
+    /// All forces of the places as they stand.
+    fn meet(&mut self) -> Result<(), Failure> {
+        let asked = Asked { energy: self.purpose == Purpose::Run, ..Asked::default() };
+        self.of_pairs = self.stepper.meet(asked)?.energy;
+        Ok(())
+    }
+
+    fn step(&mut self) -> Result<(), Failure> {
+        let mut done = self.stepper.advance();
+        loop {
+            match done.and_then(|()| self.meet()) {
+                Ok(()) => break,
+                Err(failure) => done = self.lose(failure),
+            }
+        }
+        self.work += self.start.len() as u64;
+        Ok(())
+    }
+
+    /// Goes on without the particles that a failure is of.
+    fn lose(&mut self, failure: Failure) -> Result<(), Failure> {
+        let unfit: BTreeSet<usize> = self.stepper.unfit().into_iter().collect();
+        if !is_loss(&failure) || unfit.is_empty() {
+            return Err(failure);
+        }
+        let clock = self.clock();
+        let standing = self.stepper.standing();
+        for &place in &unfit {
+            let Particle { id, .. } = self.start.all()[place];
+            self.losses.add(id, clock.steps, clock.time, standing.all()[place].place());
+        }
+        let (lost, most) = (self.losses.count(), self.checked.scene.most_lost);
+        if lost > most || unfit.len() == self.start.len() {
+            return Err(self.too_many(failure, lost, most));
+        }
+        self.without(&|place, _| unfit.contains(&place))
+            .map_err(|why| Failure::new(FailureKind::Lost, why, "report this with the scene").at(clock))?;
+        self.stepper.settle()
+    }
+
+    fn too_many(&self, failure: Failure, lost: u64, most: u64) -> Failure {
+        let first = failure.culprits.first().map(|culprit| format!(", now {culprit}")).unwrap_or_default();
+        let message = format!("{lost} particles were lost{first}; run.most_lost = {most}");
+        let limits = self.checked.limits();
+        let shortest = limits.iter().map(|limit| limit.step).fold(f64::INFINITY, f64::min);
+        let remedy = format!(
+            "the time step is too long for the pairs: take integrator.dt below {shortest:.2e}, or allow losses by run.most_lost"
+        );
+        let failure = Failure { message, remedy, kind: FailureKind::Lost, ..failure };
+        failure.with([("lost", lost as f64), ("most_lost", most as f64)])
+    }
+
+    /// The same state without particles of some places and ids.
+    fn without(&mut self, leaves: &dyn Fn(usize, &Particle) -> bool) -> Result<(), String> {
+        let all = self.start.all();
+        let stays: Vec<bool> =
+            all.iter().enumerate().map(|(place, particle)| !leaves(place, particle)).collect();
+        let start = all.iter().zip(&stays).filter(|(_, stays)| **stays).map(|(particle, _)| *particle);
+        let start = Particles::new(start.collect());
+        let columns: Vec<(String, Column)> =
+            self.stepper.columns().into_iter().map(|(name, column)| kept(name, column, &stays)).collect();
+        let elapsed = self.stepper.elapsed();
+        let (steps, timings) = (elapsed.steps, elapsed.timings);
+        let follows = self.purpose == Purpose::Run;
+        self.stepper = stepper(&self.checked, start.clone(), follows).map_err(|failure| failure.what())?;
+        self.stepper.restore(steps, &columns)?;
+        self.stepper.elapsed_mut().timings = timings;
+        self.start = start;
+        Ok(())
+    }
+
+    /// Displacements since the start, as if there were no sides (length).
+    fn displacements(&self) -> Vec<[f64; 2]> {
+        let standing = self.stepper.standing();
+        let crossed = self.stepper.elapsed().crossings.counts();
+        let sides = self.checked.domain.lengths();
+        let of = |(place, (now, start)): (usize, (&Particle, &Particle))| {
+            let periods = crossed.get(place).copied().unwrap_or_default();
+            [0, 1].map(|axis| now.position[axis] + periods[axis] * sides[axis] - start.position[axis])
+        };
+        standing.all().iter().zip(self.start.all()).enumerate().map(of).collect()
+    }
+}
+
+/// The entries of a column that stay; sums of forces begin with none.
+fn kept(name: String, column: Column, stays: &[bool]) -> (String, Column) {
+    fn of<T: Copy>(values: Vec<T>, stays: &[bool]) -> Vec<T> {
+        values.into_iter().zip(stays).filter(|(_, stays)| **stays).map(|(value, _)| value).collect()
+    }
+    let is_sum = SUMS.contains(&name.as_str());
+    let column = match column {
+        Column::F64(values) if is_sum => Column::F64(of(vec![0.0; values.len()], stays)),
+        Column::F32(values) if is_sum => Column::F32(of(vec![0.0; values.len()], stays)),
+        Column::F64(values) => Column::F64(of(values, stays)),
+        Column::F32(values) => Column::F32(of(values, stays)),
+        Column::U32(values) => Column::U32(of(values, stays)),
+        Column::U64(values) => Column::U64(of(values, stays)),
+    };
+    (name, column)
+}
+
+impl Simulation for Running {
+    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure> {
+        while !until.iter().any(|moment| moment.has_come(&self.clock())) {
+            if interrupted.load(Ordering::Relaxed) {
+                break;
+            }
+            self.step()?;
+        }
+        Ok(())
+    }
+
+    fn clock(&self) -> Clock {
+        self.stepper.elapsed().clock()
+    }
+
+    fn particles(&self) -> Particles {
+        self.stepper.particles()
+    }
+
+    fn observe(&self) -> Vec<f64> {
+        let (particles, mass) = (self.stepper.particles(), self.checked.mass);
+        let count = particles.len() as f64;
+        let velocities = || particles.all().iter().map(Particle::planar_velocity);
+        let kinetic = 0.5 * mass * velocities().map(|[u, v]| u * u + v * v).sum::<f64>();
+        let momentum = [0, 1].map(|axis| mass * velocities().map(|velocity| velocity[axis]).sum::<f64>());
+        let temperature = kinetic / count;
+        let [potential, virial] = self.of_pairs;
+        let pressure = (kinetic + 0.5 * virial) / self.checked.domain.area();
+        let square = self.displacements().iter().map(|[x, y]| x * x + y * y).sum::<f64>() / count;
+        vec![
+            self.clock().time,
+            kinetic,
+            potential,
+            temperature,
+            pressure,
+            square,
+            square.sqrt(),
+            momentum[0],
+            momentum[1],
+            self.losses.count() as f64,
+        ]
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        let counters = OF_PAIRS.into_iter().zip(self.of_pairs);
+        let counters = counters.map(|(name, sum)| (name.to_owned(), Counter::Sum(sum)));
+        let columns = self.stepper.columns().into_iter().chain(self.losses.columns());
+        Snapshot { counters: counters.collect(), columns: columns.collect() }
+    }
+
+    fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
+        let Snapshot { counters, columns } = snapshot;
+        for (name, sum) in OF_PAIRS.into_iter().zip(&mut self.of_pairs) {
+            let Some(Counter::Sum(value)) = counters.get(name) else {
+                return Err(format!("the sum {name} is missing"));
+            };
+            *sum = *value;
+        }
+        self.losses.take_up(&columns)?;
+        let lost: BTreeSet<u32> = self.losses.ids().collect();
+        if !lost.is_empty() {
+            self.without(&|_, particle| lost.contains(&particle.id))?;
+        }
+        self.stepper.restore(clock.steps, &columns)
+    }
+
+    fn phases(&self) -> BTreeMap<&'static str, f64> {
+        self.stepper.elapsed().timings.named()
+    }
+
+    fn reset_phases(&mut self) {
+        self.stepper.elapsed_mut().timings = Default::default();
+    }
+
+    fn work(&self) -> f64 {
+        self.work as f64
+    }
+
+    fn summary(&self) -> Map<String, Value> {
+        let lists = self.stepper.lists();
+        let entries = [
+            ("particles", json!(self.start.len())),
+            ("lost", json!(self.losses.count())),
+            ("listed_pairs", json!(lists.map(|(entries, _)| entries))),
+            ("lists_made", json!(lists.map(|(_, made)| made))),
+            ("potential", json!(self.of_pairs[0])),
+        ];
+        entries.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
+    }
+
+    fn take_events(&mut self) -> String {
+        self.losses.take_rows()
+    }
+
+    fn warnings(&self) -> Vec<RunWarning> {
+        let (lost, all) = (self.losses.count(), self.checked.particles.len());
+        let message = format!(
+            "{lost} of {all} particles were thrown out of the box and lost: the time step is too long for the pairs; events.csv \
+             lists them"
+        );
+        let warning = RunWarning { check: "lost", value: lost as f64, limit: 0.0, message };
+        if lost > 0 { vec![warning] } else { vec![] }
+    }
+
+    fn in_words(&self) -> String {
+        let seen = self.observe();
+        format!(
+            "{} particles, {} lost; temperature {:.4}, pressure {:.4e}, mean square displacement {:.4e}",
+            self.start.len(),
+            self.losses.count(),
+            seen[3],
+            seen[4],
+            seen[5]
+        )
+    }
+}

@@ -1,0 +1,47 @@
+//! Places of a mesh, drawn at random.
+
+use rand::RngExt;
+use stripmine_kernels::noise::{Purpose, Stream};
+
+/// `count` different places of a mesh of some columns and rows, every choice and order equally likely (Fisher and Yates).
+///
+/// # Panics
+/// If there are fewer places.
+pub fn mesh([columns, rows]: [usize; 2], count: usize, seed: u64) -> Vec<[usize; 2]> {
+    let places = columns * rows;
+    assert!(count <= places, "{count} of {places} places");
+    let mut random = Stream::new(seed, Purpose::Placement, 0);
+    let mut left: Vec<u32> = (0..places as u32).collect();
+    for drawn in 0..count {
+        left.swap(drawn, random.random_range(drawn..places));
+    }
+    left.truncate(count);
+    left.into_iter().map(|place| [place as usize % columns, place as usize / columns]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No place twice, all of them if all are asked for, and each as often as any other in each turn: χ² of 9999 draws of 3 of 6.
+    #[test]
+    fn places_are_different_and_all_alike() {
+        let mut all = mesh([7, 5], 35, 4);
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), 35);
+        let (mut counts, draws) = ([[0.0; 6]; 3], 9999);
+        for seed in 0..draws {
+            let places = mesh([3, 2], 3, seed);
+            for (turn, [column, row]) in places.into_iter().enumerate() {
+                counts[turn][column + 3 * row] += 1.0;
+            }
+        }
+        let expected = draws as f64 / 6.0;
+        for turn in counts {
+            // Five degrees of freedom: one of a thousand is above 20.5.
+            let square: f64 = turn.iter().map(|count: &f64| (count - expected).powi(2) / expected).sum();
+            assert!(square < 20.5, "{square}");
+        }
+    }
+}
