@@ -21,7 +21,7 @@ pub(super) struct BenchVerb {
     /// Precision of state and forces
     #[arg(long, value_parser = ["f64", "f32", "mixed"])]
     precision: Option<String>,
-    /// Integrator, such as gear4, gear5, gear6 or velocity-verlet
+    /// Integrator, such as gear4, gear5, gear6, velocity-verlet, baoab or stochastic
     #[arg(long)]
     integrator: Option<String>,
     /// What moves the particles: auto, fast, or programs of lattice MD, reference of hard discs; the fastest by default
@@ -39,6 +39,18 @@ pub(super) struct BenchVerb {
     /// Mask of cells around a disc, such as min or r3; the cheapest by default
     #[arg(long)]
     mask: Option<String>,
+    /// Pair law of particles in a bath: none, wca or lennard-jones
+    #[arg(long)]
+    law: Option<String>,
+    /// How pairs of particles in a bath are found: auto, lattice, sectors or neighbor-list
+    #[arg(long)]
+    search: Option<String>,
+    /// Sectors along each side
+    #[arg(long)]
+    sectors: Option<u64>,
+    /// How much farther than the cut-off listed pairs may be
+    #[arg(long, allow_negative_numbers = true)]
+    skin: Option<f64>,
     /// Steps, or collisions, of each repeat; about a second's worth by default
     #[arg(long, visible_alias = "collisions", value_parser = clap::value_parser!(u64).range(1..))]
     steps: Option<u64>,
@@ -69,6 +81,10 @@ impl BenchVerb {
             ("instruction-set", self.instruction_set.clone()),
             ("frictionless", self.frictionless.then(String::new)),
             ("mask", self.mask.clone()),
+            ("law", self.law.clone()),
+            ("search", self.search.clone()),
+            ("sectors", self.sectors.map(|count| count.to_string())),
+            ("skin", self.skin.map(|skin| skin.to_string())),
             ("cell-edge", self.cell_edge.map(|edge| edge.to_string())),
         ]
     }

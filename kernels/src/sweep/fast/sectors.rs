@@ -189,14 +189,13 @@ impl Sectors {
         self.starts[sector] as usize..self.starts[sector + more + 1] as usize
     }
 
-    /// Calls `own(disc)` for every disc of some sectors of a row, and then `meet(disc, partner, number of the cell offset)` for
-    /// every partner in the sectors ahead.
+    /// Calls `meet(disc, partner, number of the cell offset)` for every disc of some sectors of a row and every partner in the
+    /// sectors ahead.
     #[inline(always)]
     pub(super) fn pairs_of_row(
         &self,
         row: usize,
         columns: Range<usize>,
-        mut own: impl FnMut(u32),
         mut meet: impl FnMut(u32, u32, usize),
     ) {
         let [all, rows] = self.grid.counts;
@@ -212,7 +211,6 @@ impl Sectors {
                 let (beside, above) = (self.members(sector, 1).end, self.members(sector + all - 1, 2));
                 for at in here.clone() {
                     let first = self.members[at];
-                    own(first);
                     for &second in &self.members[at + 1..beside] {
                         meet(first, second, self.sector[second as usize] as usize - sector);
                     }
@@ -228,7 +226,6 @@ impl Sectors {
             });
             for at in here.clone() {
                 let first = self.members[at];
-                own(first);
                 self.members[rest_of(at)].iter().for_each(|&second| meet(first, second, 0));
                 for (cell_offset, there) in ahead.iter().enumerate().skip(1) {
                     self.members[there.clone()].iter().for_each(|&second| meet(first, second, cell_offset));
@@ -267,20 +264,15 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
             |_| self.grid.counts[0],
             |near, row, column| {
                 let (mut last, mut at) = (NOWHERE, [0.0; 2]);
-                self.pairs_of_row(
-                    row,
-                    column..column + 1,
-                    |_| {},
-                    |first, second, cell_offset| {
-                        // SAFETY: `pairs_of_row` gives members of sectors, which are discs, and numbers of cell offsets below 5.
-                        unsafe {
-                            if first != last {
-                                (last, at) = (first, near.at(first));
-                            }
-                            near.meet(first, at, second, cell_offset);
+                self.pairs_of_row(row, column..column + 1, |first, second, cell_offset| {
+                    // SAFETY: `pairs_of_row` gives members of sectors, which are discs, and numbers of cell offsets below 5.
+                    unsafe {
+                        if first != last {
+                            (last, at) = (first, near.at(first));
                         }
-                    },
-                );
+                        near.meet(first, at, second, cell_offset);
+                    }
+                });
             },
         );
         Ok(())

@@ -4,11 +4,12 @@
 //! touch. They are made from [`Sectors`] and lie one behind the other:
 //!
 //! ```text
-//! rows      0           2     3     4    where in `own` the discs of each row of sectors begin, and the end
-//! own       4     9     2     7          the discs in order of their sectors
-//! first     0     3     4     5     5    where in `partners` those of each begin, and the end
-//! partners  9 2 7 2     7                each with the number of the cell offset in its upper three bits
+//! rows      0              3           4           where in `pairs` those of each row of sectors begin, and the end
+//! pairs     4-9 4-2 4-7    9-2         2-7         the second disc with the number of the cell offset in its upper three bits
 //! ```
+//!
+//! They are pairs and no list for each disc: in a thin gas most such lists would be empty or short, and how long is
+//! what no processor foresees.
 //!
 //! A pair is listed once, with the disc that comes first in the order of the sectors. The *cell offset* is one of the five from a
 //! sector to those ahead of it (itself first), and stands for the difference of the places from which the two discs are seen;
@@ -17,7 +18,7 @@
 use super::finder::{Cursor, Finder, Rows};
 use super::grid::Grid;
 use super::near::Near;
-use super::pairs::{Pairs, Touches};
+use super::pairs::{Pair, Pairs, Touches};
 use super::sectors::Sectors;
 use crate::InstructionSet;
 use crate::backend::Precision;
@@ -27,6 +28,9 @@ use std::ops::Range;
 
 /// Bits of a partner that number the disc; those above number the cell offset.
 const DISC: u32 = 29;
+
+/// Pairs that are looked at before it is asked whether enough are found.
+const SOME: usize = 16;
 
 /// Rows of sectors whose lists one thread makes at a time.
 const ROWS: usize = 8;
@@ -39,21 +43,16 @@ pub struct VerletList {
     grid: Grid,
     reach: f64,
     discs: usize,
-    /// Where in `own` the discs of each row of sectors begin, and the end.
+    /// Where in `pairs` those of each row of sectors begin, and the end.
     rows: Vec<u32>,
-    own: Vec<u32>,
-    /// Where in `partners` those of each own disc begin, and the end.
-    first: Vec<u32>,
-    partners: Vec<u32>,
+    pairs: Vec<Pair>,
 }
 
 /// The lists of some rows.
 #[derive(Default)]
 struct Part {
     rows: Vec<u32>,
-    own: Vec<u32>,
-    first: Vec<u32>,
-    partners: Vec<u32>,
+    pairs: Vec<Pair>,
 }
 
 impl VerletList {
@@ -77,79 +76,50 @@ impl VerletList {
         let cell_offsets = grid.cell_offsets();
         let part = |rows: Range<usize>| {
             let mut part = Part::default();
-            let Part { own, first, partners, .. } = &mut part;
-            let mut starts = Vec::new();
             for row in rows {
-                starts.push(own.len() as u32);
-                let partners = std::cell::RefCell::new(&mut *partners);
-                sectors.pairs_of_row(
-                    row,
-                    0..grid.counts[0],
-                    |disc| {
-                        own.push(disc);
-                        first.push(partners.borrow().len() as u32);
-                    },
-                    |disc, partner, cell_offset| {
-                        let (here, there) = (at(disc), at(partner));
-                        let along =
-                            |axis: usize| (here[axis] - there[axis]) - cell_offsets[cell_offset][axis];
-                        if along(0) * along(0) + along(1) * along(1) < limit {
-                            partners.borrow_mut().push(partner | (cell_offset as u32) << DISC);
-                        }
-                    },
-                );
+                part.rows.push(part.pairs.len() as u32);
+                sectors.pairs_of_row(row, 0..grid.counts[0], |disc, partner, cell_offset| {
+                    let (here, there) = (at(disc), at(partner));
+                    let along = |axis: usize| (here[axis] - there[axis]) - cell_offsets[cell_offset][axis];
+                    if along(0) * along(0) + along(1) * along(1) < limit {
+                        part.pairs.push([disc, partner | (cell_offset as u32) << DISC]);
+                    }
+                });
             }
-            part.rows = starts;
             part
         };
         let parts = on_threads(pieces(0..grid.counts[1], ROWS), part);
-        let of_all =
-            |column: fn(&Part) -> &Vec<u32>| parts.iter().map(|part| column(part).len()).sum::<usize>();
-        let (all_own, all_partners) = (of_all(|part| &part.own), of_all(|part| &part.partners));
-        let mut list = VerletList {
-            grid,
-            reach,
-            discs,
-            rows: vec![0; grid.counts[1] + 1],
-            own: vec![0; all_own],
-            first: vec![0; all_own + 1],
-            partners: vec![0; all_partners],
-        };
-        list.rows[grid.counts[1]] = all_own as u32;
-        list.first[all_own] = all_partners as u32;
+        let all = parts.iter().map(|part| part.pairs.len()).sum::<usize>();
+        let mut list =
+            VerletList { grid, reach, discs, rows: vec![0; grid.counts[1] + 1], pairs: vec![[0; 2]; all] };
+        list.rows[grid.counts[1]] = all as u32;
         list.join(parts);
         list
     }
 
     /// Copies the lists of all parts to where they belong, one behind the other.
     fn join(&mut self, parts: Vec<Part>) {
-        let VerletList { rows, own, first, partners, .. } = self;
-        let mut rest = [rows, own, first, partners].map(Vec::as_mut_slice);
-        let mut before = [0; 2];
+        let (mut rows, mut pairs) = (self.rows.as_mut_slice(), self.pairs.as_mut_slice());
+        let mut before = 0;
         let copies = parts.into_iter().map(|part| {
-            let lengths = [part.rows.len(), part.own.len(), part.first.len(), part.partners.len()];
-            let mut to = rest.each_mut().into_iter().zip(lengths).map(|(rest, length)| {
-                let (here, behind) = std::mem::take(rest).split_at_mut(length);
-                *rest = behind;
-                here
-            });
-            let to: [&mut [u32]; 4] = std::array::from_fn(|_| to.next().unwrap_or_default());
+            let (of_rows, behind) = std::mem::take(&mut rows).split_at_mut(part.rows.len());
+            rows = behind;
+            let (of_pairs, behind) = std::mem::take(&mut pairs).split_at_mut(part.pairs.len());
+            pairs = behind;
             let from = before;
-            before = [before[0] + part.own.len() as u32, before[1] + part.partners.len() as u32];
-            (part, to, from)
+            before += part.pairs.len() as u32;
+            (part, of_rows, of_pairs, from)
         });
-        on_threads(copies, |(part, [rows, own, first, partners], [own_before, partners_before])| {
-            rows.iter_mut().zip(part.rows).for_each(|(to, row)| *to = row + own_before);
-            own.copy_from_slice(&part.own);
-            first.iter_mut().zip(part.first).for_each(|(to, first)| *to = first + partners_before);
-            partners.copy_from_slice(&part.partners);
+        on_threads(copies, |(part, rows, pairs, before)| {
+            rows.iter_mut().zip(part.rows).for_each(|(to, row)| *to = row + before);
+            pairs.copy_from_slice(&part.pairs);
         });
     }
 
     /// Pairs listed.
     #[inline]
     pub fn entries(&self) -> usize {
-        self.partners.len()
+        self.pairs.len()
     }
 }
 
@@ -177,21 +147,18 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
         _: InstructionSet,
     ) -> Result<(), ProgramError> {
         let mut near = Near::new(places, self.discs, &self.grid, self.reach, found);
-        let discs_of = |row: usize| self.rows[row] as usize..self.rows[row + 1] as usize;
+        let pairs_of = |row: usize| self.rows[row] as usize..self.rows[row + 1] as usize;
         near.search(
             rows,
             cursor,
-            |row| discs_of(row).len(),
+            |row| pairs_of(row).len().div_ceil(SOME),
             |near, row, along| {
-                let number = discs_of(row).start + along;
-                let disc = self.own[number];
-                let partners = &self.partners[self.first[number] as usize..self.first[number + 1] as usize];
-                // SAFETY: `own` holds numbers of discs: the lists were made of the sectors' members.
-                let at = unsafe { near.at(disc) };
-                for &partner in partners {
+                let Range { start, end } = pairs_of(row);
+                let first = start + along * SOME;
+                for &[disc, partner] in &self.pairs[first..(first + SOME).min(end)] {
                     let (second, cell_offset) = (partner & ((1 << DISC) - 1), (partner >> DISC) as usize);
-                    // SAFETY: a partner is a member of a sector and so a disc, and `pairs_of_row` numbered its cell offset, below 5.
-                    unsafe { near.meet(disc, at, second, cell_offset) };
+                    // SAFETY: both are members of sectors and so discs, and `pairs_of_row` numbered the cell offset, below 5.
+                    unsafe { near.meet(disc, near.at(disc), second, cell_offset) };
                 }
             },
         );
