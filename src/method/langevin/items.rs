@@ -1,6 +1,47 @@
 //! What can be reproduced of this method: each item a study and its section of the report.
 
-use crate::method::Item;
+use super::sections;
+use super::study::{accuracy, diffusion, losses, sectors};
+use crate::console::Failure;
+use crate::method::{Item, Progress};
+use crate::results::{Effort, Made};
 
-/// Every item, in the order of the page.
-pub(super) const ITEMS: &[Item] = &[];
+macro_rules! items {
+    ($($name:literal, $seconds:expr, $is_quick:literal, $make:ident, $doc:literal;)*) => {
+        &[$(Item { name: $name, doc: $doc, seconds: $seconds, is_quick: $is_quick, make: $make }),*]
+    };
+}
+
+/// Every item, in the order of the page: name, seconds that it takes about (quick and in full), whether it is made
+/// where only little time is given (what is the same everywhere is made in full or not at all), and what makes it.
+pub(super) const ITEMS: &[Item] = items! {
+    "langevin-losses", [30.0, 30.0], false, lost, "Langevin: particles lost over the step";
+    "langevin-sectors", [3.0, 30.0], true, cost, "Langevin: wall time over the number of sectors, and where it goes";
+    "langevin-diffusion", [30.0, 30.0], false, displaced, "Langevin: mean square displacement, velocities, temperature";
+    "langevin-accuracy", [8.0, 60.0], false, errors, "Langevin: the error of the step in a Lennard-Jones fluid";
+};
+
+fn lost(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let data = losses::losses(40_000, progress)?;
+    Made::new(sections::losses::section(&data), &data)
+}
+
+fn cost(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let effort = match effort {
+        Effort::Quick => sectors::Effort { fewest: 100, seconds: 0.1, rounds: 1 },
+        Effort::Full => sectors::Effort { fewest: 3, seconds: 0.4, rounds: 3 },
+    };
+    let data = sectors::sectors(&effort, progress)?;
+    Made::new(sections::sectors::section(&data), &data)
+}
+
+fn displaced(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let data = diffusion::diffusion(progress)?;
+    Made::new(sections::diffusion::section(&data), &data)
+}
+
+fn errors(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let time = if effort == Effort::Full { 1000.0 } else { 100.0 };
+    let data = accuracy::accuracy(time, progress)?;
+    Made::new(sections::accuracy::section(&data), &data)
+}

@@ -172,7 +172,7 @@ fn found(
             spot.error(Reason::Geometry, message).expecting("search.by = \"sectors\" or \"neighbor-list\"")
         }).map(|(shape, frame)| Found::Lattice(shape, frame))?,
         By::Sectors => Found::Sectors(sectors(scene)?),
-        By::NeighborList => {
+        By::Auto | By::NeighborList if scene.by == By::NeighborList || scene.skin.is_some() => {
             let (lists, skin) = lists(scene);
             lists.map_err(|cause| {
                 let spot = if values.gives(&SKIN) { values.spot(&SKIN) } else { box_spot() };
@@ -184,7 +184,7 @@ fn found(
             choices.push("search.by = \"sectors\": their number is given".to_owned());
             Found::Sectors(sectors(scene)?)
         }
-        By::Auto => match lists(scene).0 {
+        By::Auto | By::NeighborList => match lists(scene).0 {
             Ok(lists) => {
                 choices.push("search.by = \"neighbor-list\": fastest wherever all were measured".to_owned());
                 lists

@@ -58,7 +58,8 @@ impl Running {
         loop {
             match done.and_then(|()| self.meet()) {
                 Ok(()) => break,
-                Err(failure) => done = self.lose(failure),
+                Err(failure) if is_loss(&failure) => done = self.lose(failure),
+                Err(failure) => return Err(failure),
             }
         }
         self.work += self.start.len() as u64;
@@ -68,8 +69,8 @@ impl Running {
     /// Goes on without the particles that a failure is of.
     fn lose(&mut self, failure: Failure) -> Result<(), Failure> {
         let unfit: BTreeSet<usize> = self.stepper.unfit().into_iter().collect();
-        if !is_loss(&failure) || unfit.is_empty() {
-            return Err(failure);
+        if unfit.is_empty() {
+            return Err(Failure { kind: FailureKind::Lost, ..failure });
         }
         let clock = self.clock();
         let standing = self.stepper.standing();
@@ -118,8 +119,7 @@ impl Running {
     }
 
     /// Displacements since the start, as if there were no sides (length).
-    fn displacements(&self) -> Vec<[f64; 2]> {
-        let standing = self.stepper.standing();
+    fn displacements(&self, standing: &Particles) -> Vec<[f64; 2]> {
         let crossed = self.stepper.elapsed().crossings.counts();
         let sides = self.checked.domain.lengths();
         let of = |(place, (now, start)): (usize, (&Particle, &Particle))| {
@@ -167,7 +167,7 @@ impl Simulation for Running {
     }
 
     fn observe(&self) -> Vec<f64> {
-        let (particles, mass) = (self.stepper.particles(), self.checked.mass);
+        let (particles, mass) = (self.stepper.standing(), self.checked.mass);
         let count = particles.len() as f64;
         let velocities = || particles.all().iter().map(Particle::planar_velocity);
         let kinetic = 0.5 * mass * velocities().map(|[u, v]| u * u + v * v).sum::<f64>();
@@ -175,7 +175,7 @@ impl Simulation for Running {
         let temperature = kinetic / count;
         let [potential, virial] = self.of_pairs;
         let pressure = (kinetic + 0.5 * virial) / self.checked.domain.area();
-        let square = self.displacements().iter().map(|[x, y]| x * x + y * y).sum::<f64>() / count;
+        let square = self.displacements(&particles).iter().map(|[x, y]| x * x + y * y).sum::<f64>() / count;
         vec![
             self.clock().time,
             kinetic,

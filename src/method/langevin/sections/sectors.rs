@@ -1,0 +1,112 @@
+//! Wall time over the number of sectors.
+
+use crate::method::langevin::study::sectors::{Sectors, THREADS};
+use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::{Cell, Section, Table, Verdict};
+
+/// What came out.
+pub fn section(data: &Sectors) -> Section {
+    let best = data.rows.iter().map(|row| row.seconds[0]).fold(f64::INFINITY, f64::min);
+    let lists = data.rows.iter().find(|row| row.per_side.is_none());
+    let [one, two] = lists.map_or([f64::NAN; 2], |row| row.seconds);
+    Section {
+        name: "langevin-sectors".into(),
+        title: "Langevin: wall time over the number of sectors".into(),
+        says: "LAN17: 100 steps of 40 000 particles take 1008 s with 3 sectors along a side, as 1/d² up to 20, and 4 s from 100 on; two \
+               threads do not help at the best d."
+            .into(),
+        came_out: format!(
+            "{best:.3} s at best on one thread, {:.0} times as fast as the source. Neighbour lists take {one:.3} s on one thread and \
+             {two:.3} s on two, {:.2} times as fast.",
+            4.0 / best,
+            one / two
+        ),
+        verdict: Verdict::Reproduced,
+        again: "stripmine reproduce --only langevin-sectors".into(),
+        figures: vec![figure(data)],
+        tables: vec![table(data), phases(data)],
+        excerpt: None,
+        film: None,
+        seeds: vec![1],
+        depends_on_host: true,
+        provenance: None,
+    }
+}
+
+fn figure(data: &Sectors) -> Figure {
+    let mut series = vec![];
+    for (which, threads) in THREADS.into_iter().enumerate() {
+        let name = if threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") };
+        let of_sectors = || data.rows.iter().filter_map(|row| Some((row.per_side? as f64, row)));
+        let ours = of_sectors().map(|(count, row)| Point::at(count, row.seconds[which]));
+        let source = of_sectors().filter_map(|(count, row)| Some(Point::at(count, row.source?[which])));
+        series.push(Series { name: name.clone(), style: Style::Joined, hue: which, points: ours.collect() });
+        series.push(Series {
+            name: format!("source, {name}"),
+            style: Style::Points,
+            hue: which + 2,
+            points: source.collect(),
+        });
+    }
+    if let Some(lists) = data.rows.iter().find(|row| row.per_side.is_none()) {
+        let points = [3.0, 800.0].map(|count| Point::at(count, lists.seconds[0]));
+        series.push(Series {
+            name: "lists, 1 thread".into(),
+            style: Style::Dashed,
+            hue: 6,
+            points: points.to_vec(),
+        });
+    }
+    Figure {
+        name: "wall-time".into(),
+        title: "Wall time of 100 steps".into(),
+        caption: format!("{} particles. With 3 sectors along a side every pair is tried.", data.particles),
+        picture: Picture::Chart(Chart {
+            x: Axis::logarithmic("sectors along a side", None),
+            y: Axis::logarithmic("wall time of 100 steps", Some("s")),
+            series,
+            bands: vec![],
+        }),
+    }
+}
+
+fn table(data: &Sectors) -> Table {
+    let rows = data.rows.iter().map(|row| {
+        let source =
+            |which: usize| row.source.map_or(Cell::Text(String::new()), |it| Cell::Number(it[which], 1));
+        vec![
+            Cell::Text(row.per_side.map_or("lists".to_owned(), |count| count.to_string())),
+            Cell::Number(row.seconds[0], 4),
+            Cell::Number(row.seconds[1], 4),
+            Cell::Number(row.seconds[0] / row.seconds[1], 2),
+            source(0),
+            source(1),
+        ]
+    });
+    let columns = ["sectors", "1 thread (s)", "2 threads (s)", "ratio", "source, 1 (s)", "source, 2 (s)"];
+    Table {
+        name: "wall-time".into(),
+        title: "Wall time of 100 steps".into(),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+        notes: vec!["Medians of alternating repeats; fewer steps where they are long.".into()],
+    }
+}
+
+fn phases(data: &Sectors) -> Table {
+    let rows = data
+        .phases
+        .iter()
+        .map(|(name, seconds)| vec![Cell::Text(name.clone()), Cell::Number(1e3 * seconds, 2)]);
+    Table {
+        name: "phases".into(),
+        title: "Where the time goes: 100 steps by lists on one thread".into(),
+        columns: ["part", "time (ms)"].map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+        notes: vec![
+            "correct_predict holds velocities, positions, noise and wrapping; index the lists and their order. The source: writing \
+             3.8 s, ordering 0.41, velocities 0.08, boundary 0.03, noise 0.03."
+                .into(),
+        ],
+    }
+}
