@@ -35,6 +35,8 @@ pub enum FailureKind {
     InelasticCollapse,
     /// Nothing will ever happen.
     Idle,
+    /// Bodies that were bound are not any more.
+    Unbound,
     /// More particles were thrown out than the scene allows.
     Lost,
 }
@@ -54,6 +56,7 @@ impl FailureKind {
             FailureKind::BackInTime => "back-in-time",
             FailureKind::InelasticCollapse => "inelastic-collapse",
             FailureKind::Idle => "idle",
+            FailureKind::Unbound => "unbound",
             FailureKind::Lost => "lost",
         }
     }

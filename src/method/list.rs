@@ -1,14 +1,14 @@
 //! The methods. Each is a folder beside this file and a line of this list.
 
 use super::entry::{Entry, Prepared};
-use super::{hard_disks, langevin, lattice_md};
+use super::{hard_disks, langevin, lattice_md, nbody};
 use crate::scene::{METHOD, Reason, SceneErrors, Values, Vocabulary};
 
 /// Methods that scenes may name.
 pub type Methods = &'static [&'static Entry];
 
 /// Every method of this program.
-pub static METHODS: Methods = &[&lattice_md::ENTRY, &hard_disks::ENTRY, &langevin::ENTRY];
+pub static METHODS: Methods = &[&lattice_md::ENTRY, &hard_disks::ENTRY, &langevin::ENTRY, &nbody::ENTRY];
 
 /// What the scenes of some methods may say.
 pub fn vocabularies(methods: Methods) -> Vec<&'static Vocabulary> {

@@ -7,6 +7,7 @@ pub mod hard_disks;
 pub mod langevin;
 pub mod lattice_md;
 mod list;
+pub mod nbody;
 mod pairwise;
 mod probe;
 pub mod throughput;

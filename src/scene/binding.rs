@@ -55,6 +55,7 @@ define_bindings! {
     switches, switches_if_any, Switches, [bool; 2];
     pairs, pairs_if_any, Pairs, Vec<[f64; 2]>;
     numbers, numbers_if_any, Numbers, Vec<f64>;
+    rows, rows_if_any, Rows, Vec<Vec<f64>>;
 }
 
 impl dyn Binding + '_ {

@@ -25,6 +25,8 @@ pub enum Value {
     Pairs(Vec<[f64; 2]>),
     /// A list of numbers.
     Numbers(Vec<f64>),
+    /// A list of rows of numbers.
+    Rows(Vec<Vec<f64>>),
 }
 
 impl Value {
@@ -40,6 +42,9 @@ impl Value {
             Value::Pair(value) => pair(value),
             Value::Switches([x, y]) => format!("[{x}, {y}]"),
             Value::Pairs(values) => list(values.iter().map(pair).collect()),
+            Value::Rows(rows) => list(
+                rows.iter().map(|row| list(row.iter().map(|value| format!("{value:?}")).collect())).collect(),
+            ),
             Value::Numbers(values) => list(values.iter().map(|value| format!("{value:?}")).collect()),
         }
     }
@@ -111,6 +116,8 @@ pub enum Kind {
     Pairs,
     /// `[a, b, …]`, all in the range.
     Numbers(Bounds),
+    /// `[[a, b, …], …]`, each row of as many finite numbers.
+    Rows(usize),
 }
 
 /// Why a value cannot be read, and where in the text it stands.
@@ -148,6 +155,7 @@ impl Kind {
             Kind::Pair(bounds) => format!("[x, y], two numbers, {}", bounds.words()),
             Kind::Switches => "[x, y], each true or false".to_owned(),
             Kind::Pairs => "[[x, y], …], finite numbers".to_owned(),
+            Kind::Rows(numbers) => format!("[[…], …], each of {numbers} finite numbers"),
             Kind::Numbers(bounds) => format!("[a, b, …], numbers, {}", bounds.words()),
         }
     }
@@ -172,6 +180,10 @@ impl Kind {
             Kind::Pair(bounds) => Value::Pair(pair(value, |item| number(item, bounds))?),
             Kind::Switches => Value::Switches(pair(value, switch)?),
             Kind::Pairs => Value::Pairs(list(value, |item| pair(item, |item| number(item, Bounds::Finite)))?),
+            Kind::Rows(numbers) => Value::Rows(list(value, |row| {
+                let row_of = list(row, |item| number(item, Bounds::Finite))?;
+                if row_of.len() == numbers { Ok(row_of) } else { wrong_type(row) }
+            })?),
             Kind::Numbers(bounds) => Value::Numbers(list(value, |item| number(item, bounds))?),
         })
     }

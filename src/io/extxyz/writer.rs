@@ -12,9 +12,17 @@ pub fn write(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
     let Frame { particles, cell: [lx, ly], origin: [x, y], periodic, time, step, seed } = frame;
     let [bottom, top] = DEPTH;
     writeln!(out, "{}", particles.len())?;
-    write!(out, "Lattice=\"{lx:?} 0.0 0.0 0.0 {ly:?} 0.0 0.0 0.0 {:?}\" ", top - bottom)?;
-    write!(out, "Origin=\"{x:?} {y:?} {bottom:?}\" ")?;
-    if let Some([px, py]) = periodic.map(|axes| axes.map(|yes| if yes { 'T' } else { 'F' })) {
+    // Space without end has no cell.
+    let is_open = lx.is_infinite() || ly.is_infinite();
+    if is_open {
+        write!(out, "pbc=\"F F F\" ")?;
+    } else {
+        write!(out, "Lattice=\"{lx:?} 0.0 0.0 0.0 {ly:?} 0.0 0.0 0.0 {:?}\" ", top - bottom)?;
+        write!(out, "Origin=\"{x:?} {y:?} {bottom:?}\" ")?;
+    }
+    if let Some([px, py]) =
+        periodic.filter(|_| !is_open).map(|axes| axes.map(|yes| if yes { 'T' } else { 'F' }))
+    {
         write!(out, "pbc=\"{px} {py} F\" ")?;
     }
     write!(out, "Properties={PROPERTIES} Time={time:?} step={step}")?;

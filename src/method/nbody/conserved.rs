@@ -1,0 +1,45 @@
+//! What the motion conserves.
+
+use super::bodies::Bodies;
+
+/// Sums over all bodies that gravity leaves as they are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Conserved {
+    /// Kinetic energy.
+    pub kinetic: f64,
+    /// Potential energy of the softened pairs.
+    pub potential: f64,
+    /// Momentum.
+    pub momentum: [f64; 3],
+    /// Angular momentum about the origin.
+    pub angular_momentum: [f64; 3],
+    /// The centre of mass (length).
+    pub centre: [f64; 3],
+}
+
+impl Conserved {
+    /// Of bodies whose pairs have this potential energy.
+    pub fn of(bodies: &Bodies, potential: f64) -> Self {
+        let mut sums = Conserved { potential, ..Conserved::default() };
+        let mut mass = 0.0;
+        for body in 0..bodies.len() {
+            let (m, [x, y, z], [u, v, w]) =
+                (bodies.mass[body], bodies.position_of(body), bodies.velocity_of(body));
+            mass += m;
+            sums.kinetic += 0.5 * m * (u * u + v * v + w * w);
+            let turn = [y * w - z * v, z * u - x * w, x * v - y * u];
+            for axis in 0..3 {
+                sums.momentum[axis] += m * [u, v, w][axis];
+                sums.angular_momentum[axis] += m * turn[axis];
+                sums.centre[axis] += m * [x, y, z][axis];
+            }
+        }
+        sums.centre = sums.centre.map(|sum| sum / mass);
+        sums
+    }
+
+    /// Kinetic and potential energy.
+    pub fn energy(&self) -> f64 {
+        self.kinetic + self.potential
+    }
+}

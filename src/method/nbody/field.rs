@@ -1,0 +1,377 @@
+//! Accelerations of bodies: interchangeable ways to the same sums.
+
+use super::bodies::{Bodies, Columns};
+use super::options::{ArithmeticKind, Engine};
+use super::scene::Scene;
+use super::schemes::Field;
+use crate::scene::Precision;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend;
+use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::law::gravity::Gravity;
+use stripmine_kernels::sweep::all_pairs::{self, AllPairs, Arithmetic};
+
+/// Derivatives of the acceleration that a start may ask for, itself first.
+const ORDERS: usize = 4;
+
+/// The attraction of some masses.
+pub(super) struct Attraction {
+    softening: f64,
+    mass: Vec<f64>,
+    /// 0 where there is no mass.
+    inverse_mass: Vec<f64>,
+    bodies: usize,
+    pairs: Pairs,
+    /// How often all pairs were met.
+    pub(super) evaluations: u64,
+}
+
+/// The ways.
+enum Pairs {
+    /// As the sum is written.
+    Reference,
+    /// Each pair once, in double precision.
+    Double(Swept<f64>),
+    /// The same with forces in single precision.
+    Single(Swept<f32>),
+}
+
+/// Each pair once, in a precision.
+struct Swept<P> {
+    set: InstructionSet,
+    arithmetic: Arithmetic,
+    forces: AllPairs<P, 3>,
+    rates: Option<AllPairs<P, 6>>,
+    position: [Vec<P>; 3],
+    velocity: [Vec<P>; 3],
+    mass: Vec<P>,
+    sums: [Vec<P>; 6],
+}
+
+impl<P: backend::Precision> Swept<P> {
+    fn new(bodies: &Bodies, arithmetic: Arithmetic, set: InstructionSet) -> Self {
+        let entries = bodies.entries();
+        let zeros = || vec![P::default(); entries];
+        Swept {
+            set,
+            arithmetic,
+            forces: AllPairs::new(bodies.len()),
+            rates: None,
+            position: [zeros(), zeros(), zeros()],
+            velocity: [zeros(), zeros(), zeros()],
+            mass: bodies.mass.iter().map(|&m| P::from_f64(m)).collect(),
+            sums: std::array::from_fn(|_| zeros()),
+        }
+    }
+
+    /// Forces at positions and, where velocities are given, their rates; energy and virial if they are observed.
+    fn sweep(
+        &mut self,
+        (softening, count): (f64, usize),
+        position: &Columns,
+        velocity: Option<&Columns>,
+        observed: bool,
+    ) -> Result<[f64; 2], ProgramError> {
+        let take = |to: &mut [Vec<P>; 3], from: &Columns| {
+            for (to, from) in to.iter_mut().zip(from) {
+                to.iter_mut().zip(from).for_each(|(to, &from)| *to = P::from_f64(from));
+            }
+        };
+        take(&mut self.position, position);
+        if let Some(velocity) = velocity {
+            take(&mut self.velocity, velocity);
+        }
+        let Swept { set, arithmetic, forces, rates, position, velocity: at_velocity, mass, sums } = self;
+        let bodies = all_pairs::Bodies {
+            position: position.each_ref().map(Vec::as_slice),
+            velocity: at_velocity.each_ref().map(Vec::as_slice),
+            mass,
+        };
+        let [fx, fy, fz, rates_x, rates_y, rates_z] = sums.each_mut().map(Vec::as_mut_slice);
+        match velocity {
+            None => {
+                let law = Gravity::<false> { softening };
+                forces.sweep(&law, &bodies, [fx, fy, fz], observed, *arithmetic, *set)
+            }
+            Some(_) => {
+                let law = Gravity::<true> { softening };
+                let rates = rates.get_or_insert_with(|| AllPairs::new(count));
+                rates.sweep(
+                    &law,
+                    &bodies,
+                    [fx, fy, fz, rates_x, rates_y, rates_z],
+                    observed,
+                    *arithmetic,
+                    *set,
+                )
+            }
+        }
+    }
+
+    /// Three of the sums over the masses.
+    fn over(&self, inverse_mass: &[f64], first: usize, into: &mut Columns) {
+        for (into, sum) in into.iter_mut().zip(&self.sums[first..]) {
+            for ((into, sum), inverse) in into.iter_mut().zip(sum).zip(inverse_mass) {
+                *into = sum.to_f64() * inverse;
+            }
+        }
+    }
+}
+
+impl Attraction {
+    /// Of a scene's bodies.
+    pub(super) fn new(scene: &Scene, bodies: &Bodies) -> Self {
+        let arithmetic = match scene.arithmetic {
+            ArithmeticKind::Exact => Arithmetic::Exact,
+            ArithmeticKind::Estimated => Arithmetic::Estimated,
+        };
+        let set = scene.instructions();
+        let pairs = match (scene.engine, scene.precision) {
+            (Engine::Reference, _) => Pairs::Reference,
+            (Engine::Fast, Precision::F64) => Pairs::Double(Swept::new(bodies, arithmetic, set)),
+            (Engine::Fast, _) => Pairs::Single(Swept::new(bodies, arithmetic, set)),
+        };
+        let inverse_mass = bodies.mass.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 0.0 }).collect();
+        Attraction {
+            softening: scene.softening,
+            mass: bodies.mass.clone(),
+            inverse_mass,
+            bodies: bodies.len(),
+            pairs,
+            evaluations: 0,
+        }
+    }
+
+    /// The energy of all pairs.
+    ///
+    /// # Errors
+    /// [`ProgramError`] if the processor lacks what is asked for.
+    pub(super) fn potential(&mut self, position: &Columns) -> Result<f64, ProgramError> {
+        let of = (self.softening, self.bodies);
+        match &mut self.pairs {
+            Pairs::Reference => {
+                let mut energy = 0.0;
+                for body in 0..self.bodies {
+                    for other in 0..body {
+                        energy -=
+                            self.mass[body] * self.mass[other] / self.square(position, body, other).sqrt();
+                    }
+                }
+                Ok(energy)
+            }
+            Pairs::Double(swept) => swept.sweep(of, position, None, true).map(|[energy, _]| energy),
+            Pairs::Single(swept) => swept.sweep(of, position, None, true).map(|[energy, _]| energy),
+        }
+    }
+
+    fn square(&self, position: &Columns, body: usize, other: usize) -> f64 {
+        let squares = position.iter().map(|column| (column[body] - column[other]).powi(2));
+        squares.sum::<f64>() + self.softening * self.softening
+    }
+
+    /// The sum as it is written, in the order of the bodies.
+    fn written(&self, position: &Columns, into: &mut Columns) {
+        for body in 0..self.bodies {
+            let mut sum = [0.0; 3];
+            for other in (0..self.bodies).filter(|&other| other != body) {
+                let square = self.square(position, body, other);
+                let pull = self.mass[other] / (square * square.sqrt());
+                (0..3).for_each(|axis| sum[axis] += pull * (position[axis][other] - position[axis][body]));
+            }
+            (0..3).for_each(|axis| into[axis][body] = sum[axis]);
+        }
+    }
+
+    /// Derivatives of the acceleration by Taylor series of positions and pairs, an order after the other: for a start.
+    fn series(&self, position: &Columns, velocity: &Columns, orders: &mut [Columns]) {
+        let count = self.bodies;
+        // Taylor coefficients of every position.
+        let mut path = vec![[[0.0; ORDERS + 2]; 3]; count];
+        for (body, path) in path.iter_mut().enumerate() {
+            for axis in 0..3 {
+                path[axis][0] = position[axis][body];
+                path[axis][1] = velocity[axis][body];
+            }
+        }
+        let mut factorial = 1.0;
+        for (order, into) in orders.iter_mut().enumerate().take(ORDERS) {
+            factorial *= if order > 0 { order as f64 } else { 1.0 };
+            let mut found = vec![[0.0; 3]; count];
+            for body in 0..count {
+                for other in (0..count).filter(|&other| other != body) {
+                    let way: [[f64; ORDERS]; 3] = std::array::from_fn(|axis| {
+                        std::array::from_fn(|k| {
+                            if k <= order { path[other][axis][k] - path[body][axis][k] } else { 0.0 }
+                        })
+                    });
+                    let mut square = [0.0; ORDERS];
+                    square[0] = self.softening * self.softening;
+                    for way in &way {
+                        for k in 0..=order {
+                            square[k] += (0..=k).map(|i| way[i] * way[k - i]).sum::<f64>();
+                        }
+                    }
+                    let cube = power(&square, -1.5, order);
+                    for axis in 0..3 {
+                        let term: f64 = (0..=order).map(|i| way[axis][i] * cube[order - i]).sum();
+                        found[body][axis] += self.mass[other] * term;
+                    }
+                }
+            }
+            for (body, found) in found.iter().enumerate() {
+                for axis in 0..3 {
+                    into[axis][body] = factorial * found[axis];
+                    path[body][axis][order + 2] = found[axis] / ((order + 1) * (order + 2)) as f64;
+                }
+            }
+        }
+    }
+}
+
+/// The series of a power of a series, up to an order.
+fn power(of: &[f64; ORDERS], exponent: f64, order: usize) -> [f64; ORDERS] {
+    let mut result = [0.0; ORDERS];
+    result[0] = of[0].powf(exponent);
+    for k in 1..=order {
+        let terms = (1..=k).map(|i| ((exponent + 1.0) * i as f64 / k as f64 - 1.0) * of[i] * result[k - i]);
+        result[k] = terms.sum::<f64>() / of[0];
+    }
+    result
+}
+
+impl Field for Attraction {
+    fn acceleration(&mut self, position: &Columns, into: &mut Columns) -> Result<(), ProgramError> {
+        self.evaluations += 1;
+        let of = (self.softening, self.bodies);
+        match &mut self.pairs {
+            Pairs::Reference => self.written(position, into),
+            Pairs::Double(swept) => {
+                swept.sweep(of, position, None, false)?;
+                swept.over(&self.inverse_mass, 0, into);
+            }
+            Pairs::Single(swept) => {
+                swept.sweep(of, position, None, false)?;
+                swept.over(&self.inverse_mass, 0, into);
+            }
+        }
+        Ok(())
+    }
+
+    fn derivatives(
+        &mut self,
+        position: &Columns,
+        velocity: &Columns,
+        orders: &mut [Columns],
+    ) -> Result<(), ProgramError> {
+        self.evaluations += 1;
+        let of = (self.softening, self.bodies);
+        match (&mut self.pairs, orders) {
+            (Pairs::Double(swept), [acceleration, jerk]) => {
+                swept.sweep(of, position, Some(velocity), false)?;
+                swept.over(&self.inverse_mass, 0, acceleration);
+                swept.over(&self.inverse_mass, 3, jerk);
+            }
+            (Pairs::Single(swept), [acceleration, jerk]) => {
+                swept.sweep(of, position, Some(velocity), false)?;
+                swept.over(&self.inverse_mass, 0, acceleration);
+                swept.over(&self.inverse_mass, 3, jerk);
+            }
+            (_, orders) => self.series(position, velocity, orders),
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::options::StartKind;
+    use super::super::schemes::Field as _;
+    use super::super::starts::bodies;
+    use super::*;
+    use crate::method::nbody::bodies::zeros;
+
+    /// The derivatives by series against differences of the accelerations along a path of theirs, and the fast sweep's jerk.
+    #[test]
+    fn derivatives_are_those_of_the_motion() {
+        let mut scene = Scene { softening: 0.2, ..Scene::default() };
+        (scene.start.kind, scene.start.count) = (StartKind::Plummer, 12);
+        let of = bodies(&scene.start, 0.2);
+        let all = Bodies::new(of.iter().map(|&(m, r, v)| (r, v, m)));
+        let mut field = Attraction::new(&scene, &all);
+        let mut orders: Vec<Columns> = (0..ORDERS).map(|_| zeros(all.entries())).collect();
+        field.derivatives(&all.position, &all.velocity, &mut orders).unwrap();
+        // Along the path by its series the acceleration has these derivatives.
+        let h = 0.01;
+        let at = |time: f64| {
+            let mut position = all.position.clone();
+            for axis in 0..3 {
+                for body in 0..all.len() {
+                    let mut term = time * time / 2.0;
+                    position[axis][body] += time * all.velocity[axis][body];
+                    for (order, column) in orders.iter().enumerate() {
+                        position[axis][body] += term * column[axis][body];
+                        term *= time / (order + 3) as f64;
+                    }
+                }
+            }
+            position
+        };
+        let mut acceleration = |time: f64| {
+            let mut into = zeros(all.entries());
+            field.acceleration(&at(time), &mut into).unwrap();
+            into
+        };
+        let seen: Vec<Columns> = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| acceleration(k * h)).to_vec();
+        let mut fast = [zeros(all.entries()), zeros(all.entries())];
+        field.derivatives(&all.position, &all.velocity, &mut fast).unwrap();
+        for axis in 0..3 {
+            for body in 0..all.len() {
+                let a: Vec<f64> = seen.iter().map(|column| column[axis][body]).collect();
+                let found = [0, 1, 2, 3].map(|order| orders[order][axis][body]);
+                let expected = [
+                    a[2],
+                    (a[0] - 8.0 * a[1] + 8.0 * a[3] - a[4]) / (12.0 * h),
+                    (-a[0] + 16.0 * a[1] - 30.0 * a[2] + 16.0 * a[3] - a[4]) / (12.0 * h * h),
+                    (-a[0] + 2.0 * a[1] - 2.0 * a[3] + a[4]) / (2.0 * h * h * h),
+                ];
+                for (order, tolerance) in [1e-12, 1e-6, 1e-5, 2e-3].into_iter().enumerate() {
+                    let scale = orders[order][axis].iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+                    assert!(
+                        (found[order] - expected[order]).abs() < tolerance * scale,
+                        "{order}: {found:?} {expected:?}"
+                    );
+                }
+                assert!((fast[1][axis][body] - found[1]).abs() < 1e-12 * (1.0 + found[1].abs()));
+            }
+        }
+    }
+
+    /// The reference and every fast way agree to what their precision has.
+    #[test]
+    fn ways_agree() {
+        let mut scene = Scene { softening: 0.05, ..Scene::default() };
+        (scene.start.kind, scene.start.count) = (StartKind::Plummer, 301);
+        let of = bodies(&scene.start, 0.05);
+        let all = Bodies::new(of.iter().map(|&(m, r, v)| (r, v, m)));
+        let mut found = |engine, precision, arithmetic| {
+            let mut field = Attraction::new(&Scene { engine, precision, arithmetic, ..scene.clone() }, &all);
+            let mut into = zeros(all.entries());
+            field.acceleration(&all.position, &mut into).unwrap();
+            (into, field.potential(&all.position).unwrap())
+        };
+        let (expected, potential) = found(Engine::Reference, Precision::F64, ArithmeticKind::Exact);
+        let largest = expected.iter().flatten().fold(0.0, |most: f64, a| most.max(a.abs()));
+        for (precision, arithmetic, tolerance) in [
+            (Precision::F64, ArithmeticKind::Exact, 1e-14),
+            (Precision::F64, ArithmeticKind::Estimated, 1e-14),
+            (Precision::Mixed, ArithmeticKind::Exact, 3e-6),
+            (Precision::Mixed, ArithmeticKind::Estimated, 3e-6),
+        ] {
+            let (into, energy) = found(Engine::Fast, precision, arithmetic);
+            for (a, b) in into.iter().zip(&expected) {
+                assert!(a.iter().zip(b).take(all.len()).all(|(a, b)| (a - b).abs() < tolerance * largest));
+            }
+            assert!((energy / potential - 1.0).abs() < tolerance, "{energy} {potential}");
+        }
+    }
+}

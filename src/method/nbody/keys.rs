@@ -1,0 +1,85 @@
+//! The keys that are this method's own, and what they demand of each other.
+
+use super::options::{ArithmeticKind, Engine, StartKind};
+use super::schemes::SchemeName;
+use crate::scene::Bounds::{AtMost, Finite, NonNegative, Positive, UpTo};
+use crate::scene::Fallback::{Is, Required};
+use crate::scene::Kind::{Choice, Number, Rows, Whole};
+use crate::scene::keys::define_keys;
+use crate::scene::{
+    ARITHMETIC, DURATION, HEADING, INSTRUCTIONS, KeySet, OUTPUT, Reason, STEP, STEPPED_RUN, SceneError, Use,
+    Value, Values, Vocabulary, too_many_steps,
+};
+use crate::words::Words;
+
+const ALWAYS: Use = None;
+const DRAWN: Use = Some((&GENERATE, &["plummer", "sphere", "shell", "two-clusters"]));
+const SPHERES: Use = Some((&GENERATE, &["sphere", "shell"]));
+const KEPLER: Use = Some((&GENERATE, &["kepler"]));
+const CLUSTERS: Use = Some((&GENERATE, &["two-clusters"]));
+const LISTED: Use = Some((&GENERATE, &["list"]));
+const DAMPED: Use = Some((&INTEGRATOR, &["damped-euler"]));
+
+define_keys! {
+    /// Bodies, softening, integrator and machine.
+    static OWN;
+    GENERATE = "particles" "generate", Choice(StartKind::WORDS), "", Required, ALWAYS,
+        "Where bodies start: two on an ellipse of half axis 1, at their nearest; three on the figure of eight; Plummer's sphere of scale 1; a uniform sphere or shell of radius 1; two Plummer spheres; as listed. The gravitational constant and, unless listed, the total mass are 1, the total momentum 0.";
+    COUNT = "particles" "count", Whole(2, 1_000_000), "", Is("1024"), DRAWN,
+        "Number of bodies.";
+    SEED = "particles" "seed", Whole(0, u64::MAX), "", Is("1"), DRAWN,
+        "Seed of positions and velocities.";
+    VIRIAL = "particles" "virial", Number(NonNegative), "", Is("0.0"), SPHERES,
+        "Kinetic energy of random velocities over the magnitude of the potential energy: 0.5 is equilibrium, 0 cold.";
+    EXPANSION = "particles" "expansion", Number(Finite), "1/time", Is("0.0"), SPHERES,
+        "Velocity outwards over the distance from the centre.";
+    ECCENTRICITY = "particles" "eccentricity", Number(UpTo(1.0)), "", Is("0.5"), KEPLER,
+        "Eccentricity of the ellipse.";
+    MASS_RATIO = "particles" "mass_ratio", Number(AtMost(1.0)), "", Is("1.0"), KEPLER,
+        "Mass of the second body over that of the first.";
+    SEPARATION = "particles" "separation", Number(Positive), "length", Is("8.0"), CLUSTERS,
+        "Distance of the centres of the two spheres.";
+    APPROACH = "particles" "approach", Number(Finite), "length/time", Is("0.3"), CLUSTERS,
+        "Speed at which they approach each other, along the line between them and half as fast across it.";
+    BODIES = "particles" "bodies", Rows(7), "", Required, LISTED,
+        "A row for each body: mass, position along x, y, z (length), velocity along x, y, z (length/time); ids are 1, 2, …";
+
+    SOFTENING = "law" "softening", Number(NonNegative), "length", Is("0.0"), ALWAYS,
+        "ε: the attraction is d/(d² + ε²)^{3/2}.";
+
+    INTEGRATOR = "integrator" "kind", Choice(SchemeName::WORDS), "", Is("\"leapfrog\""), ALWAYS,
+        "damped-euler is the source's; euler and euler-with-half fail and show how; leapfrog, yoshida-4, -6 and -8 are symplectic; runge-kutta-4, hermite-4 and gear-6 (started exactly) drift.";
+    DAMPING = "integrator" "damping", Number(AtMost(1.0)), "", Is("1.0"), DAMPED,
+        "What velocities are multiplied by at every step: a friction −ln(damping)/dt.";
+
+    ENGINE = "machine" "engine", Choice(Engine::WORDS), "", Is("\"fast\""), ALWAYS,
+        "What finds the forces: fast, each pair once; or pair by pair as the sum is written (reference), in double precision.";
+    ROOTS = "machine" "arithmetic", Choice(ArithmeticKind::WORDS), "", Is("\"exact\""), ALWAYS,
+        "exact rounds every operation, to the same bits on every instruction set; estimated fuses products and sums and corrects the processor's estimate of inverse roots.";
+}
+
+/// What the scenes of this method may say.
+pub(super) static VOCABULARY: Vocabulary = Vocabulary {
+    keys: KeySet {
+        method: "nbody",
+        groups: &[HEADING, OWN, STEP, ARITHMETIC, INSTRUCTIONS, STEPPED_RUN, OUTPUT],
+        rivals: &[DURATION],
+    },
+    rules: &[too_many_steps, own_rules],
+    presets: super::presets::PRESETS,
+    renamed: &[],
+};
+
+/// What does not belong together.
+fn own_rules(values: &Values) -> Vec<SceneError> {
+    let mut errors = vec![];
+    for key in [&crate::scene::LAMMPS_DUMP, &crate::scene::LAMMPS_DATA] {
+        if values.value(key) == Some(Value::Switch(true)) {
+            let error = values
+                .spot(key)
+                .error(Reason::Contradiction, format!("`{}` needs a box, and bodies have none", key.path()));
+            errors.push(error.advising("leave it out: trajectory.xyz has what it would have"));
+        }
+    }
+    errors
+}

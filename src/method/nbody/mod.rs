@@ -1,0 +1,20 @@
+//! PWP: bodies in space that all attract each other, by softened gravity with G = 1.
+
+mod benches;
+mod bodies;
+mod conserved;
+mod entry;
+mod field;
+mod items;
+mod keys;
+mod options;
+mod prepared;
+mod presets;
+mod scene;
+mod schemes;
+mod sections;
+mod simulation;
+mod starts;
+mod study;
+
+pub use entry::ENTRY;

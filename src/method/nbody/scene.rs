@@ -1,0 +1,153 @@
+//! What a scene of this method says, as plain data.
+
+use super::keys::*;
+use super::options::{ArithmeticKind, Engine, StartKind};
+use super::schemes::SchemeName;
+use crate::scene::{Binding, Output, Precision, Run, Write, bind_arithmetic, bind_heading};
+use stripmine_kernels::InstructionSet;
+
+/// Bodies at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// Where they start.
+    pub kind: StartKind,
+    /// How many are drawn.
+    pub count: usize,
+    /// Seed of what is drawn.
+    pub seed: u64,
+    /// Kinetic over potential energy of spheres.
+    pub virial: f64,
+    /// Velocity outwards over distance of spheres (1/time).
+    pub expansion: f64,
+    /// Of the ellipse.
+    pub eccentricity: f64,
+    /// Of the two bodies on it.
+    pub mass_ratio: f64,
+    /// Of two clusters (length).
+    pub separation: f64,
+    /// Their speed (length/time).
+    pub approach: f64,
+    /// Mass, position and velocity of each that is listed.
+    pub bodies: Vec<Vec<f64>>,
+}
+
+/// What is simulated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The unit system: a label.
+    pub units: String,
+    /// Bodies at the start.
+    pub start: Start,
+    /// ε (length).
+    pub softening: f64,
+    /// The integrator.
+    pub scheme: SchemeName,
+    /// What the source's multiplies velocities by.
+    pub damping: f64,
+    /// Time step (time).
+    pub dt: f64,
+    /// What finds the forces.
+    pub engine: Engine,
+    /// How products and roots are formed.
+    pub arithmetic: ArithmeticKind,
+    /// Precision of the forces; the state is in double precision.
+    pub precision: Precision,
+    /// The instructions; the widest set that there is if none.
+    pub instruction_set: Option<InstructionSet>,
+    /// How long, and how often something is written.
+    pub run: Run,
+    /// Which files are written.
+    pub output: Output,
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Scene {
+            units: String::new(),
+            start: Start {
+                kind: StartKind::Plummer,
+                count: 0,
+                seed: 1,
+                virial: 0.0,
+                expansion: 0.0,
+                eccentricity: 0.5,
+                mass_ratio: 1.0,
+                separation: 8.0,
+                approach: 0.3,
+                bodies: vec![],
+            },
+            softening: 0.0,
+            scheme: SchemeName::Leapfrog,
+            damping: 1.0,
+            dt: 0.0,
+            engine: Engine::Fast,
+            arithmetic: ArithmeticKind::Exact,
+            precision: Precision::F64,
+            instruction_set: None,
+            run: Run::default(),
+            output: Output::default(),
+        }
+    }
+}
+
+impl Start {
+    fn bind(&mut self, binding: &mut dyn Binding) {
+        binding.choice(&GENERATE, &mut self.kind);
+        match self.kind {
+            StartKind::Kepler => {
+                binding.number(&ECCENTRICITY, &mut self.eccentricity);
+                binding.number(&MASS_RATIO, &mut self.mass_ratio);
+            }
+            StartKind::FigureEight => {}
+            StartKind::List => binding.rows(&BODIES, &mut self.bodies),
+            StartKind::Plummer | StartKind::Sphere | StartKind::Shell | StartKind::TwoClusters => {
+                binding.count(&COUNT, &mut self.count);
+                binding.whole(&SEED, &mut self.seed);
+            }
+        }
+        if matches!(self.kind, StartKind::Sphere | StartKind::Shell) {
+            binding.number(&VIRIAL, &mut self.virial);
+            binding.number(&EXPANSION, &mut self.expansion);
+        }
+        if self.kind == StartKind::TwoClusters {
+            binding.number(&SEPARATION, &mut self.separation);
+            binding.number(&APPROACH, &mut self.approach);
+        }
+    }
+
+    /// Whether random numbers make it.
+    pub fn is_drawn(&self) -> bool {
+        !matches!(self.kind, StartKind::Kepler | StartKind::FigureEight | StartKind::List)
+    }
+}
+
+impl Scene {
+    /// Meets every key of the method.
+    pub(super) fn bind(&mut self, binding: &mut dyn Binding) {
+        bind_heading(binding, &mut self.units, VOCABULARY.keys.method);
+        self.start.bind(binding);
+        binding.number(&SOFTENING, &mut self.softening);
+        binding.choice(&INTEGRATOR, &mut self.scheme);
+        if self.scheme == SchemeName::DampedEuler {
+            binding.number(&DAMPING, &mut self.damping);
+        }
+        binding.number(&crate::scene::DT, &mut self.dt);
+        binding.choice(&ENGINE, &mut self.engine);
+        binding.choice(&ROOTS, &mut self.arithmetic);
+        bind_arithmetic(binding, &mut self.precision, &mut self.instruction_set);
+        self.run.bind(binding, self.dt);
+        self.output.bind(binding);
+    }
+
+    /// The instructions of a run.
+    pub(super) fn instructions(&self) -> InstructionSet {
+        self.instruction_set.unwrap_or_else(InstructionSet::best)
+    }
+
+    /// The whole scene as TOML, defaults written out. Parsing it gives an equal scene.
+    pub fn to_toml(&self) -> String {
+        let mut write = Write::default();
+        self.clone().bind(&mut write);
+        write.to_toml(&VOCABULARY.keys)
+    }
+}

@@ -1,0 +1,89 @@
+//! The leapfrog, and schemes of higher order composed of it (Yoshida 1990). All are symplectic and reversible.
+
+use super::{Bodies, Columns, Field, Scheme, padded, room};
+use crate::method::nbody::bodies::add;
+use stripmine_kernels::isa::ProgramError;
+
+/// Leapfrogs (kick, drift, kick) one after the other, each over its part of the step.
+#[derive(Clone, Debug)]
+pub struct Composed {
+    order: u32,
+    /// Parts of the step; their sum is 1.
+    parts: Vec<f64>,
+    acceleration: Columns,
+    /// Whether the acceleration is that of the positions.
+    is_known: bool,
+}
+
+impl Composed {
+    /// Parts in the middle and, outwards from there, on both sides.
+    fn new(order: u32, outwards: &[f64]) -> Self {
+        let middle = 1.0 - 2.0 * outwards.iter().sum::<f64>();
+        let parts = outwards.iter().rev().copied().chain([middle]).chain(outwards.iter().copied()).collect();
+        Composed { order, parts, acceleration: Columns::default(), is_known: false }
+    }
+
+    /// The leapfrog itself, second order.
+    pub fn leapfrog() -> Self {
+        Composed::new(2, &[])
+    }
+
+    /// Fourth order.
+    pub fn yoshida_4() -> Self {
+        Composed::new(4, &[1.0 / (2.0 - libm::cbrt(2.0))])
+    }
+
+    /// Sixth order, Yoshida's solution A.
+    pub fn yoshida_6() -> Self {
+        Composed::new(6, &[-1.177_679_984_178_87, 0.235_573_213_359_357, 0.784_513_610_477_56])
+    }
+
+    /// Eighth order, Yoshida's solution D.
+    pub fn yoshida_8() -> Self {
+        let outwards = [
+            0.914_844_246_229_74,
+            0.253_693_336_566_229,
+            -1.444_852_236_860_48,
+            -0.158_240_635_368_243,
+            1.938_139_137_622_76,
+            -1.960_610_232_975_49,
+            0.102_799_849_391_985,
+        ];
+        Composed::new(8, &outwards)
+    }
+}
+
+impl Scheme for Composed {
+    fn step(&mut self, bodies: &mut Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError> {
+        room(&mut self.acceleration, bodies);
+        let Bodies { position, velocity, .. } = bodies;
+        if !self.is_known {
+            field.acceleration(position, &mut self.acceleration)?;
+            self.is_known = true;
+        }
+        for part in &self.parts {
+            let h = part * dt;
+            add(velocity, 0.5 * h, &self.acceleration);
+            add(position, h, velocity);
+            field.acceleration(position, &mut self.acceleration)?;
+            add(velocity, 0.5 * h, &self.acceleration);
+        }
+        Ok(())
+    }
+
+    fn order(&self) -> u32 {
+        self.order
+    }
+
+    fn carried(&self) -> Vec<&Columns> {
+        // Found again of the same positions it has the same bits, but that would be a sweep more.
+        if self.is_known { vec![&self.acceleration] } else { vec![] }
+    }
+
+    fn take_up(&mut self, bodies: &Bodies, carried: Vec<Columns>) {
+        self.is_known = !carried.is_empty();
+        if let Some(acceleration) = carried.into_iter().next() {
+            self.acceleration = padded(acceleration, bodies);
+        }
+    }
+}

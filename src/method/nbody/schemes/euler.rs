@@ -1,0 +1,77 @@
+//! Schemes of first order: the source's and the explicit one.
+
+use super::{Bodies, Columns, Field, Scheme, room};
+use crate::method::nbody::bodies::add;
+use stripmine_kernels::isa::ProgramError;
+
+/// The source's scheme: v ← damping · (v + a dt), r ← r + v dt. With damping 1 it is symplectic: the energy error stays bounded.
+///
+/// # As printed
+/// The source calls the ½ a dt² missing and the scheme a gain of energy; it is neither. Damping below 1 acts at every step, as a
+/// friction −ln(damping)/dt: the smaller dt, the sooner an orbit is lost.
+#[derive(Clone, Debug)]
+pub struct DampedEuler {
+    damping: f64,
+    acceleration: Columns,
+}
+
+impl DampedEuler {
+    /// With what velocities are multiplied by at every step.
+    pub fn new(damping: f64) -> Self {
+        DampedEuler { damping, acceleration: Columns::default() }
+    }
+}
+
+impl Scheme for DampedEuler {
+    fn step(&mut self, bodies: &mut Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError> {
+        room(&mut self.acceleration, bodies);
+        field.acceleration(&bodies.position, &mut self.acceleration)?;
+        add(&mut bodies.velocity, dt, &self.acceleration);
+        bodies.velocity.iter_mut().flatten().for_each(|v| *v *= self.damping);
+        let Bodies { position, velocity, .. } = bodies;
+        add(position, dt, velocity);
+        Ok(())
+    }
+
+    fn order(&self) -> u32 {
+        1
+    }
+
+    fn take_up(&mut self, _: &Bodies, _: Vec<Columns>) {}
+
+    fn drains(&self) -> bool {
+        self.damping < 1.0
+    }
+}
+
+/// The explicit Euler scheme: r ← r + v dt + share · a dt², v ← v + a dt, both by what was before the step. It gains energy.
+#[derive(Clone, Debug)]
+pub struct Euler {
+    share: f64,
+    acceleration: Columns,
+}
+
+impl Euler {
+    /// With a share of a dt² in the positions: 0, or ½.
+    pub fn new(share: f64) -> Self {
+        Euler { share, acceleration: Columns::default() }
+    }
+}
+
+impl Scheme for Euler {
+    fn step(&mut self, bodies: &mut Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError> {
+        room(&mut self.acceleration, bodies);
+        field.acceleration(&bodies.position, &mut self.acceleration)?;
+        let Bodies { position, velocity, .. } = bodies;
+        add(position, dt, velocity);
+        add(position, self.share * dt * dt, &self.acceleration);
+        add(velocity, dt, &self.acceleration);
+        Ok(())
+    }
+
+    fn order(&self) -> u32 {
+        1
+    }
+
+    fn take_up(&mut self, _: &Bodies, _: Vec<Columns>) {}
+}

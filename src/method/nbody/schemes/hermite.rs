@@ -1,0 +1,64 @@
+//! Hermite's scheme of fourth order, with the jerk: predicted, evaluated, corrected (Makino and Aarseth 1992).
+
+use super::{Bodies, Columns, Field, Scheme, padded, room};
+use crate::method::nbody::bodies::add;
+use stripmine_kernels::isa::ProgramError;
+
+/// One evaluation of acceleration and jerk a step, at the predicted positions.
+#[derive(Clone, Debug, Default)]
+pub struct Hermite {
+    /// Acceleration and jerk that the step begins with.
+    begin: [Columns; 2],
+    /// The same at its predicted end.
+    end: [Columns; 2],
+    position: Columns,
+    velocity: Columns,
+    is_known: bool,
+}
+
+impl Scheme for Hermite {
+    fn step(&mut self, bodies: &mut Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError> {
+        self.begin.iter_mut().chain(&mut self.end).for_each(|columns| room(columns, bodies));
+        if !self.is_known {
+            field.derivatives(&bodies.position, &bodies.velocity, &mut self.begin)?;
+            self.is_known = true;
+        }
+        let [a, j] = &self.begin;
+        let Bodies { position, velocity, .. } = bodies;
+        self.position.clone_from(position);
+        self.velocity.clone_from(velocity);
+        add(&mut self.position, dt, velocity);
+        add(&mut self.position, dt * dt / 2.0, a);
+        add(&mut self.position, dt * dt * dt / 6.0, j);
+        add(&mut self.velocity, dt, a);
+        add(&mut self.velocity, dt * dt / 2.0, j);
+        field.derivatives(&self.position, &self.velocity, &mut self.end)?;
+        let [a_end, j_end] = &self.end;
+        // The corrected position takes the mean of both velocities, the second of them corrected.
+        add(position, dt / 2.0, velocity);
+        add(velocity, dt / 2.0, a);
+        add(velocity, dt / 2.0, a_end);
+        add(velocity, dt * dt / 12.0, j);
+        add(velocity, -dt * dt / 12.0, j_end);
+        add(position, dt / 2.0, velocity);
+        add(position, dt * dt / 12.0, a);
+        add(position, -dt * dt / 12.0, a_end);
+        std::mem::swap(&mut self.begin, &mut self.end);
+        Ok(())
+    }
+
+    fn order(&self) -> u32 {
+        4
+    }
+
+    fn carried(&self) -> Vec<&Columns> {
+        if self.is_known { self.begin.iter().collect() } else { vec![] }
+    }
+
+    fn take_up(&mut self, bodies: &Bodies, carried: Vec<Columns>) {
+        self.is_known = !carried.is_empty();
+        for (begin, columns) in self.begin.iter_mut().zip(carried) {
+            *begin = padded(columns, bodies);
+        }
+    }
+}

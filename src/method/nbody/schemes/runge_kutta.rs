@@ -1,0 +1,45 @@
+//! The classical Runge–Kutta scheme of fourth order. Its energy drifts.
+
+use super::{Bodies, Columns, Field, Scheme, room};
+use crate::method::nbody::bodies::add;
+use stripmine_kernels::isa::ProgramError;
+
+/// Four evaluations a step; nothing is carried.
+#[derive(Clone, Debug, Default)]
+pub struct RungeKutta {
+    /// Accelerations of the four stages.
+    stages: [Columns; 4],
+    at: Columns,
+}
+
+impl Scheme for RungeKutta {
+    fn step(&mut self, bodies: &mut Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError> {
+        self.stages.iter_mut().for_each(|stage| room(stage, bodies));
+        let Bodies { position, velocity, .. } = bodies;
+        // Velocities of the stages are v + c dt a of the stage before: positions take a of the one before that.
+        for stage in 0..4 {
+            let [c, before] = [[0.0, 0.0], [0.5, 0.0], [0.5, 0.25], [1.0, 0.5]][stage];
+            self.at.clone_from(position);
+            add(&mut self.at, c * dt, velocity);
+            if stage >= 2 {
+                add(&mut self.at, before * dt * dt, &self.stages[stage - 2]);
+            }
+            let (at, into) = (&self.at, &mut self.stages[stage]);
+            field.acceleration(at, into)?;
+        }
+        add(position, dt, velocity);
+        for (stage, [to_position, to_velocity]) in
+            [[1.0, 1.0], [1.0, 2.0], [1.0, 2.0], [0.0, 1.0]].into_iter().enumerate()
+        {
+            add(position, to_position * dt * dt / 6.0, &self.stages[stage]);
+            add(velocity, to_velocity * dt / 6.0, &self.stages[stage]);
+        }
+        Ok(())
+    }
+
+    fn order(&self) -> u32 {
+        4
+    }
+
+    fn take_up(&mut self, _: &Bodies, _: Vec<Columns>) {}
+}

@@ -1,0 +1,122 @@
+//! A cold sphere that falls in on itself.
+
+use crate::method::nbody::study::collapse::{BODIES, Collapse, Moment};
+use crate::report::figure::{Axis, Chart, Drawing, Figure, Picture, Point, Series, Shape, Style, Tint};
+use crate::report::section::{Film, Frame};
+use crate::report::{Section, Verdict};
+
+/// The free fall of a uniform sphere of radius and mass 1.
+const FREE_FALL: f64 = std::f64::consts::PI / (2.0 * std::f64::consts::SQRT_2);
+/// Half of the sides of what is shown.
+const WINDOW: f64 = 1.5;
+/// The fastest that is told apart by its shade.
+const FASTEST: f64 = 3.0;
+/// How large bodies are drawn.
+const RADIUS: f64 = 0.015;
+
+/// What came out.
+pub fn section(data: &Collapse) -> Section {
+    let smallest = data.moments.iter().min_by(|a, b| a.half_mass_radius.total_cmp(&b.half_mass_radius));
+    let (radius, time) = smallest.map_or((0.0, 0.0), |it| (it.half_mass_radius, it.time));
+    let late: Vec<&Moment> = data.moments.iter().filter(|it| it.time > 3.0).collect();
+    let virial = late.iter().map(|it| it.virial_ratio).sum::<f64>() / late.len() as f64;
+    let error = data.moments.iter().map(|it| it.energy_error.abs()).fold(0.0, f64::max);
+    let momentum = data.moments.iter().map(|it| it.momentum).fold(0.0, f64::max);
+    let fell = (time / FREE_FALL - 1.0).abs() < 0.1 && (virial - 0.5).abs() < 0.06;
+    Section {
+        name: "nbody-collapse".into(),
+        title: "Bodies: a cold sphere collapses".into(),
+        says: format!(
+            "Theory: a uniform sphere at rest falls in within π/√8 = {FREE_FALL:.2} √(R³/GM), and comes to the virial ratio 0.5 after it."
+        ),
+        came_out: format!(
+            "{BODIES} bodies are closest at {time:.2}, half of the mass within {radius:.3}; the virial ratio is {virial:.3} on the average \
+             after a time of 3. The energy is off by at most {error:.1e}, the momentum by {momentum:.0e}."
+        ),
+        verdict: if fell { Verdict::Reproduced } else { Verdict::Partly },
+        again: "stripmine reproduce --only nbody-collapse".into(),
+        figures: [0.0, FREE_FALL, 3.0]
+            .into_iter()
+            .filter_map(|time| picture(data, time))
+            .chain([course(data)])
+            .collect(),
+        tables: vec![],
+        excerpt: None,
+        film: Some(film(data)),
+        seeds: vec![1],
+        depends_on_host: false,
+        provenance: None,
+    }
+}
+
+fn shown(centre: [f64; 2]) -> bool {
+    centre.iter().all(|x| x.abs() < WINDOW)
+}
+
+fn picture(data: &Collapse, time: f64) -> Option<Figure> {
+    let moment =
+        data.moments.iter().min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()))?;
+    let bodies = moment.bodies.iter().filter(|(centre, _)| shown(*centre));
+    let shapes = bodies.map(|&(centre, speed)| Shape::Disc {
+        centre,
+        radius: RADIUS,
+        tint: Tint::Shade((speed / FASTEST).min(1.0)),
+    });
+    Some(Figure {
+        name: format!("bodies-{}", format!("{:.1}", moment.time).replace('.', "-")),
+        title: format!("Bodies at a time of {:.2}", moment.time),
+        caption: format!("{} of {BODIES} bodies, seen along z; shade: speed.", moment.bodies.len()),
+        picture: Picture::Drawing(Drawing {
+            window: [[-WINDOW; 2], [WINDOW; 2]],
+            width: 420.0,
+            shapes: shapes.collect(),
+            shades: Some((0.0, FASTEST, "speed (√(GM/R))".into())),
+        }),
+    })
+}
+
+fn course(data: &Collapse) -> Figure {
+    let series = |name: &str, hue, of: fn(&Moment) -> f64| Series {
+        name: name.into(),
+        style: Style::Line,
+        hue,
+        points: data.moments.iter().map(|it| Point::at(it.time, of(it))).collect(),
+    };
+    Figure {
+        name: "course".into(),
+        title: "Virial ratio and radius of half the mass".into(),
+        caption: "In equilibrium the virial ratio is 0.5.".into(),
+        picture: Picture::Chart(Chart {
+            x: Axis::linear("time", Some("√(R³/GM)")),
+            y: Axis::linear("ratio, or radius over R", None),
+            series: vec![
+                series("kinetic over potential energy", 0, |it| it.virial_ratio),
+                series("radius of half the mass", 1, |it| it.half_mass_radius),
+            ],
+            bands: vec![],
+        }),
+    }
+}
+
+fn film(data: &Collapse) -> Film {
+    // Every other moment, and what leaves the window stays at its rim, small enough not to be missed.
+    let bodies = data.moments.first().map_or(0, |it| it.bodies.len()).min(350);
+    let frames = data.moments.iter().step_by(2).map(|it| Frame {
+        time: it.time,
+        discs: it
+            .bodies
+            .iter()
+            .take(bodies)
+            .map(|&(centre, speed)| (centre.map(|x| x.clamp(-WINDOW, WINDOW)), speed.min(FASTEST)))
+            .collect(),
+    });
+    Film {
+        title: "The collapse, seen along z".into(),
+        window: [[-WINDOW; 2], [WINDOW; 2]],
+        radii: vec![RADIUS; bodies],
+        fixed: vec![],
+        frames: frames.collect(),
+        shade: "speed (√(GM/R))".into(),
+        shades: [0.0, FASTEST],
+    }
+}

@@ -1,0 +1,5 @@
+//! What the studies say, as items of the report.
+
+pub mod collapse;
+pub mod energy;
+pub mod rates;

