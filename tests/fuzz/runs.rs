@@ -21,6 +21,7 @@ fn is_small(scene: &Scene) -> bool {
     match &scene.start {
         Start::File(_) | Start::List(_) => true,
         Start::Hexagonal { count, .. } => *count as f64 <= MOST,
+        Start::Mesh { amount, grains, .. } => few(amount, grains),
         Start::Random { amount, grains } => few(amount, grains),
         // Growing takes its time.
         Start::Compressed { .. } => false,

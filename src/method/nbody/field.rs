@@ -301,7 +301,7 @@ mod tests {
         let mut orders: Vec<Columns> = (0..ORDERS).map(|_| zeros(all.entries())).collect();
         field.derivatives(&all.position, &all.velocity, &mut orders).unwrap();
         // Along the path by its series the acceleration has these derivatives.
-        let h = 0.01;
+        let h = 0.004;
         let at = |time: f64| {
             let mut position = all.position.clone();
             for axis in 0..3 {
@@ -353,7 +353,7 @@ mod tests {
         (scene.start.kind, scene.start.count) = (StartKind::Plummer, 301);
         let of = bodies(&scene.start, 0.05);
         let all = Bodies::new(of.iter().map(|&(m, r, v)| (r, v, m)));
-        let mut found = |engine, precision, arithmetic| {
+        let found = |engine, precision, arithmetic| {
             let mut field = Attraction::new(&Scene { engine, precision, arithmetic, ..scene.clone() }, &all);
             let mut into = zeros(all.entries());
             field.acceleration(&all.position, &mut into).unwrap();

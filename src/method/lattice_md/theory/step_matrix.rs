@@ -153,7 +153,7 @@ mod tests {
 
         fn begin<R: Registers>(
             &self,
-            context: &Context<'_, R>,
+            context: &Context<R>,
             row: &mut [R::V; DERIVATIVES],
             acceleration: R::V,
         ) {
@@ -162,7 +162,7 @@ mod tests {
 
         fn correct<R: Registers>(
             &self,
-            context: &Context<'_, R>,
+            context: &Context<R>,
             row: &mut [R::V; DERIVATIVES],
             acceleration: R::V,
         ) {
@@ -173,7 +173,7 @@ mod tests {
             row[2] = row[2] + once + once;
         }
 
-        fn predict<R: Registers>(&self, context: &Context<'_, R>, row: &mut [R::V; DERIVATIVES]) {
+        fn predict<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES]) {
             integrator::Scheme::predict(&right(), context, row);
         }
     }
