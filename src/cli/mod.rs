@@ -2,6 +2,7 @@
 
 mod bench;
 mod chart;
+mod compare;
 mod completions;
 mod man;
 mod reproduce;
@@ -36,6 +37,7 @@ enum GeneralVerb {
     Run(run::RunVerb),
     Bench(bench::BenchVerb),
     Chart(chart::ChartVerb),
+    Compare(compare::CompareVerb),
     Completions(completions::Completions),
     Man(man::ManVerb),
 }
@@ -158,6 +160,7 @@ fn carried_out(matches: &ArgMatches, command: &str, methods: Methods) -> Result<
         GeneralVerb::Run(verb) => verb.run(&common, methods),
         GeneralVerb::Bench(verb) => verb.run(&common, methods),
         GeneralVerb::Chart(verb) => verb.run(&common, methods),
+        GeneralVerb::Compare(verb) => verb.run(&common, methods),
         GeneralVerb::Completions(verb) => verb.run(methods),
         GeneralVerb::Man(verb) => verb.run(methods),
     }

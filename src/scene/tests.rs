@@ -34,6 +34,10 @@ fn dimensional_keys_have_units() {
         "stop_penetration",
         "restitution",
         "wall_restitution",
+        "virial",
+        "eccentricity",
+        "mass_ratio",
+        "damping",
     ];
     for key in METHODS.iter().flat_map(|method| method.vocabulary.keys.keys()) {
         let measures = matches!(key.kind, Number(_) | Pair(_) | Pairs | Numbers(_));

@@ -114,7 +114,7 @@ impl Sizes {
             Scheme::VelocityVerlet => 2,
         };
         let derivatives = self.freedoms() * carried as f64;
-        let columns = self.state * (derivatives + 3.0 * self.varying()) + 4.0 + 3.0 * self.force;
+        let columns = self.state * (derivatives + 3.0 * self.varying()) + 8.0 + 3.0 * self.force;
         let sectors = || {
             let [columns, rows] = [0, 1].map(|axis| (self.sides[axis] / self.widest_cell[axis]).ceil());
             4.0 * columns * rows + 8.0 * self.discs
@@ -132,7 +132,7 @@ impl Sizes {
             FastSearch::Lists { skin } => {
                 written += 2.0 * self.state;
                 let pairs = 0.5 * self.neighbours(self.reach + skin);
-                sectors() + (2.0 * self.state + 8.0 + 4.0 * pairs) * self.discs
+                sectors() + (2.0 * self.state + 8.0 * pairs) * self.discs
             }
         };
         (columns * self.discs + found, written * self.discs)

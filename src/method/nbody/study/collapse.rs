@@ -3,6 +3,7 @@
 use super::Running;
 use crate::console::Failure;
 use crate::method::Progress;
+use crate::particles::{Particle, Particles};
 use serde::Serialize;
 
 /// Bodies.
@@ -31,9 +32,22 @@ pub struct Moment {
     pub bodies: Vec<([f64; 2], f64)>,
 }
 
+/// The bodies that are still bound.
+#[derive(Clone, Debug, Serialize)]
+pub struct Bound {
+    /// The time.
+    pub time: f64,
+    /// The part of all bodies that they are.
+    pub share: f64,
+    /// Their kinetic over their potential energy, about their own mean motion.
+    pub virial_ratio: f64,
+}
+
 /// What came out.
 #[derive(Clone, Debug, Serialize)]
 pub struct Collapse {
+    /// Bound bodies at late moments.
+    pub bound: Vec<Bound>,
     /// Moments, from the start on.
     pub moments: Vec<Moment>,
 }
@@ -44,7 +58,7 @@ pub struct Collapse {
 /// [`Failure`] if the scene breaks.
 pub fn collapse(progress: Progress<'_>) -> Result<Collapse, Failure> {
     let mut running = Running::begin("cold-collapse", &[format!("particles.count={BODIES}")])?;
-    let mut moments = vec![];
+    let (mut moments, mut late) = (vec![], vec![]);
     for look in 0..=LOOKS {
         if look > 0 {
             running.steps(BETWEEN)?;
@@ -57,8 +71,43 @@ pub fn collapse(progress: Progress<'_>) -> Result<Collapse, Failure> {
             ([x, y], body.velocity.iter().map(|v| v * v).sum::<f64>().sqrt())
         });
         let bodies = seen.collect();
+        if time > 3.0 && look.is_multiple_of(8) {
+            late.push(bound(time, &particles));
+        }
         moments.push(Moment { time, virial_ratio, half_mass_radius, energy_error, momentum, bodies });
         progress(look as f64 / LOOKS as f64);
     }
-    Ok(Collapse { moments })
+    Ok(Collapse { bound: late, moments })
+}
+
+/// The bodies that stay when those whose energy is positive are taken away, again and again.
+fn bound(time: f64, particles: &Particles) -> Bound {
+    // As the preset has it.
+    const SOFTENING: f64 = 0.03;
+    let mut inside: Vec<&Particle> = particles.all().iter().collect();
+    loop {
+        let mass: f64 = inside.iter().map(|body| body.mass).sum();
+        let drift: [f64; 3] = [0, 1, 2]
+            .map(|axis| inside.iter().map(|body| body.mass * body.velocity[axis]).sum::<f64>() / mass);
+        let energies = inside.iter().map(|body| {
+            let speed: f64 = (0..3).map(|axis| (body.velocity[axis] - drift[axis]).powi(2)).sum();
+            let others = inside.iter().filter(|other| other.id != body.id).map(|other| {
+                let square: f64 =
+                    (0..3).map(|axis| (body.position[axis] - other.position[axis]).powi(2)).sum();
+                -other.mass / (square + SOFTENING * SOFTENING).sqrt()
+            });
+            [0.5 * speed, others.sum::<f64>()]
+        });
+        let energies: Vec<[f64; 2]> = energies.collect();
+        let before = inside.len();
+        if energies.iter().all(|[kinetic, potential]| kinetic + potential < 0.0) {
+            let sum = |which: usize| {
+                inside.iter().zip(&energies).map(|(body, energies)| body.mass * energies[which]).sum::<f64>()
+            };
+            let virial_ratio = sum(0) / (0.5 * sum(1)).abs();
+            return Bound { time, share: before as f64 / particles.len() as f64, virial_ratio };
+        }
+        let stays = energies.iter().map(|[kinetic, potential]| kinetic + potential < 0.0);
+        inside = inside.into_iter().zip(stays).filter(|(_, stays)| *stays).map(|(body, _)| body).collect();
+    }
 }

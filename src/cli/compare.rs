@@ -1,0 +1,172 @@
+//! `stripmine compare`: two ways to run one scene, beside each other.
+
+use crate::console::{Common, Failure, print, print_json};
+use crate::domain::Domain;
+use crate::method::{Methods, Prepared, Purpose, Simulation, Until, load};
+use crate::particles::Particles;
+use crate::report::table::{Cell, Table};
+use crate::report::terminal;
+use clap::Args;
+use serde::Serialize;
+use std::collections::HashMap;
+use std::sync::atomic::AtomicBool;
+
+/// Two ways to run one scene, beside each other: whether they give the same bits, the first difference, and how it grows
+#[derive(Args)]
+pub(super) struct CompareVerb {
+    /// A file, or a preset's name
+    scene: String,
+    /// Overrides a value in both; may be given several times
+    #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
+    overrides: Vec<String>,
+    /// Overrides a value in the first way only
+    #[arg(long = "first", value_name = "SECTION.KEY=VALUE")]
+    first: Vec<String>,
+    /// Overrides a value in the second way only
+    #[arg(long = "second", value_name = "SECTION.KEY=VALUE")]
+    second: Vec<String>,
+}
+
+/// Looks at both ways: at the start and after 1, 2, 4, … of this many parts.
+const PARTS: u32 = 16;
+
+/// How far both are from each other at a moment.
+#[derive(Serialize)]
+struct Look {
+    /// Steps or events done, and the time, of the first.
+    steps: u64,
+    events: u64,
+    time: f64,
+    /// Particles that are in both.
+    particles: usize,
+    /// Particles that are in one only: lost in the other.
+    unmatched: usize,
+    /// Whether all numbers have the same bits.
+    same_bits: bool,
+    /// The largest differences of positions (length) and velocities (length/time), and the particle of the former.
+    position: f64,
+    velocity: f64,
+    particle: Option<u32>,
+}
+
+#[derive(Serialize)]
+struct Comparison {
+    /// Whether all looks saw the same bits.
+    same_bits: bool,
+    /// The first look that saw a difference.
+    first_difference: Option<usize>,
+    looks: Vec<Look>,
+}
+
+impl CompareVerb {
+    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
+        let begin = |more: &[String]| -> Result<(Box<dyn Prepared>, Box<dyn Simulation>), Failure> {
+            let overrides: Vec<String> = self.overrides.iter().chain(more).cloned().collect();
+            let (prepared, _) = load(&self.scene, &overrides, methods)?;
+            let simulation = prepared.start(Purpose::Run)?;
+            Ok((prepared, simulation))
+        };
+        let (prepared, mut first) = begin(&self.first)?;
+        let (_, mut second) = begin(&self.second)?;
+        let (until, domain) = (prepared.schedule().until, prepared.domain());
+        let mut looks = vec![look(&*first, &*second, &domain)];
+        for part in (0..=PARTS).rev() {
+            let moment = share(until, part);
+            if moment.has_come(&first.clock()) {
+                continue;
+            }
+            first.advance(&[moment], &AtomicBool::new(false))?;
+            second.advance(&[moment], &AtomicBool::new(false))?;
+            looks.push(look(&*first, &*second, &domain));
+        }
+        let first_difference = looks.iter().position(|look| !look.same_bits);
+        let comparison = Comparison { same_bits: first_difference.is_none(), first_difference, looks };
+        match common.json {
+            true => print_json(&comparison),
+            false => print(&text(&self.scene, &comparison)),
+        }
+    }
+}
+
+/// The moment at a 2^part-th of the way.
+fn share(until: Until, part: u32) -> Until {
+    match until {
+        Until::Steps(steps) => Until::Steps((steps >> part).max(1)),
+        Until::Events(events) => Until::Events((events >> part).max(1)),
+        Until::Time(time) => Until::Time(time / f64::from(1u32 << part)),
+    }
+}
+
+fn look(first: &dyn Simulation, second: &dyn Simulation, domain: &Domain) -> Look {
+    let (one, other): (Particles, Particles) = (first.particles(), second.particles());
+    let by_id: HashMap<u32, _> = other.all().iter().map(|particle| (particle.id, particle)).collect();
+    let clock = first.clock();
+    let mut seen = Look {
+        steps: clock.steps,
+        events: clock.events,
+        time: clock.time,
+        particles: 0,
+        unmatched: 0,
+        same_bits: true,
+        position: 0.0,
+        velocity: 0.0,
+        particle: None,
+    };
+    for particle in one.all() {
+        let Some(twin) = by_id.get(&particle.id) else { continue };
+        seen.particles += 1;
+        let length = |way: [f64; 3]| way.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let apart = length(domain.displacement(particle.position, twin.position));
+        let faster = length([0, 1, 2].map(|axis| twin.velocity[axis] - particle.velocity[axis]));
+        if apart > seen.position {
+            (seen.position, seen.particle) = (apart, Some(particle.id));
+        }
+        seen.velocity = seen.velocity.max(faster);
+        let bits = |of: &crate::particles::Particle| {
+            (of.position.map(f64::to_bits), of.velocity.map(f64::to_bits), of.omega.to_bits())
+        };
+        seen.same_bits &= bits(particle) == bits(twin);
+    }
+    seen.unmatched = one.len() + other.len() - 2 * seen.particles;
+    seen.same_bits &= seen.unmatched == 0;
+    seen
+}
+
+fn text(scene: &str, comparison: &Comparison) -> String {
+    let looks = &comparison.looks;
+    let answer = match comparison.first_difference {
+        None => format!("{scene}: the same bits at all {} looks", looks.len()),
+        Some(0) => format!("{scene}: the two ways differ at the start already"),
+        Some(at) => {
+            let (before, seen) = (&looks[at - 1], &looks[at]);
+            format!(
+                "{scene}: the same bits up to time {:.6}, then different: at most {:.1e} at time {:.6}",
+                before.time, seen.position, seen.time
+            )
+        }
+    };
+    let has_events = looks.iter().any(|look| look.events > 0);
+    let rows = looks.iter().map(|look| {
+        vec![
+            Cell::Count(if has_events { look.events } else { look.steps }),
+            Cell::Number(look.time, 6),
+            Cell::Text(if look.same_bits { "yes".into() } else { "no".into() }),
+            Cell::Text(format!("{:.1e}", look.position)),
+            Cell::Text(format!("{:.1e}", look.velocity)),
+            Cell::Text(look.particle.map_or(String::new(), |id| id.to_string())),
+            Cell::Count(look.unmatched as u64),
+        ]
+    });
+    let unit = if has_events { "events" } else { "steps" };
+    let columns = [unit, "time", "same bits", "position", "velocity", "particle", "in one only"];
+    terminal::render(&Table {
+        name: "comparison".into(),
+        title: answer,
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+        notes: vec![
+            "Largest differences over all particles; the particle is that of the largest of positions."
+                .into(),
+        ],
+    })
+}
