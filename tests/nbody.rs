@@ -178,3 +178,25 @@ fn what_cannot_be_is_refused_and_what_breaks_is_said() {
     assert_eq!(lost.status.code(), Some(4), "{}", said(&lost));
     assert!(said(&lost).contains("not any more"), "{}", said(&lost));
 }
+
+/// Two ways of one scene beside each other: exact arithmetic has the same bits on two instruction sets; the sum as it is written rounds
+/// otherwise, and that is said with the moment.
+#[test]
+fn ways_are_compared() {
+    let compare = |more: &[&str]| -> Value {
+        let scene = ["compare", "plummer", "--json", "--set", "particles.count=64", "--set", "run.steps=128"];
+        let output = stripmine(&[&scene[..], more].concat());
+        assert!(output.status.success(), "{}", said(&output));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let same = compare(&["--against", "machine.instruction_set=scalar"]);
+    assert_eq!((&same["same_bits"], &same["first_difference"]), (&Value::Bool(true), &Value::Null));
+    let other = compare(&["--against", "machine.engine=reference"]);
+    assert_eq!(other["same_bits"], Value::Bool(false));
+    let looks = other["looks"].as_array().unwrap();
+    assert_eq!(looks[0]["same_bits"], Value::Bool(true));
+    let last = looks.last().unwrap();
+    assert_eq!(last["steps"], 128);
+    let apart = last["position"].as_f64().unwrap();
+    assert!(apart > 0.0 && apart < 1e-12, "{apart}");
+}

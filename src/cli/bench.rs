@@ -39,6 +39,9 @@ pub(super) struct BenchVerb {
     /// Mask of cells around a disc, such as min or r3; the cheapest by default
     #[arg(long)]
     mask: Option<String>,
+    /// How products and roots of bodies are formed: exact or estimated
+    #[arg(long)]
+    arithmetic: Option<String>,
     /// Pair law of particles in a bath: none, wca or lennard-jones
     #[arg(long)]
     law: Option<String>,
@@ -81,6 +84,7 @@ impl BenchVerb {
             ("instruction-set", self.instruction_set.clone()),
             ("frictionless", self.frictionless.then(String::new)),
             ("mask", self.mask.clone()),
+            ("arithmetic", self.arithmetic.clone()),
             ("law", self.law.clone()),
             ("search", self.search.clone()),
             ("sectors", self.sectors.map(|count| count.to_string())),

@@ -16,15 +16,12 @@ use std::sync::atomic::AtomicBool;
 pub(super) struct CompareVerb {
     /// A file, or a preset's name
     scene: String,
-    /// Overrides a value in both; may be given several times
+    /// Overrides a value in both ways; may be given several times
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
     overrides: Vec<String>,
-    /// Overrides a value in the first way only
-    #[arg(long = "first", value_name = "SECTION.KEY=VALUE")]
-    first: Vec<String>,
-    /// Overrides a value in the second way only
-    #[arg(long = "second", value_name = "SECTION.KEY=VALUE")]
-    second: Vec<String>,
+    /// Overrides a value in the second way only; may be given several times
+    #[arg(long = "against", value_name = "SECTION.KEY=VALUE", required = true)]
+    against: Vec<String>,
 }
 
 /// Looks at both ways: at the start and after 1, 2, 4, … of this many parts.
@@ -66,8 +63,8 @@ impl CompareVerb {
             let simulation = prepared.start(Purpose::Run)?;
             Ok((prepared, simulation))
         };
-        let (prepared, mut first) = begin(&self.first)?;
-        let (_, mut second) = begin(&self.second)?;
+        let (prepared, mut first) = begin(&[])?;
+        let (_, mut second) = begin(&self.against)?;
         let (until, domain) = (prepared.schedule().until, prepared.domain());
         let mut looks = vec![look(&*first, &*second, &domain)];
         for part in (0..=PARTS).rev() {

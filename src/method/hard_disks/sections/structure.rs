@@ -7,6 +7,9 @@ use crate::report::{Cell, Section, Table, Verdict};
 /// Free times over their mean that are drawn; longer ones are too few.
 const LONGEST: f64 = 5.0;
 
+/// Side of what is drawn of the box, in diameters.
+const SHOWN: f64 = 30.0;
+
 /// What came out.
 pub fn section(data: &Structures) -> Section {
     let [gas, fluid, _, crystal] = data.structures.as_slice() else {
@@ -107,7 +110,10 @@ fn free_times(data: &Structures) -> Figure {
 }
 
 fn picture(it: &Structure) -> Figure {
-    let shapes = it.discs.iter().map(|&(centre, along)| Shape::Disc {
+    let sides = it.sides.map(|side| side.min(SHOWN));
+    let shown =
+        it.discs.iter().filter(|(centre, _)| centre.iter().zip(sides).all(|(x, side)| *x < side + 0.5));
+    let shapes = shown.map(|&(centre, along)| Shape::Disc {
         centre,
         radius: 0.5,
         tint: Tint::Shade(0.5 * (along + 1.0)),
@@ -115,10 +121,10 @@ fn picture(it: &Structure) -> Figure {
     Figure {
         name: format!("discs-{}", it.packing_fraction.to_string().replace('.', "-")),
         title: format!("Discs at a packing fraction of {}", it.packing_fraction),
-        caption: "Shade: the bonds of a disc to its six nearest, ψ₆, along the mean of all. 1 is a crystal in line with the whole."
+        caption: "A part of the box. Shade: the bonds of a disc to its six nearest, ψ₆, along the mean of all. 1 is a crystal in line with the whole."
             .into(),
         picture: Picture::Drawing(Drawing {
-            window: [[0.0; 2], it.sides],
+            window: [[0.0; 2], sides],
             width: 640.0,
             shapes: shapes.collect(),
             shades: Some((-1.0, 1.0, "ψ₆ along the mean of all".into())),

@@ -1,6 +1,6 @@
 //! A cold sphere that falls in on itself.
 
-use crate::method::nbody::study::collapse::{BODIES, Bound, Collapse, Moment};
+use crate::method::nbody::study::collapse::{BODIES, Bound, Collapse, LATE, Moment};
 use crate::report::figure::{Axis, Chart, Drawing, Figure, Picture, Point, Series, Shape, Style, Tint};
 use crate::report::section::{Film, Frame};
 use crate::report::{Section, Verdict};
@@ -11,6 +11,8 @@ const FREE_FALL: f64 = std::f64::consts::PI / (2.0 * std::f64::consts::SQRT_2);
 const WINDOW: f64 = 1.5;
 /// The fastest that is told apart by its shade.
 const FASTEST: f64 = 3.0;
+/// How long the film is.
+const FILMED: f64 = 4.0;
 /// How large bodies are drawn.
 const RADIUS: f64 = 0.015;
 
@@ -31,7 +33,7 @@ pub fn section(data: &Collapse) -> Section {
              virial ratio 0.5 after it."
         ),
         came_out: format!(
-            "{BODIES} bodies are closest at {time:.2}, half of the mass within {radius:.3}; after a time of 3 the {:.0} % that are bound have a \
+            "{BODIES} bodies are closest at {time:.2}, half of the mass within {radius:.3}; after a time of {LATE} the {:.0} % that are bound have a \
              virial ratio of {virial:.3} on the average. The energy is off by at most {error:.1e}, the momentum by {momentum:.0e}.",
             100.0 * share
         ),
@@ -105,7 +107,7 @@ fn course(data: &Collapse) -> Figure {
 fn film(data: &Collapse) -> Film {
     // Every other moment, and what leaves the window stays at its rim, small enough not to be missed.
     let bodies = data.moments.first().map_or(0, |it| it.bodies.len()).min(350);
-    let frames = data.moments.iter().step_by(2).map(|it| Frame {
+    let frames = data.moments.iter().filter(|it| it.time <= FILMED).step_by(2).map(|it| Frame {
         time: it.time,
         discs: it
             .bodies

@@ -9,8 +9,10 @@ use serde::Serialize;
 /// Bodies.
 pub const BODIES: usize = 2048;
 /// Looks, and steps between them.
-const LOOKS: u64 = 160;
+const LOOKS: u64 = 320;
 const BETWEEN: u64 = 8;
+/// From this time on the bodies that are bound are looked at: they have swung several times.
+pub const LATE: f64 = 6.0;
 /// Bodies of the film.
 const SHOWN: usize = 700;
 
@@ -71,7 +73,7 @@ pub fn collapse(progress: Progress<'_>) -> Result<Collapse, Failure> {
             ([x, y], body.velocity.iter().map(|v| v * v).sum::<f64>().sqrt())
         });
         let bodies = seen.collect();
-        if time > 3.0 && look.is_multiple_of(8) {
+        if time > LATE && look.is_multiple_of(8) {
             late.push(bound(time, &particles));
         }
         moments.push(Moment { time, virial_ratio, half_mass_radius, energy_error, momentum, bodies });
