@@ -27,6 +27,9 @@ pub(super) struct CompareVerb {
 /// Looks at both ways: at the start and after 1, 2, 4, … of this many parts.
 const PARTS: u32 = 16;
 
+/// A way to run the scene, and the scene under way.
+type Begun = (Box<dyn Prepared>, Box<dyn Simulation>);
+
 /// How far both are from each other at a moment.
 #[derive(Serialize)]
 struct Look {
@@ -57,7 +60,7 @@ struct Comparison {
 
 impl CompareVerb {
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
-        let begin = |more: &[String]| -> Result<(Box<dyn Prepared>, Box<dyn Simulation>), Failure> {
+        let begin = |more: &[String]| -> Result<Begun, Failure> {
             let overrides: Vec<String> = self.overrides.iter().chain(more).cloned().collect();
             let (prepared, _) = load(&self.scene, &overrides, methods)?;
             let simulation = prepared.start(Purpose::Run)?;

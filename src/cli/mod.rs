@@ -5,6 +5,7 @@ mod chart;
 mod compare;
 mod completions;
 mod man;
+mod plot;
 mod reproduce;
 mod run;
 mod scene;
@@ -35,7 +36,8 @@ enum GeneralVerb {
     Reproduce(reproduce::Reproduce),
     Scene(scene::SceneVerb),
     Run(run::RunVerb),
-    Bench(bench::BenchVerb),
+    Plot(plot::PlotVerb),
+    Bench(Box<bench::BenchVerb>),
     Chart(chart::ChartVerb),
     Compare(compare::CompareVerb),
     Completions(completions::Completions),
@@ -158,6 +160,7 @@ fn carried_out(matches: &ArgMatches, command: &str, methods: Methods) -> Result<
         GeneralVerb::Reproduce(verb) => verb.run(&common, methods),
         GeneralVerb::Scene(verb) => verb.run(&common, methods),
         GeneralVerb::Run(verb) => verb.run(&common, methods),
+        GeneralVerb::Plot(verb) => verb.run(&common, methods),
         GeneralVerb::Bench(verb) => verb.run(&common, methods),
         GeneralVerb::Chart(verb) => verb.run(&common, methods),
         GeneralVerb::Compare(verb) => verb.run(&common, methods),

@@ -42,7 +42,7 @@ fn item(section: &Section) -> String {
         let _ = write!(text, "\n![{}]({folder}/{}.svg)\n\n{}\n", figure.title, figure.name, figure.caption);
     }
     for table in &section.tables {
-        let _ = write!(text, "\n{}", markdown::render(table));
+        let _ = write!(text, "\n{}", markdown::render(table, &folder));
     }
     if let Some((what, lines)) = &section.excerpt {
         let _ = write!(text, "\n{what}\n\n```text\n{lines}\n```\n");

@@ -201,7 +201,7 @@ fn on_mesh(
         }
     };
     let refuse = |message: String| stated.spot(key).error(Reason::Placement, message);
-    if count > MOST || count < 1.0 {
+    if !(1.0..=MOST).contains(&count) {
         return Err(refuse(format!(
             "{count:.4e} discs are none, or more than the {MOST:.3e} that can be numbered"
         )));

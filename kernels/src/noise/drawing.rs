@@ -31,7 +31,7 @@ const fn alternating<const N: usize>(first: u32) -> [f64; N] {
     terms
 }
 
-/// Σ terms[k] z^k.
+/// `Σ terms[k] z^k`.
 #[inline(always)]
 fn polynomial<const N: usize>(terms: [f64; N], z: f64) -> f64 {
     let mut sum = terms[N - 1];

@@ -39,18 +39,26 @@ pub fn render(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) ->
     }
 }
 
+/// The longest drawing (bytes) that a page carries for readers without scripts and for paper beside the data of a chart or a map.
+/// Longer ones are files beside the page.
+const LONGEST: usize = 20_000;
+
 /// A figure: its picture, and below it what a reader must know.
 fn figure(section: &Section, figure: &Figure, drawn: &dyn Fn(&Section, &Figure) -> String) -> Markup {
     let svg = drawn(section, figure);
     // What stands before the element itself belongs to a file of its own.
     let svg = PreEscaped(svg.find("<svg").map_or("", |start| &svg[start..]));
+    let file = format!("{}/{}.svg", section.folder(), figure.name);
+    let elsewhere = html! { p { "Without scripts and on paper this picture is the file " a href=(file) { code { (file) } } "." } };
+    let elsewhere = elsewhere.into_string();
+    let instead = if svg.0.len() > LONGEST { PreEscaped(elsewhere.as_str()) } else { svg };
     let label = format!("{}. {}", figure.title, figure.caption);
     html! {
         figure id={ (section.name) "-" (figure.name) } {
             @match &figure.picture {
                 Picture::Drawing(_) => div.drawing role="img" aria-label=(label) { (svg) },
-                Picture::Chart(chart) => (live("chart", &label, &data::chart(chart), svg)),
-                Picture::Map(map) => (live("map", &label, &data::map(map), svg)),
+                Picture::Chart(chart) => (live("chart", &label, &data::chart(chart), instead)),
+                Picture::Map(map) => (live("map", &label, &data::map(map), instead)),
             }
             figcaption { (heading(&figure.title)) " " (prose(&figure.caption)) }
         }
