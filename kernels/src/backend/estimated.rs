@@ -61,7 +61,7 @@ fn on<S: Simd, Set: Simd, R: Copy, Native: Copy>(
     // SAFETY: S and Set are one type; the register and the processor's type are plain data of one size.
     let (set, native) = unsafe { (std::mem::transmute_copy(&simd), std::mem::transmute_copy(&register)) };
     let result = work(set, native);
-    // SAFETY: as above, the other way.
+    // SAFETY: R and Native are of one size, as the early return has made sure, and both are plain data.
     Some(unsafe { std::mem::transmute_copy(&result) })
 }
 

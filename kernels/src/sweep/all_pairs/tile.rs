@@ -191,7 +191,7 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
                 let partner = unsafe { self.partner(registers, at) };
                 // SAFETY: sums have an entry for every body from `base` on.
                 let to: [*mut P; SUMS] = from_fn(|sum| unsafe { self.sums[sum].as_mut_ptr().add(at - base) });
-                // SAFETY: as above, a register of them.
+                // SAFETY: `to` points at sums of whole groups, of which a part is one register.
                 let partner_sums: Sums<R::V, SUMS> =
                     from_fn(|sum| Cell::new(unsafe { registers.load(to[sum]) }));
                 for (n, own) in own.into_iter().enumerate() {
