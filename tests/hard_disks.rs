@@ -54,6 +54,33 @@ fn the_pressure_of_a_fluid_is_that_of_other_programs() {
     }
 }
 
+/// A mixture of two kinds grows to a packing fraction that no random placement reaches, and the source's engine follows it.
+#[test]
+fn two_kinds_of_discs_are_compressed() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = [
+        "domain.sides=[24.0, 24.0]",
+        "particles.generate=compressed",
+        "particles.count=386",
+        "particles.second_radius=0.7",
+        "particles.second_share=0.5",
+        "run.time=2",
+    ];
+    let more: Vec<&str> = set.into_iter().flat_map(|text| ["--set", text]).collect();
+    let ended = |engine: &str| {
+        let engine = format!("machine.engine={engine}");
+        let out = folder.path().join(&engine);
+        run("hot-floor", &out, &[&more[..], &["--set", &engine]].concat());
+        (column(&out, "kinetic"), column(&out, "events"))
+    };
+    let [source, fast] = ["reference", "fast"].map(ended);
+    assert_eq!(source, fast);
+    assert!(fast.1[fast.1.len() - 1] > 3000.0, "{:?}", fast.1);
+    // 386 discs, half of them of either kind.
+    let area = 193.0 * std::f64::consts::PI * (0.25 + 0.49);
+    assert!((area / (24.0 * 24.0) - 0.78).abs() < 0.002);
+}
+
 /// Haff's law, T = T₀ exp(−(1 − e²) collisions/N), as long as the gas is even: to 3 % over four collisions a disc.
 #[test]
 fn a_cooling_gas_follows_haffs_law() {
@@ -221,7 +248,8 @@ fn what_cannot_be_is_refused_with_what_may_be() {
     refused("hard-disks", &["domain.open_top=true"], 3, &["needs a floor"]);
     refused("hard-disks", &["law.thermal_side=top"], 3, &["that side is periodic"]);
     refused("hard-disks", &["law.wall_temperature=2"], 3, &["law.wall_temperature"]);
-    refused("hot-floor", &["machine.engine=reference"], 3, &["no box has so many", "fast"]);
+    refused("hot-floor", &["law.floor_amplitude=0.1"], 3, &["thermal", "floor_amplitude"]);
+    refused("hard-disks", &["law.floor_amplitude=0.1"], 3, &["needs a floor", "periodic"]);
     refused(
         "hard-disks",
         &["particles.count=4", "particles.packing_fraction=0.7", "machine.engine=fast"],

@@ -6,7 +6,7 @@ mod rows;
 
 pub use mesh::mesh;
 pub(crate) use random::stir;
-pub use random::{Filling, Jammed, random};
+pub use random::{Filling, Jammed, Second, random};
 pub use rows::{Row, row};
 
 use crate::particles::{Kind, Particle, Particles, in_space};

@@ -25,10 +25,39 @@ pub struct Filling<'a> {
     pub spread: f64,
     /// Largest deviation of a radius, relative to the mean.
     pub cut: f64,
+    /// Discs of a second mean radius among them.
+    pub second: Second,
     /// Mass of a disc of the mean radius; others have it times (R/mean)².
     pub mass: f64,
     /// Seed.
     pub seed: u64,
+}
+
+/// A second kind of discs, spread evenly over the ids.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Second {
+    /// Its mean radius (length).
+    pub radius: f64,
+    /// Its share of the number of discs, from 0 to 1.
+    pub share: f64,
+}
+
+impl Second {
+    /// Whether the disc of an id, from 1 on, is of this kind: of any first n discs ⌊n · share⌋ are.
+    pub fn has(&self, id: u32) -> bool {
+        let up_to = |count: u32| (f64::from(count) * self.share).floor();
+        up_to(id) > up_to(id - 1)
+    }
+
+    /// The mean of the squared mean radii of both kinds, the first of radius `first` (length²).
+    pub fn mean_square(&self, first: f64) -> f64 {
+        (1.0 - self.share) * first * first + self.share * self.radius * self.radius
+    }
+
+    /// The larger of the mean radii that there are, the first being `first` (length).
+    pub fn largest(&self, first: f64) -> f64 {
+        if self.share > 0.0 { first.max(self.radius) } else { first }
+    }
 }
 
 /// Random placement found no room.
@@ -51,9 +80,9 @@ const TRIES: usize = 200_000;
 /// # Errors
 /// [`Jammed`] if a disc finds no room.
 pub fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
-    let Filling { domain, room, obstacles, count, radius: mean, cut, mass, seed, .. } = *filling;
+    let Filling { domain, room, obstacles, count, radius: mean, cut, second, mass, seed, .. } = *filling;
     let obstacle = obstacles.iter().map(|disc| disc.radius).fold(0.0, f64::max);
-    let largest = mean * (1.0 + cut);
+    let largest = second.largest(mean) * (1.0 + cut);
     let mut near = Near::new(domain, (2.0 * largest).max(largest + obstacle));
     let mut circles: Vec<f64> = Vec::with_capacity(obstacles.len() + count.min(1 << 20));
     for disc in obstacles {
@@ -63,7 +92,8 @@ pub fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
     let mut discs = Vec::new();
     for id in 1..=count as u32 {
         let mut stream = Stream::new(seed, Purpose::Placement, id);
-        let radius = mean * (1.0 + stream.sample(TruncatedNormal { deviation: filling.spread, cut }));
+        let kind = if second.has(id) { second.radius } else { mean };
+        let radius = kind * (1.0 + stream.sample(TruncatedNormal { deviation: filling.spread, cut }));
         let jammed = Jammed { placed: discs.len(), asked: count, tries: TRIES };
         let ranges = [0, 1].map(|axis| {
             let [low, high] = room.map(|corner| corner[axis]);
@@ -163,9 +193,26 @@ mod tests {
             radius: 0.5,
             spread: 0.05,
             cut: 0.1,
+            second: Second::default(),
             mass: 2.0,
             seed: 9,
         }
+    }
+
+    /// Of 40 discs a quarter have the second radius, wherever the count ends, and masses as their areas.
+    #[test]
+    fn two_kinds_are_mixed_evenly() {
+        let second = Second { radius: 0.7, share: 0.25 };
+        let discs = random(&Filling { count: 40, spread: 0.0, second, ..filling() }).unwrap();
+        let larger: Vec<u32> = discs.iter().filter(|disc| disc.radius == 0.7).map(|disc| disc.id).collect();
+        assert_eq!(larger, [4, 8, 12, 16, 20, 24, 28, 32, 36, 40]);
+        assert!(discs.iter().all(|disc| (disc.mass / disc.radius.powi(2) - 8.0).abs() < 1e-12));
+        assert!((second.mean_square(0.5) - (0.75 * 0.25 + 0.25 * 0.49)).abs() < 1e-15);
+        assert_eq!([second.largest(0.5), Second::default().largest(0.5)], [0.7, 0.5]);
+        let overlap = |a: &Particle, b: &Particle| {
+            filling().domain.distance(a.place(), b.place()) < a.radius + b.radius
+        };
+        assert!(discs.iter().enumerate().all(|(i, a)| discs[..i].iter().all(|b| !overlap(a, b))));
     }
 
     #[test]

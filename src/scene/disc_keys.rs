@@ -40,6 +40,10 @@ define_keys! {
         "N π radius² over the area that is open to grains: the box, the clear channel of a pipe, the fill height of a box.";
     RADIUS = "particles" "radius", Number(Positive), "length", Required, GENERATED,
         "Radius of a grain; with a spread, the mean.";
+    SECOND_RADIUS = "particles" "second_radius", Number(Positive), "length", Otherwise("`radius`"), PLACED,
+        "Mean radius of a second kind of discs.";
+    SECOND_SHARE = "particles" "second_share", Number(UpTo(1.0)), "", Is("0.0"), PLACED,
+        "Share of the discs that are of the second kind, from 0 to 1.";
     RADIUS_SPREAD = "particles" "radius_spread", Number(UpTo(1.0)), "", Is("0.0"), PLACED,
         "Standard deviation of the Gaussian radii, relative to `radius`.";
     RADIUS_CUT = "particles" "radius_cut", Number(UpTo(1.0)), "", Otherwise("2 `radius_spread`, at most 0.12"), PLACED,

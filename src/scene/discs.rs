@@ -6,6 +6,7 @@ use super::domain::periodic_as;
 use super::error::{Reason, SceneError};
 use super::keys::{Key, Value};
 use super::values::Values;
+use crate::placement::Second;
 use crate::words::define_words;
 use std::path::{Path, PathBuf};
 
@@ -124,6 +125,8 @@ pub struct Grains {
     pub spread: f64,
     /// Largest deviation of a radius, relative to the mean.
     pub cut: f64,
+    /// Discs of a second mean radius among them.
+    pub second: Second,
     /// Mass of a disc of the mean radius (mass); others have it times (R/mean)².
     pub mass: f64,
     /// Velocities.
@@ -349,6 +352,8 @@ impl Grains {
             None => Speed::Deviation(speed.unwrap_or(0.0)),
         };
         if spread {
+            or_else(binding, &SECOND_RADIUS, &mut self.second.radius, self.radius);
+            binding.number(&SECOND_SHARE, &mut self.second.share);
             binding.number(&RADIUS_SPREAD, &mut self.spread);
             or_else(binding, &RADIUS_CUT, &mut self.cut, (2.0 * self.spread).min(0.12));
         }

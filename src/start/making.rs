@@ -1,25 +1,26 @@
 //! The discs of a scene.
 
-use super::{Stated, Uncompressed, readable};
+use super::compressing::compressed;
+use super::meshing::on_mesh;
+use super::{Stated, readable};
 use crate::domain::Domain;
 use crate::io::extxyz;
 use crate::memory;
 use crate::particles::{Kind, Particle, Particles, in_space};
-use crate::placement::{Filling, Row, hexagonal, mesh, random, row, stir};
+use crate::placement::{Filling, Row, hexagonal, random, row, stir};
 use crate::quoted;
 use crate::scene::{
     Amount, CLEAR_WIDTH, COUNT, FILE, FILL_HEIGHT, GENERATE, Grains, Key, Lining, List, ORIGIN,
-    PACKING_FRACTION, PERIODIC, Reason, SIDES, SPACING, SceneError, Speed, Start, WALL_SPACING, WallMotion,
-    Warning,
+    PACKING_FRACTION, PERIODIC, Reason, SIDES, SceneError, Speed, Start, WALL_SPACING, WallMotion, Warning,
 };
 use std::f64::consts::PI;
 
 /// Most discs of one kind, grains or walls: with those of the other their ids must be numbers of 32 bits.
-const MOST: f64 = (u32::MAX / 2) as f64;
+pub(super) const MOST: f64 = (u32::MAX / 2) as f64;
 
 /// Whether the machine has the memory to place that many discs and to look for overlaps: each disc, and its entry in a map of
 /// squares whose number is a power of two. Asked before anything is placed.
-fn placeable(stated: &Stated<'_>, count: f64, key: &Key) -> Result<(), SceneError> {
+pub(super) fn placeable(stated: &Stated<'_>, count: f64, key: &Key) -> Result<(), SceneError> {
     /// Bytes of an entry of the map, and of a disc in its square.
     const SQUARE: [f64; 2] = [25.0, 40.0];
     let squares = (count * 8.0 / 7.0).log2().ceil().exp2();
@@ -40,7 +41,9 @@ fn placeable(stated: &Stated<'_>, count: f64, key: &Key) -> Result<(), SceneErro
 pub fn radii(start: &Start, found: Option<[f64; 2]>) -> Option<[f64; 2]> {
     let spread = |grains: &Grains| {
         let cut = if grains.spread > 0.0 { grains.cut } else { 0.0 };
-        [grains.radius * (1.0 - cut), grains.radius * (1.0 + cut)]
+        let has_second = grains.second.share > 0.0;
+        let low = if has_second { grains.radius.min(grains.second.radius) } else { grains.radius };
+        [low * (1.0 - cut), grains.second.largest(grains.radius) * (1.0 + cut)]
     };
     let with = |[low, high]: [f64; 2], radius: f64| [low.min(radius), high.max(radius)];
     match start {
@@ -184,61 +187,7 @@ fn from_file(stated: &Stated<'_>, domain: &Domain, path: &std::path::Path) -> Re
     Ok(frame.particles)
 }
 
-/// Discs at places of a square mesh, drawn at random.
-fn on_mesh(
-    stated: &Stated<'_>,
-    domain: &Domain,
-    amount: Amount,
-    grains: &Grains,
-    spacing: f64,
-) -> Result<Particles, SceneError> {
-    let counts = [0, 1].map(|axis| (domain.length(axis) / spacing).floor().max(1.0));
-    let key = if stated.values.gives(&COUNT) { &COUNT } else { &PACKING_FRACTION };
-    let count = match amount {
-        Amount::Count(count) => count as f64,
-        Amount::PackingFraction(fraction) => {
-            (fraction * domain.area() / (PI * grains.radius * grains.radius)).round()
-        }
-    };
-    let refuse = |message: String| stated.spot(key).error(Reason::Placement, message);
-    if !(1.0..=MOST).contains(&count) {
-        return Err(refuse(format!(
-            "{count:.4e} discs are none, or more than the {MOST:.3e} that can be numbered"
-        )));
-    }
-    if count > counts[0] * counts[1] {
-        let message = format!(
-            "{count} discs, but the mesh has {} × {} = {} places {spacing} apart",
-            counts[0],
-            counts[1],
-            counts[0] * counts[1]
-        );
-        return Err(refuse(message).advising("take fewer discs, a larger box or a smaller particles.spacing"));
-    }
-    if counts[0] * counts[1] > MOST {
-        let message = format!(
-            "a mesh of {} × {} places is more than the {MOST:.3e} that can be numbered",
-            counts[0], counts[1]
-        );
-        let error = stated.spot(&SPACING).error(Reason::Placement, message);
-        return Err(error.advising("set a larger particles.spacing"));
-    }
-    placeable(stated, count, key)?;
-    let edge = [0, 1].map(|axis| domain.length(axis) / counts[axis]);
-    let places = mesh(counts.map(|count| count as usize), count as usize, grains.seed);
-    let at = |[column, row]: [usize; 2]| {
-        [0, 1].map(|axis| domain.origin[axis] + ([column, row][axis] as f64 + 0.5) * edge[axis])
-    };
-    let of = [grains.radius, grains.mass];
-    let discs =
-        places.into_iter().zip(1..).map(|(place, id)| disc(id, Kind::Grain, at(place), grains.radius, of));
-    let mut discs: Vec<Particle> = discs.collect();
-    let balanced = domain.periodic() == [true; 2] && discs.len() > 1;
-    stir(&mut discs, grains.seed, balanced, |disc| grains.deviation(disc.mass));
-    Ok(Particles::new(discs))
-}
-
-fn disc(id: u32, kind: Kind, position: [f64; 2], radius: f64, [unit, mass]: [f64; 2]) -> Particle {
+pub(super) fn disc(id: u32, kind: Kind, position: [f64; 2], radius: f64, [unit, mass]: [f64; 2]) -> Particle {
     let share = radius / unit;
     Particle {
         id,
@@ -292,54 +241,16 @@ fn on_lattice(
 /// Beyond this packing fraction random sequential placement jams, however large the box.
 const JAMMING: f64 = 0.547;
 /// Beyond this one discs that grow find no order in which they fit, in any time worth waiting for.
-const COMPRESSED: f64 = 0.885;
-/// The packing fraction at which discs begin to grow.
-const SPARSE: f64 = 0.35;
-
-/// Discs placed while they are small, and grown.
-fn compressed(
-    stated: &Stated<'_>,
-    domain: &Domain,
-    amount: Amount,
-    grains: &Grains,
-) -> Result<Particles, SceneError> {
-    let count = grain_count(stated, amount, domain.area(), grains, COMPRESSED)?;
-    let packing = count as f64 * PI * grains.radius * grains.radius / domain.area();
-    let scale = (SPARSE / packing).sqrt().min(0.9);
-    let far = [0, 1].map(|axis| domain.origin[axis] + domain.length(axis));
-    let small = Grains { radius: scale * grains.radius, ..*grains };
-    let mut discs = fill(stated, domain, [domain.corner(), far], &[], count, &small)?;
-    discs.iter_mut().for_each(|disc| disc.radius /= scale);
-    (stated.compress)(domain, &mut discs, scale, grains.seed).map_err(|why| {
-        let spot = stated.spot(&GENERATE);
-        match why {
-            Uncompressed::Jammed { reached } => {
-                let message = format!(
-                    "{count} discs grew to a packing fraction of {reached:.4} of {packing:.4}, and jam"
-                );
-                spot.error(Reason::Placement, message)
-                    .advising("lower count or packing_fraction, or take another seed")
-            }
-            Uncompressed::TooSmall => {
-                let message =
-                    "the box is too small for discs to grow in: each would see others across two sides";
-                spot.error(Reason::Placement, message)
-                    .advising("take a larger box, or generate = \"hexagonal\"")
-            }
-        }
-    })?;
-    Ok(Particles::new(discs))
-}
-
+pub(super) const COMPRESSED: f64 = 0.885;
 /// How many grains fill an area that is open to them, at most up to a packing fraction.
-fn grain_count(
+pub(super) fn grain_count(
     stated: &Stated<'_>,
     amount: Amount,
     open: f64,
     grains: &Grains,
     most: f64,
 ) -> Result<usize, SceneError> {
-    let share = PI * grains.radius * grains.radius / open;
+    let share = PI * grains.second.mean_square(grains.radius) / open;
     let (count, key): (f64, &Key) = match amount {
         Amount::Count(count) => (count as f64, &COUNT),
         Amount::PackingFraction(fraction) => ((fraction / share).round(), &PACKING_FRACTION),
@@ -372,7 +283,7 @@ fn grain_count(
     Ok(count as usize)
 }
 
-fn fill(
+pub(super) fn fill(
     stated: &Stated<'_>,
     domain: &Domain,
     room: [[f64; 2]; 2],
@@ -380,9 +291,10 @@ fn fill(
     count: usize,
     grains: &Grains,
 ) -> Result<Vec<Particle>, SceneError> {
-    let Grains { radius, spread, cut, mass, seed, .. } = *grains;
+    let Grains { radius, spread, cut, second, mass, seed, .. } = *grains;
     let cut = if spread > 0.0 { cut } else { 0.0 };
-    let filling = Filling { domain: *domain, room, obstacles, count, radius, spread, cut, mass, seed };
+    let filling =
+        Filling { domain: *domain, room, obstacles, count, radius, spread, cut, second, mass, seed };
     let mut discs = random(&filling).map_err(|jammed| {
         let error = stated.spot(&GENERATE).error(Reason::Placement, jammed.to_string());
         error.advising("lower count or packing_fraction, or make more room")

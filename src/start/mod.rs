@@ -1,7 +1,9 @@
 //! The discs at the start: made as the scene states, and held against the box and each other.
 
 mod checks;
+mod compressing;
 mod making;
+mod meshing;
 
 pub use checks::{noun, outside, overlaps, readable};
 pub use making::{Made, make, radii};

@@ -31,7 +31,7 @@ pub fn compress(domain: &Domain, grains: &mut [Particle], scale: f64, seed: u64)
     let mean = grains.iter().map(|grain| grain.radius).sum::<f64>() / count.max(1) as f64;
     let area: f64 = grains.iter().map(|grain| std::f64::consts::PI * grain.radius * grain.radius).sum();
     let packing = area / domain.area();
-    let law = Law { restitution: 1.0, wall_restitution: 1.0, contact_duration: 0.0, thermal: None };
+    let law = Law::ELASTIC;
     let arena = Arena::new(*domain, [0.0; 2], law);
     if leash(&arena, grains.iter().map(|grain| grain.radius)).is_none() {
         return Err(Uncompressed::TooSmall);
@@ -92,7 +92,7 @@ pub fn compress(domain: &Domain, grains: &mut [Particle], scale: f64, seed: u64)
 mod tests {
     use super::*;
     use crate::particles::Kind;
-    use crate::placement::{Filling, random};
+    use crate::placement::{Filling, Second, random};
 
     fn start(domain: Domain, packing: f64, spread: f64, scale: f64) -> Vec<Particle> {
         let mean = 0.5;
@@ -106,6 +106,7 @@ mod tests {
             radius: scale * mean,
             spread,
             cut: 2.0 * spread,
+            second: Second::default(),
             mass: 1.0,
             seed: 3,
         };

@@ -60,6 +60,8 @@ pub struct Happened {
 pub enum Stopped {
     /// Two discs have their centres in one cell: they overlap.
     SharedCell([u32; 2]),
+    /// A disc is so high that the look-up of cells above a floor takes too many entries.
+    TooHigh(u32, usize),
     /// An event lies before one that has happened (time, time).
     BackInTime(u32, f64, f64),
     /// A disc has more others around it than can be listed.

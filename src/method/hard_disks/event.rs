@@ -1,5 +1,6 @@
 //! What discs fly between, and what their events do to them. Nothing here knows how events are found.
 
+use super::floor::Floor;
 use crate::domain::{Domain, Side};
 use stripmine_kernels::flight::{Disc, Growth, Space};
 use stripmine_kernels::noise::{Purpose, normals};
@@ -15,6 +16,14 @@ pub struct Law {
     pub contact_duration: f64,
     /// The side that gives back discs of a temperature; none where all reflect.
     pub thermal: Option<Thermal>,
+    /// How the floor, the lower end of the second side, moves; none where it is at rest.
+    pub floor: Option<Floor>,
+}
+
+impl Law {
+    /// Nothing is lost, and no side does more than reflect.
+    pub const ELASTIC: Law =
+        Law { restitution: 1.0, wall_restitution: 1.0, contact_duration: 0.0, thermal: None, floor: None };
 }
 
 /// A wall that takes discs up and gives them back with velocities of its own temperature.
@@ -112,9 +121,17 @@ impl Arena {
         let [radius, swelling] = self.radius(disc, disc.time);
         let above = (disc.position[axis] - radius - low).max(0.0);
         let below = side.map(|side| (low + side - radius - disc.position[axis]).max(0.0));
-        let to_low = fall(above, swelling - v, -g);
+        let to_low = match self.floor(axis) {
+            Some(floor) => floor.meeting(above, v, g, disc.time),
+            None => fall(above, swelling - v, -g),
+        };
         let to_high = below.map_or(f64::INFINITY, |below| fall(below, swelling + v, g));
         disc.time + to_low.min(to_high)
+    }
+
+    /// How the lower end of a side moves.
+    fn floor(&self, axis: usize) -> Option<Floor> {
+        self.law.floor.filter(|_| axis == 1)
     }
 
     /// Two discs collide; `a` is the one with the smaller number.
@@ -149,12 +166,16 @@ impl Arena {
         self.advance(disc, time);
         let v = disc.velocity[axis];
         // At both ends of a side a disc flies outwards; one at rest under gravity lies on the side it is drawn to. One that grows
-        // may fly inwards, but is near one of them.
+        // may fly inwards, and so may one that a floor catches up with, but both are near one of the ends.
         let [_, swelling] = self.radius(disc, time);
         let g = self.space.gravity().map_or(0.0, |gravity| gravity[axis]);
         let middle = self.domain.origin[axis] + 0.5 * self.domain.length(axis);
-        let is_high =
-            if swelling > 0.0 { disc.position[axis] > middle } else { v > 0.0 || v == 0.0 && g > 0.0 };
+        let floor = self.floor(axis);
+        let is_high = if swelling > 0.0 || floor.is_some() {
+            disc.position[axis] > middle
+        } else {
+            v > 0.0 || v == 0.0 && g > 0.0
+        };
         match self.law.thermal {
             Some(thermal) if thermal.side == (axis, is_high) => {
                 let [across, along] = thermal.velocity(disc, number);
@@ -163,7 +184,11 @@ impl Arena {
             }
             _ => {
                 let restitution = if too_soon { 1.0 } else { self.law.wall_restitution };
-                let inwards = if is_high { -swelling } else { swelling };
+                let inwards = match floor {
+                    Some(floor) if !is_high => floor.velocity(time),
+                    _ if is_high => -swelling,
+                    _ => swelling,
+                };
                 disc.velocity[axis] = inwards - restitution * (v - inwards);
             }
         }
@@ -184,7 +209,7 @@ impl Thermal {
 
 /// The time in which something passes a `way` (length, at least 0) at a speed towards its end and with an acceleration towards it;
 /// infinite if it does not.
-fn fall(way: f64, speed: f64, acceleration: f64) -> f64 {
+pub(super) fn fall(way: f64, speed: f64, acceleration: f64) -> f64 {
     if acceleration == 0.0 {
         return if speed > 0.0 { way / speed } else { f64::INFINITY };
     }
@@ -209,8 +234,6 @@ mod tests {
         Disc { position, velocity, time: 0.0, radius: 0.5, mass: 1.0, events: 0 }
     }
 
-    const LAW: Law = Law { restitution: 1.0, wall_restitution: 1.0, contact_duration: 0.0, thermal: None };
-
     fn periodic(law: Law) -> Arena {
         Arena::new(Domain::planar([0.0; 2], [20.0; 2], [true; 2]), [0.0; 2], law)
     }
@@ -227,7 +250,7 @@ mod tests {
             discs.iter().map(|it| it.mass * it.velocity[axis]).sum()
         };
         for restitution in [1.0, 0.5] {
-            let arena = periodic(Law { restitution, ..LAW });
+            let arena = periodic(Law { restitution, ..Law::ELASTIC });
             let when = |[a, b]: &[Disc; 2]| meeting(&arena.space, a, b, 0.0, f64::INFINITY);
             let mut after = start;
             let time = when(&start);
@@ -251,7 +274,7 @@ mod tests {
 
     #[test]
     fn collisions_too_soon_after_others_are_elastic_where_asked() {
-        let arena = periodic(Law { restitution: 0.5, contact_duration: 0.1, ..LAW });
+        let arena = periodic(Law { restitution: 0.5, contact_duration: 0.1, ..Law::ELASTIC });
         let made = |before: f64, events: u64| {
             let mut a = Disc { time: -before, events, ..disc([5.0 - before, 5.0], [1.0, 0.0]) };
             let mut b = disc([6.0, 5.0], [-1.0, 0.0]);
@@ -263,7 +286,7 @@ mod tests {
     #[test]
     fn walls_throw_back() {
         let domain = Domain::planar([1.0, 0.0], [10.0, 10.0], [false, true]);
-        let arena = Arena::new(domain, [0.0; 2], Law { wall_restitution: 0.5, ..LAW });
+        let arena = Arena::new(domain, [0.0; 2], Law { wall_restitution: 0.5, ..Law::ELASTIC });
         let mut flying = disc([3.0, 5.0], [-0.5, 7.0]);
         assert_eq!(arena.wall(&flying), (3.0, 0));
         arena.rebound(&mut flying, 0, 0, 3.0);
@@ -276,7 +299,7 @@ mod tests {
     #[test]
     fn discs_fall_on_the_floor() {
         let domain = Domain::planar([0.0; 2], [10.0, 10.0], [true, false]);
-        let arena = Arena::new(domain, [0.0, -2.0], LAW);
+        let arena = Arena::new(domain, [0.0, -2.0], Law::ELASTIC);
         let mut thrown = disc([5.0, 0.5], [0.0, 3.0]);
         assert_eq!(arena.wall(&thrown), (3.0, 1));
         arena.rebound(&mut thrown, 0, 1, 3.0);
@@ -293,7 +316,7 @@ mod tests {
     fn thermal_walls_give_back_their_temperature() {
         let thermal = Thermal { side: (1, false), temperature: 3.0, seed: 5 };
         let domain = Domain::planar([0.0; 2], [10.0, 10.0], [true, false]);
-        let arena = Arena::new(domain, [0.0; 2], Law { thermal: Some(thermal), ..LAW });
+        let arena = Arena::new(domain, [0.0; 2], Law { thermal: Some(thermal), ..Law::ELASTIC });
         let samples = 20_000;
         let mut squares = [0.0; 2];
         for number in 0..samples {

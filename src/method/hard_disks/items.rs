@@ -2,7 +2,7 @@
 
 use super::sections;
 use super::study::soft_hard::{Question, soft_hard};
-use super::study::{atmosphere, cooling, fluid, masks, rates, structure};
+use super::study::{atmosphere, collapse, cooling, fluid, masks, precision, rates, structure};
 use super::verbs::question;
 use crate::console::Failure;
 use crate::method::{Item, Progress};
@@ -22,6 +22,8 @@ pub(super) const ITEMS: &[Item] = items! {
     "hard-disks-rates", [4.0, 70.0], true, speed, "Hard discs: collisions a second, the fast engine and the source's";
     "hard-disks-masks", [3.0, 40.0], true, comparison, "Hard discs: cost over mask and density, and the source's formula";
     "hard-disks-cooling", [6.0, 6.0], false, haff, "Hard discs: Haff's law, and inelastic collapse";
+    "hard-disks-collapse", [20.0, 20.0], false, collapses, "Hard discs: inelastic collapse over restitution and number of discs";
+    "hard-disks-precision", [60.0, 60.0], false, error, "Hard discs: error of Z against processor time";
     "hard-disks-atmosphere", [25.0, 25.0], false, open_system, "Hard discs above a hot floor, without a ceiling";
     "soft-hard", [2.0, 20.0], true, limit, "Soft discs of growing stiffness against hard ones";
 };
@@ -62,6 +64,17 @@ fn comparison(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 fn haff(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let data = cooling::cooling(10_000, 12.0, progress)?;
     Made::new(sections::cooling::section(&data), &data)
+}
+
+fn collapses(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let data = collapse::collapses(progress)?;
+    Made::new(sections::collapse::section(&data), &data)
+}
+
+fn error(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let effort = precision::Effort { discs: vec![100, 1000, 10_000], collisions: 2_000_000 };
+    let data = precision::precision(&effort, progress)?;
+    Made::new(sections::precision::section(&data), &data)
 }
 
 fn open_system(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {

@@ -36,6 +36,10 @@ define_keys! {
         "A side that is not periodic and gives back every disc with a velocity of its own temperature.";
     WALL_TEMPERATURE = "law" "wall_temperature", Number(Positive), "mass·length²/time²", Is("1.0"), HEATED,
         "Its temperature kT.";
+    FLOOR_AMPLITUDE = "law" "floor_amplitude", Number(NonNegative), "length", Is("0.0"), ALWAYS,
+        "A: the floor, the lower end of the second side, is A (1 − cos 2π f t) above the end of the box; 0 for a floor at rest.";
+    FLOOR_FREQUENCY = "law" "floor_frequency", Number(Positive), "1/time", Is("1.0"), ALWAYS,
+        "f, the frequency of that.";
     OPEN_TOP = "domain" "open_top", Switch, "", Is("false"), ALWAYS,
         "Whether there is no ceiling: the upper end of the second side is open, and gravity points down.";
 
@@ -99,10 +103,22 @@ fn own_rules(values: &Values) -> Vec<SceneError> {
         let error = values.spot(&OPEN_TOP).error(Reason::Contradiction, message.to_owned());
         errors.push(error.expecting("periodic = [true, false] and gravity = [0.0, -1.0], for example"));
     }
+    let shaken = matches!(values.value(&FLOOR_AMPLITUDE), Some(Value::Number(amplitude)) if amplitude > 0.0);
+    if shaken && periodic[1] {
+        let message = "`law.floor_amplitude` needs a floor, but the second side is periodic".to_owned();
+        let error = values.spot(&FLOOR_AMPLITUDE).error(Reason::Contradiction, message);
+        errors.push(error.expecting("periodic = [true, false], for example"));
+    }
     let heated = match values.value(&THERMAL_SIDE) {
         Some(Value::Word(side)) => side,
         _ => String::new(),
     };
+    if shaken && heated == "bottom" {
+        let message =
+            "the floor is thermal by `law.thermal_side`, and moves by `law.floor_amplitude`".to_owned();
+        let error = values.spot(&FLOOR_AMPLITUDE).error(Reason::Contradiction, message);
+        errors.push(error.advising("take one of the two"));
+    }
     if let Some((axis, _)) = side(&heated).filter(|(axis, _)| periodic[*axis]) {
         let message = format!("`law.thermal_side` is \"{heated}\", but that side is periodic");
         let error = values.spot(&THERMAL_SIDE).error(Reason::Contradiction, message);

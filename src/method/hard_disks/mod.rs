@@ -8,6 +8,7 @@ mod engine;
 mod entry;
 mod event;
 mod fast;
+mod floor;
 mod items;
 mod keys;
 mod options;

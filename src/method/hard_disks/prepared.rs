@@ -3,7 +3,7 @@
 use super::collision_log::COLUMNS;
 use super::compress::compress;
 use super::fast;
-use super::keys::{ENGINE, EVENTS, MASK, MASKS};
+use super::keys::{ENGINE, EVENTS, FLOOR_AMPLITUDE, MASK, MASKS};
 use super::options::EngineChoice;
 use super::reference::choice::{candidates, mask};
 use super::reference::grid::Sizes;
@@ -58,6 +58,7 @@ pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> 
     let mut errors = outside(&stated, &domain, &particles);
     errors.extend(overlaps(&stated, &domain, &particles, ROUNDING, "hard discs do not overlap"));
     errors.extend(beyond_sides(&values, &domain, &particles));
+    errors.extend(squeezed(&values, &scene, &domain, &particles));
     errors.extend(fixed(&values, &particles));
     errors.extend(nothing_moves(&values, &scene, &particles));
     let mut choices = vec![];
@@ -92,6 +93,22 @@ fn beyond_sides(values: &Values, domain: &Domain, particles: &Particles) -> Opti
     );
     let error = values.spot(&GENERATE).error(Reason::Placement, message);
     Some(error.advising("make the sides periodic, or list discs at least a radius away from the sides"))
+}
+
+/// A floor that comes so high that a disc has no room below the ceiling.
+fn squeezed(values: &Values, scene: &Scene, domain: &Domain, particles: &Particles) -> Option<SceneError> {
+    let swing = 2.0 * scene.law.floor?.amplitude;
+    let [_, largest] = particles.radii()?;
+    let room = domain.length(1) - swing;
+    (!scene.open_top && room < 2.0 * largest).then(|| {
+        let message = format!(
+            "the floor rises by {swing} and leaves {room:.6} below the ceiling to a disc of radius {largest}"
+        );
+        let error = values.spot(&FLOOR_AMPLITUDE).error(Reason::Geometry, message);
+        error.advising(
+            "lower law.floor_amplitude, raise the second of domain.sides, or set domain.open_top = true",
+        )
+    })
 }
 
 /// Discs that nothing moves.
@@ -145,12 +162,6 @@ fn way_of(
     scene.engine = way;
     if way == EngineChoice::Fast {
         return Ok(None);
-    }
-    if scene.open_top {
-        let message =
-            "the exclusive grid has a cell for every place, and no box has so many without a ceiling";
-        let error = values.spot(&ENGINE).error(Reason::Contradiction, message);
-        return Err(error.expecting("engine = \"fast\""));
     }
     serving(values, scene, domain, radii, particles.len(), choices).map(Some)
 }

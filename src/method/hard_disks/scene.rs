@@ -1,6 +1,7 @@
 //! What a scene of this method says, as plain data.
 
 use super::event::{Arena, Law, Thermal};
+use super::floor::Floor;
 use super::keys::*;
 use super::options::EngineChoice;
 use crate::domain::Side;
@@ -54,7 +55,7 @@ impl Default for Scene {
             units: String::new(),
             domain: Domain::default(),
             start: Start::default(),
-            law: Law { restitution: 1.0, wall_restitution: 1.0, contact_duration: 0.0, thermal: None },
+            law: Law::ELASTIC,
             open_top: false,
             engine: EngineChoice::default(),
             instruction_set: None,
@@ -114,6 +115,7 @@ impl Scene {
         binding.number(&WALL_RESTITUTION, &mut self.law.wall_restitution);
         binding.number(&CONTACT_DURATION, &mut self.law.contact_duration);
         self.bind_thermal(binding);
+        self.bind_floor(binding);
         binding.switch(&OPEN_TOP, &mut self.open_top);
         binding.choice(&ENGINE, &mut self.engine);
         bind_instructions(binding, &mut self.instruction_set);
@@ -146,6 +148,14 @@ impl Scene {
         binding.number(&WALL_TEMPERATURE, &mut temperature);
         let seed = self.start.seed().unwrap_or(0);
         self.law.thermal = side(&name).map(|side| Thermal { side, temperature, seed });
+    }
+
+    fn bind_floor(&mut self, binding: &mut dyn Binding) {
+        let mut amplitude = self.law.floor.map_or(0.0, |floor| floor.amplitude);
+        let mut frequency = self.law.floor.map_or(1.0, |floor| floor.frequency);
+        binding.number(&FLOOR_AMPLITUDE, &mut amplitude);
+        binding.number(&FLOOR_FREQUENCY, &mut frequency);
+        self.law.floor = (amplitude > 0.0).then_some(Floor { amplitude, frequency });
     }
 
     /// The whole scene as TOML, defaults written out. Parsing it gives an equal scene.

@@ -6,7 +6,7 @@ use super::engine::{Engine, Happened, Partner, Stopped};
 use super::event::Arena;
 use super::fast::Fast;
 use super::prepared::Checked;
-use super::reference::Reference;
+use super::reference;
 use crate::io::checkpoint::{Column, Counter};
 use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
 use crate::particles::{Particles, in_space};
@@ -55,7 +55,7 @@ impl Way {
     fn begin(&self, arena: Arena, discs: Vec<Disc>, time: f64) -> Result<Box<dyn Engine>, Stopped> {
         Ok(match self {
             Way::Fast(set) => Box::new(Fast::new(arena, discs, *set, time)?),
-            Way::Reference(mask) => Box::new(Reference::new(arena, discs, mask, time)?),
+            Way::Reference(mask) => reference::begin(arena, discs, mask, time)?,
         })
     }
 }
@@ -197,6 +197,14 @@ fn failure(
             let who = named(disc);
             let message = format!("{who} has more than {most} others around it, and a list holds no more");
             let remedy = "set machine.engine = \"reference\", or take radii that differ less";
+            Failure::new(FailureKind::Conflict, message, remedy).at(clock).of(1, [who])
+        }
+        Stopped::TooHigh(disc, entries) => {
+            let who = named(disc);
+            let message = format!(
+                "{who} is so high that the source's look-up of cells takes {entries} entries: they grow with the height"
+            );
+            let remedy = "set machine.engine = \"fast\", whose memory grows with the discs only";
             Failure::new(FailureKind::Conflict, message, remedy).at(clock).of(1, [who])
         }
         Stopped::NoInstructions(set) => ProgramError::NoSuchInstructionSet(set.name()).into(),

@@ -1,4 +1,6 @@
 //! The exclusive grid: cells that hold at most one disc's centre, and a mask of cells that holds whatever a disc may meet. ISO99.
+//!
+//! Of a box every cell is stored; of a system without ceiling (`half_space`) those only that hold a disc.
 
 use crate::domain::{Domain, Side};
 use crate::method::hard_disks::event::Arena;
@@ -23,9 +25,20 @@ impl Sizes {
     /// # As printed
     /// The names of the number of cells and of their side are swapped in (2)–(5).
     pub fn new(domain: &Domain, smallest_radius: f64) -> Sizes {
-        let cells = [0, 1]
-            .map(|axis| (domain.length(axis) / (std::f64::consts::SQRT_2 * smallest_radius)) as usize + 1);
-        Sizes { cells, edge: [0, 1].map(|axis| domain.length(axis) / cells[axis] as f64) }
+        let bound = std::f64::consts::SQRT_2 * smallest_radius;
+        // Without an end the most there can be.
+        let cells = [0, 1].map(|axis| ((domain.length(axis) / bound) as usize).saturating_add(1));
+        let edge = [0, 1].map(|axis| match domain.sides[axis] {
+            // Nothing has to be divided: just below the bound.
+            Side::Open => bound * (1.0 - 1e-9),
+            _ => domain.length(axis) / cells[axis] as f64,
+        });
+        Sizes { cells, edge }
+    }
+
+    /// The column or row of a cell along an axis (length from the lower end).
+    pub fn along(&self, axis: usize, from_low: f64) -> usize {
+        ((from_low / self.edge[axis]) as usize).min(self.cells[axis] - 1)
     }
 
     /// Within which distance of a disc a mask shows every other one (length): r_NL.
@@ -41,6 +54,33 @@ impl Sizes {
 }
 
 /// Where the discs were when they were last put into cells.
+pub trait Cells: Send {
+    /// Puts every disc into the cell of its position at a time.
+    ///
+    /// # Errors
+    /// [`Misfit`]: why that cannot be.
+    fn fill(&mut self, discs: &[Disc], time: f64) -> Result<(), Misfit>;
+
+    /// Where a disc was when it was put into its cell (length).
+    fn place(&self, disc: u32) -> [f64; 2];
+
+    /// The discs in the mask around one.
+    fn around(&self, disc: u32) -> impl Iterator<Item = u32> + '_;
+
+    /// What it says of itself in a summary: a name and a value.
+    fn figure(&self) -> (&'static str, f64);
+}
+
+/// Why discs cannot be put into cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Misfit {
+    /// Two of them are in one.
+    Shared([u32; 2]),
+    /// One is so high that the look-up takes more entries than are allowed.
+    TooHigh(u32, usize),
+}
+
+/// Every cell of a box.
 #[derive(Clone, Debug)]
 pub struct Grid {
     arena: Arena,
@@ -76,32 +116,6 @@ impl Grid {
         }
     }
 
-    /// Puts every disc into the cell of its position at a time.
-    ///
-    /// # Errors
-    /// Two discs that are in one cell.
-    pub fn fill(&mut self, discs: &[Disc], time: f64) -> Result<(), [u32; 2]> {
-        self.discs.fill(EMPTY);
-        self.cell.clear();
-        self.places.clear();
-        for (number, disc) in discs.iter().enumerate() {
-            let at = self.arena.place(disc, time);
-            let [column, row] = [0, 1].map(|axis| {
-                let along = ((at[axis] - self.arena.domain.origin[axis]) / self.sizes.edge[axis]) as usize;
-                along.min(self.sizes.cells[axis] - 1) + self.margin
-            });
-            let cell = row * self.width + column;
-            if self.discs[cell] != EMPTY {
-                return Err([self.discs[cell], number as u32]);
-            }
-            self.discs[cell] = number as u32;
-            self.cell.push(cell as u32);
-            self.places.push(at);
-        }
-        self.mirror();
-        Ok(())
-    }
-
     /// Shows in the margins what lies across periodic sides.
     fn mirror(&mut self) {
         let ([columns, rows], margin, width) = (self.sizes.cells, self.margin, self.width);
@@ -117,25 +131,45 @@ impl Grid {
             self.discs.copy_within(margin * width..2 * margin * width, (rows + margin) * width);
         }
     }
+}
 
-    /// Where a disc was when it was put into its cell (length).
+impl Cells for Grid {
+    fn fill(&mut self, discs: &[Disc], time: f64) -> Result<(), Misfit> {
+        self.discs.fill(EMPTY);
+        self.cell.clear();
+        self.places.clear();
+        for (number, disc) in discs.iter().enumerate() {
+            let at = self.arena.place(disc, time);
+            let [column, row] = [0, 1]
+                .map(|axis| self.sizes.along(axis, at[axis] - self.arena.domain.origin[axis]) + self.margin);
+            let cell = row * self.width + column;
+            if self.discs[cell] != EMPTY {
+                return Err(Misfit::Shared([self.discs[cell], number as u32]));
+            }
+            self.discs[cell] = number as u32;
+            self.cell.push(cell as u32);
+            self.places.push(at);
+        }
+        self.mirror();
+        Ok(())
+    }
+
     #[inline(always)]
-    pub fn place(&self, disc: u32) -> [f64; 2] {
+    fn place(&self, disc: u32) -> [f64; 2] {
         self.places[disc as usize]
     }
 
-    /// The discs in the mask around one.
     #[inline(always)]
-    pub fn around(&self, disc: u32) -> impl Iterator<Item = u32> + '_ {
+    fn around(&self, disc: u32) -> impl Iterator<Item = u32> + '_ {
         let cell = self.cell[disc as usize] as usize;
         let there = move |&offset: &isize| self.discs[cell.wrapping_add_signed(offset)];
         self.offsets.iter().map(there).filter(|&other| other != EMPTY)
     }
 
-    /// Cells for each disc, about.
-    pub fn occupancy(&self) -> f64 {
+    /// Discs for each cell.
+    fn figure(&self) -> (&'static str, f64) {
         let [columns, rows] = self.sizes.cells;
-        self.cell.len() as f64 / (columns * rows) as f64
+        ("occupancy", self.cell.len() as f64 / (columns * rows) as f64)
     }
 }
 
@@ -147,8 +181,7 @@ mod tests {
     use stripmine_kernels::noise::{Purpose, Stream};
 
     fn arena(domain: Domain) -> Arena {
-        let law = Law { restitution: 1.0, wall_restitution: 1.0, contact_duration: 0.0, thermal: None };
-        Arena::new(domain, [0.0; 2], law)
+        Arena::new(domain, [0.0; 2], Law::ELASTIC)
     }
 
     fn disc(position: [f64; 2]) -> Disc {
@@ -192,6 +225,6 @@ mod tests {
         let domain = Domain::planar([0.0; 2], [10.0; 2], [true; 2]);
         let mut grid = Grid::new(arena(domain), Sizes::new(&domain, 0.5), &Mask::square(2));
         let discs = [disc([5.0, 5.0]), disc([1.0, 1.0]), disc([5.01, 5.01])];
-        assert_eq!(grid.fill(&discs, 0.0), Err([0, 2]));
+        assert_eq!(grid.fill(&discs, 0.0), Err(Misfit::Shared([0, 2])));
     }
 }

@@ -3,11 +3,14 @@
 
 pub mod choice;
 pub mod grid;
+mod half_space;
 mod tournament;
 
 use super::engine::{Engine, Happened, Partner, Stopped};
 use super::event::Arena;
-use grid::{Grid, Sizes};
+use crate::domain::Side;
+use grid::{Cells, Grid, Misfit, Sizes};
+use half_space::HalfSpace;
 use stripmine_kernels::flight::{Disc, Space, meeting};
 use stripmine_kernels::mask::Mask;
 use tournament::Tournament;
@@ -34,10 +37,10 @@ impl Event {
 
 /// Discs under way.
 #[derive(Clone, Debug)]
-pub struct Reference {
+pub struct Reference<C> {
     arena: Arena,
     discs: Vec<Disc>,
-    grid: Grid,
+    grid: C,
     events: Vec<Event>,
     tree: Tournament,
     /// The time of the last event, or up to which it is known that there is none.
@@ -62,17 +65,29 @@ pub struct Reference {
 /// Distances that may not be exceeded are taken this much larger.
 const ROUNDED_UP: f64 = 1.0 + 1e-9;
 
-impl Reference {
-    /// Begins at a time.
-    ///
-    /// # Errors
-    /// [`Stopped`] if discs overlap so much that they share a cell.
-    pub fn new(arena: Arena, discs: Vec<Disc>, mask: &Mask, time: f64) -> Result<Reference, Stopped> {
-        let radii = || discs.iter().map(|disc| disc.radius);
-        let sizes = Sizes::new(&arena.domain, radii().fold(f64::INFINITY, f64::min));
-        let whole_slack = sizes.reach(mask) - 2.0 * radii().fold(0.0, f64::max);
+/// Begins at a time: over every cell of a box, or over those that hold a disc where there is no ceiling.
+///
+/// # Errors
+/// [`Stopped`] if discs cannot be put into cells.
+pub fn begin(arena: Arena, discs: Vec<Disc>, mask: &Mask, time: f64) -> Result<Box<dyn Engine>, Stopped> {
+    let smallest = discs.iter().map(|disc| disc.radius).fold(f64::INFINITY, f64::min);
+    let sizes = Sizes::new(&arena.domain, smallest);
+    let reach = sizes.reach(mask);
+    Ok(match arena.domain.sides[1] {
+        Side::Open => {
+            let cells = HalfSpace::new(arena, sizes, mask);
+            Box::new(Reference::new(arena, discs, cells, reach, time)?)
+        }
+        _ => Box::new(Reference::new(arena, discs, Grid::new(arena, sizes, mask), reach, time)?),
+    })
+}
+
+impl<C: Cells> Reference<C> {
+    /// Begins at a time; within `reach` (length) of a disc the cells show every other one.
+    fn new(arena: Arena, discs: Vec<Disc>, grid: C, reach: f64, time: f64) -> Result<Reference<C>, Stopped> {
+        let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
         let mut engine = Reference {
-            grid: Grid::new(arena, sizes, mask),
+            grid,
             events: vec![Event::NONE; discs.len()],
             tree: Tournament::new(discs.len(), |_| f64::INFINITY),
             arena,
@@ -81,7 +96,7 @@ impl Reference {
             slack: 0.0,
             since: time,
             fastest: 0.0,
-            whole_slack,
+            whole_slack: reach - 2.0 * largest,
             remaps: 0,
             lost: vec![],
             filled: time,
@@ -193,7 +208,10 @@ impl Reference {
 
     /// Fills the grid with the discs as they are at a time, and finds what each meets next.
     fn remap(&mut self, time: f64) -> Result<(), Stopped> {
-        self.grid.fill(&self.discs, time).map_err(Stopped::SharedCell)?;
+        self.grid.fill(&self.discs, time).map_err(|why| match why {
+            Misfit::Shared(pair) => Stopped::SharedCell(pair),
+            Misfit::TooHigh(disc, blocks) => Stopped::TooHigh(disc, blocks),
+        })?;
         self.time = time;
         self.since = time;
         self.slack = self.whole_slack;
@@ -234,7 +252,7 @@ impl Reference {
     }
 }
 
-impl Engine for Reference {
+impl<C: Cells> Engine for Reference<C> {
     fn count(&self) -> usize {
         self.discs.len()
     }
@@ -274,7 +292,7 @@ impl Engine for Reference {
     }
 
     fn figures(&self) -> Vec<(&'static str, f64)> {
-        vec![("remaps", self.remaps as f64), ("occupancy", self.grid.occupancy())]
+        vec![("remaps", self.remaps as f64), self.grid.figure()]
     }
 }
 

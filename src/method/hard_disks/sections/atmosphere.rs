@@ -29,7 +29,7 @@ pub fn section(data: &Atmosphere) -> Section {
         verdict: if agrees { Verdict::Reproduced } else { Verdict::Partly },
         again: "stripmine reproduce --only hard-disks-atmosphere".into(),
         figures: vec![figure(data)],
-        tables: vec![table(data)],
+        tables: vec![table(data), look_ups(data)],
         excerpt: None,
         film: None,
         seeds: vec![1],
@@ -100,5 +100,35 @@ fn table(data: &Atmosphere) -> Table {
         columns: columns.map(str::to_owned).to_vec(),
         rows: rows.collect(),
         notes: vec![],
+    }
+}
+
+fn look_ups(data: &Atmosphere) -> Table {
+    let rows = data.look_ups.iter().map(|it| {
+        vec![
+            Cell::Text(it.scene.into()),
+            Cell::Count(it.discs as u64),
+            Cell::Number(it.entries, 0),
+            Cell::Count(it.events),
+            Cell::Text(if it.agrees { "yes" } else { "no" }.into()),
+        ]
+    });
+    let columns = [
+        "scene",
+        "discs (entries of A, BX, BY)",
+        "entries of C and D",
+        "events",
+        "same bits by the fast engine",
+    ];
+    Table {
+        name: "look-up".into(),
+        title: "The source's look-up of occupied cells, as printed".into(),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+        notes: vec![
+            "The source says that C and D are fewer than the discs. They grow with the height of the highest one; the default, a hash, \
+             does not."
+                .into(),
+        ],
     }
 }

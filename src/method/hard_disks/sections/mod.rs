@@ -1,9 +1,11 @@
 //! How the report shows what is measured of hard discs.
 
 pub mod atmosphere;
+pub mod collapse;
 pub mod cooling;
 pub mod fluid;
 pub mod masks;
+pub mod precision;
 pub mod rates;
 pub mod soft_hard;
 pub mod structure;

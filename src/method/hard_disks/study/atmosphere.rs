@@ -40,6 +40,23 @@ pub struct Atmosphere {
     pub granular: Profile,
     /// Its restitution.
     pub restitution: f64,
+    /// The cells of the source's look-up after a while.
+    pub look_ups: Vec<LookUp>,
+}
+
+/// What the source's look-up of occupied cells takes.
+#[derive(Clone, Debug, Serialize)]
+pub struct LookUp {
+    /// The preset.
+    pub scene: &'static str,
+    /// Discs, which are the entries of A, BX and BY.
+    pub discs: usize,
+    /// Entries of C and D.
+    pub entries: f64,
+    /// Events so far.
+    pub events: u64,
+    /// Whether every disc is where it is by the fast engine, to the bit.
+    pub agrees: bool,
 }
 
 /// Follows discs over `looks` looks, a time √(kT/m)/g apart.
@@ -56,8 +73,27 @@ pub fn atmosphere(looks: usize, progress: Progress<'_>) -> Result<Atmosphere, Fa
     }
     let restitution = 0.95;
     let granular = profile(1.0, restitution, looks)?;
+    let look_ups =
+        ["hot-floor", "vibrating-floor"].map(look_up).into_iter().collect::<Result<_, Failure>>()?;
     progress(1.0);
-    Ok(Atmosphere { profiles, looks, granular, restitution })
+    Ok(Atmosphere { profiles, looks, granular, restitution, look_ups })
+}
+
+/// A scene by the source's engine, and beside it by the fast one.
+fn look_up(scene: &'static str) -> Result<LookUp, Failure> {
+    let run = |engine: &str| {
+        let mut gas = Running::begin(scene, &[format!("machine.engine={engine}")])?;
+        gas.until(Until::Time(100.0))?;
+        Ok::<_, Failure>(gas)
+    };
+    let [source, fast] = [run("reference")?, run("fast")?];
+    Ok(LookUp {
+        scene,
+        discs: source.0.particles().len(),
+        entries: source.0.summary()["blocks"].as_f64().unwrap_or(f64::NAN),
+        events: source.0.clock().events,
+        agrees: source.0.particles().all() == fast.0.particles().all(),
+    })
 }
 
 /// Discs of diameter, mass and kT 1, and kT/(m g) of 20.

@@ -1,0 +1,48 @@
+//! Discs that grow to their radii while they move.
+
+use super::making::{COMPRESSED, fill, grain_count};
+use super::{Stated, Uncompressed};
+use crate::domain::Domain;
+use crate::particles::Particles;
+use crate::placement::Second;
+use crate::scene::{Amount, GENERATE, Grains, Reason, SceneError};
+use std::f64::consts::PI;
+
+/// The packing fraction at which discs begin to grow.
+const SPARSE: f64 = 0.35;
+
+/// Discs placed while they are small, and grown.
+pub(super) fn compressed(
+    stated: &Stated<'_>,
+    domain: &Domain,
+    amount: Amount,
+    grains: &Grains,
+) -> Result<Particles, SceneError> {
+    let count = grain_count(stated, amount, domain.area(), grains, COMPRESSED)?;
+    let packing = count as f64 * PI * grains.second.mean_square(grains.radius) / domain.area();
+    let scale = (SPARSE / packing).sqrt().min(0.9);
+    let far = [0, 1].map(|axis| domain.origin[axis] + domain.length(axis));
+    let second = Second { radius: scale * grains.second.radius, ..grains.second };
+    let small = Grains { radius: scale * grains.radius, second, ..*grains };
+    let mut discs = fill(stated, domain, [domain.corner(), far], &[], count, &small)?;
+    discs.iter_mut().for_each(|disc| disc.radius /= scale);
+    (stated.compress)(domain, &mut discs, scale, grains.seed).map_err(|why| {
+        let spot = stated.spot(&GENERATE);
+        match why {
+            Uncompressed::Jammed { reached } => {
+                let message = format!(
+                    "{count} discs grew to a packing fraction of {reached:.4} of {packing:.4}, and jam"
+                );
+                spot.error(Reason::Placement, message)
+                    .advising("lower count or packing_fraction, or take another seed")
+            }
+            Uncompressed::TooSmall => {
+                let message =
+                    "the box is too small for discs to grow in: each would see others across two sides";
+                spot.error(Reason::Placement, message)
+                    .advising("take a larger box, or generate = \"hexagonal\"")
+            }
+        }
+    })?;
+    Ok(Particles::new(discs))
+}

@@ -1,0 +1,63 @@
+//! Discs at places of a mesh.
+
+use super::Stated;
+use super::making::{MOST, disc, placeable};
+use crate::domain::Domain;
+use crate::particles::{Kind, Particle, Particles};
+use crate::placement::{mesh, stir};
+use crate::scene::{Amount, COUNT, Grains, PACKING_FRACTION, Reason, SPACING, SceneError};
+use std::f64::consts::PI;
+
+/// Discs at places of a square mesh, drawn at random.
+pub(super) fn on_mesh(
+    stated: &Stated<'_>,
+    domain: &Domain,
+    amount: Amount,
+    grains: &Grains,
+    spacing: f64,
+) -> Result<Particles, SceneError> {
+    let counts = [0, 1].map(|axis| (domain.length(axis) / spacing).floor().max(1.0));
+    let key = if stated.values.gives(&COUNT) { &COUNT } else { &PACKING_FRACTION };
+    let count = match amount {
+        Amount::Count(count) => count as f64,
+        Amount::PackingFraction(fraction) => {
+            (fraction * domain.area() / (PI * grains.radius * grains.radius)).round()
+        }
+    };
+    let refuse = |message: String| stated.spot(key).error(Reason::Placement, message);
+    if !(1.0..=MOST).contains(&count) {
+        return Err(refuse(format!(
+            "{count:.4e} discs are none, or more than the {MOST:.3e} that can be numbered"
+        )));
+    }
+    if count > counts[0] * counts[1] {
+        let message = format!(
+            "{count} discs, but the mesh has {} × {} = {} places {spacing} apart",
+            counts[0],
+            counts[1],
+            counts[0] * counts[1]
+        );
+        return Err(refuse(message).advising("take fewer discs, a larger box or a smaller particles.spacing"));
+    }
+    if counts[0] * counts[1] > MOST {
+        let message = format!(
+            "a mesh of {} × {} places is more than the {MOST:.3e} that can be numbered",
+            counts[0], counts[1]
+        );
+        let error = stated.spot(&SPACING).error(Reason::Placement, message);
+        return Err(error.advising("set a larger particles.spacing"));
+    }
+    placeable(stated, count, key)?;
+    let edge = [0, 1].map(|axis| domain.length(axis) / counts[axis]);
+    let places = mesh(counts.map(|count| count as usize), count as usize, grains.seed);
+    let at = |[column, row]: [usize; 2]| {
+        [0, 1].map(|axis| domain.origin[axis] + ([column, row][axis] as f64 + 0.5) * edge[axis])
+    };
+    let of = [grains.radius, grains.mass];
+    let discs =
+        places.into_iter().zip(1..).map(|(place, id)| disc(id, Kind::Grain, at(place), grains.radius, of));
+    let mut discs: Vec<Particle> = discs.collect();
+    let balanced = domain.periodic() == [true; 2] && discs.len() > 1;
+    stir(&mut discs, grains.seed, balanced, |disc| grains.deviation(disc.mass));
+    Ok(Particles::new(discs))
+}
