@@ -1,11 +1,15 @@
 //! `stripmine scene`: presets, keys, and the check of a scene.
 
 use crate::console::{Common, Failure, print, print_json, warn};
-use crate::method::{Fact, Methods, Prepared, load, method};
+use crate::method::{Fact, Methods, Prepared, VectorProgram, load, method};
+use crate::model::machine::MachineModel;
+use crate::model::machines;
 use crate::report::table::{Cell, Table};
 use crate::report::terminal;
 use crate::run::forecast;
 use crate::scene::{Fallback, Key, Preset, SECTIONS};
+use crate::study::StudyError;
+use crate::study::programs::Programs;
 use clap::{Args, Subcommand};
 use serde::Serialize;
 use serde_json::{Map, json};
@@ -34,6 +38,20 @@ enum Action {
         #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
         overrides: Vec<String>,
     },
+    /// The vector programs of a scene: operations of a step, and clock periods of machines
+    Programs {
+        /// A file, or a preset's name
+        scene: String,
+        /// Overrides a value; may be given several times
+        #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
+        overrides: Vec<String>,
+        /// The machine
+        #[arg(long, default_value = "cray-y-mp-el")]
+        machine: String,
+        /// Instead: the vector instructions, as an assembly listing
+        #[arg(long)]
+        listing: bool,
+    },
     /// Every key of a scene file: type, unit, default, meaning
     Keys {
         /// The method whose scenes are meant; the first by default
@@ -47,6 +65,11 @@ impl SceneVerb {
             Action::List => list(common, methods),
             Action::Show { name } => show(name, common, methods),
             Action::Check { scene, overrides } => check(scene, overrides, common, methods),
+            Action::Programs { scene, overrides, machine, listing } => {
+                let (prepared, _) = load(scene, overrides, methods)?;
+                let machine = machines::find(machine)?;
+                programs(scene, prepared.as_ref(), &machine, *listing, common)
+            }
             Action::Keys { method } => keys(method.as_deref(), common, methods),
         }
     }
@@ -127,6 +150,55 @@ fn check(name: &str, overrides: &[String], common: &Common, methods: Methods) ->
     data.insert("left_out".to_owned(), json!(prepared.left_out()));
     data.insert("warnings".to_owned(), json!(prepared.warnings()));
     print_json(&data)
+}
+
+/// A program, as data.
+#[derive(Serialize)]
+struct Listing {
+    part: &'static str,
+    length: &'static str,
+    n: usize,
+    times: u64,
+    lines: Vec<String>,
+}
+
+fn programs(
+    name: &str,
+    prepared: &dyn Prepared,
+    machine: &MachineModel,
+    listing: bool,
+    common: &Common,
+) -> Result<(), Failure> {
+    let programs = prepared.programs();
+    if programs.is_empty() {
+        return Err(StudyError::NoPrograms(name.to_owned()).into());
+    }
+    if !listing {
+        let counted = Programs::of(name, &programs, std::slice::from_ref(machine));
+        return match common.json {
+            true => print_json(&counted),
+            false => print(&counted.tables().iter().map(terminal::render).collect::<Vec<_>>().join("\n")),
+        };
+    }
+    let of = |it: &VectorProgram| Listing {
+        part: it.part,
+        length: it.length,
+        n: it.n,
+        times: it.times,
+        lines: it.program.listing().lines().map(str::to_owned).collect(),
+    };
+    let listings: Vec<Listing> = programs.iter().map(of).collect();
+    if common.json {
+        return print_json(&listings);
+    }
+    let text = |it: &Listing| {
+        let Listing { part, length, n, times, lines } = it;
+        format!(
+            "; {part}: vectors of n = {length} = {n} elements, {times} times a step\n{}\n",
+            lines.join("\n")
+        )
+    };
+    print(&listings.iter().map(text).collect::<String>())
 }
 
 /// A key, as data.

@@ -16,6 +16,7 @@ use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
+use stripmine_kernels::Runnable;
 
 /// A method, as everything else knows it.
 #[derive(Debug)]
@@ -209,6 +210,20 @@ pub enum Purpose {
     Measurement,
 }
 
+/// A program of whole-array operations, as often as a step executes it.
+pub struct VectorProgram {
+    /// The part of the step.
+    pub part: &'static str,
+    /// What its vectors are as long as, in a symbol.
+    pub length: &'static str,
+    /// The number that stands for.
+    pub n: usize,
+    /// How often a step executes it.
+    pub times: u64,
+    /// The program.
+    pub program: Box<dyn Runnable>,
+}
+
 /// A scene that may run: its particles are made, and every precondition holds.
 pub trait Prepared: Send + Sync {
     /// The scene as TOML, every value spelled out and every choice made.
@@ -263,6 +278,12 @@ pub trait Prepared: Send + Sync {
     /// The names of the columns of `events.csv`, where the scene asks for a row for each event.
     fn event_columns(&self) -> Option<&'static str> {
         None
+    }
+
+    /// The vector programs that a step of the scene, or its forces, consists of: what is counted, listed and charged by clocks; none
+    /// where a method has no such.
+    fn programs(&self) -> Vec<VectorProgram> {
+        vec![]
     }
 
     /// Begins.

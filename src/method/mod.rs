@@ -16,7 +16,7 @@ mod trials;
 pub use clock::{Clock, Every, Schedule, Until};
 pub use entry::{
     Bench, BenchOption, Beyond, Entry, Fact, Item, Prepared, Progress, Purpose, Quantity, RunWarning,
-    Simulation, Snapshot, StepLimit, Verb,
+    Simulation, Snapshot, StepLimit, VectorProgram, Verb,
 };
 pub use failure::{Culprit, Failure, FailureKind};
 pub use hard_disks::compress;

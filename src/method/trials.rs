@@ -16,6 +16,9 @@ pub struct Trials {
     pub references: [&'static [(&'static str, &'static str)]; 2],
     /// The balance of energy, where the method observes one.
     pub balance: Option<Balance>,
+    /// Whether a run with another step follows the same trajectories; where noise moves particles it does not, and only means can be
+    /// compared.
+    pub has_trajectories: bool,
     /// Quantities that have a mean in a run: what is left of a comparison once trajectories have parted.
     pub observables: &'static [&'static str],
     /// Those of them that come and go with single contacts: looks at them have a mean only over independent seeds.

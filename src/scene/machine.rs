@@ -2,10 +2,11 @@
 
 use super::binding::Binding;
 use super::keys::Fallback::Is;
+use super::keys::Key;
 use super::keys::Kind::Choice;
 use super::keys::define_keys;
 use crate::words::{Words, define_words};
-use stripmine_kernels::InstructionSet;
+use stripmine_kernels::{Execution, InstructionSet};
 
 define_words! {
     /// Precision of a run.
@@ -42,6 +43,26 @@ pub fn bind_arithmetic(
 ) {
     binding.choice(&PRECISION, precision);
     bind_instructions(binding, instruction_set);
+}
+
+/// Meets a method's key of how its programs are executed.
+pub fn bind_execution(binding: &mut dyn Binding, key: &'static Key, execution: &mut Execution) {
+    let mut name = execution_name(*execution);
+    binding.word(key, &mut name);
+    *execution = match name.strip_prefix("strip:").map(str::parse) {
+        Some(Ok(length)) => Execution::Strip(length),
+        _ if name == "eager" => Execution::Eager,
+        _ => Execution::Chained,
+    };
+}
+
+/// The name of a way to execute programs, in scenes and on the command line.
+pub fn execution_name(execution: Execution) -> String {
+    match execution {
+        Execution::Chained => "chained".to_owned(),
+        Execution::Eager => "eager".to_owned(),
+        Execution::Strip(length) => format!("strip:{length}"),
+    }
 }
 
 /// Meets the key of the instructions; none is the widest set there is.

@@ -37,7 +37,8 @@ pub use general::{
 pub use key_set::{KeySet, Rivals, SECTIONS};
 pub use keys::{Bounds, Fallback, Key, Kind, Use, Value};
 pub use machine::{
-    ARITHMETIC, INSTRUCTION_SET, INSTRUCTIONS, PRECISION, Precision, bind_arithmetic, bind_instructions,
+    ARITHMETIC, INSTRUCTION_SET, INSTRUCTIONS, PRECISION, Precision, bind_arithmetic, bind_execution,
+    bind_instructions, execution_name,
 };
 pub use values::Values;
 pub use vocabulary::{Preset, Renamed, Vocabulary};

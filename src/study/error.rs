@@ -13,6 +13,18 @@ pub enum StudyError {
         "scenes of the method {0} have nothing that a study may vary\n  help: choose a scene of another method"
     )]
     NothingToVary(&'static str),
+    /// Trajectories mean nothing.
+    #[error(
+        "noise moves the particles of {0}: runs with different steps follow different trajectories, and errors of positions mean \
+         nothing\n  help: stripmine chart stability judges means; stripmine reproduce --only langevin-accuracy has errors of means over cost"
+    )]
+    NoTrajectories(String),
+    /// The scene is run without vector programs.
+    #[error(
+        "a step of {0} has no vector programs: discs fly from event to event, nothing acts between particles, or the box is too small \
+         for a lattice\n  help: choose a scene of lattice-md, langevin with pairs, or nbody"
+    )]
+    NoPrograms(String),
     /// The scene.
     #[error(transparent)]
     Scene(#[from] SceneErrors),
@@ -74,6 +86,8 @@ impl Reported for StudyError {
     fn class(&self) -> Class {
         match self {
             StudyError::NothingToVary(_)
+            | StudyError::NoPrograms(_)
+            | StudyError::NoTrajectories(_)
             | StudyError::NoSuchParameter { .. }
             | StudyError::NothingOfTheKind(_)
             | StudyError::OutOfRange { .. } => Class::Usage,

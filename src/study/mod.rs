@@ -9,6 +9,7 @@ mod items;
 mod meter;
 mod observables;
 mod orders;
+pub mod programs;
 pub mod stability;
 mod state;
 mod subject;

@@ -60,6 +60,7 @@ static TRIALS: Trials = Trials {
     }],
     references: [&[("integrator", "drift")], &[("integrator", "drift")]],
     balance: None,
+    has_trajectories: true,
     observables: &["kinetic"],
     fluctuating: &[],
     inertia: |_| None,

@@ -72,7 +72,7 @@ fn collapses(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 }
 
 fn error(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let effort = precision::Effort { discs: vec![100, 1000, 10_000], collisions: 2_000_000 };
+    let effort = precision::Effort { discs: vec![100, 1000, 10_000], collisions: 1_000_000 };
     let data = precision::precision(&effort, progress)?;
     Made::new(sections::precision::section(&data), &data)
 }

@@ -1,6 +1,6 @@
 //! Law, scheme and search of a scene, put together: what steps the particles.
 
-use super::options::{By, PairLaw, SchemeKind};
+use super::options::{By, SchemeKind};
 use super::prepared::Checked;
 use crate::domain::Domain;
 use crate::io::checkpoint::Column;
@@ -43,12 +43,26 @@ impl Found {
 
 /// Particles of one kind in a bath.
 #[derive(Clone, Copy, Debug)]
-struct InBath {
-    law: LennardJones,
+pub(super) struct InBath {
+    pub(super) law: LennardJones,
     scheme: SchemeKind,
     bath: Bath,
     dt: f64,
     mass: f64,
+}
+
+impl InBath {
+    /// Of a scene.
+    pub(super) fn of(checked: &Checked) -> InBath {
+        let Checked { scene, mass, reach, .. } = checked;
+        InBath {
+            law: LennardJones::new(scene.strength, checked.diameter, *reach),
+            scheme: scene.scheme,
+            bath: scene.bath,
+            dt: scene.dt,
+            mass: *mass,
+        }
+    }
 }
 
 impl Dynamics for InBath {
@@ -172,13 +186,7 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
 ) -> Result<Box<dyn Stepper>, Failure> {
     let Checked { scene, domain, mass, reach, found, .. } = checked;
     let (domain, mass, reach): (Domain, f64, f64) = (*domain, *mass, *reach);
-    let dynamics = InBath {
-        law: LennardJones::new(scene.strength, checked.diameter, reach),
-        scheme: scene.scheme,
-        bath: scene.bath,
-        dt: scene.dt,
-        mass,
-    };
+    let dynamics = InBath::of(checked);
     let system = System {
         domain,
         dt: scene.dt,
@@ -194,7 +202,7 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
     };
     let count = particles.len();
     let set = scene.instructions();
-    let has_pairs = scene.law != PairLaw::None;
+    let has_pairs = checked.has_pairs();
     fn boxed<S: backend::Precision, P: backend::Precision, Q: Search<S, P> + 'static>(
         (dynamics, system, set): (InBath, System, InstructionSet),
         search: Q,

@@ -4,6 +4,7 @@ use super::benches::{BENCHES, QUANTITIES};
 use super::items::ITEMS;
 use super::keys::VOCABULARY;
 use super::prepared::prepare;
+use super::trials::TRIALS;
 use crate::method::Entry;
 
 /// Langevin dynamics.
@@ -17,5 +18,5 @@ pub static ENTRY: Entry = Entry {
     items: ITEMS,
     verbs: &[],
     charts: &[],
-    trials: None,
+    trials: Some(&TRIALS),
 };

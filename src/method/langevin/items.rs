@@ -1,10 +1,11 @@
 //! What can be reproduced of this method: each item a study and its section of the report.
 
 use super::sections;
-use super::study::{accuracy, diffusion, losses, sectors};
+use super::study::{accuracy, diffusion, losses, prepared, sectors};
 use crate::console::Failure;
 use crate::method::{Item, Progress};
 use crate::results::{Effort, Made};
+use crate::study::programs;
 
 macro_rules! items {
     ($($name:literal, $seconds:expr, $is_quick:literal, $make:ident, $doc:literal;)*) => {
@@ -19,6 +20,7 @@ pub(super) const ITEMS: &[Item] = items! {
     "langevin-sectors", [3.0, 30.0], true, cost, "Langevin: wall time over the number of sectors, and where it goes";
     "langevin-diffusion", [30.0, 30.0], false, displaced, "Langevin: mean square displacement, velocities, temperature";
     "langevin-accuracy", [8.0, 60.0], false, errors, "Langevin: the error of the step in a Lennard-Jones fluid";
+    "langevin-programs", [1.0, 1.0], true, counted, "Langevin: the law as whole-array operations, counted and charged by clocks";
 };
 
 fn lost(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
@@ -44,4 +46,22 @@ fn errors(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let time = if effort == Effort::Full { 1000.0 } else { 100.0 };
     let data = accuracy::accuracy(time, progress)?;
     Made::new(sections::accuracy::section(&data), &data)
+}
+
+fn counted(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let scene = |name: &'static str, preset: &str, overrides: &[&str]| {
+        let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
+        Ok::<_, Failure>((name, prepared(preset, &overrides)?))
+    };
+    let scenes = [
+        scene("langevin-dense, WCA", "langevin-dense", &["law.kind=wca"])?,
+        scene("langevin-dense, cut off at 2.5", "langevin-dense", &[])?,
+    ];
+    progress(1.0);
+    programs::made(
+        ("langevin-programs", "Langevin: the pair law on the vector machine"),
+        "The source runs on sectors. On the lattice of BP93 its law is whole-array operations at every place of a mask: 24 for the \
+         repulsion, 120 up to 2.5 diameters.",
+        &scenes,
+    )
 }

@@ -10,9 +10,11 @@ mod losses;
 mod options;
 mod prepared;
 mod presets;
+mod programs;
 mod scene;
 mod sections;
 mod simulation;
 mod study;
+mod trials;
 
 pub use entry::ENTRY;

@@ -5,13 +5,14 @@ use super::keys::{LAW, PER_SIDE, SEARCH, SKIN};
 use super::limits::{bound, step_limits};
 use super::losses;
 use super::options::{By, PairLaw};
+use super::programs::programs;
 use super::scene::Scene;
 use super::simulation::Running;
 use crate::domain::Domain;
 use crate::grid::sectors_of;
 use crate::memory::{Foreseen, PROGRAM, available};
 use crate::method::{
-    Every, Fact, Failure, Prepared, Purpose, Schedule, Simulation, StepLimit, Until, compress,
+    Every, Fact, Failure, Prepared, Purpose, Schedule, Simulation, StepLimit, Until, VectorProgram, compress,
 };
 use crate::particles::{Particle, Particles};
 use crate::scene::{
@@ -28,7 +29,7 @@ use stripmine_kernels::sweep::lattice::Frame;
 /// Particles may be nearer than a diameter by this part of it at the start: the potential is then 100 ε.
 const DEEPEST: f64 = 0.25;
 /// How near particles come at all, in diameters: on a lattice those that come nearer share a cell, which costs time.
-const NEAREST: f64 = 0.82;
+pub(super) const NEAREST: f64 = 0.82;
 /// Sectors of the source's case of all pairs.
 const FEWEST: f64 = 3.0;
 
@@ -54,6 +55,11 @@ pub(super) struct Checked {
 /// # Errors
 /// [`SceneErrors`]: every precondition that does not hold.
 pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> {
+    Ok(Box::new(checked(values)?))
+}
+
+/// The same, as this method knows it.
+pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
     let (mut scene, mut read) = (Scene::default(), Read::new(&values));
     scene.bind(&mut read);
     read.done()?;
@@ -94,7 +100,7 @@ pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> 
     warnings.extend(too_long(&scene, diameter, mass));
     // Listed particles have no seed of their own.
     let seed = scene.start.seed().unwrap_or(1);
-    Ok(Box::new(Checked { scene, domain, particles, diameter, mass, reach, found, seed, warnings, choices }))
+    Ok(Checked { scene, domain, particles, diameter, mass, reach, found, seed, warnings, choices })
 }
 
 /// The first particle, if all are alike and move.
@@ -232,6 +238,11 @@ fn roomy_skin(domain: &Domain, reach: f64, count: usize) -> f64 {
 }
 
 impl Checked {
+    /// Whether particles act on each other.
+    pub(super) fn has_pairs(&self) -> bool {
+        self.scene.law != PairLaw::None
+    }
+
     /// What bounds the step.
     pub(super) fn limits(&self) -> Vec<StepLimit> {
         step_limits(&self.scene, self.diameter, self.mass)
@@ -349,6 +360,10 @@ impl Prepared for Checked {
 
     fn event_columns(&self) -> Option<&'static str> {
         (self.scene.losses && self.scene.most_lost > 0).then_some(losses::COLUMNS)
+    }
+
+    fn programs(&self) -> Vec<VectorProgram> {
+        programs(self)
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {

@@ -9,14 +9,15 @@ use super::facts::{expected_error, facts};
 use super::lookout::Lookout;
 use super::theory::limits::step_limits;
 use super::{
-    Lengths, Model, Total, Totals, assemble, assemble_following_energy, ledger, memory, model, programs,
+    Lengths, Model, StepProgram, Total, Totals, assemble, assemble_following_energy, ledger, memory, model,
+    programs,
 };
 use crate::domain::Domain;
 use crate::io::checkpoint::Counter;
 use crate::memory::Foreseen;
 use crate::method::{
     Clock, Every, Fact, Failure, Prepared, Purpose, RunWarning, Schedule, Simulation, Snapshot, StepLimit,
-    Until,
+    Until, VectorProgram,
 };
 use crate::model::clock;
 use crate::model::machine::MachineModel;
@@ -128,6 +129,23 @@ impl Prepared for Discs {
             ("instruction_set", json!(scene.machine.instructions().name())),
         ];
         settings.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
+    }
+
+    fn programs(&self) -> Vec<VectorProgram> {
+        let Checked { scene, particles, .. } = &self.0;
+        if !scene.needs_lattice() {
+            return vec![];
+        }
+        let model = model(&self.0);
+        let lengths = Lengths::new(&model, particles.grain_count(), particles.len());
+        let as_any = |step: StepProgram| VectorProgram {
+            part: step.part.name(),
+            length: step.length.symbol(),
+            n: lengths.range(step.length).len(),
+            times: 1,
+            program: step.program,
+        };
+        programs::<f64, f64>(&model).into_iter().map(as_any).collect()
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {

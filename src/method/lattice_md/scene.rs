@@ -6,7 +6,8 @@ use super::neighbor_list::Rebuild;
 pub use super::options::{By, EngineChoice, Inertia, IntegratorKind};
 use crate::method::pairwise::search::OnConflict;
 use crate::scene::{
-    Binding, DT, Domain, Output, Precision, Run, Start, WallMotion, Write, bind_arithmetic, bind_heading,
+    Binding, DT, Domain, Output, Precision, Run, Start, WallMotion, Write, bind_arithmetic, bind_execution,
+    bind_heading, execution_name,
 };
 use crate::words::Words;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
@@ -167,25 +168,10 @@ impl Machine {
         // What auto becomes has no such keys, unless one of them is given.
         let is_open = self.engine == EngineChoice::Auto && binding.reads();
         if self.engine == EngineChoice::Programs || is_open {
-            let mut execution = execution_name(self.execution);
-            binding.word(&EXECUTION, &mut execution);
-            self.execution = match execution.strip_prefix("strip:").map(str::parse) {
-                Some(Ok(length)) => Execution::Strip(length),
-                _ if execution == "eager" => Execution::Eager,
-                _ => Execution::Chained,
-            };
+            bind_execution(binding, &EXECUTION, &mut self.execution);
             binding.choice(&COORDINATES, &mut self.coordinates);
         }
         bind_arithmetic(binding, &mut self.precision, &mut self.instruction_set);
-    }
-}
-
-/// The name of a way to execute programs, in scenes and on the command line.
-pub fn execution_name(execution: Execution) -> String {
-    match execution {
-        Execution::Chained => "chained".to_owned(),
-        Execution::Eager => "eager".to_owned(),
-        Execution::Strip(length) => format!("strip:{length}"),
     }
 }
 

@@ -30,6 +30,7 @@ pub(super) static TRIALS: Trials = Trials {
         energies: &["kinetic", "rotational", "elastic"],
         inputs: &["gravity_work", "wall_work"],
     }),
+    has_trajectories: true,
     observables: &["temperature", "pressure", "flow", "contacts"],
     fluctuating: &["pressure"],
     inertia,

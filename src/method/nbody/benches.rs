@@ -20,6 +20,7 @@ pub(super) const QUANTITIES: &[Quantity] = quantities! {
     "angular_momentum_y", "mass·length²/time", "The same along y.";
     "angular_momentum_z", "mass·length²/time", "The same along z.";
     "centre", "length", "Distance of the centre of mass from the origin.";
+    "balance_error", "energy", "The energy less that of the start.";
     "half_mass_radius", "length", "Distance from the centre of mass within which half of the mass is.";
 };
 

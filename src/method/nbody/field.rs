@@ -4,12 +4,11 @@ use super::bodies::{Bodies, Columns};
 use super::options::{ArithmeticKind, Engine};
 use super::scene::Scene;
 use super::schemes::Field;
+use super::shifted::Shifted;
+use super::swept::Swept;
 use crate::scene::Precision;
-use stripmine_kernels::InstructionSet;
-use stripmine_kernels::backend;
 use stripmine_kernels::isa::ProgramError;
-use stripmine_kernels::law::gravity::Gravity;
-use stripmine_kernels::sweep::all_pairs::{self, AllPairs, Arithmetic};
+use stripmine_kernels::sweep::all_pairs::Arithmetic;
 
 /// Derivatives of the acceleration that a start may ask for, itself first.
 const ORDERS: usize = 4;
@@ -30,92 +29,22 @@ pub(super) struct Attraction {
 enum Pairs {
     /// As the sum is written.
     Reference,
-    /// Each pair once, in double precision.
-    Double(Swept<f64>),
-    /// The same with forces in single precision.
-    Single(Swept<f32>),
+    /// By sums of forces, in the scene's precision.
+    Summed(Box<dyn Sums>),
 }
 
-/// Each pair once, in a precision.
-struct Swept<P> {
-    set: InstructionSet,
-    arithmetic: Arithmetic,
-    forces: AllPairs<P, 3>,
-    rates: Option<AllPairs<P, 6>>,
-    position: [Vec<P>; 3],
-    velocity: [Vec<P>; 3],
-    mass: Vec<P>,
-    sums: [Vec<P>; 6],
-}
-
-impl<P: backend::Precision> Swept<P> {
-    fn new(bodies: &Bodies, arithmetic: Arithmetic, set: InstructionSet) -> Self {
-        let entries = bodies.entries();
-        let zeros = || vec![P::default(); entries];
-        Swept {
-            set,
-            arithmetic,
-            forces: AllPairs::new(bodies.len()),
-            rates: None,
-            position: [zeros(), zeros(), zeros()],
-            velocity: [zeros(), zeros(), zeros()],
-            mass: bodies.mass.iter().map(|&m| P::from_f64(m)).collect(),
-            sums: std::array::from_fn(|_| zeros()),
-        }
-    }
-
-    /// Forces at positions and, where velocities are given, their rates; energy and virial if they are observed.
-    fn sweep(
+/// A way to sum up forces and, where velocities are given, their rates.
+pub(super) trait Sums: Send {
+    /// Sums up; gives the energy and the virial of the pairs if they are observed.
+    fn sum(
         &mut self,
-        (softening, count): (f64, usize),
         position: &Columns,
         velocity: Option<&Columns>,
         observed: bool,
-    ) -> Result<[f64; 2], ProgramError> {
-        let take = |to: &mut [Vec<P>; 3], from: &Columns| {
-            for (to, from) in to.iter_mut().zip(from) {
-                to.iter_mut().zip(from).for_each(|(to, &from)| *to = P::from_f64(from));
-            }
-        };
-        take(&mut self.position, position);
-        if let Some(velocity) = velocity {
-            take(&mut self.velocity, velocity);
-        }
-        let Swept { set, arithmetic, forces, rates, position, velocity: at_velocity, mass, sums } = self;
-        let bodies = all_pairs::Bodies {
-            position: position.each_ref().map(Vec::as_slice),
-            velocity: at_velocity.each_ref().map(Vec::as_slice),
-            mass,
-        };
-        let [fx, fy, fz, rates_x, rates_y, rates_z] = sums.each_mut().map(Vec::as_mut_slice);
-        match velocity {
-            None => {
-                let law = Gravity::<false> { softening };
-                forces.sweep(&law, &bodies, [fx, fy, fz], observed, *arithmetic, *set)
-            }
-            Some(_) => {
-                let law = Gravity::<true> { softening };
-                let rates = rates.get_or_insert_with(|| AllPairs::new(count));
-                rates.sweep(
-                    &law,
-                    &bodies,
-                    [fx, fy, fz, rates_x, rates_y, rates_z],
-                    observed,
-                    *arithmetic,
-                    *set,
-                )
-            }
-        }
-    }
+    ) -> Result<[f64; 2], ProgramError>;
 
-    /// Three of the sums over the masses.
-    fn over(&self, inverse_mass: &[f64], first: usize, into: &mut Columns) {
-        for (into, sum) in into.iter_mut().zip(&self.sums[first..]) {
-            for ((into, sum), inverse) in into.iter_mut().zip(sum).zip(inverse_mass) {
-                *into = sum.to_f64() * inverse;
-            }
-        }
-    }
+    /// Three of the sums, from the first on, over the masses.
+    fn over(&self, inverse_mass: &[f64], first: usize, into: &mut Columns);
 }
 
 impl Attraction {
@@ -126,10 +55,21 @@ impl Attraction {
             ArithmeticKind::Estimated => Arithmetic::Estimated,
         };
         let set = scene.instructions();
+        let (softening, execution) = (scene.softening, (scene.execution, set));
         let pairs = match (scene.engine, scene.precision) {
             (Engine::Reference, _) => Pairs::Reference,
-            (Engine::Fast, Precision::F64) => Pairs::Double(Swept::new(bodies, arithmetic, set)),
-            (Engine::Fast, _) => Pairs::Single(Swept::new(bodies, arithmetic, set)),
+            (Engine::Fast, Precision::F64) => {
+                Pairs::Summed(Box::new(Swept::<f64>::new(softening, bodies, arithmetic, set)))
+            }
+            (Engine::Fast, _) => {
+                Pairs::Summed(Box::new(Swept::<f32>::new(softening, bodies, arithmetic, set)))
+            }
+            (Engine::Programs, Precision::F64) => {
+                Pairs::Summed(Box::new(Shifted::<f64>::new(softening, bodies, execution)))
+            }
+            (Engine::Programs, _) => {
+                Pairs::Summed(Box::new(Shifted::<f32>::new(softening, bodies, execution)))
+            }
         };
         let inverse_mass = bodies.mass.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 0.0 }).collect();
         Attraction {
@@ -147,20 +87,9 @@ impl Attraction {
     /// # Errors
     /// [`ProgramError`] if the processor lacks what is asked for.
     pub(super) fn potential(&mut self, position: &Columns) -> Result<f64, ProgramError> {
-        let of = (self.softening, self.bodies);
         match &mut self.pairs {
-            Pairs::Reference => {
-                let mut energy = 0.0;
-                for body in 0..self.bodies {
-                    for other in 0..body {
-                        energy -=
-                            self.mass[body] * self.mass[other] / self.square(position, body, other).sqrt();
-                    }
-                }
-                Ok(energy)
-            }
-            Pairs::Double(swept) => swept.sweep(of, position, None, true).map(|[energy, _]| energy),
-            Pairs::Single(swept) => swept.sweep(of, position, None, true).map(|[energy, _]| energy),
+            Pairs::Reference => Ok(potential(&self.mass[..self.bodies], position, self.softening)),
+            Pairs::Summed(sums) => sums.sum(position, None, true).map(|[energy, _]| energy),
         }
     }
 
@@ -228,6 +157,18 @@ impl Attraction {
     }
 }
 
+/// The energy of all pairs, as it is written.
+pub(super) fn potential(mass: &[f64], position: &Columns, softening: f64) -> f64 {
+    let mut energy = 0.0;
+    for body in 0..mass.len() {
+        for other in 0..body {
+            let squares = position.iter().map(|column| (column[body] - column[other]).powi(2));
+            energy -= mass[body] * mass[other] / (squares.sum::<f64>() + softening * softening).sqrt();
+        }
+    }
+    energy
+}
+
 /// The series of a power of a series, up to an order.
 fn power(of: &[f64; ORDERS], exponent: f64, order: usize) -> [f64; ORDERS] {
     let mut result = [0.0; ORDERS];
@@ -242,16 +183,11 @@ fn power(of: &[f64; ORDERS], exponent: f64, order: usize) -> [f64; ORDERS] {
 impl Field for Attraction {
     fn acceleration(&mut self, position: &Columns, into: &mut Columns) -> Result<(), ProgramError> {
         self.evaluations += 1;
-        let of = (self.softening, self.bodies);
         match &mut self.pairs {
             Pairs::Reference => self.written(position, into),
-            Pairs::Double(swept) => {
-                swept.sweep(of, position, None, false)?;
-                swept.over(&self.inverse_mass, 0, into);
-            }
-            Pairs::Single(swept) => {
-                swept.sweep(of, position, None, false)?;
-                swept.over(&self.inverse_mass, 0, into);
+            Pairs::Summed(sums) => {
+                sums.sum(position, None, false)?;
+                sums.over(&self.inverse_mass, 0, into);
             }
         }
         Ok(())
@@ -264,17 +200,11 @@ impl Field for Attraction {
         orders: &mut [Columns],
     ) -> Result<(), ProgramError> {
         self.evaluations += 1;
-        let of = (self.softening, self.bodies);
         match (&mut self.pairs, orders) {
-            (Pairs::Double(swept), [acceleration, jerk]) => {
-                swept.sweep(of, position, Some(velocity), false)?;
-                swept.over(&self.inverse_mass, 0, acceleration);
-                swept.over(&self.inverse_mass, 3, jerk);
-            }
-            (Pairs::Single(swept), [acceleration, jerk]) => {
-                swept.sweep(of, position, Some(velocity), false)?;
-                swept.over(&self.inverse_mass, 0, acceleration);
-                swept.over(&self.inverse_mass, 3, jerk);
+            (Pairs::Summed(sums), [acceleration, jerk]) => {
+                sums.sum(position, Some(velocity), false)?;
+                sums.over(&self.inverse_mass, 0, acceleration);
+                sums.over(&self.inverse_mass, 3, jerk);
             }
             (_, orders) => self.series(position, velocity, orders),
         }
@@ -289,6 +219,7 @@ mod tests {
     use super::super::starts::bodies;
     use super::*;
     use crate::method::nbody::bodies::zeros;
+    use stripmine_kernels::Execution;
 
     /// The derivatives by series against differences of the accelerations along a path of theirs, and the fast sweep's jerk.
     #[test]
@@ -324,6 +255,9 @@ mod tests {
         let seen: Vec<Columns> = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| acceleration(k * h)).to_vec();
         let mut fast = [zeros(all.entries()), zeros(all.entries())];
         field.derivatives(&all.position, &all.velocity, &mut fast).unwrap();
+        let mut programs = [zeros(all.entries()), zeros(all.entries())];
+        let mut field = Attraction::new(&Scene { engine: Engine::Programs, ..scene.clone() }, &all);
+        field.derivatives(&all.position, &all.velocity, &mut programs).unwrap();
         for axis in 0..3 {
             for body in 0..all.len() {
                 let a: Vec<f64> = seen.iter().map(|column| column[axis][body]).collect();
@@ -341,7 +275,9 @@ mod tests {
                         "{order}: {found:?} {expected:?}"
                     );
                 }
-                assert!((fast[1][axis][body] - found[1]).abs() < 1e-12 * (1.0 + found[1].abs()));
+                for jerk in [&fast[1], &programs[1]] {
+                    assert!((jerk[axis][body] - found[1]).abs() < 1e-12 * (1.0 + found[1].abs()));
+                }
             }
         }
     }
@@ -353,13 +289,15 @@ mod tests {
         (scene.start.kind, scene.start.count) = (StartKind::Plummer, 301);
         let of = bodies(&scene.start, 0.05);
         let all = Bodies::new(of.iter().map(|&(m, r, v)| (r, v, m)));
-        let found = |engine, precision, arithmetic| {
-            let mut field = Attraction::new(&Scene { engine, precision, arithmetic, ..scene.clone() }, &all);
+        let found = |engine, execution, precision, arithmetic| {
+            let scene = Scene { engine, execution, precision, arithmetic, ..scene.clone() };
+            let mut field = Attraction::new(&scene, &all);
             let mut into = zeros(all.entries());
             field.acceleration(&all.position, &mut into).unwrap();
             (into, field.potential(&all.position).unwrap())
         };
-        let (expected, potential) = found(Engine::Reference, Precision::F64, ArithmeticKind::Exact);
+        let (expected, potential) =
+            found(Engine::Reference, Execution::Chained, Precision::F64, ArithmeticKind::Exact);
         let largest = expected.iter().flatten().fold(0.0, |most: f64, a| most.max(a.abs()));
         for (precision, arithmetic, tolerance) in [
             (Precision::F64, ArithmeticKind::Exact, 1e-14),
@@ -367,11 +305,19 @@ mod tests {
             (Precision::Mixed, ArithmeticKind::Exact, 3e-6),
             (Precision::Mixed, ArithmeticKind::Estimated, 3e-6),
         ] {
-            let (into, energy) = found(Engine::Fast, precision, arithmetic);
-            for (a, b) in into.iter().zip(&expected) {
-                assert!(a.iter().zip(b).take(all.len()).all(|(a, b)| (a - b).abs() < tolerance * largest));
+            for engine in [Engine::Fast, Engine::Programs] {
+                let (into, energy) = found(engine, Execution::Chained, precision, arithmetic);
+                for (a, b) in into.iter().zip(&expected) {
+                    assert!(
+                        a.iter().zip(b).take(all.len()).all(|(a, b)| (a - b).abs() < tolerance * largest)
+                    );
+                }
+                assert!((energy / potential - 1.0).abs() < tolerance, "{energy} {potential}");
             }
-            assert!((energy / potential - 1.0).abs() < tolerance, "{energy} {potential}");
         }
+        // The programs do the same however they are executed.
+        let by = |execution| found(Engine::Programs, execution, Precision::F64, ArithmeticKind::Exact);
+        let chained = by(Execution::Chained);
+        assert!([Execution::Eager, Execution::Strip(64)].into_iter().all(|other| by(other) == chained));
     }
 }

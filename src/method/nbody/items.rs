@@ -1,10 +1,14 @@
 //! What can be reproduced of this method: each item a study and its section of the report.
 
+use super::keys::VOCABULARY;
+use super::prepared::prepare;
 use super::sections;
 use super::study::{collapse, energy, rates};
 use crate::console::Failure;
 use crate::method::{Item, Progress};
 use crate::results::{Effort, Made};
+use crate::scene::Values;
+use crate::study::programs;
 
 macro_rules! items {
     ($($name:literal, $seconds:expr, $is_quick:literal, $make:ident, $doc:literal;)*) => {
@@ -18,6 +22,7 @@ pub(super) const ITEMS: &[Item] = items! {
     "nbody-energy", [40.0, 40.0], false, orbits, "Bodies: energy error of every integrator over cost, and where orbits are lost";
     "nbody-rates", [3.0, 20.0], true, speed, "Bodies: interactions a second and how exact forces are";
     "nbody-collapse", [5.0, 5.0], false, fall, "Bodies: a cold sphere collapses, with a film";
+    "nbody-programs", [1.0, 1.0], true, counted, "Bodies: all pairs by cyclic shifts, counted and charged by clocks";
 };
 
 fn orbits(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
@@ -37,4 +42,19 @@ fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 fn fall(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let data = collapse::collapse(progress)?;
     Made::new(sections::collapse::section(&data), &data)
+}
+
+fn counted(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let scene = |name: &'static str, count: u32| {
+        let values = Values::load("plummer", &[format!("particles.count={count}")], &[&VOCABULARY])?;
+        Ok::<_, Failure>((name, prepare(values)?))
+    };
+    let scenes = [scene("plummer, N = 1024", 1024)?, scene("plummer, N = 16", 16)?];
+    progress(1.0);
+    programs::made(
+        ("nbody-programs", "Bodies: all pairs by cyclic shifts on the vector machine"),
+        "PWP: every body meets the one that is s places behind it, for s = 1 to N − 1: whole-array operations on shifted vectors. 16 shifts \
+         make a program.",
+        &scenes,
+    )
 }

@@ -20,6 +20,8 @@ const CLUSTERS: Use = Some((&GENERATE, &["two-clusters"]));
 const LISTED: Use = Some((&GENERATE, &["list"]));
 const DAMPED: Use = Some((&INTEGRATOR, &["damped-euler"]));
 
+const PROGRAMS: Use = Some((&ENGINE, &["programs"]));
+
 define_keys! {
     /// Bodies, softening, integrator and machine.
     static OWN;
@@ -53,7 +55,9 @@ define_keys! {
         "What velocities are multiplied by at every step: a friction −ln(damping)/dt.";
 
     ENGINE = "machine" "engine", Choice(Engine::WORDS), "", Is("\"fast\""), ALWAYS,
-        "What finds the forces: fast, each pair once; or pair by pair as the sum is written (reference), in double precision.";
+        "What finds the forces: fast, each pair once; whole-array operations at every cyclic shift (programs); or pair by pair as the sum is written (reference), in double precision.";
+    EXECUTION = "machine" "execution", Choice(&["chained", "eager", "strip:N"]), "", Is("\"chained\""), PROGRAMS,
+        "How programs are executed: instructions register by register, one pass over all bodies each, or by strips of N, all to the same bits.";
     ROOTS = "machine" "arithmetic", Choice(ArithmeticKind::WORDS), "", Is("\"exact\""), ALWAYS,
         "exact rounds every operation, to the same bits on every instruction set; estimated fuses products and sums and corrects the processor's estimate of inverse roots.";
 }

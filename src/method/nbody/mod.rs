@@ -13,8 +13,11 @@ mod presets;
 mod scene;
 mod schemes;
 mod sections;
+mod shifted;
 mod simulation;
 mod starts;
 mod study;
+mod swept;
+mod trials;
 
 pub use entry::ENTRY;

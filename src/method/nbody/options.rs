@@ -27,6 +27,8 @@ define_words! {
     pub enum Engine {
         /// Each pair once, in registers, on threads.
         Fast = "fast",
+        /// Whole-array operations between bodies and those a shift behind them, for every shift: the source's vector machine.
+        Programs = "programs",
         /// Pair by pair as the sum is written: the oracle.
         Reference = "reference",
     }

@@ -3,12 +3,13 @@
 use super::keys::{BODIES, GENERATE, SOFTENING};
 use super::options::StartKind;
 use super::scene::Scene;
+use super::shifted::counted;
 use super::simulation::Running;
 use super::starts::{ORBIT, bodies};
 use crate::domain::{Domain, Side};
 use crate::memory::{Foreseen, PROGRAM, available};
 use crate::method::{
-    Beyond, Every, Fact, Failure, Prepared, Purpose, Schedule, Simulation, StepLimit, Until,
+    Beyond, Every, Fact, Failure, Prepared, Purpose, Schedule, Simulation, StepLimit, Until, VectorProgram,
 };
 use crate::particles::{Kind, Particle, Particles};
 use crate::scene::{Output, PRECISION, Precision, Read, Reason, SceneError, SceneErrors, Values, Warning};
@@ -222,6 +223,10 @@ impl Prepared for Checked {
             ("instruction_set", json!(scene.instructions().name())),
         ];
         settings.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
+    }
+
+    fn programs(&self) -> Vec<VectorProgram> {
+        counted(self.scene.softening, self.particles.len())
     }
 
     fn start(&self, _: Purpose) -> Result<Box<dyn Simulation>, Failure> {

@@ -3,8 +3,8 @@
 use super::keys::*;
 use super::options::{ArithmeticKind, Engine, StartKind};
 use super::schemes::SchemeName;
-use crate::scene::{Binding, Output, Precision, Run, Write, bind_arithmetic, bind_heading};
-use stripmine_kernels::InstructionSet;
+use crate::scene::{Binding, Output, Precision, Run, Write, bind_arithmetic, bind_execution, bind_heading};
+use stripmine_kernels::{Execution, InstructionSet};
 
 /// Bodies at the start.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +48,8 @@ pub struct Scene {
     pub dt: f64,
     /// What finds the forces.
     pub engine: Engine,
+    /// How its programs are executed, where it has such.
+    pub execution: Execution,
     /// How products and roots are formed.
     pub arithmetic: ArithmeticKind,
     /// Precision of the forces; the state is in double precision.
@@ -81,6 +83,7 @@ impl Default for Scene {
             damping: 1.0,
             dt: 0.0,
             engine: Engine::Fast,
+            execution: Execution::Chained,
             arithmetic: ArithmeticKind::Exact,
             precision: Precision::F64,
             instruction_set: None,
@@ -133,6 +136,9 @@ impl Scene {
         }
         binding.number(&crate::scene::DT, &mut self.dt);
         binding.choice(&ENGINE, &mut self.engine);
+        if self.engine == Engine::Programs {
+            bind_execution(binding, &EXECUTION, &mut self.execution);
+        }
         binding.choice(&ROOTS, &mut self.arithmetic);
         bind_arithmetic(binding, &mut self.precision, &mut self.instruction_set);
         self.run.bind(binding, self.dt);

@@ -155,6 +155,7 @@ impl Simulation for Running {
             jy,
             jz,
             length(seen.centre),
+            seen.energy() - self.energy,
             half_mass.map_or(0.0, |(radius, _)| *radius),
         ]
     }

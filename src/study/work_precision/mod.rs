@@ -59,6 +59,9 @@ pub fn work_precision(
     journal: &Journal,
     progress: Progress<'_>,
 ) -> Result<WorkPrecision, StudyError> {
+    if !subject.trials.has_trajectories {
+        return Err(StudyError::NoTrajectories(subject.arguments()));
+    }
     let start = Instant::now();
     let meter = Meter::new(effort.budget, progress);
     let choices = Choice::all(subject.trials);

@@ -15,6 +15,7 @@
 //! By [`Arithmetic::Exact`] it is the same on every instruction set too, for own sums are kept by 16 lanes, however many a
 //! register has.
 
+pub mod shifts;
 mod tile;
 
 use crate::backend::{GROUP, InstructionSet, Precision, dispatch, dispatch_estimating};
@@ -142,18 +143,20 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
         Ok([sum(0), sum(1)])
     }
 
-    /// Adds up a sum of all bands, in the order of the bands.
+    /// Adds up a sum of all bands in double precision, in the order of the bands.
     fn add_up(&self, number: usize, to: &mut [P]) {
         let share = |(range, to): (Range<usize>, &mut [P])| {
-            to.fill(P::default());
+            let mut sum = vec![0.0; to.len()];
             for band in &self.bands {
                 let first = band.groups.start * GROUP;
                 let from = range.start.max(first);
                 if from < range.end {
                     let sums = &band.sums[number][from - first..range.end - first];
-                    to[from - range.start..].iter_mut().zip(sums).for_each(|(to, &sum)| *to = *to + sum);
+                    let into = sum[from - range.start..].iter_mut();
+                    into.zip(sums).for_each(|(into, &of_band)| *into += of_band.to_f64());
                 }
             }
+            to.iter_mut().zip(sum).for_each(|(to, sum)| *to = P::from_f64(sum));
         };
         const PIECE: usize = 4096;
         let ranges = pieces(0..to.len(), PIECE);

@@ -11,6 +11,10 @@ use std::ops::Range;
 /// Own bodies that meet the same partners at a time: as many as leave room in the registers for everything else.
 const OWN: usize = 4;
 
+/// Groups of partners after which own sums leave the registers: what is added to a sum is not much smaller than it, so that few
+/// digits are lost.
+const SPELL: usize = 64;
+
 /// A band of rows. Where it is `EXACT`, own sums are kept by 16 lanes.
 pub(super) struct Tile<'a, P, L, const SUMS: usize, const EXACT: bool> {
     pub(super) law: &'a L,
@@ -184,16 +188,21 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
         }
         let base = self.groups.start * GROUP;
         let mut at = start + GROUP;
+        let mut spelled = [[0.0; SUMS]; OWN];
+        let mut left = SPELL;
         while at < behind {
+            if left == 0 {
+                take(registers, &own_sums, kept, &mut spelled);
+                left = SPELL;
+            }
+            left -= 1;
             for part in 0..GROUP / R::LANES {
                 let at = at + part * R::LANES;
                 // SAFETY: whole groups exist (checked by AllPairs::sweep), and a part is one register of one.
                 let partner = unsafe { self.partner(registers, at) };
                 // SAFETY: sums have an entry for every body from `base` on.
                 let to: [*mut P; SUMS] = from_fn(|sum| unsafe { self.sums[sum].as_mut_ptr().add(at - base) });
-                // SAFETY: `to` points at sums of whole groups, of which a part is one register.
-                let partner_sums: Sums<R::V, SUMS> =
-                    from_fn(|sum| Cell::new(unsafe { registers.load(to[sum]) }));
+                let partner_sums: Sums<R::V, SUMS> = from_fn(|_| Cell::new(zero));
                 for (n, own) in own.into_iter().enumerate() {
                     let own_sums = &own_sums[n][part % kept];
                     let partner_sums = &partner_sums;
@@ -208,21 +217,17 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
                     meet(self.law, &meeting, partner);
                 }
                 for sum in 0..SUMS {
-                    // SAFETY: as for the load.
-                    unsafe { registers.store(to[sum], partner_sums[sum].get()) };
+                    // SAFETY: `to` points at sums of whole groups, of which a part is one register.
+                    unsafe { registers.store(to[sum], registers.load(to[sum]) + partner_sums[sum].get()) };
                 }
             }
             at += GROUP;
         }
-        for (n, sums) in own_sums.iter().enumerate() {
-            for sum in 0..SUMS {
-                let mut lanes = [P::default(); GROUP];
-                for (part, sums) in sums.iter().take(kept).enumerate() {
-                    // SAFETY: part · LANES + LANES <= GROUP.
-                    unsafe { registers.store(lanes.as_mut_ptr().add(part * R::LANES), sums[sum].get()) };
-                }
-                let to = &mut self.sums[sum][start + first + n - base];
-                *to = *to + of_lanes(lanes);
+        take(registers, &own_sums, kept, &mut spelled);
+        for (n, spelled) in spelled.iter().enumerate() {
+            for (sums, spelled) in self.sums.iter_mut().zip(spelled) {
+                let to = &mut sums[start + first + n - base];
+                *to = P::from_f64(to.to_f64() + spelled);
             }
         }
         if observed {
@@ -316,6 +321,27 @@ fn apart<R: Registers>(
         position: [elsewhere, y, z],
         velocity: partner.velocity,
         mass: R::V::select(is_own, zero, partner.mass),
+    }
+}
+
+/// Takes own sums out of the registers, and leaves zeros there.
+#[inline(always)]
+fn take<R: Registers, const SUMS: usize>(
+    registers: R,
+    own_sums: &[[Sums<R::V, SUMS>; GROUP]; OWN],
+    kept: usize,
+    into: &mut [[f64; SUMS]; OWN],
+) {
+    let zero = registers.splat(R::Lane::default());
+    for (sums, into) in own_sums.iter().zip(into) {
+        for (sum, into) in into.iter_mut().enumerate() {
+            let mut lanes = [R::Lane::default(); GROUP];
+            for (part, sums) in sums.iter().take(kept).enumerate() {
+                // SAFETY: part · LANES + LANES <= GROUP.
+                unsafe { registers.store(lanes.as_mut_ptr().add(part * R::LANES), sums[sum].replace(zero)) };
+            }
+            *into += of_lanes(lanes).to_f64();
+        }
     }
 }
 

@@ -39,7 +39,7 @@ impl Mean {
 }
 
 /// A preset with overrides.
-fn prepared(preset: &str, overrides: &[String]) -> Result<Box<dyn Prepared>, Failure> {
+pub(super) fn prepared(preset: &str, overrides: &[String]) -> Result<Box<dyn Prepared>, Failure> {
     Ok(prepare(Values::load(preset, overrides, &[&VOCABULARY])?)?)
 }
 

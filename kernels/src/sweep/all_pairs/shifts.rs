@@ -1,0 +1,166 @@
+//! All pairs as whole-array operations: every body meets the one that is a number of places behind it, for every number. PWP.
+
+use crate::isa::{Array, Element, Machine, Slot, Text};
+use crate::law::{Env, Field, Law, Stated, Sum};
+use std::cell::Cell;
+use std::marker::PhantomData;
+use std::ops::Range;
+
+/// Runs `law` between every body and those that are `shifts` places behind it, the first ones following the last. Vector length:
+/// the bodies; what is read at a shift has an entry for each of them twice over, so that no shift has to begin again in front.
+///
+/// The shifts 1 … N − 1 are all pairs, each met from both sides; forces are added to those that are there.
+#[derive(Clone, Debug)]
+pub struct Shifts<P, L> {
+    law: L,
+    shifts: Range<usize>,
+    precision: PhantomData<P>,
+}
+
+impl<P: Element, L: Law<3>> Shifts<P, L> {
+    /// The program for a law and some shifts.
+    ///
+    /// Recording it panics if the law asks for what bodies have not.
+    pub fn new(law: L, shifts: Range<usize>) -> Self {
+        Shifts { law, shifts, precision: PhantomData }
+    }
+}
+
+/// The array of a quantity of the bodies.
+///
+/// # Panics
+/// If bodies have no such quantity.
+#[inline]
+pub const fn body_array(field: Field) -> Array {
+    match field {
+        Field::Mass => Array::BodyMass,
+        Field::Velocity(axis) => [Array::BodyVx, Array::BodyVy, Array::BodyVz][axis as usize],
+        Field::Omega | Field::Radius | Field::InverseMass => panic!("bodies have no such quantity"),
+    }
+}
+
+/// The array of a sum of the bodies.
+///
+/// # Panics
+/// If bodies have no such sum.
+#[inline]
+pub const fn body_sum_array(sum: Sum) -> Array {
+    match sum {
+        Sum::Force(axis) => [Array::BodyFx, Array::BodyFy, Array::BodyFz][axis as usize],
+        Sum::ForceRate(axis) => [Array::BodyRateX, Array::BodyRateY, Array::BodyRateZ][axis as usize],
+        Sum::Torque => panic!("bodies have no torque"),
+    }
+}
+
+/// The arrays of positions.
+pub const BODY_POSITION: [Array; 3] = [Array::BodyX, Array::BodyY, Array::BodyZ];
+
+/// What the law sees: one strip of bodies.
+struct Behind<M: Machine> {
+    machine: M,
+    sums: [Cell<M::V>; 6],
+}
+
+impl<M: Machine> Env<3> for &Behind<M> {
+    type V = M::V;
+    type Place = isize;
+    const BOTH_PARTNERS: bool = false;
+
+    #[inline(always)]
+    fn own_position(self) -> [M::V; 3] {
+        BODY_POSITION.map(|axis| self.machine.load(Slot::<M::Lane>::new(axis)))
+    }
+
+    #[inline(always)]
+    fn own(self, field: Field) -> M::V {
+        self.machine.load(Slot::<M::Lane>::new(body_array(field)))
+    }
+
+    #[inline(always)]
+    fn displacement(self, own: [M::V; 3], shift: isize) -> [M::V; 3] {
+        let there = BODY_POSITION.map(|axis| self.machine.load_shifted(Slot::<M::Lane>::new(axis), shift));
+        std::array::from_fn(|axis| own[axis] - there[axis])
+    }
+
+    #[inline(always)]
+    fn partner(self, field: Field, shift: isize) -> M::V {
+        self.machine.load_shifted(Slot::<M::Lane>::new(body_array(field)), shift)
+    }
+
+    #[inline(always)]
+    fn uniform(self, value: f64) -> M::V {
+        self.machine.uniform(value)
+    }
+
+    #[inline(always)]
+    fn none(self, _: M::P) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn own_add(self, sum: Sum, value: M::V) {
+        let cell = &self.sums[sum.column::<3>()];
+        cell.set(cell.get() + value);
+    }
+
+    #[inline]
+    fn partner_sub(self, _: Sum, _: isize, _: M::V) {
+        unreachable!("every pair is met from both sides")
+    }
+
+    #[inline(always)]
+    fn watches(self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn watch(self, _: M::V) {}
+
+    #[inline(always)]
+    fn counts_dissipation(self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn dissipate(self, _: M::V) {}
+
+    #[inline(always)]
+    fn observes_energy(self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn energy(self, _: M::V) {}
+
+    #[inline(always)]
+    fn virial(self, _: M::V) {}
+
+    #[inline(always)]
+    fn section(self, name: &'static str) {
+        self.machine.section(name);
+    }
+}
+
+// SAFETY: slots and shifts depend on the law and the shifts only.
+unsafe impl<P: Element, L: Law<3>> Text for Shifts<P, L> {
+    type Lane = P;
+
+    #[inline(always)]
+    fn body<M: Machine<Lane = P>>(&self, m: M) {
+        m.section("own body");
+        let zero = m.uniform(0.0);
+        let behind = Behind::<M> { machine: m, sums: std::array::from_fn(|_| Cell::new(zero)) };
+        for &sum in L::SUMS {
+            behind.sums[sum.column::<3>()].set(m.load(Slot::<P>::new(body_sum_array(sum))));
+        }
+        let env = Stated::new(&behind, &self.law);
+        let own = self.law.own(env);
+        for shift in self.shifts.clone() {
+            self.law.pair(env, shift as isize, &own);
+        }
+        m.section("sums");
+        for &sum in L::SUMS {
+            m.store(Slot::<P>::new(body_sum_array(sum)), behind.sums[sum.column::<3>()].get());
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! The law as the source's vector machine would meet it: at every place of a mask of the lattice.
+
+use super::dynamics::InBath;
+use super::prepared::{Checked, NEAREST};
+use crate::method::VectorProgram;
+use stripmine_kernels::Program;
+use stripmine_kernels::ledger::Length;
+use stripmine_kernels::mask::Mask;
+use stripmine_kernels::sweep::lattice::forces::Forces;
+use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
+
+/// The widest mask that is thought of: cells on either side.
+const WIDEST: u32 = 12;
+
+/// The lattice on which hardly any two particles share a cell, with the smallest mask that sees to the cut-off; none where the box is
+/// too small for it.
+pub(super) fn lattice(checked: &Checked) -> Option<(LatticeShape, Frame, Mask)> {
+    let (domain, reach) = (checked.domain, checked.reach);
+    let largest = NEAREST * checked.diameter / std::f64::consts::SQRT_2;
+    let half_width = (1..=WIDEST).find(|&width| reach / f64::from(width) <= largest)?;
+    let least = reach / f64::from(half_width);
+    let counts = [0, 1].map(|axis| (domain.length(axis) / least).floor());
+    if counts.iter().any(|&count| count < 1.0 || count > f64::from(u32::MAX)) {
+        return None;
+    }
+    let edge = [0, 1].map(|axis| domain.length(axis) / counts[axis]);
+    let mask = Mask::square(half_width);
+    let [columns, rows] = counts.map(|count| count as usize);
+    let shape = LatticeShape::new(columns, rows, &mask, domain.periodic()).ok()?;
+    Some((shape, Frame { origin: domain.corner(), edge }, mask))
+}
+
+/// The forces of a step; none without pairs, or without a lattice.
+pub(super) fn programs(checked: &Checked) -> Vec<VectorProgram> {
+    let Some((shape, frame, mask)) = checked.has_pairs().then(|| lattice(checked)).flatten() else {
+        return vec![];
+    };
+    let law = InBath::of(checked).law;
+    let forces = Forces::<f64, _>::new(law, &mask, shape, frame, Coordinates::CellRelative);
+    let length = Length::SweptCells;
+    let program = Box::new(Program::new(forces));
+    vec![VectorProgram { part: "forces", length: length.symbol(), n: shape.swept().len(), times: 1, program }]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::keys::VOCABULARY;
+    use super::super::prepared::checked;
+    use super::*;
+    use crate::particles::{Particle, Particles};
+    use crate::scene::Values;
+    use stripmine_kernels::isa::{Array, Memory, Slot};
+    use stripmine_kernels::noise::{Purpose, normals};
+    use stripmine_kernels::{Execution, InstructionSet, Runnable};
+
+    /// Forces as they are written, pair by pair.
+    fn written_down(checked: &Checked, particles: &Particles) -> Vec<[f64; 2]> {
+        let (epsilon, sigma) = (checked.scene.strength, checked.diameter);
+        let force = |a: &Particle| {
+            let mut sum = [0.0; 2];
+            for b in particles.all().iter().filter(|b| b.id != a.id) {
+                let way = checked.domain.displacement(b.place(), a.place());
+                let square = way[0] * way[0] + way[1] * way[1];
+                if square < checked.reach * checked.reach {
+                    let sixth = (sigma * sigma / square).powi(3);
+                    let strength = 24.0 * epsilon * (2.0 * sixth * sixth - sixth) / square;
+                    (0..2).for_each(|axis| sum[axis] += strength * way[axis]);
+                }
+            }
+            sum
+        };
+        particles.all().iter().map(force).collect()
+    }
+
+    /// Forces by the program over the whole lattice, run the CRAY's way and chained, are those that are written down but for rounding.
+    #[test]
+    fn the_program_finds_the_forces_of_all_pairs() {
+        for law in ["wca", "lennard-jones"] {
+            let overrides = [
+                format!("law.kind={law}"),
+                "particles.count=200".to_owned(),
+                "domain.sides=[18.0, 18.0]".to_owned(),
+            ];
+            let values = Values::load("langevin-dense", &overrides, &[&VOCABULARY]).unwrap();
+            let checked = checked(values).unwrap();
+            let (shape, frame, mask) = lattice(&checked).unwrap();
+            let mut particles = checked.particles.clone();
+            for particle in particles.all_mut() {
+                let off = normals(1, Purpose::Test, particle.id, 0);
+                (0..2).for_each(|axis| particle.position[axis] += 0.06 * off[axis]);
+                particle.position = checked.domain.wrapped(particle.position);
+            }
+            let fits = |axis: usize, at: f64| ((at - frame.origin[axis]) / frame.edge[axis]).floor();
+            let padded = shape.padded();
+            // As the programs want it: places from the centre of the cell, and far away where nothing is.
+            let (mut x, mut y) = (vec![1e30; padded], vec![1e30; padded]);
+            let mut cell_of = vec![];
+            for particle in particles.all() {
+                let [column, row] = [0, 1].map(|axis| fits(axis, particle.position[axis]));
+                let cell = shape.position(column as isize, row as isize);
+                let centre =
+                    [0, 1].map(|axis| frame.origin[axis] + ([column, row][axis] + 0.5) * frame.edge[axis]);
+                assert_eq!(x[cell], 1e30, "two share a cell");
+                (x[cell], y[cell]) = (particle.position[0] - centre[0], particle.position[1] - centre[1]);
+                cell_of.push(cell);
+            }
+            for image in shape.images() {
+                (x[image.cell], y[image.cell]) = (x[image.source], y[image.source]);
+            }
+            let program = Program::new(Forces::<f64, _>::new(
+                InBath::of(&checked).law,
+                &mask,
+                shape,
+                frame,
+                Coordinates::CellRelative,
+            ));
+            let expected = written_down(&checked, &particles);
+            let largest = expected.iter().flatten().fold(0.0, |most: f64, it| most.max(it.abs()));
+            assert!(largest > 0.1);
+            for execution in [Execution::Eager, Execution::Strip(64), Execution::Chained] {
+                let (mut fx, mut fy) = (vec![0.0; padded], vec![0.0; padded]);
+                let memory = Memory::new()
+                    .read(Slot::new(Array::X), &x)
+                    .read(Slot::new(Array::Y), &y)
+                    .write(Slot::new(Array::Fx), &mut fx)
+                    .write(Slot::new(Array::Fy), &mut fy);
+                Runnable::run(&program, &memory, shape.swept(), execution, InstructionSet::best()).unwrap();
+                drop(memory);
+                for (&cell, force) in cell_of.iter().zip(&expected) {
+                    for (found, expected) in [fx[cell], fy[cell]].into_iter().zip(force) {
+                        assert!((found - expected).abs() < 1e-11 * largest, "{law}: {found} {expected}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! How particles in a bath may be run, and what a map of stability varies.
+
+use super::keys::{BATH_TEMPERATURE, DRAG, STRENGTH};
+use super::prepared::prepare;
+use crate::method::{Axis, Decides, Mapped, Parameter, Prepared, Setting, Trials};
+use crate::scene::{DT, Key, Values};
+
+macro_rules! settings {
+    ($($name:literal [$($override:literal),*],)*) => {
+        &[$(Setting { name: $name, overrides: &[$($override),*] }),*]
+    };
+}
+
+/// Every way to run a scene of particles in a bath.
+pub(super) static TRIALS: Trials = Trials {
+    step: &DT,
+    axes: AXES,
+    references: [
+        &[("integrator", "baoab"), ("precision", "f64")],
+        &[("integrator", "stochastic"), ("precision", "f64")],
+    ],
+    // A bath gives and takes energy.
+    balance: None,
+    has_trajectories: false,
+    observables: &["temperature", "potential", "pressure"],
+    fluctuating: &[],
+    inertia: |_| None,
+    theory: |_, _, _| None,
+    shown: &[],
+    parameters: PARAMETERS,
+    at_any_step: prepare,
+    mapped: MAPPED,
+};
+
+const MAPPED: &[Mapped] = &[
+    Mapped {
+        name: "langevin-strength",
+        preset: "langevin-dense",
+        overrides: &["law.kind=wca", "particles.count=300", "domain.sides=[20.7, 20.7]", "run.time=5"],
+        parameter: "strength",
+    },
+    Mapped {
+        name: "langevin-friction",
+        preset: "langevin-dense",
+        overrides: &["law.kind=wca", "particles.count=300", "domain.sides=[20.7, 20.7]", "run.time=5"],
+        parameter: "friction",
+    },
+];
+
+const AXES: &[Axis] = &[
+    Axis {
+        name: "integrator",
+        decides: Decides::Order,
+        settings: settings! {
+            "baoab" ["integrator.kind=baoab"],
+            "stochastic" ["integrator.kind=stochastic"],
+        },
+        own: |prepared| setting_of(prepared, "integrator"),
+    },
+    Axis {
+        name: "precision",
+        decides: Decides::Digits,
+        settings: settings! {
+            "f64" ["machine.precision=f64"],
+            "mixed" ["machine.precision=mixed"],
+            "f32" ["machine.precision=f32"],
+        },
+        own: |prepared| setting_of(prepared, "precision"),
+    },
+    Axis {
+        name: "search",
+        decides: Decides::Cost,
+        settings: settings! {
+            "neighbor-list" ["search.by=neighbor-list"],
+            "sectors" ["search.by=sectors"],
+            "lattice" ["search.by=lattice"],
+        },
+        own: |prepared| setting_of(prepared, "search"),
+    },
+];
+
+/// What a map may vary.
+const PARAMETERS: &[Parameter] = &[
+    Parameter {
+        name: "strength",
+        label: "strength ε of the pairs",
+        unit: "energy",
+        bounds: [1e-300, 1e300],
+        is_logarithmic: true,
+        range: |values| around(values, &STRENGTH),
+        overrides: |_, value| vec![format!("{}={value:?}", STRENGTH.path())],
+        marks: |_| vec![],
+    },
+    Parameter {
+        name: "temperature",
+        label: "temperature kT of the bath",
+        unit: "energy",
+        bounds: [1e-300, 1e300],
+        is_logarithmic: true,
+        range: |values| around(values, &BATH_TEMPERATURE),
+        overrides: |_, value| vec![format!("{}={value:?}", BATH_TEMPERATURE.path())],
+        marks: |_| vec![],
+    },
+    Parameter {
+        name: "friction",
+        label: "friction γ of the bath",
+        unit: "mass/time",
+        bounds: [1e-300, 1e300],
+        is_logarithmic: true,
+        range: |values| around(values, &DRAG),
+        overrides: |_, value| vec![format!("{}={value:?}", DRAG.path())],
+        marks: |_| vec![],
+    },
+];
+
+/// From a thirtieth of a value to thirty times it.
+fn around(values: &Values, key: &Key) -> Option<[f64; 2]> {
+    values.number(key).filter(|value| *value > 0.0).map(|value| [value / 30.0, value * 30.0])
+}
+
+fn setting_of(prepared: &dyn Prepared, name: &str) -> Option<String> {
+    Some(prepared.settings().get(name)?.as_str()?.to_owned())
+}

@@ -1,0 +1,113 @@
+//! How bodies may be run, and what theory says of the error.
+
+use super::keys::{ECCENTRICITY, SOFTENING};
+use super::prepared::prepare;
+use crate::method::{Axis, Balance, Decides, Mapped, Parameter, Prepared, Setting, Theory, Trials};
+use crate::scene::{DT, Values};
+
+macro_rules! settings {
+    ($($name:literal [$($override:literal),*],)*) => {
+        &[$(Setting { name: $name, overrides: &[$($override),*] }),*]
+    };
+}
+
+/// Every way to run a scene of bodies. Studies see the plane of x and y: orbits of two and three bodies lie in it.
+pub(super) static TRIALS: Trials = Trials {
+    step: &DT,
+    axes: AXES,
+    references: [
+        &[("integrator", "yoshida-8"), ("precision", "f64")],
+        &[("integrator", "gear-6"), ("precision", "f64")],
+    ],
+    balance: Some(Balance { error: "balance_error", energies: &["kinetic", "potential"], inputs: &[] }),
+    has_trajectories: true,
+    observables: &["virial_ratio", "half_mass_radius"],
+    fluctuating: &[],
+    inertia: |_| None,
+    theory,
+    shown: &[("kepler", "kepler", &["run.time=31.4"]), ("figure-eight", "figure-eight", &[])],
+    parameters: PARAMETERS,
+    at_any_step: prepare,
+    mapped: &[Mapped {
+        name: "kepler",
+        preset: "kepler",
+        overrides: &["run.time=62.8"],
+        parameter: "eccentricity",
+    }],
+};
+
+const AXES: &[Axis] = &[
+    Axis {
+        name: "integrator",
+        decides: Decides::Order,
+        settings: settings! {
+            "damped-euler" ["integrator.kind=damped-euler"],
+            "leapfrog" ["integrator.kind=leapfrog"],
+            "yoshida-4" ["integrator.kind=yoshida-4"],
+            "yoshida-6" ["integrator.kind=yoshida-6"],
+            "yoshida-8" ["integrator.kind=yoshida-8"],
+            "runge-kutta-4" ["integrator.kind=runge-kutta-4"],
+            "hermite-4" ["integrator.kind=hermite-4"],
+            "gear-6" ["integrator.kind=gear-6"],
+        },
+        own: |prepared| setting_of(prepared, "integrator"),
+    },
+    Axis {
+        name: "precision",
+        decides: Decides::Digits,
+        settings: settings! {
+            "f64" ["machine.precision=f64"],
+            "mixed" ["machine.precision=mixed"],
+        },
+        own: |prepared| setting_of(prepared, "precision"),
+    },
+    Axis {
+        name: "engine",
+        decides: Decides::Cost,
+        settings: settings! {
+            "fast" ["machine.engine=fast"],
+            "reference" ["machine.engine=reference"],
+        },
+        own: |prepared| setting_of(prepared, "engine"),
+    },
+];
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter {
+        name: "eccentricity",
+        label: "eccentricity of the orbit",
+        unit: "",
+        bounds: [0.0, 0.999],
+        is_logarithmic: false,
+        range: |values| values.is_used(&ECCENTRICITY).then_some([0.0, 0.95]),
+        overrides: |_, value| vec![format!("particles.eccentricity={value:?}")],
+        marks: |_| vec![],
+    },
+    Parameter {
+        name: "softening",
+        label: "softening of the attraction",
+        unit: "length",
+        bounds: [1e-300, 1e300],
+        is_logarithmic: true,
+        range: |values| values.number(&SOFTENING).filter(|it| *it > 0.0).map(|it| [it / 30.0, it * 30.0]),
+        overrides: |_, value| vec![format!("law.softening={value:?}")],
+        marks: |_| vec![],
+    },
+];
+
+fn setting_of(prepared: &dyn Prepared, name: &str) -> Option<String> {
+    Some(prepared.settings().get(name)?.as_str()?.to_owned())
+}
+
+/// The order of positions: that of the scheme, for nothing jumps.
+fn theory(_: &Values, _: &dyn Prepared, integrator: &Setting) -> Option<Theory> {
+    let order = match integrator.name {
+        "damped-euler" => 1.0,
+        "leapfrog" => 2.0,
+        "yoshida-6" => 6.0,
+        "yoshida-8" => 8.0,
+        "gear-6" => 5.0,
+        _ => 4.0,
+    };
+    Some(Theory { order, why: "the order of the scheme" })
+}
