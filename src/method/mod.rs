@@ -22,4 +22,6 @@ pub use failure::{Culprit, Failure, FailureKind};
 pub use hard_disks::compress;
 pub use list::{METHODS, Methods, load, method, prepare, vocabularies};
 pub use probe::probed;
-pub use trials::{Axis, Balance, Decides, Mapped, Parameter, Setting, Theory, Trials};
+pub use trials::{
+    Axis, Balance, Decides, Length, Mapped, Parameter, SMALLEST_RADIUS, Setting, Theory, Trials,
+};

@@ -2,6 +2,7 @@
 //! says of it. Studies of speed, accuracy and stability know a method by this alone.
 
 use super::entry::Prepared;
+use crate::particles::Particles;
 use crate::scene::{Key, SceneErrors, Values};
 
 /// How the scenes of a method may be run, and what is measured of them.
@@ -19,6 +20,10 @@ pub struct Trials {
     /// Whether a run with another step follows the same trajectories; where noise moves particles it does not, and only means can be
     /// compared.
     pub has_trajectories: bool,
+    /// What distances between states are measured in.
+    pub length: Length,
+    /// Whether particles touch and part, so that two of them alone are a collision.
+    pub has_contacts: bool,
     /// Quantities that have a mean in a run: what is left of a comparison once trajectories have parted.
     pub observables: &'static [&'static str],
     /// Those of them that come and go with single contacts: looks at them have a mean only over independent seeds.
@@ -36,6 +41,19 @@ pub struct Trials {
     /// Maps that `reproduce` shows.
     pub mapped: &'static [Mapped],
 }
+
+/// What distances between states are measured in.
+#[derive(Clone, Copy, Debug)]
+pub struct Length {
+    /// What it is called, as a unit.
+    pub unit: &'static str,
+    /// How long it is (length).
+    pub of: fn(&Particles) -> f64,
+}
+
+/// The smallest radius.
+pub const SMALLEST_RADIUS: Length =
+    Length { unit: "radii", of: |particles| particles.radii().map_or(1.0, |[smallest, _]| smallest) };
 
 /// The balance of energy, by names of quantities.
 #[derive(Clone, Copy, Debug)]

@@ -1,18 +1,81 @@
-//! A file of frames that grows with a run, no frame twice.
+//! A file of frames that grows with a run, no frame twice, written by a thread of its own: a run goes on while a frame is written.
 
 use crate::io::FileError;
 use crate::io::extxyz::Frame;
 use crate::io::growing_file::{GrowingFile, GrowingFileError, Mark};
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
 
-/// The file, and how a frame is written into it.
+/// How a frame is written into a file.
+type Format = fn(&Frame, &mut GrowingFile) -> io::Result<()>;
+
+/// The file, and the thread that writes it.
 #[derive(Debug)]
 pub(super) struct Frames {
-    file: GrowingFile,
-    write: fn(&Frame, &mut GrowingFile) -> io::Result<()>,
+    path: PathBuf,
+    writing: Arc<Mutex<Writing>>,
+    format: Format,
     /// Step of the last frame.
     last: Option<u64>,
+    /// Where frames go, from the first one on.
+    writer: Option<Writer>,
+}
+
+/// What the thread and the run share.
+#[derive(Debug)]
+struct Writing {
+    file: GrowingFile,
+    /// What went wrong with a frame; nothing is written after it.
+    failed: Option<io::Error>,
+}
+
+/// A thread that writes one frame while the next is computed; a run that is faster waits for it.
+#[derive(Debug)]
+struct Writer {
+    orders: SyncSender<Order>,
+    thread: JoinHandle<()>,
+}
+
+/// What the thread is to do.
+enum Order {
+    /// Write.
+    Write(Box<Frame>),
+    /// Say when everything before is written.
+    Answer(SyncSender<()>),
+}
+
+impl Writer {
+    fn begin(writing: &Arc<Mutex<Writing>>, format: Format) -> io::Result<Writer> {
+        // Without room: of frames there is one that is written and one that is made.
+        let (orders, received) = sync_channel(0);
+        let writing = writing.clone();
+        let thread = thread::Builder::new().name("frames".to_owned());
+        let thread = thread.spawn(move || write(&received, &writing, format))?;
+        Ok(Writer { orders, thread })
+    }
+}
+
+fn write(orders: &Receiver<Order>, writing: &Mutex<Writing>, format: Format) {
+    for order in orders {
+        match order {
+            Order::Write(frame) => {
+                let mut writing = locked(writing);
+                if writing.failed.is_none() {
+                    writing.failed = format(&frame, &mut writing.file).err();
+                }
+            }
+            // Who asked may have gone.
+            Order::Answer(to) => drop(to.send(())),
+        }
+    }
+}
+
+/// A panic of the other side leaves a file that is as long as it says.
+fn locked(writing: &Mutex<Writing>) -> MutexGuard<'_, Writing> {
+    writing.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Frames {
@@ -20,11 +83,8 @@ impl Frames {
     ///
     /// # Errors
     /// If something is there, or the system does not let it be written.
-    pub(super) fn create(
-        path: PathBuf,
-        write: fn(&Frame, &mut GrowingFile) -> io::Result<()>,
-    ) -> Result<Frames, FileError> {
-        Ok(Frames { file: GrowingFile::create(path)?, write, last: None })
+    pub(super) fn create(path: PathBuf, format: Format) -> Result<Frames, FileError> {
+        Ok(Frames::of(GrowingFile::create(path)?, format, None))
     }
 
     /// Goes on at a mark, where the last frame was that of step `last`.
@@ -33,11 +93,22 @@ impl Frames {
     /// If what was there at the mark is not there any more.
     pub(super) fn resume(
         path: PathBuf,
-        write: fn(&Frame, &mut GrowingFile) -> io::Result<()>,
+        format: Format,
         mark: Mark,
         last: Option<u64>,
     ) -> Result<Frames, GrowingFileError> {
-        Ok(Frames { file: GrowingFile::resume(path, mark)?, write, last })
+        Ok(Frames::of(GrowingFile::resume(path, mark)?, format, last))
+    }
+
+    fn of(file: GrowingFile, format: Format, last: Option<u64>) -> Frames {
+        let path = file.path().to_owned();
+        Frames {
+            path,
+            writing: Arc::new(Mutex::new(Writing { file, failed: None })),
+            format,
+            last,
+            writer: None,
+        }
     }
 
     /// As [`GrowingFile::cut`].
@@ -45,27 +116,98 @@ impl Frames {
     /// # Errors
     /// If the system does not let it be cut.
     pub(super) fn cut(&mut self) -> Result<(), FileError> {
-        self.file.cut()
+        locked(&self.writing).file.cut()
     }
 
-    /// Adds a frame, unless the last one is of that step already.
+    /// Hands a frame to the thread that writes, unless the last one is of that step already.
     ///
     /// # Errors
-    /// If the system does not let it be written.
-    pub(super) fn add(&mut self, frame: &Frame) -> Result<(), FileError> {
+    /// If the system did not let this one or one before it be written.
+    pub(super) fn add(&mut self, frame: Frame) -> Result<(), FileError> {
         if self.last == Some(frame.step) {
             return Ok(());
         }
-        (self.write)(frame, &mut self.file).map_err(FileError::at(self.file.path(), "writing a frame"))?;
         self.last = Some(frame.step);
-        Ok(())
+        let at = |cause| failed(&self.path, cause);
+        if self.writer.is_none() {
+            self.writer = Some(Writer::begin(&self.writing, self.format).map_err(at)?);
+        }
+        self.order(Order::Write(Box::new(frame)))
     }
 
-    /// As [`GrowingFile::sync`], with the step of the last frame.
+    fn order(&self, order: Order) -> Result<(), FileError> {
+        let sent = self.writer.as_ref().map_or(Ok(()), |writer| writer.orders.send(order));
+        sent.map_err(|_| failed(&self.path, io::Error::other("the thread that writes has ended")))
+    }
+
+    /// Returns when every frame is on the disk; as [`GrowingFile::sync`], with the step of the last frame.
     ///
     /// # Errors
     /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
     pub(super) fn sync(&mut self) -> Result<(Mark, Option<u64>), FileError> {
-        Ok((self.file.sync()?, self.last))
+        if self.writer.is_some() {
+            let (answer, answered) = sync_channel(1);
+            self.order(Order::Answer(answer))?;
+            let ended = |_| failed(&self.path, io::Error::other("the thread that writes has ended"));
+            answered.recv().map_err(ended)?;
+        }
+        let mut writing = locked(&self.writing);
+        if let Some(cause) = writing.failed.take() {
+            return Err(failed(&self.path, cause));
+        }
+        Ok((writing.file.sync()?, self.last))
+    }
+}
+
+impl Drop for Frames {
+    /// What was handed over is written before anything else is done with the folder.
+    fn drop(&mut self) {
+        if let Some(Writer { orders, thread }) = self.writer.take() {
+            drop(orders);
+            drop(thread.join());
+        }
+    }
+}
+
+fn failed(path: &Path, cause: io::Error) -> FileError {
+    FileError::at(path, "writing a frame")(cause)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::particles::Particles;
+    use std::io::Write;
+
+    fn frame(step: u64) -> Frame {
+        Frame {
+            particles: Particles::new(vec![]),
+            cell: [1.0; 2],
+            origin: [0.0; 2],
+            periodic: None,
+            time: 0.0,
+            step,
+            seed: None,
+        }
+    }
+
+    /// Every frame once, in order, whatever the thread is doing; a failure comes out at the latest when all are to be on the disk.
+    #[test]
+    fn frames_are_written_in_order_and_failures_come_out() {
+        let folder = tempfile::tempdir().unwrap();
+        let format: Format = |frame, file| match frame.step {
+            7 => Err(io::Error::other("no seven")),
+            step => writeln!(file, "{step}"),
+        };
+        let path = folder.path().join("frames");
+        let mut frames = Frames::create(path.clone(), format).unwrap();
+        for step in [0, 1, 1, 2, 5] {
+            frames.add(frame(step)).unwrap();
+        }
+        let (mark, last) = frames.sync().unwrap();
+        assert_eq!((mark.bytes, last), (8, Some(5)));
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "0\n1\n2\n5\n");
+        frames.add(frame(7)).unwrap();
+        assert!(frames.sync().unwrap_err().to_string().contains("no seven"));
     }
 }

@@ -322,18 +322,18 @@ impl Recorder {
     /// A frame in each of the files that are asked for and do not have it yet.
     fn snapshot(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
         let frame = self.frame(simulation);
-        if self.output.trajectory {
-            self.trajectory.add(&frame)?;
-        }
         if let Some(dump) = self.dump.as_mut().filter(|_| self.output.lammps_dump) {
-            dump.add(&frame)?;
+            dump.add(frame.clone())?;
+        }
+        if self.output.trajectory {
+            self.trajectory.add(frame)?;
         }
         Ok(())
     }
 
     /// The state of a failed step, whether snapshots are due or not, and what there is to say of it.
     pub(super) fn fail(&mut self, simulation: &dyn Simulation, summary: Summary) -> Result<(), RunError> {
-        self.trajectory.add(&self.frame(simulation))?;
+        self.trajectory.add(self.frame(simulation))?;
         self.sync()?;
         self.summary(summary).map(drop)
     }

@@ -63,7 +63,7 @@ pub struct OutcomeOrder {
 /// Whether a scene is a collision of two discs.
 pub fn is_collision(subject: &Subject) -> bool {
     let particles = subject.prepared.particles();
-    particles.grain_count() == 2 && particles.len() == 2
+    subject.trials.has_contacts && particles.grain_count() == 2 && particles.len() == 2
 }
 
 /// Collisions by every scheme over `steps` (time, rising), each with `phases` starts. None where the discs do not part within

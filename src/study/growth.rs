@@ -9,9 +9,9 @@ use crate::method::{Decides, Failure, Prepared, Purpose, Simulation};
 use crate::statistics::slope;
 use serde::{Deserialize, Serialize};
 
-/// How far particles of the second run are moved at the start (smallest radii).
+/// How far particles of the second run are moved at the start (the method's length).
 pub const DISTURBANCE: f64 = 1e-9;
-/// Trajectories are comparable while the error is below this (smallest radii).
+/// Trajectories are comparable while the error is below this (the method's length).
 pub const COMPARABLE: f64 = 0.1;
 /// Times the scene's own step up to which they are to be comparable.
 const COARSER: f64 = 4.0;
@@ -29,9 +29,9 @@ pub struct Growth {
     pub step: f64,
     /// Times of the looks (time).
     pub times: Vec<f64>,
-    /// Root mean square distance of the disturbed run (smallest radii).
+    /// Root mean square distance of the disturbed run (the method's length).
     pub separation: Vec<f64>,
-    /// Root mean square distance of a run with half the step (smallest radii).
+    /// Root mean square distance of a run with half the step (the method's length).
     pub error: Vec<f64>,
     /// Rate of the exponential growth (1/time); none where there is none to be seen.
     pub rate: Option<f64>,
@@ -107,11 +107,11 @@ fn at_step(
     let prepare = |step| subject.prepared_as(choice, step, &[]).map_err(|errors| errors.to_string());
     let (base, halved) = (prepare(step)?, prepare(0.5 * step)?);
     let domain = base.domain();
-    let radius = State::of(base.particles()).smallest_radius();
+    let length = (subject.trials.length.of)(base.particles());
     let disturbed = base.started_from(displaced(base.particles(), &domain, |place, _| {
         // Directions without a pattern, the same everywhere.
         let angle = 2.399_963_229_728_653 * (place as f64 + 1.0);
-        [libm::cos(angle), libm::sin(angle)].map(|part| DISTURBANCE * radius * part)
+        [libm::cos(angle), libm::sin(angle)].map(|part| DISTURBANCE * length * part)
     }));
     let begin = |scene: &dyn Prepared| scene.start(Purpose::Measurement).map_err(|failure| failure.what());
     let mut runs = [begin(base.as_ref())?, begin(disturbed.as_ref())?, begin(halved.as_ref())?];
@@ -129,7 +129,7 @@ fn at_step(
         let steps = most * look / looks;
         all_up_to(&mut runs, steps, each, meter).map_err(|failure| failure.what())?;
         let [base, disturbed, halved] = runs.each_ref().map(|run| State::of(&run.particles()));
-        let apart = |other: &State| base.distance(other, &domain)[0] / radius;
+        let apart = |other: &State| base.distance(other, &domain)[0] / length;
         let error = apart(&halved);
         growth.times.push(steps as f64 * step);
         growth.separation.push(apart(&disturbed));

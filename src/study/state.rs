@@ -40,11 +40,6 @@ impl State {
         self.0.iter().map(|body| body.position)
     }
 
-    /// The smallest radius (length).
-    pub fn smallest_radius(&self) -> f64 {
-        self.0.iter().map(|body| body.radius).fold(f64::INFINITY, f64::min)
-    }
-
     /// Root of the mean square distance between the particles of two states, and the largest (length).
     pub fn distance(&self, other: &State, domain: &Domain) -> [f64; 2] {
         let squares = self.0.iter().zip(&other.0).map(|(a, b)| {

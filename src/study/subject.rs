@@ -115,6 +115,11 @@ impl Subject {
         (self.trials.theory)(&self.values, self.prepared.as_ref(), setting)
     }
 
+    /// What distances are measured in (length).
+    pub fn length(&self) -> f64 {
+        (self.trials.length.of)(self.prepared.particles())
+    }
+
     /// Whether a quantity is a velocity: a mean of it means nothing but beside the speeds.
     pub fn is_velocity(&self, name: &str) -> bool {
         self.quantity(name).is_some_and(|place| self.units[place] == "length/time")

@@ -9,7 +9,7 @@ use stripmine::io::checkpoint::Column;
 use stripmine::memory::Foreseen;
 use stripmine::method::{
     Axis, Bench, BenchOption, Clock, Decides, Entry, Every, Fact, Failure, Prepared, Purpose, Quantity,
-    RunWarning, Schedule, Setting, Simulation, Snapshot, Trials, Until, compress,
+    RunWarning, SMALLEST_RADIUS, Schedule, Setting, Simulation, Snapshot, Trials, Until, compress,
 };
 use stripmine::particles::Particles;
 use stripmine::scene::{
@@ -61,6 +61,8 @@ static TRIALS: Trials = Trials {
     references: [&[("integrator", "drift")], &[("integrator", "drift")]],
     balance: None,
     has_trajectories: true,
+    length: SMALLEST_RADIUS,
+    has_contacts: false,
     observables: &["kinetic"],
     fluctuating: &[],
     inertia: |_| None,

@@ -94,13 +94,13 @@ pub fn dispatch<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -> Resul
 }
 
 /// As [`dispatch`], on registers that fuse products and sums and estimate inverse roots, where the set has such.
-pub(crate) fn dispatch_estimating<L: Precision, T: Task<L>>(
+pub(crate) fn dispatch_estimating<L: Precision, T: Task<L>, const RAW: bool>(
     set: InstructionSet,
     task: T,
 ) -> Result<(), ProgramError> {
     match set {
         InstructionSet::Scalar | InstructionSet::Wide => dispatch(set, task),
-        _ => vectorized(set, OnEstimating(task, PhantomData)),
+        _ => vectorized(set, OnEstimating::<T, L, RAW>(task, PhantomData)),
     }
 }
 
@@ -131,12 +131,12 @@ impl<L: Precision, T: Task<L>> WithSimd for OnSimd<T, L> {
 }
 
 /// A task as `pulp` wants it, on registers that estimate.
-struct OnEstimating<T, L>(T, PhantomData<L>);
+struct OnEstimating<T, L, const RAW: bool>(T, PhantomData<L>);
 
-impl<L: Precision, T: Task<L>> WithSimd for OnEstimating<T, L> {
+impl<L: Precision, T: Task<L>, const RAW: bool> WithSimd for OnEstimating<T, L, RAW> {
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        self.0.on(Estimating::<S, L>::new(simd));
+        self.0.on(Estimating::<S, L, RAW>::new(simd));
     }
 }

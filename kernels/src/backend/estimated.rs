@@ -108,11 +108,11 @@ impl Estimates for f64 {
     }
 }
 
-/// Registers of the instruction set `S` with lanes of `T` that fuse and estimate.
+/// Registers of the instruction set `S` with lanes of `T` that fuse and estimate; where they are `RAW`, estimates are left as they are.
 #[derive(Clone, Copy)]
-pub struct Estimating<S, T>(Pulp<S, T>, S);
+pub struct Estimating<S, T, const RAW: bool>(Pulp<S, T>, S);
 
-impl<S: Simd, T: Estimates> Estimating<S, T> {
+impl<S: Simd, T: Estimates, const RAW: bool> Estimating<S, T, RAW> {
     /// The registers that `simd` proves to exist.
     #[inline(always)]
     pub fn new(simd: S) -> Self {
@@ -122,11 +122,11 @@ impl<S: Simd, T: Estimates> Estimating<S, T> {
 
 /// One register.
 #[derive(Clone, Copy)]
-pub struct Estimated<S: Simd, T: PulpElement>(S, Register<S, T>);
+pub struct Estimated<S: Simd, T: PulpElement, const RAW: bool>(S, Register<S, T>);
 
-impl<S: Simd, T: Estimates> Registers for Estimating<S, T> {
+impl<S: Simd, T: Estimates, const RAW: bool> Registers for Estimating<S, T, RAW> {
     type Lane = T;
-    type V = Estimated<S, T>;
+    type V = Estimated<S, T, RAW>;
     type Index = T::Index;
     const LANES: usize = Pulp::<S, T>::LANES;
 
@@ -163,7 +163,7 @@ macro_rules! define_estimated {
      negation $negation:tt
      machine $machine:tt) => {
         $(
-            impl<S: Simd, T: Estimates> std::ops::$trait for Estimated<S, T> {
+            impl<S: Simd, T: Estimates, const RAW: bool> std::ops::$trait for Estimated<S, T, RAW> {
                 type Output = Self;
                 #[inline(always)]
                 fn $of(self, other: Self) -> Self {
@@ -172,7 +172,7 @@ macro_rules! define_estimated {
             }
         )*
 
-        impl<S: Simd, T: Estimates> Vector for Estimated<S, T> {
+        impl<S: Simd, T: Estimates, const RAW: bool> Vector for Estimated<S, T, RAW> {
             type Predicate = Truth<S, T>;
             $(
                 #[inline(always)]
@@ -213,8 +213,11 @@ macro_rules! define_estimated {
                 };
                 let root = Estimated(self.0, Register::new(self.0, root));
                 let square = root * root;
+                if RAW {
+                    return square * root;
+                }
                 let error = self.times_from(square, one);
-                let registers = Estimating::<S, T>::new(self.0);
+                let registers = Estimating::<S, T, RAW>::new(self.0);
                 let term = |k: usize| registers.splat(T::from_f64(terms[k]));
                 let correction = match terms.len() {
                     1 => term(0),

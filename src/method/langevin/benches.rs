@@ -46,6 +46,9 @@ pub(super) const BENCHES: &[Bench] = &[Bench {
         "law", ["none", "wca", "lennard-jones"], |law| vec![format!("law.kind={law}")];
         "search", ["auto", "lattice", "sectors", "neighbor-list"], |by| vec![format!("search.by={by}")];
         "sectors", [], |count| vec!["search.by=sectors".to_owned(), format!("search.sectors={count}")];
+        "sort", ["auto", "when-needed", "every-step"], |sort| {
+            vec!["search.by=sectors".to_owned(), format!("search.sort={sort}")]
+        };
         "skin", [], |skin| vec!["search.by=neighbor-list".to_owned(), format!("search.skin={skin}")];
         "integrator", ["baoab", "stochastic", "as-printed"], |kind| vec![format!("integrator.kind={kind}")];
         "precision", [], |precision| vec![format!("machine.precision={precision}")];

@@ -1,11 +1,11 @@
 //! Law, scheme and search of a scene, put together: what steps the particles.
 
-use super::options::{By, SchemeKind};
+use super::options::{By, SchemeKind, SortKind};
 use super::prepared::Checked;
 use crate::domain::Domain;
 use crate::io::checkpoint::Column;
 use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, Search, SectorSearch};
-use crate::method::pairwise::{Dynamics, Elapsed, Engine, System, WithLaw, WithScheme};
+use crate::method::pairwise::{Dynamics, Elapsed, Engine, Sort, System, WithLaw, WithScheme};
 use crate::method::{Failure, FailureKind};
 use crate::particles::Particles;
 use crate::scene::Precision;
@@ -196,6 +196,10 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
         inertia_factor: 0.5,
         radius: Some(0.5 * reach),
         reach,
+        sort: match scene.sort {
+            SortKind::EveryStep => Sort::EveryStep,
+            SortKind::Auto | SortKind::WhenNeeded => Sort::WhenNeeded,
+        },
         longest_step: f64::INFINITY,
         followed: [follows; 2],
         seed: checked.seed,

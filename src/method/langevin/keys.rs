@@ -1,6 +1,6 @@
 //! The keys that are this method's own, and what they demand of each other.
 
-use super::options::{By, PairLaw, SchemeKind};
+use super::options::{By, PairLaw, SchemeKind, SortKind};
 use crate::scene::Bounds::{NonNegative, Positive};
 use crate::scene::Fallback::{Is, Otherwise};
 use crate::scene::Kind::{Choice, Number, Switch, Whole};
@@ -33,6 +33,8 @@ define_keys! {
         "How pairs are found: on a lattice of cells that are one particle's each (wca only), in sectors, or by lists of neighbours; auto takes the fastest that the scene allows.";
     PER_SIDE = "search" "sectors", Whole(3, 1_000_000), "", Otherwise("as is fastest"), SECTORS,
         "Sectors along each side; none may be narrower than the cut-off.";
+    SORT = "search" "sort", Choice(SortKind::WORDS), "", Is("\"auto\""), SECTORS,
+        "When particles are put in the order of their sectors, by a counting sort: when a quarter of them has changed sectors, or at every step, as the source; auto is when-needed, which was cheaper wherever both were measured. No result depends on it.";
     SKIN = "search" "skin", Number(Positive), "length", Otherwise("by the density"), LISTS,
         "Listed pairs are up to this much farther apart than the cut-off.";
 

@@ -29,6 +29,18 @@ define_words! {
 }
 
 define_words! {
+    /// When particles are put in the order of their sectors.
+    pub enum SortKind {
+        /// As is cheaper: when needed, wherever both were measured.
+        Auto = "auto",
+        /// As soon as a quarter of them has changed sectors.
+        WhenNeeded = "when-needed",
+        /// At every step, as the source.
+        EveryStep = "every-step",
+    }
+}
+
+define_words! {
     /// The integrator.
     pub enum SchemeKind {
         /// Kick, drift, bath, drift, kick.

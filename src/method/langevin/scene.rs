@@ -1,7 +1,7 @@
 //! What a scene of this method says, as plain data.
 
 use super::keys::*;
-use super::options::{By, PairLaw, SchemeKind};
+use super::options::{By, PairLaw, SchemeKind, SortKind};
 use crate::scene::{
     Binding, Domain, Output, Precision, Run, Start, WallMotion, Write, bind_arithmetic, bind_heading,
 };
@@ -27,6 +27,8 @@ pub struct Scene {
     pub by: By,
     /// Sectors along each side, where the scene says.
     pub per_side: Option<u64>,
+    /// When particles are put in the order of sectors.
+    pub sort: SortKind,
     /// How much farther than the cut-off listed pairs may be (length), where the scene says.
     pub skin: Option<f64>,
     /// The integrator.
@@ -58,6 +60,7 @@ impl Default for Scene {
             bath: Bath { friction: 1.0, temperature: 1.0 },
             by: By::Auto,
             per_side: None,
+            sort: SortKind::default(),
             skin: None,
             scheme: SchemeKind::Baoab,
             dt: 0.0,
@@ -87,6 +90,7 @@ impl Scene {
         binding.choice(&SEARCH, &mut self.by);
         if matches!(self.by, By::Auto | By::Sectors) {
             binding.whole_if_any(&PER_SIDE, &mut self.per_side);
+            binding.choice(&SORT, &mut self.sort);
         }
         if matches!(self.by, By::Auto | By::NeighborList) {
             binding.number_if_any(&SKIN, &mut self.skin);

@@ -2,7 +2,7 @@
 
 use super::keys::{BATH_TEMPERATURE, DRAG, STRENGTH};
 use super::prepared::prepare;
-use crate::method::{Axis, Decides, Mapped, Parameter, Prepared, Setting, Trials};
+use crate::method::{Axis, Decides, Mapped, Parameter, Prepared, SMALLEST_RADIUS, Setting, Trials};
 use crate::scene::{DT, Key, Values};
 
 macro_rules! settings {
@@ -22,6 +22,8 @@ pub(super) static TRIALS: Trials = Trials {
     // A bath gives and takes energy.
     balance: None,
     has_trajectories: false,
+    length: SMALLEST_RADIUS,
+    has_contacts: false,
     observables: &["temperature", "potential", "pressure"],
     fluctuating: &[],
     inertia: |_| None,

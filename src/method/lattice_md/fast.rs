@@ -10,7 +10,9 @@ use crate::grid::sectors_of;
 use crate::io::checkpoint::Column;
 use crate::method::Failure;
 use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, Search, SectorSearch};
-use crate::method::pairwise::{self, Dynamics, Elapsed, Named, Prescribed, System, WithLaw, WithScheme};
+use crate::method::pairwise::{
+    self, Dynamics, Elapsed, Named, Prescribed, Sort, System, WithLaw, WithScheme,
+};
 use crate::particles::Particles;
 use crate::scene::WallMotion;
 use stripmine_kernels::InstructionSet;
@@ -118,6 +120,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> FastMd<S, P, Q> {
             inertia_factor: model.inertia_factor,
             radius: model.radius(),
             reach: reach(&particles),
+            sort: Sort::WhenNeeded,
             longest_step: model.watch.map_or(f64::INFINITY, |watch| watch.longest_step()),
             followed: model.counts_crossings(),
             // None of these schemes draws random numbers.

@@ -4,7 +4,9 @@ use super::benches::QUANTITIES;
 use super::document::Document;
 use super::keys::{FRICTION, INERTIA, MAX_PENETRATION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
 use super::options::Inertia;
-use crate::method::{Axis, Balance, Decides, Mapped, Parameter, Prepared, Purpose, Setting, Theory, Trials};
+use crate::method::{
+    Axis, Balance, Decides, Mapped, Parameter, Prepared, Purpose, SMALLEST_RADIUS, Setting, Theory, Trials,
+};
 use crate::scene::{
     DT, Key, PACKING_FRACTION, PRECISION, Precision, RADIUS_SPREAD, SPEED, TEMPERATURE, VELOCITIES, Value,
     Values,
@@ -31,6 +33,8 @@ pub(super) static TRIALS: Trials = Trials {
         inputs: &["gravity_work", "wall_work"],
     }),
     has_trajectories: true,
+    length: SMALLEST_RADIUS,
+    has_contacts: true,
     observables: &["temperature", "pressure", "flow", "contacts"],
     fluctuating: &["pressure"],
     inertia,

@@ -53,6 +53,7 @@ impl Attraction {
         let arithmetic = match scene.arithmetic {
             ArithmeticKind::Exact => Arithmetic::Exact,
             ArithmeticKind::Estimated => Arithmetic::Estimated,
+            ArithmeticKind::Raw => Arithmetic::Raw,
         };
         let set = scene.instructions();
         let (softening, execution) = (scene.softening, (scene.execution, set));

@@ -59,7 +59,7 @@ define_keys! {
     EXECUTION = "machine" "execution", Choice(&["chained", "eager", "strip:N"]), "", Is("\"chained\""), PROGRAMS,
         "How programs are executed: instructions register by register, one pass over all bodies each, or by strips of N, all to the same bits.";
     ROOTS = "machine" "arithmetic", Choice(ArithmeticKind::WORDS), "", Is("\"exact\""), ALWAYS,
-        "exact rounds every operation, to the same bits on every instruction set; estimated fuses products and sums and corrects the processor's estimate of inverse roots.";
+        "exact rounds every operation, to the same bits on every instruction set; estimated fuses products and sums and corrects the processor's estimate of inverse roots; raw leaves the correction out, to show what it is worth.";
 }
 
 /// What the scenes of this method may say.

@@ -41,5 +41,7 @@ define_words! {
         Exact = "exact",
         /// Fused, with estimated roots that are corrected.
         Estimated = "estimated",
+        /// Fused, with roots as the processor estimates them.
+        Raw = "raw",
     }
 }

@@ -2,7 +2,8 @@
 
 use super::keys::{ECCENTRICITY, SOFTENING};
 use super::prepared::prepare;
-use crate::method::{Axis, Balance, Decides, Mapped, Parameter, Prepared, Setting, Theory, Trials};
+use crate::method::{Axis, Balance, Decides, Length, Mapped, Parameter, Prepared, Setting, Theory, Trials};
+use crate::particles::{Particle, Particles};
 use crate::scene::{DT, Values};
 
 macro_rules! settings {
@@ -21,6 +22,8 @@ pub(super) static TRIALS: Trials = Trials {
     ],
     balance: Some(Balance { error: "balance_error", energies: &["kinetic", "potential"], inputs: &[] }),
     has_trajectories: true,
+    length: Length { unit: "sizes of the system", of: size },
+    has_contacts: false,
     observables: &["virial_ratio", "half_mass_radius"],
     fluctuating: &[],
     inertia: |_| None,
@@ -110,4 +113,14 @@ fn theory(_: &Values, _: &dyn Prepared, integrator: &Setting) -> Option<Theory> 
         _ => 4.0,
     };
     Some(Theory { order, why: "the order of the scheme" })
+}
+
+/// Root mean square distance of the bodies from their middle at the start (length).
+fn size(particles: &Particles) -> f64 {
+    let all = particles.all();
+    let count = all.len() as f64;
+    let middle = [0, 1, 2].map(|axis| all.iter().map(|body| body.position[axis]).sum::<f64>() / count);
+    let square =
+        |body: &Particle| (0..3).map(|axis| (body.position[axis] - middle[axis]).powi(2)).sum::<f64>();
+    (all.iter().map(square).sum::<f64>() / count).sqrt()
 }

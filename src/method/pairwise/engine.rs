@@ -3,7 +3,7 @@
 use super::search::{Cells, Search};
 use super::state::{Move, State};
 use super::{
-    CarriedBy, Crossings, Dynamics, Elapsed, Named, Phase, Prescribed, System, WithLaw, WithScheme,
+    CarriedBy, Crossings, Dynamics, Elapsed, Named, Phase, Prescribed, Sort, System, WithLaw, WithScheme,
     not_finite, standing, wrapped,
 };
 use crate::domain::Domain;
@@ -141,7 +141,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     /// [`Failure`] if a disc left the box, or came into another's cell.
     pub fn advance(&mut self) -> Result<Vec<u32>, Failure> {
         let mut timings = self.elapsed.timings;
-        if self.changes > self.start.grain_count() / 4 {
+        if self.system.sort == Sort::EveryStep || self.changes > self.start.grain_count() / 4 {
             timings.time(Phase::Index, || _ = self.put_in_order());
         }
         let passed = timings.time(Phase::CorrectPredict, || self.pass())?;

@@ -64,6 +64,17 @@ pub struct System {
     pub followed: [bool; 2],
     /// Seed of the random numbers, for a scheme that draws some.
     pub seed: u64,
+    /// When discs are put in the order of their cells.
+    pub sort: Sort,
+}
+
+/// When discs are put in the order of their cells. No sum depends on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sort {
+    /// As soon as a quarter of them has changed cells.
+    WhenNeeded,
+    /// At every step, as the source of 2017 does.
+    EveryStep,
 }
 
 /// By what discs move.

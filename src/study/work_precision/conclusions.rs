@@ -4,13 +4,13 @@ use super::dataset::{Run, WorkPrecision};
 use super::measures::Measure;
 use crate::study::observables::CHANCE;
 
-/// Wishes: errors of positions (smallest radii).
+/// Wishes: errors of positions (the method's length).
 pub const WISHES: [f64; 5] = [3e-2, 1e-2, 1e-3, 1e-4, 1e-6];
 
 /// The cheapest run that fulfils a wish.
 #[derive(Clone, Copy, Debug)]
 pub struct Fulfilled<'d> {
-    /// The error that is wished for at most (smallest radii).
+    /// The error that is wished for at most (the method's length).
     pub wish: f64,
     /// The run.
     pub run: &'d Run,
@@ -78,9 +78,10 @@ fn own(data: &WorkPrecision) -> Option<String> {
     let (best, least) =
         as_good.filter_map(|run| Some((run, run.cost()?))).min_by(|a, b| a.1.total_cmp(&b.1))?;
     let begin = format!(
-        "The scene's own way, {}, errs by {} radii after a time of {}",
+        "The scene's own way, {}, errs by {} {} after a time of {}",
         data.own,
         short(error),
+        data.unit,
         short(data.duration)
     );
     if least > 0.95 * cost {
@@ -99,8 +100,9 @@ fn cheap(data: &WorkPrecision) -> Option<String> {
     let it = fulfilled(data).into_iter().next()?;
     let share = it.of_own.filter(|share| *share < 0.9)?;
     Some(format!(
-        "For an error of at most {:.0e} radii {} at {} is the cheapest, for {:.0} % of the scene's own cost.",
+        "For an error of at most {:.0e} {} {} at {} is the cheapest, for {:.0} % of the scene's own cost.",
         it.wish,
+        data.unit,
         data.ways[it.run.way].label,
         multiple(it.run.power),
         100.0 * share
@@ -144,7 +146,8 @@ fn digits(data: &WorkPrecision) -> Option<String> {
         .filter_map(|digits| Some(format!("{digits} no lower than {}", short(least(digits)?))))
         .collect();
     let best = short(least(&full)?);
-    (!said.is_empty()).then(|| format!("Errors come down to {best} radii in {full}; {}.", said.join(", ")))
+    (!said.is_empty())
+        .then(|| format!("Errors come down to {best} {} in {full}; {}.", data.unit, said.join(", ")))
 }
 
 /// Measured orders beside theory.

@@ -16,6 +16,8 @@ pub struct WorkPrecision {
     pub scene: String,
     /// Particles that move.
     pub particles: usize,
+    /// What distances are measured in.
+    pub unit: String,
     /// Its own step (time).
     pub step: f64,
     /// How it runs itself.

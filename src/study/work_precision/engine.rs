@@ -132,7 +132,8 @@ impl Work<'_> {
 
     fn errors(&self, (state, balance, _): &Ended, reference: &State) -> Errors {
         let inertia = (self.subject.trials.inertia)(&self.subject.values);
-        let mut errors = errors(state, reference, &self.subject.prepared.domain(), inertia);
+        let mut errors =
+            errors(state, reference, (&self.subject.prepared.domain(), self.subject.length()), inertia);
         errors.extend(balance.map(|error| (Measure::Energy, error)));
         errors
     }

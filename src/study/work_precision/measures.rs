@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Measure {
-    /// Root mean square distance of the particles from those of the reference (smallest radii).
+    /// Root mean square distance of the particles from those of the reference (the method's length).
     Position,
-    /// The largest such distance (smallest radii).
+    /// The largest such distance (the method's length).
     LargestPosition,
     /// Largest error of the balance of energy over the looks (energy that moves).
     Energy,
@@ -33,8 +33,8 @@ impl Measure {
     /// What it is called, with its unit.
     pub const fn name(self) -> &'static str {
         match self {
-            Measure::Position => "position, RMS (radii)",
-            Measure::LargestPosition => "position, largest (radii)",
+            Measure::Position => "position, RMS",
+            Measure::LargestPosition => "position, largest",
             Measure::Energy => "energy balance (relative)",
             Measure::Momentum => "momentum (relative)",
             Measure::AngularMomentum => "angular momentum (relative)",
@@ -45,10 +45,14 @@ impl Measure {
 /// The errors of a run by measure; those that the scene does not have are not in it.
 pub type Errors = std::collections::BTreeMap<Measure, f64>;
 
-/// The errors of a state that can be seen from the reference's.
-pub fn errors(state: &State, reference: &State, domain: &Domain, inertia: Option<f64>) -> Errors {
-    let radius = reference.smallest_radius();
-    let [rms, largest] = state.distance(reference, domain).map(|distance| distance / radius);
+/// The errors of a state that can be seen from the reference's; distances are given in a `length`.
+pub fn errors(
+    state: &State,
+    reference: &State,
+    (domain, length): (&Domain, f64),
+    inertia: Option<f64>,
+) -> Errors {
+    let [rms, largest] = state.distance(reference, domain).map(|distance| distance / length);
     let mut errors = Errors::from([(Measure::Position, rms), (Measure::LargestPosition, largest)]);
     let (ours, (theirs, scale)) = (state.momentum().0, reference.momentum());
     if scale > 0.0 {

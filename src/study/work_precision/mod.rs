@@ -103,6 +103,7 @@ pub fn work_precision(
     Ok(WorkPrecision {
         scene: subject.arguments(),
         particles: subject.prepared.particles().grain_count(),
+        unit: subject.trials.length.unit.to_owned(),
         step: subject.step,
         own: subject.own.label(),
         duration: plan.own_steps as f64 * subject.step,

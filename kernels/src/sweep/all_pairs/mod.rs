@@ -40,6 +40,9 @@ pub enum Arithmetic {
     /// Products and sums are fused, inverse roots come from the processor's estimate and a correction: to within a few units of
     /// the last place, and not the same bits on two instruction sets.
     Estimated,
+    /// As [`Arithmetic::Estimated`] without the correction: forces to 4 or 5 digits, to show what that spoils. Their rates are
+    /// corrected.
+    Raw,
 }
 
 /// Bodies, an entry each; as many as [`padded`] says. Those behind the last body have no mass and are at the place of no other.
@@ -129,7 +132,12 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
                 Arithmetic::Exact => {
                     dispatch(set, Tile::<P, L, SUMS, true> { law, bodies, groups, sums, observed, energy })
                 }
-                Arithmetic::Estimated => dispatch_estimating(
+                // Nothing asks for rates of raw forces.
+                Arithmetic::Raw if SUMS == 3 => dispatch_estimating::<_, _, true>(
+                    set,
+                    Tile::<P, L, SUMS, false> { law, bodies, groups, sums, observed, energy },
+                ),
+                Arithmetic::Estimated | Arithmetic::Raw => dispatch_estimating::<_, _, false>(
                     set,
                     Tile::<P, L, SUMS, false> { law, bodies, groups, sums, observed, energy },
                 ),

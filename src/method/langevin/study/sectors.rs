@@ -47,9 +47,35 @@ pub struct Row {
     pub source: Option<[f64; 2]>,
 }
 
+/// Ways to find pairs that are compared: names and overrides.
+pub const SEARCHES: [(&str, &[&str]); 4] = [
+    ("lattice", &["search.by=lattice"]),
+    ("sectors, sorted when needed", &["search.by=sectors", "search.sort=when-needed"]),
+    ("sectors, sorted at every step", &["search.by=sectors", "search.sort=every-step"]),
+    ("lists", &["search.by=neighbor-list"]),
+];
+/// Particles of the scenes in which they are compared, and their densities N σ²/A.
+const COMPARED: u32 = 4000;
+const DENSITIES: [f64; 5] = [0.05, 0.2, 0.4, 0.6, 0.7];
+
+/// A fluid by every search.
+#[derive(Clone, Debug, Serialize)]
+pub struct Fluid {
+    /// The pair law.
+    pub law: &'static str,
+    /// Density N σ²/A.
+    pub density: f64,
+    /// Seconds of a step on one thread, by the ways of [`SEARCHES`]; none where one does not serve.
+    pub seconds: Vec<Option<f64>>,
+    /// The way that `auto` takes.
+    pub auto: String,
+}
+
 /// What came out.
 #[derive(Clone, Debug, Serialize)]
 pub struct Sectors {
+    /// Fluids by every search.
+    pub fluids: Vec<Fluid>,
     /// Particles.
     pub particles: usize,
     /// Wall times.
@@ -59,11 +85,16 @@ pub struct Sectors {
 }
 
 /// Seconds of a step on some threads, measured for about so long.
-fn seconds_of_a_step(overrides: &[String], threads: usize, seconds: f64) -> Result<f64, Failure> {
+fn seconds_of_a_step(
+    preset: &str,
+    overrides: &[String],
+    threads: usize,
+    seconds: f64,
+) -> Result<f64, Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(Failure::Threads)?;
     pool.install(|| {
-        let mut running = Running::begin("langevin-report", overrides, Purpose::Measurement)?;
+        let mut running = Running::begin(preset, overrides, Purpose::Measurement)?;
         running.steps(1)?;
         let (mut steps, mut in_all) = (1, 0.0);
         loop {
@@ -96,16 +127,45 @@ pub fn sectors(effort: &Effort, progress: Progress<'_>) -> Result<Sectors, Failu
         let mut found = [vec![], vec![]];
         for _ in 0..effort.rounds {
             for (times, threads) in found.iter_mut().zip(THREADS) {
-                times.push(STEPS * seconds_of_a_step(&overrides, threads, effort.seconds)?);
+                times
+                    .push(STEPS * seconds_of_a_step("langevin-report", &overrides, threads, effort.seconds)?);
             }
         }
         rows.push(Row { per_side, seconds: found.map(|times| median(times.into_iter())), source });
         progress((number + 1) as f64 / (ways.len() + 1) as f64);
     }
     let phases = phases()?;
+    let fluids = ["wca", "lennard-jones"].into_iter().flat_map(|law| DENSITIES.map(|density| (law, density)));
+    let fluids = fluids.map(|(law, density)| fluid(law, density, effort)).collect::<Result<_, _>>()?;
     progress(1.0);
     let particles = prepared("langevin-report", &[])?.particles().len();
-    Ok(Sectors { particles, rows, phases })
+    Ok(Sectors { fluids, particles, rows, phases })
+}
+
+/// A fluid by every search that serves it, in turns.
+fn fluid(law: &'static str, density: f64, effort: &Effort) -> Result<Fluid, Failure> {
+    let side = (f64::from(COMPARED) / density).sqrt();
+    let scene = [
+        format!("law.kind={law}"),
+        format!("particles.count={COMPARED}"),
+        format!("domain.sides=[{side}, {side}]"),
+        "particles.spacing=1.13".to_owned(),
+    ];
+    let with = |more: &[&str]| -> Vec<String> {
+        scene.iter().cloned().chain(more.iter().map(|&text| text.to_owned())).collect()
+    };
+    let mut found: Vec<Vec<f64>> = vec![vec![]; SEARCHES.len()];
+    for _ in 0..effort.rounds {
+        for (times, (_, more)) in found.iter_mut().zip(SEARCHES) {
+            let overrides = with(more);
+            if prepared("langevin-dense", &overrides).is_ok() {
+                times.push(seconds_of_a_step("langevin-dense", &overrides, 1, 0.25 * effort.seconds)?);
+            }
+        }
+    }
+    let middle = |times: Vec<f64>| (!times.is_empty()).then(|| median(times.into_iter()));
+    let auto = prepared("langevin-dense", &with(&[]))?.settings()["search"].as_str().unwrap_or("").to_owned();
+    Ok(Fluid { law, density, seconds: found.into_iter().map(middle).collect(), auto })
 }
 
 /// Seconds of the source's run in each phase on one thread, and of the ten frames that it would write.

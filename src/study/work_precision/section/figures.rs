@@ -51,9 +51,9 @@ fn axis_of_cost() -> Axis {
     Axis::logarithmic("processor time for a unit of simulated time", Some("s"))
 }
 
-fn axis_of_error(measure: Measure) -> Axis {
+fn axis_of_error(measure: Measure, unit: &str) -> Axis {
     match measure {
-        Measure::Position => Axis::logarithmic("error of positions, RMS", Some("radii")),
+        Measure::Position => Axis::logarithmic("error of positions, RMS", Some(unit)),
         _ => Axis::logarithmic(measure.name(), None),
     }
 }
@@ -141,7 +141,7 @@ fn diagram(file: &str, name: &str, data: &WorkPrecision, measure: Measure) -> Op
         ),
         picture: Picture::Chart(Chart {
             x: axis_of_cost(),
-            y: axis_of_error(measure),
+            y: axis_of_error(measure, &data.unit),
             series: all,
             bands: vec![],
         }),
@@ -186,7 +186,7 @@ fn costs(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
         ),
         picture: Picture::Chart(Chart {
             x: axis_of_cost(),
-            y: axis_of_error(Measure::Position),
+            y: axis_of_error(Measure::Position, &data.unit),
             series: all,
             bands: vec![],
         }),
@@ -217,7 +217,7 @@ fn clocks(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
         ),
         picture: Picture::Chart(Chart {
             x: Axis::logarithmic("clock periods for a unit of simulated time", None),
-            y: axis_of_error(Measure::Position),
+            y: axis_of_error(Measure::Position, &data.unit),
             series: all,
             bands: vec![],
         }),
@@ -240,10 +240,10 @@ fn growth(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
         caption: format!("{rate}; compared is a time of {}.", short(data.duration)),
         picture: Picture::Chart(Chart {
             x: Axis::linear("time", None),
-            y: Axis::logarithmic("distance, RMS", Some("radii")),
+            y: Axis::logarithmic("distance, RMS", Some(&data.unit)),
             series: vec![
                 Series {
-                    name: "start disturbed by 1e-9 radii".into(),
+                    name: format!("start disturbed by 1e-9 {}", data.unit),
                     style: Style::Line,
                     hue: 0,
                     points: over_time(&grown.separation),
