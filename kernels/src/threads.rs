@@ -6,10 +6,42 @@
 //! Parts are called through a pointer, so that the pool's machinery is compiled once and not for every kind of work.
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+thread_local! {
+    /// Whether this thread does all parts itself.
+    static ALONE: Cell<bool> = const { Cell::new(false) };
+}
+
+/// How many threads share parts.
+#[inline]
+fn threads() -> usize {
+    if ALONE.get() { 1 } else { rayon::current_num_threads() }
+}
+
+/// What `work` gives; where it is `little`, this thread does all of its parts, for others would begin when it is done. What comes
+/// out depends on the threads nowhere.
+#[inline]
+pub fn alone_if<R>(little: bool, work: impl FnOnce() -> R) -> R {
+    /// Puts back what was, even if that is because of a panic.
+    struct Before(bool);
+
+    impl Drop for Before {
+        #[inline]
+        fn drop(&mut self) {
+            ALONE.set(self.0);
+        }
+    }
+
+    let _before = Before(ALONE.get());
+    if little {
+        ALONE.set(true);
+    }
+    work()
+}
 
 /// What `work` makes of each of the parts, in their order; one part after the other if there is but one thread.
 #[inline]
@@ -17,7 +49,7 @@ pub(crate) fn on_threads<T: Send, R: Send>(
     parts: impl IntoIterator<Item = T>,
     work: impl Fn(T) -> R + Sync,
 ) -> Vec<R> {
-    if rayon::current_num_threads() == 1 {
+    if threads() == 1 {
         return parts.into_iter().map(work).collect();
     }
     let slots: Vec<Mutex<(Option<T>, Option<R>)>> =
@@ -42,7 +74,7 @@ pub(crate) fn in_stages<T: Send, E: Send>(
     stages: usize,
     work: impl Fn(&mut T, usize) -> Result<(), E> + Sync,
 ) -> Result<(), E> {
-    if rayon::current_num_threads() == 1 {
+    if threads() == 1 {
         return (0..stages).try_for_each(|stage| parts.iter_mut().try_for_each(|part| work(part, stage)));
     }
     let slots: Vec<Mutex<&mut T>> = parts.iter_mut().map(Mutex::new).collect();
@@ -75,7 +107,7 @@ fn each(stages: usize, parts: usize, work: &(dyn Fn(usize, usize) + Sync)) {
     release();
     let taken: Vec<AtomicBool> = (0..stages * parts).map(|_| AtomicBool::new(false)).collect();
     let done: Vec<AtomicUsize> = (0..stages).map(|_| AtomicUsize::new(0)).collect();
-    let threads = rayon::current_num_threads();
+    let threads = self::threads();
     (0..threads.min(parts)).into_par_iter().with_max_len(1).for_each(|_| {
         let first = rayon::current_thread_index().unwrap_or(0) * parts / threads;
         for (stage, done) in done.iter().enumerate() {
@@ -136,7 +168,7 @@ impl Drop for Release {
 /// longer than `work` takes. Once `work` has parts for them itself, they wait no longer; else a thread that waited for its
 /// parts to be taken, and kept others awake meanwhile, could wait for one that does the same.
 pub fn keep_awake<R>(work: impl FnOnce() -> R) -> R {
-    let others = rayon::current_num_threads() - 1;
+    let others = threads() - 1;
     if others == 0 {
         return work();
     }
@@ -187,7 +219,7 @@ pub fn reordered<T: Copy + Default + Send + Sync>(column: &[T], order: &[u32]) -
 /// Whether one thread does all pieces of a column.
 #[inline]
 pub(crate) fn is_alone(length: usize) -> bool {
-    length <= PIECE || rayon::current_num_threads() == 1
+    length <= PIECE || threads() == 1
 }
 
 /// A column that several threads may write.
@@ -241,6 +273,24 @@ mod tests {
             assert!(squares.iter().enumerate().all(|(n, &square)| square == n * n));
             assert_eq!(on(threads, || keep_awake(|| 7)), 7);
         }
+    }
+
+    #[test]
+    fn little_work_is_done_by_one_thread() {
+        let who = || on_threads(0..50, |_: usize| std::thread::current().id());
+        let found = on(3, || alone_if(true, || (std::thread::current().id(), who())));
+        assert!(found.1.iter().all(|id| *id == found.0));
+        assert_eq!(on(3, || alone_if(false, || threads())), 3);
+        // It ends where it ends, also by a panic.
+        let broken = || on(1, || alone_if(true, || panic!("on purpose")));
+        assert!(std::panic::catch_unwind(broken).is_err());
+        assert_eq!(
+            on(2, || {
+                alone_if(true, || ());
+                threads()
+            }),
+            2
+        );
     }
 
     #[test]

@@ -17,7 +17,11 @@ use stripmine_kernels::integrator::{DERIVATIVES, Scheme};
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::{Advance, Met, Motion, Passed};
-use stripmine_kernels::{keep_awake, reordered};
+use stripmine_kernels::{alone_if, keep_awake, reordered};
+
+/// Fewer discs are one thread's: a step of them is over before others have begun. Measured on two cores: 2000 discs took twice as
+/// long on two threads, 4000 as long as on one, 8000 were faster by a fifth.
+const FEW: usize = 5000;
 
 /// Discs with state of precision `S`, forces of precision `P`, search `Q` and dynamics `D`.
 pub struct Engine<S, P, Q, D> {
@@ -140,6 +144,10 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     /// # Errors
     /// [`Failure`] if a disc left the box, or came into another's cell.
     pub fn advance(&mut self) -> Result<Vec<u32>, Failure> {
+        alone_if(self.discs() < FEW, || self.moved_on())
+    }
+
+    fn moved_on(&mut self) -> Result<Vec<u32>, Failure> {
         let mut timings = self.elapsed.timings;
         if self.system.sort == Sort::EveryStep || self.changes > self.start.grain_count() / 4 {
             timings.time(Phase::Index, || _ = self.put_in_order());
@@ -173,7 +181,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     /// [`Failure`] if a force is no finite number, or the machine refuses the law.
     pub fn meet(&mut self, asked: Asked) -> Result<Met, Failure> {
         let mut timings = self.elapsed.timings;
-        let met = timings.time(Phase::Forces, || self.add_forces(asked))?;
+        let met = timings.time(Phase::Forces, || alone_if(self.discs() < FEW, || self.add_forces(asked)))?;
         self.elapsed.timings = timings;
         self.awaits_forces = false;
         self.refuse_not_finite(&met)?;

@@ -150,9 +150,6 @@ unsafe impl<P: Element, L: Law<3>> Text for Shifts<P, L> {
         m.section("own body");
         let zero = m.uniform(0.0);
         let behind = Behind::<M> { machine: m, sums: std::array::from_fn(|_| Cell::new(zero)) };
-        for &sum in L::SUMS {
-            behind.sums[sum.column::<3>()].set(m.load(Slot::<P>::new(body_sum_array(sum))));
-        }
         let env = Stated::new(&behind, &self.law);
         let own = self.law.own(env);
         for shift in self.shifts.clone() {
@@ -160,7 +157,9 @@ unsafe impl<P: Element, L: Law<3>> Text for Shifts<P, L> {
         }
         m.section("sums");
         for &sum in L::SUMS {
-            m.store(Slot::<P>::new(body_sum_array(sum)), behind.sums[sum.column::<3>()].get());
+            // Those of these shifts are summed up apart: fewer digits are lost.
+            let slot = Slot::<P>::new(body_sum_array(sum));
+            m.store(slot, m.load(slot) + behind.sums[sum.column::<3>()].get());
         }
     }
 }
