@@ -29,6 +29,7 @@ fn dimensional_keys_have_units() {
         "packing_fraction",
         "radius_spread",
         "radius_cut",
+        "second_share",
         "friction",
         "max_penetration",
         "stop_penetration",

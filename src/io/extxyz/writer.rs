@@ -30,14 +30,41 @@ pub fn write(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
         write!(out, " seed={seed}")?;
     }
     writeln!(out)?;
+    let mut row = Row::default();
     for disc in particles.all() {
-        let species = match disc.kind {
+        row.text.clear();
+        row.text.push_str(match disc.kind {
             Kind::Grain => "Si",
             Kind::Wall => "W",
-        };
-        let ([x, y, z], [u, v, w]) = (disc.position, disc.velocity);
-        write!(out, "{species} {x:?} {y:?} {z:?} {} {u:?} {v:?} {w:?} ", disc.id)?;
-        writeln!(out, "{:?} {:?} 0.0 0.0 {:?}", disc.radius, disc.mass, disc.omega)?;
+        });
+        row.numbers(disc.position);
+        row.word(&disc.id);
+        row.numbers(disc.velocity);
+        row.numbers([disc.radius, disc.mass, 0.0, 0.0, disc.omega]);
+        row.text.push('\n');
+        out.write_all(row.text.as_bytes())?;
     }
     Ok(())
+}
+
+/// A row under way: numbers come to text a third as fast by the standard library.
+#[derive(Default)]
+struct Row {
+    text: String,
+    digits: zmij::Buffer,
+}
+
+impl Row {
+    fn word(&mut self, word: &dyn std::fmt::Display) {
+        // Writing to a string never fails.
+        let _ = std::fmt::Write::write_fmt(&mut self.text, format_args!(" {word}"));
+    }
+
+    /// Numbers in the shortest form that reads back to the same bits.
+    fn numbers<const N: usize>(&mut self, numbers: [f64; N]) {
+        for number in numbers {
+            self.text.push(' ');
+            self.text.push_str(self.digits.format(number));
+        }
+    }
 }
