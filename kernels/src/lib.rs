@@ -47,7 +47,6 @@ pub mod law;
 pub mod ledger;
 pub mod mask;
 pub mod noise;
-pub mod probe;
 mod program;
 pub mod sweep;
 mod threads;

@@ -3,7 +3,6 @@
 use crate::backend::tape::Outlines;
 use crate::backend::{GROUP, InstructionSet, Precision, Registers, Scalar, Strip, Tape, Task, dispatch};
 use crate::isa::{Footprint, Memory, OpCounts, ProgramError, Text};
-use crate::probe::{self, Probe};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
 
@@ -75,28 +74,8 @@ where
             Execution::Strip(0) => Err(ProgramError::EmptyStrip),
             Execution::Eager => self.tape.interpret(memory, range.clone(), range.len(), set),
             Execution::Strip(length) => self.tape.interpret(memory, range, length, set),
-            Execution::Chained => {
-                let loops = |range| dispatch(set, Compiled { text: &self.text, memory, range });
-                if probe::is_probed() { self.in_spans(range, loops) } else { loops(range) }
-            }
+            Execution::Chained => dispatch(set, Compiled { text: &self.text, memory, range }),
         }
-    }
-
-    /// Compiled loops over one span after the other, with a rest after each: whole groups and registers, so that they do what
-    /// one loop over everything does.
-    fn in_spans(
-        &self,
-        range: Range<usize>,
-        loops: impl Fn(Range<usize>) -> Result<(), ProgramError>,
-    ) -> Result<(), ProgramError> {
-        // A compiled loop takes about a quarter of what passes take.
-        let elements = 4 * probe::SPAN / self.tape.instructions().len().max(1);
-        for start in range.clone().step_by(elements.next_multiple_of(GROUP)) {
-            let end = range.end.min(start + elements.next_multiple_of(GROUP));
-            loops(start..end)?;
-            probe::probe(Probe::Within);
-        }
-        Ok(())
     }
 }
 

@@ -333,8 +333,8 @@ impl Prepared for Checked {
             Found::Lists(grid, _) => 170.0 * count + 8.0 * grid.counts.iter().product::<usize>() as f64,
             Found::Lattice(shape, _) => 110.0 * count + 20.0 * shape.padded() as f64,
         };
-        // The scene's particles in three places, once more while they are observed or written.
-        let particles = 5.0 * size_of::<Particle>() as f64 * count;
+        // The scene's particles in three places, once more while they are observed, and the frame that is being written.
+        let particles = 6.0 * size_of::<Particle>() as f64 * count;
         Foreseen {
             needed: (PROGRAM + engine + particles) as u64,
             available: available(),

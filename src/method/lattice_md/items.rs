@@ -4,7 +4,7 @@ use super::Part;
 use super::sections::{self, pipe_flow::Showing};
 use super::study::calibration;
 use super::study::efficiency_table::Question;
-use super::study::model_validation::{self, Calibrated, calibrated_in_turns, model_validation};
+use super::study::model_validation::{self, Calibrated, model_validation};
 use super::study::rounds::Bound;
 use super::study::{
     break_even, crossover, damping, density_cost, efficiency_table, host_ladder, identity, ladder, listing,
@@ -145,35 +145,33 @@ fn made(section: Section, data: &impl Serialize) -> Result<Made, Failure> {
     Made::new(section, data)
 }
 
-/// The shipped host model on few cases, or, in full, a fresh calibration in turns with more of them.
+/// The shipped host model on few cases, or, in full, a fresh calibration and more of them.
 fn validation(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let runs = |particles, occupancies, rounds| model_validation::Effort {
         particles,
         occupancies,
         rounds,
-        further: 0,
-        repeats: 1,
         particle_steps: 10_000,
     };
     match effort {
         Effort::Quick => {
-            let (host, runs) = (default_model()?, runs(vec![100, 2000], vec![0.2], Bound::of(6)));
+            let (host, runs) = (default_model()?, runs(vec![300], vec![0.2], Bound::of(2)));
             let data = model_validation(&host, Calibrated::Shipped, &runs, progress)?;
             made(sections::model_validation::section(&data), &data)
         }
         Effort::Full => {
-            let (sweeps, best) = (calibration::Effort { sweeps: 6 }, InstructionSet::best());
-            let runs = runs(vec![150, 4000], vec![0.05, 0.24], bound(6, VALIDATION));
-            let (host, data) = calibrated_in_turns(origin::host(), best, sweeps, &runs, progress)?;
+            let (effort, best) = (calibration::Effort::default(), InstructionSet::best());
+            let host = calibration::calibrate(origin::host(), best, effort, |share| progress(0.5 * share))?;
+            let runs = runs(vec![150, 4000], vec![0.072, 0.24], bound(6, VALIDATION));
+            let data = model_validation(&host, Calibrated::Now, &runs, |share| progress(0.5 + 0.5 * share))?;
             made(sections::model_validation::section(&data), &data)
-                .map(|made| made.with_file("host.toml", host.to_toml()))
         }
     }
 }
 
 /// Seconds that rounds of the validation and of the atlas may take in full, so that all that is said of this host's model takes
 /// four minutes: scenes are laid out before, and the model is fitted after.
-const VALIDATION: u64 = 105;
+const VALIDATION: u64 = 60;
 const ATLAS: u64 = 85;
 
 fn bound(most: usize, seconds: u64) -> Bound {

@@ -33,8 +33,8 @@ pub fn foreseen(checked: &Checked) -> Foreseen {
             (programs + of.rival(options.skin), columns)
         }
     };
-    // Either is gone before the other comes.
-    let observing = DISC * of.discs + Near::bytes(checked.particles.len()) as f64;
+    // Either is gone before the other comes. While discs are observed, a frame of them is written.
+    let observing = 2.0 * DISC * of.discs + Near::bytes(checked.particles.len()) as f64;
     let writing = columns + of.followed();
     Foreseen {
         needed: (kept + engine + observing.max(writing)) as u64,

@@ -1,7 +1,6 @@
 //! Where the time of a step goes.
 
 use serde::Serialize;
-use stripmine_kernels::probe::{Probe, probe};
 
 macro_rules! define_phases {
     ($(($variant:ident, $name:literal, $doc:literal)),* $(,)?) => {
@@ -38,14 +37,11 @@ pub struct Timings {
 }
 
 impl Timings {
-    /// Runs `work` and adds what it took. Whoever listens hears of its beginning and its end, by the phase's place in
-    /// [`Phase::ALL`].
+    /// Runs `work` and adds what it took.
     pub fn time<R>(&mut self, phase: Phase, work: impl FnOnce() -> R) -> R {
-        probe(Probe::Begins(phase as usize));
         let start = std::time::Instant::now();
         let result = work();
         self.seconds[phase as usize] += start.elapsed().as_secs_f64();
-        probe(Probe::Ends(phase as usize));
         result
     }
 

@@ -4,13 +4,25 @@ use serde::{Deserialize, Serialize};
 
 /// A fitted number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(from = "[f64; 2]", into = "[f64; 2]")]
 pub struct Estimate {
     /// The number.
     pub value: f64,
     /// Half the width of its 95 % confidence interval: from the residuals of the fit, and from how far the parts of the
     /// measurement differ.
     pub interval: f64,
+}
+
+impl From<[f64; 2]> for Estimate {
+    fn from([value, interval]: [f64; 2]) -> Estimate {
+        Estimate { value, interval }
+    }
+}
+
+impl From<Estimate> for [f64; 2] {
+    fn from(Estimate { value, interval }: Estimate) -> [f64; 2] {
+        [value, interval]
+    }
 }
 
 impl Estimate {
@@ -23,12 +35,24 @@ impl Estimate {
 
 /// A pass of one kind over a vector in the first-level cache: Hockney's `r_inf = 1/tau`, `n_half = t0/tau`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(from = "[Estimate; 2]", into = "[Estimate; 2]")]
 pub struct PassCost {
     /// Nanoseconds an element, tau.
     pub element: Estimate,
     /// Nanoseconds of a pass in addition, t0.
     pub start: Estimate,
+}
+
+impl From<[Estimate; 2]> for PassCost {
+    fn from([element, start]: [Estimate; 2]) -> PassCost {
+        PassCost { element, start }
+    }
+}
+
+impl From<PassCost> for [Estimate; 2] {
+    fn from(PassCost { element, start }: PassCost) -> [Estimate; 2] {
+        [element, start]
+    }
 }
 
 /// Why there is no prediction.

@@ -2,6 +2,7 @@
 
 use super::levels::Transfer;
 use super::model::HostModel;
+use super::rates::PhaseRate;
 use crate::io::{FileError, regular_file};
 use crate::model::machine_file::{LONGEST, NAMED, Position};
 use crate::quoted::{message, one_line, quoted};
@@ -9,7 +10,7 @@ use crate::reported::{Class, FilePlace, Reported};
 use std::path::Path;
 
 /// The version of the file format that this program reads.
-pub const FORMAT: u32 = 12;
+pub const FORMAT: u32 = 13;
 
 /// Why a host file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -115,7 +116,9 @@ impl HostModel {
     /// The text of its file.
     pub fn to_toml(&self) -> String {
         // A model is tables of numbers and words, which TOML can always say.
-        toml::to_string(self).unwrap_or_default()
+        let mut value = toml::Value::try_from(self).unwrap_or(toml::Value::Boolean(false));
+        readable(&mut value);
+        HEADING.to_owned() + &toml::to_string(&value).unwrap_or_default()
     }
 
     /// The entries that cannot be, and why.
@@ -127,7 +130,7 @@ impl HostModel {
         let lanes = self.lanes.iter().flat_map(|(lane, costs)| {
             let passes = costs.passes.iter().flat_map(move |(op, cost)| {
                 [("element", cost.element.value), ("start", cost.start.value)]
-                    .map(|(what, value)| (format!("lanes.{lane}.passes.{op}.{what}.value"), value))
+                    .map(|(what, value)| (format!("lanes.{lane}.passes.{op}: {what}"), value))
             });
             passes.chain([(format!("lanes.{lane}.array_operand"), costs.array_operand)])
         });
@@ -138,25 +141,15 @@ impl HostModel {
                 },
             )
         });
-        let lists = self.lanes.iter().map(|(lane, costs)| (format!("lanes.{lane}"), &costs.seen));
-        let seen = lists.chain([("loops".to_owned(), &self.loops.seen)]).flat_map(|(of, seen)| {
-            let all = seen.iter().map(move |(name, seen)| (format!("{of}.seen.{name}"), seen));
-            all.flat_map(|(name, seen)| {
-                [
-                    ("element.value", seen.element.value),
-                    ("start.value", seen.start.value),
-                    ("rest.element.value", seen.rest.element.value),
-                    ("rest.start.value", seen.rest.start.value),
-                    ("factors.computing", seen.factors.computing),
-                    ("factors.waiting", seen.factors.waiting),
-                    ("factors.beyond", seen.factors.beyond.iter().sum()),
-                ]
-                .map(|(what, value)| (format!("{name}.{what}"), value))
-            })
-        });
         let rates = self.rates.iter().flat_map(|(method, rates)| {
-            let points = rates.0.values().flat_map(|phases| phases.values()).flatten();
-            points.flat_map(|point| point.ns.values()).map(move |&ns| (format!("rates.{method}"), ns))
+            let of = |phase: &PhaseRate| {
+                let units = phase.ns.values().flat_map(|units| units.values());
+                phase.slower.iter().chain(units).copied().collect::<Vec<_>>()
+            };
+            rates.phases.values().flat_map(of).map(move |value| (format!("rates.{method}"), value))
+        });
+        let classes = self.loops.classes.iter().flat_map(|(lane, classes)| {
+            classes.iter().map(move |(class, &ns)| (format!("loops.classes.{lane}.{class}"), ns))
         });
         let rest = [
             ("operand", self.operand),
@@ -166,12 +159,12 @@ impl HostModel {
             ("clock", self.clock),
             ("loops.overlap", self.loops.overlap),
             ("measured.spread", self.measured.spread),
-            ("measured.reference_loop", self.measured.reference_loop),
-            ("measured.quiet", self.measured.quiet),
+            ("loops.start", self.loops.start.value),
+            ("loops.left", self.loops.left.value),
         ];
         let rest = rest.map(|(entry, value)| (entry.to_owned(), value));
         let levels = levels.map(|value| ("levels".to_owned(), value));
-        for (entry, value) in rest.into_iter().chain(levels).chain(lanes).chain(seen).chain(rates) {
+        for (entry, value) in rest.into_iter().chain(levels).chain(lanes).chain(classes).chain(rates) {
             if !(0.0..=MOST).contains(&value) {
                 defects.push((entry, format!("is {value}, but must be from 0 to {MOST:e}")));
             }
@@ -196,6 +189,36 @@ impl HostModel {
             defects.push(("levels".to_owned(), "with `lanes` must not be empty".to_owned()));
         }
         defects
+    }
+}
+
+/// What stands above the numbers.
+const HEADING: &str = "\
+# What a host takes, as `stripmine calibrate` has measured it. Times are in nanoseconds, capacities in bytes; a pair is a number and half
+# the width of its 95 % interval. What counts is the middle of the samples, under whatever else the machine was doing.
+#
+# lanes.*.passes    of each operation of the interpreter: [[an element, ±], [a pass, ±]], from drills of that operation on short vectors
+# lanes.*.change    how long a pass takes to begin after one of another kind, by the number of passes of a program
+# levels            up to which reuse distance a level serves, and what it adds: a byte fetched, a byte of an array fetched, a byte
+#                   written back, the first byte of an array, a line that an index leads to; fitted to long passes and whole programs
+# loops             compiled loops: an operation of a class of an element, fitted to the programs of the lattice method
+# rates             work whose amount depends on the data: a unit of it, and how many times as long with each number of discs
+";
+
+/// Digits that a number is written with.
+const DIGITS: i32 = 4;
+
+/// Numbers with as many digits as a person reads.
+fn readable(value: &mut toml::Value) {
+    match value {
+        toml::Value::Float(number) if number.is_finite() && *number != 0.0 => {
+            let places = DIGITS - 1 - number.abs().log10().floor() as i32;
+            let text = format!("{number:.*}", places.clamp(0, 12) as usize);
+            *number = text.parse().unwrap_or(*number);
+        }
+        toml::Value::Array(items) => items.iter_mut().for_each(readable),
+        toml::Value::Table(table) => table.iter_mut().for_each(|(_, value)| readable(value)),
+        _ => {}
     }
 }
 
@@ -292,9 +315,9 @@ mod tests {
             ("run = ", "run = -", "`run` is -"),
             ("run = ", "runs = ", "unknown field `runs`"),
             ("overlap", "overlapp", "unknown field `overlapp`"),
-            ("format = 12", "format = 13", "`format` is 13"),
-            ("format = 12", "format = 11\npace = 1.0", "`format` is 11, but this program reads 12"),
-            ("format = 12\n", "", "missing field `format`"),
+            ("format = 13", "format = 14", "`format` is 14"),
+            ("format = 13", "format = 12\npace = 1.0", "`format` is 12, but this program reads 13"),
+            ("format = 13\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
             assert!(said.contains(expected) && said.contains("line "), "{said}");

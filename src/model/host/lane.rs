@@ -1,7 +1,6 @@
 //! Passes of the interpreter on lanes of one precision.
 
 use super::cost::{OutOfRange, PassCost, interpolated};
-use super::loops::{Factors, ProgramCost};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::backend::tape::{Outline, Outlines};
@@ -22,9 +21,6 @@ pub struct LaneCosts {
     pub change: Vec<Change>,
     /// A pass, by the name of its kind.
     pub passes: BTreeMap<String, PassCost>,
-    /// All passes of a program over a strip, by the signature of its instructions: how passes that follow each other overlap
-    /// is not in their kinds. Others are charged pass by pass.
-    pub seen: BTreeMap<String, ProgramCost>,
 }
 
 /// What it takes that the next pass is of another kind.
@@ -61,9 +57,6 @@ impl LaneCosts {
     /// # Errors
     /// [`OutOfRange::NotMeasured`] where a kind of pass was not measured.
     pub fn near(&self, outlines: &Outlines, n: usize, begin: f64) -> Result<f64, OutOfRange> {
-        if let Some(seen) = self.seen.get(&outlines.signature()) {
-            return Ok(seen.near(n, self.lanes).iter().sum());
-        }
         let at = |start: f64, element: f64| self.starts(n) * start + n as f64 * element;
         let change = begin * self.change(outlines.passes.len());
         let each = |pass| {
@@ -71,11 +64,6 @@ impl LaneCosts {
             Ok(change + at(begin * start.value, element.value))
         };
         outlines.passes.iter().map(each).sum()
-    }
-
-    /// How a program differs from what its passes and the levels say.
-    pub fn factors(&self, outlines: &Outlines) -> Factors {
-        self.seen.get(&outlines.signature()).map(|seen| seen.factors).unwrap_or_default()
     }
 
     /// Bytes of all registers of a program over vectors or strips of `n` elements.
@@ -113,7 +101,7 @@ mod tests {
     use stripmine_kernels::backend::tape::Place;
 
     #[test]
-    fn a_program_is_charged_as_it_was_seen_and_else_pass_by_pass() {
+    fn a_program_is_charged_pass_by_pass() {
         let sum = Outline { op: Op::Add, converts: false, reads: Vec::<Place>::new(), writes: None };
         let outlines =
             Outlines { lane: "f64", instructions: vec![], passes: vec![sum.clone(), sum], registers: [0; 3] };
@@ -125,15 +113,5 @@ mod tests {
         // Passes begin twice where elements are left over.
         assert_eq!(lane.near(&outlines, 8, 0.5).unwrap(), 2.0 * (0.5 * (2.0 + 10.0) + 8.0 * 0.5));
         assert_eq!(lane.near(&outlines, 9, 0.5).unwrap(), 2.0 * (0.5 * (2.0 + 20.0) + 9.0 * 0.5));
-        let seen = ProgramCost {
-            what: "two sums".to_owned(),
-            element: of(0.75),
-            start: of(7.0),
-            rest: PassCost { element: of(1.5), start: of(3.0) },
-            factors: Factors::default(),
-        };
-        lane.seen.insert(outlines.signature(), seen);
-        let near = [3, 8, 9].map(|n| lane.near(&outlines, n, 0.5).unwrap());
-        assert_eq!(near, [3.0 + 3.0 * 1.5, 7.0 + 8.0 * 0.75, 7.0 + 8.0 * 0.75 + 3.0 + 1.5]);
     }
 }

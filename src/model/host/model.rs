@@ -16,18 +16,18 @@ use stripmine_kernels::isa::Op;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Measured {
-    /// Smallest step of the timer seen (ns).
+    /// In which state the machine was: quiet, or how noisy.
+    pub state: String,
+    /// Seconds that it took.
+    pub seconds: f64,
+    /// Samples of a number, the median.
+    pub samples: f64,
+    /// Smallest step of the clock seen (ns).
     pub timer: f64,
-    /// Nanoseconds that the reference loop took on an undisturbed core, a fixed piece of work timed beside every sample. All
-    /// times of this file are for such a core.
-    pub reference_loop: f64,
-    /// How many times as long it took in the median.
-    pub slowdown: f64,
-    /// The share of the points that were measured on an undisturbed core; the others were corrected by how they depend on
-    /// the slowdown of the reference loop.
-    pub quiet: f64,
-    /// Median, over all points, of half the range of the middle half of those samples, as a share.
+    /// Median, over all points, of half the range of the middle half of the samples, as a share.
     pub spread: f64,
+    /// Median, over all points, of how much lower the lowest tenth of the samples is than the middle, as a share.
+    pub low: f64,
     /// Median, over all points, of how far the two halves of the measurement differ.
     pub disagreement: f64,
     /// Shortest vectors.
@@ -36,6 +36,31 @@ pub struct Measured {
     pub longest: usize,
     /// Median deviation of the fitted passes from the measured ones.
     pub residual: f64,
+}
+
+impl Measured {
+    /// With a larger half range of the samples the machine was noisy.
+    const NOISY: f64 = 0.05;
+    /// With a larger difference between the halves of the measurement it changed meanwhile.
+    const CHANGED: f64 = 0.05;
+
+    /// The state of a machine whose samples lie so far apart, and the halves of whose measurement so.
+    pub fn state_of(spread: f64, disagreement: f64) -> String {
+        match (spread > Measured::NOISY, disagreement > Measured::CHANGED) {
+            (false, false) => "quiet".to_owned(),
+            (true, false) => format!("noisy: half of the samples lie within {:.0} %", 100.0 * spread),
+            (noisy, true) => format!(
+                "{}: the halves of the measurement differ by {:.0} %",
+                if noisy { "noisy and changing" } else { "changing" },
+                100.0 * disagreement
+            ),
+        }
+    }
+
+    /// Whether it was quiet.
+    pub fn was_quiet(&self) -> bool {
+        self.state == "quiet"
+    }
 }
 
 /// A host.
@@ -73,19 +98,10 @@ pub struct HostModel {
 }
 
 impl HostModel {
-    /// The same host with every program of the interpreter charged pass by pass, as those are that were not seen.
-    #[must_use]
-    pub fn pass_by_pass(&self) -> HostModel {
-        let mut model = self.clone();
-        model.lanes.values_mut().for_each(|lane| lane.seen.clear());
-        model
-    }
-
-    /// The same host pass by pass with every operand in the first-level cache, and no cost of starting programs and of
-    /// binding arrays.
+    /// The same host with every operand in the first-level cache, and no cost of starting programs and of binding arrays.
     #[must_use]
     pub fn in_cache(&self) -> HostModel {
-        let mut model = HostModel { operand: 0.0, bind: 0.0, run: 0.0, clock: 0.0, ..self.pass_by_pass() };
+        let mut model = HostModel { operand: 0.0, bind: 0.0, run: 0.0, clock: 0.0, ..self.clone() };
         for level in &mut model.levels {
             *level = Level { name: level.name.clone(), capacity: level.capacity, ..Level::default() };
         }
@@ -154,21 +170,14 @@ impl HostModel {
         let strip = strips.map_or(n, |strip| strip.min(n));
         let lane = self.lane(outlines.lane)?;
         let touched = touches(outlines, lane.register_bytes);
-        let factors = lane.factors(outlines);
-        let own = factors.levels(&self.levels);
         let mut sum = self.run;
         for (strips, length) in [(n / strip, strip), (1, n % strip)] {
             if strips == 0 || length == 0 {
                 continue;
             }
             let near = lane.near(outlines, length, self.begin)?;
-            let wait = touched.iter().map(|touches| self.wait(touches, length, around)).sum();
-            let extra: f64 = touched
-                .iter()
-                .map(|touches| around.wait(&own, touches, length as f64, |level| level.passes).sum())
-                .sum();
-            let parts = factors.scaled([near, wait, 0.0]);
-            sum += strips as f64 * (parts.iter().sum::<f64>() + extra);
+            let wait: f64 = touched.iter().map(|touches| self.wait(touches, length, around)).sum();
+            sum += strips as f64 * (near + wait);
         }
         Ok(sum)
     }
@@ -201,10 +210,9 @@ impl HostModel {
     }
 
     fn chained(&self, outlines: &Outlines, n: usize, around: &Surroundings) -> Result<f64, OutOfRange> {
-        let cost = self.loops.of(outlines)?;
-        let [begin, computing] = cost.near(n, self.lane(outlines.lane)?.lanes);
+        let [begin, computing] = self.loops.near(outlines, n, self.lane(outlines.lane)?.lanes)?;
         let wait = around.wait(&self.levels, &touched_arrays(outlines), n as f64, |level| level.loops);
-        let parts = cost.factors.scaled([computing, wait.streamed, wait.indexed]);
+        let parts = [computing, wait.streamed, wait.indexed];
         Ok(begin + overlapped(self.loops.overlap, parts))
     }
 }

@@ -49,41 +49,57 @@ impl Amounts {
     }
 }
 
-/// Nanoseconds of each unit at one number of discs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// What the phases of a method take whose work depends on the data.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RatePoint {
-    /// Discs.
-    pub discs: usize,
-    /// Nanoseconds by the name of the unit; units that cost nothing are left out.
-    pub ns: BTreeMap<String, f64>,
+pub struct Rates {
+    /// Numbers of discs at which was measured.
+    pub discs: Vec<usize>,
+    /// The phases by name; making lists is one of its own.
+    pub phases: BTreeMap<String, PhaseRate>,
 }
 
-/// The rates of a method: by precision and phase.
+/// A phase.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct Rates(pub BTreeMap<String, BTreeMap<String, Vec<RatePoint>>>);
+#[serde(deny_unknown_fields)]
+pub struct PhaseRate {
+    /// How many times as long everything takes with each number of discs: they lie farther away.
+    pub slower: Vec<f64>,
+    /// Nanoseconds of each unit, by precision; units that cost nothing are left out.
+    pub ns: BTreeMap<String, BTreeMap<String, f64>>,
+}
+
+/// The part of the phase `index` in which lists are made.
+pub const MAKING: &str = "making lists";
 
 impl Rates {
-    /// Nanoseconds of a phase of a step.
+    /// Nanoseconds of a phase.
     ///
     /// # Errors
-    /// [`OutOfRange`] for a precision that was not measured, or another number of discs than those that were.
+    /// [`OutOfRange`] where the precision was not measured, or not so many discs.
     pub fn phase(&self, precision: &str, phase: &str, amounts: &Amounts) -> Result<f64, OutOfRange> {
-        let phases =
-            self.0.get(precision).ok_or_else(|| OutOfRange::NotMeasured(format!("precision {precision}")))?;
-        let Some(points) = phases.get(phase) else { return Ok(0.0) };
-        let (Some(first), Some(last)) = (points.first(), points.last()) else { return Ok(0.0) };
+        let (Some(&fewest), Some(&most)) = (self.discs.first(), self.discs.last()) else { return Ok(0.0) };
         let discs = amounts.discs as usize;
-        if discs < first.discs || discs > last.discs {
-            return Err(OutOfRange::Discs { discs, fewest: first.discs, most: last.discs });
+        if discs < fewest || discs > most {
+            return Err(OutOfRange::Discs { discs, fewest, most });
         }
-        let unit = |name: &str| {
-            let ns =
-                points.iter().map(|point| (point.discs as f64, point.ns.get(name).copied().unwrap_or(0.0)));
-            interpolated(&ns.collect::<Vec<_>>(), amounts.discs)
+        let of = |phase: &PhaseRate| {
+            let units = phase
+                .ns
+                .get(precision)
+                .ok_or_else(|| OutOfRange::NotMeasured(format!("precision {precision}")))?;
+            let slower: Vec<(f64, f64)> = self
+                .discs
+                .iter()
+                .zip(&phase.slower)
+                .map(|(&discs, &slower)| (discs as f64, slower))
+                .collect();
+            let each = Amounts::NAMES.iter().zip(amounts.values());
+            let sum: f64 = each.map(|(name, amount)| units.get(*name).copied().unwrap_or(0.0) * amount).sum();
+            Ok(interpolated(&slower, amounts.discs) * sum)
         };
-        Ok(Amounts::NAMES.iter().zip(amounts.values()).map(|(name, amount)| unit(name) * amount).sum())
+        let making = (phase == "index").then_some(MAKING);
+        [Some(phase), making].into_iter().flatten().filter_map(|name| self.phases.get(name)).map(of).sum()
     }
 }
 
@@ -92,13 +108,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn units_are_interpolated_and_beyond_the_ends_refused() {
-        let point = |discs, ns| RatePoint { discs, ns: BTreeMap::from([("disc".to_owned(), ns)]) };
-        let phases = BTreeMap::from([("forces".to_owned(), vec![point(100, 1.0), point(10_000, 3.0)])]);
-        let rates = Rates(BTreeMap::from([("f64".to_owned(), phases)]));
-        let at = |discs| rates.phase("f64", "forces", &Amounts { discs, ..Amounts::default() });
-        assert!((at(1000.0).unwrap() - 2000.0).abs() < 1e-9);
+    fn discs_are_interpolated_and_beyond_the_ends_refused() {
+        let units = BTreeMap::from([("disc".to_owned(), 2.0)]);
+        let phase = PhaseRate { slower: vec![1.0, 3.0], ns: BTreeMap::from([("f64".to_owned(), units)]) };
+        let making = BTreeMap::from([("remade".to_owned(), 5.0)]);
+        let making = PhaseRate { slower: vec![1.0, 1.0], ns: BTreeMap::from([("f64".to_owned(), making)]) };
+        let phases = BTreeMap::from([("index".to_owned(), phase), (MAKING.to_owned(), making)]);
+        let rates = Rates { discs: vec![100, 10_000], phases };
+        let at = |discs| rates.phase("f64", "index", &Amounts { discs, remade: 10.0, ..Amounts::default() });
+        assert!((at(1000.0).unwrap() - (2.0 * 2000.0 + 50.0)).abs() < 1e-9);
         assert!(matches!(at(99.0), Err(OutOfRange::Discs { fewest: 100, most: 10_000, .. })));
-        assert!(matches!(rates.phase("f16", "forces", &Amounts::default()), Err(OutOfRange::NotMeasured(_))));
+        assert!(matches!(
+            rates.phase("f16", "index", &Amounts { discs: 200.0, ..Amounts::default() }),
+            Err(OutOfRange::NotMeasured(_))
+        ));
+        assert_eq!(rates.phase("f64", "forces", &Amounts { discs: 200.0, ..Amounts::default() }), Ok(0.0));
     }
 }

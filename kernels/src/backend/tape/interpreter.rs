@@ -10,7 +10,6 @@ use crate::backend::{IndexLanes, Precision, Registers, Scalar, Strip};
 use crate::isa::list::for_each_op;
 use crate::isa::op::{BinaryOp, CompareOp, UnaryOp};
 use crate::isa::{Array, Column, Counter, Element, Machine, Memory, ProgramError, Slot, Storage, Vector};
-use crate::probe::SinceProbe;
 use std::cell::Cell;
 use std::ops::Range;
 
@@ -44,15 +43,10 @@ impl<L: Precision> Task<L> for Passes<'_, L> {
         let mut rest: Box<RegisterFiles<Scalar<L>>> = pool::take();
         whole.provide(hardware, self.tape, strip / R::LANES);
         rest.provide(Scalar::default(), self.tape, strip.min(R::LANES - 1));
-        let mut rests = SinceProbe::new();
         for base in self.range.clone().step_by(strip.max(1)) {
             let length = strip.min(self.range.end - base);
             let registers = length / R::LANES;
-            whole.execute(
-                self.tape,
-                Span { hardware, memory: self.memory, base, length: registers },
-                &mut rests,
-            );
+            whole.execute(self.tape, Span { hardware, memory: self.memory, base, length: registers });
             let elements = length % R::LANES;
             rest.execute_elements(self.tape, self.memory, base + length - elements, elements);
         }
@@ -220,11 +214,7 @@ impl<L: Precision> RegisterFiles<Scalar<L>> {
     /// The program on `length` elements from `base` on: the same for every instruction set.
     #[inline(never)]
     fn execute_elements(&self, tape: &Tape<L>, memory: &Memory<'_>, base: usize, length: usize) {
-        self.execute(
-            tape,
-            Span { hardware: Scalar::default(), memory, base, length },
-            &mut SinceProbe::new(),
-        );
+        self.execute(tape, Span { hardware: Scalar::default(), memory, base, length });
     }
 }
 
@@ -243,20 +233,12 @@ impl<R: Registers> RegisterFiles<R> {
 
     /// The program on one strip, instruction by instruction.
     #[inline(always)]
-    fn execute(&self, tape: &Tape<R::Lane>, span: Span<'_, R>, rests: &mut SinceProbe) {
+    fn execute(&self, tape: &Tape<R::Lane>, span: Span<'_, R>) {
         if span.length == 0 {
             return;
         }
-        let elements = span.length * R::LANES;
-        let after_passes = rests.after_passes(elements);
         for pass in &tape.passes {
             self.step(pass, span);
-            if after_passes {
-                rests.after(elements);
-            }
-        }
-        if !after_passes {
-            rests.after(elements * tape.passes.len());
         }
     }
 

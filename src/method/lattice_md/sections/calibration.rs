@@ -1,11 +1,11 @@
 //! A host model, as tables.
 
-use crate::model::host::{Amounts, Estimate, Factors, HostModel, Measured, Transfer};
+use crate::model::host::{Amounts, Estimate, HostModel, Measured, Transfer};
 use crate::report::{Cell, Table};
 
 /// The tables of a host model.
 pub fn tables(model: &HostModel) -> Vec<Table> {
-    vec![operations(model), programs(model), levels(model), rates(model)]
+    vec![operations(model), loops(model), levels(model), rates(model)]
 }
 
 fn with(estimate: Estimate, decimals: usize) -> [Cell; 2] {
@@ -36,7 +36,8 @@ fn operations(model: &HostModel) -> Table {
     let rows = model.lanes.iter().flat_map(|(lane, costs)| {
         costs.passes.iter().map(move |(op, cost)| hockney([lane, op], cost.element, cost.start))
     });
-    let Measured { timer, slowdown, quiet, spread, disagreement, shortest, longest, .. } = model.measured;
+    let Measured { state, seconds, timer, spread, low, disagreement, shortest, longest, .. } =
+        &model.measured;
     let changes = model.lanes.iter().map(|(lane, costs)| {
         let each =
             costs.change.iter().map(|change| format!("{:.1} ns in {} passes", change.ns, change.passes));
@@ -49,12 +50,11 @@ fn operations(model: &HostModel) -> Table {
         rows: rows.collect(),
         notes: vec![
             format!(
-                "Passes over vectors in the first-level cache: t = t0 + n tau. Vectors of {shortest} to {longest} elements; \
-                 timer steps of {timer} ns. Times are for an undisturbed core: a reference loop, timed beside every sample, shows \
-                 disturbances by other programs; in the median it took {slowdown:.2} times as long. {:.0} % of the points were measured \
-                 undisturbed, the others corrected by how each depends on the slowdown. Half of the samples lie within {:.1} % of the middle one; the two halves of the measurement differ by {:.1} %.",
-                100.0 * quiet,
+                "Passes over vectors in the first-level cache: t = t0 + n tau. Vectors of {shortest} to {longest} elements; timer steps \
+                 of {timer} ns. Measured in {seconds:.0} s on a machine that was {state}: what counts is the middle of the samples. Half of \
+                 them lie within {:.1} % of it, their lowest tenth {:.1} % below; the two halves of the measurement differ by {:.1} %.",
                 100.0 * spread,
+                100.0 * low,
                 100.0 * disagreement
             ),
             format!(
@@ -65,53 +65,45 @@ fn operations(model: &HostModel) -> Table {
     }
 }
 
-fn programs(model: &HostModel) -> Table {
-    let interpreted = model.lanes.values().flat_map(|lane| &lane.seen).map(|seen| ("in strips", seen));
-    let loops = model.loops.seen.iter().map(|seen| ("chained", seen));
-    let rows = interpreted.chain(loops).map(|(execution, (signature, seen))| {
-        let lane = signature.split('-').next().unwrap_or_default();
-        let mut row = hockney([lane, &seen.what], seen.element, seen.start);
-        row.insert(0, Cell::Text(execution.to_owned()));
-        let Factors { computing, waiting, .. } = seen.factors;
-        row.extend([computing, waiting].map(|factor| Cell::Number(factor, 2)));
-        row
+fn loops(model: &HostModel) -> Table {
+    let rows = model.loops.classes.iter().flat_map(|(lane, classes)| {
+        classes.iter().map(move |(class, &ns)| {
+            vec![Cell::Text(lane.clone()), Cell::Text(class.clone()), Cell::Number(ns, 4)]
+        })
     });
     Table {
-        name: "programs".into(),
-        title: "Programs".into(),
-        columns: headings(
-            &[&["execution", "lanes", "program"], TIMES.as_slice(), &["computing", "waiting"]].concat(),
-        ),
+        name: "loops".into(),
+        title: "Compiled loops, by classes of operations".into(),
+        columns: headings(&["lanes", "operations of the class", "ns an element"]),
         rows: rows.collect(),
         notes: vec![format!(
-            "In the first-level cache; t0 of a strip, or of a chained loop. On whole vectors a program \
-             computes and waits for memory this many times as long as the first-level cache and the levels give. What is not among these is charged pass by pass, a \
-             pass taking {:.2} times as long to begin as in a drill of nothing but itself, or, chained, by classes of operations, \
-             which deviate from these by {:.0} % (the median). Of the shorter of computing and waiting for streams {:.0} % \
-             hide behind the longer in a chained loop.",
-            model.begin,
+            "Fitted to the programs of the lattice method, which deviate from it by {:.0} % (the median). A run takes {:.1} ns in addition, \
+             an element beyond whole registers {:.1} times as long. Of the shorter of computing and waiting for streams {:.0} % hide behind \
+             the longer. In the interpreter a pass among others takes {:.2} times as long to begin as in a drill of nothing but itself.",
             100.0 * model.loops.residual,
-            100.0 * model.loops.overlap
+            model.loops.start.value,
+            model.loops.left.value,
+            100.0 * model.loops.overlap,
+            model.begin,
         )],
     }
 }
 
 fn rates(model: &HostModel) -> Table {
     let mut rows = vec![];
+    let mut notes = vec![];
     for (method, rates) in &model.rates {
-        for (precision, phases) in &rates.0 {
-            for (phase, points) in phases {
-                for point in points {
-                    let mut row: Vec<Cell> =
-                        [method, precision, phase].map(|name| Cell::Text(name.clone())).to_vec();
-                    row.push(Cell::Count(point.discs as u64));
-                    row.extend(
-                        Amounts::NAMES
-                            .iter()
-                            .map(|&name| point.ns.get(name).map_or(Cell::Nothing, |&ns| Cell::Number(ns, 2))),
-                    );
-                    rows.push(row);
-                }
+        for (phase, rate) in &rates.phases {
+            let slower = rates.discs.iter().zip(&rate.slower);
+            let slower: Vec<String> =
+                slower.map(|(discs, slower)| format!("{slower:.2} at {discs}")).collect();
+            notes.push(format!("{method}, {phase}: times {}.", slower.join(", ")));
+            for (precision, units) in &rate.ns {
+                let mut row: Vec<Cell> =
+                    [method, precision, phase].map(|name| Cell::Text(name.clone())).to_vec();
+                let unit = |name: &&str| units.get(*name).map_or(Cell::Nothing, |&ns| Cell::Number(ns, 2));
+                row.extend(Amounts::NAMES.iter().map(unit));
+                rows.push(row);
             }
         }
     }
@@ -119,9 +111,9 @@ fn rates(model: &HostModel) -> Table {
     Table {
         name: "rates".into(),
         title: "Work whose amount depends on the data".into(),
-        columns: headings(&["method", "precision", "phase", "discs"]).into_iter().chain(units).collect(),
+        columns: headings(&["method", "precision", "phase"]).into_iter().chain(units).collect(),
         rows,
-        notes: vec![],
+        notes,
     }
 }
 

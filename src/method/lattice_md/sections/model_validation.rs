@@ -2,8 +2,7 @@
 
 use crate::method::lattice_md::Phase;
 use crate::method::lattice_md::study::model_validation::{
-    Calibrated, Case, Errors, ModelValidation, OF_DATA, OF_DATA_SETTLED, PROGRAMS, PROGRAMS_SETTLED,
-    UNSETTLED,
+    Calibrated, Case, Errors, ModelValidation, PHASES, PHASES_OF_DATA, STEPS, STEPS_OF_DATA, STRANGERS,
 };
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use crate::report::{Cell, Section, Table, Verdict};
@@ -14,26 +13,29 @@ const NAMED: usize = 12;
 /// What came out.
 pub fn section(data: &ModelValidation) -> Section {
     let group = |what: &str| data.errors.iter().find(|errors| errors.what == what);
-    let (programs, of_data) = (group(PROGRAMS), group(OF_DATA));
-    let reached = programs
-        .is_some_and(|errors| errors.median <= 0.05 && errors.ninth_tenth <= 0.15 && errors.worst <= 0.3)
-        && of_data.is_none_or(|errors| errors.median <= 0.1);
+    let within = |what: &str, [median, ninth]: [f64; 2]| {
+        group(what).is_none_or(|errors| errors.median <= median && errors.ninth_tenth <= ninth)
+    };
+    let reached = within(STEPS, [0.06, 0.15])
+        && within(STEPS_OF_DATA, [0.06, 0.15])
+        && within(PHASES, [0.1, 0.25])
+        && within(PHASES_OF_DATA, [0.1, 0.25])
+        && within(STRANGERS, [0.12, f64::INFINITY]);
     Section {
         name: "validation".into(),
         title: "The timing model against wall time".into(),
-        says: "BP93 predicts times and checks none of them. Aim: on runs that nothing was fitted to, a median error of at \
-               most 5 %, 90 % of the cases within 15 %, the worst 30 %; where the work depends on the data, a median of 10 %."
+        says: "BP93 predicts times and checks none of them. Aim, of the middle of the samples of runs that nothing was fitted to: whole steps \
+               to 6 % in the median and nine of ten to 15 %, phases to 10 % and 25 %, laws that were not calibrated for to 12 % in the median."
             .into(),
-        came_out: [programs, of_data, group(PROGRAMS_SETTLED), group(OF_DATA_SETTLED)]
+        came_out: [STEPS, STEPS_OF_DATA, PHASES, PHASES_OF_DATA, STRANGERS]
             .into_iter()
-            .flatten()
+            .filter_map(group)
             .map(said)
-            .chain([slowdown(data)])
             .collect::<Vec<_>>()
             .join(" "),
         verdict: if reached { Verdict::Reproduced } else { Verdict::Partly },
         again: match data.calibrated {
-            Calibrated::InTurns => "stripmine validate-model --calibrate --out reports".into(),
+            Calibrated::Now => "stripmine validate-model --calibrate --out reports".into(),
             Calibrated::Shipped => "stripmine validate-model --out reports".into(),
             Calibrated::Before => {
                 "stripmine calibrate --out host.toml, then stripmine validate-model --host host.toml --out reports".into()
@@ -43,8 +45,8 @@ pub fn section(data: &ModelValidation) -> Section {
             .into_iter()
             .map(|execution| over_predicted(data, execution))
             .chain([
-                histogram(data, "histogram", "eager, strip-mined, chained", |case| !case.depends_on_data()),
-                histogram(data, "histogram_of_data", "fast and lists", Case::depends_on_data),
+                histogram(data, "histogram", "eager, strip-mined, chained", |case| !case.depends_on_data),
+                histogram(data, "histogram_of_data", "fast and lists", |case| case.depends_on_data),
             ])
             .collect(),
         tables: tables(data),
@@ -61,32 +63,17 @@ fn percent(share: f64) -> Cell {
 }
 
 fn said(errors: &Errors) -> String {
-    let Errors { what, cases, median, ninth_tenth, worst, within, baseline_median, repeated } = errors;
+    let Errors { what, cases, median, ninth_tenth, baseline_median, repeated, .. } = errors;
     let baseline = baseline_median.map_or(String::new(), |median| {
-        format!(" Time in proportion to the number of operations: median {:.0} %.", 100.0 * median)
+        format!("; time in proportion to operations errs by {:.0} %", 100.0 * median)
     });
-    let repeated = repeated.map_or(String::new(), |[median, ninth]| {
-        let [median, ninth] = [median, ninth].map(|share| 100.0 * share);
-        format!(" The measurement repeated differs from itself by {median:.1} % in the median, nine of ten by less than {ninth:.1} %.")
+    let repeated = repeated.map_or(String::new(), |[median, _]| {
+        format!("; the measurement repeated differs from itself by {:.1} %", 100.0 * median)
     });
     format!(
-        "For {what}, {cases} phases of steps: median error {:.1} %, nine of ten below {:.1} %, the worst {:.0} %; {} \
-         within 5 %, {} within 10 %, {} within 20 %, {} within 30 %.{baseline}{repeated}",
+        "{what}: median error {:.1} %, nine of ten below {:.1} % ({cases} cases{baseline}{repeated}).",
         100.0 * median,
-        100.0 * ninth_tenth,
-        100.0 * worst,
-        within[0],
-        within[1],
-        within[2],
-        within[3]
-    )
-}
-
-fn slowdown(data: &ModelValidation) -> String {
-    format!(
-        "All times are for an undisturbed core. A reference loop is timed beside every sample and shows disturbances by other \
-         programs; undisturbed, it took {:.2} times as long as in the calibration.",
-        data.slowdown
+        100.0 * ninth_tenth
     )
 }
 
@@ -108,37 +95,36 @@ fn errors(data: &ModelValidation) -> Table {
             percent(errors.ninth_tenth),
             percent(errors.worst),
         ];
+        row.push(percent(errors.median_of_low));
         row.extend(errors.within.map(|count| Cell::Count(count as u64)));
         row.push(errors.baseline_median.map_or(Cell::Nothing, percent));
         row.extend([0, 1].map(|at| errors.repeated.map_or(Cell::Nothing, |shares| percent(shares[at]))));
         row
     });
-    let mut notes = vec![
-        format!("Host model: {}, {}.", data.host, data.instruction_set),
-        "Measured: the lowest tenth of the undisturbed samples, of long phases segment by segment; repeated: how far the rounds of \
-         even number and those of odd number lie apart, each laid out in memory again. Baseline: operations times elements, at \
-         the cost of a sum in the cache."
-            .to_owned(),
-        slowdown(data),
-        "Fast and lists: predicted from the numbers of candidates and contacts that the run itself had.".to_owned(),
-    ];
-    let [rounds, further] = data.rounds;
-    notes.push(format!(
-        "{rounds} rounds over all runs, and up to {further} more over those that were always disturbed or whose halves lay \
-         more than {:.0} % apart: until they do not. The predictions have no influence on this.",
-        100.0 * UNSETTLED
-    ));
-    notes.push(match data.calibrated {
+    let from = match data.calibrated {
         Calibrated::Shipped => {
-            "This is the model that comes with the program, not one of this host: calibrate first.".to_owned()
+            "This is the model that comes with the program, not one of this host: calibrate first."
         }
-        Calibrated::Before => "The model was calibrated at another time.".to_owned(),
-        Calibrated::InTurns => {
-            "The model was calibrated in turns with the runs, on other numbers of discs and densities; strips of 64 were \
-             drilled there too, those of 128 and 512 were not."
-                .to_owned()
-        }
-    });
+        Calibrated::Before => "The model was calibrated at another time.",
+        Calibrated::Now => "The model was calibrated just before, on other numbers of discs and densities.",
+    };
+    let notes = vec![
+        format!(
+            "Host model: {}, {}; the machine was {} when it was calibrated. {from}",
+            data.host, data.instruction_set, data.state
+        ),
+        format!(
+            "Measured: the middle of the samples of {} rounds, as runs time themselves; beside it the error where the lowest tenth counts. \
+             Repeated: how far the rounds of even number and those of odd number lie apart. Baseline: operations times elements, at the \
+             cost of a sum in the cache.",
+            data.rounds
+        ),
+        "Fast and lists: predicted from the numbers of candidates and contacts that the run itself had.".to_owned(),
+        "The model cannot be right where branches depend on the data (a list's candidates are charged alike, near or far), where pages are \
+         large (its levels know no translation of addresses), where two threads share a core, and where the frequency of the core changes: \
+         what was calibrated at one is charged at the other."
+            .to_owned(),
+    ];
     Table {
         name: "errors".into(),
         title: "Errors of the predictions".into(),
@@ -148,10 +134,11 @@ fn errors(data: &ModelValidation) -> Table {
             "median (%)",
             "90 % below (%)",
             "worst (%)",
+            "median of the lowest tenth (%)",
             "within 5 %",
             "10 %",
-            "20 %",
-            "30 %",
+            "15 %",
+            "25 %",
             "baseline (%)",
             "repeated, median (%)",
             "repeated, 90 % below (%)",
@@ -234,7 +221,7 @@ fn over_predicted(data: &ModelValidation, execution: &str) -> Figure {
     Figure {
         name: format!("measured_over_predicted_{}", execution.replace([':', ' '], "_")),
         title: format!("Measured over predicted, {execution}"),
-        caption: "Each point is a phase of a step of one run, what the lowest tenth of the samples takes; bars span their quartiles. 1 is right.".into(),
+        caption: "Each point is a phase of a step of one run, the middle of the samples; bars span their quartiles. 1 is right.".into(),
         picture: Picture::Chart(Chart {
             x: Axis::logarithmic("predicted time", Some("µs")),
             y: Axis::logarithmic("measured over predicted", None),

@@ -3,7 +3,6 @@
 
 use super::StudyError;
 use super::density_cost::{ListFigures, grid, list_figures};
-use super::noise_monitor::NoiseMonitor;
 use super::phase_times::{FAST, FAST_LISTS, HALF_MASK, LISTS, PhaseTimes, Run, Sampling, phase_times};
 use super::predicted_step::{Step, of_precision};
 use super::rounds::Bound;
@@ -166,7 +165,6 @@ pub fn atlas(
         methods: methods.clone(),
         places: predicted,
     });
-    let mut monitor = NoiseMonitor::default();
     let mut times: Vec<(usize, f64, Vec<PhaseTimes>)> = vec![];
     for &particles in measured {
         times.extend(OCCUPANCIES.map(|occupancy| (particles, occupancy, vec![])));
@@ -176,15 +174,13 @@ pub fn atlas(
         for (at, (particles, occupancy, variants)) in times.iter_mut().enumerate() {
             let before = std::mem::take(variants).into_iter().map(Some).chain(std::iter::repeat(None));
             for (variant, before) in VARIANTS.iter().zip(before) {
-                let more = alone.install(|| measure(*particles, *occupancy, variant, &mut monitor))?;
+                let more = alone.install(|| measure(*particles, *occupancy, variant))?;
                 variants.push(PhaseTimes::with(before, more));
             }
             progress(rounds.share((at + 1) as f64 / places));
         }
     }
-    // When it was quiet is known once all is measured.
-    let reference = monitor.reference();
-    let step = |times: &PhaseTimes| Phase::ALL.iter().map(|&phase| times.typical(phase, reference).0).sum();
+    let step = |times: &PhaseTimes| Phase::ALL.iter().map(|&phase| times.of(phase).middle).sum();
     let place = |(particles, occupancy, variants): (usize, f64, Vec<PhaseTimes>)| Place {
         particles,
         occupancy,
@@ -210,7 +206,7 @@ fn run(particles: usize, occupancy: f64, (name, _): &(&'static str, Option<Execu
 fn fast_list_amounts(occupancy: f64) -> Result<Amounts, MeasurementError> {
     let checked = run(1000, occupancy, &(FAST_LISTS, None)).scene(&[])?;
     let sampling = Sampling { equilibration: 200, repeats: 2, particle_steps: 300_000, least_steps: 100 };
-    Ok(phase_times(&checked, &sampling, &mut NoiseMonitor::default())?.amounts)
+    Ok(phase_times(&checked, &sampling)?.amounts)
 }
 
 /// Nanoseconds of a step by the model; candidates and contacts as in the run of about a thousand discs.
@@ -261,12 +257,11 @@ fn measure(
     particles: usize,
     occupancy: f64,
     variant: &(&'static str, Option<Execution>),
-    monitor: &mut NoiseMonitor,
 ) -> Result<PhaseTimes, MeasurementError> {
     let checked = run(particles, occupancy, variant).scene(&[])?;
     let equilibration = (100_000 / particles).clamp(3, 30);
     let sampling = Sampling { equilibration, repeats: 1, particle_steps: 5_000, least_steps: 3 };
-    phase_times(&checked, &sampling, monitor)
+    phase_times(&checked, &sampling)
 }
 
 #[cfg(test)]

@@ -13,14 +13,13 @@ pub mod listing;
 pub mod measured_cost;
 pub mod misprints;
 pub mod model_validation;
-pub mod noise_monitor;
 pub mod phase_times;
 pub mod pipe_flow;
 pub mod precision;
 pub mod predicted_step;
 mod reported;
 pub mod rounds;
-pub mod segment_times;
+pub mod samples;
 pub mod threads;
 pub mod useful_work;
 

@@ -1,8 +1,7 @@
 //! How long is each phase of a step, and how much was there to do? Runs of the bench scene, timed phase by phase.
 
 use super::executed;
-use super::noise_monitor::{NoiseMonitor, Timed};
-use super::segment_times::{COUNTS, SegmentTimes};
+use super::samples::Samples;
 use crate::method::Failure;
 use crate::method::lattice_md::Lengths;
 use crate::method::lattice_md::{Checked, Document};
@@ -94,9 +93,9 @@ pub struct PhaseTimes {
     /// What there was to do in a step, on average.
     pub amounts: Amounts,
     /// Nanoseconds a step of every phase; without the making of lists.
-    samples: [SegmentTimes; Phase::ALL.len()],
+    samples: [Samples; Phase::ALL.len()],
     /// Nanoseconds of each making of lists.
-    makings: SegmentTimes,
+    makings: Samples,
     /// Makings a step.
     made: f64,
 }
@@ -107,17 +106,9 @@ impl PhaseTimes {
         PhaseTimes {
             amounts: Amounts { steps: 1.0, discs: discs as f64, ..Amounts::default() },
             samples: Default::default(),
-            makings: SegmentTimes::default(),
+            makings: Samples::default(),
             made: 0.0,
         }
-    }
-
-    /// Of one phase, with these times of its steps.
-    #[cfg(test)]
-    pub(super) fn of(phase: Phase, all: &[Timed]) -> PhaseTimes {
-        let mut times = PhaseTimes::none(1);
-        all.iter().for_each(|timed| times.samples[phase as usize].push(&[*timed]));
-        times
     }
 
     /// What there is of a run, if there is something already, and the same run measured once more.
@@ -132,7 +123,7 @@ impl PhaseTimes {
     /// The same run measured once more, at another time.
     #[must_use]
     pub fn joined(mut self, more: PhaseTimes) -> PhaseTimes {
-        let [a, b] = [&self, &more].map(|times| times.samples[Phase::Forces as usize].runs() as f64);
+        let [a, b] = [&self, &more].map(|times| times.samples[Phase::Forces as usize].count() as f64);
         let mean = |x: f64, y: f64| (a * x + b * y) / (a + b);
         self.amounts = self.amounts.with(&more.amounts, mean);
         self.made = mean(self.made, more.made);
@@ -143,44 +134,45 @@ impl PhaseTimes {
         self
     }
 
-    /// Nanoseconds of a phase a step on an undisturbed core, and the quartiles of the samples, with lists rebuilt as often as
-    /// they were. `reference` is what the reference loop takes on such a core.
-    pub fn typical(&self, phase: Phase, reference: f64) -> (f64, [f64; 2]) {
-        let making =
-            if phase == Phase::Index { self.made * self.making(reference).unwrap_or(0.0) } else { 0.0 };
-        let of = self.samples[phase as usize].quantiles(reference, [COUNTS, 0.25, 0.75]).unwrap_or_default();
-        let [typical, low, high] = of.map(|ns| making + ns);
-        (typical, [low, high])
+    /// Nanoseconds of a phase a step: the middle of the samples, their lowest tenth and their quartiles, with lists rebuilt as often as
+    /// they were.
+    pub fn of(&self, phase: Phase) -> PhaseTime {
+        let making = if phase == Phase::Index { self.made * self.making().unwrap_or(0.0) } else { 0.0 };
+        let samples = &self.samples[phase as usize];
+        if samples.count() == 0 {
+            return PhaseTime { middle: making, low: making, quartiles: [making; 2] };
+        }
+        PhaseTime {
+            middle: making + samples.middle(),
+            low: making + samples.low(),
+            quartiles: samples.quartiles().map(|ns| making + ns),
+        }
     }
 
-    /// The share of a phase's time that was measured on an undisturbed core, and not corrected for a slowdown.
-    pub fn quiet(&self, phase: Phase, reference: f64) -> f64 {
-        self.samples[phase as usize].quiet(reference)
-    }
-
-    /// Whether every phase that it has was measured on an undisturbed core.
-    pub fn is_quiet(&self, reference: f64) -> bool {
-        let had = Phase::ALL.iter().filter(|&&phase| self.samples[phase as usize].runs() > 0);
-        had.copied()
-            .all(|phase| self.quiet(phase, reference) >= QUIET || self.upkeep(phase, reference) <= 0.0)
-    }
-
-    /// Nanoseconds of a phase on an undisturbed core, without the rebuilding of lists.
-    pub fn upkeep(&self, phase: Phase, reference: f64) -> f64 {
-        self.samples[phase as usize].typical(reference).unwrap_or(0.0)
+    /// Nanoseconds of a phase without the rebuilding of lists: the middle of the samples.
+    pub fn upkeep(&self, phase: Phase) -> f64 {
+        let samples = &self.samples[phase as usize];
+        if samples.count() > 0 { samples.middle() } else { 0.0 }
     }
 
     /// Nanoseconds of a making of lists; none if there was none.
-    pub fn making(&self, reference: f64) -> Option<f64> {
-        self.makings.typical(reference)
+    pub fn making(&self) -> Option<f64> {
+        (self.makings.count() > 0).then(|| self.makings.middle())
     }
 }
 
-/// What was measured on an undisturbed core for at least this share of the time needs no more rounds.
-pub const QUIET: f64 = 0.9;
+/// What a phase takes (ns).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhaseTime {
+    /// The middle of the samples.
+    pub middle: f64,
+    /// Their lowest tenth.
+    pub low: f64,
+    /// Their quartiles.
+    pub quartiles: [f64; 2],
+}
 
-/// Nanoseconds of a sample of several steps, about: a core is seldom undisturbed for longer. Longer steps are timed one by
-/// one, segment by segment.
+/// Nanoseconds of a sample, about.
 const SHORT: f64 = 100_000.0;
 
 /// How much of a run is timed.
@@ -196,32 +188,32 @@ pub struct Sampling {
     pub least_steps: usize,
 }
 
-/// Runs a scene and times its phases.
+/// Runs a scene and times its phases, as runs do.
 ///
 /// # Errors
 /// [`MeasurementError`] if it breaks.
-pub fn phase_times(
-    checked: &Checked,
-    sampling: &Sampling,
-    monitor: &mut NoiseMonitor,
-) -> Result<PhaseTimes, MeasurementError> {
+pub fn phase_times(checked: &Checked, sampling: &Sampling) -> Result<PhaseTimes, MeasurementError> {
     let discs = checked.particles.grain_count();
     let steps = sampling.repeats * (sampling.particle_steps / discs).clamp(sampling.least_steps, 2000);
-    let mut timing = Timing::new(checked, monitor)?;
-    // The shortest: a disturbed one would have short steps timed as long ones.
+    let mut timing = Timing {
+        method: assemble(checked)?,
+        times: PhaseTimes::none(discs),
+        found: Found::default(),
+        steps: 0,
+        made: 0,
+    };
     let step = timing.unnoticed(sampling.equilibration.max(1))?;
-    match ((SHORT / step).floor() as usize).min(steps) {
-        0 | 1 => timing.one_by_one(steps, step)?,
-        group => timing.in_groups(steps, group)?,
+    let group = ((SHORT / step).floor() as usize).clamp(1, steps);
+    for done in (0..steps).step_by(group) {
+        timing.group(group.min(steps - done))?;
     }
     let cells = Lengths::new(&model(checked), discs, checked.particles.len()).cells;
     Ok(timing.done(cells))
 }
 
 /// A run that is being timed.
-struct Timing<'a> {
+struct Timing {
     method: Box<dyn Engine>,
-    monitor: &'a mut NoiseMonitor,
     times: PhaseTimes,
     found: Found,
     /// Steps so far, and how often lists were made in them.
@@ -229,18 +221,11 @@ struct Timing<'a> {
     made: usize,
 }
 
-impl Timing<'_> {
-    fn new<'a>(checked: &Checked, monitor: &'a mut NoiseMonitor) -> Result<Timing<'a>, MeasurementError> {
-        let times = PhaseTimes::none(checked.particles.grain_count());
-        Ok(Timing { method: assemble(checked)?, monitor, times, found: Found::default(), steps: 0, made: 0 })
-    }
-
+impl Timing {
     /// Steps of which only the makings of lists count, for these are rare. Nanoseconds of the shortest.
     fn unnoticed(&mut self, count: usize) -> Result<f64, Failure> {
-        let method = self.method.as_mut();
-        let (ran, around) = self.monitor.around(&mut 0, || Ran::some(method, count, &mut Found::default()));
-        let ran = ran?;
-        self.times.take_makings(&ran, around);
+        let ran = Ran::some(self.method.as_mut(), count, &mut Found::default())?;
+        self.times.take_makings(&ran);
         self.count(count, ran.makings.len());
         Ok(1e9 * ran.shortest)
     }
@@ -250,37 +235,11 @@ impl Timing<'_> {
         self.made += made;
     }
 
-    /// `steps` steps, timed in groups.
-    fn in_groups(&mut self, steps: usize, group: usize) -> Result<(), Failure> {
-        let (mut left, mut quiet) = (steps, 0);
-        while left > 0 {
-            let count = group.min(left);
-            if self.monitor.wait(quiet, SHORT) {
-                self.unnoticed(1)?;
-            }
-            let (method, found) = (self.method.as_mut(), &mut self.found);
-            let (ran, around) = self.monitor.around(&mut quiet, || Ran::some(method, count, found));
-            let ran = ran?;
-            self.times.take_group(self.method.as_ref(), count, &ran, around);
-            self.count(count, ran.makings.len());
-            left -= count;
-        }
-        Ok(())
-    }
-
-    /// `steps` steps, each timed segment by segment, that take about `lasting` nanoseconds.
-    fn one_by_one(&mut self, steps: usize, lasting: f64) -> Result<(), Failure> {
-        let mut quiet = 0;
-        for _ in 0..steps {
-            if self.monitor.wait(quiet, lasting) {
-                self.unnoticed(1)?;
-            }
-            let (method, found) = (self.method.as_mut(), &mut self.found);
-            let (ran, segments) = self.monitor.in_segments(&mut quiet, || Ran::some(method, 1, found));
-            let rebuilt = !ran?.makings.is_empty();
-            self.times.take_step(&segments, rebuilt);
-            self.count(1, usize::from(rebuilt));
-        }
+    /// A sample of some steps.
+    fn group(&mut self, count: usize) -> Result<(), Failure> {
+        let ran = Ran::some(self.method.as_mut(), count, &mut self.found)?;
+        self.times.take_group(self.method.as_ref(), count, &ran);
+        self.count(count, ran.makings.len());
         Ok(())
     }
 
@@ -334,9 +293,9 @@ impl Ran {
 }
 
 impl PhaseTimes {
-    /// The times of a group of steps, with the readings around them.
-    fn take_group(&mut self, method: &dyn Engine, count: usize, ran: &Ran, around: [f64; 2]) {
-        self.take_makings(ran, around);
+    /// The times of a group of steps.
+    fn take_group(&mut self, method: &dyn Engine, count: usize, ran: &Ran) {
+        self.take_makings(ran);
         for &phase in Phase::ALL {
             let seconds = method.timings().seconds(phase);
             let (seconds, of) = match phase {
@@ -344,27 +303,13 @@ impl PhaseTimes {
                 _ => (seconds, count),
             };
             if of > 0 {
-                self.samples[phase as usize].push(&[Timed { ns: 1e9 * seconds / of as f64, around }]);
+                self.samples[phase as usize].push(1e9 * seconds / of as f64);
             }
         }
     }
 
-    fn take_makings(&mut self, ran: &Ran, around: [f64; 2]) {
-        for &seconds in &ran.makings {
-            self.makings.push(&[Timed { ns: 1e9 * seconds, around }]);
-        }
-    }
-
-    /// The times of one step by segments, in which lists may have been rebuilt.
-    fn take_step(&mut self, segments: &[(usize, Timed)], rebuilt: bool) {
-        for &phase in Phase::ALL {
-            let own = segments.iter().filter(|(number, _)| *number == phase as usize);
-            let own: Vec<Timed> = own.map(|(_, timed)| *timed).collect();
-            match phase {
-                Phase::Index if rebuilt => self.makings.push(&own),
-                _ => self.samples[phase as usize].push(&own),
-            }
-        }
+    fn take_makings(&mut self, ran: &Ran) {
+        ran.makings.iter().for_each(|seconds| self.makings.push(1e9 * seconds));
     }
 }
 

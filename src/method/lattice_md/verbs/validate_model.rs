@@ -1,11 +1,10 @@
 //! `stripmine validate-model`: the host model against wall time.
 
-use super::calibrate::noise;
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
 use crate::method::lattice_md::sections;
 use crate::method::lattice_md::study::calibration;
 use crate::method::lattice_md::study::model_validation::{
-    Calibrated, Effort, ModelValidation, calibrated_in_turns, model_validation,
+    Calibrated, Effort, ModelValidation, model_validation,
 };
 use crate::method::lattice_md::study::rounds::Bound;
 use crate::model::host::{HostModel, default_model};
@@ -16,44 +15,35 @@ use crate::signals;
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use stripmine_kernels::InstructionSet;
 
-/// Predicts runs that nothing was fitted to, measures them, and says how far off each prediction was
+/// Predicts runs that nothing was fitted to, measures them as users run them, and says how far off each prediction was
 #[derive(Args)]
 pub(super) struct ValidateModel {
     /// Host file of `calibrate`; without one, the model that comes with the program
     #[arg(long)]
     host: Option<PathBuf>,
-    /// Calibrate in turns with the runs, so that both see the same states of a busy machine; the host file lies in the
-    /// folder of the result
+    /// Calibrate just before; the host file lies in the folder of the result
     #[arg(long, conflicts_with = "host")]
     calibrate: bool,
-    /// Sweeps of that calibration
-    #[arg(long, requires = "calibrate", default_value_t = 30,
-          value_parser = clap::value_parser!(u16).range(1..=200))]
-    sweeps: u16,
     /// Numbers of particles
-    #[arg(long, value_delimiter = ',', default_values_t = [560, 2050, 9500, 17_000],
+    #[arg(long, value_delimiter = ',', default_values_t = [560, 2050, 9500],
           value_parser = RangedU64ValueParser::<usize>::new().range(1..))]
     particles: Vec<usize>,
     /// Occupancies, on cells as wide as the radius
-    #[arg(long, value_delimiter = ',', default_values_t = [0.072, 0.125, 0.168, 0.235])]
+    #[arg(long, value_delimiter = ',', default_values_t = [0.072, 0.168])]
     occupancies: Vec<f64>,
-    /// Rounds over all runs
-    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u16).range(1..))]
-    rounds: u16,
-    /// Rounds more, at most, over those runs alone that were always disturbed by other programs, or whose rounds of even
-    /// and of odd number lie more than a tenth apart
-    #[arg(long, default_value_t = 24)]
-    further: u16,
-    /// Repeats of each run in a round
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
-    repeats: u16,
+    /// Seconds that the runs take, about; each is made once at least
+    #[arg(long, default_value_t = 120, value_parser = clap::value_parser!(u16).range(1..))]
+    seconds: u16,
     /// Folder for the result as data, tables and figures
     #[arg(long)]
     out: Option<PathBuf>,
 }
+
+/// Rounds over all runs at most.
+const ROUNDS: usize = 12;
 
 /// The model of a host file, or the one that comes with the program; whether it is the latter.
 pub(super) fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, bool), Failure> {
@@ -67,7 +57,15 @@ pub(super) fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostMo
         }
         return Ok((model, true));
     };
-    Ok((HostModel::load(file)?, false))
+    let model = HostModel::load(file)?;
+    if !model.measured.was_quiet() && !common.quiet {
+        warn(format_args!(
+            "the machine of {} was {} when it was calibrated",
+            file.display(),
+            model.measured.state
+        ));
+    }
+    Ok((model, false))
 }
 
 impl ValidateModel {
@@ -75,9 +73,7 @@ impl ValidateModel {
         let effort = Effort {
             particles: self.particles.clone(),
             occupancies: self.occupancies.clone(),
-            rounds: Bound::of(self.rounds.into()),
-            further: self.further.into(),
-            repeats: self.repeats.into(),
+            rounds: Bound { most: ROUNDS, within: Some(Duration::from_secs(self.seconds.into())) },
             particle_steps: 10_000,
         };
         // Before anything takes its time.
@@ -114,20 +110,19 @@ impl ValidateModel {
     ) -> Result<(ModelValidation, Option<HostModel>), Failure> {
         let bar = progress(common, "validate-model");
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
-        if self.calibrate {
-            let sweeps = calibration::Effort { sweeps: self.sweeps.into() };
-            let (model, data) =
-                calibrated_in_turns(origin::host(), InstructionSet::best(), sweeps, effort, show)?;
-            clear_progress();
-            if let Some(noise) = noise(&model.measured) {
-                warn(format_args!("{noise}: the machine is busy"));
-            }
-            return Ok((data, Some(model)));
-        }
-        let (model, shipped) = host_model(self.host.as_deref(), common)?;
-        let calibrated = if shipped { Calibrated::Shipped } else { Calibrated::Before };
-        let data = model_validation(&model, calibrated, effort, show)?;
+        let (model, calibrated) = if self.calibrate {
+            let effort = calibration::Effort::default();
+            let model = calibration::calibrate(origin::host(), InstructionSet::best(), effort, |share| {
+                show(0.4 * share)
+            })?;
+            (model, Calibrated::Now)
+        } else {
+            let (model, shipped) = host_model(self.host.as_deref(), common)?;
+            (model, if shipped { Calibrated::Shipped } else { Calibrated::Before })
+        };
+        let begun = if self.calibrate { 0.4 } else { 0.0 };
+        let data = model_validation(&model, calibrated, effort, |share| show(begun + (1.0 - begun) * share))?;
         clear_progress();
-        Ok((data, None))
+        Ok((data, self.calibrate.then_some(model)))
     }
 }

@@ -4,7 +4,7 @@
 use super::passes::Lane;
 use super::point::{Charged, Waiting};
 use super::step::{INTERPRETED, Step};
-use super::timing::Samples;
+use crate::method::lattice_md::study::samples::Samples;
 use crate::model::host::{LoopCosts, Surroundings, touched_arrays};
 use std::rc::Rc;
 use stripmine_kernels::Execution;
@@ -12,28 +12,18 @@ use stripmine_kernels::backend::tape::Outlines;
 
 /// NP and ρ: lattices of 600 to 400 000 cells, few of them more than half as large again as the one before, some with many
 /// discs and some with few, whose gathers meet other levels; where a level ends, a third more can take half as long again.
-pub(super) const SCENES: [(usize, f64); 22] = [
+pub(super) const SCENES: [(usize, f64); 12] = [
     (70, 0.12),
-    (90, 0.07),
     (480, 0.21),
-    (340, 0.13),
     (210, 0.06),
-    (700, 0.13),
-    (1700, 0.21),
     (1300, 0.13),
     (720, 0.06),
     (3300, 0.21),
     (2400, 0.13),
-    (1300, 0.06),
     (5800, 0.21),
-    (4300, 0.13),
-    (2500, 0.06),
-    (8000, 0.13),
     (4300, 0.06),
     (19_000, 0.21),
     (8200, 0.06),
-    (28_000, 0.13),
-    (14_000, 0.06),
     (24_000, 0.06),
 ];
 
@@ -67,7 +57,7 @@ pub(super) fn ran(step: &Step, lanes: &[Lane], look: f64) -> Vec<Ran> {
             n,
             execution,
             around,
-            ns: samples.typical() - look,
+            ns: samples.middle() - look,
         });
         all.filter(|ran| ran.n > 0 && ran.ns.is_finite() && ran.ns > 0.0).collect::<Vec<_>>()
     };
@@ -98,8 +88,8 @@ impl Ran {
 
     /// The same as a loop, whose cost in the first-level cache is known; none of the interpreter's.
     pub(super) fn compiled(&self, costs: &LoopCosts, lanes: &[Lane]) -> Option<Charged> {
-        let cost = costs.of(&self.outlines).ok().filter(|_| self.is_loop())?;
-        let [start, computing] = cost.near(self.n, of(lanes, &self.outlines)?.costs.lanes);
+        let lanes = of(lanes, &self.outlines).filter(|_| self.is_loop())?.costs.lanes;
+        let [start, computing] = costs.near(&self.outlines, self.n, lanes).ok()?;
         let n = self.n as f64;
         Some(Charged {
             computing,
@@ -108,7 +98,6 @@ impl Ran {
             around: self.around.clone(),
             ns: self.ns,
             weight: 1.0,
-            program: Some(self.outlines.signature()),
         })
     }
 }

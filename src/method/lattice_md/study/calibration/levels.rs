@@ -2,10 +2,9 @@
 //! the interpreter and as compiled loops run them.
 
 use super::capacities::candidates;
-use super::factors::{fit_costs, fit_factors};
 use super::fit::median;
 use super::point::{ARRAYS, BACK, BEYOND, Beyond, Charged, Costs, FIRST, LINES, Point, streamed};
-use crate::model::host::{Factors, Level, Transfer, overlapped};
+use crate::model::host::{Level, Transfer};
 use crate::statistics::non_negative;
 use std::collections::BTreeMap;
 
@@ -16,8 +15,6 @@ pub(super) struct Levels {
     pub(super) levels: Vec<Level>,
     /// Of the shorter of computing and waiting in a loop, the share that hides behind the longer.
     pub(super) overlap: f64,
-    /// How programs differ, by their signatures: in the interpreter, and as loops.
-    pub(super) factors: [BTreeMap<String, Factors>; 2],
     /// Median deviation of the fit to passes.
     pub(super) residual: f64,
 }
@@ -40,11 +37,7 @@ pub(super) fn fit_levels(passes: &[Charged], loops: &[Charged]) -> Levels {
             let all = measured[which].iter().enumerate();
             all.map(|(at, each)| each.point(beyond.map(|of| of[which][at]))).collect::<Vec<_>>()
         });
-        // What the levels cost all programs alike; how each differs from that; and the levels again, given this.
-        let factors = Fitted::of(capacities, &passes, &loops).factors(&passes, &loops);
-        let with = |all: &[Point], factors| all.iter().map(|point| point.with(factors)).collect::<Vec<_>>();
-        let [passes, loops] = [with(&passes, &factors[0]), with(&loops, &factors[1])];
-        let fitted = Fitted { factors, ..Fitted::of(capacities, &passes, &loops) };
+        let fitted = Fitted::of(capacities, &passes, &loops);
         if fitted.error < best.error {
             best = fitted;
         }
@@ -58,8 +51,6 @@ struct Fitted {
     capacities: [f64; BEYOND],
     costs: Costs,
     loops: Loops,
-    /// Of programs in the interpreter, and as loops.
-    factors: [BTreeMap<String, Factors>; 2],
     residual: f64,
     /// Mean deviation of passes and loops together.
     error: f64,
@@ -72,14 +63,7 @@ impl Fitted {
         let loops = fit_loops(loops, &costs);
         let deviations = || passes.iter().map(|point| point.deviation(point.waiting(&costs)));
         let error = mean(passes, deviations()) + loops.error;
-        Fitted { capacities, costs, residual: median(deviations()), error, loops, ..Fitted::default() }
-    }
-
-    fn factors(&self, passes: &[Point], loops: &[Point]) -> [BTreeMap<String, Factors>; 2] {
-        let Fitted { costs, loops: Loops { costs: of_loops, overlap, .. }, .. } = self;
-        let in_passes = passes.iter().map(|point| (point, point.parts_of_passes(costs)));
-        let in_loops = loops.iter().map(|point| (point, point.parts_of_loops(of_loops)));
-        [fit_costs(in_passes), fit_factors(in_loops, |start, parts| start + overlapped(*overlap, parts))]
+        Fitted { capacities, costs, residual: median(deviations()), error, loops }
     }
 
     fn levels(self) -> Levels {
@@ -106,7 +90,6 @@ impl Fitted {
             operand: self.costs[0],
             levels: levels.collect(),
             overlap: self.loops.overlap,
-            factors: self.factors,
             residual: self.residual,
         }
     }
@@ -222,7 +205,6 @@ mod tests {
             around: Surroundings::default(),
             ns: computing + 3.0 * n * 8.0 * wait,
             weight: 1.0,
-            program: None,
         }
     }
 

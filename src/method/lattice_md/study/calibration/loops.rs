@@ -2,24 +2,20 @@
 
 use super::fit;
 use super::large::{self, Ran, SCENES};
-use super::passes::{Lane, estimate};
-use super::step::{ELEMENTS, INTERPRETED, Near, STRIPPED, STRIPS, Step, executions};
-use super::timing::{PARTS, Samples};
+use super::passes::Lane;
+use super::step::{ELEMENTS, INTERPRETED, Near, STRIPPED, STRIPS, Step, left_over};
 use super::variants::{AT_REST, DRILL, VARIANTS, Variant};
 use crate::method::lattice_md::model;
-use crate::method::lattice_md::study::noise_monitor::NoiseMonitor;
-use crate::method::lattice_md::study::phase_times::{QUIET, Run};
+use crate::method::lattice_md::study::phase_times::Run;
+use crate::method::lattice_md::study::samples::Samples;
 use crate::method::lattice_md::{Arrays, Lengths, programs};
 use crate::method::throughput::MeasurementError;
-use crate::model::host::{Estimate, Factors, LoopCosts, PassCost, ProgramCost, class_counts};
-use crate::statistics::non_negative;
+use crate::model::host::{Estimate, LoopCosts, class_counts};
+use crate::statistics::{non_negative, quantile};
 use std::collections::BTreeMap;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::{Memory, OpClass};
 use stripmine_kernels::{Execution, InstructionSet};
-
-/// Whole vectors whose halves of the samples are farther apart than this share are worth more of them.
-const UNSETTLED: f64 = 0.1;
 
 /// The interpreter is slow: it takes part in every n-th sweep, by the number of elements of the vectors.
 fn turn(elements: usize) -> usize {
@@ -92,9 +88,7 @@ impl Loops {
         let whole: Vec<Samples> = programs.iter().map(|_| Samples::default()).collect();
         let interpreted = INTERPRETED.map(|_| whole.clone());
         let large = run.particles != DRILL.particles;
-        let name = format!("{}{}", run.precision, variant.suffix);
         self.steps.push(Step {
-            name,
             programs,
             ranges,
             memory: self.arrays.len(),
@@ -109,56 +103,17 @@ impl Loops {
     }
 
     /// One more sample of every loop; `lanes` says how many elements of a type are in a hardware register.
-    pub(super) fn sweep(
-        &mut self,
-        monitor: &mut NoiseMonitor,
-        set: InstructionSet,
-        lanes: &dyn Fn(&str) -> usize,
-        number: usize,
-    ) {
+    pub(super) fn sweep(&mut self, set: InstructionSet, lanes: &dyn Fn(&str) -> usize, number: usize) {
         for step in &mut self.steps {
             let arrays = &mut self.arrays[step.memory];
             arrays.elsewhere();
             let memory = arrays.memory();
             let takes_turn = step.large && number.is_multiple_of(turn(step.longest()));
-            step.in_turns(monitor, set, &memory, |execution| execution == Execution::Chained || takes_turn);
+            step.in_turns(set, &memory, |execution| execution == Execution::Chained || takes_turn);
             // What is near is learned from the small ones.
             if !step.large {
-                step.near(monitor, set, &memory, lanes);
+                step.near(set, &memory, lanes);
             }
-        }
-    }
-
-    /// Some more samples of whole vectors whose samples differ, or were always disturbed.
-    /// Whether there were any.
-    pub(super) fn again(&mut self, monitor: &mut NoiseMonitor, set: InstructionSet, reference: f64) -> bool {
-        self.evaluate(reference);
-        let mut any = false;
-        for step in self.steps.iter_mut().filter(|step| step.large) {
-            let mut unsettled = vec![];
-            for (execution, samples, _) in executions(&mut step.whole, &mut step.interpreted) {
-                let settled = |of: &Samples| of.disagreement() <= UNSETTLED && of.quiet() >= QUIET;
-                if !samples.iter().all(settled) {
-                    Samples::go_on(samples);
-                    unsettled.push(execution);
-                }
-            }
-            for _ in 0..PARTS * usize::from(!unsettled.is_empty()) {
-                let arrays = &mut self.arrays[step.memory];
-                arrays.elsewhere();
-                step.in_turns(monitor, set, &arrays.memory(), |execution| unsettled.contains(&execution));
-            }
-            any |= !unsettled.is_empty();
-        }
-        any
-    }
-
-    /// Evaluates all samples for an undisturbed core.
-    pub(super) fn evaluate(&mut self, reference: f64) {
-        for step in &mut self.steps {
-            let near = step.loops.iter_mut().chain(&mut step.strips).flat_map(Near::all_mut);
-            let samples = near.chain(&mut step.whole).chain(step.interpreted.iter_mut().flatten());
-            samples.for_each(|samples| samples.evaluate(reference));
         }
     }
 
@@ -170,56 +125,41 @@ impl Loops {
             .flat_map(|step| step.loops.iter().chain(&step.strips).flat_map(Near::all))
     }
 
-    /// What the programs take in the interpreter, where a run takes `run` nanoseconds in addition: into the costs of their lanes. With how
-    /// many times as long as in drills of nothing but themselves their passes take to begin.
-    pub(super) fn see(&self, lanes: &mut [Lane], run: f64) -> f64 {
+    /// How many times as long as in drills of nothing but themselves the passes of a program take to begin, where a run takes `run`
+    /// nanoseconds in addition.
+    pub(super) fn begin(&self, lanes: &[Lane], run: f64) -> f64 {
         let mut begins = vec![];
         for step in self.steps.iter().filter(|step| !step.large) {
             for (program, near) in step.programs.iter().zip(&step.strips) {
                 let outlines = program.program.outlines();
-                let Some(lane) = lanes.iter_mut().find(|lane| lane.name == outlines.lane) else { continue };
-                let samples = &near.whole;
-                let elements = (STRIPPED * lane.costs.lanes) as f64;
+                let Some(lane) = lanes.iter().find(|lane| lane.name == outlines.lane) else { continue };
                 let [short, long] = STRIPS.map(|strip| (STRIPPED / strip) as f64);
-                let start = |of: &dyn Fn(&Samples) -> f64| {
-                    ((of(&samples[0]) - of(&samples[1])) / (short - long)).max(0.0)
-                };
-                let element = |of: &dyn Fn(&Samples) -> f64| {
-                    ((of(&samples[1]) - run - long * start(of)) / elements).max(1e-4)
-                };
-                let what = format!("{}, {}", program.part.name(), step.name);
-                let (element, start) = (estimate(samples, element), estimate(samples, start));
-                let cost = seen_near(what, element, start, near.rest(lane.costs.lanes, 1));
-                begins.extend(lane.begin(&outlines, cost.start.value));
-                lane.costs.seen.entry(outlines.signature()).or_insert(cost);
+                let [in_short, in_long] = near.whole.each_ref().map(Samples::middle);
+                let start = ((in_short - in_long) / (short - long)).max(0.0);
+                if in_long - run - long * start > 0.0 {
+                    begins.extend(lane.begin(&outlines, start));
+                }
             }
         }
         fit::median(begins.into_iter())
     }
 
-    /// The costs.
+    /// The costs of classes of operations, fitted to all loops.
     pub(super) fn costs(&self, lanes: &[Lane]) -> LoopCosts {
-        let mut seen = BTreeMap::new();
         let mut of_lane: BTreeMap<String, Vec<Counted>> = BTreeMap::new();
+        let (mut starts, mut longer) = (vec![], vec![]);
         for step in self.steps.iter().filter(|step| !step.large) {
             for (program, near) in step.programs.iter().zip(&step.loops) {
-                let samples = &near.whole;
                 let [short, long] = ELEMENTS.map(|n| n as f64);
-                let element =
-                    estimate(samples, |of| ((of(&samples[1]) - of(&samples[0])) / (long - short)).max(1e-4));
-                let start = estimate(samples, |of| {
-                    let slope = (of(&samples[1]) - of(&samples[0])) / (long - short);
-                    (of(&samples[0]) - short * slope).max(0.0)
-                });
+                let [in_short, in_long] = near.whole.each_ref().map(Samples::middle);
+                let element = ((in_long - in_short) / (long - short)).max(1e-4);
+                starts.push((in_short - short * element).max(0.0));
                 let outlines = program.program.outlines();
-                let what = format!("{}, {}", program.part.name(), step.name);
-                of_lane
-                    .entry(outlines.lane.to_owned())
-                    .or_default()
-                    .push((class_counts(&outlines), element.value));
                 let lanes = lanes.iter().find(|lane| lane.name == outlines.lane);
-                let rest = near.rest(lanes.map_or(1, |lane| lane.costs.lanes), 0);
-                seen.entry(outlines.signature()).or_insert(seen_near(what, element, start, rest));
+                let [few, many] = left_over(lanes.map_or(1, |lane| lane.costs.lanes)).map(|left| left as f64);
+                let [in_few, in_many] = near.left.each_ref().map(Samples::middle);
+                longer.push(((in_many - in_few) / (many - few) / element).max(0.0));
+                of_lane.entry(outlines.lane.to_owned()).or_default().push((class_counts(&outlines), element));
             }
         }
         let mut classes = BTreeMap::new();
@@ -244,7 +184,8 @@ impl Loops {
             let named = names.iter().zip(costs).filter(|(_, cost)| *cost > 0.0);
             classes.insert(lane, named.map(|(name, cost)| ((*name).to_owned(), cost)).collect());
         }
-        LoopCosts { classes, residual: fit::median(residuals.into_iter()), overlap: 0.5, seen }
+        let [start, left] = [starts, longer].map(estimate);
+        LoopCosts { residual: fit::median(residuals.into_iter()), overlap: 0.5, start, left, classes }
     }
 
     /// The programs of the large drill scenes in every execution; `look` is what looking at the clock takes.
@@ -253,9 +194,11 @@ impl Loops {
     }
 }
 
-/// A program of which nothing is known yet but what it takes in the first-level cache.
-fn seen_near(what: String, element: Estimate, start: Estimate, rest: PassCost) -> ProgramCost {
-    ProgramCost { what, element, start, rest, factors: Factors::default() }
+/// The middle of what loops show, and how far they differ.
+fn estimate(mut values: Vec<f64>) -> Estimate {
+    values.sort_by(f64::total_cmp);
+    let at = |share: f64| quantile(&values, share).unwrap_or(0.0);
+    Estimate { value: at(0.5), interval: 0.5 * (at(0.975) - at(0.025)) }
 }
 
 #[cfg(test)]

@@ -3,9 +3,8 @@
 use super::drills::{Kind, LONGEST, ROUNDS, drill, mixture};
 use super::fit::{self, median};
 use super::point::{Charged, Waiting};
-use super::timing::{PARTS, Samples};
-use crate::method::lattice_md::study::noise_monitor::NoiseMonitor;
-use crate::model::host::{Change, Estimate, LaneCosts, PassCost, Surroundings, touches};
+use crate::method::lattice_md::study::samples::{PARTS, Samples};
+use crate::model::host::{Change, LaneCosts, PassCost, Surroundings, touches};
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::backend::tape::{Outline, Outlines, register_shape};
 use stripmine_kernels::isa::{Memory, ProgramError};
@@ -48,7 +47,7 @@ impl Point {
     /// Whether the long drill took as much more than the short one as it must at least, and the halves of the measurement
     /// agree: of the longest vectors there are few samples, and all of them may have been disturbed.
     fn is_settled(&self) -> bool {
-        let longer = self.samples[0].typical() > 1.15 * self.samples[1].typical();
+        let longer = self.samples[0].middle() > 1.15 * self.samples[1].middle();
         longer && self.samples.iter().all(|samples| samples.disagreement() < 0.25)
     }
 }
@@ -97,13 +96,7 @@ impl Lane {
 
     /// The sweep of this number: one more sample of every point, of long vectors only in some sweeps. `near` has room for
     /// the short ones, `far` for all.
-    pub(super) fn sweep(
-        &mut self,
-        monitor: &mut NoiseMonitor,
-        [near, far]: [&Memory<'_>; 2],
-        set: InstructionSet,
-        number: usize,
-    ) {
+    pub(super) fn sweep(&mut self, [near, far]: [&Memory<'_>; 2], set: InstructionSet, number: usize) {
         let run = |program: &dyn Runnable, n: usize| {
             let memory = if n <= NEAR { near } else { far };
             let outcome = program.run(memory, 0..n, Execution::Eager, set);
@@ -112,19 +105,12 @@ impl Lane {
         let takes_turn = |point: &&mut Point| number.is_multiple_of(turn(point.n));
         for point in self.points.iter_mut().filter(takes_turn) {
             for (samples, program) in point.samples.iter_mut().zip(&self.programs[point.kind]) {
-                samples.take(monitor, SHORTEST, || run(program.as_ref(), point.n));
+                samples.take(SHORTEST, || run(program.as_ref(), point.n));
             }
         }
         for (at, n, samples) in &mut self.mixed {
-            samples.take(monitor, SHORTEST, || run(self.mixtures[*at].as_ref(), *n));
+            samples.take(SHORTEST, || run(self.mixtures[*at].as_ref(), *n));
         }
-    }
-
-    /// Evaluates all samples for an undisturbed core.
-    pub(super) fn evaluate(&mut self, reference: f64) {
-        let mixed = self.mixed.iter_mut().map(|(_, _, samples)| samples);
-        let points = self.points.iter_mut().flat_map(|point| &mut point.samples);
-        points.chain(mixed).for_each(|samples| samples.evaluate(reference));
     }
 
     /// All samples.
@@ -145,7 +131,7 @@ impl Lane {
     /// Start and slope of every kind, and what a change of kind costs.
     pub(super) fn fit(&mut self) {
         for (at, kind) in Kind::ALL.iter().enumerate() {
-            let mut cost = self.short_line(at, Samples::typical);
+            let mut cost = self.short_line(at, Samples::middle);
             let parts: [PassCost; PARTS] =
                 std::array::from_fn(|part| self.short_line(at, |samples| samples.of_part(part)));
             cost.element.interval += fit::half_interval(parts.map(|part| part.element.value));
@@ -175,7 +161,7 @@ impl Lane {
     fn change(&self, at: usize, passes: usize) -> Change {
         let of_mixture = self.mixed.iter().filter(|(mixture, ..)| *mixture == at);
         let each = of_mixture.map(|(_, n, samples)| {
-            (samples.typical() - self.in_cache(self.mixtures[at].as_ref(), *n)) / passes as f64
+            (samples.middle() - self.in_cache(self.mixtures[at].as_ref(), *n)) / passes as f64
         });
         Change { passes, ns: median(each).max(0.0) }
     }
@@ -184,7 +170,7 @@ impl Lane {
     pub(super) fn run(&self) -> f64 {
         let shortest = self.points.iter().filter(|point| point.n == SHORT[0] * self.costs.lanes);
         median(shortest.map(|point| {
-            point.samples[1].typical() - self.in_cache(self.programs[point.kind][1].as_ref(), point.n)
+            point.samples[1].middle() - self.in_cache(self.programs[point.kind][1].as_ref(), point.n)
         }))
         .max(0.0)
     }
@@ -212,9 +198,8 @@ impl Lane {
                 start: begin * cost.start.value,
                 passes: vec![Waiting { times: 1.0, n, touched }],
                 around,
-                ns: point.each(Samples::typical),
+                ns: point.each(Samples::middle),
                 weight: DRILLED,
-                program: None,
             })
         })
     }
@@ -229,9 +214,8 @@ impl Lane {
         ns: f64,
     ) -> Option<Charged> {
         let all = touches(outlines, self.costs.register_bytes);
-        let program = Some(outlines.signature());
         let mut charged =
-            Charged { computing: 0.0, start: self.run(), passes: vec![], around, ns, weight: 1.0, program };
+            Charged { computing: 0.0, start: self.run(), passes: vec![], around, ns, weight: 1.0 };
         for (strips, length) in [(n / strip, strip), (1, n % strip)] {
             if strips == 0 || length == 0 {
                 continue;
@@ -254,46 +238,5 @@ impl Lane {
         let drilled =
             outlines.passes.iter().map(|pass| Some(change + self.costs.cost(pass).ok()?.start.value));
         Some(start / drilled.sum::<Option<f64>>()?)
-    }
-}
-
-/// A number made of some samples, and its uncertainty: from their parts, and a hundredth of each of them for errors that are
-/// common to all parts of a measurement.
-pub(super) fn estimate<'a>(
-    all: impl IntoIterator<Item = &'a Samples>,
-    of: impl Fn(&dyn Fn(&Samples) -> f64) -> f64,
-) -> Estimate {
-    let value = of(&Samples::typical);
-    let parts: [f64; PARTS] = std::array::from_fn(|part| of(&|samples: &Samples| samples.of_part(part)));
-    let shared = all.into_iter().map(|one| {
-        let longer = |samples: &Samples| {
-            samples.typical() * if std::ptr::eq(samples, one) { 1.0 + SHARED } else { 1.0 }
-        };
-        (of(&longer) - value).powi(2)
-    });
-    Estimate { value, interval: fit::half_interval(parts) + shared.sum::<f64>().sqrt() }
-}
-
-/// What all parts of a measurement share, as a share of a sample.
-const SHARED: f64 = 0.01;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::method::lattice_md::study::noise_monitor::Timed;
-
-    fn samples(ns: f64) -> Samples {
-        let mut samples = Samples::default();
-        (0..2 * PARTS).for_each(|_| samples.push(Timed { ns, around: [1.0; 2] }));
-        samples.evaluate(1.0);
-        samples
-    }
-
-    #[test]
-    fn a_difference_is_as_unsure_as_what_it_is_of() {
-        let [long, short] = [samples(1000.0), samples(900.0)];
-        let Estimate { value, interval } = estimate([&long, &short], |of| of(&long) - of(&short));
-        assert!((value - 100.0).abs() < 1e-9);
-        assert!((interval - 10.0_f64.hypot(9.0)).abs() < 1e-9, "{interval}");
     }
 }

@@ -1,7 +1,6 @@
 //! What was measured, by what it is charged for: bytes and lines from beyond each level, and passes.
 
-use crate::model::host::{Factors, Level, Surroundings, Touch, Transfer, overlapped};
-use std::collections::BTreeMap;
+use crate::model::host::{Level, Surroundings, Touch, Transfer, overlapped};
 
 /// Something measured, as the levels see it.
 pub(super) struct Charged {
@@ -17,8 +16,6 @@ pub(super) struct Charged {
     pub(super) ns: f64,
     /// How much it counts.
     pub(super) weight: f64,
-    /// The signature of a program; none of drills.
-    pub(super) program: Option<String>,
 }
 
 /// A pass that is made some times.
@@ -90,7 +87,7 @@ impl Charged {
             }
         }
         let Charged { computing, start, ns, weight, .. } = *self;
-        Point { computing, start, ns, weight, features, program: self.program.clone() }
+        Point { computing, start, ns, weight, features }
     }
 }
 
@@ -102,7 +99,6 @@ pub(super) struct Point {
     pub(super) ns: f64,
     pub(super) weight: f64,
     pub(super) features: Costs,
-    pub(super) program: Option<String>,
 }
 
 impl Point {
@@ -125,22 +121,6 @@ impl Point {
     /// The same of loops, which wait while they compute.
     pub(super) fn overlapping(&self, costs: &Costs, overlap: f64) -> f64 {
         self.start + overlapped(overlap, self.parts_of_loops(costs))
-    }
-
-    /// The point of a program that differs so.
-    pub(super) fn with(&self, factors: &BTreeMap<String, Factors>) -> Point {
-        let own = self.program.as_ref().and_then(|program| factors.get(program)).copied().unwrap_or_default();
-        let extra: f64 = self.bytes().iter().zip(own.beyond).map(|(bytes, cost)| bytes * cost).sum();
-        Point {
-            computing: own.computing * self.computing + extra,
-            features: self.features.map(|feature| own.waiting * feature),
-            ..self.clone()
-        }
-    }
-
-    /// Bytes from beyond each level, of registers and arrays.
-    pub(super) fn bytes(&self) -> [f64; BEYOND] {
-        std::array::from_fn(|level| self.features[1 + level] + self.features[ARRAYS + level])
     }
 
     /// How far off some nanoseconds are, as the logarithm of a ratio.

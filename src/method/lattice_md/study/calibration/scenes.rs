@@ -3,19 +3,19 @@
 use super::fit;
 use crate::method::lattice_md::Checked;
 use crate::method::lattice_md::Phase;
-use crate::method::lattice_md::study::noise_monitor::NoiseMonitor;
 use crate::method::lattice_md::study::phase_times::{
     FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampling, phase_times,
 };
 use crate::method::throughput::MeasurementError;
-use crate::model::host::{Amounts, RatePoint, Rates};
+use crate::model::host::{Amounts, MAKING, PhaseRate, Rates};
 use crate::statistics::non_negative;
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 /// NP of the drill scenes: close enough to each other that no level of memory ends unseen between two of them.
-pub(super) const PARTICLES: [usize; 8] = [60, 160, 420, 1100, 3000, 8000, 16_000, 32_000];
-/// ρ of the drill scenes, of every second NP these and of the others those; the first two are sparse.
-const OCCUPANCIES: [[f64; 4]; 2] = [[0.03, 0.12, 0.17, 0.26], [0.07, 0.1, 0.18, 0.22]];
+pub(super) const PARTICLES: [usize; 6] = [60, 220, 900, 3300, 11_000, 32_000];
+/// ρ of the drill scenes, of every second NP these and of the others those; the first is sparse.
+const OCCUPANCIES: [[f64; 3]; 2] = [[0.05, 0.12, 0.26], [0.07, 0.17, 0.22]];
 const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
 
 /// Steps before the clock starts, and those that are timed: fewer of many discs, but enough for lists to be rebuilt.
@@ -27,12 +27,6 @@ fn sampling(run: &Run) -> Sampling {
 
 /// A drill scene, and what was measured of it.
 type Scene = (Run, Checked, Option<PhaseTimes>);
-
-fn once_more((run, checked, times): &mut Scene, monitor: &mut NoiseMonitor) -> Result<(), MeasurementError> {
-    let more = phase_times(checked, &sampling(run), monitor)?;
-    *times = Some(PhaseTimes::with(times.take(), more));
-    Ok(())
-}
 
 /// Every drill scene.
 pub(super) struct Scenes(Vec<Scene>);
@@ -54,119 +48,101 @@ impl Scenes {
         Ok(Scenes(scenes))
     }
 
-    /// Runs every scene once more. `progress` gets the share that is done.
-    pub(super) fn sweep(
-        &mut self,
-        monitor: &mut NoiseMonitor,
-        progress: impl Fn(f64),
-    ) -> Result<(), MeasurementError> {
-        let all = self.0.len() as f64;
-        for (at, scene) in self.0.iter_mut().enumerate() {
-            once_more(scene, monitor)?;
-            progress((at + 1) as f64 / all);
+    /// Runs once more every scene of which there is nothing yet, and of the others those for which there is time until `end`.
+    pub(super) fn sweep(&mut self, end: Instant) -> Result<(), MeasurementError> {
+        for (run, checked, times) in &mut self.0 {
+            if times.is_none() || Instant::now() < end {
+                let more = phase_times(checked, &sampling(run))?;
+                *times = Some(PhaseTimes::with(times.take(), more));
+            }
         }
         Ok(())
     }
 
-    /// Runs once more what was always disturbed so far. Whether there was any.
-    pub(super) fn again(
-        &mut self,
-        monitor: &mut NoiseMonitor,
-        reference: f64,
-    ) -> Result<bool, MeasurementError> {
-        let mut any = false;
-        for scene in &mut self.0 {
-            if !scene.2.as_ref().is_some_and(|times| times.is_quiet(reference)) {
-                once_more(scene, monitor)?;
-                any = true;
-            }
-        }
-        Ok(any)
-    }
-
-    /// The rates of the methods on an undisturbed core.
-    pub(super) fn rates(&self, reference: f64) -> BTreeMap<String, Rates> {
-        let measured = self.0.iter().filter_map(|(run, _, times)| Some((*run, times.as_ref()?)));
-        rates(&measured.collect::<Vec<_>>(), reference)
+    /// The rates of the methods.
+    pub(super) fn rates(&self) -> BTreeMap<String, Rates> {
+        let measured: Vec<(Run, &PhaseTimes)> =
+            self.0.iter().filter_map(|(run, _, times)| Some((*run, times.as_ref()?))).collect();
+        let of = |method: &str| {
+            let phases = Phase::ALL.iter().flat_map(|&phase| {
+                let upkeep = rate(&measured, method, |times| {
+                    Some((charged(phase, &times.amounts), times.upkeep(phase)))
+                });
+                let making = (phase == Phase::Index).then(|| {
+                    rate(&measured, method, |times| {
+                        let Amounts { discs, candidates, .. } = times.amounts;
+                        let amounts = Amounts { remade: discs, relisted: candidates, ..Amounts::default() };
+                        Some((amounts, times.making()?))
+                    })
+                });
+                let named = [(phase.name(), Some(upkeep)), (MAKING, making)];
+                named.into_iter().filter_map(|(name, rate)| Some((name.to_owned(), rate??)))
+            });
+            let phases: BTreeMap<String, PhaseRate> = phases.collect();
+            (method.to_owned(), Rates { discs: PARTICLES.to_vec(), phases })
+        };
+        ["fast", "fast, sparse", "fast lists", "lists"].map(of).into_iter().collect()
     }
 }
 
 /// What there was to do in a run, and the nanoseconds that it took.
 type Done = (Amounts, f64);
 
-fn rates(measured: &[(Run, &PhaseTimes)], reference: f64) -> BTreeMap<String, Rates> {
-    let mut methods: BTreeMap<String, Rates> = BTreeMap::new();
-    for method in ["fast", "fast, sparse", "fast lists", "lists"] {
-        let rates = methods.entry(method.to_owned()).or_default();
-        for precision in PRECISIONS {
-            let alike: Vec<Vec<&PhaseTimes>> = PARTICLES
-                .iter()
-                .map(|&particles| {
-                    let alike = measured.iter().filter(|(run, _)| {
-                        run.particles == particles
-                            && run.precision == precision
-                            && run.rates() == Some(method)
-                    });
-                    alike.map(|(_, times)| *times).collect()
-                })
-                .collect();
-            let phases = rates.0.entry(precision.to_owned()).or_default();
-            for &phase in Phase::ALL {
-                let points = points(&alike, phase, reference);
-                if points.iter().any(|point| !point.ns.is_empty()) {
-                    phases.insert(phase.name().to_owned(), points);
-                }
-            }
-        }
-    }
-    methods
-}
-
-/// What each unit takes in a phase, number of discs by number of discs.
-fn points(alike: &[Vec<&PhaseTimes>], phase: Phase, reference: f64) -> Vec<RatePoint> {
-    let upkeep = |times: &PhaseTimes| Some((charged(phase, &times.amounts), times.upkeep(phase, reference)));
-    let making = |times: &PhaseTimes| {
-        let Amounts { discs, candidates, .. } = times.amounts;
-        let amounts = Amounts { remade: discs, relisted: candidates, ..Amounts::default() };
-        (phase == Phase::Index).then(|| Some((amounts, times.making(reference)?))).flatten()
-    };
-    let of = |done: &dyn Fn(&PhaseTimes) -> Option<Done>| -> Vec<Vec<(&'static str, f64)>> {
-        let all: Vec<Vec<Done>> = alike
-            .iter()
-            .map(|alike| alike.iter().filter_map(|times| done(times)).filter(|done| done.1 > 0.0).collect())
-            .collect();
-        per_unit(&all)
-    };
-    let points = alike.iter().zip(of(&upkeep)).zip(of(&making)).map(|((alike, upkeep), making)| RatePoint {
-        discs: alike.iter().map(|times| times.amounts.discs as usize).max().unwrap_or(0),
-        ns: upkeep.into_iter().chain(making).map(|(name, ns)| (name.to_owned(), ns)).collect(),
-    });
-    points.collect()
-}
-
-/// Nanoseconds of each unit that costs some, from the work at each number of discs.
-///
-/// How the units stand to each other is fitted to all of them together: of many discs alone there are too few steps with too
-/// few contacts to tell. How much slower everything is with more discs, which lie farther away, is each number's own.
-fn per_unit(done: &[Vec<Done>]) -> Vec<Vec<(&'static str, f64)>> {
-    let mut slower = vec![1.0; done.len()];
-    let mut units: Units = [0.0; Amounts::NAMES.len()];
-    for round in 0..ROUNDS {
-        let known = (round > 0).then_some(units);
-        let rows = done.iter().zip(&slower).flat_map(|(done, &slower)| {
-            done.iter().map(move |(amounts, ns)| {
-                // As a share of what is expected, or of the amounts before anything is: as a share of its own time, one that
-                // is much too short would draw all to it.
-                let expected = slower * sum(amounts, &known.unwrap_or([1.0; Amounts::NAMES.len()]));
-                let weight = known.map_or(1.0, |_| trust(expected / ns)) / expected.max(f64::MIN_POSITIVE);
-                (amounts.values().map(|amount| weight * slower * amount), weight * ns)
-            })
+/// What each unit takes in a phase of a method, and how much slower everything is with each number of discs; none where it has no such
+/// phase.
+fn rate(
+    measured: &[(Run, &PhaseTimes)],
+    method: &str,
+    done: impl Fn(&PhaseTimes) -> Option<Done>,
+) -> Option<PhaseRate> {
+    let of = |precision: &str, particles: usize| -> Vec<Done> {
+        let alike = measured.iter().filter(|(run, _)| {
+            (run.particles, run.precision) == (particles, precision) && run.rates() == Some(method)
         });
-        units = non_negative(&rows.collect::<Vec<_>>());
-        // Of many discs few steps are run, and no lists may have been made: as of fewer discs, then.
+        alike.filter_map(|(_, times)| done(times)).filter(|done| done.1 > 0.0).collect()
+    };
+    let all: Vec<Vec<Vec<Done>>> = PRECISIONS
+        .iter()
+        .map(|precision| PARTICLES.iter().map(|&particles| of(precision, particles)).collect())
+        .collect();
+    if all.iter().flatten().flatten().next().is_none() {
+        return None;
+    }
+    let (units, slower) = fitted(&all);
+    let named = |units: Units| {
+        let each = Amounts::NAMES.into_iter().zip(units).filter(|(_, unit)| *unit > 0.0);
+        each.map(|(name, unit)| (name.to_owned(), unit)).collect()
+    };
+    let ns = PRECISIONS.iter().zip(units).map(|(precision, units)| ((*precision).to_owned(), named(units)));
+    Some(PhaseRate { slower, ns: ns.collect() })
+}
+
+/// The units of every precision, and how much slower everything is with each number of discs, from the work of runs by precision and
+/// number of discs.
+///
+/// How the units stand to each other is fitted to all of them together: of many discs alone there are too few steps with too few
+/// contacts to tell.
+fn fitted(all: &[Vec<Vec<Done>>]) -> (Vec<Units>, Vec<f64>) {
+    let sizes = all.first().map_or(0, Vec::len);
+    let mut slower = vec![1.0; sizes];
+    let mut units: Vec<Units> = vec![[0.0; Amounts::NAMES.len()]; all.len()];
+    for _ in 0..ROUNDS {
+        for (units, by_size) in units.iter_mut().zip(all) {
+            let before = *units;
+            let rows = by_size.iter().zip(&slower).flat_map(|(alike, slower)| {
+                alike.iter().map(move |(amounts, ns)| {
+                    let said = slower * sum(amounts, &before);
+                    let weight = if said > 0.0 { trust(said / ns) } else { 1.0 };
+                    (amounts.values().map(|amount| weight * slower * amount / ns), weight)
+                })
+            });
+            *units = non_negative(&rows.collect::<Vec<_>>());
+        }
         let mut last = 1.0;
-        for (done, slower) in done.iter().zip(&mut slower) {
-            let ratios = done.iter().map(|(amounts, ns)| ns / sum(amounts, &units));
+        for (size, slower) in slower.iter_mut().enumerate() {
+            let ratios = all.iter().zip(&units).flat_map(|(by_size, units)| {
+                by_size[size].iter().map(|(amounts, ns)| ns / sum(amounts, units))
+            });
             let ratios: Vec<f64> = ratios.filter(|ratio| ratio.is_finite()).collect();
             if !ratios.is_empty() {
                 last = fit::median(ratios.into_iter());
@@ -174,11 +150,7 @@ fn per_unit(done: &[Vec<Done>]) -> Vec<Vec<(&'static str, f64)>> {
             *slower = last;
         }
     }
-    let point = |slower: f64| {
-        let each = Amounts::NAMES.into_iter().zip(units).filter(|(_, unit)| *unit > 0.0);
-        each.map(|(name, unit)| (name, slower * unit)).collect()
-    };
-    slower.into_iter().map(point).collect()
+    (units, slower)
 }
 
 type Units = [f64; Amounts::NAMES.len()];
@@ -212,43 +184,27 @@ fn charged(phase: Phase, amounts: &Amounts) -> Amounts {
 mod tests {
     use super::*;
 
+    /// Two precisions, of which the second takes twice as long; of a thousand discs there is one run alone, of ten thousand none.
     #[test]
     fn units_are_fitted_to_all_and_a_slowdown_to_each_number_of_discs() {
-        let done = |discs: f64, contacts: f64, slower: f64| {
+        let done = |factor: f64, discs: f64, contacts: f64, slower: f64| {
             let amounts = Amounts { discs, contacts, ..Amounts::default() };
-            (amounts, slower * (2.0 * discs + 5.0 * contacts))
+            (amounts, factor * slower * (2.0 * discs + 5.0 * contacts))
         };
-        // Of a thousand discs there is one run alone, of ten thousand none.
-        let all =
-            [vec![done(100.0, 10.0, 1.0), done(100.0, 70.0, 1.0)], vec![done(1000.0, 1.0, 1.2)], vec![]];
-        let points = per_unit(&all);
-        for (point, slower) in points.iter().zip([1.0, 1.2, 1.2]) {
-            let sum = |discs: f64, contacts: f64| {
-                let amounts = Amounts { discs, contacts, ..Amounts::default() };
-                let named: BTreeMap<&str, f64> = point.iter().copied().collect();
-                let each = Amounts::NAMES.iter().zip(amounts.values());
-                each.map(|(name, amount)| named.get(name).copied().unwrap_or(0.0) * amount).sum::<f64>()
-            };
-            let expected = slower * (2.0 * 1000.0 + 5.0 * 700.0);
-            assert!((sum(1000.0, 700.0) / expected - 1.0).abs() < 0.02, "{point:?}");
-        }
-    }
-
-    #[test]
-    fn one_run_that_took_no_time_does_not_count() {
-        let done = |remade: f64, relisted: f64, bad: f64| {
-            let amounts = Amounts { remade, relisted, ..Amounts::default() };
-            (amounts, bad * (120.0 * remade + 5.0 * relisted))
+        let of = |factor: f64| {
+            vec![
+                vec![done(factor, 100.0, 10.0, 1.0), done(factor, 100.0, 70.0, 1.0)],
+                vec![done(factor, 1000.0, 1.0, 1.2)],
+                vec![],
+            ]
         };
-        let alike =
-            |discs: f64| [0.2, 0.7, 1.1, 1.5, 2.0].map(|share| done(discs, share * discs, 1.0)).to_vec();
-        let mut all = vec![alike(100.0), alike(1000.0), alike(5000.0)];
-        all[0].push(done(100.0, 3.0, 0.02));
-        for point in per_unit(&all) {
-            let named: BTreeMap<&str, f64> = point.into_iter().collect();
-            let [remade, relisted] =
-                ["remade", "relisted"].map(|name| named.get(name).copied().unwrap_or(0.0));
-            assert!((remade / 120.0 - 1.0).abs() < 0.05 && (relisted / 5.0 - 1.0).abs() < 0.2, "{named:?}");
+        let (units, slower) = fitted(&[of(1.0), of(2.0)]);
+        for (factor, units) in [1.0, 2.0].into_iter().zip(units) {
+            for (slower, expected) in slower.iter().zip([1.0, 1.2, 1.2]) {
+                let amounts = Amounts { discs: 1000.0, contacts: 700.0, ..Amounts::default() };
+                let known = factor * expected * (2.0 * 1000.0 + 5.0 * 700.0);
+                assert!((slower * sum(&amounts, &units) / known - 1.0).abs() < 0.02, "{units:?}");
+            }
         }
     }
 }

@@ -1,10 +1,7 @@
 //! The programs of a step, and the samples of them: in the first-level cache, and over whole vectors.
 
-use super::passes::estimate;
-use super::timing::Samples;
 use crate::method::lattice_md::StepProgram;
-use crate::method::lattice_md::study::noise_monitor::NoiseMonitor;
-use crate::model::host::PassCost;
+use crate::method::lattice_md::study::samples::Samples;
 use std::ops::Range;
 use stripmine_kernels::isa::Memory;
 use stripmine_kernels::{Execution, InstructionSet};
@@ -16,7 +13,7 @@ pub(super) const ELEMENTS: [usize; 2] = [32, 96];
 pub(super) const STRIPPED: usize = 16;
 pub(super) const STRIPS: [usize; 2] = [2, 8];
 /// How many elements are left over beyond whole registers of `lanes` elements, in runs that measure what these take.
-fn left_over(lanes: usize) -> [usize; 2] {
+pub(super) fn left_over(lanes: usize) -> [usize; 2] {
     [1, lanes.saturating_sub(1).max(2)]
 }
 /// Least nanoseconds of a sample.
@@ -38,7 +35,6 @@ pub(super) const INTERPRETED: [Execution; 5] = [
 
 /// The loops of one model in one precision.
 pub(super) struct Step {
-    pub(super) name: String,
     pub(super) programs: Vec<StepProgram>,
     pub(super) ranges: Vec<Range<usize>>,
     pub(super) memory: usize,
@@ -62,7 +58,6 @@ impl Step {
     /// wanted.
     pub(super) fn in_turns(
         &mut self,
-        monitor: &mut NoiseMonitor,
         set: InstructionSet,
         memory: &Memory<'_>,
         wanted: impl Fn(Execution) -> bool,
@@ -71,7 +66,7 @@ impl Step {
         let Step { programs, ranges, whole, interpreted, .. } = self;
         for (execution, samples, elements) in executions(whole, interpreted) {
             if wanted(execution) {
-                Samples::take_in_turns(samples, monitor, (elements / longest).clamp(1, MOST), |at| {
+                Samples::take_in_turns(samples, (elements / longest).clamp(1, MOST), |at| {
                     run(&programs[at], memory, ranges[at].clone(), execution, set);
                 });
             }
@@ -80,13 +75,7 @@ impl Step {
 
     /// One more sample of every program in the first-level cache; `lanes` says how many elements of a type are in a hardware
     /// register.
-    pub(super) fn near(
-        &mut self,
-        monitor: &mut NoiseMonitor,
-        set: InstructionSet,
-        memory: &Memory<'_>,
-        lanes: &dyn Fn(&str) -> usize,
-    ) {
+    pub(super) fn near(&mut self, set: InstructionSet, memory: &Memory<'_>, lanes: &dyn Fn(&str) -> usize) {
         let Step { programs, ranges, loops, strips, .. } = self;
         for (at, (loops, strips)) in loops.iter_mut().zip(strips).enumerate() {
             let start = ranges[at].start;
@@ -95,13 +84,13 @@ impl Step {
             let left = left_over(lanes);
             let [short, long] = ELEMENTS;
             for (samples, n) in loops.all_mut().zip([short, long, short + left[0], short + left[1]]) {
-                samples.take(monitor, SHORTEST, || run(n, Execution::Chained));
+                samples.take(SHORTEST, || run(n, Execution::Chained));
             }
             let whole = STRIPPED * lanes;
             let [short, long] = STRIPS.map(|strip| strip * lanes);
             let all = [(whole, short), (whole, long), (whole + left[0], long), (whole + left[1], long)];
             for (samples, (n, strip)) in strips.all_mut().zip(all) {
-                samples.take(monitor, SHORTEST, || run(n, Execution::Strip(strip)));
+                samples.take(SHORTEST, || run(n, Execution::Strip(strip)));
             }
         }
     }
@@ -134,7 +123,7 @@ pub(super) struct Near {
     /// Over whole registers: short and longer.
     pub(super) whole: [Samples; 2],
     /// With elements left over: few and many.
-    left: [Samples; 2],
+    pub(super) left: [Samples; 2],
 }
 
 impl Near {
@@ -144,16 +133,5 @@ impl Near {
 
     pub(super) fn all_mut(&mut self) -> impl Iterator<Item = &mut Samples> {
         self.whole.iter_mut().chain(&mut self.left)
-    }
-
-    /// What is left over takes, where `whole` runs without it.
-    pub(super) fn rest(&self, lanes: usize, whole: usize) -> PassCost {
-        let [few, many] = left_over(lanes).map(|left| left as f64);
-        let element =
-            |of: &dyn Fn(&Samples) -> f64| ((of(&self.left[1]) - of(&self.left[0])) / (many - few)).max(1e-4);
-        let start = |of: &dyn Fn(&Samples) -> f64| {
-            (of(&self.left[0]) - of(&self.whole[whole]) - few * element(of)).max(0.0)
-        };
-        PassCost { element: estimate(self.all(), element), start: estimate(self.all(), start) }
     }
 }

@@ -9,25 +9,21 @@ pub(super) const DRILL: Run = Run { particles: 300, occupancy: 0.13, precision: 
 
 /// What is drilled of the drill scene.
 pub(super) struct Variant {
-    /// What its programs are called by.
-    pub(super) suffix: &'static str,
     /// How it differs.
     pub(super) change: fn(&mut Model),
 }
 
 /// The bench scene's own first, which larger scenes have too; then what leaves something out, or has something more.
 pub(super) const VARIANTS: [Variant; 4] = [
-    Variant { suffix: "", change: |_| () },
+    Variant { change: |_| () },
     Variant {
-        suffix: ", frictionless",
         change: |model| {
             model.friction = false;
             model.contact.shear_damping = 0.0;
         },
     },
-    Variant { suffix: ", varying discs", change: |model| model.discs = Discs::Varying },
+    Variant { change: |model| model.discs = Discs::Varying },
     Variant {
-        suffix: ", as in the source",
         change: |model| {
             model.discs = Discs::Varying;
             model.coordinates = Coordinates::Absolute;

@@ -1,97 +1,115 @@
 //! The cases of a validation, and how far off their predictions are.
 
-use super::runs::{EXECUTIONS, PRECISIONS, UNSETTLED};
+use super::EXECUTIONS;
 use crate::method::lattice_md::Phase;
-use crate::method::lattice_md::study::phase_times::{FAST, FAST_LISTS, LISTS, QUIET};
 use serde::Serialize;
 
-/// The group of all executions of programs.
-pub const PROGRAMS: &str = "eager, strip-mined and chained";
-/// The group of all executions whose work depends on the data.
-pub const OF_DATA: &str = "fast and lists";
+/// The name of a whole step among the phases.
+pub const STEP: &str = "step";
+/// The name of a program of a law that nothing was calibrated on.
+pub const STRANGER: &str = "law";
 
-/// Those among the first that were measured on an undisturbed core, and whose halves are no more than [`UNSETTLED`] apart: no
-/// prediction can be shown to be nearer than that.
-pub const PROGRAMS_SETTLED: &str = "eager, strip-mined and chained, undisturbed and repeated within 10 %";
-/// Those among the second.
-pub const OF_DATA_SETTLED: &str = "fast and lists, undisturbed and repeated within 10 %";
+/// Whole steps by programs.
+pub const STEPS: &str = "whole steps, eager, strip-mined and chained";
+/// Whole steps whose work depends on the data.
+pub const STEPS_OF_DATA: &str = "whole steps, fast and lists";
+/// Phases of programs.
+pub const PHASES: &str = "phases, eager, strip-mined and chained";
+/// Phases whose work depends on the data.
+pub const PHASES_OF_DATA: &str = "phases, fast and lists";
+/// Programs of laws that nothing was calibrated on.
+pub const STRANGERS: &str = "laws that nothing was calibrated on";
 
-/// A phase of a step of one run.
+/// A phase of a step of one run, a whole step, or a program.
 #[derive(Clone, Debug, Serialize)]
 pub struct Case {
-    /// NP.
-    pub particles: usize,
-    /// ρ on cells as wide as the radius.
-    pub occupancy: f64,
-    /// Precision of state and forces.
-    pub precision: &'static str,
-    /// The execution.
+    /// Precision, NP and ρ; or the law and the length of the vectors.
+    pub place: String,
+    /// What executed it.
     pub execution: &'static str,
-    /// The phase.
+    /// The phase; [`STEP`] or [`STRANGER`].
     pub phase: &'static str,
-    /// Nanoseconds predicted.
+    /// Predicted (ns).
     pub predicted: f64,
-    /// Nanoseconds on an undisturbed core: the sum over the segments of a low quantile of the samples.
+    /// Measured: the middle of the samples (ns).
     pub measured: f64,
-    /// The sums over the segments of the lower and of the upper quartile of the samples.
+    /// Their lowest tenth (ns).
+    pub low: f64,
+    /// Their quartiles (ns).
     pub quartiles: [f64; 2],
-    /// The same by the rounds of even number alone and by those of odd number; none of one round. Every round lays the run
-    /// out again, in other pages of memory.
+    /// The middles of the rounds of even and of odd number (ns); none of a single round.
     pub halves: Option<[f64; 2]>,
-    /// The share that was measured on an undisturbed core, and not corrected for a slowdown.
-    pub quiet: f64,
-    /// Nanoseconds by the trivial baseline: operations times elements, at the cost of a sum in the cache; none where
-    /// what is executed depends on the data.
+    /// Operations times elements, at the cost of a sum in the cache (ns); none where work depends on the data.
     pub baseline: Option<f64>,
+    /// Whether its work depends on the data.
+    pub depends_on_data: bool,
 }
 
 impl Case {
-    /// How far the prediction lies off, as a share of the measured time.
+    /// A whole step of its phases; none of none.
+    pub(super) fn step(phases: &[Case]) -> Option<Case> {
+        let first = phases.first()?;
+        let sum = |of: &dyn Fn(&Case) -> f64| phases.iter().map(of).sum::<f64>();
+        let halves: Option<Vec<[f64; 2]>> = phases.iter().map(|case| case.halves).collect();
+        let baselines: Option<Vec<f64>> = phases.iter().map(|case| case.baseline).collect();
+        Some(Case {
+            phase: STEP,
+            predicted: sum(&|case| case.predicted),
+            measured: sum(&|case| case.measured),
+            low: sum(&|case| case.low),
+            quartiles: [0, 1].map(|at| sum(&|case| case.quartiles[at])),
+            halves: halves.map(|all| [0, 1].map(|at: usize| all.iter().map(|halves| halves[at]).sum())),
+            baseline: baselines.map(|all| all.iter().sum()),
+            ..first.clone()
+        })
+    }
+
+    /// The error, relative to what was measured.
     pub fn error(&self) -> f64 {
         (self.predicted / self.measured - 1.0).abs()
     }
 
-    /// The same of the baseline.
+    /// The same of the lowest tenth.
+    pub fn error_of_low(&self) -> f64 {
+        (self.predicted / self.low - 1.0).abs()
+    }
+
+    /// The error of the baseline.
     pub fn baseline_error(&self) -> Option<f64> {
         Some((self.baseline? / self.measured - 1.0).abs())
     }
 
-    /// How far the two halves of the measurement differ, as a share: no prediction can be shown to be better than that.
+    /// How far the measurement repeated differs from itself.
     pub fn repeat_error(&self) -> Option<f64> {
         self.halves.map(|[even, odd]| even.max(odd) / even.min(odd) - 1.0)
     }
 
-    /// Whether what is executed depends on the data.
-    pub fn depends_on_data(&self) -> bool {
-        [FAST, FAST_LISTS, LISTS].contains(&self.execution)
-    }
-
     /// All that distinguishes it from the others.
     pub fn name(&self) -> String {
-        let Case { particles, occupancy, precision, execution, phase, .. } = self;
-        format!("{phase}, {execution}, {precision}, NP = {particles}, ρ = {occupancy}")
+        format!("{}, {}, {}", self.phase, self.execution, self.place)
     }
 }
 
-/// The errors of some cases.
+/// The errors of a group of cases.
 #[derive(Clone, Debug, Serialize)]
 pub struct Errors {
-    /// What the cases have in common.
+    /// The cases.
     pub what: String,
-    /// Cases.
+    /// How many.
     pub cases: usize,
     /// The median error.
     pub median: f64,
-    /// Nine of ten lie below.
+    /// Nine of ten are smaller.
     pub ninth_tenth: f64,
-    /// The largest.
+    /// The worst.
     pub worst: f64,
-    /// Cases within 5, 10, 20 and 30 %.
+    /// Cases within 5, 10, 15 and 25 %.
     pub within: [usize; 4],
-    /// The median error of the trivial baseline; none where there is none.
+    /// The median error where the lowest tenth of the samples counts.
+    pub median_of_low: f64,
+    /// The median error of the baseline.
     pub baseline_median: Option<f64>,
-    /// How far the measurement differs from its own repetition: in the median, and what nine of ten stay below; none of one
-    /// round.
+    /// How far the measurement repeated differs from itself: the median, and nine of ten.
     pub repeated: Option<[f64; 2]>,
 }
 
@@ -116,7 +134,9 @@ impl Errors {
             median: quantile(&errors, 0.5),
             ninth_tenth: quantile(&errors, 0.9),
             worst: quantile(&errors, 1.0),
-            within: [0.05, 0.1, 0.2, 0.3].map(|limit| errors.iter().filter(|&&error| error <= limit).count()),
+            within: [0.05, 0.1, 0.15, 0.25]
+                .map(|limit| errors.iter().filter(|&&error| error <= limit).count()),
+            median_of_low: quantile(&sorted(&|case| Some(case.error_of_low())), 0.5),
             baseline_median: Some(quantile(&sorted(&Case::baseline_error), 0.5))
                 .filter(|median| median.is_finite()),
             repeated: both(&Case::repeat_error),
@@ -124,7 +144,7 @@ impl Errors {
     }
 }
 
-/// The errors by execution, phase and precision.
+/// The errors of all cases, and group by group.
 pub(super) fn errors(cases: &[Case]) -> Vec<Errors> {
     let mut errors = vec![];
     let mut group = |what: &str, keep: &dyn Fn(&Case) -> bool| {
@@ -133,22 +153,25 @@ pub(super) fn errors(cases: &[Case]) -> Vec<Errors> {
             errors.push(Errors::of(what.to_owned(), &kept));
         }
     };
-    group(PROGRAMS, &|case| !case.depends_on_data());
-    group(OF_DATA, &Case::depends_on_data);
-    let settled =
-        |case: &Case| case.quiet >= QUIET && case.repeat_error().is_some_and(|apart| apart <= UNSETTLED);
-    group(PROGRAMS_SETTLED, &|case| !case.depends_on_data() && settled(case));
-    group(OF_DATA_SETTLED, &|case| case.depends_on_data() && settled(case));
-    EXECUTIONS.iter().for_each(|(name, _)| group(name, &|case| case.execution == *name));
-    let straight = |case: &Case| !case.depends_on_data();
-    Phase::ALL.iter().for_each(|phase| {
-        group(&format!("{} of programs", phase.name()), &|case| straight(case) && case.phase == phase.name());
-    });
-    Phase::ALL.iter().for_each(|phase| {
-        let of_data = |case: &Case| case.depends_on_data() && case.phase == phase.name();
-        group(&format!("{} of fast and lists", phase.name()), &of_data);
-    });
-    PRECISIONS.iter().for_each(|name| group(name, &|case| straight(case) && case.precision == *name));
+    let is_phase = |case: &Case| case.phase != STEP && case.phase != STRANGER;
+    group(STEPS, &|case| case.phase == STEP && !case.depends_on_data);
+    group(STEPS_OF_DATA, &|case| case.phase == STEP && case.depends_on_data);
+    group(PHASES, &|case| is_phase(case) && !case.depends_on_data);
+    group(PHASES_OF_DATA, &|case| is_phase(case) && case.depends_on_data);
+    group(STRANGERS, &|case| case.phase == STRANGER);
+    for (name, _) in EXECUTIONS {
+        group(&format!("whole steps, {name}"), &|case| case.phase == STEP && case.execution == name);
+    }
+    for phase in Phase::ALL {
+        group(&format!("{} of programs", phase.name()), &|case| {
+            !case.depends_on_data && case.phase == phase.name()
+        });
+    }
+    for phase in Phase::ALL {
+        group(&format!("{} of fast and lists", phase.name()), &|case| {
+            case.depends_on_data && case.phase == phase.name()
+        });
+    }
     errors
 }
 
@@ -156,33 +179,46 @@ pub(super) fn errors(cases: &[Case]) -> Vec<Errors> {
 mod tests {
     use super::*;
 
-    fn case(predicted: f64, execution: &'static str) -> Case {
+    fn case(predicted: f64, execution: &'static str, phase: &'static str) -> Case {
         Case {
-            particles: 100,
-            occupancy: 0.1,
-            precision: "f64",
+            place: "here".into(),
             execution,
-            phase: "forces",
+            phase,
             predicted,
             measured: 100.0,
+            low: 80.0,
             quartiles: [99.0, 101.0],
             halves: Some([if execution == "eager" { 102.0 } else { 150.0 }, 100.0]),
-            quiet: 1.0,
-            baseline: (execution != LISTS).then_some(50.0),
+            baseline: (execution != "lists").then_some(50.0),
+            depends_on_data: execution == "lists",
         }
     }
 
     #[test]
     fn errors_are_counted_group_by_group() {
-        let cases = [case(102.0, "eager"), case(92.0, "eager"), case(140.0, "chained"), case(80.0, LISTS)];
+        let cases = [
+            case(102.0, "eager", "forces"),
+            case(92.0, "eager", "index"),
+            case(140.0, "chained", "forces"),
+            case(80.0, "lists", "forces"),
+            case(110.0, "eager", STRANGER),
+        ];
         let errors = errors(&cases);
         let of = |what: &str| errors.iter().find(|errors| errors.what == what).unwrap();
-        let programs = of(PROGRAMS);
+        let programs = of(PHASES);
         assert_eq!((programs.cases, programs.within), (3, [1, 2, 2, 2]));
         assert!((programs.median - 0.08).abs() < 1e-9 && (programs.worst - 0.4).abs() < 1e-9);
+        assert!((programs.median_of_low - 0.275).abs() < 1e-9, "{}", programs.median_of_low);
         assert_eq!(programs.baseline_median, Some(0.5));
         assert!((programs.repeated.unwrap()[0] - 0.02).abs() < 1e-9);
-        assert_eq!(of(OF_DATA).baseline_median, None);
-        assert_eq!((of(PROGRAMS_SETTLED).cases, of(PROGRAMS_SETTLED).within), (2, [1, 2, 2, 2]));
+        assert_eq!((of(PHASES_OF_DATA).baseline_median, of(STRANGERS).cases), (None, 1));
+    }
+
+    #[test]
+    fn a_step_is_the_sum_of_its_phases() {
+        let step = Case::step(&[case(102.0, "eager", "forces"), case(92.0, "eager", "index")]).unwrap();
+        assert_eq!((step.phase, step.predicted, step.measured, step.low), (STEP, 194.0, 200.0, 160.0));
+        assert_eq!((step.halves, step.baseline), (Some([204.0, 200.0]), Some(100.0)));
+        assert!(Case::step(&[]).is_none());
     }
 }

@@ -1,24 +1,68 @@
-//! How good is the host model? Predicted against measured, on runs that nothing was fitted to: whole steps of moving
-//! discs, phase by phase.
+//! How good is the host model? Predicted against measured: whole steps of moving discs and their phases, timed as runs time them, and
+//! programs of laws that nothing was calibrated on.
 
 mod errors;
-mod runs;
-mod scene;
+mod strangers;
 
-pub use errors::{Case, Errors, OF_DATA, OF_DATA_SETTLED, PROGRAMS, PROGRAMS_SETTLED};
-pub use runs::{Effort, UNSETTLED, ValidationError};
+pub use errors::{Case, Errors, PHASES, PHASES_OF_DATA, STEPS, STEPS_OF_DATA, STRANGERS};
 
-use super::calibration::{self, Calibration};
-use super::noise_monitor::NoiseMonitor;
-use super::phase_times::PhaseTimes;
-use crate::method::lattice_md::Phase;
+use super::calibration::CalibrationError;
+use super::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampling, phase_times};
+use super::predicted_step::{Step, of_precision};
+use super::rounds::Bound;
+use crate::method::lattice_md::{Checked, Lengths, Phase, model};
 use crate::method::throughput::MeasurementError;
-use crate::model::host::HostModel;
-use rayon::ThreadPool;
-use runs::runs;
-use scene::{Scene, rated};
+use crate::model::host::{HostModel, OutOfRange};
 use serde::Serialize;
-use stripmine_kernels::InstructionSet;
+use strangers::strangers;
+use stripmine_kernels::Execution;
+
+/// How much is measured.
+#[derive(Clone, Debug)]
+pub struct Effort {
+    /// NP.
+    pub particles: Vec<usize>,
+    /// ρ on cells as wide as the radius.
+    pub occupancies: Vec<f64>,
+    /// Rounds over all runs.
+    pub rounds: Bound,
+    /// Particle-steps of a run, about.
+    pub particle_steps: usize,
+}
+
+/// What is run, as scenes name it; programs with their execution.
+const EXECUTIONS: [(&str, Option<Execution>); 7] = [
+    ("eager", Some(Execution::Eager)),
+    ("strip:64", Some(Execution::Strip(64))),
+    ("strip:512", Some(Execution::Strip(512))),
+    ("chained", Some(Execution::Chained)),
+    (FAST, None),
+    (FAST_LISTS, None),
+    (LISTS, None),
+];
+const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
+
+/// Steps before the clock starts: of programs, whose time does not depend on the data, only the caches must be in their steady state.
+const WARMED: usize = 3;
+
+/// Why there is no validation.
+#[derive(Debug, thiserror::Error)]
+pub enum ValidationError {
+    /// The processor cannot be calibrated.
+    #[error(transparent)]
+    Calibration(#[from] CalibrationError),
+    /// A scene broke.
+    #[error(transparent)]
+    Measurement(#[from] MeasurementError),
+    /// A run lies outside what was calibrated.
+    #[error("{case}: {cause}")]
+    OutOfRange {
+        /// The run.
+        case: String,
+        /// Why.
+        cause: OutOfRange,
+    },
+}
 
 /// Where the model comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -26,10 +70,10 @@ use stripmine_kernels::InstructionSet;
 pub enum Calibrated {
     /// With the program, of another machine perhaps.
     Shipped,
-    /// From a calibration at another time.
+    /// From a host file.
     Before,
-    /// From a calibration in turns with the runs.
-    InTurns,
+    /// Just before the runs.
+    Now,
 }
 
 /// The dataset.
@@ -39,16 +83,15 @@ pub struct ModelValidation {
     pub host: String,
     /// Its instructions.
     pub instruction_set: String,
+    /// In which state the machine was when it was calibrated.
+    pub state: String,
     /// Where it comes from.
     pub calibrated: Calibrated,
-    /// Rounds over all runs, and how many more there were over those that were always disturbed, or did not repeat themselves
-    /// within [`UNSETTLED`].
-    pub rounds: [usize; 2],
-    /// How many times as long as in the calibration the reference loop took in the runs, undisturbed in both.
-    pub slowdown: f64,
+    /// Rounds over all runs.
+    pub rounds: usize,
     /// Every case.
     pub cases: Vec<Case>,
-    /// The errors of all, of every execution and of every phase.
+    /// The errors of all, and group by group.
     pub errors: Vec<Errors>,
 }
 
@@ -71,178 +114,149 @@ pub fn model_validation(
     effort: &Effort,
     progress: impl Fn(f64) + Sync,
 ) -> Result<ModelValidation, ValidationError> {
+    let runs: Vec<Run> = runs(effort).collect();
     // Before discs are placed: large scenes take their time.
-    for run in runs(effort) {
+    for run in &runs {
         let out = |cause| ValidationError::OutOfRange { case: run.name(), cause };
         host.admits(run.particles).map_err(out)?;
         if run.rates().is_some() {
-            rated(host, &run, &PhaseTimes::none(run.particles)).map_err(out)?;
+            rated(host, run, &PhaseTimes::none(run.particles)).map_err(out)?;
         }
     }
-    let mut measured = Measured::new(effort)?;
-    for scene in &measured.scenes {
-        scene.predicted(host)?;
+    let mut scenes = runs.into_iter().map(Scene::new).collect::<Result<Vec<_>, _>>()?;
+    for scene in &scenes {
+        scene.programs(host)?;
     }
-    alone()?.install(|| {
-        let mut rounds = effort.rounds.begin();
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(MeasurementError::Threads)?;
+    alone.install(|| {
+        let (mut rounds, mut done, all) = (effort.rounds.begin(), 0, scenes.len() as f64);
         while rounds.next().is_some() {
-            measured.round(&|share| progress(BASE * rounds.share(share)))?;
-        }
-        measured.repeat_unsettled(|| Ok(false), &progress)?;
-        measured.against(host, calibrated)
-    })
-}
-
-/// The same with a calibration of this host, called `title`, in turns with the runs, so that both see the same
-/// states of it: the speed of a shared host changes. Nothing that is validated is calibrated on. With the model.
-///
-/// # Errors
-/// As [`model_validation`]; and [`ValidationError::Calibration`] if the processor lacks the instruction set.
-pub fn calibrated_in_turns(
-    title: String,
-    set: InstructionSet,
-    sweeps: calibration::Effort,
-    effort: &Effort,
-    progress: impl Fn(f64) + Sync,
-) -> Result<(HostModel, ModelValidation), ValidationError> {
-    for run in runs(effort) {
-        let out = |cause| ValidationError::OutOfRange { case: run.name(), cause };
-        Calibration::reaches(run.particles).map_err(out)?;
-    }
-    let mut measured = Measured::new(effort)?;
-    alone()?.install(|| {
-        let mut calibration = Calibration::new(title, set, sweeps)?;
-        let mut rounds = effort.rounds.begin();
-        while let Some(round) = rounds.next() {
-            let most = effort.rounds.most as f64;
-            let (before, upto) = (round as f64 / most, (round + 1) as f64 / most);
-            calibration.measure(upto, &|all| progress(BASE * rounds.share(0.5 * most * (all - before))))?;
-            measured.round(&|share| progress(BASE * rounds.share(0.5 * (1.0 + share))))?;
-        }
-        measured.repeat_unsettled(|| calibration.again(), &progress)?;
-        let host = calibration.model();
-        let data = measured.against(&host, Calibrated::InTurns)?;
-        Ok((host, data))
-    })
-}
-
-/// The share of the time that is taken by the rounds over all runs, about.
-const BASE: f64 = 0.8;
-
-/// Everything is measured on one thread.
-fn alone() -> Result<ThreadPool, MeasurementError> {
-    rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(MeasurementError::Threads)
-}
-
-/// All runs, and what was measured of them.
-struct Measured {
-    effort: Effort,
-    scenes: Vec<Scene>,
-    /// Rounds of even and of odd number apart.
-    times: Vec<[Option<PhaseTimes>; 2]>,
-    /// Rounds over all, and over some.
-    rounds: [usize; 2],
-    monitor: NoiseMonitor,
-}
-
-impl Measured {
-    /// Nothing yet.
-    fn new(effort: &Effort) -> Result<Measured, MeasurementError> {
-        let scenes = runs(effort).map(Scene::new).collect::<Result<Vec<_>, _>>()?;
-        let times = scenes.iter().map(|_| [None, None]).collect();
-        Ok(Measured {
-            effort: effort.clone(),
-            scenes,
-            times,
-            rounds: [0; 2],
-            monitor: NoiseMonitor::default(),
-        })
-    }
-
-    /// Runs everything once more. `progress` gets the share that is done.
-    fn round(&mut self, progress: &dyn Fn(f64)) -> Result<(), MeasurementError> {
-        let all = self.scenes.len() as f64;
-        for (at, (scene, times)) in self.scenes.iter().zip(&mut self.times).enumerate() {
-            scene.measure(&self.effort, &mut self.monitor, &mut times[self.rounds[0] % 2])?;
-            progress((at + 1) as f64 / all);
-        }
-        self.rounds[0] += 1;
-        Ok(())
-    }
-
-    /// Runs once more, for the rounds of even and for those of odd number, what is not settled yet; in turns with
-    /// `other`, which says whether it was of use, as long as either is. What is predicted has no say in it.
-    fn repeat_unsettled(
-        &mut self,
-        mut other: impl FnMut() -> Result<bool, MeasurementError>,
-        progress: &dyn Fn(f64),
-    ) -> Result<(), MeasurementError> {
-        while self.rounds[1] + 2 <= self.effort.further {
-            let reference = self.monitor.reference();
-            let unsettled: Vec<bool> =
-                self.times.iter().map(|halves| !is_settled(halves, reference)).collect();
-            for half in 0..2 {
-                let all = self.scenes.iter().zip(&mut self.times).zip(&unsettled);
-                for ((scene, times), _) in all.filter(|(_, unsettled)| **unsettled) {
-                    scene.measure(&self.effort, &mut self.monitor, &mut times[half])?;
-                }
+            for (at, scene) in scenes.iter_mut().enumerate() {
+                scene.measure(effort, done)?;
+                progress(0.9 * rounds.share((at + 1) as f64 / all));
             }
-            if !(other()? | unsettled.contains(&true)) {
-                break;
-            }
-            self.rounds[1] += 2;
-            progress(BASE + (1.0 - BASE) * self.rounds[1] as f64 / self.effort.further as f64);
+            done += 1;
         }
-        Ok(())
-    }
-
-    /// Beside what a model predicts.
-    fn against(&self, host: &HostModel, calibrated: Calibrated) -> Result<ModelValidation, ValidationError> {
-        let reference = self.monitor.reference();
         let mut cases = vec![];
-        for (scene, halves) in self.scenes.iter().zip(&self.times) {
-            cases.extend(scene.cases(host, halves, reference)?);
+        for scene in &scenes {
+            cases.extend(scene.cases(host)?);
         }
+        cases.extend(strangers(host)?);
+        progress(1.0);
         Ok(ModelValidation {
             host: host.title.clone(),
             instruction_set: host.instruction_set.clone(),
+            state: host.measured.state.clone(),
             calibrated,
-            rounds: self.rounds,
-            slowdown: reference / host.measured.reference_loop,
+            rounds: done,
             errors: errors::errors(&cases),
             cases,
         })
+    })
+}
+
+fn runs(effort: &Effort) -> impl Iterator<Item = Run> {
+    let places = effort
+        .particles
+        .iter()
+        .flat_map(|&particles| effort.occupancies.iter().map(move |&occupancy| (particles, occupancy)));
+    places.flat_map(|(particles, occupancy)| {
+        PRECISIONS.into_iter().flat_map(move |precision| {
+            EXECUTIONS.map(|(execution, _)| Run { particles, occupancy, precision, execution })
+        })
+    })
+}
+
+/// A run, and what was measured of it: rounds of even and of odd number apart.
+struct Scene {
+    run: Run,
+    checked: Checked,
+    step: Option<(Step, Execution)>,
+    halves: [Option<PhaseTimes>; 2],
+}
+
+impl Scene {
+    fn new(run: Run) -> Result<Scene, MeasurementError> {
+        let checked = run.scene(&[])?;
+        let named = EXECUTIONS.iter().find(|(name, _)| *name == run.execution);
+        let step = named.and_then(|(_, execution)| *execution).map(|execution| {
+            let model = model(&checked);
+            let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
+            (Step::new(&of_precision(&model, checked.scene.machine.precision), &lengths), execution)
+        });
+        Ok(Scene { run, checked, step, halves: [None, None] })
     }
-}
 
-/// Whether a run was measured on an undisturbed core, and each of its phases repeats itself within [`UNSETTLED`].
-fn is_settled(halves: &[Option<PhaseTimes>; 2], reference: f64) -> bool {
-    let [Some(even), Some(odd)] = halves else { return true };
-    let near = |phase: &Phase| {
-        let [a, b] = [even, odd].map(|half| half.typical(*phase, reference).0);
-        a.max(b) <= (1.0 + UNSETTLED) * a.min(b)
-    };
-    Phase::ALL.iter().all(near) && [even, odd].iter().any(|half| half.is_quiet(reference))
-}
+    /// Nanoseconds of every phase of programs, and the baseline's; none where work depends on the data.
+    fn programs(&self, host: &HostModel) -> Result<Option<Vec<[f64; 2]>>, ValidationError> {
+        let Some((step, execution)) = &self.step else { return Ok(None) };
+        let phases = Phase::ALL.iter().map(|&phase| step.phase(host, phase, *execution));
+        phases.collect::<Result<_, _>>().map(Some).map_err(|cause| self.out(cause))
+    }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::method::lattice_md::study::noise_monitor::Timed;
+    fn out(&self, cause: OutOfRange) -> ValidationError {
+        ValidationError::OutOfRange { case: self.run.name(), cause }
+    }
 
-    #[test]
-    fn a_run_is_settled_that_was_undisturbed_and_repeats_itself() {
-        let half = |ns: f64, reading: f64| {
-            let all = vec![Timed { ns, around: [reading; 2] }; 4];
-            Some(PhaseTimes::of(Phase::Forces, &all))
+    fn measure(&mut self, effort: &Effort, round: usize) -> Result<(), MeasurementError> {
+        let sampling = Sampling {
+            equilibration: match self.step {
+                Some(_) => WARMED,
+                None => (effort.particle_steps / self.run.particles).clamp(5, 50),
+            },
+            repeats: 1,
+            particle_steps: effort.particle_steps,
+            // Lists are rebuilt every few steps only.
+            least_steps: if self.run.has_lists() { 6 } else { 2 },
         };
-        let settled = |even, odd| is_settled(&[even, odd], 10.0);
-        assert!(settled(half(100.0, 10.0), half(109.0, 10.0)));
-        assert!(
-            !settled(half(100.0, 10.0), half(112.0, 10.0)) && !settled(half(112.0, 10.0), half(100.0, 10.0))
-        );
-        // Always disturbed, though alike; and one round alone, which cannot be compared.
-        assert!(!settled(half(100.0, 15.0), half(100.0, 15.0)));
-        assert!(settled(half(100.0, 15.0), None));
+        let half = &mut self.halves[round % 2];
+        *half = Some(PhaseTimes::with(half.take(), phase_times(&self.checked, &sampling)?));
+        Ok(())
     }
+
+    /// The phases and the whole step.
+    fn cases(&self, host: &HostModel) -> Result<Vec<Case>, ValidationError> {
+        let Some(times) = self.halves.iter().flatten().cloned().reduce(PhaseTimes::joined) else {
+            return Ok(vec![]);
+        };
+        let predicted: Vec<(f64, Option<f64>)> = match self.programs(host)? {
+            Some(all) => all.into_iter().map(|[ns, baseline]| (ns, Some(baseline))).collect(),
+            None => {
+                let phases = rated(host, &self.run, &times).map_err(|cause| self.out(cause))?;
+                phases.into_iter().map(|ns| (ns, None)).collect()
+            }
+        };
+        let Run { particles, occupancy, precision, execution } = self.run;
+        let place = format!("{precision}, NP = {particles}, ρ = {occupancy}");
+        let phases = Phase::ALL.iter().zip(predicted).map(|(&phase, (predicted, baseline))| {
+            let measured = times.of(phase);
+            Case {
+                place: place.clone(),
+                execution,
+                phase: phase.name(),
+                predicted,
+                measured: measured.middle,
+                low: measured.low,
+                quartiles: measured.quartiles,
+                halves: match &self.halves {
+                    [Some(even), Some(odd)] => Some([even, odd].map(|half| half.of(phase).middle)),
+                    _ => None,
+                },
+                baseline,
+                depends_on_data: self.step.is_none(),
+            }
+        });
+        // Not every execution has every phase.
+        let mut cases: Vec<Case> = phases.filter(|case| case.measured > 0.0).collect();
+        let step = Case::step(&cases);
+        cases.extend(step);
+        Ok(cases)
+    }
+}
+
+/// What is predicted of the phases of a run whose work depends on the data, given what it had to do.
+fn rated(host: &HostModel, run: &Run, times: &PhaseTimes) -> Result<Vec<f64>, OutOfRange> {
+    let method = run.rates().unwrap_or_default();
+    let rates = host.rates.get(method).ok_or_else(|| OutOfRange::NotMeasured(format!("method {method}")))?;
+    Phase::ALL.iter().map(|phase| rates.phase(run.precision, phase.name(), &times.amounts)).collect()
 }
