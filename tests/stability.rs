@@ -135,7 +135,7 @@ fn a_scene_that_fails_at_every_step_says_what_was_tried() {
     let out = folder.path().join("map").display().to_string();
     let asked = ["chart", "stability", "two-discs", "--json", "--out", &out, "--size", "6", "--seeds", "2"];
     let output = stripmine(
-        &[&asked[..], &["--tolerance", "0.2", "--budget", "60", "--range", "1e-6", "1e-5"]].concat(),
+        &[&asked[..], &["--tolerance", "0.2", "--budget", "3000", "--range", "1e-6", "1e-5"]].concat(),
     );
     let said = said(&output);
     assert_eq!(output.status.code(), Some(4), "{said}");

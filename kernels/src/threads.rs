@@ -280,7 +280,7 @@ mod tests {
         let who = || on_threads(0..50, |_: usize| std::thread::current().id());
         let found = on(3, || alone_if(true, || (std::thread::current().id(), who())));
         assert!(found.1.iter().all(|id| *id == found.0));
-        assert_eq!(on(3, || alone_if(false, || threads())), 3);
+        assert_eq!(on(3, || alone_if(false, threads)), 3);
         // It ends where it ends, also by a panic.
         let broken = || on(1, || alone_if(true, || panic!("on purpose")));
         assert!(std::panic::catch_unwind(broken).is_err());

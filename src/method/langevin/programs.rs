@@ -125,7 +125,6 @@ mod tests {
                     .write(Slot::new(Array::Fx), &mut fx)
                     .write(Slot::new(Array::Fy), &mut fy);
                 Runnable::run(&program, &memory, shape.swept(), execution, InstructionSet::best()).unwrap();
-                drop(memory);
                 for (&cell, force) in cell_of.iter().zip(&expected) {
                     for (found, expected) in [fx[cell], fy[cell]].into_iter().zip(force) {
                         assert!((found - expected).abs() < 1e-11 * largest, "{law}: {found} {expected}");

@@ -148,7 +148,10 @@ mod tests {
             assert_eq!(cells.around(4).count(), 0);
             let (_, blocks) = cells.figure();
             // 15 cells a row, rows of just below 0.7071.
-            assert!((blocks - 15.0 * 1e5 / 0.70711 / BLOCK as f64).abs() < 15.0, "{blocks}");
+            assert!(
+                (blocks - 15.0 * 1e5 / std::f64::consts::FRAC_1_SQRT_2 / BLOCK as f64).abs() < 15.0,
+                "{blocks}"
+            );
         }
     }
 

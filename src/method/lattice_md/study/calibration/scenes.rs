@@ -105,9 +105,7 @@ fn rate(
         .iter()
         .map(|precision| PARTICLES.iter().map(|&particles| of(precision, particles)).collect())
         .collect();
-    if all.iter().flatten().flatten().next().is_none() {
-        return None;
-    }
+    all.iter().flatten().flatten().next()?;
     let (units, slower) = fitted(&all);
     let named = |units: Units| {
         let each = Amounts::NAMES.into_iter().zip(units).filter(|(_, unit)| *unit > 0.0);

@@ -27,7 +27,7 @@ pub struct Case {
     pub place: String,
     /// What executed it.
     pub execution: &'static str,
-    /// The phase; [`STEP`] or [`STRANGER`].
+    /// The phase; `step` of a whole one, `law` of a program of a law that nothing was calibrated on.
     pub phase: &'static str,
     /// Predicted (ns).
     pub predicted: f64,
