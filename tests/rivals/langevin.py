@@ -20,6 +20,7 @@ import subprocess
 import tempfile
 
 from environment import Unavailable, environment, said
+from provenance import is_traceable, provenance
 
 IN_LAMMPS = pathlib.Path(__file__).with_name("langevin_in_lammps.py")
 SKINS = [0.05, 0.1, 0.15]
@@ -40,6 +41,8 @@ def main():
     parser.add_argument("--python", help="a Python that has LAMMPS")
     parser.add_argument("--out", type=pathlib.Path, help="folder for langevin.json")
     asked = parser.parse_args()
+    if asked.out and not is_traceable(asked.out):
+        raise SystemExit(f"error: the results in {asked.out} are committed, but this checkout has changes that are in no commit")
     try:
         python, variables = environment(asked.python)
     except Unavailable as error:
@@ -79,6 +82,7 @@ def main():
                  "temp": mean(lambda row: row["temperature"])}
     result = {
         "date": datetime.date.today().isoformat(),
+        **provenance(),
         "lammps": version,
         "million_particle_steps_per_second": {"lammps, by skin": theirs, "stripmine": ours},
         "ratio to the fastest of LAMMPS": {name: statistics.median(values) for name, values in ratios.items()},
