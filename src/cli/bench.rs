@@ -1,6 +1,6 @@
 //! `stripmine bench`: one throughput measurement of moving particles.
 
-use crate::console::{Common, Failure, print, print_json};
+use crate::console::{Common, Failure, clear_progress, print, print_json, progress};
 use crate::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
 use crate::method::{Bench, Entry, Methods};
 use crate::scene::{SceneErrors, Values};
@@ -39,7 +39,7 @@ pub(super) struct BenchVerb {
     /// Mask of cells around a disc, such as min or r3; the cheapest by default
     #[arg(long)]
     mask: Option<String>,
-    /// How products and roots of bodies are formed: exact or estimated
+    /// How products and roots of bodies are formed: exact, estimated or raw
     #[arg(long)]
     arithmetic: Option<String>,
     /// Pair law of particles in a bath: none, wca or lennard-jones
@@ -51,6 +51,9 @@ pub(super) struct BenchVerb {
     /// Sectors along each side
     #[arg(long)]
     sectors: Option<u64>,
+    /// When particles in a bath are put in the order of their sectors: auto, when-needed or every-step
+    #[arg(long)]
+    sort: Option<String>,
     /// How much farther than the cut-off listed pairs may be
     #[arg(long, allow_negative_numbers = true)]
     skin: Option<f64>,
@@ -88,6 +91,7 @@ impl BenchVerb {
             ("law", self.law.clone()),
             ("search", self.search.clone()),
             ("sectors", self.sectors.map(|count| count.to_string())),
+            ("sort", self.sort.clone()),
             ("skin", self.skin.map(|skin| skin.to_string())),
             ("cell-edge", self.cell_edge.map(|edge| edge.to_string())),
         ]
@@ -125,7 +129,11 @@ impl BenchVerb {
             return Err(Failure::NoSuchOption { bench: "bench", option: "what" });
         };
         let given = self.overrides(bench)?;
-        let result = self.measured(entry, bench, &given).map_err(|error| match error {
+        let bar = progress(common, "bench");
+        let show = |share: f64| bar.set_position((1e3 * share) as u64);
+        let result = self.measured(entry, bench, &given, show);
+        clear_progress();
+        let result = result.map_err(|error| match error {
             MeasurementError::Scene(mistakes) => Failure::Options(in_options(mistakes, &given)),
             error => error.into(),
         })?;
@@ -137,13 +145,15 @@ impl BenchVerb {
         entry: &'static Entry,
         bench: &'static Bench,
         given: &[Override],
+        show: impl Fn(f64),
     ) -> Result<Throughput, MeasurementError> {
         let overrides: Vec<String> = given.iter().map(|given| given.text.clone()).collect();
         let values = Values::load(bench.preset, &overrides, &[entry.vocabulary])?;
         let prepared = (entry.prepare)(values)?;
         let steps = self.steps.unwrap_or_else(|| (bench.amount)(prepared.particles().grain_count() as u64));
         let repeats = self.repeats.into();
-        throughput(Measurement { bench, prepared, equilibration: 200.max(steps / 10), steps, repeats })
+        let measurement = Measurement { bench, prepared, equilibration: 200.max(steps / 10), steps, repeats };
+        throughput(measurement, show)
     }
 }
 

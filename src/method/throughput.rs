@@ -97,14 +97,18 @@ impl Serialize for Throughput {
     }
 }
 
-/// Measures.
+/// Measures; `progress` gets the share that is done, between repeats.
 ///
 /// # Errors
 /// [`MeasurementError`] if the scene is bad or breaks while running.
-pub fn throughput(measurement: Measurement) -> Result<Throughput, MeasurementError> {
+pub fn throughput(measurement: Measurement, progress: impl Fn(f64)) -> Result<Throughput, MeasurementError> {
     let Measurement { bench, prepared, equilibration, steps, repeats } = measurement;
     let mut running = Running::begin(bench, prepared, equilibration, steps)?;
-    (0..repeats).try_for_each(|_| running.repeat())?;
+    for repeat in 0..repeats {
+        // What comes before takes as long as a tenth of a repeat.
+        progress((0.1 + repeat as f64) / (0.1 + repeats as f64));
+        running.repeat()?;
+    }
     Ok(running.measured())
 }
 

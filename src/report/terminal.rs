@@ -1,27 +1,145 @@
-//! Tables for a terminal.
+//! Tables for a terminal: no number and no word is ever broken. Where a table does not fit, its rows become records.
 
-use super::Table;
+use super::{Cell, Table};
 use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
-use comfy_table::{CellAlignment, ContentArrangement, LineStyle};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Width};
 
-/// The table as text, no wider than the terminal where there is one.
+/// Columns of a page that nobody has said the width of.
+const PAGE: usize = 100;
+/// Columns that a table takes beside the content of a column: a blank on either side.
+const BESIDE: usize = 2;
+/// Nothing is made narrower than this.
+const NARROWEST: usize = 20;
+
+/// The table as text, no wider than `COLUMNS` says, or the terminal where there is one.
 pub fn render(table: &Table) -> String {
+    let said = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    let width: Option<usize> = said.or_else(|| comfy_table::Table::new().width().map(usize::from));
+    render_within(table, width.map(|width| width.max(NARROWEST)))
+}
+
+/// The same within a number of columns, or as wide as it is.
+pub fn render_within(table: &Table, width: Option<usize>) -> String {
+    let rows: Vec<Vec<String>> =
+        table.rows.iter().map(|row| row.iter().map(Cell::for_reading).collect()).collect();
+    let least: Vec<usize> = (0..table.columns.len())
+        .map(|column| {
+            let cells = rows.iter().filter_map(|row| row.get(column));
+            cells.chain(table.columns.get(column)).map(|text| longest_word(text)).max().unwrap_or(0)
+        })
+        .collect();
+    let narrowest: usize = least.iter().map(|least| least + BESIDE).sum();
+    let page = width.unwrap_or(PAGE);
+    let mut text = wrapped(&table.title, page);
+    text += &match width {
+        Some(width) if narrowest > width => records(table, &rows, width),
+        _ => drawn(table, rows, &least, width) + "\n",
+    };
+    table.notes.iter().for_each(|note| text += &wrapped(note, page));
+    text
+}
+
+fn longest_word(text: &str) -> usize {
+    text.split(' ').map(|word| word.chars().count()).max().unwrap_or(0)
+}
+
+fn drawn(table: &Table, rows: Vec<Vec<String>>, least: &[usize], width: Option<usize>) -> String {
     let mut drawn = comfy_table::Table::new();
     // A rule below the headings and around the table; rows stand close.
-    drawn
-        .load_style(UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()))
-        .set_content_arrangement(ContentArrangement::Dynamic);
+    drawn.load_style(UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none())).set_content_arrangement(
+        match width {
+            Some(_) => ContentArrangement::Dynamic,
+            None => ContentArrangement::Disabled,
+        },
+    );
+    if let Some(width) = width {
+        drawn.set_width(width.min(u16::MAX.into()) as u16);
+    }
     drawn.set_header(&table.columns);
-    for row in &table.rows {
-        drawn.add_row(row.iter().map(|cell| {
+    for (cells, row) in table.rows.iter().zip(rows) {
+        drawn.add_row(cells.iter().zip(row).map(|(cell, text)| {
             let side = if cell.is_number() { CellAlignment::Right } else { CellAlignment::Left };
-            comfy_table::Cell::new(cell.for_reading()).set_alignment(side)
+            comfy_table::Cell::new(text).set_alignment(side)
         }));
     }
-    let mut text = format!("{}\n{drawn}\n", table.title);
-    for note in &table.notes {
-        text.push_str(note);
-        text.push('\n');
+    for (column, least) in drawn.column_iter_mut().zip(least) {
+        column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed((least + BESIDE) as u16)));
     }
-    text
+    drawn.to_string()
+}
+
+/// A line for each cell, named by its column; a blank line between rows.
+fn records(table: &Table, rows: &[Vec<String>], width: usize) -> String {
+    let one = |row: &Vec<String>| {
+        let lines = table.columns.iter().zip(row).filter(|(_, text)| !text.is_empty());
+        lines.map(|(column, text)| wrapped(&format!("  {column}: {text}"), width)).collect::<String>()
+    };
+    rows.iter().map(one).collect::<Vec<_>>().join("\n")
+}
+
+/// A paragraph broken at blanks; a word that is too long stays whole.
+fn wrapped(text: &str, width: usize) -> String {
+    let indent = text.chars().take_while(|c| *c == ' ').count();
+    let (mut lines, mut line) = (String::new(), " ".repeat(indent));
+    let mut is_empty = true;
+    for word in text.split(' ').filter(|word| !word.is_empty()) {
+        if !is_empty && line.chars().count() + 1 + word.chars().count() > width {
+            lines += &line;
+            lines.push('\n');
+            line = " ".repeat(if indent > 0 { indent + 2 } else { 0 });
+            is_empty = true;
+        }
+        if !is_empty {
+            line.push(' ');
+        }
+        line += word;
+        is_empty = false;
+    }
+    lines + &line + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> Table {
+        let columns =
+            ["integrator", "steps of an orbit", "largest error of the energy", "processor time (s)"];
+        let row = |name: &str, steps: u64| {
+            vec![Cell::Text(name.into()), Cell::Count(steps), Cell::Number(123_456.789, 3), Cell::Nothing]
+        };
+        Table {
+            name: "t".into(),
+            title: "Errors of integrators over the steps of an orbit and their cost on this host".into(),
+            columns: columns.map(str::to_owned).to_vec(),
+            rows: vec![row("damped-euler", 1_234_567), row("yoshida-8", 64)],
+            notes: vec![
+                "A note that is longer than a narrow terminal is wide, and is broken at blanks.".into(),
+            ],
+        }
+    }
+
+    /// Whatever the width: every number and every word of a heading in one piece, and no line wider than asked.
+    #[test]
+    fn nothing_is_broken_at_any_width() {
+        for width in [20, 30, 45, 60, 80, 100, 120] {
+            let text = render_within(&table(), Some(width));
+            for whole in ["1\u{202f}234\u{202f}567", "123\u{202f}456.789", "damped-euler", "processor"] {
+                assert!(text.contains(whole), "{width}: {text}");
+            }
+            let widest = text.lines().map(|line| line.chars().count()).max().unwrap();
+            assert!(widest <= width.max(24), "{width}: {widest}\n{text}");
+        }
+        let unbound = render_within(&table(), None);
+        assert!(unbound.lines().any(|line| line.contains("largest error of the energy")), "{unbound}");
+    }
+
+    #[test]
+    fn rows_become_records_where_the_table_does_not_fit() {
+        let text = render_within(&table(), Some(30));
+        assert!(
+            text.contains("  integrator: damped-euler\n") && text.contains("\n\n  integrator: yoshida-8")
+        );
+        assert!(render_within(&table(), Some(100)).contains('═'));
+    }
 }

@@ -151,6 +151,12 @@ const MACHINES: [&str; 3] = ["cray-y-mp-el", "cray-c90", "sx-aurora"];
 /// Lines of a listing that an item shows.
 const LINES: usize = 40;
 
+/// Milliseconds as a person reads them.
+fn milliseconds(clocks: Option<&Clocks>) -> String {
+    let ms = clocks.map_or(f64::NAN, |it| 1e3 * it.seconds);
+    if ms < 10.0 { format!("{ms:.2}") } else { format!("{ms:.0}") }
+}
+
 /// An item of the report: the programs of a method's scenes, by name.
 ///
 /// # Errors
@@ -173,12 +179,12 @@ pub fn made(
         let of = |clock: Clock| counted.clocks.iter().find(|it| it.clock == clock.name());
         let [paper, ports] = [of(Clock::Paper), of(Clock::Ports)];
         format!(
-            "{}: {} whole-array operations of the forces, {:.0} ms by the clock of the paper on a {}, {:.0} ms chained with memory ports",
+            "{}: {} whole-array operations of the forces, {} ms by the clock of the paper on a {}, {} ms chained with memory ports",
             counted.scene,
             Cell::Count(counted.operations()).for_reading(),
-            1e3 * paper.map_or(f64::NAN, |it| it.seconds),
+            milliseconds(paper),
             paper.map_or("machine", |it| it.machine.as_str()),
-            1e3 * ports.map_or(f64::NAN, |it| it.seconds),
+            milliseconds(ports),
         )
     });
     let excerpt = all.first().and_then(|(_, programs)| programs.first()).map(|it| {

@@ -44,8 +44,11 @@ pub(super) const BENCHES: &[Bench] = &[Bench {
         "particles", [], |count| vec![format!("particles.count={count}")];
         "precision", ["f64", "mixed"], |precision| vec![format!("machine.precision={precision}")];
         "integrator", [], |kind| vec![format!("integrator.kind={kind}")];
-        "engine", ["fast", "reference"], |engine| vec![format!("machine.engine={engine}")];
-        "arithmetic", ["exact", "estimated"], |kind| vec![format!("machine.arithmetic={kind}")];
+        "engine", ["fast", "programs", "reference"], |engine| vec![format!("machine.engine={engine}")];
+        "execution", [], |execution| {
+            vec!["machine.engine=programs".to_owned(), format!("machine.execution={execution}")]
+        };
+        "arithmetic", ["exact", "estimated", "raw"], |kind| vec![format!("machine.arithmetic={kind}")];
         "instruction-set", [], |set| vec![format!("machine.instruction_set={set}")];
     },
     overrides: &[],

@@ -143,13 +143,16 @@ fn sample(
     let elements = if kind == "lattice" { (particles as f64 / occupancy) as usize } else { particles };
     let steps = (effort.element_steps / elements).clamp(4, 2000) as u64;
     let document = Document::load("bench", &overrides)?;
-    let Throughput { cpu_seconds, particles, median_rate, .. } = throughput(Measurement {
-        bench: document.bench(),
-        prepared: document.prepare()?,
-        equilibration: steps.min(effort.equilibration),
-        steps,
-        repeats: effort.repeats,
-    })?;
+    let Throughput { cpu_seconds, particles, median_rate, .. } = throughput(
+        Measurement {
+            bench: document.bench(),
+            prepared: document.prepare()?,
+            equilibration: steps.min(effort.equilibration),
+            steps,
+            repeats: effort.repeats,
+        },
+        |_| (),
+    )?;
     Ok(Sample {
         variant,
         particles,
