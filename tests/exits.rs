@@ -70,7 +70,7 @@ const CASES: &[(&[&str], i32, &str, &[&str])] = &[
     (&["bench", "disks"], 2, "usage", &["lattice"]),
     (&["bench", "lattice", "--steps", "0"], 2, "usage", &["--steps", "0"]),
     (&["bench", "lattice", "--repeats", "0"], 2, "usage", &["--repeats", "0"]),
-    (&["bench", "lattice", "--particles", "0"], 2, "usage", &["--particles 0"]),
+    (&["bench", "lattice", "--particles", "0"], 2, "usage", &["'0' for '--particles", "1e6"]),
     (&["bench", "lattice", "--packing-fraction", "2"], 2, "usage", &["--packing-fraction 2", "0.907"]),
     (&["bench", "lattice", "--packing-fraction", "NaN"], 2, "usage", &["--packing-fraction NaN"]),
     (&["bench", "lattice", "--packing-fraction", "-1"], 2, "usage", &["--packing-fraction -1"]),

@@ -1,6 +1,6 @@
 //! `stripmine bench`: one throughput measurement of moving particles.
 
-use crate::console::{Common, Failure, clear_progress, print, print_json, progress};
+use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
 use crate::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
 use crate::method::{Bench, Entry, Methods};
 use crate::scene::{SceneErrors, Values};
@@ -13,7 +13,7 @@ pub(super) struct BenchVerb {
     /// What to measure
     what: String,
     /// Number of particles, at least
-    #[arg(long)]
+    #[arg(long, value_parser = count)]
     particles: Option<u64>,
     /// Area of the discs over that of the box
     #[arg(long, allow_negative_numbers = true)]
@@ -58,7 +58,7 @@ pub(super) struct BenchVerb {
     #[arg(long, allow_negative_numbers = true)]
     skin: Option<f64>,
     /// Steps, or collisions, of each repeat; about a second's worth by default
-    #[arg(long, visible_alias = "collisions", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, visible_alias = "collisions", value_parser = count)]
     steps: Option<u64>,
     /// Repeats
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]

@@ -21,7 +21,7 @@ pub(super) struct Reproduce {
     #[arg(long)]
     only: Vec<String>,
     /// Folder for the results
-    #[arg(long, default_value = "reports")]
+    #[arg(long, default_value = "reproduction")]
     out: PathBuf,
 }
 

@@ -28,3 +28,30 @@ pub struct Common {
     #[arg(skip)]
     pub command: String,
 }
+
+/// A count on the command line: a whole number from 1 on, also as 1e6.
+///
+/// # Errors
+/// A sentence, if it is none.
+pub fn count(text: &str) -> Result<u64, String> {
+    /// Above it not every whole number is a double.
+    const MOST: f64 = 9_007_199_254_740_992.0;
+    let whole = text.parse::<u64>().ok().or_else(|| {
+        let number: f64 = text.parse().ok()?;
+        (number.fract() == 0.0 && (1.0..=MOST).contains(&number)).then_some(number as u64)
+    });
+    whole
+        .filter(|&count| count > 0)
+        .ok_or_else(|| "a whole number, 1 or more, such as 1000 or 1e6".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::count;
+
+    #[test]
+    fn counts_are_whole_and_positive() {
+        assert_eq!(["7", "1e3", "2.5e1"].map(|text| count(text).ok()), [Some(7), Some(1000), Some(25)]);
+        assert!(["0", "-1", "1.5", "1e99", "many", "nan"].iter().all(|text| count(text).is_err()));
+    }
+}

@@ -6,6 +6,9 @@ use std::fmt::Write;
 /// What stands near the beginning of every such page and of no other.
 pub const MARK: &str = "Written by `stripmine reproduce`; do not edit.";
 
+/// Tables of an item that the page shows; further ones are linked.
+const SHOWN: usize = 2;
+
 /// The page. Pictures and data lie in a folder for each item, which bears its name.
 pub fn render(sections: &[Section]) -> String {
     let mut page = format!(
@@ -41,8 +44,17 @@ fn item(section: &Section) -> String {
     for figure in &section.figures {
         let _ = write!(text, "\n![{}]({folder}/{}.svg)\n\n{}\n", figure.title, figure.name, figure.caption);
     }
-    for table in &section.tables {
+    for table in section.tables.iter().take(SHOWN) {
         let _ = write!(text, "\n{}", markdown::render(table, &folder));
+    }
+    let further: Vec<String> = section
+        .tables
+        .iter()
+        .skip(SHOWN)
+        .map(|table| format!("[{}]({folder}/{}.csv)", table.title, table.name))
+        .collect();
+    if !further.is_empty() {
+        let _ = writeln!(text, "\nFurther tables: {}.", further.join("; "));
     }
     if let Some((what, lines)) = &section.excerpt {
         let _ = write!(text, "\n{what}\n\n```text\n{lines}\n```\n");

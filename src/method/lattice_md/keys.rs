@@ -148,6 +148,13 @@ fn search_and_engine(values: &Values) -> Option<SceneError> {
             let message = "sectors have no vector programs: only the fast engine searches them";
             return Some(refused(by, message).expecting("engine = \"fast\", and no key of programs"));
         }
+        let is_chained = values.choice(&EXECUTION).is_none_or(|execution| execution == "chained");
+        if is(&SEARCH, "neighbor-list") && !is_chained {
+            let message = "lists are walked pair by pair, which no vector of a whole array can do";
+            return Some(
+                refused(&EXECUTION, message).expecting("execution = \"chained\", or search.by = \"lattice\""),
+            );
+        }
         if is(&ON_CONFLICT, "resolve") {
             let message =
                 "the source's programs know one disc a cell: only the fast engine resolves conflicts";

@@ -39,19 +39,16 @@ pub fn render(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) ->
     }
 }
 
-/// The longest drawing (bytes) that a page carries for readers without scripts and for paper beside the data of a chart or a map.
-/// Longer ones are files beside the page.
-const LONGEST: usize = 20_000;
-
 /// A figure: its picture, and below it what a reader must know.
 fn figure(section: &Section, figure: &Figure, drawn: &dyn Fn(&Section, &Figure) -> String) -> Markup {
     let svg = drawn(section, figure);
     // What stands before the element itself belongs to a file of its own.
     let svg = PreEscaped(svg.find("<svg").map_or("", |start| &svg[start..]));
     let file = format!("{}/{}.svg", section.folder(), figure.name);
-    let elsewhere = html! { p { "Without scripts and on paper this picture is the file " a href=(file) { code { (file) } } "." } };
-    let elsewhere = elsewhere.into_string();
-    let instead = if svg.0.len() > LONGEST { PreEscaped(elsewhere.as_str()) } else { svg };
+    // Charts and maps are drawn by a script from their data: the page carries no picture twice.
+    let instead = html! { p { "Without scripts and on paper this picture is the file " a href=(file) { code { (file) } } "." } };
+    let instead = instead.into_string();
+    let instead = PreEscaped(instead.as_str());
     let label = format!("{}. {}", figure.title, figure.caption);
     html! {
         figure id={ (section.name) "-" (figure.name) } {
@@ -92,7 +89,7 @@ fn moving(section: &Section, shown: &Film) -> Markup {
 }
 
 /// Rows of a table that a page shows; a longer one is for programs.
-const ROWS: usize = 60;
+const ROWS: usize = 30;
 
 /// A table in a box of its own, which scrolls where the table is wider than the page. The page has the first rows of a long
 /// one, and says where all are: in the item's folder.
