@@ -21,7 +21,6 @@ a ratio is the median of the rounds' ratios.
 
 import argparse
 import itertools
-import json
 import pathlib
 import subprocess
 import sys
@@ -29,7 +28,7 @@ import tempfile
 
 from contest import Contest, Refused
 from environment import Unavailable, environment
-from provenance import is_traceable, provenance
+from provenance import is_traceable
 from tables import write
 
 PACKING_FRACTIONS = [0.84, 0.80, 0.6, 0.3, 0.1, 0.03]
@@ -82,8 +81,6 @@ def main():
                 write(results, asked.out)
     if results:
         print(write(results, asked.out))
-    if results and asked.out:
-        (asked.out / "provenance.json").write_text(json.dumps(provenance(), indent=2) + "\n")
     return 0
 
 

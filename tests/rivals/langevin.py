@@ -12,7 +12,6 @@ particle and pressure of a Lennard-Jones fluid of density 0.7 at kT = 1, dt = 0.
 """
 
 import argparse
-import datetime
 import json
 import pathlib
 import statistics
@@ -20,7 +19,7 @@ import subprocess
 import tempfile
 
 from environment import Unavailable, environment, said
-from provenance import is_traceable, provenance
+from provenance import is_traceable, write
 
 IN_LAMMPS = pathlib.Path(__file__).with_name("langevin_in_lammps.py")
 SKINS = [0.05, 0.1, 0.15]
@@ -81,8 +80,6 @@ def main():
         fluid = {"pe": mean(lambda row: row["potential"] / 1120), "press": mean(lambda row: row["pressure"]),
                  "temp": mean(lambda row: row["temperature"])}
     result = {
-        "date": datetime.date.today().isoformat(),
-        **provenance(),
         "lammps": version,
         "million_particle_steps_per_second": {"lammps, by skin": theirs, "stripmine": ours},
         "ratio to the fastest of LAMMPS": {name: statistics.median(values) for name, values in ratios.items()},
@@ -91,8 +88,7 @@ def main():
     text = json.dumps(result, indent=2)
     print(text)
     if asked.out:
-        asked.out.mkdir(parents=True, exist_ok=True)
-        (asked.out / "langevin.json").write_text(text + "\n")
+        write(asked.out, {"langevin.json": text + "\n"})
 
 
 main()

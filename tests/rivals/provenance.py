@@ -1,5 +1,7 @@
-"""Where results come from, and whether they may be written over committed ones."""
+"""Where results come from, whether they may be written over committed ones, and the folder they are written to."""
 
+import datetime
+import json
 import pathlib
 import platform
 import shlex
@@ -32,4 +34,13 @@ def provenance():
     lines = listed.read_text().splitlines() if listed.exists() else []
     names = [line.split(":")[1].strip() for line in lines if line.startswith("model name")]
     host = names[0] if names else platform.processor()
-    return {"commit": commit, "command": shlex.join(["python3", *sys.argv]), "host": host}
+    return {"date": datetime.date.today().isoformat(), "commit": commit, "command": shlex.join(["python3", *sys.argv]), "host": host}
+
+
+def write(folder, files):
+    """Writes files into a folder of their own, beside the list of them and where they come from."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in files.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    listed = {**provenance(), "files": sorted(["provenance.json", *files])}
+    (folder / "provenance.json").write_text(json.dumps(listed, indent=2) + "\n")

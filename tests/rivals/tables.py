@@ -5,6 +5,8 @@ import io
 import json
 import statistics
 
+import provenance
+
 COLUMNS = [
     "packing fraction", "discs", "way", "ours (10⁶/s)", "LAMMPS (10⁶/s)", "ratio", "kT ours", "kT LAMMPS", "contacts ours",
     "contacts LAMMPS", "ns a disc and step",
@@ -75,8 +77,6 @@ def write(contests, folder):
     """Writes all three into a folder, if there is one; gives the Markdown."""
     text = markdown(contests)
     if folder:
-        folder.mkdir(parents=True, exist_ok=True)
         files = {"md": text, "csv": table(contests), "json": json.dumps(contests, indent=1) + "\n"}
-        for kind, contents in files.items():
-            (folder / f"lammps.{kind}").write_text(contents, encoding="utf-8")
+        provenance.write(folder, {f"lammps.{kind}": contents for kind, contents in files.items()})
     return text

@@ -1,5 +1,6 @@
 //! The energy of an orbit.
 
+use crate::method::nbody::schemes::SchemeName;
 use crate::method::nbody::study::energy::{Energies, KNOWN, STEPS};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use crate::report::{Cell, Section, Table, Verdict};
@@ -20,6 +21,12 @@ pub fn section(data: &Energies) -> Section {
     let momentum = data.errors.iter().map(|it| it.drift[0]).fold(0.0, f64::max);
     let [long, short] = [&data.damped[0], &data.damped[2]];
     let times = |energy: Option<f64>| energy.map_or("endless".to_owned(), |energy| format!("{energy:.2}"));
+    // From the longest to the shortest step.
+    let of = |scheme: SchemeName| {
+        let own = data.errors.iter().filter(|it| it.scheme == scheme.word());
+        let said = own.map(|it| it.error.map_or("lost".to_owned(), |error| format!("{error:.1e}")));
+        said.collect::<Vec<_>>().join(", ")
+    };
     Section {
         name: "nbody-energy".into(),
         title: "Bodies: what integrators do to an orbit".into(),
@@ -29,9 +36,11 @@ pub fn section(data: &Energies) -> Section {
             KNOWN.len()
         ),
         came_out: format!(
-            "Every error is {least:.2} to {most:.2} times the known one. Its largest momentum is {momentum:.0e}. The source's scheme keeps the \
-             orbit with a bounded error; with the ½ it is lost. Damping acts once a step: 0.9999 makes the orbit's energy {} times as \
+            "Every error is {least:.2} to {most:.2} times the known one. The largest momentum on the way is {momentum:.0e}. The source's scheme \
+             has errors of {}; with the ½, {}. Damping acts once a step: 0.9999 makes the orbit's energy {} times as \
              large in ten orbits of {} steps, and {} times in ten of {}.",
+            of(SchemeName::DampedEuler),
+            of(SchemeName::EulerWithHalf),
             times(long.energy),
             long.steps,
             times(short.energy),

@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""Stripmine against the Rust crate `particular` on softened gravity of every pair, in alternating runs on one core. Optional: no
+test needs it.
+
+    python3 tests/rivals/particular.py [--out FOLDER] [--rounds 3] [--stripmine PROGRAM]
+
+Builds `tests/rivals/particular` for this processor (`-C target-cpu=native`, link-time optimisation) in a folder among this
+machine's temporary files; where the crate cannot be had the script says so and ends without an error. Rates are directed
+interactions a second, N² counted, of one thread: the crate's by sweeps over bodies that rest, ours by whole leapfrog steps of
+bodies that move. Both have Plummer spheres with softening 0.01.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+from environment import said
+from provenance import is_traceable, write
+
+CRATE = pathlib.Path(__file__).with_name("particular")
+# Ours by the precision of theirs.
+OURS = {"f32": "mixed", "f64": "f64"}
+
+
+def built():
+    """The rival's program."""
+    folder = pathlib.Path(tempfile.gettempdir()) / "stripmine-particular"
+    variables = dict(os.environ, RUSTFLAGS="-C target-cpu=native", CARGO_TARGET_DIR=str(folder))
+    call = ["cargo", "build", "--release", "--quiet", "--locked"]
+    done = subprocess.run(call, cwd=CRATE, env=variables, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise OSError(said(done.stderr))
+    return folder / "release" / "in-particular"
+
+
+def answer(call):
+    done = subprocess.run(list(map(str, call)), capture_output=True, text=True, timeout=300)
+    if done.returncode != 0:
+        raise SystemExit(said(done.stderr))
+    return json.loads(done.stdout)
+
+
+def contest(rival, stripmine, bodies, precision, rounds):
+    """Alternating runs; rates in 10⁹ a second."""
+    ours, theirs, error = [], [], 0.0
+    for _ in range(rounds):
+        found = answer([rival, bodies, precision, 2])
+        theirs.append(found["rate"] / 1e9)
+        error = found["error"]
+        call = [stripmine, "bench", "nbody", "--json", "--quiet", "--threads", 1, "--repeats", 3, "--particles", bodies]
+        found = answer([*call, "--precision", OURS[precision]])
+        ours.append(found["interactions_per_second_median"] / 1e9)
+    return {
+        "bodies": bodies, "precision": precision, "instruction_set": found["instruction_set"],
+        "arithmetic": found["arithmetic"], "stripmine": ours, "particular": theirs, "particular_force_error": error,
+        "ratio": statistics.median(own / other for own, other in zip(ours, theirs)),
+    }
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--bodies", type=int, nargs="+", default=[4096, 16384])
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--stripmine", default="target/release/stripmine")
+    parser.add_argument("--out", type=pathlib.Path, help="folder for particular.json")
+    asked = parser.parse_args()
+    if asked.out and not is_traceable(asked.out):
+        sys.exit(f"error: the results in {asked.out} are committed, but this checkout has changes that are in no commit")
+    try:
+        rival = built()
+    except OSError as why:
+        print(f"skipped: the crate cannot be had here: {why}")
+        return
+    contests = [
+        contest(rival, asked.stripmine, bodies, precision, asked.rounds) for bodies in asked.bodies for precision in OURS
+    ]
+    text = json.dumps({"particular": "0.7.0", "contests": contests}, indent=2)
+    print(text)
+    if asked.out:
+        write(asked.out, {"particular.json": text + "\n"})
+
+
+main()
