@@ -3,10 +3,10 @@
 //! A Plummer sphere of equal masses, softening 0.01. The error is the largest of 512 accelerations' errors over the largest
 //! acceleration, against sums in double precision over the positions as the kernel sees them.
 
+use particular::ComputeMethod;
 use particular::math::{DVec3, Vec3};
 use particular::sequential::BruteForceSoftenedSIMD;
 use particular::storage::PointMass;
-use particular::ComputeMethod;
 use std::time::Instant;
 
 const SOFTENING: f64 = 0.01;
@@ -80,7 +80,8 @@ fn main() {
     let (bodies, seconds): (usize, f64) = (bodies.parse().unwrap(), seconds.parse().unwrap());
     let (positions, mass) = (plummer(bodies), 1.0 / bodies as f64);
     let (rate, error) = if precision == "f32" {
-        let all: Vec<_> = positions.iter().map(|p| PointMass::new(Vec3::from(p.map(|x| x as f32)), mass as f32)).collect();
+        let all: Vec<_> =
+            positions.iter().map(|p| PointMass::new(Vec3::from(p.map(|x| x as f32)), mass as f32)).collect();
         let seen: Vec<_> = positions.iter().map(|p| p.map(|x| f64::from(x as f32))).collect();
         let mut way = BruteForceSoftenedSIMD::<8, f32> { softening: SOFTENING as f32 };
         let (rate, found) = sweeps(bodies, seconds, || way.compute(&all[..]));
