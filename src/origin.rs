@@ -51,6 +51,8 @@ pub struct Provenance {
     pub instruction_set: String,
     /// Seconds that it took.
     pub seconds: f64,
+    /// When it was made: the day, in universal time, as year-month-day.
+    pub date: String,
 }
 
 impl Provenance {
@@ -63,16 +65,27 @@ impl Provenance {
             threads: rayon::current_num_threads(),
             instruction_set: InstructionSet::best().name().to_owned(),
             seconds,
+            date: today(),
         }
+    }
+
+    /// In a few words, with a link to the file that says all.
+    pub fn in_short(&self, file: &str) -> String {
+        let Provenance { origin, host, threads, instruction_set, seconds, date, .. } = self;
+        let state = if origin.dirty { " with changes" } else { "" };
+        format!(
+            "[Made]({file}) {date} in {seconds:.1} s, commit {}{state}, {host}, {threads} threads, {instruction_set}.",
+            origin.commit
+        )
     }
 
     /// In a sentence.
     pub fn sentence(&self) -> String {
-        let Provenance { origin, command, host, threads, instruction_set, seconds } = self;
+        let Provenance { origin, command, host, threads, instruction_set, seconds, date } = self;
         let Origin { version, commit, dirty, target } = origin;
         let state = if *dirty { ", with changes that are in no commit" } else { "" };
         format!(
-            "Made in {seconds:.1} s by `{command}`, stripmine {version} of source commit {commit}{state}, built for \
+            "Made on {date} in {seconds:.1} s by `{command}`, stripmine {version} of source commit {commit}{state}, built for \
              {target}, on {host} ({threads} threads, {instruction_set})."
         )
     }
@@ -92,6 +105,12 @@ fn in_shell(word: &str) -> String {
         true => word.to_owned(),
         false => format!("'{}'", quoted::one_line(word).replace('\'', "'\\''")),
     }
+}
+
+/// The day, in universal time.
+pub fn today() -> String {
+    let now = humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string();
+    now.split('T').next().unwrap_or_default().to_owned()
 }
 
 /// The processor (Linux says it in `/proc/cpuinfo`) and the platform.

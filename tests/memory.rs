@@ -19,7 +19,9 @@ fn peak(arguments: &[String]) -> u64 {
     usage.ru_maxrss as u64 * 1024
 }
 
-/// Within 5 % for the six ways of a hundred thousand discs.
+/// For the six ways of a hundred thousand discs: at most 5 % more than foreseen, and at most 10 % less.
+/// Less is room for the thread that writes frames: whether it still holds one frame when the next is made
+/// depends on the moment, and what is foreseen counts both.
 #[test]
 fn a_run_takes_the_memory_that_was_foreseen() {
     let folder = tempfile::tempdir().unwrap();
@@ -50,7 +52,8 @@ fn a_run_takes_the_memory_that_was_foreseen() {
             format!("{sets:?}: {needed} foreseen, {taken} taken"),
         ));
     }
-    let off: Vec<&String> = said.iter().filter(|(off, _)| off.abs() > 0.05).map(|(_, said)| said).collect();
+    let off: Vec<&String> =
+        said.iter().filter(|(off, _)| !(-0.05..=0.10).contains(off)).map(|(_, said)| said).collect();
     assert!(off.is_empty(), "{off:#?} of {said:#?}");
 }
 

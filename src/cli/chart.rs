@@ -204,6 +204,6 @@ impl Place<'_> {
         if common.json {
             return print_json(&made.data);
         }
-        print(&(made.section.came_out + "\n"))
+        print(&(made.section.paragraphs().collect::<Vec<_>>().join("\n\n") + "\n"))
     }
 }

@@ -9,5 +9,5 @@ pub mod section;
 pub mod table;
 pub mod terminal;
 
-pub use section::{Section, Verdict};
+pub use section::{Part, Section, Verdict};
 pub use table::{Cell, Table};

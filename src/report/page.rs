@@ -1,31 +1,48 @@
 //! The page of a reproduction in Markdown, as a repository's site shows it.
 
-use super::{Section, markdown};
+use super::{Part, Section, Verdict, markdown};
 use std::fmt::Write;
 
 /// What stands near the beginning of every such page and of no other.
 pub const MARK: &str = "Written by `stripmine reproduce`; do not edit.";
 
-/// Tables of an item that the page shows; further ones are linked.
-const SHOWN: usize = 2;
+/// Tables and pictures of an item that the page shows; further ones are linked.
+const TABLES: usize = 1;
+const FIGURES: usize = 3;
 
-/// The page. Pictures and data lie in a folder for each item, which bears its name.
-pub fn render(sections: &[Section]) -> String {
+/// The page. Pictures and data lie in a folder for each item, which bears its name. `left_out` names items that the folder has,
+/// but of another version of the program.
+pub fn render(sections: &[Section], left_out: &[String]) -> String {
     let mut page = format!(
-        "# What came out\n\n{MARK} The same with charts to hover over and a film \
-         to play: [index.html](index.html), one file, to be opened from a copy on the disk.\n\n| | verdict |\n|---|---|\n",
+        "# What came out\n\n{MARK} The same with charts to hover over and films to play: [index.html](index.html), one file, to \
+         be opened from a copy on the disk.\n\n",
     );
-    for section in sections {
-        let _ = writeln!(
-            page,
-            "| [{}](#{}) | {} |",
-            section.title,
-            anchor(&section.title),
-            section.verdict.word()
-        );
+    for verdict in Verdict::ALL {
+        let _ = writeln!(page, "- **{}**: {}.", verdict.word(), verdict.meaning());
     }
-    for section in sections {
-        page.push_str(&item(section));
+    for part in Part::ALL {
+        let of_part: Vec<&Section> = sections.iter().filter(|section| section.part == part).collect();
+        if of_part.is_empty() {
+            continue;
+        }
+        let _ = write!(page, "\n**{}**\n\n| item | answer | verdict |\n|---|---|---|\n", part.title());
+        for section in of_part {
+            let Section { title, answer, verdict, .. } = section;
+            let answer = answer.replace('|', "\\|");
+            let _ = writeln!(page, "| [{title}](#{}) | {answer} | {} |", anchor(title), verdict.word());
+        }
+    }
+    for part in Part::ALL {
+        for section in sections.iter().filter(|section| section.part == part) {
+            page.push_str(&item(section));
+        }
+    }
+    if !left_out.is_empty() {
+        let _ = write!(
+            page,
+            "\nLeft out, for another version of the program made them: {}.\n",
+            left_out.join(", ")
+        );
     }
     page.push_str(
         "\n---\n\nWhat depends on the host lies under `host/`; everything else but this page, `index.html` and the files \
@@ -35,36 +52,38 @@ pub fn render(sections: &[Section]) -> String {
 }
 
 fn item(section: &Section) -> String {
-    let Section { title, says, came_out, verdict, again, .. } = section;
+    let Section { title, question, expected, verdict, again, .. } = section;
     let folder = section.folder();
-    let mut text = format!(
-        "\n## {title}\n\n*The source says:* {says}\n\n*What came out:* **{}**. {came_out}\n",
-        verdict.word()
-    );
-    for figure in &section.figures {
-        let _ = write!(text, "\n![{}]({folder}/{}.svg)\n\n{}\n", figure.title, figure.name, figure.caption);
+    let mut text = format!("\n## {title}\n\n*Question:* {question}\n\n*Expected:* {expected}\n\n");
+    let _ = write!(text, "*Answer:* **{}**. ", verdict.word());
+    for paragraph in section.paragraphs() {
+        let _ = write!(text, "{paragraph}\n\n");
     }
-    for table in section.tables.iter().take(SHOWN) {
-        let _ = write!(text, "\n{}", markdown::render(table, &folder));
+    for figure in section.figures.iter().take(FIGURES) {
+        let _ = write!(text, "![{}]({folder}/{}.svg)\n\n{}\n\n", figure.title, figure.name, figure.caption);
     }
-    let further: Vec<String> = section
-        .tables
-        .iter()
-        .skip(SHOWN)
-        .map(|table| format!("[{}]({folder}/{}.csv)", table.title, table.name))
-        .collect();
-    if !further.is_empty() {
-        let _ = writeln!(text, "\nFurther tables: {}.", further.join("; "));
+    for table in section.tables.iter().take(TABLES) {
+        let _ = writeln!(text, "{}", markdown::render(table, &folder));
+    }
+    let figures = section.figures.iter().skip(FIGURES);
+    let figures = figures.map(|figure| format!("[{}]({folder}/{}.svg)", figure.title, figure.name));
+    let tables = section.tables.iter().skip(TABLES);
+    let tables = tables.map(|table| format!("[{}]({folder}/{}.csv)", table.title, table.name));
+    for (what, links) in [("pictures", figures.collect::<Vec<_>>()), ("tables", tables.collect())] {
+        if !links.is_empty() {
+            let _ = write!(text, "Further {what}: {}.\n\n", links.join("; "));
+        }
     }
     if let Some((what, lines)) = &section.excerpt {
-        let _ = write!(text, "\n{what}\n\n```text\n{lines}\n```\n");
+        let _ = write!(text, "{what}\n\n```text\n{lines}\n```\n\n");
     }
     let seeds: Vec<_> = section.seeds.iter().map(u64::to_string).collect();
-    let seeds = if seeds.is_empty() { String::new() } else { format!(" *Seeds:* {}.", seeds.join(", ")) };
-    let _ = write!(text, "\n*To get it again:* `{again}`. *Data:* [{folder}/]({folder}/).{seeds}\n");
+    let seeds = if seeds.is_empty() { String::new() } else { format!(" Seeds {}.", seeds.join(", ")) };
+    let _ = write!(text, "*Again:* `{again}`. *Data:* [{folder}/]({folder}/).{seeds}");
     if let Some(provenance) = &section.provenance {
-        let _ = write!(text, "\n{}\n", provenance.sentence());
+        let _ = write!(text, " {}", provenance.in_short(&format!("{folder}/provenance.json")));
     }
+    text.push('\n');
     text
 }
 

@@ -12,11 +12,17 @@ pub struct Section {
     pub name: String,
     /// What it is.
     pub title: String,
-    /// What the source says.
-    pub says: String,
-    /// What came out.
-    pub came_out: String,
-    /// Whether the one is the other.
+    /// Which part of the report it belongs to.
+    pub part: Part,
+    /// What is asked.
+    pub question: String,
+    /// What is expected, and who says so: a source, theory, or our own aim.
+    pub expected: String,
+    /// What came out, in one sentence with its number.
+    pub answer: String,
+    /// What else a reader must know, a paragraph each.
+    pub details: Vec<String>,
+    /// What to think of the answer beside what was expected.
     pub verdict: Verdict,
     /// The command that makes it again.
     pub again: String,
@@ -44,34 +50,104 @@ impl Section {
         if self.depends_on_host { here } else { everywhere }
     }
 
+    /// The answer and what else there is to know, a paragraph each.
+    pub fn paragraphs(&self) -> impl Iterator<Item = &str> {
+        std::iter::once(&self.answer).chain(&self.details).map(String::as_str)
+    }
+
     /// The folder of an item that is the same everywhere, and of one that depends on the host.
     pub fn folders(name: &str) -> [String; 2] {
         [name.to_owned(), format!("host/{name}")]
     }
 }
 
-/// What to think of an item.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// A part of the report. Items stand in the order of the parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+pub enum Part {
+    /// What the particles do.
+    Physics,
+    /// The vector machine: operations and clock periods, which are the same everywhere.
+    Machine,
+    /// Times on the host of the report.
+    Host,
+}
+
+impl Part {
+    /// All, in the order of the report.
+    pub const ALL: [Part; 3] = [Part::Physics, Part::Machine, Part::Host];
+
+    /// Its heading.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Part::Physics => "Physics",
+            Part::Machine => "The vector machine",
+            Part::Host => "This host",
+        }
+    }
+}
+
+/// What to think of an item: the first three where a source or theory is the measure, the next two where an aim of our own is,
+/// the last where there is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// What the source says came out.
+    /// What the source or theory says came out.
     Reproduced,
     /// It came out in part, or with differences that are named.
     Partly,
     /// It did not come out.
-    Failed,
-    /// The source says nothing to compare with.
-    Shown,
+    NotReproduced,
+    /// Our own aim is met.
+    AimMet,
+    /// It is missed.
+    AimMissed,
+    /// There is nothing to compare with.
+    Measured,
 }
 
 impl Verdict {
-    /// As one word.
+    /// All of them.
+    pub const ALL: [Verdict; 6] = [
+        Verdict::Reproduced,
+        Verdict::Partly,
+        Verdict::NotReproduced,
+        Verdict::AimMet,
+        Verdict::AimMissed,
+        Verdict::Measured,
+    ];
+
+    /// Of a source's or theory's statement that holds, or does not hold in all.
+    pub const fn reproduced(holds: bool) -> Verdict {
+        if holds { Verdict::Reproduced } else { Verdict::Partly }
+    }
+
+    /// Of an aim.
+    pub const fn aim(is_met: bool) -> Verdict {
+        if is_met { Verdict::AimMet } else { Verdict::AimMissed }
+    }
+
+    /// As a word or two.
     pub const fn word(self) -> &'static str {
         match self {
             Verdict::Reproduced => "reproduced",
             Verdict::Partly => "partly reproduced",
-            Verdict::Failed => "not reproduced",
-            Verdict::Shown => "shown",
+            Verdict::NotReproduced => "not reproduced",
+            Verdict::AimMet => "aim met",
+            Verdict::AimMissed => "aim missed",
+            Verdict::Measured => "measured",
+        }
+    }
+
+    /// What it means.
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Verdict::Reproduced => "what the source or theory says came out, as closely as the item states",
+            Verdict::Partly => "it came out in part, or with differences that the item names",
+            Verdict::NotReproduced => "it did not come out",
+            Verdict::AimMet => "no source says; our own aim, which the item states, is met",
+            Verdict::AimMissed => "our own aim is missed, by as much as the item says",
+            Verdict::Measured => "no source and no aim: a measurement",
         }
     }
 }

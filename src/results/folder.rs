@@ -182,16 +182,22 @@ impl Folder {
     /// # Errors
     /// As [`write`](Self::write).
     pub fn write_page(&self, items: &[&str]) -> Result<(), Failure> {
-        let mut sections = Vec::new();
+        let (mut sections, mut left_out) = (Vec::new(), Vec::new());
         for item in items {
-            sections.extend(self.read(item)?);
+            match self.read(item)? {
+                Known::There(section) => sections.push(*section),
+                Known::OfAnotherVersion => left_out.push((*item).to_owned()),
+                Known::Absent => {}
+            }
         }
+        // Within a part, items stand as they are listed.
+        sections.sort_by_key(|section| section.part);
         // A picture that is gone leaves a gap in the page, and is there again with the item's next making.
         let drawn = |section: &Section, figure: &Figure| {
             let file = self.path.join(section.folder()).join(format!("{}.svg", figure.name));
             fs::read_to_string(file).unwrap_or_default()
         };
-        let texts = [page::render(&sections), html::render(&sections, &drawn)];
+        let texts = [page::render(&sections, &left_out), html::render(&sections, &left_out, &drawn)];
         for ((name, mark), text) in PAGES.into_iter().zip(texts) {
             let path = self.path.join(name);
             own_page(&path, mark)?;
@@ -201,23 +207,37 @@ impl Folder {
     }
 
     /// The item's section, if the folder has it.
-    fn read(&self, name: &str) -> Result<Option<Section>, Failure> {
+    fn read(&self, name: &str) -> Result<Known, Failure> {
         let Some(folder) = Section::folders(name)
             .map(|folder| self.path.join(folder))
             .into_iter()
             .find(|f| f.join(SECTION).exists())
         else {
-            return Ok(None);
+            return Ok(Known::Absent);
         };
-        let parsed = |file: &str| -> Result<String, Failure> {
+        let read = |file: &str| -> Result<String, Failure> {
             let path = folder.join(file);
             fs::read_to_string(&path).map_err(Failure::writing(path.display().to_string()))
         };
-        let foreign = |cause: serde_json::Error| Failure::writing(folder.display().to_string())(cause.into());
-        let mut section: Section = serde_json::from_str(&parsed(SECTION)?).map_err(foreign)?;
-        section.provenance = Some(serde_json::from_str(&parsed(PROVENANCE)?).map_err(foreign)?);
-        Ok(Some(section))
+        let (section, provenance) = (read(SECTION)?, read(PROVENANCE)?);
+        let section = serde_json::from_str::<Section>(&section);
+        Ok(match (section, serde_json::from_str::<Provenance>(&provenance)) {
+            (Ok(section), Ok(provenance)) => {
+                Known::There(Box::new(Section { provenance: Some(provenance), ..section }))
+            }
+            _ => Known::OfAnotherVersion,
+        })
     }
+}
+
+/// What a folder has of an item.
+enum Known {
+    /// Its section.
+    There(Box<Section>),
+    /// Files that another version of the program wrote.
+    OfAnotherVersion,
+    /// Nothing.
+    Absent,
 }
 
 /// The files of an item but its provenance, name and contents.

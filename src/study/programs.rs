@@ -6,7 +6,7 @@ use crate::method::VectorProgram;
 use crate::model::clock::{Clock, Work};
 use crate::model::machine::MachineModel;
 use crate::model::machines;
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 use crate::results::Made;
 use serde::Serialize;
 use stripmine_kernels::isa::{OpClass, OpCounts};
@@ -163,7 +163,7 @@ fn milliseconds(clocks: Option<&Clocks>) -> String {
 /// [`Failure`] if there is no such machine.
 pub fn made(
     (name, title): (&str, &str),
-    says: &str,
+    (question, expected): (&str, &str),
     scenes: &[(&str, Box<dyn Prepared>)],
 ) -> Result<Made, Failure> {
     let machines: Vec<MachineModel> =
@@ -175,11 +175,11 @@ pub fn made(
             (Programs::of(scene, &programs, &machines), programs)
         })
         .collect();
-    let said = all.iter().map(|(counted, _)| {
+    let mut said = all.iter().map(|(counted, _)| {
         let of = |clock: Clock| counted.clocks.iter().find(|it| it.clock == clock.name());
         let [paper, ports] = [of(Clock::Paper), of(Clock::Ports)];
         format!(
-            "{}: {} whole-array operations of the forces, {} ms by the clock of the paper on a {}, {} ms chained with memory ports",
+            "{}: the forces take {} whole-array operations, {} ms by the source's clock on a {} and {} ms chained with memory ports.",
             counted.scene,
             Cell::Count(counted.operations()).for_reading(),
             milliseconds(paper),
@@ -199,9 +199,12 @@ pub fn made(
     let section = Section {
         name: name.to_owned(),
         title: title.to_owned(),
-        says: says.to_owned(),
-        came_out: format!("{}.", said.collect::<Vec<_>>().join("; ")),
-        verdict: Verdict::Shown,
+        part: Part::Machine,
+        question: question.to_owned(),
+        expected: expected.to_owned(),
+        answer: said.next().unwrap_or_default(),
+        details: said.collect(),
+        verdict: Verdict::Measured,
         again: format!("stripmine reproduce --only {name}"),
         figures: vec![],
         tables: tables.collect(),

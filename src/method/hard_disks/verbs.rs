@@ -61,7 +61,7 @@ impl SoftHardVerb {
             self.particles, self.packing_fraction, self.restitution
         );
         let section = sections::soft_hard::section(&data, again);
-        let came_out = section.came_out.clone();
+        let answer = section.paragraphs().collect::<Vec<_>>().join(" ");
         let made = Made::new(section, &data)?;
         let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
         let folder = signals::whole(|| folder.write(&made, &provenance))?;
@@ -69,7 +69,7 @@ impl SoftHardVerb {
         if !common.quiet {
             say(format_args!("written: {}", folder.display()));
         }
-        if common.json { print_json(&data) } else { print(&(came_out + "\n")) }
+        if common.json { print_json(&data) } else { print(&(answer + "\n")) }
     }
 }
 

@@ -60,8 +60,11 @@ fn counted(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     progress(1.0);
     programs::made(
         ("langevin-programs", "Langevin: the pair law on the vector machine"),
-        "The source runs on sectors. On the lattice of BP93 its law is whole-array operations at every place of a mask: 24 for the \
+        (
+            "What does the law of the pairs cost on the vector machine of BP93?",
+            "The source runs on sectors. On the lattice of BP93 its law is whole-array operations at every place of a mask: 24 for the \
          repulsion, 120 up to 2.5 diameters.",
+        ),
         &scenes,
     )
 }

@@ -119,19 +119,22 @@ fn precision(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 
 fn pipe_small(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let title = "Density waves in a short pipe (figures 5 and 6)";
-    let showing = Showing { name: "pipe-small", title, from: 0.0, snapshots: 11 };
+    let question = "Do grains that fall through two fifths of the pipe form density waves?";
+    let showing = Showing { name: "pipe-small", title, question, from: 0.0, snapshots: 11 };
     pipes(showing, ("pipe-small", &[]), &[1], progress)
 }
 
 fn pipe(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let title = "Density waves in the whole pipe (figures 5 and 6)";
-    let showing = Showing { name: "pipe", title, from: 10.0, snapshots: 14 };
+    let question = "Do grains that fall through the source's whole pipe form density waves?";
+    let showing = Showing { name: "pipe", title, question, from: 10.0, snapshots: 14 };
     pipes(showing, ("pipe", &[]), &[1, 2, 3, 4], progress)
 }
 
 fn pipe_thin(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let title = "Density waves both ways in a thinner filling";
-    let showing = Showing { name: "pipe-thin", title, from: 0.0, snapshots: 0 };
+    let question = "Do the waves run both ways where the pipe is filled less?";
+    let showing = Showing { name: "pipe-thin", title, question, from: 0.0, snapshots: 0 };
     pipes(showing, ("pipe", &["particles.packing_fraction=0.35"]), &[1, 2], progress)
 }
 

@@ -53,8 +53,11 @@ fn counted(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     progress(1.0);
     programs::made(
         ("nbody-programs", "Bodies: all pairs by cyclic shifts on the vector machine"),
-        "PWP: every body meets the one that is s places behind it, for s = 1 to N − 1: whole-array operations on shifted vectors. 16 shifts \
+        (
+            "What do the forces between all pairs cost as vector operations?",
+            "PWP: every body meets the one that is s places behind it, for s = 1 to N − 1: whole-array operations on shifted vectors. 16 shifts \
          make a program.",
+        ),
         &scenes,
     )
 }

@@ -7,6 +7,9 @@ use crate::report::section::Film;
 use crate::report::{Cell, Section, Table};
 use maud::{Markup, PreEscaped, html};
 
+/// Pictures of an item that the page shows; further ones are linked.
+const FIGURES: usize = 10;
+
 /// The item with everything that belongs to it.
 pub fn render(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) -> Markup {
     let name = section.name.as_str();
@@ -14,13 +17,28 @@ pub fn render(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) ->
         section id=(name) aria-labelledby={ (name) "-title" } {
             h2 id={ (name) "-title" } { a href={ "#" (name) } { (section.title) } }
             dl.verdict {
-                dt { "The source says" }
-                dd { (prose(&section.says)) }
-                dt { "What came out" }
-                dd { (badge(section.verdict)) " " (prose(&section.came_out)) }
+                dt { "Question" }
+                dd { (prose(&section.question)) }
+                dt { "Expected" }
+                dd { (prose(&section.expected)) }
+                dt { "Answer" }
+                dd { (badge(section.verdict)) " " (prose(&section.answer)) }
             }
-            @for each in &section.figures {
+            @for paragraph in &section.details {
+                p { (prose(paragraph)) }
+            }
+            @for each in section.figures.iter().take(FIGURES) {
                 (figure(section, each, drawn))
+            }
+            @if section.figures.len() > FIGURES {
+                p.note {
+                    "Further pictures: "
+                    @for (at, each) in section.figures.iter().skip(FIGURES).enumerate() {
+                        @if at > 0 { "; " }
+                        a href={ (section.folder()) "/" (each.name) ".svg" } { (each.title) }
+                    }
+                    "."
+                }
             }
             @if let Some(shown) = &section.film {
                 (moving(section, shown))

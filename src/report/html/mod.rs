@@ -8,7 +8,7 @@ mod quantised;
 mod words;
 
 use super::figure::Figure;
-use super::{Section, Verdict};
+use super::{Part, Section, Verdict};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use words::{badge, kind, prose, sign};
 
@@ -38,9 +38,12 @@ const POLICY: &str =
 /// What stands near the beginning of every such page and of no other.
 pub const MARK: &str = "<title>Stripmine: what came out</title>";
 
-/// The page. `drawn` gives the SVG of a figure: drawings are shown with it, charts and maps only where no script runs
-/// and on paper.
-pub fn render(sections: &[Section], drawn: &dyn Fn(&Section, &Figure) -> String) -> String {
+/// The page. `left_out` names items that another version of the program made. `drawn` gives the SVG of a drawing.
+pub fn render(
+    sections: &[Section],
+    left_out: &[String],
+    drawn: &dyn Fn(&Section, &Figure) -> String,
+) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -62,6 +65,9 @@ pub fn render(sections: &[Section], drawn: &dyn Fn(&Section, &Figure) -> String)
                     @for section in sections {
                         (item::render(section, drawn))
                     }
+                    @if !left_out.is_empty() {
+                        p.note { "Left out, for another version of the program made them: " (left_out.join(", ")) "." }
+                    }
                     (footer())
                 }
                 (data::embedded("shades", &data::shades()))
@@ -74,17 +80,27 @@ pub fn render(sections: &[Section], drawn: &dyn Fn(&Section, &Figure) -> String)
     page.into_string()
 }
 
+/// The sections of a part.
+fn of(part: Part, sections: &[Section]) -> Vec<&Section> {
+    sections.iter().filter(|section| section.part == part).collect()
+}
+
 /// The list of items at the side of a wide screen.
 fn contents(sections: &[Section]) -> Markup {
     html! {
         nav.contents aria-label="Contents" {
             p { a href="#summary" { "What came out" } }
-            ol {
-                @for section in sections {
-                    li {
-                        a href={ "#" (section.name) } { (section.title) }
-                        "\u{a0}" span class={ "mark " (kind(section.verdict)) } title=(section.verdict.word()) {
-                            (sign(section.verdict))
+            @for (part, items) in Part::ALL.map(|part| (part, of(part, sections))) {
+                @if !items.is_empty() {
+                    p { (part.title()) }
+                    ol {
+                        @for section in items {
+                            li {
+                                a href={ "#" (section.name) } { (section.title) }
+                                "\u{a0}" span class={ "mark " (kind(section.verdict)) } title=(section.verdict.word()) {
+                                    (sign(section.verdict))
+                                }
+                            }
                         }
                     }
                 }
@@ -93,34 +109,44 @@ fn contents(sections: &[Section]) -> Markup {
     }
 }
 
-/// The head of the page: every item in a line.
+/// The head of the page: what verdicts mean, and every item in a line.
 fn summary(sections: &[Section]) -> Markup {
     html! {
         header #summary {
             h1 { "What came out" }
             p {
-                "Every result of the sources that this program makes again, beside what the source says. Written by "
+                "Every result of the sources that this program makes again, and what was asked beyond them: the question, what is \
+                 expected, the answer. Written by "
                 code { "stripmine reproduce" } "; each item names the command that makes it alone."
             }
             p { strong { (tally(sections)) } }
-        }
-        div.scroll tabindex="0" role="region" aria-label="Summary of all items" {
-            table.summary {
-                thead {
-                    tr {
-                        th scope="col" { "Item" }
-                        th scope="col" { "The source says" }
-                        th scope="col" { "What came out" }
-                        th scope="col" { "Verdict" }
-                    }
+            dl.verdicts {
+                @for verdict in Verdict::ALL {
+                    dt { (badge(verdict)) }
+                    dd { (verdict.meaning()) }
                 }
-                tbody {
-                    @for section in sections {
-                        tr {
-                            th scope="row" { a href={ "#" (section.name) } { (section.title) } }
-                            td { div.short { (prose(&section.says)) } }
-                            td { div.short { (prose(&section.came_out)) } }
-                            td { (badge(section.verdict)) }
+            }
+        }
+        @for (part, items) in Part::ALL.map(|part| (part, of(part, sections))) {
+            @if !items.is_empty() {
+                div.scroll tabindex="0" role="region" aria-label={ "Summary: " (part.title()) } {
+                    table.summary {
+                        caption { (part.title()) }
+                        thead {
+                            tr {
+                                th scope="col" { "Item" }
+                                th scope="col" { "Answer" }
+                                th scope="col" { "Verdict" }
+                            }
+                        }
+                        tbody {
+                            @for section in items {
+                                tr {
+                                    th scope="row" { a href={ "#" (section.name) } { (section.title) } }
+                                    td { (prose(&section.answer)) }
+                                    td { (badge(section.verdict)) }
+                                }
+                            }
                         }
                     }
                 }
@@ -131,8 +157,7 @@ fn summary(sections: &[Section]) -> Markup {
 
 /// How many items have which verdict.
 fn tally(sections: &[Section]) -> String {
-    let all = [Verdict::Reproduced, Verdict::Partly, Verdict::Failed, Verdict::Shown];
-    let counts: Vec<String> = all
+    let counts: Vec<String> = Verdict::ALL
         .into_iter()
         .filter_map(|verdict| {
             let count = sections.iter().filter(|section| section.verdict == verdict).count();

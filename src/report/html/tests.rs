@@ -27,8 +27,11 @@ fn section(name: &str) -> Section {
     Section {
         name: name.to_owned(),
         title: format!("{name} {HOSTILE}"),
-        says: HOSTILE.to_owned(),
-        came_out: format!("`{HOSTILE}` {HOSTILE}"),
+        part: Part::Physics,
+        question: HOSTILE.to_owned(),
+        expected: HOSTILE.to_owned(),
+        answer: format!("`{HOSTILE}` {HOSTILE}"),
+        details: vec![HOSTILE.to_owned()],
         verdict: Verdict::Partly,
         again: HOSTILE.to_owned(),
         figures: vec![figure("chart", Picture::Chart(chart)), figure("drawing", Picture::Drawing(drawing))],
@@ -63,6 +66,7 @@ fn section(name: &str) -> Section {
             threads: 2,
             instruction_set: "scalar".into(),
             seconds: 1.5,
+            date: "2026-11-24".into(),
         }),
     }
 }
@@ -70,7 +74,7 @@ fn section(name: &str) -> Section {
 fn page() -> String {
     let drawn =
         |_: &Section, _: &Figure| "<?xml version=\"1.0\"?>\n<svg viewBox=\"0 0 1 1\"></svg>".to_owned();
-    render(&[section("first"), section("second")], &drawn)
+    render(&[section("first"), section("second")], &["old".to_owned()], &drawn)
 }
 
 #[test]
@@ -123,9 +127,9 @@ fn an_item_names_its_numbers_command_seeds_data_and_origin() {
     assert!(page.contains("<td>1\u{202f}234\u{202f}567</td>"));
     assert!(page.contains("Seeds: 1993, 7."));
     assert!(page.contains("href=\"host/first/\""));
-    assert!(
-        page.contains("Made in 1.5 s by <code>some command</code>, stripmine 1.2.3 of source commit 0123abc")
-    );
+    assert!(page.contains(
+        "Made on 2026-11-24 in 1.5 s by <code>some command</code>, stripmine 1.2.3 of source commit 0123abc"
+    ));
     assert!(page.contains("in no commit"));
     assert!(page.contains("The MIT License"));
 }

@@ -15,8 +15,10 @@ pub(super) fn kind(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Reproduced => "reproduced",
         Verdict::Partly => "partly",
-        Verdict::Failed => "failed",
-        Verdict::Shown => "shown",
+        Verdict::NotReproduced => "not-reproduced",
+        Verdict::AimMet => "aim-met",
+        Verdict::AimMissed => "aim-missed",
+        Verdict::Measured => "measured",
     }
 }
 
@@ -25,8 +27,10 @@ pub(super) fn sign(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Reproduced => "✓",
         Verdict::Partly => "◐",
-        Verdict::Failed => "✗",
-        Verdict::Shown => "○",
+        Verdict::NotReproduced => "✗",
+        Verdict::AimMet => "▲",
+        Verdict::AimMissed => "△",
+        Verdict::Measured => "○",
     }
 }
 

@@ -69,8 +69,9 @@ fn classes(data: &Stability) -> Option<String> {
     Some(format!("Of {all} places of the map over {} and step: {}.", data.parameter.label, said.join(", ")))
 }
 
-/// What theory and measurement have to do with each other.
-fn theory(data: &Stability) -> Option<String> {
+/// The step at which what works ends over the smallest beyond which theory says that errors grow: middle, lowest and highest over
+/// the values.
+pub fn of_theory(data: &Stability) -> Option<[f64; 3]> {
     let ratios = |edge: fn(&Boundary) -> &[Edge]| -> Vec<f64> {
         let at = data.values.iter().zip(&data.boundaries);
         let ratio = at.filter_map(|(&value, boundary)| {
@@ -81,14 +82,18 @@ fn theory(data: &Stability) -> Option<String> {
         ratios
     };
     let works = ratios(|boundary| &boundary.works);
-    let (first, last) = (works.first()?, works.last()?);
-    let middle = median(works.iter().copied());
+    Some([median(works.iter().copied()), *works.first()?, *works.last()?])
+}
+
+/// What theory and measurement have to do with each other.
+fn theory(data: &Stability) -> Option<String> {
+    let [middle, first, last] = of_theory(data)?;
     let mut said = format!(
         "What works ends at {} times the smallest step beyond which theory says that errors grow, {} ({} to {} over the values)",
         short(middle),
         names(data),
-        short(*first),
-        short(*last)
+        short(first),
+        short(last)
     );
     said.push_str(&why(data, middle));
     Some(said + ".")

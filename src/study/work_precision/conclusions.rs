@@ -65,6 +65,30 @@ pub fn multiple(power: i32) -> String {
     }
 }
 
+/// A cost below this share of another is worth a change.
+pub const WORTH: f64 = 0.95;
+
+/// The cheapest run that is as accurate as the scene's own way with its own step.
+#[derive(Clone, Debug)]
+pub struct AsGood {
+    /// Its way.
+    pub way: String,
+    /// The power of two by which its step differs from the scene's own.
+    pub power: i32,
+    /// Its cost over that of the scene's own way.
+    pub of_own: f64,
+}
+
+/// The cheapest run that is as accurate as the scene's own way; none where that one breaks or was not timed.
+pub fn as_good(data: &WorkPrecision) -> Option<AsGood> {
+    let own = own_run(data)?;
+    let (error, cost) = (own.error(Measure::Position)?, own.cost()?);
+    let as_good = data.runs.iter().filter(|run| run.error(Measure::Position).is_some_and(|it| it <= error));
+    let timed = as_good.filter_map(|run| Some((run, run.cost()?)));
+    let (best, least) = timed.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(AsGood { way: data.ways[best.way].label.clone(), power: best.power, of_own: least / cost })
+}
+
 fn own(data: &WorkPrecision) -> Option<String> {
     let own = own_run(data)?;
     let error = match (&own.outcome, own.error(Measure::Position)) {
@@ -73,10 +97,7 @@ fn own(data: &WorkPrecision) -> Option<String> {
         }
         (Ok(_), error) => error?,
     };
-    let cost = own.cost()?;
-    let as_good = data.runs.iter().filter(|run| run.error(Measure::Position).is_some_and(|it| it <= error));
-    let (best, least) =
-        as_good.filter_map(|run| Some((run, run.cost()?))).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let best = as_good(data)?;
     let begin = format!(
         "The scene's own way, {}, errs by {} {} after a time of {}",
         data.own,
@@ -84,14 +105,14 @@ fn own(data: &WorkPrecision) -> Option<String> {
         data.unit,
         short(data.duration)
     );
-    if least > 0.95 * cost {
+    if best.of_own > WORTH {
         return Some(format!("{begin}; no run that is as accurate is cheaper by more than 5 %."));
     }
     Some(format!(
         "{begin}; {} at {} is at least as accurate for {:.0} % of the cost.",
-        data.ways[best.way].label,
+        best.way,
         multiple(best.power),
-        100.0 * least / cost
+        100.0 * best.of_own
     ))
 }
 

@@ -3,30 +3,55 @@
 mod figures;
 mod tables;
 
-use super::conclusions::sentences;
+use super::conclusions::{WORTH, as_good, multiple, sentences};
 use super::dataset::WorkPrecision;
 use crate::console::Failure;
-use crate::report::{Section, Verdict, csv};
+use crate::report::{Part, Section, Verdict, csv};
 use crate::results::Made;
 
 /// What an item of it is called.
 pub const NAME: &str = "work-precision";
+
+/// In how many scenes something else than the scene's own way is as accurate for less.
+fn answer(scenes: &[(String, WorkPrecision)]) -> String {
+    let cheaper = scenes.iter().filter_map(|(name, data)| Some((name, as_good(data)?)));
+    let mut cheaper: Vec<_> = cheaper.filter(|(_, found)| found.of_own < WORTH).collect();
+    cheaper.sort_by(|a, b| a.1.of_own.total_cmp(&b.1.of_own));
+    let Some((name, best)) = cheaper.first() else {
+        return format!(
+            "In none of {} scenes is anything as accurate as the scene's own way and cheaper.",
+            scenes.len()
+        );
+    };
+    format!(
+        "In {} of {} scenes another way or step is at least as accurate as the scene's own and cheaper; most in {name}, {} at {} for \
+         {:.0} % of the cost.",
+        cheaper.len(),
+        scenes.len(),
+        best.way,
+        multiple(best.power),
+        100.0 * best.of_own
+    )
+}
 
 /// The page over scenes, each with a name for its files, and `again`, the command that makes it.
 ///
 /// # Errors
 /// If the dataset is none that JSON can hold.
 pub fn made(scenes: &[(String, WorkPrecision)], again: String) -> Result<Made, Failure> {
-    let said = scenes.iter().map(|(name, data)| format!("{name}. {}", sentences(data).join(" ")));
+    let said = scenes.iter().map(|(name, data)| format!("`{name}`: {}", sentences(data).join(" ")));
     let mut seeds: Vec<u64> = scenes.iter().flat_map(|(_, data)| data.seeds.clone()).collect();
     seeds.sort_unstable();
     seeds.dedup();
     let section = Section {
         name: NAME.into(),
         title: "Speed against accuracy".into(),
-        says: "The sources state a scheme and a step, and no error.".into(),
-        came_out: said.collect::<Vec<_>>().join("\n\n"),
-        verdict: Verdict::Shown,
+        part: Part::Host,
+        question: "Which integrator, step and precision is the cheapest for a wished accuracy?".into(),
+        expected: "The sources state a scheme and a step, and no error.".into(),
+        answer: answer(scenes),
+        details: said.collect(),
+        verdict: Verdict::Measured,
         again,
         figures: scenes.iter().flat_map(|(name, data)| figures::of(name, data)).collect(),
         tables: tables::of(scenes),

@@ -2,7 +2,7 @@
 
 use crate::method::hard_disks::study::atmosphere::{Atmosphere, Profile};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &Atmosphere) -> Section {
@@ -11,22 +11,20 @@ pub fn section(data: &Atmosphere) -> Section {
     Section {
         name: "hard-disks-atmosphere".into(),
         title: "Hard discs: above a hot floor, without a ceiling".into(),
-        says: "ISO99, section 3: a system that is open above, as discs under gravity over a source of energy. In the dilute limit \
-               the density falls with the height as exp(−m g y/kT)."
+        part: Part::Physics,
+        question: "Does a gas above a hot floor, without a ceiling, follow the barometric law?".into(),
+        expected: "ISO99, section 3, has a system that is open above: discs under gravity over a source of energy. In the dilute limit the \
+                   density falls with the height as exp(−m g y/kT)."
             .into(),
-        came_out: format!(
-            "{} discs in {} layers: mean height {:.3} kT/(m g) where the barometric law has 1, temperature {:.3} of the floor's; with \
-             {} layers the discs' own room lifts it to {:.2}. With restitution {} the gas above cools to {:.3}.",
-            dilute.discs,
-            dilute.layers,
-            dilute.mean_height,
-            dilute.temperature,
-            data.profiles[2].layers,
-            data.profiles[2].mean_height,
-            data.restitution,
-            data.granular.temperature
+        answer: format!(
+            "{} discs in {} layers have a mean height of {:.3} kT/(m g), where the law has 1, and a temperature of {:.3} of the floor's.",
+            dilute.discs, dilute.layers, dilute.mean_height, dilute.temperature,
         ),
-        verdict: if agrees { Verdict::Reproduced } else { Verdict::Partly },
+        details: vec![format!(
+            "With {} layers the room that the discs take lifts the mean height to {:.2}. With restitution {} the gas above cools to {:.3}.",
+            data.profiles[2].layers, data.profiles[2].mean_height, data.restitution, data.granular.temperature
+        )],
+        verdict: Verdict::reproduced(agrees),
         again: "stripmine reproduce --only hard-disks-atmosphere".into(),
         figures: vec![figure(data)],
         tables: vec![table(data), look_ups(data)],

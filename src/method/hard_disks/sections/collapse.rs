@@ -2,7 +2,7 @@
 
 use crate::method::hard_disks::study::collapse::{Collapses, PACKING, of_a_row};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &Collapses) -> Section {
@@ -18,20 +18,24 @@ pub fn section(data: &Collapses) -> Section {
     Section {
         name: "hard-disks-collapse".into(),
         title: "Hard discs: where the method fails, inelastic collapse".into(),
-        says: "Three discs in a row collapse where e < 7 − 4√3 = 0.0718; the more discs, the nearer to 1 (McNamara and Young 1992, Bernu and \
-               Mazighi 1990)."
+        part: Part::Physics,
+        question: "At which restitution do collisions become infinitely many in a finite time?".into(),
+        expected: "Three discs in a row collapse where e < 7 − 4√3 = 0.0718; the more discs, the nearer to 1 (McNamara and Young 1992, Bernu \
+                   and Mazighi 1990)."
             .into(),
-        came_out: format!(
-            "Three discs in a row collapse up to e = {:.4} (theory {:.4}), sixteen up to {:.4}. In the plane at ν = {PACKING}, {} \
-             discs collapse within {:.0} collisions of a disc up to e = {:.1}; no run hangs.",
+        answer: format!(
+            "Three discs in a row collapse up to e = {:.4} (theory {:.4}), sixteen up to {:.4}.",
             data.rows[0].edge[0],
             data.rows[0].theory,
             data.rows.last().map_or(f64::NAN, |row| row.edge[0]),
+        ),
+        details: vec![format!(
+            "In the plane at ν = {PACKING}, {} discs collapse within {:.0} collisions of a disc up to e = {:.1}; no run hangs.",
             largest.map_or(0, |it| it.discs),
             data.collisions,
             edge(0.5)
-        ),
-        verdict: if off(3).abs() < 2e-3 { Verdict::Reproduced } else { Verdict::Partly },
+        )],
+        verdict: Verdict::reproduced(off(3).abs() < 2e-3),
         again: "stripmine reproduce --only hard-disks-collapse".into(),
         figures: vec![rows(data), plane(data)],
         tables: vec![row_table(data), plane_table(data)],

@@ -2,7 +2,7 @@
 
 use crate::method::hard_disks::study::cooling::{Cooling, haff};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &Cooling) -> Section {
@@ -17,17 +17,21 @@ pub fn section(data: &Cooling) -> Section {
     Section {
         name: "hard-disks-cooling".into(),
         title: "Hard discs: a granular gas cools".into(),
-        says: "Haff: T = T₀/(1 + t/t₀)², t₀ = 4/((1 − e²) ω₀), as long as the gas is even. Too dissipative ones collapse: \
-               collisions without end in a finite time."
+        part: Part::Physics,
+        question: "Does a granular gas cool by Haff's law, and what becomes of one that dissipates too much?".into(),
+        expected: "Haff: T = T₀/(1 + t/t₀)², t₀ = 4/((1 − e²) ω₀), as long as the gas is even. Too dissipative ones collapse: collisions \
+                   without end in a finite time."
             .into(),
-        came_out: format!(
-            "After {last:.0} collisions of each disc the temperature is within {:.1} % of Haff's law for every restitution shown. \
-             Collapse is found out, with its pair, for {}; a contact duration of {} cures each.",
-            100.0 * worst,
+        answer: format!(
+            "After {last:.0} collisions of each disc the temperature is within {:.1} % of Haff's law for every restitution shown.",
+            100.0 * worst
+        ),
+        details: vec![format!(
+            "Collapse is found, with its pair, for {}; a contact duration of {} cures each.",
             if collapsed.is_empty() { "none".to_owned() } else { collapsed.join(", ") },
             data.contact_duration
-        ),
-        verdict: if worst < 0.05 { Verdict::Reproduced } else { Verdict::Partly },
+        )],
+        verdict: Verdict::reproduced(worst < 0.05),
         again: "stripmine reproduce --only hard-disks-cooling".into(),
         figures: vec![figure(data)],
         tables: vec![gases(data), fates(data)],

@@ -2,7 +2,7 @@
 
 use crate::method::hard_disks::study::fluid::{Fluids, Mean, henderson, luding};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// By how much Z and the rate may be off what is known (relative).
 const WITHIN: f64 = 0.002;
@@ -18,18 +18,18 @@ pub fn section(data: &Fluids) -> Section {
     Section {
         name: "hard-disks-fluid".into(),
         title: "Hard discs: the pressure of the fluid".into(),
-        says: "Z(ν) and the collision rate ω of two independent programs, 250 000 discs, good to about 0.1 %; Henderson's and \
-               Luding's equations of state."
+        part: Part::Physics,
+        question: "Are the pressure and the collision rate of the hard-disc fluid right?".into(),
+        expected: "Z(ν) and the collision rate ω of two independent programs with 250 000 discs, good to about 0.1 %; Henderson's and \
+                   Luding's equations of state."
             .into(),
-        came_out: format!(
-            "Z within {:.2} % and ω within {:.2} % of theirs up to ν = 0.65, with {} discs and {} collisions at each packing \
-             fraction; the energy is off by {energy:.1e} of itself.",
-            worst(0),
-            worst(1),
+        answer: format!("Z is within {:.2} % and ω within {:.2} % of theirs up to ν = 0.65.", worst(0), worst(1)),
+        details: vec![format!(
+            "{} discs and {} collisions at each packing fraction; the energy is off by {energy:.1e} of itself.",
             Cell::Number(data.discs as f64, 0).for_reading(),
             Cell::Number(data.collisions as f64, 0).for_reading()
-        ),
-        verdict: if agrees { Verdict::Reproduced } else { Verdict::Partly },
+        )],
+        verdict: Verdict::reproduced(agrees),
         again: "stripmine reproduce --only hard-disks-fluid".into(),
         figures: vec![pressure(data), differences(data)],
         tables: vec![table(data)],

@@ -2,7 +2,7 @@
 
 use crate::method::hard_disks::study::masks::{Cost, Masks, TERMS};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &Masks) -> Section {
@@ -16,20 +16,28 @@ pub fn section(data: &Masks) -> Section {
         seconds(auto) / seconds(best) - 1.0
     });
     let worst = slower.fold(0.0, f64::max);
+    let densest = data.best.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+    let dilutest = data.best.iter().min_by(|a, b| a.0.total_cmp(&b.0));
+    let dense_wants_the_smallest =
+        densest.is_some_and(|it| it.1 == "min") && dilutest.is_some_and(|it| it.1 != "min");
     Section {
         name: "hard-disks-masks".into(),
         title: "Hard discs: which mask".into(),
-        says: "ISO99, section 4: dense systems want the smallest mask, dilute ones a larger one, which is filled less often; its \
-               formula of the cost."
+        part: Part::Host,
+        question: "Which mask makes a collision the cheapest, and does the program choose it?".into(),
+        expected: "ISO99, section 4: dense systems want the smallest mask, dilute ones a larger one, which is filled less often; its formula \
+                   of the cost."
             .into(),
-        came_out: format!(
-            "Cheapest: {}. What `mask = \"auto\"` reckons beforehand is at most {:.0} % dearer. The formula with four constants \
-             fits every mask and density to {:.0} % (root of the mean square).",
+        answer: format!(
+            "Cheapest: {}; what `mask = \"auto\"` chooses costs at most {:.0} % more.",
             data.best.iter().map(|(nu, best, _)| format!("{best} at ν = {nu}")).collect::<Vec<_>>().join(", "),
             100.0 * worst,
-            100.0 * data.error
         ),
-        verdict: Verdict::Shown,
+        details: vec![format!(
+            "The source's formula with four constants fits every mask and density to {:.0} % (root of the mean square).",
+            100.0 * data.error
+        )],
+        verdict: Verdict::reproduced(dense_wants_the_smallest),
         again: "stripmine reproduce --only hard-disks-masks".into(),
         figures: vec![figure(data)],
         tables: vec![table(data), constants(data)],

@@ -2,7 +2,7 @@
 
 use crate::method::hard_disks::study::precision::{KNOWN_TO, Precision, STATE, Way};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &Precision) -> Section {
@@ -19,17 +19,20 @@ pub fn section(data: &Precision) -> Section {
     Section {
         name: "hard-disks-precision".into(),
         title: "Hard discs: error of Z against processor time".into(),
-        says: format!(
-            "Z = {known} at ν = {packing}, known to {} %. A method without a time step has two errors of a mean: chance, which falls as \
-             one over the root of the time, and the finite number of discs.",
+        part: Part::Host,
+        question: "What does an accuracy of the pressure cost in processor time?".into(),
+        expected: format!(
+            "Z = {known} at ν = {packing}, known to {} %. A method without a time step has two errors of a mean: chance, which falls as one \
+             over the root of the time, and the finite number of discs.",
             100.0 * KNOWN_TO
         ),
-        came_out: format!(
+        answer: format!(
             "The fast engine comes to {}, the source's way to {}.",
             said("fast"),
             said("reference")
         ),
-        verdict: Verdict::Shown,
+        details: vec![],
+        verdict: Verdict::Measured,
         again: "stripmine reproduce --only hard-disks-precision".into(),
         figures: vec![figure(data)],
         tables: vec![table(data)],

@@ -2,7 +2,7 @@
 
 use crate::method::hard_disks::study::soft_hard::{Mean, Model, SoftHard};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &SoftHard, again: String) -> Section {
@@ -18,18 +18,19 @@ pub fn section(data: &SoftHard, again: String) -> Section {
     Section {
         name: "soft-hard".into(),
         title: "Soft against hard discs".into(),
-        says: "Hard discs are the limit of stiff ones. Soft discs press as hard ones of their effective diameter do (Barker and \
-               Henderson)."
+        part: Part::Physics,
+        question: "From which stiffness on do soft discs behave as hard ones, and what does that cost?".into(),
+        expected: "Hard discs are the limit of stiff ones; soft discs press as hard ones of their effective diameter do (Barker and \
+                   Henderson)."
             .into(),
-        came_out: format!(
-            "{} discs at ν = {}: from k_N = {:e} to {:e} the pressure comes from {first:.1} % to {last:.1} % of that of hard discs, as \
-             their effective diameter says. The stiffest cost {dearer:.0} times as much as hard ones.",
-            data.discs,
-            data.question.packing_fraction,
+        answer: format!(
+            "From k_N = {:.0e} to {:.0e} the pressure comes from {first:.1} % to {last:.1} % of that of hard discs, and the stiffest discs cost \
+             {dearer:.0} times as much as hard ones.",
             soft.first().and_then(|model| model.stiffness).unwrap_or(f64::NAN),
             soft.last().and_then(|model| model.stiffness).unwrap_or(f64::NAN),
         ),
-        verdict: Verdict::Shown,
+        details: vec![format!("{} discs at ν = {}.", data.discs, data.question.packing_fraction)],
+        verdict: Verdict::reproduced(last.abs() < first.abs() && last.abs() < 2.0),
         again,
         figures: vec![
             over_stiffness(data, "pressure", "Compressibility of the elastic fluid", "compressibility Z", |model| {

@@ -2,7 +2,7 @@
 
 use crate::method::hard_disks::study::structure::{Structure, Structures};
 use crate::report::figure::{Axis, Chart, Drawing, Figure, Picture, Point, Series, Shape, Style, Tint};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// Free times over their mean that are drawn; longer ones are too few.
 const LONGEST: f64 = 5.0;
@@ -22,20 +22,22 @@ pub fn section(data: &Structures) -> Section {
     Section {
         name: "hard-disks-structure".into(),
         title: "Hard discs: melting, free times and speeds".into(),
-        says: "Simulations of a million discs find a fluid below a packing fraction of 0.700, fluid and hexatic phase beside each \
-               other up to 0.716, and a crystal above 0.720. A dilute gas has the free times of its Maxwell velocities."
+        part: Part::Physics,
+        question: "At which density does a crystal of hard discs melt, and how long do discs fly?".into(),
+        expected: "Simulations of a million discs find a fluid below a packing fraction of 0.700, fluid and hexatic phase beside each other \
+                   up to 0.716, and a crystal above 0.720. A dilute gas has the free times of its Maxwell velocities."
             .into(),
-        came_out: format!(
-            "From a crystal of {} discs the global order |Ψ₆| falls to {:.2} at 0.65 and stays at {:.2} at 0.74. Free times at 0.02 \
-             differ from theory by at most {largest:.3} of a density of about 1. Discs that start equally fast have Maxwell's \
-             velocities at the end, p = {:.2} to {:.2}.",
-            data.discs,
-            fluid.order[0],
-            crystal.order[0],
+        answer: format!(
+            "From a crystal of {} discs the global order |Ψ₆| falls to {:.2} at 0.65 and stays at {:.2} at 0.74.",
+            data.discs, fluid.order[0], crystal.order[0],
+        ),
+        details: vec![format!(
+            "Free times at 0.02 differ from theory by at most {largest:.3} of a density of about 1. Discs that start equally fast have \
+             Maxwell's velocities at the end, p = {:.2} to {:.2}.",
             data.structures.iter().map(|it| it.maxwell[1]).fold(1.0, f64::min),
             data.structures.iter().map(|it| it.maxwell[1]).fold(0.0, f64::max),
-        ),
-        verdict: if is_ordered && is_maxwell && largest < 0.05 { Verdict::Reproduced } else { Verdict::Partly },
+        )],
+        verdict: Verdict::reproduced(is_ordered && is_maxwell && largest < 0.05),
         again: "stripmine reproduce --only hard-disks-structure".into(),
         figures: std::iter::once(correlation(data))
             .chain([free_times(data)])

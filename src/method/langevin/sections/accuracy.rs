@@ -4,7 +4,7 @@ use super::point;
 use crate::method::langevin::study::Mean;
 use crate::method::langevin::study::accuracy::{Accuracy, Fluid};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &Accuracy) -> Section {
@@ -13,17 +13,19 @@ pub fn section(data: &Accuracy) -> Section {
     Section {
         name: "langevin-accuracy".into(),
         title: "Langevin: the error of the step".into(),
-        says: "Leimkuhler and Matthews: averages over positions by BAOAB have errors of order dt², far smaller than those of velocity Verlet \
-               with noise in the acceleration."
+        part: Part::Physics,
+        question: "How far off are averages over positions for a given step, by either scheme?".into(),
+        expected: "Leimkuhler and Matthews: by BAOAB the error is of order dt² and far smaller than by velocity Verlet with noise in the \
+                   acceleration."
             .into(),
-        came_out: format!(
-            "At dt = 0.01 the energy of the pairs is off by {:+.4} by BAOAB and by {:+.4} by the source's scheme, of {:.4} a particle; the \
-             error goes as dt².",
+        answer: format!(
+            "At dt = 0.01 the energy of the pairs is off by {:+.4} by BAOAB and by {:+.4} by the source's scheme, of {:.4} a particle.",
             off("baoab"),
             off("stochastic"),
             data.limit.value
         ),
-        verdict: Verdict::Shown,
+        details: vec![],
+        verdict: Verdict::reproduced(off("baoab").abs() < off("stochastic").abs()),
         again: "stripmine reproduce --only langevin-accuracy".into(),
         figures: vec![
             figure(data, "error-over-step", "time step", |it| it.dt),

@@ -3,7 +3,7 @@
 use super::point;
 use crate::method::langevin::study::diffusion::{Diffusion, Followed, exact};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &Diffusion) -> Section {
@@ -21,16 +21,23 @@ pub fn section(data: &Diffusion) -> Section {
     Section {
         name: "langevin-diffusion".into(),
         title: "Langevin: displacements and velocities".into(),
-        says: "LAN17, figures 3 to 8: displacements grow as t² and then as 4 D t with D = kT/γ; a spike when the first particles leave the \
-               box; broader velocities where particles interact."
+        part: Part::Physics,
+        question: "Do free and interacting particles in a bath move as theory says, and where do the source's spike and broad velocities \
+                   come from?"
             .into(),
-        came_out: format!(
-            "Without a box the exact result holds within {thin:.1} standard errors at every time in the thinnest system. The spike is \
-             of positions that were wrapped into the box, and is not there without that. Velocities are Maxwell's with pairs too, p of \
-             at least {least:.2}: the broadening is heat of a long step. Friction as printed heats to 1/(1 − γ dt/2m); the other two do \
-             not, within {worst:.1} of their bars."
+        expected: "LAN17, figures 3 to 8: displacements grow as t² and then as 4 D t with D = kT/γ; the source shows a spike when the first \
+                   particles leave the box, and broader velocities where particles interact."
+            .into(),
+        answer: format!(
+            "Without a box the mean square displacement of the thinnest system is within {thin:.1} standard errors of the exact one at \
+             every time."
         ),
-        verdict: if thin < 5.0 && least > 0.001 { Verdict::Reproduced } else { Verdict::Partly },
+        details: vec![format!(
+            "The spike belongs to positions that were wrapped into the box; unwrapped ones have none. Velocities are Maxwell's with pairs \
+             too (p of at least {least:.2}): what broadens them in the source is the heat of a long step. Friction as printed heats to \
+             1/(1 − γ dt/2m); the other two schemes do not, within {worst:.1} of their bars."
+        )],
+        verdict: Verdict::reproduced(thin < 5.0 && least > 0.001),
         again: "stripmine reproduce --only langevin-diffusion".into(),
         figures: vec![displacements(data), heating(data)],
         tables: vec![table(data)],

@@ -2,7 +2,7 @@
 
 use crate::method::langevin::study::losses::{LossTable, SCHEMES};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 use crate::words::Words;
 
 /// What came out.
@@ -16,21 +16,23 @@ pub fn section(data: &LossTable) -> Section {
     Section {
         name: "langevin-losses".into(),
         title: "Langevin: particles lost to a long step".into(),
-        says: "LAN17: of 40 000 particles 19 200 are lost in 100 steps of 1, 6393 of 0.1, 754 of 0.01 and none of 0.001; steps below \
-               √(2 m r_c/F) should do."
+        part: Part::Physics,
+        question: "From which step on are particles lost, and does the source's bound on the step prevent it?".into(),
+        expected: "LAN17: of 40 000 particles 19 200 are lost in 100 steps of 1, 6393 of 0.1, 754 of 0.01 and none of 0.001; steps below \
+                   √(2 m r_c/F) should do."
             .into(),
-        came_out: format!(
-            "Losses grow with the step: {} at 0.01 and {} at 0.001 by the source's scheme. The longest step without a loss is {:.2} to \
-             {:.2} of the source's bound, over four strengths and three temperatures, and {:.2} to {:.2} of the limit by the spring \
-             that a pair is in its hardest collisions.",
-            long[0],
-            short[0],
-            least,
-            most,
+        answer: format!(
+            "Losses grow with the step ({} at 0.01, {} at 0.001), and the bound does not suffice: the longest step without a loss is \
+             {least:.2} to {most:.2} of it.",
+            long[0], short[0],
+        ),
+        details: vec![format!(
+            "The boundary was found by bisection over four strengths and three temperatures. Beside the limit by the spring that a pair \
+             is in its hardest collisions it lies at {:.2} to {:.2}.",
             by_limit().fold(f64::INFINITY, f64::min),
             by_limit().fold(0.0, f64::max)
-        ),
-        verdict: if falls && short == [0, 0] { Verdict::Reproduced } else { Verdict::Partly },
+        )],
+        verdict: Verdict::reproduced(falls && short == [0, 0]),
         again: "stripmine reproduce --only langevin-losses".into(),
         figures: vec![losses(data), boundaries(data)],
         tables: vec![loss_table(data), boundary_table(data)],

@@ -2,7 +2,7 @@
 
 use crate::method::langevin::study::sectors::{Fluid, SEARCHES, Sectors, THREADS};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// Two threads help where they are at least so many times as fast as one.
 const HELPS: f64 = 1.2;
@@ -18,17 +18,19 @@ pub fn section(data: &Sectors) -> Section {
     Section {
         name: "langevin-sectors".into(),
         title: "Langevin: wall time over the number of sectors".into(),
-        says: "LAN17: 100 steps of 40 000 particles take 1008 s with 3 sectors along a side, as 1/d² up to 20, and 4 s from 100 on; two \
-               threads do not help at the best d."
+        part: Part::Host,
+        question: "How does the time of a step depend on the number of sectors, and do two threads help?".into(),
+        expected: "LAN17: 100 steps of 40 000 particles take 1008 s with 3 sectors along a side, as 1/d² up to 20, and 4 s from 100 on; two \
+                   threads do not help at the best d."
             .into(),
-        came_out: format!(
-            "{best:.3} s at best on one thread, {:.0} times as fast as the source. Neighbour lists take {one:.3} s on one thread and \
-             {two:.3} s on two, {:.2} times as fast. Where the search is left open it takes at most {:.0} % longer than the best of all.",
-            4.0 / best,
+        answer: format!("At best 100 steps take {best:.3} s on one thread, {:.0} times as fast as the source.", 4.0 / best),
+        details: vec![format!(
+            "Neighbour lists take {one:.3} s on one thread and {two:.3} s on two, which are {:.2} times as fast. Where the search is left \
+             open it takes at most {:.0} % longer than the best of all.",
             one / two,
             100.0 * data.fluids.iter().filter_map(loss).fold(0.0, f64::max)
-        ),
-        verdict: if falls && one / two > HELPS { Verdict::Reproduced } else { Verdict::Partly },
+        )],
+        verdict: Verdict::reproduced(falls && one / two > HELPS),
         again: "stripmine reproduce --only langevin-sectors".into(),
         figures: vec![figure(data)],
         tables: vec![table(data), searches(data), phases(data)],

@@ -2,7 +2,7 @@
 
 use crate::method::lattice_md::study::crossover::{Crossover, METHODS, Sample};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &Crossover) -> Section {
@@ -17,14 +17,15 @@ pub fn section(data: &Crossover) -> Section {
     Section {
         name: "crossover".into(),
         title: "Lattice, neighbour lists and sectors, each as fast as it goes".into(),
-        says: "BP93 expects the vector method to pay where discs are dense.".into(),
-        came_out: format!(
-            "Whole steps with friction, velocity Verlet, one thread, {}, moving discs. Packing fraction from which on the \
-             lattice is the fastest: {}.",
-            data.instruction_set,
-            named.collect::<Vec<_>>().join("; ")
-        ),
-        verdict: Verdict::Shown,
+        part: Part::Host,
+        question: "From which density on is the lattice faster than neighbour lists and sectors, each as fast as it goes?".into(),
+        expected: "BP93 expects the vector method to pay where discs are dense.".into(),
+        answer: format!("Packing fraction from which on the lattice is the fastest: {}.", named.collect::<Vec<_>>().join("; ")),
+        details: vec![format!(
+            "Whole steps with friction, velocity Verlet, one thread, {}, moving discs.",
+            data.instruction_set
+        )],
+        verdict: Verdict::Measured,
         again: "stripmine reproduce --only crossover".into(),
         figures: groups(data).into_iter().map(|group| figure(data, group)).collect(),
         tables: vec![rates(data), phases(data)],

@@ -2,7 +2,7 @@
 
 use crate::method::lattice_md::study::damping::{Case, Damping};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 use crate::statistics::Spread;
 
 /// The Fano factor above which there are waves.
@@ -20,16 +20,19 @@ pub fn section(data: &Damping) -> Section {
     Section {
         name: "waves".into(),
         title: "Density waves over dissipation".into(),
-        says: "BP93, section 4: grains that start evenly spread form density waves. A Fano factor above 1 tells waves from \
-               none; weakly damped grains and an elastic gas must show none."
+        part: Part::Physics,
+        question: "Does damping in contacts make the density waves?".into(),
+        expected: "BP93, section 4: grains that start evenly spread form density waves. A Fano factor (variance over mean of the grains in \
+                   a bin) above 1 tells waves from none; weakly damped grains and an elastic gas must show none."
             .into(),
-        came_out: format!(
-            "Fano factor {weakest:.2} at the weakest and {strongest:.2} at the strongest damping; controls: {}.",
+        answer: format!(
+            "The Fano factor is {weakest:.2} at the weakest and {strongest:.2} at the strongest damping; controls: {}.",
             controls.iter().map(|case| format!("{} {:.2}", case.name, case.fano.mean)).collect::<Vec<_>>().join(", ")
         ),
+        details: vec![],
         verdict: match (found, even) {
             (true, true) => Verdict::Reproduced,
-            (false, false) => Verdict::Failed,
+            (false, false) => Verdict::NotReproduced,
             _ => Verdict::Partly,
         },
         again: "stripmine reproduce --only waves".into(),

@@ -2,7 +2,7 @@
 
 use crate::method::lattice_md::study::density_cost::{CEILING, Curve, DensityCost};
 use crate::report::figure::{Axis, Band, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &DensityCost) -> Section {
@@ -18,19 +18,20 @@ pub fn section(data: &DensityCost) -> Section {
     Section {
         name: "cost".into(),
         title: "Cost over particles and density (figures 3 and 4)".into(),
-        says: "BP93, figures 3 and 4: with D = 20 a vector step is nearly as long for few particles as for many, scalar \
-               neighbour lists rise with the square of their number; a particle's share falls with the density."
+        part: Part::Machine,
+        question: "From how many particles on is a vector step shorter than one by scalar neighbour lists?".into(),
+        expected: "BP93, figures 3 and 4: with D = 20 a vector step is nearly as long for few particles as for many, scalar neighbour lists \
+                   rise with the square of their number; a particle's share falls with the density."
             .into(),
-        came_out: format!(
-            "Counted operations in the source's formula: the vector step rises by at most {:.1} % from the emptiest to the \
-             fullest lattice, the lists at last with NP to the power {:.2}. The vector step is the shorter one from NP = {} \
-             on. The source prints no formula for its lists: theirs is counted from ours in the same way, every scalar \
-             operation at D periods.",
+        answer: format!("The vector step is the shorter one from NP = {} on.", crossings.join(", ")),
+        details: vec![format!(
+            "Counted operations in the source's formula: the vector step rises by at most {:.1} % from the emptiest to the fullest lattice, \
+             the lists at last with NP to the power {:.2}. The source prints no formula for its lists: theirs is counted from ours in the \
+             same way, every scalar operation at D periods.",
             100.0 * (data.vector.iter().filter_map(rise).fold(1.0, f64::max) - 1.0),
             slope(&data.list).unwrap_or(f64::NAN),
-            crossings.join(", ")
-        ),
-        verdict: if flat && steep { Verdict::Reproduced } else { Verdict::Partly },
+        )],
+        verdict: Verdict::reproduced(flat && steep),
         again: "stripmine reproduce --only cost".into(),
         figures: vec![figure_3(data), figure_4(data), over_density(data)],
         tables: vec![lists(data)],

@@ -2,6 +2,7 @@
 
 use crate::method::lattice_md::Part;
 use crate::method::lattice_md::study::efficiency_table::EfficiencyTable;
+use crate::report;
 use crate::report::{Cell, Section, Table, Verdict};
 
 /// What came out.
@@ -9,10 +10,13 @@ pub fn section(data: &EfficiencyTable) -> Section {
     Section {
         name: "table".into(),
         title: "The efficiency table".into(),
-        says: "BP93, section 3, counts 59, 12, 1656 and 54 operations for predictor, index, forces and corrector, each at \
-               NOP·(n + D) clock periods with D = 20."
+        part: report::Part::Machine,
+        question: "How many vector operations and clock periods does a step take?".into(),
+        expected: "BP93, section 3, counts 59, 12, 1656 and 54 operations for predictor, index, forces and corrector, each at NOP·(n + D) \
+                   clock periods with D = 20."
             .into(),
-        came_out: came_out(data),
+        answer: answer(data),
+        details: vec![],
         verdict: verdict(data),
         again: "stripmine reproduce --only table".into(),
         figures: vec![],
@@ -41,7 +45,7 @@ fn verdict(data: &EfficiencyTable) -> Verdict {
 }
 
 /// What came out, in a sentence.
-fn came_out(data: &EfficiencyTable) -> String {
+fn answer(data: &EfficiencyTable) -> String {
     let parts: Vec<String> = Part::ALL
         .iter()
         .filter_map(|part| {
@@ -52,8 +56,7 @@ fn came_out(data: &EfficiencyTable) -> String {
         })
         .collect();
     format!(
-        "Counted from the programs that run: {}. At NP = {} and occupancy {:.2} that is {:.0} clock periods a disc and \
-         step, {:.3} of the printed formula's.",
+        "{}: at NP = {} and occupancy {:.2} {:.0} clock periods a disc and step, {:.3} of the printed formula's.",
         parts.join(", "),
         data.particles,
         data.occupancy,

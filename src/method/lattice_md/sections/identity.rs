@@ -1,7 +1,7 @@
 //! The identity of lattice and lists: tables, figures and what came out.
 
 use crate::method::lattice_md::study::identity::Identity;
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &Identity) -> Section {
@@ -23,14 +23,15 @@ pub fn section(data: &Identity) -> Section {
     Section {
         name: "identity".into(),
         title: "Lattice and neighbour lists give the same".into(),
-        says: "BP93, section 4: there were no differences in the results compared to simulations with neighbour lists."
-            .into(),
-        came_out: format!(
-            "{equal} of {states} states along {} trajectories are the same to the last bit: positions, velocities and \
-             spins.",
+        part: Part::Physics,
+        question: "Do the lattice and neighbour lists give the same motion?".into(),
+        expected: "BP93, section 4: no differences in the results compared to simulations with neighbour lists.".into(),
+        answer: format!(
+            "{equal} of {states} states along {} trajectories are the same to the last bit: positions, velocities and spins.",
             data.pairs.len()
         ),
-        verdict: if data.holds() { Verdict::Reproduced } else { Verdict::Failed },
+        details: vec![],
+        verdict: if data.holds() { Verdict::Reproduced } else { Verdict::NotReproduced },
         again: "stripmine reproduce --only identity".into(),
         figures: vec![],
         tables: vec![Table {

@@ -3,27 +3,43 @@
 use crate::method::lattice_md::Phase;
 use crate::method::lattice_md::study::host_ladder::HostLadder;
 use crate::method::lattice_md::study::ladder::Ladder;
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
+
+/// Clock periods of the last two clocks, chained and with memory ports, over those of the source's.
+fn of_paper(data: &Ladder) -> [f64; 2] {
+    let [.., chained, ports] = data.rungs.as_slice() else { return [f64::NAN; 2] };
+    let paper = data.rungs.iter().find(|rung| rung.clock == "paper").map_or(f64::NAN, |rung| rung.clocks);
+    [chained.clocks / paper, ports.clocks / paper]
+}
 
 /// What came out, for several machines.
 pub fn section(ladders: &[Ladder]) -> Section {
     let said = ladders.iter().map(|data| {
-        let [.., first, last] = data.rungs.as_slice() else { return String::new() };
-        let paper = data.rungs.iter().find(|rung| rung.clock == "paper").map_or(f64::NAN, |rung| rung.clocks);
         format!(
-            "{}: {:.2} of the paper's clock chained, {:.2} with memory ports ({:.0} % of that depends on assumed start-ups)",
+            "{} {:.2} of the source's, {:.0} % of which depends on start-up times that we had to assume",
             data.machine,
-            first.clocks / paper,
-            last.clocks / paper,
+            of_paper(data)[1],
             100.0 * data.assumed_share
+        )
+    });
+    let chained = ladders.first().map(|first| {
+        let others = ladders[1..].iter().map(|data| format!("{:.2} on {}", of_paper(data)[0], data.machine));
+        format!(
+            "With chaining a step on a {} takes {:.2} of the time by the source's clock ({}).",
+            first.machine,
+            of_paper(first)[0],
+            others.collect::<Vec<_>>().join(", ")
         )
     });
     Section {
         name: "ladder".into(),
         title: "What each refinement of the clock adds".into(),
-        says: "BP93 charges n + D for every operation and no chaining.".into(),
-        came_out: format!("{}.", said.collect::<Vec<_>>().join("; ")),
-        verdict: Verdict::Shown,
+        part: Part::Machine,
+        question: "How many clock periods does a step take by finer clocks than the source's?".into(),
+        expected: "BP93 charges n + D for every operation and no chaining.".into(),
+        answer: chained.unwrap_or_default(),
+        details: vec![format!("With memory ports as well: {}.", said.collect::<Vec<_>>().join("; "))],
+        verdict: Verdict::Measured,
         again: "stripmine table --ladder --machine cray-y-mp-el".into(),
         figures: vec![],
         tables: ladders.iter().enumerate().map(|(at, data)| numbered(at, rungs(data))).collect(),

@@ -1,6 +1,6 @@
 //! The vector instructions of a step, as text.
 
-use crate::report::{Section, Verdict};
+use crate::report::{Part, Section, Verdict};
 
 /// One program of a part, as text.
 #[derive(Clone, Debug)]
@@ -27,9 +27,12 @@ pub fn section(parts: &[PartListing]) -> Section {
     Section {
         name: "listing".into(),
         title: "The vector instructions".into(),
-        says: "BP93 gives the algorithm in vector notation and prints no code.".into(),
-        came_out: format!("The programs that run, recorded: vector instructions {}.", lengths.join(", ")),
-        verdict: Verdict::Shown,
+        part: Part::Machine,
+        question: "Which vector instructions does a step consist of?".into(),
+        expected: "BP93 gives the algorithm in vector notation and prints no code.".into(),
+        answer: format!("Vector instructions of the programs that run: {}.", lengths.join(", ")),
+        details: vec![],
+        verdict: Verdict::Measured,
         again: "stripmine reproduce --only listing".into(),
         figures: vec![],
         tables: vec![],

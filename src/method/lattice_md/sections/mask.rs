@@ -1,7 +1,7 @@
 //! The neighbourhood as the source draws it.
 
 use crate::report::figure::{Drawing, Figure, Picture, Shape, Tint};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 use std::f64::consts::SQRT_2;
 use stripmine_kernels::mask::Mask;
 
@@ -11,15 +11,18 @@ pub fn section() -> Section {
     Section {
         name: "mask".into(),
         title: "The mask (figure 2)".into(),
-        says: "BP93, figure 2, numbers the 24 places of a disc's neighbourhood; every contact of a disc lies in one of \
-               them if the cells are at least as wide as the largest radius."
+        part: Part::Machine,
+        question: "Which places around a disc can hold what touches it?".into(),
+        expected: "BP93, figure 2, numbers 24 places; every contact of a disc lies in one of them if the cells are at least as wide as the \
+                   largest radius."
             .into(),
-        came_out: format!(
-            "{} places in the source's order, {} in the wider mask for larger differences in size.",
+        answer: format!(
+            "{} places in the source's order, and {} in the wider mask for larger differences in size.",
             small.offsets().len(),
             large.offsets().len()
         ),
-        verdict: if small.offsets().len() == 24 { Verdict::Reproduced } else { Verdict::Failed },
+        details: vec![],
+        verdict: if small.offsets().len() == 24 { Verdict::Reproduced } else { Verdict::NotReproduced },
         again: "stripmine reproduce --only mask".into(),
         figures: vec![drawing("mask_5x5", "The 24 places of the mask", &small)],
         tables: vec![reaches(&[("5×5", 2.0), ("7×7", 3.0)])],

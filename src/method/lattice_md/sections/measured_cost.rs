@@ -3,16 +3,22 @@
 use crate::method::lattice_md::study::density_cost::CEILING;
 use crate::method::lattice_md::study::measured_cost::{MeasuredCost, OCCUPANCY, PARTICLES, Sample};
 use crate::report::figure::{Axis, Band, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Section, Verdict};
+use crate::report::{Part, Section, Verdict};
 
 /// What came out.
 pub fn section(data: &MeasuredCost) -> Section {
     Section {
         name: "measured".into(),
         title: "Cost over particles and density, measured".into(),
-        says: "BP93 predicts the cost and shows no measurement.".into(),
-        came_out: came_out(data),
-        verdict: Verdict::Shown,
+        part: Part::Host,
+        question: "What do the source's ways of executing a step cost on this host?".into(),
+        expected: "BP93 predicts the cost and shows no measurement.".into(),
+        answer: answer(data),
+        details: vec![format!(
+            "One thread, {}, double precision, friction, moving discs.",
+            data.instruction_set
+        )],
+        verdict: Verdict::Measured,
         again: "stripmine reproduce --only measured".into(),
         figures: vec![over_particles(data), over_density(data)],
         tables: vec![],
@@ -24,7 +30,7 @@ pub fn section(data: &MeasuredCost) -> Section {
     }
 }
 
-fn came_out(data: &MeasuredCost) -> String {
+fn answer(data: &MeasuredCost) -> String {
     let each = |samples: &[Sample]| -> String {
         let named = samples.iter().map(|sample| {
             let nanoseconds = 1e9 * sample.seconds / sample.particles as f64;
@@ -45,9 +51,8 @@ fn came_out(data: &MeasuredCost) -> String {
     let [lowest, highest] =
         [densities.iter().copied().fold(1.0, f64::min), densities.iter().copied().fold(0.0, f64::max)];
     format!(
-        "One thread, {}, double precision, friction, moving discs. Nanoseconds a particle and step at NP = {largest}, ρ = \
-         {OCCUPANCY}: {}. The fastest at ρ = {lowest:.3} is {}, at ρ = {highest:.3} {}.",
-        data.instruction_set,
+        "Nanoseconds a particle and step at NP = {largest}, ρ = {OCCUPANCY}: {}; the fastest at ρ = {lowest:.2} is {}, at ρ = \
+         {highest:.2} {}.",
         each(&at_largest),
         fastest(lowest).unwrap_or("none"),
         fastest(highest).unwrap_or("none")

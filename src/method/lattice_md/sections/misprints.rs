@@ -2,15 +2,18 @@
 
 use crate::method::lattice_md::study::misprints::{CoulombRatio, Energy, Finding, Misprints, Right};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &Misprints) -> Section {
     Section {
         name: "misprints".into(),
         title: "What the misprints of the contact law do".into(),
-        says: says(data),
-        came_out: came_out(data),
+        part: Part::Physics,
+        question: "Which equations of the contact law cannot be right as printed?".into(),
+        expected: expected(data),
+        answer: answer(data),
+        details: vec![details(data)],
         verdict: verdict(data),
         again: "stripmine reproduce --only misprints".into(),
         figures: vec![energies(data), ratios(data)],
@@ -27,7 +30,7 @@ pub fn section(data: &Misprints) -> Section {
 fn verdict(data: &Misprints) -> Verdict {
     let failing = data.findings.iter().filter(|finding| tells(finding)).count();
     match failing {
-        0 => Verdict::Failed,
+        0 => Verdict::NotReproduced,
         all if all == data.findings.len() => Verdict::Reproduced,
         _ => Verdict::Partly,
     }
@@ -38,15 +41,22 @@ fn tells(finding: &Finding) -> bool {
     finding.printed_fails() && finding.ours_holds()
 }
 
-fn says(data: &Misprints) -> String {
+fn expected(data: &Misprints) -> String {
     let mut forms: Vec<String> =
         data.findings.iter().map(|finding| format!("{} `{}`", finding.equation, finding.printed)).collect();
     forms.dedup();
-    format!("BP93 prints: {}.", forms.join("; "))
+    format!(
+        "BP93 prints: {}. Conservation of energy and angular momentum says what is right.",
+        forms.join("; ")
+    )
 }
 
-fn came_out(data: &Misprints) -> String {
+fn answer(data: &Misprints) -> String {
     let failing = data.findings.iter().filter(|finding| tells(finding)).count();
+    format!("In {failing} of {} comparisons the printed form fails where ours holds.", data.findings.len())
+}
+
+fn details(data: &Misprints) -> String {
     let values: Vec<String> = data
         .findings
         .iter()
@@ -68,11 +78,7 @@ fn came_out(data: &Misprints) -> String {
         ),
         _ => String::new(),
     };
-    format!(
-        "In {failing} of {} comparisons the printed form fails where ours holds. {}.{kept}",
-        data.findings.len(),
-        values.join("; ")
-    )
+    format!("{}.{kept}", values.join("; "))
 }
 
 fn number(value: f64) -> Cell {
@@ -185,7 +191,7 @@ mod tests {
         data.findings[0].by_ours = printed;
         assert_eq!(verdict(&data), Verdict::Partly);
         data.findings.iter_mut().for_each(|finding| finding.by_ours = f64::NAN);
-        assert_eq!(verdict(&data), Verdict::Failed);
+        assert_eq!(verdict(&data), Verdict::NotReproduced);
     }
 
     #[test]
@@ -193,11 +199,12 @@ mod tests {
         let mut data = misprints();
         data.findings[1].by_printed = 12.25;
         let section = section(&data);
+        let details = section.details.concat();
         for finding in &data.findings {
-            assert_eq!(section.says.matches(finding.printed).count(), 1, "{}", section.says);
-            assert!(section.came_out.contains(finding.quantity), "{}", section.came_out);
+            assert_eq!(section.expected.matches(finding.printed).count(), 1, "{}", section.expected);
+            assert!(details.contains(finding.quantity), "{details}");
         }
-        assert!(section.came_out.contains("12.250 as printed"), "{}", section.came_out);
+        assert!(details.contains("12.250 as printed"), "{details}");
         let table = &section.tables[0];
         assert!(table.rows.iter().all(|row| row.len() == table.columns.len()));
         assert_eq!(table.rows[1][6], Cell::Number(12.25, 3));

@@ -3,6 +3,7 @@
 use crate::method::lattice_md::study::pipe_flow::{FANO_BIN, MAP_BIN, PipeFlow};
 use crate::observe::waves::Directions;
 use crate::particles::{Kind, Particle, Particles};
+use crate::report;
 use crate::report::figure::{Axis, Chart, Drawing, Figure, Map, Picture, Point, Series, Shape, Style, Tint};
 use crate::report::section::{Film, Frame};
 use crate::report::{Cell, Section, Table, Verdict};
@@ -14,6 +15,8 @@ pub struct Showing {
     pub name: &'static str,
     /// Its title.
     pub title: &'static str,
+    /// What is asked of it.
+    pub question: &'static str,
     /// The time from which snapshots are drawn (s), as the source does from 10 s on.
     pub from: f64,
     /// Snapshots that are drawn.
@@ -36,24 +39,28 @@ pub fn section(showing: Showing, flows: &[PipeFlow]) -> Section {
     Section {
         name: showing.name.into(),
         title: showing.title.into(),
-        says: "BP93, section 4, figures 5 and 6: grains fall through a rough vertical pipe; started evenly spread they form \
-               density waves that move both ways. Snapshots every 500 steps, gravity from left to right."
+        part: report::Part::Physics,
+        question: showing.question.into(),
+        expected: "BP93, section 4, figures 5 and 6: grains fall through a rough vertical pipe; started evenly spread they form density \
+                   waves that move both ways."
             .into(),
-        came_out: format!(
-            "{waves} of {} runs of {lasting:.0} s form waves (Fano factor above 1): late Fano factor {}, from {:.2} at the \
-             start; strongest Fourier mode {:.3} at the start, {:.2} late; mean velocity {:.3} m/s. Of the late spectral power \
-             {:.0} % runs against gravity, {:.0} % with it, {:.0} % stands.",
+        answer: format!(
+            "{waves} of {} runs of {lasting:.0} s form waves: the Fano factor (above 1 means waves) rises from {:.2} to {}.",
             flows.len(),
-            late.iter().map(|fano| format!("{fano:.2}")).collect::<Vec<_>>().join(", "),
             first.fano[0],
+            late.iter().map(|fano| format!("{fano:.2}")).collect::<Vec<_>>().join(", "),
+        ),
+        details: vec![format!(
+            "Of the late spectral power {:.0} % runs against gravity, {:.0} % with it, {:.0} % stands. The strongest Fourier mode grows \
+             from {:.3} to {:.2}; the mean velocity is {:.3} m/s.",
+            mean(|directions| directions.back),
+            mean(|directions| directions.forth),
+            mean(|directions| directions.standing),
             first.strongest_mode[0],
             first.late(&first.strongest_mode),
             first.late(&first.flow),
-            mean(|directions| directions.back),
-            mean(|directions| directions.forth),
-            mean(|directions| directions.standing)
-        ),
-        verdict: if waves == flows.len() { Verdict::Reproduced } else { Verdict::Partly },
+        )],
+        verdict: Verdict::reproduced(waves == flows.len()),
         again: format!("stripmine reproduce --only {}", showing.name),
         figures,
         tables: vec![table(flows)],

@@ -5,7 +5,7 @@ use crate::method::lattice_md::study::precision::forces::ForceError;
 use crate::method::lattice_md::study::precision::trajectories::{self, Divergence};
 use crate::method::lattice_md::study::precision::{EQUILIBRATION, PACKING_FRACTIONS, Precisions, SEEDS};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 use crate::statistics::Spread;
 
 /// What came out.
@@ -13,9 +13,12 @@ pub fn section(data: &Precisions) -> Section {
     Section {
         name: "precision".into(),
         title: "What single precision costs".into(),
-        says: "Nothing: fewer digits than the CRAY's 64 bits are this program's own offer.".into(),
-        came_out: came_out(data),
-        verdict: Verdict::Shown,
+        part: Part::Physics,
+        question: "What do fewer digits than 64 bits cost in forces, energy and trajectories?".into(),
+        expected: "The source used 64 bits only; single precision rounds to 6e-8 of a number.".into(),
+        answer: answer(data),
+        details: vec![details(data)],
+        verdict: Verdict::Measured,
         again: "stripmine reproduce --only precision".into(),
         figures: vec![force_figure(&data.forces)]
             .into_iter()
@@ -35,18 +38,27 @@ pub fn section(data: &Precisions) -> Section {
     }
 }
 
-fn came_out(data: &Precisions) -> String {
-    let rms = |name: &str| -> Vec<f64> {
-        let of_variant = data.forces.iter().filter(|error| error.variant.name == name);
-        of_variant
-            .filter(|error| error.packing_fraction == PACKING_FRACTIONS[0])
-            .map(|error| error.rms)
-            .collect()
-    };
-    let over_boxes = |name: &str| match rms(name).as_slice() {
-        [smallest, .., largest] => format!("{smallest:.1e} in the smallest and {largest:.1e} in the largest"),
-        _ => String::new(),
-    };
+/// The root of the mean square error of a way's forces in the smallest and the largest of the dense boxes.
+fn over_boxes(data: &Precisions, name: &str) -> [f64; 2] {
+    let of_variant = data.forces.iter().filter(|error| error.variant.name == name);
+    let dense = of_variant.filter(|error| error.packing_fraction == PACKING_FRACTIONS[0]);
+    let errors: Vec<f64> = dense.map(|error| error.rms).collect();
+    match errors.as_slice() {
+        [smallest, .., largest] => [*smallest, *largest],
+        _ => [f64::NAN; 2],
+    }
+}
+
+fn answer(data: &Precisions) -> String {
+    let [single, mixed] = ["f32, fast", "mixed, fast"].map(|name| over_boxes(data, name));
+    format!(
+        "In boxes of a thousand to a hundred thousand discs the forces err by {:.0e} to {:.0e} of their size in f32, and by {:.0e} to \
+         {:.0e} in mixed precision.",
+        single[0], single[1], mixed[0], mixed[1]
+    )
+}
+
+fn details(data: &Precisions) -> String {
     let stepping = STEPPINGS[0];
     let energies = data.energies.iter().filter(|case| case.stepping == stepping);
     let energies: Vec<String> =
@@ -54,15 +66,13 @@ fn came_out(data: &Precisions) -> String {
     let dense = || data.trajectories.iter().filter(|rival| rival.packing_fraction == PACKING_FRACTIONS[0]);
     let rates: Vec<String> =
         dense().map(|rival| format!("{:.3} ({})", rival.rate.mean, named(rival))).collect();
+    let [smallest, largest] = over_boxes(data, "mixed, programs, absolute");
     format!(
-        "Root of the mean square error of the forces, in boxes of a thousand to a hundred thousand discs at packing \
-         fraction {}: the fast engine in f32 {}, in mixed precision {}; programs in mixed precision with positions \
-         from the box's corner {}. Over {} undamped steps of {} with dt = {} the energy strays by {}. Trajectories part \
-         from those in f64 at the rates {} in a unit of time: that is the gas's own chaos, which digits only start.",
+        "Errors are roots of mean squares at packing fraction {}, of the fast engine; programs in mixed precision whose positions count \
+         from the corner of the box have {smallest:.0e} to {largest:.0e}. Over {} undamped steps of {} with dt = {} the energy strays by \
+         {}. Trajectories part from those in f64 at the rates {} in a unit of time, which is the chaos of the gas itself: digits only \
+         set where it starts.",
         PACKING_FRACTIONS[0],
-        over_boxes("f32, fast"),
-        over_boxes("mixed, fast"),
-        over_boxes("mixed, programs, absolute"),
         Cell::Count(energy::STEPS).for_reading(),
         stepping.name,
         stepping.dt,

@@ -2,7 +2,7 @@
 
 use crate::method::lattice_md::study::threads::{Scaling, Threads};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// How threads are used, in the order of a row.
 const VARIANTS: [&str; 3] = ["one thread", "all threads on one scene", "a scene on each thread"];
@@ -25,15 +25,15 @@ pub fn section(data: &Threads) -> Section {
     Section {
         name: "threads".into(),
         title: "What threads give, and what the machine has to give".into(),
-        says: "No source says: BP93's machine had one processor.".into(),
-        came_out: format!(
-            "Fast lattice, f64, whole steps with friction, {}, {} threads. {}. Every scene has the same bits on any \
-             number of threads.",
-            data.instruction_set,
-            data.threads,
-            named.collect::<Vec<_>>().join("; ")
-        ),
-        verdict: Verdict::Shown,
+        part: Part::Host,
+        question: "How much faster are several threads, and how much faster can they be on this machine?".into(),
+        expected: "No source says: BP93's machine had one processor. The ceiling is what scenes side by side reach, one a thread.".into(),
+        answer: format!("{}.", named.collect::<Vec<_>>().join("; ")),
+        details: vec![format!(
+            "Fast lattice, f64, whole steps with friction, {}, {} threads. Every scene has the same bits on any number of threads.",
+            data.instruction_set, data.threads
+        )],
+        verdict: Verdict::Measured,
         again: "stripmine reproduce --only threads".into(),
         figures: packing_fractions(data).into_iter().map(|phi| figure(data, phi)).collect(),
         tables: vec![table(data)],

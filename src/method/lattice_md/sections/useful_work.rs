@@ -3,25 +3,33 @@
 use crate::method::lattice_md::study::density_cost::CEILING;
 use crate::method::lattice_md::study::useful_work::{Share, UsefulWork};
 use crate::report::figure::{Axis, Band, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &UsefulWork) -> Section {
-    let ends = [data.shares.first(), data.shares.last()];
-    let said = ends.into_iter().flatten().map(|share| {
+    let said = data.shares.last().map_or(String::new(), |share| {
         format!(
-            "at ρ = {:.3} {:.3} % of the lattice's force operations and {:.0} % of the lists'",
+            "At ρ = {:.2} only {:.1} % of the lattice's force operations act on a real contact, and {:.0} % of the lists'; at ρ = {:.2} \
+             {} of the lattice's.",
             share.figures.occupancy,
             100.0 * share.lattice_forces,
-            100.0 * share.list_forces
+            100.0 * share.list_forces,
+            data.shares[0].figures.occupancy,
+            match 100.0 * data.shares[0].lattice_forces {
+                few if few < 0.005 => "practically none".to_owned(),
+                some => format!("{some:.2} %"),
+            }
         )
     });
     Section {
         name: "useful-work".into(),
         title: "Useful work: operations on real contacts".into(),
-        says: "BP93 counts operations, not how many of them meet a contact.".into(),
-        came_out: format!("On real contacts act {}.", said.collect::<Vec<_>>().join(", ")),
-        verdict: Verdict::Shown,
+        part: Part::Machine,
+        question: "How many of the counted operations act on a real contact?".into(),
+        expected: "BP93 counts operations, not how many of them meet a contact.".into(),
+        answer: said,
+        details: vec![],
+        verdict: Verdict::Measured,
         again: "stripmine reproduce --only useful-work".into(),
         figures: vec![figure(data)],
         tables: vec![table(data)],

@@ -80,22 +80,41 @@ pub struct Atlas {
     pub sheets: Vec<Sheet>,
 }
 
+/// A place that was measured, and what the model of the host says of it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Named {
+    /// NP.
+    pub particles: usize,
+    /// ρ on cells as wide as the radius.
+    pub occupancy: f64,
+    /// The method that the model names as the cheapest.
+    pub named: String,
+    /// The one that was measured as the cheapest.
+    pub cheapest: String,
+    /// Measured cost of the one that the model names, over that of the cheapest.
+    pub dearer: f64,
+}
+
 impl Atlas {
-    /// At how many places of the measured sheet the model of the host names the winner, or one that was measured no more
-    /// than a tenth slower; and at how many it was asked.
-    pub fn agreement(&self) -> (usize, usize) {
+    /// Every measured place with the method that the model of the host names there.
+    pub fn named(&self) -> Vec<Named> {
         let sheet =
             |measured| self.sheets.iter().find(|sheet| sheet.unit == "ns" && sheet.measured == measured);
-        let (Some(measured), Some(predicted)) = (sheet(true), sheet(false)) else { return (0, 0) };
-        let asked = measured.places.iter().filter_map(|place| {
+        let (Some(measured), Some(predicted)) = (sheet(true), sheet(false)) else { return vec![] };
+        let named = measured.places.iter().filter_map(|place| {
             let there =
                 |other: &&Place| (other.particles, other.occupancy) == (place.particles, place.occupancy);
             let (named, _) = predicted.places.iter().find(there)?.winner()?;
-            let (winner, _) = place.winner()?;
-            Some(place.costs[named] <= 1.1 * place.costs[winner])
+            let (cheapest, _) = place.winner()?;
+            Some(Named {
+                particles: place.particles,
+                occupancy: place.occupancy,
+                named: measured.methods[named].clone(),
+                cheapest: measured.methods[cheapest].clone(),
+                dearer: place.costs[named] / place.costs[cheapest],
+            })
         });
-        let asked: Vec<bool> = asked.collect();
-        (asked.iter().filter(|&&right| right).count(), asked.len())
+        named.collect()
     }
 }
 
@@ -274,7 +293,7 @@ mod tests {
             title: String::new(),
             unit: "ns",
             measured,
-            methods: vec![],
+            methods: vec!["a".to_owned(), "b".to_owned()],
             places: vec![Place { particles: 100, occupancy: 0.1, costs: costs.to_vec() }],
         }
     }
@@ -286,10 +305,12 @@ mod tests {
     }
 
     #[test]
-    fn a_model_is_right_if_what_it_names_is_hardly_slower_than_the_winner() {
-        for (measured, right) in [([10.0, 9.5], 1), ([10.0, 5.0], 0)] {
+    fn a_wrong_winner_costs_what_it_is_dearer() {
+        for (measured, cheapest, dearer) in [([10.0, 20.0], "a", 1.0), ([10.0, 5.0], "b", 2.0)] {
             let sheets = vec![sheet(false, [1.0, 2.0]), sheet(true, measured)];
-            assert_eq!(Atlas { lists: vec![], fast_lists: vec![], sheets }.agreement(), (right, 1));
+            let named = Atlas { lists: vec![], fast_lists: vec![], sheets }.named();
+            let [only] = named.as_slice() else { panic!("{named:?}") };
+            assert_eq!((only.named.as_str(), only.cheapest.as_str(), only.dearer), ("a", cheapest, dearer));
         }
     }
 }

@@ -29,6 +29,11 @@ pub(super) struct DensityCostVerb {
     out: PathBuf,
 }
 
+/// The answer of an item and what else there is to know.
+fn said(section: &Section) -> String {
+    section.paragraphs().collect::<Vec<_>>().join(" ")
+}
+
 impl DensityCostVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
         let machine = machines::find(&self.machine)?;
@@ -53,21 +58,21 @@ impl DensityCostVerb {
         let start = Instant::now();
         let by_model = density_cost(&machine)?;
         let cost = sections::density_cost::section(&by_model);
-        let mut came_out = vec![cost.came_out.clone()];
+        let mut answers = vec![said(&cost)];
         let model_data = value(serde_json::to_value(&by_model))?;
         write(cost, &model_data, start)?;
 
         let start = Instant::now();
         let measured = measured_cost(&Effort::chart(), |share| show(0.0, share))?;
         let section = sections::measured_cost::section(&measured);
-        came_out.push(section.came_out.clone());
+        answers.push(said(&section));
         let measured_data = value(serde_json::to_value(&measured))?;
         write(section, &measured_data, start)?;
 
         let start = Instant::now();
         let atlas = atlas(&[machine], &host, &[100, 1000, 10_000], Bound::of(3), |share| show(0.5, share))?;
         let section = sections::break_even::section(&atlas, &again);
-        came_out.push(section.came_out.clone());
+        answers.push(said(&section));
         let atlas_data = value(serde_json::to_value(&atlas))?;
         write(section, &atlas_data, start)?;
         clear_progress();
@@ -76,6 +81,6 @@ impl DensityCostVerb {
                 serde_json::json!({ "model": model_data, "measured": measured_data, "atlas": atlas_data });
             return print_json(&all);
         }
-        print(&(came_out.join("\n\n") + "\n"))
+        print(&(answers.join("\n\n") + "\n"))
     }
 }

@@ -3,7 +3,7 @@
 use crate::method::nbody::study::collapse::{BODIES, Bound, Collapse, LATE, Moment};
 use crate::report::figure::{Axis, Chart, Drawing, Figure, Picture, Point, Series, Shape, Style, Tint};
 use crate::report::section::{Film, Frame};
-use crate::report::{Section, Verdict};
+use crate::report::{Part, Section, Verdict};
 
 /// The free fall of a uniform sphere of radius and mass 1.
 const FREE_FALL: f64 = std::f64::consts::PI / (2.0 * std::f64::consts::SQRT_2);
@@ -28,16 +28,20 @@ pub fn section(data: &Collapse) -> Section {
     Section {
         name: "nbody-collapse".into(),
         title: "Bodies: a cold sphere collapses".into(),
-        says: format!(
-            "Theory: a uniform sphere at rest falls in within π/√8 = {FREE_FALL:.2} √(R³/GM), and what stays bound comes to the \
-             virial ratio 0.5 after it."
+        part: Part::Physics,
+        question: "Does a uniform sphere of bodies at rest collapse and come to equilibrium as theory says?"
+            .into(),
+        expected: format!(
+            "It falls in within π/√8 = {FREE_FALL:.2} √(R³/GM), and what stays bound comes to the virial ratio 0.5."
         ),
-        came_out: format!(
-            "{BODIES} bodies are closest at {time:.2}, half of the mass within {radius:.3}; after a time of {LATE} the {:.0} % that are bound have a \
-             virial ratio of {virial:.3} on the average. The energy is off by at most {error:.1e}, the momentum by {momentum:.0e}.",
+        answer: format!(
+            "{BODIES} bodies are closest at {time:.2}; after a time of {LATE} the {:.0} % that are bound have a virial ratio of {virial:.3}.",
             100.0 * share
         ),
-        verdict: if fell { Verdict::Reproduced } else { Verdict::Partly },
+        details: vec![format!(
+            "At the closest, half of the mass is within {radius:.3}. The energy is off by at most {error:.1e}, the momentum by {momentum:.0e}."
+        )],
+        verdict: Verdict::reproduced(fell),
         again: "stripmine reproduce --only nbody-collapse".into(),
         figures: [0.0, FREE_FALL, 3.0]
             .into_iter()

@@ -3,7 +3,7 @@
 use crate::method::nbody::schemes::SchemeName;
 use crate::method::nbody::study::energy::{Energies, KNOWN, STEPS};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table, Verdict};
 use crate::words::Words;
 
 /// Below this an error is rounding.
@@ -30,23 +30,31 @@ pub fn section(data: &Energies) -> Section {
     Section {
         name: "nbody-energy".into(),
         title: "Bodies: what integrators do to an orbit".into(),
-        says: format!(
-            "Largest |ΔE/E| of {} schemes along 100 orbits of eccentricity 0.5, by other programs. PWP: the source's scheme lacks a ½ and \
-             gains energy; symplectic schemes keep the conservation laws; damping makes orbits stable.",
+        part: Part::Physics,
+        question: "How well does each integrator keep the energy of an orbit, and what do the source's missing ½ and its damping do?".into(),
+        expected: format!(
+            "The largest |ΔE/E| of {} schemes along 100 orbits of eccentricity 0.5, as other programs have it. PWP says that its scheme \
+             keeps the conservation laws and that damping makes orbits stable; the specification calls both wrong.",
             KNOWN.len()
         ),
-        came_out: format!(
-            "Every error is {least:.2} to {most:.2} times the known one. The largest momentum on the way is {momentum:.0e}. The source's scheme \
-             has errors of {}; with the ½, {}. Damping acts once a step: 0.9999 makes the orbit's energy {} times as \
-             large in ten orbits of {} steps, and {} times in ten of {}.",
-            of(SchemeName::DampedEuler),
-            of(SchemeName::EulerWithHalf),
-            times(long.energy),
-            long.steps,
-            times(short.energy),
-            short.steps
-        ),
-        verdict: if least > 0.5 && most < 2.0 { Verdict::Reproduced } else { Verdict::Partly },
+        answer: format!("Every error is {least:.2} to {most:.2} times the known one."),
+        details: vec![
+            format!(
+                "The source's scheme has errors of {} (from the longest step to the shortest); with the ½ that it lacks, {}. The largest \
+                 momentum on the way is {momentum:.0e}.",
+                of(SchemeName::DampedEuler),
+                of(SchemeName::EulerWithHalf),
+            ),
+            format!(
+                "Damping acts once a step, so what it does depends on the step: 0.9999 makes the orbit's energy {} times as large in ten \
+                 orbits of {} steps, and {} times in ten of {}.",
+                times(long.energy),
+                long.steps,
+                times(short.energy),
+                short.steps
+            ),
+        ],
+        verdict: Verdict::reproduced(least > 0.5 && most < 2.0),
         again: "stripmine reproduce --only nbody-energy".into(),
         figures: vec![cost(data), lost(data)],
         tables: vec![table(data), damped(data)],

@@ -3,27 +3,54 @@
 mod figures;
 mod tables;
 
-use super::conclusions::sentences;
+use super::conclusions::{of_theory, sentences};
 use super::dataset::Stability;
+use super::outcome::Class;
 use crate::console::Failure;
-use crate::report::{Section, Verdict, csv};
+use crate::report::{Part, Section, Verdict, csv};
 use crate::results::Made;
 
 /// What an item of it is called.
 pub const NAME: &str = "stability";
+
+/// How theory does over all maps, and how much fails in silence.
+fn answer(maps: &[(String, Stability)]) -> String {
+    let ratios: Vec<f64> =
+        maps.iter().filter_map(|(_, data)| of_theory(data)).map(|[middle, ..]| middle).collect();
+    let (mut wrong, mut unsaid) = (0, 0);
+    for (_, data) in maps {
+        let said = data.said(Class::is_unseen);
+        wrong += said.all;
+        unsaid += said.unsaid();
+    }
+    let theory = match (ratios.iter().copied().reduce(f64::min), ratios.iter().copied().reduce(f64::max)) {
+        (Some(least), Some(most)) => format!(
+            "What works ends at {least:.2} to {most:.2} times the step beyond which theory says that errors grow ({} maps); of",
+            ratios.len()
+        ),
+        _ => "Of".to_owned(),
+    };
+    format!(
+        "{theory} {wrong} runs that come to an end and are wrong the program says nothing of {:.1} %.",
+        100.0 * unsaid as f64 / wrong.max(1) as f64
+    )
+}
 
 /// The page over maps, each with a name for its files, and `again`, the command that makes it.
 ///
 /// # Errors
 /// If the dataset is none that JSON can hold.
 pub fn made(maps: &[(String, Stability)], again: String) -> Result<Made, Failure> {
-    let said = maps.iter().map(|(name, data)| format!("{name}. {}", sentences(data).join(" ")));
+    let said = maps.iter().map(|(name, data)| format!("`{name}`: {}", sentences(data).join(" ")));
     let section = Section {
         name: NAME.into(),
         title: "Where the method works".into(),
-        says: "The sources state a step, and not how far it is from one that fails.".into(),
-        came_out: said.collect::<Vec<_>>().join("\n\n"),
-        verdict: Verdict::Shown,
+        part: Part::Physics,
+        question: "From which step on does a method fail, how, and does theory or the program say so beforehand?".into(),
+        expected: "The sources state a step, and not how far it is from one that fails. Theory names steps beyond which errors grow.".into(),
+        answer: answer(maps),
+        details: said.collect(),
+        verdict: Verdict::Measured,
         again,
         figures: maps.iter().map(|(name, data)| figures::map(name, data)).collect(),
         tables: tables::of(maps),
