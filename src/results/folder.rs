@@ -10,7 +10,7 @@ use crate::io::FileError;
 use crate::io::lock::{Lock, LockError, is_lock};
 use crate::io::replace::{is_temporary, listing, remove_if_there, replace, temporary};
 use crate::origin::{Origin, Provenance};
-use crate::report::figure::{Figure, png, svg};
+use crate::report::figure::{self, Figure, png, svg};
 use crate::report::{Section, csv, html, page};
 use crate::reported::{Class, Reported};
 use serde::{Deserialize, Serialize};
@@ -247,9 +247,10 @@ fn files_of(made: &Made) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     if !data.is_null() {
         all.push(("data.json".to_owned(), compact(data)?.into_bytes()));
     }
-    for table in &section.tables {
+    let of_figures = section.figures.iter().filter_map(figure::data);
+    for table in section.tables.iter().cloned().chain(of_figures) {
         let mut bytes = Vec::new();
-        csv::write(table, &mut bytes).map_err(Failure::writing("CSV"))?;
+        csv::write(&table, &mut bytes).map_err(Failure::writing("CSV"))?;
         all.push((format!("{}.csv", table.name), bytes));
     }
     for figure in &section.figures {

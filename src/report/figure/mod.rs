@@ -2,6 +2,7 @@
 
 mod chart;
 mod check;
+mod data;
 mod drawing;
 mod error;
 mod font;
@@ -17,6 +18,7 @@ pub mod style;
 mod svg;
 
 pub use chart::{Axis, Band, Chart, Point, Scale, Series, Style};
+pub use data::{data, data_file};
 pub use drawing::{Drawing, Shape, Tint};
 pub use error::{Fault, FigureError};
 pub use layout::ends;

@@ -1,6 +1,6 @@
 //! A figure as a vector picture: numbers to a hundredth of a pixel, nothing that changes from run to run.
 
-use super::sheet::{Anchor, Area, Mark, Paint, Place, Sheet};
+use super::sheet::{Anchor, Area, Mark, Paint, Place, Sheet, Stroke};
 use super::style::Colour;
 use super::{Figure, FigureError, layout, style};
 use std::collections::BTreeMap;
@@ -28,21 +28,33 @@ pub fn svg(figure: &Figure) -> Result<String, FigureError> {
 
 /// Marks from back to front; what looks alike and follows each other is written together.
 fn write_marks(out: &mut String, marks: &[Mark]) {
-    for alike in marks.chunk_by(|a, b| attributes(a).is_some_and(|own| Some(own) == attributes(b))) {
+    for alike in marks.chunk_by(|a, b| kind(a).is_some_and(|own| Some(own) == kind(b))) {
         let own = attributes(&alike[0]).unwrap_or_default();
-        match alike {
-            [mark] => write_mark(out, mark, &own),
-            [Mark::Disc { paint: Paint { fill: Some(colour), stroke: None }, .. }, ..]
-                if alike.iter().all(|mark| matches!(mark, Mark::Disc { .. })) =>
-            {
-                write_dots(out, alike, *colour);
-            }
+        match (alike, kind(&alike[0])) {
+            ([mark], _) => write_mark(out, mark, &own),
+            (discs, Some(Kind::Discs(outline))) => write_discs(out, discs, outline),
             _ => {
                 let _ = writeln!(out, "<g{own}>");
                 alike.iter().for_each(|mark| write_mark(out, mark, ""));
                 out.push_str("</g>\n");
             }
         }
+    }
+}
+
+/// Which marks may be written together.
+#[derive(PartialEq)]
+enum Kind {
+    /// Filled discs with one outline, whatever their colours.
+    Discs(Option<Stroke>),
+    /// Marks with the same attributes.
+    Of(String),
+}
+
+fn kind(mark: &Mark) -> Option<Kind> {
+    match mark {
+        Mark::Disc { paint: Paint { fill: Some(_), stroke }, .. } => Some(Kind::Discs(*stroke)),
+        _ => attributes(mark).map(Kind::Of),
     }
 }
 
@@ -57,21 +69,31 @@ fn attributes(mark: &Mark) -> Option<String> {
     }
 }
 
-/// Discs of one colour without outlines; which of them is in front makes no difference. Those of one diameter are the round
-/// ends of the shortest lines of that width.
-fn write_dots(out: &mut String, discs: &[Mark], colour: Colour) {
-    let mut paths: BTreeMap<i64, Vec<Vec<Place>>> = BTreeMap::new();
+/// Filled discs; which of them is in front makes no difference. Outlines are larger discs behind all of them.
+fn write_discs(out: &mut String, discs: &[Mark], outline: Option<Stroke>) {
+    let rim = outline.map_or(0.0, |stroke| stroke.width);
+    if let Some(Stroke { colour, .. }) = outline {
+        write_dots(out, discs, |_| colour, rim);
+    }
+    write_dots(out, discs, |fill| fill, -rim);
+}
+
+/// Discs as dots, their diameters changed by `rim`. Those of one colour and diameter are the round ends of the shortest lines
+/// of that width.
+fn write_dots(out: &mut String, discs: &[Mark], colour: impl Fn(Colour) -> Colour, rim: f64) {
+    let mut paths: BTreeMap<(String, i64), Vec<Vec<Place>>> = BTreeMap::new();
     for mark in discs {
-        if let Mark::Disc { centre: [x, y], radius, .. } = mark {
+        if let Mark::Disc { centre: [x, y], radius, paint: Paint { fill: Some(fill), .. } } = mark {
             // Some viewers show nothing of a line without a length.
             let line = vec![[*x, *y], [x + SHORTEST, *y]];
-            paths.entry(hundredths(2.0 * radius)).or_default().push(line);
+            let alike = (colour(*fill).to_string(), hundredths(2.0 * radius + rim));
+            paths.entry(alike).or_default().push(line);
         }
     }
-    let _ = writeln!(out, "<g fill=\"none\" stroke=\"{colour}\" stroke-linecap=\"round\">");
-    for (diameter, pieces) in paths {
-        let path = Course { pieces: &pieces, closed: false };
-        let _ = writeln!(out, "<path stroke-width=\"{}\" d=\"{path}\"/>", Decimal(diameter as f64 / 100.0));
+    out.push_str("<g fill=\"none\" stroke-linecap=\"round\">\n");
+    for ((colour, diameter), pieces) in paths {
+        let (path, width) = (Course { pieces: &pieces, closed: false }, Decimal(diameter as f64 / 100.0));
+        let _ = writeln!(out, "<path stroke=\"{colour}\" stroke-width=\"{width}\" d=\"{path}\"/>");
     }
     out.push_str("</g>\n");
 }
@@ -264,7 +286,6 @@ impl fmt::Display for Escaped<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::samples;
-    use super::super::sheet::Stroke;
     use super::*;
 
     #[test]
@@ -325,9 +346,14 @@ mod tests {
             [1.5, 1.25, 1.5].into_iter().zip(1..).map(|(radius, x)| disc(f64::from(x), radius, false));
         let mut out = String::new();
         write_marks(&mut out, &discs.chain([disc(7.0, 1.0, true), disc(8.0, 1.5, true)]).collect::<Vec<_>>());
-        // Discs without outlines of one size are one path.
-        assert!(out.contains("<path stroke-width=\"3\" d=\"M1 5h.01m1.99 0h.01\"/>"), "{out}");
-        assert!(out.contains("<path stroke-width=\"2.5\" d=\"M2 5h.01\"/>"), "{out}");
-        assert!(out.contains("stroke-width=\"1\">\n<circle cx=\"7\" cy=\"5\" r=\"1\"/>\n<circle"), "{out}");
+        // Discs of one colour and size are one path; outlines are larger discs behind them.
+        for path in [
+            "stroke-width=\"3\" d=\"M1 5h.01m1.99 0h.01\"/>",
+            "stroke-width=\"2.5\" d=\"M2 5h.01\"/>",
+            "stroke-width=\"4\" d=\"M8 5h.01\"/>\n</g>\n<g",
+            "stroke-width=\"1\" d=\"M7 5h.01\"/>",
+        ] {
+            assert!(out.contains(path), "{path}: {out}");
+        }
     }
 }

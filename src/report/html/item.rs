@@ -2,7 +2,7 @@
 
 use super::words::{badge, prose};
 use super::{data, film};
-use crate::report::figure::{Figure, Picture};
+use crate::report::figure::{Figure, Picture, data_file};
 use crate::report::section::Film;
 use crate::report::{Cell, Section, Table};
 use maud::{Markup, PreEscaped, html};
@@ -75,7 +75,15 @@ fn figure(section: &Section, figure: &Figure, drawn: &dyn Fn(&Section, &Figure) 
                 Picture::Chart(chart) => (live("chart", &label, &data::chart(chart), instead)),
                 Picture::Map(map) => (live("map", &label, &data::map(map), instead)),
             }
-            figcaption { (heading(&figure.title)) " " (prose(&figure.caption)) }
+            figcaption {
+                (heading(&figure.title)) " " (prose(&figure.caption))
+                @let folder = section.folder();
+                @if let Some(file) = data_file(figure) {
+                    " " a href={ (folder) "/" (file) } { "Data (CSV)" } ","
+                }
+                " " a href={ (folder) "/" (figure.name) ".svg" } { "SVG" } ", "
+                a href={ (folder) "/" (figure.name) ".png" } { "PNG" } "."
+            }
         }
     }
 }
@@ -107,7 +115,7 @@ fn moving(section: &Section, shown: &Film) -> Markup {
 }
 
 /// Rows of a table that a page shows; a longer one is for programs.
-const ROWS: usize = 30;
+const ROWS: usize = 15;
 
 /// A table in a box of its own, which scrolls where the table is wider than the page. The page has the first rows of a long
 /// one, and says where all are: in the item's folder.
