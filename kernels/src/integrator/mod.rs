@@ -53,7 +53,12 @@ pub fn acceleration<V: Vector>(
     force: V,
     inverse: V,
 ) -> V {
-    let acceleration = force * inverse;
+    pulled(uniform, gravity, freedom, force * inverse)
+}
+
+/// An acceleration with that of gravity added.
+#[inline(always)]
+fn pulled<V: Vector>(uniform: impl Fn(f64) -> V, gravity: [f64; 2], freedom: usize, acceleration: V) -> V {
     if freedom < 2 && gravity[freedom] != 0.0 {
         acceleration + uniform(gravity[freedom])
     } else {
@@ -76,7 +81,9 @@ fn gathered_acceleration<S: Element, P: Element, M: Machine>(
     let uniform = |value: f64| m.uniform(value);
     let own = [Array::DiscInverseMass, Array::DiscInverseInertia][freedom / 2];
     let inverse = inertia.inverse(freedom, uniform, || m.load(Slot::<S>::new(own)));
-    acceleration(uniform, gravity, freedom, force, inverse)
+    let acceleration = force * inverse;
+    m.section("gravity");
+    pulled(uniform, gravity, freedom, acceleration)
 }
 
 /// What a scheme may know beside a row of the state: of the step, and of the discs in the lanes.

@@ -121,6 +121,7 @@ impl<S: Element, P: Element> Enter<S, P> {
         let low = m.uniform(origin);
         let high = m.uniform(origin + cells * edge);
 
+        m.section("position");
         let mut r = m.load(position);
         if self.shape.periodic()[axis] {
             m.section("wrap");
@@ -131,12 +132,16 @@ impl<S: Element, P: Element> Enter<S, P> {
             m.store(position, r);
         }
 
-        m.section("cell");
+        m.section("bounds");
         let inside = low.less_equal(r).and(r.less_equal(high));
+        m.section("cell");
         let from_low = r - low;
+        let cell = (from_low * m.uniform(1.0 / edge)).truncate();
+        m.section("bounds");
         // A position on the far side, or a rounding error below it, belongs to the last cell.
-        let cell = (from_low * m.uniform(1.0 / edge)).truncate().min(m.uniform(cells - 1.0));
+        let cell = cell.min(m.uniform(cells - 1.0));
 
+        m.section("copy");
         if self.coordinates == Coordinates::CellRelative {
             m.section("coordinates");
             r = from_low - (cell + m.uniform(0.5)) * m.uniform(edge);
@@ -168,13 +173,16 @@ unsafe impl<S: Element, P: Element> Text for Enter<S, P> {
         m.section("cell");
         let first = m.uniform((self.shape.position(0, 0) + 1) as f64);
         let number = row * m.uniform(self.shape.stride() as f64) + (column + first);
+        m.section("bounds");
         let inside = inside_columns.and(inside_rows);
         if let Some(positions) = seen {
             self.store_anchored(m, inside, positions);
         }
-        let cell = m.to_index(M::V::select(inside, number, m.uniform(0.0)));
-        m.store_index(DISC_CELL, cell);
+        let number = M::V::select(inside, number, m.uniform(0.0));
         m.count(STRAYS, inside.not());
+        m.section("cell");
+        let cell = m.to_index(number);
+        m.store_index(DISC_CELL, cell);
 
         m.section("scatter");
         m.scatter_index(INDEX, cell, m.to_index(m.numbers()));

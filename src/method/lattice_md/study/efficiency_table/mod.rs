@@ -1,10 +1,13 @@
 //! What does a step cost, by the source's count and by ours? BP93 section 3.
 
+pub mod differences;
+
 use crate::method::lattice_md::{
     Discs, GearValues, Lengths, Model, Part, Scheme, StepProgram, ledger, programs,
 };
 use crate::model::clock::{Clock, Work};
 use crate::model::machine::MachineModel;
+use differences::DifferenceRow;
 use serde::Serialize;
 use stripmine_kernels::isa::{Op, OpClass, OpCounts};
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc};
@@ -122,6 +125,8 @@ pub struct EfficiencyTable {
     pub counted_clocks: f64,
     /// The same operations on a scalar machine.
     pub scalar_clocks: f64,
+    /// What of predictor, index and corrector the source's count has.
+    pub differences: Vec<DifferenceRow>,
     /// Where the operations of the forces go, for each mask place.
     pub force_sections: Vec<SectionRow>,
     /// Operations of each class in each part.
@@ -312,6 +317,7 @@ pub fn efficiency_table(
         counted_clocks: parts.iter().map(|row| row.counted_clocks).sum(),
         scalar_clocks: step_clocks(Clock::Scalar, &ledger, &lengths, machine),
         parts,
+        differences: differences::differences(&ledger),
         force_sections: force_sections(&ledger, question.choice),
         classes: classes(&ledger),
         savings: savings(question, machine)?,
