@@ -11,7 +11,7 @@ fn run(program: &str, folder: &Path, arguments: &[&str]) -> Output {
 fn committed_results_are_refused_to_a_changed_checkout() {
     let checkout = tempfile::tempdir().unwrap();
     let at = |name: &str| checkout.path().join(name);
-    for folder in ["src", "tests/rivals", "reports/host/rivals"] {
+    for folder in ["src", "tests/rivals", "src/study/rivals/measured"] {
         std::fs::create_dir_all(at(folder)).unwrap();
     }
     let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/rivals");
@@ -21,14 +21,14 @@ fn committed_results_are_refused_to_a_changed_checkout() {
         }
     }
     std::fs::write(at("src/lib.rs"), "").unwrap();
-    std::fs::write(at("reports/host/rivals/lammps.md"), "").unwrap();
+    std::fs::write(at("src/study/rivals/measured/contests.json"), "").unwrap();
     let git = |arguments: &[&str]| {
         let who = ["-c", "user.name=n", "-c", "user.email=e", "-c", "commit.gpgsign=false"];
         let done = run("git", checkout.path(), &[&who, arguments].concat());
         assert!(done.status.success(), "{done:?}");
     };
     git(&["init", "--quiet"]);
-    git(&["add", "src", "tests", "reports"]);
+    git(&["add", "src", "tests"]);
     git(&["commit", "--quiet", "--message", "all"]);
     // There is no program to measure: what is not refused ends without a result and without an error.
     let asked = |out: &str| {
@@ -36,9 +36,12 @@ fn committed_results_are_refused_to_a_changed_checkout() {
         run("python3", checkout.path(), &call)
     };
     let code = |done: &Output| done.status.code();
-    assert_eq!(code(&asked("reports/host/rivals")), Some(0));
+    assert_eq!(code(&asked("src/study/rivals/measured")), Some(0));
+    // Results that are being made are no change of what they depend on.
+    std::fs::write(at("src/study/rivals/measured/contests.json"), "1").unwrap();
+    assert_eq!(code(&asked("src/study/rivals/measured")), Some(0));
     std::fs::write(at("src/lib.rs"), "// changed").unwrap();
-    let refused = asked("reports/host/rivals");
+    let refused = asked("src/study/rivals/measured");
     assert_eq!(code(&refused), Some(2), "{refused:?}");
     assert!(String::from_utf8_lossy(&refused.stderr).contains("choose another --out"), "{refused:?}");
     assert_eq!(code(&asked("elsewhere")), Some(0));

@@ -1,5 +1,6 @@
 //! What `reproduce` makes of studies.
 
+use super::rivals::section as rivals;
 use super::stability::{self, Over, stability};
 use super::work_precision::{self, work_precision};
 use super::{Subject, stability::section as map_section, work_precision::section as diagram_section};
@@ -23,7 +24,19 @@ pub const ITEMS: &[Item] = &[
         is_quick: true,
         make: where_it_works,
     },
+    Item {
+        name: rivals::NAME,
+        doc: "LAMMPS and the crate particular on the same systems, as measured last",
+        seconds: [0.1, 0.1],
+        is_quick: true,
+        make: beside_others,
+    },
 ];
+
+/// What the scripts of the rivals measured.
+fn beside_others(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+    rivals::made()
+}
 
 /// The scenes that methods state for it.
 fn speed_against_accuracy(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {

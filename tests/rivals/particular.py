@@ -14,13 +14,13 @@ import argparse
 import json
 import os
 import pathlib
-import statistics
 import subprocess
 import sys
 import tempfile
 
 from environment import said
-from provenance import is_traceable, write
+from provenance import is_traceable
+from report import contest, result, shown, write
 
 CRATE = pathlib.Path(__file__).with_name("particular")
 # Ours by the precision of theirs.
@@ -45,7 +45,7 @@ def answer(call):
     return json.loads(done.stdout)
 
 
-def contest(rival, stripmine, bodies, precision, rounds):
+def held(rival, stripmine, bodies, precision, rounds):
     """Alternating runs; rates in 10⁹ a second."""
     ours, theirs, error = [], [], 0.0
     for _ in range(rounds):
@@ -55,11 +55,8 @@ def contest(rival, stripmine, bodies, precision, rounds):
         call = [stripmine, "bench", "nbody", "--json", "--quiet", "--threads", 1, "--repeats", 3, "--particles", bodies]
         found = answer([*call, "--precision", OURS[precision]])
         ours.append(found["interactions_per_second_median"] / 1e9)
-    return {
-        "bodies": bodies, "precision": precision, "instruction_set": found["instruction_set"],
-        "arithmetic": found["arithmetic"], "stripmine": ours, "particular": theirs, "particular_force_error": error,
-        "ratio": statistics.median(own / other for own, other in zip(ours, theirs)),
-    }
+    way = f"forces in {precision}, {found['arithmetic']} (the rival's error {error:.1e})"
+    return contest("all-pairs gravity", bodies, way, ours, theirs), found["instruction_set"]
 
 
 def main():
@@ -67,7 +64,7 @@ def main():
     parser.add_argument("--bodies", type=int, nargs="+", default=[4096, 16384])
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--stripmine", default="target/release/stripmine")
-    parser.add_argument("--out", type=pathlib.Path, help="folder for particular.json")
+    parser.add_argument("--out", type=pathlib.Path, help="folder for contests.json")
     asked = parser.parse_args()
     if asked.out and not is_traceable(asked.out):
         sys.exit(f"error: the results in {asked.out} are committed, but this checkout has changes that are in no commit")
@@ -76,13 +73,13 @@ def main():
     except OSError as why:
         print(f"skipped: the crate cannot be had here: {why}")
         return
-    contests = [
-        contest(rival, asked.stripmine, bodies, precision, asked.rounds) for bodies in asked.bodies for precision in OURS
-    ]
-    text = json.dumps({"particular": "0.7.0", "contests": contests}, indent=2)
-    print(text)
+    contests = [held(rival, asked.stripmine, bodies, precision, asked.rounds) for bodies in asked.bodies for precision in OURS]
+    unit = "10⁹ directed interactions a second, one thread"
+    build = "crate particular, target-cpu=native, link-time optimisation"
+    found = result("particular", "0.7.0", build, contests[-1][1], unit, [it for it, _ in contests], [])
+    print(shown(found))
     if asked.out:
-        write(asked.out, {"particular.json": text + "\n"})
+        write(asked.out, found)
 
 
 main()
