@@ -44,6 +44,7 @@ pub mod memory;
 pub mod method;
 pub mod model;
 pub mod near;
+pub mod number;
 pub mod observe;
 pub mod origin;
 pub mod particles;

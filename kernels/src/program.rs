@@ -1,7 +1,9 @@
 //! A text made ready to run: recorded once, checked before every run, executed in one of several ways.
 
 use crate::backend::tape::Outlines;
-use crate::backend::{GROUP, InstructionSet, Precision, Registers, Scalar, Strip, Tape, Task, dispatch};
+use crate::backend::{
+    GROUP, InstructionSet, Line, Precision, Registers, Scalar, Strip, Tape, Task, dispatch,
+};
 use crate::isa::{Footprint, Memory, OpCounts, ProgramError, Text};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
@@ -153,6 +155,9 @@ pub trait Runnable: Send + Sync {
     /// The vector instructions, as an assembly listing.
     fn listing(&self) -> String;
 
+    /// The vector instructions as words.
+    fn lines(&self) -> Vec<Line>;
+
     /// The vector instructions, and the passes that execute them, as a timing model sees them.
     fn outlines(&self) -> Outlines;
 }
@@ -177,6 +182,10 @@ where
 
     fn listing(&self) -> String {
         self.tape.listing().to_string()
+    }
+
+    fn lines(&self) -> Vec<Line> {
+        self.tape.lines()
     }
 
     fn outlines(&self) -> Outlines {

@@ -13,6 +13,7 @@ use crate::study::programs::Programs;
 use clap::{Args, Subcommand};
 use serde::Serialize;
 use serde_json::{Map, json};
+use stripmine_kernels::backend::Line;
 
 /// Presets, a preset's text to start from, the check of a scene, and every key of a scene file
 #[derive(Args)]
@@ -159,7 +160,9 @@ struct Listing {
     length: &'static str,
     n: usize,
     times: u64,
-    lines: Vec<String>,
+    instructions: Vec<Line>,
+    #[serde(skip)]
+    text: String,
 }
 
 fn programs(
@@ -185,18 +188,16 @@ fn programs(
         length: it.length,
         n: it.n,
         times: it.times,
-        lines: it.program.listing().lines().map(str::to_owned).collect(),
+        instructions: it.program.lines(),
+        text: it.program.listing(),
     };
     let listings: Vec<Listing> = programs.iter().map(of).collect();
     if common.json {
         return print_json(&listings);
     }
     let text = |it: &Listing| {
-        let Listing { part, length, n, times, lines } = it;
-        format!(
-            "; {part}: vectors of n = {length} = {n} elements, {times} times a step\n{}\n",
-            lines.join("\n")
-        )
+        let Listing { part, length, n, times, text, .. } = it;
+        format!("; {part}: vectors of n = {length} = {n} elements, {times} times a step\n{text}")
     };
     print(&listings.iter().map(text).collect::<String>())
 }

@@ -2,6 +2,7 @@
 
 use crate::memory::in_words;
 use crate::method::{Beyond, Clock, Every, Fact, Failure, Prepared, Purpose, Until};
+use crate::number::significant;
 use indicatif::HumanDuration;
 use serde_json::{Map, Value, json};
 use std::sync::atomic::AtomicBool;
@@ -25,7 +26,7 @@ pub fn of_the_step(prepared: &dyn Prepared) -> Vec<Fact> {
             Beyond::Inaccurate => "inaccurate beyond",
             Beyond::Unseen => "contacts pass unseen beyond",
         };
-        let words = format!("dt is {:.3} of {:.4e}; {beyond}", limit.share, limit.step);
+        let words = format!("dt is {:.3} of {}; {beyond}", limit.share, significant(limit.step, 5));
         Fact { data: None, words: Some((limit.name, words)) }
     });
     facts.extend(said);

@@ -6,6 +6,7 @@ use super::{Stated, readable};
 use crate::domain::Domain;
 use crate::io::extxyz;
 use crate::memory;
+use crate::number::significant;
 use crate::particles::{Kind, Particle, Particles, in_space};
 use crate::placement::{Filling, Row, hexagonal, random, row, stir};
 use crate::quoted;
@@ -28,8 +29,10 @@ pub(super) fn placeable(stated: &Stated<'_>, count: f64, key: &Key) -> Result<()
     match memory::available() {
         Some(available) if needed > available as f64 => {
             let message = format!(
-                "to place {count:.4e} discs takes {needed:.3e} bytes of memory; this machine has {:.3e} left",
-                available as f64
+                "to place {} discs takes {:.1} GB of memory; this machine has {:.1} left",
+                significant(count, 5),
+                1e-9 * needed,
+                1e-9 * available as f64
             );
             Err(stated.spot(key).error(Reason::Memory, message).advising("take fewer discs"))
         }

@@ -17,5 +17,5 @@ pub use pulp::{Pulp, PulpElement};
 pub(crate) use registers::Strip;
 pub use registers::{IndexLanes, Registers};
 pub use scalar::Scalar;
-pub use tape::{Listing, Tape};
+pub use tape::{Line, Listing, Tape};
 pub use wide::{Wide, WideElement};

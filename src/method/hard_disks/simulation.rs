@@ -9,6 +9,7 @@ use super::prepared::Checked;
 use super::reference;
 use crate::io::checkpoint::{Column, Counter};
 use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
+use crate::number::significant;
 use crate::particles::{Particles, in_space};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -400,10 +401,10 @@ impl Simulation for Running {
     fn in_words(&self) -> String {
         let values = self.observe();
         format!(
-            "{} discs, {} collisions of pairs; temperature {:.4e}, compressibility {:.4}, {:.4} collisions of a disc in a unit of time",
+            "{} discs, {} collisions of pairs; temperature {}, compressibility {:.4}, {:.4} collisions of a disc in a unit of time",
             self.places.len(),
             self.totals.collisions,
-            values[5],
+            significant(values[5], 5),
             values[9],
             values[10]
         )

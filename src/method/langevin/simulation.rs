@@ -5,6 +5,7 @@ use super::losses::Losses;
 use super::prepared::Checked;
 use crate::io::checkpoint::{Column, Counter};
 use crate::method::{Clock, Failure, FailureKind, Purpose, RunWarning, Simulation, Snapshot, Until};
+use crate::number::significant;
 use crate::particles::{Particle, Particles};
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -254,12 +255,12 @@ impl Simulation for Running {
     fn in_words(&self) -> String {
         let seen = self.observe();
         format!(
-            "{} particles, {} lost; temperature {:.4}, pressure {:.4e}, mean square displacement {:.4e}",
+            "{} particles, {} lost; temperature {:.4}, pressure {}, mean square displacement {}",
             self.start.len(),
             self.losses.count(),
             seen[3],
-            seen[4],
-            seen[5]
+            significant(seen[4], 5),
+            significant(seen[5], 5)
         )
     }
 }

@@ -4,6 +4,7 @@ use super::check::Checked;
 use super::theory::limits;
 use super::theory::trial_contact::contact_error;
 use crate::method::Fact;
+use crate::number::significant;
 use crate::words::Words;
 use serde_json::json;
 
@@ -36,7 +37,7 @@ pub(super) fn facts(checked: &Checked) -> Vec<Fact> {
             format!("{} of {} are {:.6}", scene.run.steps, scene.integrator.dt, scene.duration())
         }),
         Fact::data("duration", scene.duration()),
-        Fact::new("estimates", json!(e), "approach speed", format!("{:.4e}", e.approach_speed)),
+        Fact::new("estimates", json!(e), "approach speed", significant(e.approach_speed, 5)),
         Fact::words("steps per contact", or_none(e.steps_per_contact, |steps| format!("{steps:.1}"))),
         Fact::words("penetration of an impact", format!("{:.4}", e.impact_penetration)),
         Fact::words("damping γ dt, dense 3 γ dt, limit", {
@@ -73,8 +74,11 @@ pub(super) fn expected_error(checked: &Checked) -> Option<Fact> {
     let error = contact_error(contact, &scene.law.contact, integrator.scheme, integrator.dt)?;
     let most = if error.step > integrator.dt { "at most " } else { "" };
     let words = format!(
-        "{most}{:.1e} of its energy, falling as dt^{:.1}; by {} trials at {:.3e}",
-        error.energy, error.order, error.phases, estimates.approach_speed
+        "{most}{} of its energy, falling as dt^{:.1}; by {} trials at {}",
+        significant(error.energy, 2),
+        error.order,
+        error.phases,
+        significant(estimates.approach_speed, 4)
     );
     Some(Fact::new("expected_error", json!(error), "error of a contact", words))
 }

@@ -21,6 +21,7 @@ use crate::method::{
 };
 use crate::model::clock;
 use crate::model::machine::MachineModel;
+use crate::number::significant;
 use crate::observe::{Observation, Scenery};
 use crate::particles::Particles;
 use crate::scene::{Output, SceneErrors, Warning};
@@ -375,8 +376,11 @@ impl Simulation for Running {
             text.push_str(&format!(" on {columns}×{rows} cells, occupancy {occupancy:.3}"));
         }
         text.push_str(&format!(
-            "; temperature {:.4e}, flow {:.4e}, contacts {}, deepest penetration {:.4}",
-            seen.temperature, seen.flow, seen.contacts, seen.deepest_penetration
+            "; temperature {}, flow {}, contacts {}, deepest penetration {:.4}",
+            significant(seen.temperature, 5),
+            significant(seen.flow, 5),
+            seen.contacts,
+            seen.deepest_penetration
         ));
         if let Some(share) = self.relative_work().filter(|&share| share < 1.0) {
             let saved = 100.0 * (1.0 - share);

@@ -7,6 +7,7 @@ use super::prepared::Checked;
 use super::schemes::Scheme;
 use crate::io::checkpoint::{Column, Counter};
 use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
+use crate::number::significant;
 use crate::particles::{Particles, in_plane};
 use serde_json::{Map, Value, json};
 use std::cell::RefCell;
@@ -239,11 +240,11 @@ impl Simulation for Running {
     fn in_words(&self) -> String {
         let seen = self.observe();
         format!(
-            "{} bodies; energy error {:.2e}, virial ratio {:.3}, momentum {:.1e}",
+            "{} bodies; energy error {}, virial ratio {:.3}, momentum {}",
             self.bodies.len(),
-            seen[3],
+            significant(seen[3], 3),
             seen[4],
-            seen[5]
+            significant(seen[5], 2)
         )
     }
 }

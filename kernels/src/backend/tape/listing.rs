@@ -1,14 +1,85 @@
 //! A program as an assembly listing.
 
-use super::instruction::{Action, Effect, Indices, Number, Operand, Reference, RegisterName, Truth};
+use super::instruction::{
+    Action, Effect, Indices, Instruction, Number, Operand, Reference, RegisterName, Truth,
+};
 use super::recorded::Tape;
 use crate::isa::Element;
+use serde::Serialize;
 use std::fmt;
 
 impl<L: Element> Tape<L> {
     /// The program as an assembly listing.
     pub fn listing(&self) -> Listing<'_, L> {
         Listing(self)
+    }
+
+    /// The instructions as words.
+    pub fn lines(&self) -> Vec<Line> {
+        self.instructions
+            .iter()
+            .map(|instruction| line(self.sections[instruction.section], instruction))
+            .collect()
+    }
+}
+
+/// An instruction as words.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Line {
+    /// What the section of the program does.
+    pub section: &'static str,
+    /// The operation's mnemonic.
+    pub operation: &'static str,
+    /// Where the result goes: a register, an array, or a counter.
+    pub destination: String,
+    /// Operands in their order: registers, arrays, `#` before a scalar.
+    pub sources: Vec<String>,
+}
+
+fn line<L: Element>(section: &'static str, instruction: &Instruction<L>) -> Line {
+    let to = instruction.to().map(|name| name.to_string());
+    let word = |operand: &dyn fmt::Display| operand.to_string();
+    let (destination, sources) = match &instruction.action {
+        Action::Number(_, number) => (
+            to,
+            match number {
+                Number::Unary(_, a) => vec![word(a)],
+                Number::Binary(_, a, b) => vec![word(a), word(b)],
+                Number::Select(predicate, a, b) => vec![word(predicate), word(a), word(b)],
+                Number::Numbers => vec![],
+                Number::FromIndex(a) => vec![word(a)],
+                Number::Load(from) | Number::LoadShifted(from) => vec![word(from)],
+                Number::Gather(from, index, elsewhere) => vec![format!("{from}({index})"), word(elsewhere)],
+            },
+        ),
+        Action::Truth(_, truth) => (
+            to,
+            match truth {
+                Truth::Compare(_, a, b) => vec![word(a), word(b)],
+                Truth::Connective(_, a, b) => vec![word(a), word(b)],
+                Truth::Negation(_, a) => vec![word(a)],
+            },
+        ),
+        Action::Indices(_, indices) => (
+            to,
+            match indices {
+                Indices::ToIndex(a) => vec![word(a)],
+                Indices::Load(from) => vec![word(from)],
+                Indices::Gather(from, index) => vec![format!("{from}({index})")],
+            },
+        ),
+        Action::Effect(effect) => match effect {
+            Effect::Count(predicate, counter) => (Some(format!("C{counter}")), vec![word(predicate)]),
+            Effect::Store(to, value) => (Some(word(to)), vec![word(value)]),
+            Effect::StoreIndex(to, value) => (Some(word(to)), vec![word(value)]),
+            Effect::Scatter(to, index, value) => (Some(format!("{to}({index})")), vec![word(value)]),
+        },
+    };
+    Line {
+        section,
+        operation: instruction.op().mnemonic(),
+        destination: destination.unwrap_or_default(),
+        sources,
     }
 }
 
@@ -44,45 +115,14 @@ impl<L: Element> fmt::Display for Listing<'_, L> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut section = usize::MAX;
         for (number, instruction) in self.0.instructions.iter().enumerate() {
+            let Line { section: name, operation, destination, sources } =
+                line(self.0.sections[instruction.section], instruction);
             if instruction.section != section {
                 section = instruction.section;
-                writeln!(f, "; {}", self.0.sections[section])?;
+                writeln!(f, "; {name}")?;
             }
-            write!(f, "{:>5}  {:<8}", number + 1, instruction.op().mnemonic())?;
-            if let Some(to) = instruction.to() {
-                write!(f, "{to}")?;
-                if !matches!(instruction.action, Action::Number(_, Number::Numbers)) {
-                    write!(f, ", ")?;
-                }
-            }
-            match &instruction.action {
-                Action::Number(_, number) => match number {
-                    Number::Unary(_, a) => write!(f, "{a}")?,
-                    Number::Binary(_, a, b) => write!(f, "{a}, {b}")?,
-                    Number::Select(predicate, a, b) => write!(f, "{predicate}, {a}, {b}")?,
-                    Number::Numbers => {}
-                    Number::FromIndex(a) => write!(f, "{a}")?,
-                    Number::Load(from) | Number::LoadShifted(from) => write!(f, "{from}")?,
-                    Number::Gather(from, index, elsewhere) => write!(f, "{from}({index}), {elsewhere}")?,
-                },
-                Action::Truth(_, truth) => match truth {
-                    Truth::Compare(_, a, b) => write!(f, "{a}, {b}")?,
-                    Truth::Connective(_, a, b) => write!(f, "{a}, {b}")?,
-                    Truth::Negation(_, a) => write!(f, "{a}")?,
-                },
-                Action::Indices(_, indices) => match indices {
-                    Indices::ToIndex(a) => write!(f, "{a}")?,
-                    Indices::Load(from) => write!(f, "{from}")?,
-                    Indices::Gather(from, index) => write!(f, "{from}({index})")?,
-                },
-                Action::Effect(effect) => match effect {
-                    Effect::Count(predicate, counter) => write!(f, "C{counter}, {predicate}")?,
-                    Effect::Store(to, value) => write!(f, "{to}, {value}")?,
-                    Effect::StoreIndex(to, value) => write!(f, "{to}, {value}")?,
-                    Effect::Scatter(to, index, value) => write!(f, "{to}({index}), {value}")?,
-                },
-            }
-            writeln!(f)?;
+            let operands = std::iter::once(destination).chain(sources).collect::<Vec<_>>().join(", ");
+            writeln!(f, "{:>5}  {operation:<8}{operands}", number + 1)?;
         }
         Ok(())
     }

@@ -14,6 +14,6 @@ mod register_file;
 pub use instruction::{
     Action, Effect, File, Indices, Instruction, Number, Operand, Reference, RegisterName, Truth,
 };
-pub use listing::Listing;
+pub use listing::{Line, Listing};
 pub use outline::{Outline, Outlines, Place, register_shape};
 pub use recorded::Tape;

@@ -3,6 +3,7 @@
 use super::efficiency_table::{Question, QuestionError, step};
 use crate::method::lattice_md::Part;
 use serde::Serialize;
+use stripmine_kernels::backend::Line;
 
 /// One program of a part.
 #[derive(Serialize)]
@@ -10,7 +11,9 @@ pub struct ProgramListing {
     part: &'static str,
     length: &'static str,
     n: usize,
-    lines: Vec<String>,
+    instructions: Vec<Line>,
+    #[serde(skip)]
+    text: String,
 }
 
 /// The programs of a part for a question.
@@ -23,25 +26,22 @@ pub fn listings(part: Part, question: &Question) -> Result<Vec<ProgramListing>, 
         part: part.name(),
         length: step.length.symbol(),
         n: lengths.range(step.length).len(),
-        lines: step.program.listing().lines().map(str::to_owned).collect(),
+        instructions: step.program.lines(),
+        text: step.program.listing(),
     });
     Ok(of_part.collect())
 }
 
-/// Instructions of all programs: lines that are no comments.
+/// Instructions of all programs.
 pub fn instructions(listings: &[ProgramListing]) -> usize {
-    listings.iter().flat_map(|listing| &listing.lines).filter(|line| !line.starts_with(';')).count()
+    listings.iter().map(|listing| listing.instructions.len()).sum()
 }
 
 /// The listing as text.
 pub fn text(listings: &[ProgramListing]) -> String {
-    let mut text = String::new();
-    for ProgramListing { part, length, n, lines } in listings {
-        text.push_str(&format!("; {part}: vectors of n = {length} = {n} elements\n"));
-        for line in lines {
-            text.push_str(line);
-            text.push('\n');
-        }
-    }
-    text
+    let of = |it: &ProgramListing| {
+        let ProgramListing { part, length, n, text, .. } = it;
+        format!("; {part}: vectors of n = {length} = {n} elements\n{text}")
+    };
+    listings.iter().map(of).collect()
 }

@@ -4,6 +4,7 @@ use super::contact::HertzContact;
 use super::step_matrix::largest_step;
 use crate::method::lattice_md::check::{Checked, FASTEST, FEWEST_STEPS, LEAST_STEPS, NETWORK};
 use crate::method::{Beyond, StepLimit};
+use crate::number::significant;
 use crate::particles::longest_step;
 
 /// Without gravity and dissipation discs have several contacts at once above this packing fraction.
@@ -38,10 +39,11 @@ fn one_contact(checked: &Checked) -> Option<StepLimit> {
     let step = largest_step(scheme, contact.stiffest(), damping)?;
     let why = format!(
         "largest eigenvalue of the step matrix of {} on the spring and damper of a contact at {FASTEST} times the typical speed, \
-         {:.3e}: ω = {:.3e}, γ = {damping:.3e}",
+         {}: ω = {}, γ = {}",
         scheme.name(),
-        contact.speed,
-        contact.stiffest().sqrt()
+        significant(contact.speed, 4),
+        significant(contact.stiffest().sqrt(), 4),
+        significant(damping, 4)
     );
     Some(StepLimit {
         name: "one contact",
@@ -64,8 +66,8 @@ fn packing(checked: &Checked) -> Option<StepLimit> {
     let contact = contact(checked, 1.0);
     let step = largest_step(scheme, NETWORK * contact.stiffest(), NETWORK * law.normal_damping)?;
     let why = format!(
-        "the same with {NETWORK} times spring and damper of a contact at the typical speed, {:.3e}: a disc pressed from all sides",
-        contact.speed
+        "the same with {NETWORK} times spring and damper of a contact at the typical speed, {}: a disc pressed from all sides",
+        significant(contact.speed, 4)
     );
     Some(StepLimit {
         name: "dense packing",
@@ -81,7 +83,8 @@ fn friction(checked: &Checked) -> Option<StepLimit> {
     let law = &checked.scene.law;
     let rate = law.contact.shear_damping * (1.0 + 1.0 / law.inertia.factor());
     let step = largest_step(checked.scene.integrator.scheme, 0.0, rate).filter(|_| law.has_friction())?;
-    let why = format!("the same on the drag of friction between two surfaces, {rate:.3e} a unit of time");
+    let per_time = significant(rate, 4);
+    let why = format!("the same on the drag of friction between two surfaces, {per_time} a unit of time");
     Some(StepLimit {
         name: "drag of friction",
         step,
@@ -94,8 +97,11 @@ fn friction(checked: &Checked) -> Option<StepLimit> {
 fn of_duration(checked: &Checked, name: &'static str, steps: f64) -> Option<StepLimit> {
     let contact = contact(checked, 1.0);
     let duration = contact.duration();
-    let why =
-        format!("an undamped contact at the typical speed, {:.3e}, lasts {duration:.3e}", contact.speed);
+    let why = format!(
+        "an undamped contact at the typical speed, {}, lasts {}",
+        significant(contact.speed, 4),
+        significant(duration, 4)
+    );
     let is_known = duration.is_finite() && duration > 0.0;
     let step = duration / steps;
     is_known.then(|| StepLimit {
