@@ -4,6 +4,7 @@ use crate::quoted;
 use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
 use std::path::Path;
+use std::time::SystemTime;
 use stripmine_kernels::InstructionSet;
 
 /// The program that made a result.
@@ -107,10 +108,14 @@ fn in_shell(word: &str) -> String {
     }
 }
 
+/// A moment to the second, in universal time, as RFC 3339 writes it.
+pub fn moment(time: SystemTime) -> String {
+    humantime::format_rfc3339_seconds(time).to_string()
+}
+
 /// The day, in universal time.
 pub fn today() -> String {
-    let now = humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string();
-    now.split('T').next().unwrap_or_default().to_owned()
+    moment(SystemTime::now()).split('T').next().unwrap_or_default().to_owned()
 }
 
 /// The processor (Linux says it in `/proc/cpuinfo`) and the platform.

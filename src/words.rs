@@ -18,6 +18,22 @@ pub trait Words: Copy + PartialEq + 'static {
     }
 }
 
+/// The nearest of some names, if any is near enough to be meant.
+pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    // Longer than any name: nothing is near, and the comparison takes as long as both together.
+    if name.len() > 64 {
+        return None;
+    }
+    let distance = |candidate: &str| strsim::damerau_levenshtein(&name.to_lowercase(), candidate);
+    let near = |candidate: &&str| distance(candidate) <= (candidate.len() / 3).max(2).min(name.len());
+    candidates.into_iter().filter(near).min_by_key(|candidate| distance(candidate))
+}
+
+/// The same as a line of a message; nothing where no name is near.
+pub fn suggestion<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
+    nearest(name, candidates).map_or(String::new(), |near| format!("\n  help: did you mean {near}?"))
+}
+
 /// Words for an enumeration that is defined elsewhere.
 macro_rules! words_for {
     ($name:ty { $($variant:ident = $word:literal,)* }) => {

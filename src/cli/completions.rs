@@ -1,9 +1,11 @@
 //! `stripmine completions`: what a shell needs to complete the command.
 
-use super::command;
+use super::{command, scene};
 use crate::console::{Failure, print};
 use crate::method::Methods;
-use clap::Args;
+use crate::model::machines;
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 
 /// Shell completion, to standard output
@@ -17,7 +19,56 @@ pub(super) struct Completions {
 impl Completions {
     pub(super) fn run(&self, methods: Methods) -> Result<(), Failure> {
         let mut text = Vec::new();
-        generate(self.shell, &mut command(methods), "stripmine", &mut text);
+        generate(self.shell, &mut completed(command(methods), methods), "stripmine", &mut text);
         print(&String::from_utf8_lossy(&text))
+    }
+}
+
+/// The command with all that its arguments may name: presets, machines, keys. Shells offer files where nothing of these fits; fish
+/// completes verbs and options only.
+fn completed(command: Command, methods: Methods) -> Command {
+    let presets: Vec<String> = scene::presets(methods).map(|preset| preset.name.to_owned()).collect();
+    let machines: Vec<String> = machines::names().map(str::to_owned).collect();
+    let mut keys: Vec<String> = methods
+        .iter()
+        .flat_map(|method| method.vocabulary.keys.keys())
+        .filter(|key| !key.section.is_empty())
+        .map(|key| format!("{}.{}=", key.section, key.name))
+        .collect();
+    keys.sort();
+    keys.dedup();
+    with_values(
+        command,
+        &[("scene", &presets), ("machine", &machines), ("overrides", &keys), ("against", &keys)],
+    )
+}
+
+/// The command and all below it, with these values for arguments of these names.
+fn with_values(command: Command, values: &[(&str, &Vec<String>)]) -> Command {
+    command.mut_subcommands(|below| with_values(below, values)).mut_args(|arg| {
+        match values.iter().find(|(name, _)| arg.get_id() == *name && arg.get_action().takes_values()) {
+            Some((_, values)) => arg.value_parser(PossibleValuesParser::new(values.iter().cloned())),
+            None => arg,
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::METHODS;
+
+    #[test]
+    fn shells_know_presets_machines_and_keys() {
+        for shell in [Shell::Bash, Shell::Zsh] {
+            let mut text = Vec::new();
+            generate(shell, &mut completed(command(METHODS), METHODS), "stripmine", &mut text);
+            let text = String::from_utf8(text).unwrap();
+            for word in
+                ["pipe-small", "cold-collapse", "cray-y-mp-el", "particles.packing_fraction=", "run.steps="]
+            {
+                assert!(text.contains(word), "{shell} does not know {word}");
+            }
+        }
     }
 }

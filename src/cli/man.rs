@@ -1,10 +1,11 @@
 //! `stripmine man`: the manual page.
 
-use super::command;
+use super::{command, manual};
 use crate::console::{Failure, print};
 use crate::method::Methods;
 use clap::Args;
 use clap_mangen::Man;
+use clap_mangen::roff::{Roff, bold, roman};
 
 /// The manual page, in roff, to standard output: stripmine man | man -l -
 #[derive(Args)]
@@ -28,8 +29,27 @@ impl ManVerb {
                 })?
             }
         };
+        let parts = manual::parts(self.verb.as_deref().unwrap_or_default());
         let mut text = Vec::new();
-        Man::new(page).render(&mut text).map_err(Failure::writing("the manual page"))?;
+        // What help says below the options has headings of its own here.
+        let page = Man::new(page.after_long_help(None::<&str>));
+        page.render(&mut text)
+            .and_then(|()| below(parts).to_writer(&mut text))
+            .map_err(Failure::writing("the manual page"))?;
         print(&String::from_utf8_lossy(&text))
     }
+}
+
+/// The parts that stand below the options.
+fn below(parts: Vec<manual::Part>) -> Roff {
+    let mut page = Roff::new();
+    for (heading, entries) in parts {
+        page.control("SH", [heading.to_uppercase().as_str()]);
+        for (what, meaning) in entries {
+            page.control("TP", []);
+            page.text([bold(what)]);
+            page.text([roman(meaning)]);
+        }
+    }
+    page
 }

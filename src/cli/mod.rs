@@ -5,6 +5,7 @@ mod chart;
 mod compare;
 mod completions;
 mod man;
+mod manual;
 mod plot;
 mod reproduce;
 mod run;
@@ -95,6 +96,11 @@ fn command(methods: Methods) -> clap::Command {
     general
         .mut_subcommand("chart", |chart| chart.subcommands(charts_of(methods).map(subcommand)))
         .subcommands(verbs_of(methods).map(subcommand))
+        .after_long_help(manual::text(""))
+        .mut_subcommands(|verb| {
+            let text = manual::text(verb.get_name());
+            verb.after_long_help(text)
+        })
 }
 
 /// Runs the command with its arguments, the first of which is its name.

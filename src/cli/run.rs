@@ -1,6 +1,6 @@
 //! `stripmine run`: one simulation into a folder.
 
-use crate::console::{Common, Failure, bar, clear_progress, print, print_json, say, warn};
+use crate::console::{Common, Failure, STEPS, bar, clear_progress, print, print_json, say, warn};
 use crate::method::{Methods, Prepared, prepare, vocabularies};
 use crate::run::{Ending, Existing, Summary, chosen_otherwise, forecast, run};
 use crate::scene::Values;
@@ -55,7 +55,7 @@ impl RunVerb {
         if !common.quiet {
             before(prepared.as_ref());
         }
-        let bar = bar(common, 0, "{wide_bar} {pos}/{len} [{elapsed}, ETA {eta}]");
+        let bar = bar(common, 0, STEPS);
         let progress = |done, all| {
             bar.set_length(all);
             bar.set_position(done);

@@ -5,6 +5,7 @@ use crate::quoted;
 use crate::reported::{Class, FilePlace, Reported};
 use crate::scene::SceneErrors;
 use crate::signals::{self, End};
+use crate::words::suggestion;
 use serde::Serialize;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -37,7 +38,7 @@ pub enum Failure {
         values: &'static [&'static str],
     },
     /// A verb that there is not: exit code 2.
-    #[error("there is no verb {verb}; these are: {}", verbs.join(", "))]
+    #[error("there is no verb {verb}; these are: {}{}", verbs.join(", "), suggestion(verb, verbs.iter().map(String::as_str)))]
     UnknownVerb {
         /// The verb asked for.
         verb: String,

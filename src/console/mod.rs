@@ -5,7 +5,7 @@ mod output;
 
 pub use failure::{Failure, tell};
 pub(crate) use output::print_answer;
-pub use output::{SHARES, bar, clear_progress, print, print_json, progress, say, to_json, warn};
+pub use output::{SHARES, STEPS, bar, clear_progress, print, print_json, progress, say, to_json, warn};
 
 use clap::Args;
 

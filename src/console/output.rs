@@ -3,11 +3,12 @@
 
 use super::{Common, Failure};
 use crate::quoted;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 /// Whether anything was written to standard output.
 static BEGUN: AtomicBool = AtomicBool::new(false);
@@ -41,13 +42,31 @@ pub fn warn(message: impl Display) {
 pub fn bar(common: &Common, length: u64, template: &str) -> ProgressBar {
     let target = if common.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     let bar = ProgressBar::with_draw_target(Some(length), target);
-    bar.set_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    bar.set_style(style.with_key("left", |state: &ProgressState, out: &mut dyn std::fmt::Write| {
+        let _ = out.write_str(&remaining(state.fraction(), state.elapsed(), state.eta()));
+    }));
+    // Time goes on where nothing else does.
+    bar.enable_steady_tick(TICK);
     *shown() = Some(bar.clone());
     bar
 }
 
+/// How often a bar is drawn though nothing was finished.
+const TICK: Duration = Duration::from_millis(500);
+
 /// The template of a bar over shares, with a message.
-pub const SHARES: &str = "{wide_bar} {msg} {percent}% [{elapsed}, ETA {eta}]";
+pub const SHARES: &str = "{wide_bar} {msg} {percent}% [{elapsed}{left}]";
+/// The template of a bar over steps.
+pub const STEPS: &str = "{wide_bar} {pos}/{len} [{elapsed}{left}]";
+
+/// The time that is left, once enough is done to say so: two hundredths, and three seconds.
+fn remaining(share: f32, elapsed: Duration, eta: Duration) -> String {
+    if share < 0.02 || elapsed < Duration::from_secs(3) {
+        return String::new();
+    }
+    format!(", ETA {}", HumanDuration(eta))
+}
 
 /// Progress in thousandths.
 pub fn progress(common: &Common, what: &'static str) -> ProgressBar {
@@ -101,4 +120,17 @@ pub fn print_json(data: &impl serde::Serialize) -> Result<(), Failure> {
 /// If it is nothing that JSON can hold.
 pub fn to_json(data: &impl serde::Serialize) -> Result<String, Failure> {
     serde_json::to_string_pretty(data).map_err(|cause| Failure::writing("JSON")(cause.into()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_time_is_promised_before_any_is_known() {
+        let [short, long] = [1, 10].map(Duration::from_secs);
+        assert_eq!(remaining(0.5, short, long), "");
+        assert_eq!(remaining(0.01, long, long), "");
+        assert_eq!(remaining(0.5, long, long), ", ETA 10 seconds");
+    }
 }

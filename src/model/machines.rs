@@ -101,7 +101,8 @@ mod tests {
         assert_eq!(
             error.to_string(),
             "unknown machine `cray-3`; known are paper, cray-1, cyber-205, cray-x-mp, cray-y-mp, nec-sx-3, \
-             cray-c90, cray-y-mp-el, cray-j90, sx-aurora, and machine files by their path, which ends in .toml"
+             cray-c90, cray-y-mp-el, cray-j90, sx-aurora, and machine files by their path, which ends in .toml\n  \
+             help: did you mean cray-1?"
         );
     }
 

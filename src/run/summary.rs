@@ -2,10 +2,11 @@
 
 use super::forecast;
 use crate::method::{Failure, Prepared, RunWarning, Simulation};
-use crate::origin::{Origin, host};
+use crate::origin::{Origin, host, moment};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
+use std::time::{Duration, SystemTime};
 
 /// The content of `summary.json`.
 #[derive(Clone, Debug, Serialize)]
@@ -14,6 +15,10 @@ pub struct Summary {
     pub origin: Origin,
     /// The processor, where the system names it, and the platform.
     pub host: String,
+    /// When this session began, in universal time.
+    pub begun: String,
+    /// When it ended.
+    pub ended: String,
     /// Seed of the random numbers that made the start; none where it was read or listed.
     pub seed: Option<u64>,
     /// Instructions used, where the method has a choice.
@@ -67,6 +72,8 @@ impl Summary {
         Summary {
             origin: Origin::here(),
             host: host(),
+            begun: moment(SystemTime::now() - Duration::from_secs_f64(seconds)),
+            ended: moment(SystemTime::now()),
             seed: prepared.seed(),
             instruction_set: prepared.settings().remove("instruction_set"),
             threads: rayon::current_num_threads(),

@@ -2,6 +2,7 @@
 
 use super::error::{Mistakes, Reason};
 use crate::quoted::quoted;
+use crate::words::nearest;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeInteger, DeValue};
@@ -311,20 +312,6 @@ fn list<T>(value: &Spanned<DeValue<'_>>, item: impl Fn(&Spanned<DeValue<'_>>) ->
 fn pair<T>(value: &Spanned<DeValue<'_>>, item: impl Fn(&Spanned<DeValue<'_>>) -> Read<T>) -> Read<[T; 2]> {
     let items = list(value, item)?;
     items.try_into().or_else(|_| wrong_type(value))
-}
-
-/// The nearest of some names, if any is near enough to be meant.
-pub(super) fn nearest(
-    name: &str,
-    candidates: impl IntoIterator<Item = &'static str>,
-) -> Option<&'static str> {
-    // Longer than any name: nothing is near, and the comparison takes as long as both together.
-    if name.len() > 64 {
-        return None;
-    }
-    let distance = |candidate: &str| strsim::damerau_levenshtein(&name.to_lowercase(), candidate);
-    let near = |candidate: &&str| distance(candidate) <= (candidate.len() / 3).max(2).min(name.len());
-    candidates.into_iter().filter(near).min_by_key(|candidate| distance(candidate))
 }
 
 /// What stands for a key that is not given.

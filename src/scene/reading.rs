@@ -1,11 +1,11 @@
 //! From a preset's name, a file or a text to values that have passed every rule.
 
 use super::error::{Place, Reason, SceneErrors, Spot};
-use super::keys::nearest;
 use super::values::Values;
 use super::vocabulary::{Preset, Vocabulary};
 use super::{rules, text};
 use crate::io::regular_file;
+use crate::words::nearest;
 use std::path::Path;
 
 /// Longest scene file (bytes); a list of positions may be long.

@@ -3,10 +3,11 @@
 use super::error::{Mistakes, Place, Reason, SceneError, SceneErrors, Spot};
 use super::general::{FORMAT, METHOD};
 use super::key_set::{KeySet, SECTIONS};
-use super::keys::{Fault, Key, nearest};
+use super::keys::{Fault, Key};
 use super::values::{Entry, Values};
 use super::vocabulary::Vocabulary;
 use crate::quoted::quoted;
+use crate::words::nearest;
 use std::collections::BTreeSet;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};

@@ -4,6 +4,7 @@ use super::limits::FORMAT;
 use super::position::Position;
 use crate::quoted::{message, one_line, quoted};
 use crate::reported::{Class, FilePlace, Reported};
+use crate::words::suggestion;
 use std::io::ErrorKind;
 use stripmine_kernels::isa::op::OpClass;
 
@@ -56,9 +57,10 @@ fn lines(file: &str, defects: &[(Option<Position>, Defect)], more: usize) -> Str
 pub enum MachineError {
     /// No preset has the name asked for, and it does not look like that of a file.
     #[error(
-        "unknown machine `{}`; known are {}, and machine files by their path, which ends in .toml",
+        "unknown machine `{}`; known are {}, and machine files by their path, which ends in .toml{}",
         quoted(name),
-        known.join(", ")
+        known.join(", "),
+        suggestion(name, known.iter().copied())
     )]
     Unknown {
         /// The name asked for.

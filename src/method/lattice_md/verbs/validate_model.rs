@@ -32,7 +32,7 @@ pub(super) struct ValidateModel {
           value_parser = RangedU64ValueParser::<usize>::new().range(1..))]
     particles: Vec<usize>,
     /// Occupancies, on cells as wide as the radius
-    #[arg(long, value_delimiter = ',', default_values_t = [0.072, 0.168])]
+    #[arg(long, value_delimiter = ',', default_values_t = [0.072, 0.168], value_parser = occupancy)]
     occupancies: Vec<f64>,
     /// Seconds that the runs take, about; each is made once at least
     #[arg(long, default_value_t = 120, value_parser = clap::value_parser!(u16).range(1..))]
@@ -41,6 +41,18 @@ pub(super) struct ValidateModel {
     #[arg(long)]
     out: Option<PathBuf>,
 }
+
+/// An occupancy that discs which touch can have on cells as wide as their radius.
+fn occupancy(text: &str) -> Result<f64, String> {
+    let most = DENSEST / std::f64::consts::PI;
+    match text.parse() {
+        Ok(occupancy) if occupancy > 0.0 && occupancy < most => Ok(occupancy),
+        _ => Err(format!("a number above 0 and below {most:.3}, where discs fill the plane")),
+    }
+}
+
+/// Packing fraction beyond which the scenes of the test cannot be made.
+const DENSEST: f64 = 0.907;
 
 /// Rounds over all runs at most.
 const ROUNDS: usize = 12;
