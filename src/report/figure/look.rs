@@ -33,6 +33,12 @@ pub fn looks(chart: &Chart) -> Vec<Look> {
             other.style == series.style || (has_markers(other.style) && has_markers(series.style))
         };
         let twins = chart.series[..i].iter().filter(|other| other.hue == series.hue && alike(other)).count();
+        // Beyond the palette's end colours begin again.
+        let colour = |series: &Series| style::hue(series.hue);
+        let before = chart.series[..i]
+            .iter()
+            .filter(|other| other.style == Style::Joined && colour(other) == colour(series))
+            .count();
         Look {
             style: series.style,
             colour: style::hue(series.hue),
@@ -40,7 +46,8 @@ pub fn looks(chart: &Chart) -> Vec<Look> {
             dash: match series.style {
                 Style::Line => style::line_dash(series.hue + twins),
                 Style::Dashed => style::short_dash(series.hue + twins),
-                Style::Points | Style::Joined => &[],
+                Style::Joined => style::line_dash(before),
+                Style::Points => &[],
             },
             hollow: twins % 2 == 1,
         }
@@ -56,6 +63,21 @@ fn has_markers(style: Style) -> bool {
 mod tests {
     use super::*;
     use crate::report::figure::Axis;
+
+    #[test]
+    fn no_two_lines_have_one_colour_and_dash() {
+        for style in [Style::Line, Style::Dashed, Style::Joined] {
+            let axis = Axis::linear("x", None);
+            let series =
+                (0..14).map(|hue| Series { name: String::new(), style, hue, points: vec![] }).collect();
+            let looks = looks(&Chart { x: axis.clone(), y: axis, series, bands: vec![] });
+            for (i, look) in looks.iter().enumerate() {
+                let same =
+                    looks[..i].iter().any(|other| (other.colour, other.dash) == (look.colour, look.dash));
+                assert!(!same, "{style:?}, series {i}");
+            }
+        }
+    }
 
     #[test]
     fn series_of_one_hue_differ() {

@@ -90,12 +90,32 @@ pub fn short_dash(hue: usize) -> &'static [f64] {
     DASHES[hue % DASHES.len()]
 }
 
-/// How many shades there are.
+/// How many shades there are of one map of colours. Levels from 0 on are those of magnitudes, the next as many those of signed
+/// quantities.
 pub const SHADES: u8 = 128;
 
-/// The colour of a shade, from dark (0) to bright (the last): viridis, whose equal steps look equal, in colour and in
-/// grey.
+/// Whether shades between these ends show a sign: then 0 is in the middle, and has a colour of its own.
+pub fn is_signed([low, high]: [f64; 2]) -> bool {
+    low < 0.0 && low == -high
+}
+
+/// The levels of a map of colours.
+pub fn levels(signed: bool) -> std::ops::RangeInclusive<u8> {
+    if signed { SHADES..=2 * (SHADES - 1) + 1 } else { 0..=SHADES - 1 }
+}
+
+/// The colour of a level: of a magnitude from dark to bright, of a signed quantity from blue over grey to orange.
 pub fn shade(level: u8) -> Colour {
+    if level < SHADES { magnitude(level) } else { signed(level - SHADES) }
+}
+
+/// Blue for less than 0, orange for more, grey for 0, which is to be seen on white.
+fn signed(level: u8) -> Colour {
+    between(level, &[[0, 56, 130], [62, 148, 214], [196, 196, 196], [235, 150, 66], [150, 56, 0]])
+}
+
+/// Viridis, whose equal steps look equal, in colour and in grey.
+fn magnitude(level: u8) -> Colour {
     const STOPS: [[u8; 3]; 17] = [
         [68, 1, 84],
         [72, 24, 106],
@@ -115,19 +135,23 @@ pub fn shade(level: u8) -> Colour {
         [216, 226, 25],
         [253, 231, 37],
     ];
-    let place = f64::from(level.min(SHADES - 1)) / f64::from(SHADES - 1) * (STOPS.len() - 1) as f64;
-    let below = (place as usize).min(STOPS.len() - 2);
+    between(level, &STOPS)
+}
+
+fn between(level: u8, stops: &[[u8; 3]]) -> Colour {
+    let place = f64::from(level.min(SHADES - 1)) / f64::from(SHADES - 1) * (stops.len() - 1) as f64;
+    let below = (place as usize).min(stops.len() - 2);
     let part = place - below as f64;
     let [red, green, blue] = std::array::from_fn(|i| {
-        let [low, high] = [STOPS[below][i], STOPS[below + 1][i]].map(f64::from);
+        let [low, high] = [stops[below][i], stops[below + 1][i]].map(f64::from);
         (low + part * (high - low)).round() as u8
     });
     Colour(red, green, blue)
 }
 
-/// The shade of a place between the lowest (0) and the highest (1).
-pub fn level(place: f64) -> u8 {
-    (place.clamp(0.0, 1.0) * f64::from(SHADES - 1)).round() as u8
+/// The level of a place between the lowest (0) and the highest (1).
+pub fn level(place: f64, signed: bool) -> u8 {
+    levels(signed).start() + (place.clamp(0.0, 1.0) * f64::from(SHADES - 1)).round() as u8
 }
 
 /// Width of a picture with axes (pixels); it grows when a name in its legend needs more.
@@ -180,6 +204,16 @@ mod tests {
         for i in 1..SHADES {
             assert!(shade(i).lightness() > shade(i - 1).lightness(), "{i}");
         }
-        assert_eq!([level(-1.0), level(0.0), level(1.0), level(7.0)], [0, 0, SHADES - 1, SHADES - 1]);
+        let levels = [-1.0, 0.0, 1.0, 7.0].map(|place| level(place, false));
+        assert_eq!(levels, [0, 0, SHADES - 1, SHADES - 1]);
+    }
+
+    #[test]
+    fn signs_are_told_apart_and_zero_is_grey() {
+        let [low, middle, high] = [0.0, 0.5, 1.0].map(|place| shade(level(place, true)));
+        assert!(low.2 > low.0 + 60 && high.0 > high.2 + 60);
+        assert!(middle.0.abs_diff(middle.2) < 12 && middle.lightness() < 215.0, "{middle}");
+        assert!(is_signed([-2.0, 2.0]) && !is_signed([-1.0, 2.0]) && !is_signed([0.0, 0.0]));
+        assert_eq!(level(1.0, true), *levels(true).end());
     }
 }

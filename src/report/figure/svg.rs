@@ -139,7 +139,7 @@ fn write_mark(out: &mut String, mark: &Mark, attributes: &str) {
 
 /// Cells of one shade are one path, neighbours in a row one line of it, as wide as a cell is high; in units of cells.
 fn write_cells(out: &mut String, area: Area, columns: usize, levels: &[u8]) -> fmt::Result {
-    let mut paths = vec![vec![]; usize::from(style::SHADES)];
+    let mut paths = vec![vec![]; 1 + usize::from(*style::levels(true).end())];
     for (j, row) in levels.chunks(columns).enumerate() {
         let mut i = 0;
         for run in row.chunk_by(|a, b| a == b) {
@@ -156,7 +156,9 @@ fn write_cells(out: &mut String, area: Area, columns: usize, levels: &[u8]) -> f
         out,
         "<g transform=\"translate({x} {y}) scale({across:.6} {down:.6})\" shape-rendering=\"crispEdges\" fill=\"none\">"
     )?;
-    for (level, pieces) in (0..style::SHADES).zip(&paths).filter(|(_, pieces)| !pieces.is_empty()) {
+    for (level, pieces) in
+        (0..=*style::levels(true).end()).zip(&paths).filter(|(_, pieces)| !pieces.is_empty())
+    {
         let path = Course { pieces, closed: false };
         writeln!(out, "<path stroke=\"{}\" d=\"{path}\"/>", style::shade(level))?;
     }

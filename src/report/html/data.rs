@@ -93,9 +93,11 @@ fn axis(axis: &Axis, data: impl Iterator<Item = f64>) -> Value {
     })
 }
 
-/// The colours of shades, from dark to bright.
+/// The colours of magnitudes, and those of signed quantities, from the lowest to the highest.
 pub fn shades() -> Value {
-    json!((0..style::SHADES).map(|level| style::shade(level).to_string()).collect::<Vec<_>>())
+    let colours =
+        |signed| style::levels(signed).map(|level| style::shade(level).to_string()).collect::<Vec<_>>();
+    json!([colours(false), colours(true)])
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ pictures("map", (holder, map) => {
   const values = numbers(map.values);
   // The values are on the scale of their axis already; so must its ends be.
   const ends = value.ends.map((end) => (value.log ? Math.log10(end) : end));
-  const colours = SHADES.map((hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16)));
+  const colours = shadesOf(ends).map((hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16)));
 
   const image = document.createElement("canvas");
   image.width = Math.max(columns, 1);

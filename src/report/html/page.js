@@ -2,13 +2,16 @@
 // does.
 "use strict";
 
-/** The colours of shades, from dark to bright. */
-const SHADES = JSON.parse(document.getElementById("shades").textContent);
+/** The colours of magnitudes, and those of signed quantities, from the lowest to the highest. */
+const [MAGNITUDES, SIGNED] = JSON.parse(document.getElementById("shades").textContent);
+
+/** The colours of shades between two ends: 0 in the middle has a colour of its own. */
+const shadesOf = ([low, high]) => (low < 0 && low === -high ? SIGNED : MAGNITUDES);
 
 /** The number of the shade of a value between two ends. */
 function shadeOf(value, [low, high]) {
   const place = high > low ? (value - low) / (high - low) : 0.5;
-  return Math.round(Math.min(Math.max(place, 0), 1) * (SHADES.length - 1));
+  return Math.round(Math.min(Math.max(place, 0), 1) * (MAGNITUDES.length - 1));
 }
 
 /** The numbers of a `Quantised` of Rust; NaN where there is none. */
@@ -72,7 +75,7 @@ function colourBar(parent, { label, unit, log, ends }) {
   const bar = element("div", "colour-bar", parent);
   element("span", "", bar).textContent = heading({ label, unit }) + (log ? ", logarithmic:" : ":");
   element("span", "", bar).textContent = readable(ends[0], 3);
-  element("span", "shades", bar).style.background = `linear-gradient(to right, ${SHADES.join(", ")})`;
+  element("span", "shades", bar).style.background = `linear-gradient(to right, ${shadesOf(ends).join(", ")})`;
   element("span", "", bar).textContent = readable(ends[1], 3);
 }
 

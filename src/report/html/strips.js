@@ -67,7 +67,7 @@ function filmScreen(film, canvas) {
   const radii = numbers(film.radii);
   const [xs, ys, shades] = [film.x, film.y, film.shades].map(numbers);
   const fixed = { x: numbers(film.fixed.x), y: numbers(film.fixed.y), radii: numbers(film.fixed.radii) };
-  const colour = (shade) => (Number.isNaN(shade) ? "#fff" : SHADES[shadeOf(shade, film.shade.ends)]);
+  const colour = (shade) => (Number.isNaN(shade) ? "#fff" : shadesOf(film.shade.ends)[shadeOf(shade, film.shade.ends)]);
   // What stays the same from frame to frame is drawn once.
   const still = document.createElement("canvas");
   let layout, ctx, width;

@@ -14,6 +14,7 @@ pub struct ColourBar {
     area: Area,
     edge: Edge,
     lying: bool,
+    signed: bool,
     zoom: f64,
 }
 
@@ -26,7 +27,7 @@ impl ColourBar {
         } else {
             Edge::new(Side::Right, axis, ends, [area.bottom(), area.top], zoom)
         };
-        ColourBar { area, edge, lying, zoom }
+        ColourBar { area, edge, lying, signed: style::is_signed(ends), zoom }
     }
 
     /// How far the axis reaches out from the bar.
@@ -38,7 +39,7 @@ impl ColourBar {
     pub fn marks(&self) -> Vec<Mark> {
         let Area { left, top, width, height } = self.area;
         let lying = self.lying;
-        let mut levels: Vec<u8> = (0..style::SHADES).collect();
+        let mut levels: Vec<u8> = style::levels(self.signed).collect();
         if !lying {
             levels.reverse();
         }

@@ -63,14 +63,18 @@ impl View<'_> {
                 Some(Mark::Disc {
                     centre: self.place(*centre),
                     radius,
-                    paint: Paint { fill: colour(*tint), stroke },
+                    paint: Paint { fill: colour(*tint, self.signed()), stroke },
                 })
             }
             Shape::Rectangle { corners, tint, outlined } => {
                 let stroke = outlined.then(|| self.outline(LINE * self.zoom));
                 let [[left, bottom], [right, top]] = corners.map(|corner| self.place(corner));
                 let pieces = vec![vec![[left, top], [right, top], [right, bottom], [left, bottom]]];
-                Some(Mark::Lines { pieces, closed: true, paint: Paint { fill: colour(*tint), stroke } })
+                Some(Mark::Lines {
+                    pieces,
+                    closed: true,
+                    paint: Paint { fill: colour(*tint, self.signed()), stroke },
+                })
             }
             Shape::Line { ends } => {
                 let pieces = vec![ends.map(|end| self.place(end)).to_vec()];
@@ -84,8 +88,10 @@ impl View<'_> {
                 let [x, y] = self.place(*centre);
                 let height = height.abs() * self.scale;
                 let below = self.drawing.shapes[..index].iter().rev();
-                let ground =
-                    below.filter(|shape| covers(shape, *centre)).find_map(filling).unwrap_or(style::PAPER);
+                let ground = below
+                    .filter(|shape| covers(shape, *centre))
+                    .find_map(|shape| filling(shape, self.signed()))
+                    .unwrap_or(style::PAPER);
                 (height > 0.0).then(|| Mark::Words {
                     at: [x, y + height / 2.0],
                     anchor: Anchor::Middle,
@@ -98,6 +104,11 @@ impl View<'_> {
         }
     }
 
+    /// Whether shades show a sign.
+    fn signed(&self) -> bool {
+        self.drawing.shades.as_ref().is_some_and(|&(low, high, _)| style::is_signed([low, high]))
+    }
+
     fn place(&self, [x, y]: Place) -> Place {
         let [[left, low], _] = self.drawing.window;
         [self.window.left + (x - left) * self.scale, self.window.bottom() - (y - low) * self.scale]
@@ -108,18 +119,18 @@ impl View<'_> {
     }
 }
 
-fn colour(tint: Tint) -> Option<Colour> {
+fn colour(tint: Tint, signed: bool) -> Option<Colour> {
     match tint {
         Tint::Clear => None,
         Tint::Still => Some(style::STILL),
         Tint::Hue(index) => Some(style::hue(index)),
-        Tint::Shade(place) => Some(style::shade(style::level(place))),
+        Tint::Shade(place) => Some(style::shade(style::level(place, signed))),
     }
 }
 
-fn filling(shape: &Shape) -> Option<Colour> {
+fn filling(shape: &Shape, signed: bool) -> Option<Colour> {
     match shape {
-        Shape::Disc { tint, .. } | Shape::Rectangle { tint, .. } => colour(*tint),
+        Shape::Disc { tint, .. } | Shape::Rectangle { tint, .. } => colour(*tint, signed),
         Shape::Line { .. } | Shape::Text { .. } => None,
     }
 }

@@ -25,7 +25,8 @@ pub fn lay_out(title: &str, map: &Map) -> Result<Sheet, Fault> {
 
     let shade = Ruler::new(map.value.scale, shades, [0.0, 1.0]);
     let rows = map.rows.iter().rev();
-    let levels = rows.flatten().map(|&value| style::level(shade.place(value))).collect();
+    let signed = style::is_signed(shades);
+    let levels = rows.flatten().map(|&value| style::level(shade.place(value), signed)).collect();
     let mut marks = title.marks();
     marks.push(Mark::Cells { area: frame.plot, columns: map.rows[0].len(), levels });
     marks.extend(frame.edges());
