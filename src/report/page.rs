@@ -8,7 +8,9 @@ pub const MARK: &str = "Written by `stripmine reproduce`; do not edit.";
 
 /// Tables and pictures of an item that the page shows; further ones are linked.
 const TABLES: usize = 1;
-const FIGURES: usize = 3;
+const FIGURES: usize = 2;
+/// Letters of an item's details that it shows; more stand on the page with charts.
+const DETAILS: usize = 700;
 
 /// The page. Pictures and data lie in a folder for each item, which bears its name. `left_out` names items that the folder has,
 /// but of another version of the program.
@@ -56,8 +58,18 @@ fn item(section: &Section) -> String {
     let folder = section.folder();
     let mut text = format!("\n## {title}\n\n*Question:* {question}\n\n*Expected:* {expected}\n\n");
     let _ = write!(text, "*Answer:* **{}**. ", verdict.word());
-    for paragraph in section.paragraphs() {
-        let _ = write!(text, "{paragraph}\n\n");
+    let _ = write!(text, "{}\n\n", section.answer);
+    let mut letters = 0;
+    let shown = section.details.iter().take_while(|detail| {
+        letters += detail.len();
+        letters <= DETAILS
+    });
+    let shown: Vec<&str> = shown.map(String::as_str).collect();
+    shown.iter().for_each(|detail| {
+        let _ = write!(text, "{detail}\n\n");
+    });
+    if shown.len() < section.details.len() {
+        let _ = write!(text, "More in words: [index.html](index.html#{}).\n\n", section.name);
     }
     for figure in section.figures.iter().take(FIGURES) {
         let _ = write!(text, "![{}]({folder}/{}.svg)\n\n{}\n\n", figure.title, figure.name, figure.caption);

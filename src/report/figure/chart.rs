@@ -81,6 +81,8 @@ pub enum Style {
     Points,
     /// Points joined by a line.
     Joined,
+    /// Steps of a histogram: each point is the middle of a bin.
+    Steps,
 }
 
 /// A point of a series.
@@ -101,11 +103,35 @@ impl Point {
     }
 }
 
-/// A hatched part of the plane between two values of x, such as densities that no configuration has.
+/// A part of the plane that means something.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Band {
     /// What it means.
     pub label: String,
-    /// Where it begins and ends on the horizontal axis.
-    pub x: [f64; 2],
+    /// Where it begins and ends.
+    pub ends: [f64; 2],
+    /// Between two values of x it is hatched, such as densities that no configuration has; between two values of y it is a
+    /// light ground, such as errors that are small enough.
+    pub along: Along,
+}
+
+impl Band {
+    /// Between two values of x.
+    pub fn of_x(label: &str, ends: [f64; 2]) -> Band {
+        Band { label: label.to_owned(), ends, along: Along::X }
+    }
+
+    /// Between two values of y.
+    pub fn of_y(label: &str, ends: [f64; 2]) -> Band {
+        Band { label: label.to_owned(), ends, along: Along::Y }
+    }
+}
+
+/// An axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Along {
+    /// The horizontal one.
+    X,
+    /// The vertical one.
+    Y,
 }

@@ -26,8 +26,11 @@ fn check_chart(chart: &Chart) -> Result<(), Fault> {
         }
     }
     for band in &chart.bands {
-        if band.x[0].partial_cmp(&band.x[1]) != Some(std::cmp::Ordering::Less) {
-            return Err(Fault::NotAnInterval { place: format!("the band `{}`", band.label), ends: band.x });
+        if band.ends[0].partial_cmp(&band.ends[1]) != Some(std::cmp::Ordering::Less) {
+            return Err(Fault::NotAnInterval {
+                place: format!("the band `{}`", band.label),
+                ends: band.ends,
+            });
         }
     }
     if chart.series.iter().all(|series| series.points.is_empty()) {

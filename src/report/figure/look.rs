@@ -37,7 +37,7 @@ pub fn looks(chart: &Chart) -> Vec<Look> {
         let colour = |series: &Series| style::hue(series.hue);
         let before = chart.series[..i]
             .iter()
-            .filter(|other| other.style == Style::Joined && colour(other) == colour(series))
+            .filter(|other| other.style == series.style && colour(other) == colour(series))
             .count();
         Look {
             style: series.style,
@@ -46,7 +46,7 @@ pub fn looks(chart: &Chart) -> Vec<Look> {
             dash: match series.style {
                 Style::Line => style::line_dash(series.hue + twins),
                 Style::Dashed => style::short_dash(series.hue + twins),
-                Style::Joined => style::line_dash(before),
+                Style::Joined | Style::Steps => style::line_dash(before),
                 Style::Points => &[],
             },
             hollow: twins % 2 == 1,
@@ -66,7 +66,7 @@ mod tests {
 
     #[test]
     fn no_two_lines_have_one_colour_and_dash() {
-        for style in [Style::Line, Style::Dashed, Style::Joined] {
+        for style in [Style::Line, Style::Dashed, Style::Joined, Style::Steps] {
             let axis = Axis::linear("x", None);
             let series =
                 (0..14).map(|hue| Series { name: String::new(), style, hue, points: vec![] }).collect();

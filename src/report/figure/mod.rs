@@ -17,7 +17,7 @@ mod sheet;
 pub mod style;
 mod svg;
 
-pub use chart::{Axis, Band, Chart, Point, Scale, Series, Style};
+pub use chart::{Along, Axis, Band, Chart, Point, Scale, Series, Style};
 pub use data::{data, data_file};
 pub use drawing::{Drawing, Shape, Tint};
 pub use error::{Fault, FigureError};

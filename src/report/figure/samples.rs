@@ -41,7 +41,10 @@ pub fn logarithmic() -> Figure {
         x: Axis::logarithmic("Vector length", None),
         y: Axis::logarithmic("Time of a vector instruction", Some("s")),
         series: all,
-        bands: vec![Band { label: "beyond the caches".into(), x: [2e5, f64::INFINITY] }],
+        bands: vec![
+            Band::of_x("beyond the caches", [2e5, f64::INFINITY]),
+            Band::of_y("within 15 %", [0.85, 1.15]),
+        ],
     };
     figure(
         "logarithmic",
@@ -64,7 +67,7 @@ pub fn linear() -> Figure {
             series("what a neighbour list would need", Style::Dashed, 1, rival),
             series("seen", Style::Joined, 2, seen),
         ],
-        bands: vec![Band { label: "no configuration is denser".into(), x: [0.84, 0.9] }],
+        bands: vec![Band::of_x("no configuration is denser", [0.84, 0.9])],
     };
     figure("linear", "Flow through the pipe", Picture::Chart(picture))
 }

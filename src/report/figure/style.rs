@@ -28,6 +28,8 @@ pub const INK: Colour = Colour(26, 26, 26);
 pub const GRID: Colour = Colour(226, 226, 226);
 /// Hatching.
 pub const HATCHING: Colour = Colour(120, 120, 120);
+/// Light grounds, one upon another.
+pub const GROUNDS: [Colour; 2] = [Colour(236, 242, 247), Colour(212, 227, 239)];
 /// What does not move.
 pub const STILL: Colour = Colour(208, 208, 208);
 

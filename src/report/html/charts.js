@@ -27,8 +27,9 @@ function drawMarker(ctx, { colour, marker, hollow }, { x, y }, dots) {
 }
 
 /** Draws the line of a series through places that are already in dots of a canvas, `dots` to a pixel. */
-function drawLine(ctx, { colour, dash, marker }, places, dots) {
+function drawLine(ctx, { colour, dash, marker, steps }, middles, dots) {
   if (!dash) return;
+  const places = steps ? outline(middles) : middles;
   ctx.strokeStyle = colour;
   ctx.lineJoin = "round";
   ctx.lineWidth = (marker ? 1.4 : 2.2) * dots;
@@ -38,6 +39,20 @@ function drawLine(ctx, { colour, dash, marker }, places, dots) {
   ctx.stroke();
   ctx.setLineDash([]);
 }
+
+/** The outline of a histogram whose bins have these middles: each bin reaches halfway to its neighbours. */
+function outline(middles) {
+  const edge = (i) => (middles[i].x + middles[i + 1].x) / 2;
+  const last = middles.length - 1;
+  if (last < 1) return middles;
+  return middles.flatMap(({ x, y }, i) => [
+    { x: i === 0 ? 2 * x - edge(0) : edge(i - 1), y },
+    { x: i === last ? 2 * x - edge(last - 1) : edge(i), y },
+  ]);
+}
+
+/** The light ground of a band across the plane; of several the first is the lightest. */
+const GROUNDS = ["#ecf2f7", "#d4e3ef"];
 
 /** Draws how far the values of a series are spread. */
 function drawSpreads(ctx, { colour }, places, dots) {
@@ -103,9 +118,16 @@ pictures("chart", (holder, chart) => {
 
   const draw = (u, ctx) => {
     const dots = uPlot.pxRatio;
-    for (const band of chart.bands) {
+    const across = chart.bands.filter((band) => band.along === "Y");
+    across.forEach((band, i) => {
+      const { left, top, width, height } = u.bbox;
+      const [low, high] = band.ends.map((end) => Math.min(Math.max(u.valToPos(end, "y", true), top), top + height));
+      ctx.fillStyle = GROUNDS[Math.min(i, GROUNDS.length - 1)];
+      ctx.fillRect(left, high, width, low - high);
+    });
+    for (const band of chart.bands.filter((each) => each.along === "X")) {
       // An end that the axis cannot show lies beyond it.
-      const ends = band.x.map((end) => (chart.x.log && !(end > 0) ? u.bbox.left : u.valToPos(end, "x", true)));
+      const ends = band.ends.map((end) => (chart.x.log && !(end > 0) ? u.bbox.left : u.valToPos(end, "x", true)));
       const [left, right] = [Math.max(ends[0], u.bbox.left), Math.min(ends[1], u.bbox.left + u.bbox.width)];
       if (right > left) hatch(ctx, left, u.bbox.top, right - left, u.bbox.height, dots);
     }
@@ -130,8 +152,8 @@ pictures("chart", (holder, chart) => {
     }
     if (!best.series) {
       const x = u.posToVal(left, "x");
-      const band = chart.bands.find((each) => x >= each.x[0] && x <= each.x[1]);
-      return band && { lines: [band.label, `${readable(band.x[0])} to ${withUnit(band.x[1], chart.x.unit)}`] };
+      const band = chart.bands.find((each) => each.along === "X" && x >= each.ends[0] && x <= each.ends[1]);
+      return band && { lines: [band.label, `${readable(band.ends[0])} to ${withUnit(band.ends[1], chart.x.unit)}`] };
     }
     const { series, index } = best;
     const x = index === undefined ? u.posToVal(best.x, "x") : series.x[index];
@@ -176,7 +198,12 @@ function legend(chart, redraw) {
   }
   for (const band of chart.bands) {
     const entry = element("span", "entry", box);
-    sample(entry, (ctx) => hatch(ctx, 0, 0, 44, 14, 1));
+    const number = chart.bands.filter((each) => each.along === "Y").indexOf(band);
+    sample(entry, (ctx) => {
+      if (number < 0) return hatch(ctx, 0, 0, 44, 14, 1);
+      ctx.fillStyle = GROUNDS[Math.min(number, GROUNDS.length - 1)];
+      ctx.fillRect(0, 0, 44, 14);
+    });
     entry.append(band.label);
   }
   return box;

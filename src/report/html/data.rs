@@ -2,7 +2,7 @@
 
 use super::look;
 use super::quantised::{Quantised, ends};
-use crate::report::figure::{self, Axis, Chart, Map, Point, Scale, style};
+use crate::report::figure::{self, Along, Axis, Chart, Map, Point, Scale, style};
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
@@ -16,9 +16,10 @@ pub fn embedded(id: &str, data: &Value) -> Markup {
 pub fn chart(chart: &Chart) -> Value {
     let Chart { x, y, series, bands } = chart;
     let all = || series.iter().flat_map(|series| shown(&series.points, chart));
+    let ends = |along| bands.iter().filter(move |band| band.along == along).flat_map(|band| band.ends);
     let spreads = all().filter_map(|point| point.spread).flatten();
-    let across = all().map(|point| point.x).chain(bands.iter().flat_map(|band| band.x));
-    let up = all().map(|point| point.y).chain(spreads);
+    let across = all().map(|point| point.x).chain(ends(Along::X));
+    let up = all().map(|point| point.y).chain(spreads).chain(ends(Along::Y));
     let series: Vec<Value> = series
         .iter()
         .zip(look::looks(chart))
@@ -33,7 +34,10 @@ pub fn chart(chart: &Chart) -> Value {
             })
         })
         .collect();
-    let bands: Vec<Value> = bands.iter().map(|band| json!({ "label": band.label, "x": band.x })).collect();
+    let bands: Vec<Value> = bands
+        .iter()
+        .map(|band| json!({ "label": band.label, "ends": band.ends, "along": band.along }))
+        .collect();
     json!({ "x": axis(x, across), "y": axis(y, up), "series": series, "bands": bands })
 }
 

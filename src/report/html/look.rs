@@ -16,6 +16,8 @@ pub struct SeriesLook {
     marker: Option<&'static str>,
     /// Whether the markers are outlines.
     hollow: bool,
+    /// Whether it is a histogram, whose points are the middles of bins.
+    steps: bool,
 }
 
 /// The looks of a chart's series, as in the pictures.
@@ -25,6 +27,7 @@ pub fn looks(chart: &Chart) -> Vec<SeriesLook> {
         dash: (look.style != Style::Points).then_some(look.dash),
         marker: look.has_markers().then(|| name(look.marker)),
         hollow: look.has_markers() && look.hollow,
+        steps: look.style == Style::Steps,
     };
     look::looks(chart).into_iter().map(written).collect()
 }

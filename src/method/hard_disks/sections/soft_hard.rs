@@ -55,7 +55,7 @@ pub fn section(data: &SoftHard, again: String) -> Section {
 }
 
 fn stiffness_axis() -> Axis {
-    Axis::logarithmic("stiffness k_N", Some("kT/diameter^2.5"))
+    Axis::logarithmic("stiffness of a contact", Some("kT/diameter^2.5"))
 }
 
 /// An observable of the soft discs, and that of the hard ones as a line.
@@ -149,7 +149,7 @@ fn table(data: &SoftHard) -> Table {
         ]
     });
     let columns = [
-        "stiffness k_N",
+        "stiffness of a contact",
         "damping γ_N",
         "step",
         "depth of a contact of kT (%)",

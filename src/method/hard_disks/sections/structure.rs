@@ -89,7 +89,7 @@ fn correlation(data: &Structures) -> Figure {
 fn free_times(data: &Structures) -> Figure {
     let series = data.structures.iter().enumerate().map(|(hue, it)| Series {
         name: named(it),
-        style: Style::Points,
+        style: Style::Steps,
         hue,
         points: (0..data.times.len())
             .filter(|&bin| data.times[bin] < LONGEST)

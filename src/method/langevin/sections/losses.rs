@@ -98,7 +98,7 @@ fn boundaries(data: &LossTable) -> Figure {
                   spring between them is far stiffer than at the distance σ."
             .into(),
         picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("the source's bound √(2 m r_c/F)", Some("reduced")),
+            x: Axis::logarithmic("the source's bound on the step", Some("reduced")),
             y: Axis::logarithmic("time step", Some("reduced")),
             series: vec![
                 series("the source's bound", Style::Line, 6, points(&|at| data.boundaries[at].bounds[0])),

@@ -115,7 +115,7 @@ fn figure(sheet: &Sheet) -> Figure {
             x: Axis { limits: Some([0.0, 0.35]), ..Axis::linear("occupancy ρ = NP/LMAX", None) },
             y: Axis { limits: Some([50.0, 100_000.0]), ..Axis::logarithmic("number of particles NP", None) },
             series: series.filter(|series| !series.points.is_empty()).collect(),
-            bands: vec![Band { label: "out of reach".into(), x: [CEILING, 0.35] }],
+            bands: vec![Band::of_x("out of reach", [CEILING, 0.35])],
         }),
     }
 }

@@ -62,7 +62,7 @@ fn figure(scan: &[&Case]) -> Figure {
         caption: "Bins of 20 mean radii; the last half of two seconds. Bars: standard error over the seeds."
             .into(),
         picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("normal damping γ_N", Some("1/s")),
+            x: Axis::logarithmic("normal damping γ", Some("1/s")),
             y: Axis::logarithmic("Fano factor", None),
             series: vec![
                 Series {

@@ -175,7 +175,7 @@ fn over_density(data: &DensityCost) -> Figure {
                 series("vector, as printed", Style::Dashed, 1, curve(&data.densities, true)),
                 series("lists, scalar", Style::Joined, 2, curve(&data.list_densities, false)),
             ],
-            bands: vec![Band { label: "out of reach".into(), x: [CEILING, 0.55] }],
+            bands: vec![Band::of_x("out of reach", [CEILING, 0.55])],
         }),
     }
 }

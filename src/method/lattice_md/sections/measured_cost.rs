@@ -114,7 +114,7 @@ fn over_density(data: &MeasuredCost) -> Figure {
             series: series(data, &data.over_density, |sample| {
                 (sample.occupancy, each(sample, sample.seconds), each(sample, sample.best))
             }),
-            bands: vec![Band { label: "out of reach".into(), x: [CEILING, 0.35] }],
+            bands: vec![Band::of_x("out of reach", [CEILING, 0.35])],
         }),
     }
 }

@@ -165,8 +165,8 @@ fn ratios(data: &Misprints) -> Figure {
                   direction only; for the other the two curves are one."
             .into(),
         picture: chart(
-            Axis::linear("slip velocity v_t", None),
-            Axis::linear("|F_S| / (μ|F_N|)", None),
+            Axis::linear("slip velocity", Some("reduced")),
+            Axis::linear("shear force over its bound μ|F|", None),
             vec![
                 curve("ours", Style::Line, 0, |at| at.ours),
                 curve("(15) as printed", Style::Dashed, 1, |at| at.printed),

@@ -4,7 +4,7 @@ use crate::method::lattice_md::Phase;
 use crate::method::lattice_md::study::model_validation::{
     Calibrated, Case, Errors, ModelValidation, PHASES, PHASES_OF_DATA, STEPS, STEPS_OF_DATA, STRANGERS,
 };
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::figure::{Axis, Band, Chart, Figure, Picture, Point, Series, Style};
 use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// How many of the worst cases are named.
@@ -214,17 +214,27 @@ fn over_predicted(data: &ModelValidation, execution: &str) -> Figure {
             let spread = Some(case.quartiles.map(|quartile| quartile / case.predicted));
             Point { x: 1e-3 * case.predicted, y: ratio, spread }
         });
-        Series { name: phase.name().into(), style: Style::Points, hue, points: points.collect() }
+        Series {
+            name: phase.name().replace('_', " and "),
+            style: Style::Points,
+            hue,
+            points: points.collect(),
+        }
     });
     Figure {
         name: format!("measured_over_predicted_{}", execution.replace([':', ' '], "_")),
         title: format!("Measured over predicted, {execution}"),
-        caption: "Each point is a phase of a step of one run, the middle of the samples; bars span their quartiles. 1 is right.".into(),
+        caption: "Each point is a phase of a step of one run, the middle of the samples; bars span their quartiles. 1 is right. \
+                  Grounds: within 5 % and within 15 %."
+            .into(),
         picture: Picture::Chart(Chart {
             x: Axis::logarithmic("predicted time", Some("µs")),
             y: Axis::logarithmic("measured over predicted", None),
             series: series.filter(|series| !series.points.is_empty()).collect(),
-            bands: vec![],
+            bands: vec![
+                Band::of_y("within 15 %", [1.0 / 1.15, 1.15]),
+                Band::of_y("within 5 %", [1.0 / 1.05, 1.05]),
+            ],
         }),
     }
 }
@@ -245,7 +255,7 @@ fn histogram(data: &ModelValidation, name: &str, what: &str, of: impl Fn(&Case) 
             let count = errors.iter().filter(|&&error| (last(error) - centre).abs() <= 0.5 * BIN).count();
             Point::at(centre, count as f64)
         });
-        Series { name: execution.into(), style: Style::Joined, hue, points: points.collect() }
+        Series { name: execution.into(), style: Style::Steps, hue, points: points.collect() }
     });
     Figure {
         name: name.into(),

@@ -67,7 +67,7 @@ fn figure(data: &UsefulWork) -> Figure {
                 series("lists, forces", Style::Joined, 1, |share| share.list_forces),
                 series("lists, step", Style::Dashed, 1, |share| share.list_step),
             ],
-            bands: vec![Band { label: "out of reach".into(), x: [CEILING, 0.35] }],
+            bands: vec![Band::of_x("out of reach", [CEILING, 0.35])],
         }),
     }
 }

@@ -54,10 +54,11 @@ pub fn section(data: &Rates) -> Section {
 
 fn figure(data: &Rates) -> Figure {
     let mut series: Vec<Series> = vec![];
-    for it in &data.rates {
+    // An error of 0 has no place on a logarithmic axis.
+    let (seen, exact): (Vec<_>, Vec<_>) = data.rates.iter().partition(|it| it.error[0] > 0.0);
+    for it in seen {
         let name = format!("{}, {}", it.precision, it.arithmetic);
-        // An error of 0 has no place on a logarithmic axis.
-        let point = Point::at(it.rates[0], it.error[0].max(1e-17));
+        let point = Point::at(it.rates[0], it.error[0]);
         match series.iter_mut().find(|series| series.name == name) {
             Some(series) => series.points.push(point),
             None => {
@@ -69,7 +70,11 @@ fn figure(data: &Rates) -> Figure {
     Figure {
         name: "error-over-rate".into(),
         title: "Error of the forces over speed, one thread".into(),
-        caption: "A point for each number of bodies. Largest error of an acceleration over the largest acceleration.".into(),
+        caption: format!(
+            "A point for each number of bodies. Largest error of an acceleration over the largest acceleration. Errors of 0 have no \
+             place on this axis: {} points are absent.",
+            exact.len()
+        ),
         picture: Picture::Chart(Chart {
             x: Axis::linear("directed interactions", Some("10⁹/s")),
             y: Axis::logarithmic("force error", None),

@@ -2,6 +2,7 @@
 
 use super::super::sheet::{Area, Mark, Paint};
 use super::super::style;
+use super::super::{Along, Band};
 use super::clip;
 
 /// Distance of the hatching's lines.
@@ -15,4 +16,11 @@ pub fn band(area: &Area) -> [Mark; 2] {
         closed: false,
         paint: Paint::stroke(style::HATCHING, width),
     })
+}
+
+/// A light ground across the plane, behind the grid; of several the first is the lightest, so that the widest comes first.
+pub fn ground(area: &Area, bands: &[Band], number: usize) -> Mark {
+    let before = bands[..number].iter().filter(|band| band.along == Along::Y).count();
+    let colour = style::GROUNDS[before.min(style::GROUNDS.len() - 1)];
+    Mark::Lines { pieces: vec![area.corners()], closed: true, paint: Paint::fill(colour) }
 }

@@ -3,8 +3,8 @@
 use super::super::look::looks;
 use super::super::sheet::{Area, Sheet};
 use super::super::style;
-use super::super::{Band, Chart, Fault};
-use super::band::band;
+use super::super::{Along, Axis, Band, Chart, Fault};
+use super::band::{band, ground};
 use super::frame::{Frame, Span};
 use super::legend::Legend;
 use super::ruler;
@@ -13,11 +13,18 @@ use super::title::Title;
 /// Lays a chart out.
 pub fn lay_out(title: &str, chart: &Chart) -> Result<Sheet, Fault> {
     let points = || chart.series.iter().flat_map(|series| &series.points);
-    let edges =
-        chart.bands.iter().flat_map(|band| band.x).filter(|x| ruler::measure(chart.x.scale, *x).is_finite());
-    let x = Span { axis: &chart.x, ends: ruler::ends(&chart.x, points().map(|point| point.x).chain(edges))? };
+    let edges_along = |along: Along, axis: &'_ Axis| {
+        let scale = axis.scale;
+        let of = chart.bands.iter().filter(move |band| band.along == along);
+        of.flat_map(|band| band.ends).filter(move |end| ruler::measure(scale, *end).is_finite())
+    };
+    let x = Span {
+        axis: &chart.x,
+        ends: ruler::ends(&chart.x, points().map(|point| point.x).chain(edges_along(Along::X, &chart.x)))?,
+    };
     let heights = points().flat_map(|point| point.spread.into_iter().flatten().chain([point.y]));
-    let y = Span { axis: &chart.y, ends: ruler::ends(&chart.y, heights)? };
+    let y =
+        Span { axis: &chart.y, ends: ruler::ends(&chart.y, heights.chain(edges_along(Along::Y, &chart.y)))? };
 
     let title = Title::new(title, style::WIDTH, 1.0);
     let legend = Legend::new(chart);
@@ -25,8 +32,12 @@ pub fn lay_out(title: &str, chart: &Chart) -> Result<Sheet, Fault> {
     let frame = Frame::new(&x, &y, title.bottom(), height, legend.width());
 
     let mut marks = title.marks();
+    let areas = || {
+        chart.bands.iter().enumerate().filter_map(|(i, part)| Some((part.along, band_area(&frame, part)?, i)))
+    };
+    marks.extend(areas().filter(|it| it.0 == Along::Y).map(|(_, area, i)| ground(&area, &chart.bands, i)));
     marks.push(frame.grid());
-    marks.extend(chart.bands.iter().filter_map(|part| band_area(&frame, part)).flat_map(|area| band(&area)));
+    marks.extend(areas().filter(|it| it.0 == Along::X).flat_map(|(_, area, _)| band(&area)));
     let looks = looks(chart);
     let drawn = || chart.series.iter().zip(&looks);
     marks.extend(drawn().filter_map(|(series, look)| look.curve(&frame, series)));
@@ -40,9 +51,14 @@ pub fn lay_out(title: &str, chart: &Chart) -> Result<Sheet, Fault> {
 
 /// What of a band can be seen.
 fn band_area(frame: &Frame, band: &Band) -> Option<Area> {
-    let Area { left, top, height, .. } = frame.plot;
+    let Area { left, top, width, height } = frame.plot;
+    if band.along == Along::Y {
+        // Upwards places fall.
+        let [low, high] = band.ends.map(|y| frame.place(1.0, y)[1].clamp(top, top + height));
+        return (low > high).then_some(Area { left, top: high, width, height: low - high });
+    }
     // What a logarithmic axis has no place for lies beyond its lower end.
-    let [start, end] = band.x.map(|x| {
+    let [start, end] = band.ends.map(|x| {
         let place = frame.place(x, 1.0)[0];
         if place.is_nan() { left } else { place.clamp(left, frame.plot.right()) }
     });

@@ -13,6 +13,7 @@ const CAP: f64 = 4.5;
 impl Look {
     pub(super) fn curve(&self, frame: &Frame, series: &Series) -> Option<Mark> {
         let places: Vec<Place> = series.points.iter().map(|point| frame.place(point.x, point.y)).collect();
+        let places = if self.style == Style::Steps { steps(&places) } else { places };
         self.line(clip::line(&frame.plot, &places))
     }
 
@@ -55,5 +56,37 @@ impl Look {
         let line = self.line(vec![vec![[left, y], [left + width, y]]]);
         let marker = self.has_markers().then(|| self.marker([left + width / 2.0, y]));
         line.into_iter().chain(marker).collect()
+    }
+}
+
+/// The outline of a histogram whose bins have these middles: each bin reaches halfway to its neighbours.
+fn steps(middles: &[Place]) -> Vec<Place> {
+    let edge = |i: usize| 0.5 * (middles[i][0] + middles[i + 1][0]);
+    let last = middles.len().saturating_sub(1);
+    let outline = middles.iter().enumerate().flat_map(|(i, &[x, y])| {
+        // The outermost bins are as wide on the outside as on the inside.
+        let [inner, outer] = [i.saturating_sub(1), i.min(last.saturating_sub(1))];
+        let [left, right] = match last {
+            0 => [x, x],
+            _ => [
+                if i == 0 { 2.0 * x - edge(0) } else { edge(inner) },
+                if i == last { 2.0 * x - edge(inner) } else { edge(outer) },
+            ],
+        };
+        [[left, y], [right, y]]
+    });
+    outline.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bins_reach_halfway_to_their_neighbours() {
+        let outline = steps(&[[0.0, 1.0], [2.0, 3.0], [4.0, 2.0]]);
+        assert_eq!(outline, [[-1.0, 1.0], [1.0, 1.0], [1.0, 3.0], [3.0, 3.0], [3.0, 2.0], [5.0, 2.0]]);
+        assert_eq!(steps(&[[1.0, 2.0]]), [[1.0, 2.0], [1.0, 2.0]]);
+        assert!(steps(&[]).is_empty());
     }
 }

@@ -2,8 +2,8 @@
 
 use super::super::look::{Look, looks};
 use super::super::sheet::{Anchor, Area, Mark, Place};
-use super::super::{Chart, font, style};
-use super::band::band;
+use super::super::{Along, Band, Chart, font, style};
+use super::band::{band, ground};
 use super::title;
 
 /// From the chart to the legend.
@@ -20,6 +20,7 @@ const BETWEEN: f64 = 13.0;
 /// A legend.
 pub struct Legend {
     entries: Vec<Entry>,
+    bands: Vec<Band>,
 }
 
 struct Entry {
@@ -30,6 +31,7 @@ struct Entry {
 enum Sample {
     Series(Look),
     Band,
+    Ground(usize),
 }
 
 impl Legend {
@@ -41,8 +43,11 @@ impl Legend {
         };
         let series = chart.series.iter().zip(looks(chart)).filter(|(series, _)| !series.points.is_empty());
         let series = series.filter_map(|(series, look)| entry(Sample::Series(look), &series.name));
-        let bands = chart.bands.iter().filter_map(|band| entry(Sample::Band, &band.label));
-        Legend { entries: series.chain(bands).collect() }
+        let bands = chart.bands.iter().enumerate().filter_map(|(i, band)| {
+            let sample = if band.along == Along::Y { Sample::Ground(i) } else { Sample::Band };
+            entry(sample, &band.label)
+        });
+        Legend { entries: series.chain(bands).collect(), bands: chart.bands.clone() }
     }
 
     /// The width it needs at the right of a chart, up to the edge of the sheet.
@@ -70,9 +75,12 @@ impl Legend {
             let middle = top + entry.height() / 2.0;
             match &entry.sample {
                 Sample::Series(look) => marks.extend(look.sample([left, middle], SAMPLE)),
-                Sample::Band => {
+                Sample::Band | Sample::Ground(_) => {
                     let area = Area { left, top: middle - 9.0, width: SAMPLE, height: 18.0 };
-                    marks.extend(band(&area));
+                    match entry.sample {
+                        Sample::Ground(number) => marks.push(ground(&area, &self.bands, number)),
+                        _ => marks.extend(band(&area)),
+                    }
                 }
             }
             let words: Place = [left + SAMPLE + TO_WORDS, top + font::DESCENT * style::LABEL];

@@ -201,7 +201,7 @@ fn faults_are_named() {
             .contains("spread")
     );
     assert!(of_chart(|picture| chart_of(picture).series.clear()).ends_with("there is nothing in it"));
-    assert!(of_chart(|picture| chart_of(picture).bands[0].x = [2.0, 1.0]).contains("from 2 to 1"));
+    assert!(of_chart(|picture| chart_of(picture).bands[0].ends = [2.0, 1.0]).contains("from 2 to 1"));
     assert!(of_chart(|picture| chart_of(picture).x.limits = Some([-1.0, 1.0])).contains("logarithmic"));
 
     let of_map = |spoil: fn(&mut Map)| {
