@@ -84,7 +84,7 @@ const CASES: &[(&[&str], i32, &str, &[&str])] = &[
     (&["calibrate", "--out", "file"], 2, "usage", &["file", "--force"]),
     (&["calibrate", "--out", "none/host.toml"], 5, "input-output", &["none/host.toml"]),
     (&["validate-model", "--particles", "0"], 2, "usage", &["--particles", "0"]),
-    (&["validate-model", "--particles", "100", "--occupancies", "7"], 2, "usage", &["packing_fraction"]),
+    (&["validate-model", "--particles", "100", "--occupancies", "7"], 2, "usage", &["--occupancies"]),
     (&["validate-model", "--seconds", "0"], 2, "usage", &["--seconds", "0"]),
     (&["validate-model", "--host", "none.toml"], 5, "input-output", &["none.toml"]),
     (&["validate-model", "--host", "latin.toml"], 3, "input", &["latin.toml", "UTF-8"]),

@@ -8,7 +8,7 @@ pub const MARK: &str = "Written by `stripmine reproduce`; do not edit.";
 
 /// Tables and pictures of an item that the page shows; further ones are linked.
 const TABLES: usize = 1;
-const FIGURES: usize = 2;
+const FIGURES: usize = 1;
 /// Letters of an item's details that it shows; more stand on the page with charts.
 const DETAILS: usize = 700;
 
