@@ -70,14 +70,10 @@ impl Provenance {
         }
     }
 
-    /// In a few words, with a link to the file that says all.
+    /// Date and commit, with a link to the file that says all.
     pub fn in_short(&self, file: &str) -> String {
-        let Provenance { origin, host, threads, instruction_set, seconds, date, .. } = self;
-        let state = if origin.dirty { " with changes" } else { "" };
-        format!(
-            "[Made]({file}) {date} in {seconds:.1} s, commit {}{state}, {host}, {threads} threads, {instruction_set}.",
-            origin.commit
-        )
+        let state = if self.origin.dirty { " with changes" } else { "" };
+        format!("[Made]({file}) {}, commit {}{state}.", self.date, self.origin.commit)
     }
 
     /// In a sentence.

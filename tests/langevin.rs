@@ -146,6 +146,7 @@ fn losses_are_counted_listed_and_survived() {
         "domain.sides=[31.6, 31.6]",
         "integrator.dt=0.005",
         "run.checkpoint_every=0",
+        "output.dcd=true",
     ];
     let stopped = begin("langevin-report", &folder.path().join("stopped"), &thin, &[]);
     assert_eq!(stopped.status.code(), Some(4), "{}", said(&stopped));
@@ -169,7 +170,14 @@ fn losses_are_counted_listed_and_survived() {
         assert_eq!(rows.lines().count() as u64, lost + 1);
         assert_eq!(last_frame(&out).lines().count() as u64, 4001 - lost);
         assert_eq!(column(&out, "lost").last().copied(), Some(lost as f64));
-        (rows, last_frame(&out))
+        // Every frame of positions has all particles of the start; what is lost is no number.
+        let dcd = fs::read(out.join("trajectory.dcd")).unwrap();
+        let (heading, frame) = (196, 56 + 3 * (8 + 4 * 4000));
+        assert_eq!((dcd.len() - heading) % frame, 0);
+        let last = &dcd[dcd.len() - 3 * (8 + 4 * 4000) + 4..][..4 * 4000];
+        let absent = last.chunks(4).filter(|x| f32::from_le_bytes((*x).try_into().unwrap()).is_nan());
+        assert_eq!(absent.count() as u64, lost);
+        (rows, last_frame(&out), dcd)
     };
     assert_eq!(events("parts", &["33", "71", "100"]), events("whole", &["100"]));
 }

@@ -11,7 +11,8 @@ fn stripmine(scene: &str, folder: &Path, more: &[&str]) -> Command {
     let mut command = Command::cargo_bin("stripmine").unwrap();
     command.args(["run", scene, "--out", folder.to_str().unwrap()]);
     command.args(["--set", "run.thermo_every=5", "--set", "run.snapshot_every=30"]);
-    command.args(["--set", "run.checkpoint_every=40", "--set", "output.lammps_dump=true"]).args(more);
+    command.args(["--set", "run.checkpoint_every=40", "--set", "output.lammps_dump=true"]);
+    command.args(["--set", "output.dcd=true"]).args(more);
     command
 }
 
@@ -43,14 +44,14 @@ fn notes(folder: &Path) -> Vec<String> {
 }
 
 /// The files that the physics alone decides.
-const BITS: [&str; 3] = ["thermo.csv", "trajectory.xyz", "dump.lammpstrj"];
+const BITS: [&str; 4] = ["thermo.csv", "trajectory.xyz", "trajectory.dcd", "dump.lammpstrj"];
 
-fn bits(folder: &Path) -> [Vec<u8>; 3] {
+fn bits(folder: &Path) -> [Vec<u8>; 4] {
     BITS.map(|name| fs::read(folder.join(name)).unwrap())
 }
 
 /// A folder, and the bits of a run of 100 steps, uninterrupted.
-fn folder_and_bits() -> (tempfile::TempDir, PathBuf, [Vec<u8>; 3]) {
+fn folder_and_bits() -> (tempfile::TempDir, PathBuf, [Vec<u8>; 4]) {
     let folder = tempfile::tempdir().unwrap();
     let whole = folder.path().join("whole");
     succeed(&run(&whole, 100, &[]));

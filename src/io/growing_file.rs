@@ -148,6 +148,11 @@ impl GrowingFile {
         &self.path
     }
 
+    /// Whether nothing was written into it yet.
+    pub fn is_empty(&self) -> bool {
+        self.out.get_ref().bytes == 0 && self.out.buffer().is_empty()
+    }
+
     /// The first line, without its end, as far as it is text.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 //! their place, and one writer a folder.
 
 pub mod checkpoint;
+pub mod dcd;
 pub mod extxyz;
 pub mod growing_file;
 pub mod lammps;

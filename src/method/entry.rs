@@ -319,6 +319,11 @@ pub trait Simulation: Send {
     /// The particles as they stand, positions inside the box.
     fn particles(&self) -> Particles;
 
+    /// Positions alone, in single precision, one for each particle of the start in its order; no numbers where one is lost.
+    fn positions(&self) -> Vec<[f32; 3]> {
+        self.particles().all().iter().map(|particle| particle.position.map(|x| x as f32)).collect()
+    }
+
     /// A value for each of the method's quantities.
     fn observe(&self) -> Vec<f64>;
 

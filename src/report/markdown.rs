@@ -3,15 +3,13 @@
 use super::Table;
 
 /// Rows of a table that a page shows; a longer one is for programs.
-const ROWS: usize = 10;
+const ROWS: usize = 8;
 
-/// The table as a section of a page; of a long one, where it lies in an item's folder.
+/// The table without its notes, which the page with charts has; of a long one, where it lies in an item's folder.
 pub fn render(table: &Table, folder: &str) -> String {
     let file = format!("{folder}/{}.csv", table.name);
     if table.rows.len() > ROWS {
-        let mut text = format!("**{}**: {} rows in [{file}]({file}).\n", table.title, table.rows.len());
-        table.notes.iter().for_each(|note| text.push_str(&format!("\n{note}\n")));
-        return text;
+        return format!("**{}**: {} rows in [{file}]({file}).\n", table.title, table.rows.len());
     }
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let mut text = format!("**{}**\n\n", table.title);
@@ -21,9 +19,6 @@ pub fn render(table: &Table, folder: &str) -> String {
     text.push_str(&line((0..table.columns.len()).map(rule).collect()));
     for row in &table.rows {
         text.push_str(&line(row.iter().map(|cell| cell.for_reading().replace('|', "\\|")).collect()));
-    }
-    for note in &table.notes {
-        text.push_str(&format!("\n{note}\n"));
     }
     text
 }

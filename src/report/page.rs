@@ -9,8 +9,10 @@ pub const MARK: &str = "Written by `stripmine reproduce`; do not edit.";
 /// Tables and pictures of an item that the page shows; further ones are linked.
 const TABLES: usize = 1;
 const FIGURES: usize = 1;
+/// Lines of a program's text that it shows.
+const LINES: usize = 8;
 /// Letters of an item's details that it shows; more stand on the page with charts.
-const DETAILS: usize = 700;
+const DETAILS: usize = 300;
 
 /// The page. Pictures and data lie in a folder for each item, which bears its name. `left_out` names items that the folder has,
 /// but of another version of the program.
@@ -77,21 +79,24 @@ fn item(section: &Section) -> String {
     for table in section.tables.iter().take(TABLES) {
         let _ = writeln!(text, "{}", markdown::render(table, &folder));
     }
-    let figures = section.figures.iter().skip(FIGURES);
-    let figures = figures.map(|figure| format!("[{}]({folder}/{}.svg)", figure.title, figure.name));
-    let tables = section.tables.iter().skip(TABLES);
-    let tables = tables.map(|table| format!("[{}]({folder}/{}.csv)", table.title, table.name));
-    for (what, links) in [("pictures", figures.collect::<Vec<_>>()), ("tables", tables.collect())] {
-        if !links.is_empty() {
-            let _ = write!(text, "Further {what}: {}.\n\n", links.join("; "));
-        }
-    }
+    let further = [
+        ("picture", section.figures.len().saturating_sub(FIGURES)),
+        ("table", section.tables.len().saturating_sub(TABLES)),
+    ];
+    let further: Vec<String> = further
+        .into_iter()
+        .filter(|(_, count)| *count > 0)
+        .map(|(what, count)| format!("{count} {what}{}", if count == 1 { "" } else { "s" }))
+        .collect();
+    let further =
+        if further.is_empty() { String::new() } else { format!(", with {} more", further.join(" and ")) };
     if let Some((what, lines)) = &section.excerpt {
-        let _ = write!(text, "{what}\n\n```text\n{lines}\n```\n\n");
+        let lines: Vec<&str> = lines.lines().take(LINES).collect();
+        let _ = write!(text, "{what}\n\n```text\n{}\n```\n\n", lines.join("\n"));
     }
     let seeds: Vec<_> = section.seeds.iter().map(u64::to_string).collect();
     let seeds = if seeds.is_empty() { String::new() } else { format!(" Seeds {}.", seeds.join(", ")) };
-    let _ = write!(text, "*Again:* `{again}`. *Data:* [{folder}/]({folder}/).{seeds}");
+    let _ = write!(text, "*Again:* `{again}`. *Data:* [{folder}/]({folder}/){further}.{seeds}");
     if let Some(provenance) = &section.provenance {
         let _ = write!(text, " {}", provenance.in_short(&format!("{folder}/provenance.json")));
     }

@@ -26,6 +26,8 @@ const LONGEST: u64 = 10_000;
 pub(super) const THERMO: &str = "thermo.csv";
 /// The frames.
 pub(super) const TRAJECTORY: &str = "trajectory.xyz";
+/// The frames' positions, as DCD.
+pub(super) const DCD: &str = "trajectory.dcd";
 /// The frames for LAMMPS.
 pub(super) const DUMP: &str = "dump.lammpstrj";
 /// The last state for LAMMPS.
@@ -41,8 +43,8 @@ pub(super) const SUMMARY: &str = "summary.json";
 const PREVIOUS: &str = "run.checkpoint.previous";
 
 /// Everything that a run may have written.
-const FILES: [&str; 10] =
-    [LIST, SCENE, THERMO, TRAJECTORY, EVENTS, DUMP, DATA, SUMMARY, CHECKPOINT, PREVIOUS];
+const FILES: [&str; 11] =
+    [LIST, SCENE, THERMO, TRAJECTORY, DCD, EVENTS, DUMP, DATA, SUMMARY, CHECKPOINT, PREVIOUS];
 
 /// What a run writes whatever its scene.
 const ALWAYS: [&str; 7] = [LIST, SCENE, THERMO, TRAJECTORY, SUMMARY, CHECKPOINT, PREVIOUS];

@@ -1,7 +1,6 @@
 //! A file of frames that grows with a run, no frame twice, written by a thread of its own: a run goes on while a frame is written.
 
 use crate::io::FileError;
-use crate::io::extxyz::Frame;
 use crate::io::growing_file::{GrowingFile, GrowingFileError, Mark};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -10,18 +9,18 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 
 /// How a frame is written into a file.
-type Format = fn(&Frame, &mut GrowingFile) -> io::Result<()>;
+pub(super) type Format<F> = fn(&F, &mut GrowingFile) -> io::Result<()>;
 
 /// The file, and the thread that writes it.
 #[derive(Debug)]
-pub(super) struct Frames {
+pub(super) struct Frames<F> {
     path: PathBuf,
     writing: Arc<Mutex<Writing>>,
-    format: Format,
+    format: Format<F>,
     /// Step of the last frame.
     last: Option<u64>,
     /// Where frames go, from the first one on.
-    writer: Option<Writer>,
+    writer: Option<Writer<F>>,
 }
 
 /// What the thread and the run share.
@@ -34,21 +33,21 @@ struct Writing {
 
 /// A thread that writes one frame while the next is computed; a run that is faster waits for it.
 #[derive(Debug)]
-struct Writer {
-    orders: SyncSender<Order>,
+struct Writer<F> {
+    orders: SyncSender<Order<F>>,
     thread: JoinHandle<()>,
 }
 
 /// What the thread is to do.
-enum Order {
+enum Order<F> {
     /// Write.
-    Write(Box<Frame>),
+    Write(Box<F>),
     /// Say when everything before is written.
     Answer(SyncSender<()>),
 }
 
-impl Writer {
-    fn begin(writing: &Arc<Mutex<Writing>>, format: Format) -> io::Result<Writer> {
+impl<F: Send + 'static> Writer<F> {
+    fn begin(writing: &Arc<Mutex<Writing>>, format: Format<F>) -> io::Result<Writer<F>> {
         // Without room: of frames there is one that is written and one that is made.
         let (orders, received) = sync_channel(0);
         let writing = writing.clone();
@@ -58,7 +57,7 @@ impl Writer {
     }
 }
 
-fn write(orders: &Receiver<Order>, writing: &Mutex<Writing>, format: Format) {
+fn write<F>(orders: &Receiver<Order<F>>, writing: &Mutex<Writing>, format: Format<F>) {
     for order in orders {
         match order {
             Order::Write(frame) => {
@@ -78,12 +77,12 @@ fn locked(writing: &Mutex<Writing>) -> MutexGuard<'_, Writing> {
     writing.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Frames {
+impl<F: Send + 'static> Frames<F> {
     /// Begins an empty file where nothing is.
     ///
     /// # Errors
     /// If something is there, or the system does not let it be written.
-    pub(super) fn create(path: PathBuf, format: Format) -> Result<Frames, FileError> {
+    pub(super) fn create(path: PathBuf, format: Format<F>) -> Result<Frames<F>, FileError> {
         Ok(Frames::of(GrowingFile::create(path)?, format, None))
     }
 
@@ -93,14 +92,14 @@ impl Frames {
     /// If what was there at the mark is not there any more.
     pub(super) fn resume(
         path: PathBuf,
-        format: Format,
+        format: Format<F>,
         mark: Mark,
         last: Option<u64>,
-    ) -> Result<Frames, GrowingFileError> {
+    ) -> Result<Frames<F>, GrowingFileError> {
         Ok(Frames::of(GrowingFile::resume(path, mark)?, format, last))
     }
 
-    fn of(file: GrowingFile, format: Format, last: Option<u64>) -> Frames {
+    fn of(file: GrowingFile, format: Format<F>, last: Option<u64>) -> Frames<F> {
         let path = file.path().to_owned();
         Frames {
             path,
@@ -119,23 +118,23 @@ impl Frames {
         locked(&self.writing).file.cut()
     }
 
-    /// Hands a frame to the thread that writes, unless the last one is of that step already.
+    /// Hands the frame of a step to the thread that writes, unless the last one is of that step already.
     ///
     /// # Errors
     /// If the system did not let this one or one before it be written.
-    pub(super) fn add(&mut self, frame: Frame) -> Result<(), FileError> {
-        if self.last == Some(frame.step) {
+    pub(super) fn add(&mut self, step: u64, frame: impl FnOnce() -> F) -> Result<(), FileError> {
+        if self.last == Some(step) {
             return Ok(());
         }
-        self.last = Some(frame.step);
+        self.last = Some(step);
         let at = |cause| failed(&self.path, cause);
         if self.writer.is_none() {
             self.writer = Some(Writer::begin(&self.writing, self.format).map_err(at)?);
         }
-        self.order(Order::Write(Box::new(frame)))
+        self.order(Order::Write(Box::new(frame())))
     }
 
-    fn order(&self, order: Order) -> Result<(), FileError> {
+    fn order(&self, order: Order<F>) -> Result<(), FileError> {
         let sent = self.writer.as_ref().map_or(Ok(()), |writer| writer.orders.send(order));
         sent.map_err(|_| failed(&self.path, io::Error::other("the thread that writes has ended")))
     }
@@ -159,7 +158,7 @@ impl Frames {
     }
 }
 
-impl Drop for Frames {
+impl<F> Drop for Frames<F> {
     /// What was handed over is written before anything else is done with the folder.
     fn drop(&mut self) {
         if let Some(Writer { orders, thread }) = self.writer.take() {
@@ -176,38 +175,25 @@ fn failed(path: &Path, cause: io::Error) -> FileError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::particles::Particles;
     use std::io::Write;
-
-    fn frame(step: u64) -> Frame {
-        Frame {
-            particles: Particles::new(vec![]),
-            cell: [1.0; 2],
-            origin: [0.0; 2],
-            periodic: None,
-            time: 0.0,
-            step,
-            seed: None,
-        }
-    }
 
     /// Every frame once, in order, whatever the thread is doing; a failure comes out at the latest when all are to be on the disk.
     #[test]
     fn frames_are_written_in_order_and_failures_come_out() {
         let folder = tempfile::tempdir().unwrap();
-        let format: Format = |frame, file| match frame.step {
+        let format: Format<u64> = |frame, file| match frame {
             7 => Err(io::Error::other("no seven")),
             step => writeln!(file, "{step}"),
         };
         let path = folder.path().join("frames");
         let mut frames = Frames::create(path.clone(), format).unwrap();
         for step in [0, 1, 1, 2, 5] {
-            frames.add(frame(step)).unwrap();
+            frames.add(step, || step).unwrap();
         }
         let (mark, last) = frames.sync().unwrap();
         assert_eq!((mark.bytes, last), (8, Some(5)));
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "0\n1\n2\n5\n");
-        frames.add(frame(7)).unwrap();
+        frames.add(7, || 7).unwrap();
         assert!(frames.sync().unwrap_err().to_string().contains("no seven"));
     }
 }

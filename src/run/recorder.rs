@@ -1,11 +1,12 @@
 //! The folder of a run: what is written when.
 
-use super::folder::{DATA, DUMP, EVENTS, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY};
+use super::folder::{DATA, DCD, DUMP, EVENTS, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY};
 use super::frames::Frames;
 use super::identity::{BITS, Identity, same_scene};
 use super::{Existing, RunError, Summary};
 use crate::domain::Domain;
 use crate::io::checkpoint::{Checkpoint, Counter, Latest, NAME, read_latest};
+use crate::io::dcd::{self, Positions};
 use crate::io::extxyz::{self, Frame};
 use crate::io::growing_file::{GrowingFile, Mark};
 use crate::io::table_file::TableFile;
@@ -32,8 +33,9 @@ pub(super) struct Recorder {
     /// When the next row, the next snapshot and the next checkpoint are due.
     due: [Option<Until>; 3],
     thermo: TableFile,
-    trajectory: Frames,
-    dump: Option<Frames>,
+    trajectory: Frames<Frame>,
+    dump: Option<Frames<Frame>>,
+    dcd: Option<Frames<Positions>>,
     events: Option<GrowingFile>,
     /// What was out of the ordinary, in the order of the run's sessions.
     notes: Vec<String>,
@@ -46,8 +48,9 @@ pub(super) struct Recorder {
 /// The growing files of a run, verified but not yet cut.
 struct Growing {
     thermo: TableFile,
-    trajectory: Frames,
-    dump: Option<Frames>,
+    trajectory: Frames<Frame>,
+    dump: Option<Frames<Frame>>,
+    dcd: Option<Frames<Positions>>,
     events: Option<GrowingFile>,
 }
 
@@ -100,12 +103,11 @@ impl Recorder {
         folder.claim(&on_request(prepared))?;
         let thermo = TableFile::create(folder.file(THERMO), &columns(quantities))?;
         let trajectory = Frames::create(folder.file(TRAJECTORY), extxyz::write)?;
-        let dump = match output.lammps_dump {
-            true => Some(Frames::create(folder.file(DUMP), lammps::write_dump)?),
-            false => None,
-        };
+        let dump = output.lammps_dump.then(|| Frames::create(folder.file(DUMP), lammps::write_dump));
+        let dcd = output.dcd.then(|| Frames::create(folder.file(DCD), dcd::write));
+        let (dump, dcd) = (dump.transpose()?, dcd.transpose()?);
         let events = begin_events(&folder, prepared)?;
-        let growing = Growing { thermo, trajectory, dump, events };
+        let growing = Growing { thermo, trajectory, dump, dcd, events };
         let mut recorder =
             Recorder::with(folder, (prepared, quantities), growing, &simulation.clock(), notes);
         recorder.new_notes = recorder.notes.len();
@@ -120,7 +122,7 @@ impl Recorder {
     fn with(
         folder: RunFolder,
         (prepared, quantities): (&dyn Prepared, &'static [Quantity]),
-        Growing { thermo, trajectory, dump, events }: Growing,
+        Growing { thermo, trajectory, dump, dcd, events }: Growing,
         clock: &Clock,
         notes: Vec<String>,
     ) -> Recorder {
@@ -138,6 +140,7 @@ impl Recorder {
             thermo,
             trajectory,
             dump,
+            dcd,
             events,
             notes,
             new_notes: 0,
@@ -206,6 +209,10 @@ impl Recorder {
                 }
                 Err(_) => None,
             },
+            dcd: match mark(DCD) {
+                Ok(mark) => Some(Frames::resume(folder.file(DCD), dcd::write, mark, last_frame(DCD))?),
+                Err(_) => None,
+            },
             events: match mark(EVENTS) {
                 Ok(mark) => Some(GrowingFile::resume(folder.file(EVENTS), mark)?),
                 Err(_) => None,
@@ -226,8 +233,15 @@ impl Recorder {
             // Begun after the checkpoint, if it is there at all.
             None => folder.remove_own(DUMP)?,
         }
+        match &mut growing.dcd {
+            Some(dcd) => dcd.cut()?,
+            None => folder.remove_own(DCD)?,
+        }
         if growing.dump.is_none() && output.lammps_dump {
             growing.dump = Some(Frames::create(folder.file(DUMP), lammps::write_dump)?);
+        }
+        if growing.dcd.is_none() && output.dcd {
+            growing.dcd = Some(Frames::create(folder.file(DCD), dcd::write)?);
         }
         match &mut growing.events {
             Some(events) => events.cut()?,
@@ -321,19 +335,28 @@ impl Recorder {
 
     /// A frame in each of the files that are asked for and do not have it yet.
     fn snapshot(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
+        let step = simulation.clock().steps;
+        if let Some(dcd) = self.dcd.as_mut().filter(|_| self.output.dcd) {
+            let cell = self.domain.lengths();
+            dcd.add(step, || Positions { step, cell, places: simulation.positions() })?;
+        }
+        if !(self.output.trajectory || self.output.lammps_dump) {
+            return Ok(());
+        }
         let frame = self.frame(simulation);
         if let Some(dump) = self.dump.as_mut().filter(|_| self.output.lammps_dump) {
-            dump.add(frame.clone())?;
+            dump.add(step, || frame.clone())?;
         }
         if self.output.trajectory {
-            self.trajectory.add(frame)?;
+            self.trajectory.add(step, || frame)?;
         }
         Ok(())
     }
 
     /// The state of a failed step, whether snapshots are due or not, and what there is to say of it.
     pub(super) fn fail(&mut self, simulation: &dyn Simulation, summary: Summary) -> Result<(), RunError> {
-        self.trajectory.add(self.frame(simulation))?;
+        let frame = self.frame(simulation);
+        self.trajectory.add(frame.step, || frame)?;
         self.sync()?;
         self.summary(summary).map(drop)
     }
@@ -357,6 +380,10 @@ impl Recorder {
         if let Some(dump) = &mut self.dump {
             let (mark, last) = dump.sync()?;
             keep(DUMP, mark, last);
+        }
+        if let Some(dcd) = &mut self.dcd {
+            let (mark, last) = dcd.sync()?;
+            keep(DCD, mark, last);
         }
         if let Some(events) = &mut self.events {
             keep(EVENTS, events.sync()?, None);
@@ -444,6 +471,7 @@ fn on_request(prepared: &dyn Prepared) -> Vec<&'static str> {
     let output = prepared.output();
     let asked = [
         (output.lammps_dump, DUMP),
+        (output.dcd, DCD),
         (output.lammps_data, DATA),
         (prepared.event_columns().is_some(), EVENTS),
     ];

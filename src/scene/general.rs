@@ -47,6 +47,8 @@ define_keys! {
     pub static OUTPUT;
     TRAJECTORY = "output" "trajectory", Switch, "", Is("true"), ALWAYS,
         "Snapshots as trajectory.xyz, extended XYZ.";
+    DCD = "output" "dcd", Switch, "", Is("false"), ALWAYS,
+        "Snapshots as trajectory.dcd: positions in single precision, small and fast to write.";
     LAMMPS_DUMP = "output" "lammps_dump", Switch, "", Is("false"), ALWAYS,
         "Snapshots as a LAMMPS dump.";
     LAMMPS_DATA = "output" "lammps_data", Switch, "", Is("false"), ALWAYS,
@@ -105,6 +107,8 @@ pub fn too_many_steps(values: &Values) -> Vec<SceneError> {
 pub struct Output {
     /// Extended XYZ snapshots.
     pub trajectory: bool,
+    /// Snapshots of positions as DCD.
+    pub dcd: bool,
     /// LAMMPS dump snapshots.
     pub lammps_dump: bool,
     /// The final state as a LAMMPS data file.
@@ -115,6 +119,7 @@ impl Output {
     /// Meets its keys.
     pub fn bind(&mut self, binding: &mut dyn Binding) {
         binding.switch(&TRAJECTORY, &mut self.trajectory);
+        binding.switch(&DCD, &mut self.dcd);
         binding.switch(&LAMMPS_DUMP, &mut self.lammps_dump);
         binding.switch(&LAMMPS_DATA, &mut self.lammps_data);
     }

@@ -144,7 +144,7 @@ def with_json(run):
         with open(path) as file:
             content = json.load(file, parse_constant=refuse)
         species = run.frames[-1].columns["species"]
-        same("discs", content["discs"], [species.count("Si"), species.count("W")])
+        same("discs", content["discs"], {"grains": species.count("Si"), "walls": species.count("W")})
         if content["steps"] < run.frames[-1].step:
             raise Wrong(f"steps is {content['steps']}, but the trajectory reaches step {run.frames[-1].step}")
         return f"{len(content)} keys"

@@ -96,6 +96,8 @@ pub(super) trait Stepper: Send {
     fn elapsed_mut(&mut self) -> &mut Elapsed;
     /// The particles inside the box.
     fn particles(&self) -> Particles;
+    /// Their positions alone.
+    fn positions(&self) -> Vec<[f32; 3]>;
     /// The particles where the periods counted as crossed are to be added.
     fn standing(&self) -> Particles;
     /// Everything that the next step depends on.
@@ -144,6 +146,10 @@ impl<S: backend::Precision, P: backend::Precision, Q: Search<S, P>> Stepper for 
 
     fn particles(&self) -> Particles {
         self.engine.particles()
+    }
+
+    fn positions(&self) -> Vec<[f32; 3]> {
+        self.engine.positions()
     }
 
     fn standing(&self) -> Particles {

@@ -167,6 +167,18 @@ impl Simulation for Running {
         self.stepper.particles()
     }
 
+    fn positions(&self) -> Vec<[f32; 3]> {
+        let (there, all) = (self.stepper.positions(), self.checked.particles.all());
+        if there.len() == all.len() {
+            return there;
+        }
+        let mut left = self.start.all().iter().zip(there).peekable();
+        let place = |particle: &Particle| {
+            left.next_if(|(still, _)| still.id == particle.id).map_or([f32::NAN; 3], |(_, place)| place)
+        };
+        all.iter().map(place).collect()
+    }
+
     fn observe(&self) -> Vec<f64> {
         let (particles, mass) = (self.stepper.standing(), self.checked.mass);
         let count = particles.len() as f64;

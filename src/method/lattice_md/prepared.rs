@@ -343,8 +343,11 @@ impl Simulation for Running {
     fn summary(&self) -> Map<String, Value> {
         let ((seen, balance), totals) = (self.seen(), self.engine.totals());
         let entries = [
-            ("discs", json!(self.discs)),
-            ("lattice", json!(self.lattice.map(|(cells, _)| cells))),
+            ("discs", json!({ "grains": self.discs[0], "walls": self.discs[1] })),
+            (
+                "lattice",
+                json!(self.lattice.map(|([columns, rows], _)| json!({ "columns": columns, "rows": rows }))),
+            ),
             ("occupancy", json!(self.lattice.map(|(_, occupancy)| occupancy))),
             ("energy", json!(balance)),
             ("long_steps", json!(totals.long_steps)),

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::domain::Domain;
 use crate::method::{Clock, Failure};
-use crate::particles::{Particle, Particles};
+use crate::particles::{Particle, Particles, in_space};
 use std::collections::BTreeSet;
 use std::ops::Range;
 use stripmine_kernels::InstructionSet;
@@ -227,6 +227,17 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     /// The particles as they stand, positions inside the box.
     pub fn particles(&self) -> Particles {
         wrapped(self.standing(), &self.system.domain)
+    }
+
+    /// Positions alone, inside the box and in single precision, in the scene's order.
+    pub fn positions(&self) -> Vec<[f32; 3]> {
+        let mut places = vec![[0.0; 3]; self.start.len()];
+        for disc in 0..self.start.len() {
+            let place = [0, 1].map(|freedom| self.corrected(freedom, disc)[0].to_f64());
+            let place = self.system.domain.wrapped(in_space(self.seen_from_origin(disc, place)));
+            places[self.state.number(disc)] = place.map(|x| x as f32);
+        }
+        places
     }
 
     /// The particles as they stand; positions are consistent with the periods that are counted as crossed.

@@ -78,15 +78,16 @@ fn write_discs(out: &mut String, discs: &[Mark], outline: Option<Stroke>) {
     write_dots(out, discs, |fill| fill, -rim);
 }
 
-/// Discs as dots, their diameters changed by `rim`. Those of one colour and diameter are the round ends of the shortest lines
+/// Discs as dots, to a tenth of a pixel, their diameters changed by `rim`. Those of one colour and diameter are the round ends of the shortest lines
 /// of that width.
 fn write_dots(out: &mut String, discs: &[Mark], colour: impl Fn(Colour) -> Colour, rim: f64) {
     let mut paths: BTreeMap<(String, i64), Vec<Vec<Place>>> = BTreeMap::new();
     for mark in discs {
         if let Mark::Disc { centre: [x, y], radius, paint: Paint { fill: Some(fill), .. } } = mark {
             // Some viewers show nothing of a line without a length.
-            let line = vec![[*x, *y], [x + SHORTEST, *y]];
-            let alike = (colour(*fill).to_string(), hundredths(2.0 * radius + rim));
+            let [x, y, diameter] = [*x, *y, 2.0 * radius + rim].map(|pixels| (10.0 * pixels).round() / 10.0);
+            let line = vec![[x, y], [x + SHORTEST, y]];
+            let alike = (colour(*fill).to_string(), hundredths(diameter));
             paths.entry(alike).or_default().push(line);
         }
     }
@@ -99,7 +100,7 @@ fn write_dots(out: &mut String, discs: &[Mark], colour: impl Fn(Colour) -> Colou
 }
 
 /// The length of a line that is a dot (pixels).
-const SHORTEST: f64 = 0.01;
+const SHORTEST: f64 = 0.1;
 
 /// A mark with these attributes.
 fn write_mark(out: &mut String, mark: &Mark, attributes: &str) {
@@ -350,10 +351,10 @@ mod tests {
         write_marks(&mut out, &discs.chain([disc(7.0, 1.0, true), disc(8.0, 1.5, true)]).collect::<Vec<_>>());
         // Discs of one colour and size are one path; outlines are larger discs behind them.
         for path in [
-            "stroke-width=\"3\" d=\"M1 5h.01m1.99 0h.01\"/>",
-            "stroke-width=\"2.5\" d=\"M2 5h.01\"/>",
-            "stroke-width=\"4\" d=\"M8 5h.01\"/>\n</g>\n<g",
-            "stroke-width=\"1\" d=\"M7 5h.01\"/>",
+            "stroke-width=\"3\" d=\"M1 5h.1m1.9 0h.1\"/>",
+            "stroke-width=\"2.5\" d=\"M2 5h.1\"/>",
+            "stroke-width=\"4\" d=\"M8 5h.1\"/>\n</g>\n<g",
+            "stroke-width=\"1\" d=\"M7 5h.1\"/>",
         ] {
             assert!(out.contains(path), "{path}: {out}");
         }

@@ -8,7 +8,7 @@ use crate::report::{Cell, Section, Table};
 use maud::{Markup, PreEscaped, html};
 
 /// Pictures of an item that the page shows; further ones are linked.
-const FIGURES: usize = 10;
+const FIGURES: usize = 6;
 
 /// The item with everything that belongs to it.
 pub fn render(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) -> Markup {
@@ -115,7 +115,7 @@ fn moving(section: &Section, shown: &Film) -> Markup {
 }
 
 /// Rows of a table that a page shows; a longer one is for programs.
-const ROWS: usize = 15;
+const ROWS: usize = 10;
 
 /// A table in a box of its own, which scrolls where the table is wider than the page. The page has the first rows of a long
 /// one, and says where all are: in the item's folder.
