@@ -280,7 +280,19 @@ def with_mdanalysis(run):
             same("velocity", universe.atoms.velocities, frame.columns["velocity"], SINGLE)
         return f"{len(universe.atoms)} atoms"
 
-    return [(run.path("trajectory.xyz"), trajectory), (run.dump(), dump), (run.data(), data)]
+    def positions(path):
+        # The file names no particles: they are in the order of the start, which is that of the first frame.
+        universe = MDAnalysis.Universe.empty(len(run.frames[0].columns["id"]), trajectory=True)
+        universe.load_new(str(path), format="DCD", convert_units=False)
+        ids = next(iter(file_order(run.path("trajectory.xyz"))))
+        for now, frame in zip(universe.trajectory, run.frames):
+            places = {number: place for place, number in enumerate(frame.columns["id"])}
+            same("position", now.positions, [frame.columns["position"][places[number]] for number in ids], SINGLE)
+            same("box", now.dimensions[:3], frame.sides, SINGLE)
+        return frames_are(run, len(universe.trajectory))
+
+    found = [("trajectory.xyz", trajectory), ("trajectory.dcd", positions)]
+    return [(run.path(name), check) for name, check in found] + [(run.dump(), dump), (run.data(), data)]
 
 
 def file_order(path):
