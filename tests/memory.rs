@@ -21,7 +21,7 @@ fn peak(arguments: &[String]) -> u64 {
 
 /// For the six ways of a hundred thousand discs: at most 5 % more than foreseen, and at most 10 % less.
 /// Less is room for the thread that writes frames: whether it still holds one frame when the next is made
-/// depends on the moment, and what is foreseen counts both.
+/// depends on the moment, and what is foreseen counts both. A frame of a hundred thousand particles is 10 MB, 7 % of the largest.
 #[test]
 fn a_run_takes_the_memory_that_was_foreseen() {
     let folder = tempfile::tempdir().unwrap();
