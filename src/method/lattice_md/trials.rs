@@ -85,7 +85,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "stiffness",
         label: "stiffness of contacts",
-        unit: "force/length^1.5",
+        unit: "reduced",
         bounds: [1e-300, 1e300],
         is_logarithmic: true,
         range: |values| around(values.number(&STIFFNESS)?, 30.0),
@@ -95,7 +95,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "damping",
         label: "normal damping",
-        unit: "1/time",
+        unit: "reduced",
         bounds: [0.0, 1e300],
         is_logarithmic: true,
         range: |values| around(values.number(&NORMAL_DAMPING)?, 30.0),
@@ -105,7 +105,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "shear-damping",
         label: "tangential damping",
-        unit: "1/time",
+        unit: "reduced",
         bounds: [0.0, 1e300],
         is_logarithmic: true,
         range: |values| around(values.number(&SHEAR_DAMPING)?, 30.0),
@@ -158,7 +158,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "distance-from-origin",
         label: "distance of the box from the origin of coordinates",
-        unit: "length",
+        unit: "reduced",
         bounds: [0.0, 1e12],
         is_logarithmic: true,
         range: |values| (values.choice(&PRECISION)? != Precision::F64.word()).then_some([10.0, 1e6]),

@@ -66,6 +66,12 @@ pub enum Fault {
         /// Its height.
         height: f64,
     },
+    /// A picture that the drawing library refuses.
+    #[error("it cannot be drawn: {problem}")]
+    Drawing {
+        /// What the library says.
+        problem: String,
+    },
 }
 
 impl Fault {

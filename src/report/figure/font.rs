@@ -1,7 +1,7 @@
-//! The one font, which is part of the program: no picture depends on what a machine has installed.
+//! How wide words are in the pictures' font.
 
 use std::sync::LazyLock;
-use ttf_parser::{Face, OutlineBuilder};
+use ttf_parser::Face;
 
 /// Height of a capital letter, in sizes of the letters.
 pub const CAPITAL: f64 = 0.729;
@@ -35,26 +35,6 @@ pub fn wrap(words: &str, size: f64, most: f64) -> Vec<String> {
         }
     }
     lines
-}
-
-/// Draws the outline of each letter: `place` makes a pen for a letter that begins so far to the right of the first,
-/// with this many pixels to a unit of the font.
-pub fn outline<Pen: OutlineBuilder>(
-    words: &str,
-    size: f64,
-    mut place: impl FnMut(f64, f64) -> Pen,
-) -> Vec<Pen> {
-    let scale = size / f64::from(FACE.units_per_em());
-    let mut right = 0.0;
-    words
-        .chars()
-        .map(|letter| {
-            let mut pen = place(right * scale, scale);
-            FACE.outline_glyph(FACE.glyph_index(letter).unwrap_or_default(), &mut pen);
-            right += advance(letter);
-            pen
-        })
-        .collect()
 }
 
 fn advance(letter: char) -> f64 {

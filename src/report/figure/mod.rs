@@ -3,25 +3,24 @@
 mod chart;
 mod check;
 mod data;
+mod draw;
 mod drawing;
 mod error;
 mod font;
-mod layout;
 pub mod look;
 mod map;
 mod picture;
 mod png;
 #[cfg(test)]
 mod samples;
-mod sheet;
 pub mod style;
 mod svg;
 
 pub use chart::{Along, Axis, Band, Chart, Point, Scale, Series, Style};
 pub use data::{data, data_file};
+pub use draw::ends;
 pub use drawing::{Drawing, Shape, Tint};
 pub use error::{Fault, FigureError};
-pub use layout::ends;
 pub use map::Map;
 pub use picture::{Figure, Picture};
 pub use png::png;

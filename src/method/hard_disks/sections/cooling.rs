@@ -68,7 +68,7 @@ fn figure(data: &Cooling) -> Figure {
             Cell::Number(data.discs as f64, 0).for_reading()
         ),
         picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("time since the first look", None),
+            x: Axis::logarithmic("time since the first look", Some("reduced")),
             y: Axis::logarithmic("temperature over that of the first look", None),
             series,
             bands: vec![],

@@ -72,7 +72,7 @@ fn figure(data: &Precision) -> Figure {
             data.seeds
         ),
         picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("processor time (s)", None),
+            x: Axis::logarithmic("processor time", Some("s")),
             y: Axis::logarithmic("relative error of Z", None),
             series,
             bands: vec![],

@@ -55,7 +55,7 @@ pub fn section(data: &SoftHard, again: String) -> Section {
 }
 
 fn stiffness_axis() -> Axis {
-    Axis::logarithmic("stiffness of a contact", Some("kT/diameter^2.5"))
+    Axis::logarithmic("stiffness of a contact", Some("reduced"))
 }
 
 /// An observable of the soft discs, and that of the hard ones as a line.

@@ -143,8 +143,8 @@ fn energies(data: &Misprints) -> Figure {
                   damping feeds energy in."
             .into(),
         picture: chart(
-            Axis::linear("time", None),
-            Axis::linear("energy", None),
+            Axis::linear("time", Some("reduced")),
+            Axis::linear("energy", Some("reduced")),
             vec![
                 curve("(14) as printed", Style::Dashed, 1, |at| at.printed),
                 curve("ours, undamped", Style::Line, 2, |at| at.undamped),

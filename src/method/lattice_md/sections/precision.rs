@@ -91,9 +91,6 @@ fn above_zero(x: &[f64], y: &[f64]) -> Vec<Point> {
     x.iter().zip(y).filter(|(_, y)| **y > 0.0).map(|(&x, &y)| Point::at(x, y)).collect()
 }
 
-/// How much farther right the next series of the same boxes is drawn.
-const BESIDE: f64 = 1.06;
-
 fn force_figure(errors: &[ForceError]) -> Figure {
     let dense: Vec<&ForceError> = errors
         .iter()
@@ -107,8 +104,7 @@ fn force_figure(errors: &[ForceError]) -> Figure {
             let name = error.variant.name.into();
             series.push(Series { name, style: Style::Joined, hue: at, points: vec![] });
         }
-        // Equally good ones stand beside each other, not on each other.
-        series[at].points.push(Point::at(error.side * BESIDE.powi(at as i32), error.rms));
+        series[at].points.push(Point::at(error.side, error.rms));
     }
     Figure {
         name: "force_error".into(),
@@ -116,8 +112,7 @@ fn force_figure(errors: &[ForceError]) -> Figure {
         caption: format!(
             "Packing fraction {}. Root of the mean square error over that of the forces; held against the fast engine in \
              f64. The fast engine keeps positions from the cell's centre, as programs do in f32. In mixed precision \
-             programs keep them in f64 from the box's corner and take the difference with the cell in f64; absolute ones are from the corner in f32. Marks of one box stand beside each other; its side is that of \
-             the leftmost.",
+             programs keep them in f64 from the box's corner and take the difference with the cell in f64; absolute ones are from the corner in f32. Ways that are equally good lie upon each other: the last of the legend is in front.",
             PACKING_FRACTIONS[0]
         ),
         picture: Picture::Chart(Chart {

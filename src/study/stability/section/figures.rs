@@ -78,7 +78,7 @@ pub fn map(name: &str, data: &Stability) -> Figure {
         ),
         picture: Picture::Chart(Chart {
             x,
-            y: Axis::logarithmic("step", Some("time")),
+            y: Axis::logarithmic("step", Some("reduced")),
             series: all.filter(|series| !series.points.is_empty()).collect(),
             bands: vec![],
         }),

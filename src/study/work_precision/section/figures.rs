@@ -216,7 +216,7 @@ fn clocks(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
              they have no fixed program to count. Executions of one program have the same clock periods."
         ),
         picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("clock periods for a unit of simulated time", None),
+            x: Axis::logarithmic("cost of a unit of simulated time", Some("clock periods")),
             y: axis_of_error(Measure::Position, &data.unit),
             series: all,
             bands: vec![],
@@ -239,7 +239,7 @@ fn growth(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
         title: format!("{name}: how long trajectories are comparable"),
         caption: format!("{rate}; compared is a time of {}.", short(data.duration)),
         picture: Picture::Chart(Chart {
-            x: Axis::linear("time", None),
+            x: Axis::linear("time", Some("reduced")),
             y: Axis::logarithmic("distance, RMS", Some(&data.unit)),
             series: vec![
                 Series {
@@ -288,7 +288,7 @@ fn outcomes(file: &str, name: &str, data: &WorkPrecision, collision: &Collision)
             collision.phases
         ),
         picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("step", None),
+            x: Axis::logarithmic("step", Some("reduced")),
             y: Axis::logarithmic("error of the restitution", None),
             series: spread.chain(mean).collect(),
             bands: vec![],
@@ -352,17 +352,15 @@ fn means(file: &str, name: &str, data: &WorkPrecision, all: &Observables) -> Opt
     let digits = data.ways.iter().find(|way| way.label == data.reference.ways[0]).map(|way| &way.digits);
     let in_full = labels.into_iter().filter(|label| way(label).map(|way| &way.digits) == digits);
     let mut series = vec![];
-    for (i, label) in in_full.enumerate() {
+    for label in in_full {
         let Some(way) = way(label) else { continue };
         for (reaches_zero, said) in [(false, ""), (true, ", bar reaches zero")] {
             let own = all.comparisons.iter().filter(|it| {
                 it.choice == label && it.observable == *observable && it.reaches_zero() == reaches_zero
             });
-            // Side by side, so that bars do not hide each other.
-            let shift = 1.0 + 0.04 * i as f64;
             let points = own.map(|it| {
                 let [size, bar] = [100.0 * it.difference, 100.0 * it.bar];
-                Point { x: shift * it.step, y: size, spread: Some([size - bar, size + bar]) }
+                Point { x: it.step, y: size, spread: Some([size - bar, size + bar]) }
             });
             series.push(Series {
                 name: format!("{}{said}", way.scheme),
@@ -382,7 +380,7 @@ fn means(file: &str, name: &str, data: &WorkPrecision, all: &Observables) -> Opt
             data.seeds.len()
         ),
         picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("step", None),
+            x: Axis::logarithmic("step", Some("reduced")),
             y: Axis::linear("difference", Some("%")),
             series,
             bands: vec![],

@@ -1,10 +1,11 @@
-//! What the curves, markers and hatchings of a chart mean, to the right of it.
+//! What the curves, markers and grounds of a chart mean, to the right of it. The library's own legends show a line or a
+//! marker, not both.
 
 use super::super::look::{Look, looks};
-use super::super::sheet::{Anchor, Area, Mark, Place};
-use super::super::{Along, Band, Chart, font, style};
-use super::band::{band, ground};
-use super::title;
+use super::super::{Chart, font, style};
+use super::frame::colour;
+use super::{chart, series, words};
+use kuva::render::render::{Primitive, Scene};
 
 /// From the chart to the legend.
 const GAP: f64 = 24.0;
@@ -20,7 +21,6 @@ const BETWEEN: f64 = 13.0;
 /// A legend.
 pub struct Legend {
     entries: Vec<Entry>,
-    bands: Vec<Band>,
 }
 
 struct Entry {
@@ -30,8 +30,7 @@ struct Entry {
 
 enum Sample {
     Series(Look),
-    Band,
-    Ground(usize),
+    Band(style::Colour),
 }
 
 impl Legend {
@@ -43,14 +42,12 @@ impl Legend {
         };
         let series = chart.series.iter().zip(looks(chart)).filter(|(series, _)| !series.points.is_empty());
         let series = series.filter_map(|(series, look)| entry(Sample::Series(look), &series.name));
-        let bands = chart.bands.iter().enumerate().filter_map(|(i, band)| {
-            let sample = if band.along == Along::Y { Sample::Ground(i) } else { Sample::Band };
-            entry(sample, &band.label)
-        });
-        Legend { entries: series.chain(bands).collect(), bands: chart.bands.clone() }
+        let bands = chart.bands.iter().zip(chart::grounds(chart));
+        let bands = bands.filter_map(|(band, colour)| entry(Sample::Band(colour), &band.label));
+        Legend { entries: series.chain(bands).collect() }
     }
 
-    /// The width it needs at the right of a chart, up to the edge of the sheet.
+    /// The width it needs at the right of a chart, up to the edge of the picture.
     pub fn width(&self) -> f64 {
         if self.entries.is_empty() {
             // Half a number of the axis below may stand out.
@@ -66,33 +63,33 @@ impl Legend {
         entries + BETWEEN * self.entries.len().saturating_sub(1) as f64
     }
 
-    /// The legend as marks, at the right of a chart.
-    pub fn marks(&self, plot: &Area) -> Vec<Mark> {
-        let left = plot.right() + GAP;
-        let mut top = plot.top;
-        let mut marks = Vec::new();
+    /// Adds the legend to a picture: right of the axes' upper right end, and down from there.
+    pub fn add_to(&self, scene: &mut Scene, [right, mut top]: [f64; 2]) {
+        let left = right + GAP;
         for entry in &self.entries {
             let middle = top + entry.height() / 2.0;
             match &entry.sample {
-                Sample::Series(look) => marks.extend(look.sample([left, middle], SAMPLE)),
-                Sample::Band | Sample::Ground(_) => {
-                    let area = Area { left, top: middle - 9.0, width: SAMPLE, height: 18.0 };
-                    match entry.sample {
-                        Sample::Ground(number) => marks.push(ground(&area, &self.bands, number)),
-                        _ => marks.extend(band(&area)),
-                    }
-                }
+                Sample::Series(look) => scene.elements.extend(series::sample(look, [left, middle], SAMPLE)),
+                Sample::Band(ground) => scene.add(Primitive::Rect {
+                    x: left,
+                    y: middle - 9.0,
+                    width: SAMPLE,
+                    height: 18.0,
+                    fill: colour(*ground),
+                    stroke: None,
+                    stroke_width: None,
+                    opacity: None,
+                }),
             }
-            let words: Place = [left + SAMPLE + TO_WORDS, top + font::DESCENT * style::LABEL];
-            marks.extend(title::block(&entry.lines, words[0], words[1], Anchor::Start, style::LABEL));
+            let at = [left + SAMPLE + TO_WORDS, top + font::DESCENT * style::LABEL];
+            words::block(&entry.lines, at, style::LABEL).for_each(|line| scene.add(line));
             top += entry.height() + BETWEEN;
         }
-        marks
     }
 }
 
 impl Entry {
     fn height(&self) -> f64 {
-        title::block_height(&self.lines, style::LABEL) + font::DESCENT * style::LABEL
+        words::block_height(&self.lines, style::LABEL) + font::DESCENT * style::LABEL
     }
 }

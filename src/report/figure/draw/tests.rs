@@ -1,46 +1,41 @@
-//! What must hold for every picture.
+//! What must hold for every picture, as `resvg` sees it.
 
-use super::super::sheet::{Mark, Sheet};
-use super::super::{Axis, Chart, Drawing, Fault, Figure, Map, Picture, Point, Scale, Style, font, samples};
-use super::sheet;
+use super::super::png::tree;
+use super::super::{Axis, Chart, Drawing, Fault, Figure, Map, Picture, Point, Scale, Style, samples, svg};
+use super::scene;
+use kuva::render::render::Primitive;
+use resvg::usvg::{Group, Node};
 
 /// Left, upper, right and lower end of every line of words.
-fn words(sheet: &Sheet) -> Vec<(String, [f64; 4])> {
-    fn of(marks: &[Mark], all: &mut Vec<(String, [f64; 4])>) {
-        for mark in marks {
-            match mark {
-                Mark::Window { marks, .. } => of(marks, all),
-                Mark::Words { at: [x, y], anchor, upwards, size, words, .. } => {
-                    let width = font::width(words, *size);
-                    let [start, end] = [0.0, 1.0].map(|part| (part - anchor.part_before()) * width);
-                    let [over, under] = [font::CAPITAL * size, font::DESCENT * size];
-                    let extent = if *upwards {
-                        [x - over, y - end, x + under, y - start]
-                    } else {
-                        [x + start, y - over, x + end, y + under]
-                    };
-                    all.push((words.clone(), extent));
+fn words(figure: &Figure) -> Vec<(String, [f32; 4])> {
+    fn of(group: &Group, all: &mut Vec<(String, [f32; 4])>) {
+        for node in group.children() {
+            match node {
+                Node::Group(group) => of(group, all),
+                Node::Text(text) => {
+                    let words = text.chunks().iter().map(|chunk| chunk.text()).collect();
+                    let extent = text.abs_bounding_box();
+                    all.push((words, [extent.left(), extent.top(), extent.right(), extent.bottom()]));
                 }
                 _ => {}
             }
         }
     }
     let mut all = Vec::new();
-    of(&sheet.marks, &mut all);
+    of(tree(&svg(figure).unwrap()).unwrap().root(), &mut all);
     all
 }
 
-/// The outline of the axes: the only closed lines without a filling and with four corners that are upright.
-fn plot(sheet: &Sheet) -> [f64; 4] {
-    let outline = sheet.marks.iter().find_map(|mark| match mark {
-        Mark::Lines { pieces, closed: true, paint } if paint.fill.is_none() => Some(&pieces[0]),
+/// The box between the ends of the axes.
+fn plot(figure: &Figure) -> [f64; 4] {
+    let window = |it: &Primitive| match it {
+        Primitive::ClipStart { x, y, width, height, .. } => Some([*x, *y, x + width, y + height]),
         _ => None,
-    });
-    let corners = outline.unwrap();
-    [corners[0][0], corners[0][1], corners[2][0], corners[2][1]]
+    };
+    scene(figure).unwrap().elements.iter().find_map(window).unwrap()
 }
 
-fn apart(a: [f64; 4], b: [f64; 4]) -> bool {
+fn apart(a: [f32; 4], b: [f32; 4]) -> bool {
     a[2] <= b[0] || b[2] <= a[0] || a[3] <= b[1] || b[3] <= a[1]
 }
 
@@ -75,14 +70,15 @@ fn pressing() -> Vec<Figure> {
 }
 
 #[test]
-fn all_words_are_on_the_sheet_and_none_upon_others() {
+fn all_words_are_on_the_picture_and_none_upon_others() {
     for figure in pressing() {
-        let sheet = sheet(&figure).unwrap();
-        let all = words(&sheet);
+        let size = tree(&svg(&figure).unwrap()).unwrap().size();
+        let all = words(&figure);
+        assert!(all.len() > 2, "{}", figure.name);
         for (i, (words, extent)) in all.iter().enumerate() {
             let [left, top, right, bottom] = *extent;
-            assert!(left >= 0.0 && top >= 0.0, "{}: {words} {extent:?}", figure.name);
-            assert!(right <= sheet.width && bottom <= sheet.height, "{}: {words} {extent:?}", figure.name);
+            let within = left >= 0.0 && top >= 0.0 && right <= size.width() && bottom <= size.height();
+            assert!(within, "{}: {words} {extent:?} {size:?}", figure.name);
             for (others, other) in &all[..i] {
                 assert!(apart(*extent, *other), "{}: {words} upon {others}", figure.name);
             }
@@ -96,9 +92,9 @@ fn no_words_lie_on_the_data() {
         if matches!(figure.picture, Picture::Drawing(_)) {
             continue;
         }
-        let sheet = sheet(&figure).unwrap();
-        for (words, extent) in words(&sheet) {
-            assert!(apart(extent, plot(&sheet)), "{}: {words}", figure.name);
+        let plot = plot(&figure).map(|end| end as f32);
+        for (words, extent) in words(&figure) {
+            assert!(apart(extent, plot), "{}: {words}", figure.name);
         }
     }
 }
@@ -113,30 +109,34 @@ fn a_very_small_value_is_drawn_where_it_must_be() {
     drawn.series[0].points = vec![Point::at(10.0, 1e-14)];
     drawn.x.limits = Some([1.0, 1000.0]);
     drawn.y.limits = Some([1e-16, 1e-8]);
-    let sheet = sheet(&figure).unwrap();
-    let [left, top, right, bottom] = plot(&sheet);
-    let is_it = |mark: &Mark| match mark {
-        Mark::Disc { centre: [x, y], .. } => {
-            (x - (left + (right - left) / 3.0)).abs() < 1e-9
-                && (y - (bottom - (bottom - top) / 4.0)).abs() < 1e-9
-        }
-        _ => false,
-    };
-    assert_eq!(sheet.marks.iter().filter(|mark| is_it(mark)).count(), 1);
+    let [left, top, right, bottom] = plot(&figure);
+    let (x, y) = (left + (right - left) / 3.0, bottom - (bottom - top) / 4.0);
+    let start = format!("M{:.1} {y:.1}a", x - super::super::style::MARKER);
+    assert!(svg(&figure).unwrap().contains(&start), "{start}");
+    assert!(words(&figure).iter().any(|(words, _)| words == "10⁻¹⁴"));
 }
 
 #[test]
-fn data_outside_of_given_limits_stay_out_of_the_picture() {
+fn data_outside_of_given_limits_are_cut_off() {
     let mut figure = samples::logarithmic();
     let drawn = chart_of(&mut figure.picture);
     drawn.x.limits = Some([10.0, 1000.0]);
     drawn.y.limits = Some([1e-7, 1e-6]);
     drawn.series.iter_mut().for_each(|series| series.points.push(Point::at(1e300, 1e-300)));
-    let sheet = sheet(&figure).unwrap();
-    for mark in &sheet.marks {
-        let Mark::Lines { pieces, .. } = mark else { continue };
-        for [x, y] in pieces.iter().flatten() {
-            assert!((0.0..=sheet.width).contains(x) && (0.0..=sheet.height).contains(y), "{mark:?}");
+    let mut inside = false;
+    for element in scene(&figure).unwrap().elements {
+        match element {
+            Primitive::ClipStart { .. } => inside = true,
+            Primitive::ClipEnd => inside = false,
+            // Curves may leave the window that cuts them off; markers may not, for half of one says nothing.
+            Primitive::Path(path) if inside && path.fill.is_some() => {
+                let [left, top, right, bottom] = plot(&figure);
+                let mut numbers = path.d[1..].split(['L', ' ', 'a', 'h', 'z']);
+                let [x, y] = [(); 2].map(|()| numbers.next().unwrap().parse::<f64>().unwrap());
+                let reach = 10.0;
+                assert!(x > left - reach && x < right + reach && y > top - reach && y < bottom + reach);
+            }
+            _ => {}
         }
     }
 }
@@ -147,8 +147,9 @@ fn a_lone_point_of_a_line_is_seen() {
     let drawn = chart_of(&mut figure.picture);
     drawn.series.truncate(1);
     drawn.series[0].points.truncate(1);
-    let is_disc = |mark: &Mark| matches!(mark, Mark::Disc { .. });
-    assert_eq!(sheet(&figure).unwrap().marks.iter().filter(|mark| is_disc(mark)).count(), 1);
+    drawn.bands.clear();
+    let marker = |it: &Primitive| matches!(it, Primitive::Path(path) if path.fill.is_some());
+    assert_eq!(scene(&figure).unwrap().elements.iter().filter(|it| marker(it)).count(), 1);
 }
 
 #[test]
@@ -157,7 +158,7 @@ fn a_narrow_bar_still_says_what_its_ends_mean() {
     if let Picture::Drawing(drawing) = &mut figure.picture {
         drawing.width = 160.0;
     }
-    let words: Vec<_> = words(&sheet(&figure).unwrap()).into_iter().map(|(words, _)| words).collect();
+    let words: Vec<_> = words(&figure).into_iter().map(|(words, _)| words).collect();
     assert!(words.contains(&"−40".to_owned()) && words.contains(&"40".to_owned()), "{words:?}");
 }
 
@@ -165,25 +166,32 @@ fn a_narrow_bar_still_says_what_its_ends_mean() {
 fn a_drawing_is_not_distorted() {
     for figure in [samples::pipe(), samples::long_pipe(), samples::mask()] {
         let Picture::Drawing(drawing) = &figure.picture else { unreachable!() };
-        let sheet = sheet(&figure).unwrap();
-        let window = sheet.marks.iter().find_map(|mark| match mark {
-            Mark::Window { area, .. } => Some(area),
-            _ => None,
-        });
-        let [[left, low], [right, high]] = drawing.window;
-        let shape = window.unwrap();
+        let [left, top, right, bottom] = plot(&figure);
+        let [[west, south], [east, north]] = drawing.window;
         // The rim about the window is less than two pixels for each 900 of the width.
         let rim = 2.0 * (drawing.width / 900.0).max(1.0);
-        assert!((shape.height - shape.width * (high - low) / (right - left)).abs() < rim, "{}", figure.name);
-        assert!(sheet.width == drawing.width);
+        let height = (right - left) * (north - south) / (east - west);
+        assert!((bottom - top - height).abs() < rim, "{}", figure.name);
+        assert!(scene(&figure).unwrap().width == drawing.width);
     }
+}
+
+#[test]
+fn cells_are_where_they_must_be() {
+    let mut figure = samples::map();
+    if let Picture::Map(map) = &mut figure.picture {
+        map.rows = vec![vec![0.0, 0.0, 1.0], vec![1.0, 0.0, 0.0]];
+    }
+    let text = svg(&figure).unwrap();
+    // The first row is the lowest.
+    assert!(text.contains("d=\"M1 0h2m-3 1h2\"") && text.contains("d=\"M0 0h1m1 1h1\""), "{text}");
 }
 
 #[test]
 fn faults_are_named() {
     let fault = |mut figure: Figure, spoil: fn(&mut Picture)| {
         spoil(&mut figure.picture);
-        let error = sheet(&figure).unwrap_err();
+        let error = scene(&figure).unwrap_err();
         assert_eq!(error.figure, figure.name);
         error.to_string()
     };
@@ -209,7 +217,7 @@ fn faults_are_named() {
         if let Picture::Map(map) = &mut figure.picture {
             spoil(map);
         }
-        sheet(&figure).unwrap_err().fault
+        scene(&figure).unwrap_err().fault
     };
     assert_eq!(of_map(|map| map.y.limits = None), Fault::NoLimits { axis: "Time".into() });
     assert_eq!(
@@ -231,7 +239,7 @@ fn faults_are_named() {
         if let Picture::Drawing(drawing) = &mut figure.picture {
             spoil(drawing);
         }
-        sheet(&figure).unwrap_err().fault
+        scene(&figure).unwrap_err().fault
     };
     assert!(matches!(of_drawing(|drawing| drawing.width = 1.0), Fault::Size { .. }));
     assert!(matches!(of_drawing(|drawing| drawing.window[1][1] = -9.0), Fault::NotAnInterval { .. }));

@@ -1,0 +1,62 @@
+//! Numbers as colours.
+
+use super::super::{Axis, Fault, Scale, style};
+use super::axis::{ends, linear};
+use kuva::plot::colormap::ColorMap;
+use kuva::prelude::TickFormat;
+use std::sync::Arc;
+
+/// A range of numbers and the colours that stand for them.
+#[derive(Clone, Debug)]
+pub struct Shades {
+    scale: Scale,
+    /// Lowest and highest number, or their logarithms.
+    pub ends: [f64; 2],
+}
+
+impl Shades {
+    /// For the values of a map: exactly theirs where the axis does not say.
+    ///
+    /// # Errors
+    /// [`Fault`] if there are no values.
+    pub fn new(axis: &Axis, values: impl Iterator<Item = f64>) -> Result<Shades, Fault> {
+        let [low, high] = values
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
+        let exact = axis.limits.is_none() && low < high;
+        let ends = if exact { [low, high] } else { ends(axis, [low, high].into_iter())? };
+        let measured = |end| if axis.scale == Scale::Linear { end } else { libm::log10(end) };
+        Ok(Shades { scale: axis.scale, ends: ends.map(measured) })
+    }
+
+    /// Whether they show a sign.
+    pub fn signed(&self) -> bool {
+        self.scale == Scale::Linear && style::is_signed(self.ends)
+    }
+
+    /// The level of a value.
+    pub fn level(&self, value: f64) -> u8 {
+        let measured = if self.scale == Scale::Linear { value } else { libm::log10(value) };
+        style::level((measured - self.ends[0]) / (self.ends[1] - self.ends[0]), self.signed())
+    }
+
+    /// The colours, for the library.
+    pub fn map(&self) -> ColorMap {
+        let signed = self.signed();
+        ColorMap::Custom(Arc::new(move |place| style::shade(style::level(place, signed)).to_string()))
+    }
+
+    /// How numbers are written along the colours.
+    pub fn format(&self) -> TickFormat {
+        match self.scale {
+            Scale::Linear => linear(self.ends),
+            Scale::Logarithmic => {
+                let spelled = linear([1.0, 10.0]);
+                TickFormat::Custom(Arc::new(move |power| {
+                    let number = libm::pow(10.0, power);
+                    let digits = libm::pow(10.0, (1.0 - power.floor()).max(0.0));
+                    spelled.format((number * digits).round() / digits)
+                }))
+            }
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! Figures as scenes of the plotting library, `kuva`: it has axes, grids, curves, markers, bars, colour bars and the
+//! file's format. What it has not is drawn here, with its primitives: hollow markers and those with
+//! rims, legends that show line and marker, maps of many cells in few bytes, things where they are.
+
+mod axis;
+mod chart;
+mod colours;
+mod drawing;
+mod frame;
+mod legend;
+mod map;
+mod marker;
+mod series;
+mod words;
+
+pub use axis::ends;
+
+use super::check::check;
+use super::{Figure, FigureError, Picture};
+use kuva::render::render::Scene;
+
+/// A figure as a scene.
+///
+/// # Errors
+/// When the figure cannot be drawn.
+pub fn scene(figure: &Figure) -> Result<Scene, FigureError> {
+    check(figure)?;
+    match &figure.picture {
+        Picture::Chart(picture) => chart::scene(&figure.title, picture),
+        Picture::Map(picture) => map::scene(&figure.title, picture),
+        Picture::Drawing(picture) => Ok(drawing::scene(&figure.title, picture)),
+    }
+    .map_err(|fault| fault.of(&figure.name))
+}
+
+#[cfg(test)]
+mod tests;
