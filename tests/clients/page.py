@@ -7,8 +7,8 @@ Where one of them cannot be had, the check says SKIPPED and why, and exits with 
 
 Every chart and map must draw, answer the pointer and zoom; every legend must hide its series; every film must play,
 by the button and by the keyboard. Exits with 1 if one does not, if the page asks the network for anything, complains
-on the console, or is wider than the screen. With a folder, pictures of the page as wide, narrow, printed and without
-scripts are left there.
+on the console, or is wider than the screen. With a folder, pictures of the page as wide, narrow, both in the dark, printed
+and without scripts are left there.
 """
 
 import os
@@ -16,16 +16,18 @@ import shutil
 import sys
 from pathlib import Path
 
-WIDTHS = {"wide": 1200, "narrow": 500}
+WIDTHS = {"wide": 1400, "narrow": 420}
 # Coloured dots of a canvas: an empty picture has none, and measured marks may cover each other all but one.
 FEWEST_DOTS = 50
-# Marks and fillings have colours; axes, grid and texts are grey.
+# The whole page is a picture of some 50 000 lines (milliseconds).
+SCREENSHOT = 120_000
+# Marks and fillings have colours; axes, grid and texts are grey, and grounds behind the marks are pale.
 COLOURED = """canvas => {
     const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
     let dots = 0;
     for (let i = 0; i < data.length; i += 4) {
         const [r, g, b, a] = data.slice(i, i + 4);
-        if (a > 128 && Math.max(r, g, b) - Math.min(r, g, b) > 24) dots++;
+        if (a > 128 && Math.max(r, g, b) - Math.min(r, g, b) > 40) dots++;
     }
     return dots;
 }"""
@@ -159,12 +161,13 @@ def check_pictures(page):
         kind = picture.get_attribute("data-kind")
         words = []
         try:
-            dots = dots_of(picture)
-            demand(dots >= FEWEST_DOTS, f"drew {dots} coloured dots")
             if kind == "film":
                 words.append(check_film(page, picture))
             else:
                 words.append(check_plane(page, picture))
+            # A film of grains that do not spin yet begins in grey.
+            dots = dots_of(picture)
+            demand(dots >= FEWEST_DOTS, f"drew {dots} coloured dots")
             if kind == "chart":
                 check_legend(page, picture)
         except Wrong as complaint:
@@ -184,7 +187,7 @@ def widest(page):
 
 def keep(page, folder, name):
     if folder:
-        page.screenshot(path=folder / f"{name}.png", full_page=True)
+        page.screenshot(path=folder / f"{name}.png", full_page=True, timeout=SCREENSHOT)
 
 
 def check(browser, path, folder):
@@ -203,6 +206,9 @@ def check(browser, path, folder):
             complaints.append(f"{name}: {beyond} pixels wider than the screen")
         print(f"{name} ({width} pixels):")
         failures += check_pictures(page)
+        dark = open_page(browser, address, width, complaints, color_scheme="dark")
+        dark.wait_for_timeout(300)
+        keep(dark, folder, f"{name}-dark")
     page = open_page(browser, address, WIDTHS["wide"], complaints)
     if folder:
         page.pdf(path=folder / "printed.pdf", format="A4", prefer_css_page_size=True)

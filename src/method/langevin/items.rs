@@ -31,7 +31,7 @@ fn lost(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 fn cost(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let effort = match effort {
         Effort::Quick => sectors::Effort { fewest: 100, seconds: 0.1, rounds: 1 },
-        Effort::Full => sectors::Effort { fewest: 3, seconds: 0.4, rounds: 3 },
+        Effort::Full => sectors::Effort { fewest: 3, seconds: 0.12, rounds: 3 },
     };
     let data = sectors::sectors(&effort, progress)?;
     Made::new(sections::sectors::section(&data), &data)
@@ -43,7 +43,7 @@ fn displaced(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 }
 
 fn errors(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let time = if effort == Effort::Full { 1000.0 } else { 100.0 };
+    let time = if effort == Effort::Full { 300.0 } else { 100.0 };
     let data = accuracy::accuracy(time, progress)?;
     Made::new(sections::accuracy::section(&data), &data)
 }

@@ -163,7 +163,7 @@ fn validation(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
             made(sections::model_validation::section(&data), &data)
         }
         Effort::Full => {
-            let (effort, best) = (calibration::Effort::default(), InstructionSet::best());
+            let (effort, best) = (calibration::Effort { seconds: 30.0 }, InstructionSet::best());
             let host = calibration::calibrate(origin::host(), best, effort, |share| progress(0.5 * share))?;
             let runs = runs(vec![150, 4000], vec![0.072, 0.24], bound(6, VALIDATION));
             let data = model_validation(&host, Calibrated::Now, &runs, |share| progress(0.5 + 0.5 * share))?;
@@ -173,9 +173,9 @@ fn validation(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 }
 
 /// Seconds that rounds of the validation and of the atlas may take in full, so that all that is said of this host's model takes
-/// four minutes: scenes are laid out before, and the model is fitted after.
-const VALIDATION: u64 = 60;
-const ATLAS: u64 = 85;
+/// a minute and a half: scenes are laid out before, and the model is fitted after.
+const VALIDATION: u64 = 15;
+const ATLAS: u64 = 25;
 
 fn bound(most: usize, seconds: u64) -> Bound {
     Bound { most, within: Some(Duration::from_secs(seconds)) }
@@ -206,7 +206,7 @@ fn measured_effort(effort: Effort) -> measured_cost::Effort {
             particles: vec![100, 300, 1000, 3000, 10_000],
             occupancies: vec![0.01, 0.03, 0.1, 0.2, 0.25],
             equilibration: 100,
-            element_steps: 1_000_000,
+            element_steps: 400_000,
             repeats: 5,
         },
     }
@@ -225,7 +225,7 @@ fn crossover_effort(effort: Effort) -> crossover::Effort {
             precisions: vec!["f64", "mixed", "f32"],
             particles: vec![10_000, 100_000],
             packing_fractions: vec![0.84, 0.8, 0.6, 0.3, 0.1, 0.03],
-            steps: 120,
+            steps: 40,
             repeats: 3,
         },
     }
@@ -242,8 +242,8 @@ fn threads_effort(effort: Effort) -> threads::Effort {
         Effort::Full => threads::Effort {
             particles: vec![10_000, 100_000, 1_000_000],
             packing_fractions: vec![0.84, 0.3],
-            rounds: 7,
-            particle_steps: 10_000_000,
+            rounds: 5,
+            particle_steps: 4_000_000,
         },
     }
 }

@@ -33,7 +33,7 @@ fn orbits(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let effort = match effort {
         Effort::Quick => rates::Effort { bodies: vec![1024], seconds: 0.05, rounds: 1 },
-        Effort::Full => rates::Effort { bodies: vec![1024, 4096, 16_384], seconds: 0.3, rounds: 3 },
+        Effort::Full => rates::Effort { bodies: vec![1024, 4096, 16_384], seconds: 0.1, rounds: 3 },
     };
     let data = rates::rates(&effort, progress)?;
     Made::new(sections::rates::section(&data), &data)

@@ -3,7 +3,9 @@
 use super::Running;
 use crate::console::Failure;
 use crate::method::{Progress, Until};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Bins of the profile, each of this part of the height kT/(m g).
 const BIN: f64 = 0.25;
@@ -64,18 +66,18 @@ pub struct LookUp {
 /// # Errors
 /// [`Failure`] if a scene breaks.
 pub fn atmosphere(looks: usize, progress: Progress<'_>) -> Result<Atmosphere, Failure> {
-    let fillings = [0.02, 0.2, 1.0];
-    let parts = fillings.len() + 1;
-    let mut profiles = vec![];
-    for layers in fillings {
-        profiles.push(profile(layers, 1.0, looks)?);
-        progress(profiles.len() as f64 / parts as f64);
-    }
     let restitution = 0.95;
-    let granular = profile(1.0, restitution, looks)?;
-    let look_ups =
-        ["hot-floor", "vibrating-floor"].map(look_up).into_iter().collect::<Result<_, Failure>>()?;
-    progress(1.0);
+    let gases = [(0.02, 1.0), (0.2, 1.0), (1.0, 1.0), (1.0, restitution)];
+    let done = AtomicUsize::new(0);
+    let followed = gases.into_par_iter().map(|(layers, restitution)| {
+        let profile = profile(layers, restitution, looks)?;
+        progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / gases.len() as f64);
+        Ok(profile)
+    });
+    let mut profiles = followed.collect::<Result<Vec<Profile>, Failure>>()?;
+    let granular = profiles.split_off(gases.len() - 1).remove(0);
+    let scenes = ["hot-floor", "vibrating-floor"];
+    let look_ups = scenes.into_par_iter().map(look_up).collect::<Result<_, Failure>>()?;
     Ok(Atmosphere { profiles, looks, granular, restitution, look_ups })
 }
 

@@ -76,7 +76,8 @@ pub fn of_a_row(discs: f64) -> f64 {
 /// # Errors
 /// [`Failure`] if a scene breaks otherwise than by collapse.
 pub fn collapses(progress: Progress<'_>) -> Result<Collapses, Failure> {
-    let (parts, done) = ((ROWS.len() + DISCS.len()) as f64, AtomicUsize::new(0));
+    let parts = (ROWS.len() + DISCS.len() * RESTITUTIONS.len()) as f64;
+    let done = AtomicUsize::new(0);
     let tick = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / parts);
     let rows = ROWS.par_iter().map(|&discs| {
         let row = row(discs)?;
@@ -84,11 +85,8 @@ pub fn collapses(progress: Progress<'_>) -> Result<Collapses, Failure> {
         Ok(row)
     });
     let rows: Vec<Row> = rows.collect::<Result<_, Failure>>()?;
-    let gases = DISCS.into_par_iter().rev().map(|discs| {
-        let gases = gases(discs)?;
-        tick();
-        Ok(gases)
-    });
+    // The largest take longest: first.
+    let gases = DISCS.into_par_iter().rev().map(|discs| gases(discs, &tick));
     let mut gases: Vec<Gases> = gases.collect::<Result<_, Failure>>()?;
     gases.reverse();
     Ok(Collapses { rows, restitutions: RESTITUTIONS.to_vec(), gases, seeds: SEEDS, collisions: COLLISIONS })
@@ -152,7 +150,7 @@ fn flying_together(discs: u32, start: u32) -> [String; 2] {
     ]
 }
 
-fn gases(discs: u64) -> Result<Gases, Failure> {
+fn gases(discs: u64, tick: impl Fn() + Sync) -> Result<Gases, Failure> {
     let scene = |restitution: f64, seed: u64| {
         vec![
             format!("particles.count={discs}"),
@@ -161,15 +159,16 @@ fn gases(discs: u64) -> Result<Gases, Failure> {
             format!("law.restitution={restitution}"),
         ]
     };
-    let mut collapsed = vec![];
-    for restitution in RESTITUTIONS {
+    let share = |restitution: f64| {
         let mut count = 0;
         for seed in 1..=SEEDS {
             let end = |discs: usize| Until::Events((0.5 * COLLISIONS * discs as f64) as u64);
             count += u64::from(collapses_before("cooling-gas", &scene(restitution, seed), end)?);
         }
-        collapsed.push(count as f64 / SEEDS as f64);
-    }
+        tick();
+        Ok(count as f64 / SEEDS as f64)
+    };
+    let collapsed = RESTITUTIONS.into_par_iter().map(share).collect::<Result<Vec<f64>, Failure>>()?;
     let discs = Running::begin("cooling-gas", &scene(1.0, 1))?.0.particles().grain_count();
     // N d/L with N = ν L²/(π d²/4).
     let across = (discs as f64 * PACKING / FRAC_PI_4).sqrt();

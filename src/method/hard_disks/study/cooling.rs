@@ -3,7 +3,9 @@
 use super::Running;
 use crate::console::Failure;
 use crate::method::{FailureKind, Progress};
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Restitutions of the gases that are followed.
 const RESTITUTIONS: [f64; 3] = [0.99, 0.95, 0.90];
@@ -66,17 +68,13 @@ pub fn haff(time: f64, haff_time: f64) -> f64 {
 /// [`Failure`] if a scene breaks otherwise than by collapse.
 pub fn cooling(discs: u64, each: f64, progress: Progress<'_>) -> Result<Cooling, Failure> {
     let parts = (RESTITUTIONS.len() + COLLAPSING.len()) as f64;
-    let mut gases = vec![];
-    for restitution in RESTITUTIONS {
-        gases.push(gas(discs, restitution, each)?);
-        progress(gases.len() as f64 / parts);
-    }
+    let done = AtomicUsize::new(0);
+    let tick = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / parts);
+    let gases = RESTITUTIONS.par_iter().map(|&restitution| gas(discs, restitution, each).inspect(|_| tick()));
+    let gases = gases.collect::<Result<Vec<_>, Failure>>()?;
     let contact_duration = 1e-4;
-    let mut fates = vec![];
-    for restitution in COLLAPSING {
-        fates.push(fate(discs, restitution, contact_duration)?);
-        progress((gases.len() + fates.len()) as f64 / parts);
-    }
+    let fates = COLLAPSING.par_iter().map(|&it| fate(discs, it, contact_duration).inspect(|_| tick()));
+    let fates = fates.collect::<Result<Vec<_>, Failure>>()?;
     let discs = Running::begin("cooling-gas", &[format!("particles.count={discs}")])?;
     Ok(Cooling { discs: discs.0.particles().grain_count(), gases, fates, contact_duration })
 }

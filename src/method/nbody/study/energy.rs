@@ -18,6 +18,8 @@ pub const STEPS: [u64; 4] = [64, 256, 1024, 4096];
 const ECCENTRICITIES: [f64; 5] = [0.0, 0.3, 0.5, 0.7, 0.9];
 /// An orbit is lost where the energy is off by more than this part of itself, or positive.
 const LOST: f64 = 0.5;
+/// Looks at an orbit, at most.
+const LOOKS: u64 = 256;
 /// Most steps of an orbit that are tried.
 const MOST: u64 = 16_384;
 
@@ -139,8 +141,10 @@ fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, Failure> {
     let turning = running.observed(names)[2];
     let (mut largest, mut drift, before) = (0.0f64, [0.0f64; 2], running.0.work());
     let mut done = Ok(());
-    for _ in 0..ORBITS * steps {
-        done = running.steps(1);
+    // Energy and momenta are looked at so often that the passage of the centre has a dozen looks.
+    let between = steps.div_ceil(LOOKS);
+    for _ in 0..ORBITS * steps / between {
+        done = running.steps(between);
         if done.is_err() {
             break;
         }

@@ -158,21 +158,22 @@ impl View<'_> {
     /// Filled discs; which of them is in front makes no difference. Those of one colour and size are the round ends of the
     /// shortest lines of that width, a sixth of what circles take; outlines are larger discs behind all of them.
     fn dots<'b>(&self, scene: &mut Scene, discs: impl Iterator<Item = &'b Shape>) {
-        // Colour, diameter in tenths of a pixel, path; outlines first.
-        let mut paths: BTreeMap<(bool, [u8; 3], i64), String> = BTreeMap::new();
+        // By front, colour and diameter: the path, and where it has come to. In tenths of a pixel; outlines first.
+        let mut paths: BTreeMap<(bool, [u8; 3], i64), (String, [i64; 2])> = BTreeMap::new();
+        let tenths = |pixels: f64| (10.0 * pixels).round() as i64;
         for shape in discs {
             let Shape::Disc { centre, radius, tint } = shape else { continue };
             let (Some(fill), radius) = (self.colour(*tint), radius.abs() * self.scale) else { continue };
-            let [x, y] = self.place(*centre);
+            let [x, y] = self.place(*centre).map(tenths);
             // An outline would hide a disc of a few pixels.
             let rim = if radius > 4.0 * RIMS[0] * self.zoom { self.rim(radius) } else { 0.0 };
             let mut dot = |front: bool, Colour(red, green, blue): Colour, diameter: f64| {
-                let tenths = (10.0 * diameter).round() as i64;
+                let alike = (front, [red, green, blue], tenths(diameter));
+                let (path, at) = paths.entry(alike).or_default();
+                let start = if path.is_empty() { 'M' } else { 'm' };
                 // Some viewers show nothing of a line without a length.
-                let _ = write!(
-                    paths.entry((front, [red, green, blue], tenths)).or_default(),
-                    "M{x:.1} {y:.1}h.1"
-                );
+                let _ = write!(path, "{start}{} {}h1", x - at[0], y - at[1]);
+                *at = [x + 1, y];
             };
             if rim > 0.0 {
                 dot(false, style::INK, 2.0 * radius + rim);
@@ -180,9 +181,10 @@ impl View<'_> {
             dot(true, fill, 2.0 * radius - rim);
         }
         let round = Some("stroke-linecap=\"round\"".to_owned());
-        scene.add(Primitive::GroupStart { transform: None, title: None, extra_attrs: round });
-        for ((_, [red, green, blue], tenths), d) in paths {
-            let (stroke, stroke_width) = (Color::Rgb(red, green, blue), tenths as f64 / 10.0);
+        let tenths = Some("scale(.1)".to_owned());
+        scene.add(Primitive::GroupStart { transform: tenths, title: None, extra_attrs: round });
+        for ((_, [red, green, blue], diameter), (d, _)) in paths {
+            let (stroke, stroke_width) = (Color::Rgb(red, green, blue), diameter as f64);
             let path =
                 PathData { d, fill: None, stroke, stroke_width, opacity: None, stroke_dasharray: None };
             scene.add(Primitive::Path(Box::new(path)));
