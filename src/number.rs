@@ -14,6 +14,21 @@ pub fn significant(value: f64, digits: usize) -> String {
     trimmed(&format!("{value:.decimals$}")).to_owned()
 }
 
+/// A number with so many significant digits, for sentences: `8.2·10⁻⁸` where it is small or large.
+pub fn in_tens(value: f64, digits: usize) -> String {
+    let text = significant(value, digits);
+    let Some((mantissa, exponent)) = text.split_once('e') else { return text };
+    let raised = |digit: char| match digit.to_digit(10) {
+        Some(digit) => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize],
+        None => '⁻',
+    };
+    let power: String = exponent.chars().map(raised).collect();
+    match mantissa {
+        "1" => format!("10{power}"),
+        mantissa => format!("{mantissa}·10{power}"),
+    }
+}
+
 /// Without zeros behind the last digit of a fraction.
 fn trimmed(number: &str) -> &str {
     if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number }
@@ -22,6 +37,12 @@ fn trimmed(number: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sentences_have_powers_of_ten() {
+        let texts = [8.2e-8, 1e-12, 0.25, 3e9].map(|value| in_tens(value, 2));
+        assert_eq!(texts, ["8.2·10⁻⁸", "10⁻¹²", "0.25", "3·10⁹"]);
+    }
 
     #[test]
     fn exponents_stand_only_where_they_are_shorter() {

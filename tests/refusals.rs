@@ -198,7 +198,7 @@ fn single_precision_from_the_origin_is_refused_where_it_loses_motion() {
     let absolute = ["machine.precision=f32", "machine.coordinates=absolute"];
     let scene = discs([1000.0, 4.0], "[[700.0, 2.0]]", "[[0.01, 0.0]]", 0.005);
     let said = refused(&scene, &absolute);
-    assert!(said.contains("cell-relative") && said.contains("6.0e-5"), "{said}");
+    assert!(said.contains("cell-relative") && said.contains("up to 6e-5"), "{said}");
     let near = discs([5.0, 4.0], "[[1.0, 2.0]]", "[[1.0, 0.0]]", 0.005);
     assert!(checked(&near, &[&absolute]).warnings.iter().all(|warning| warning.key != "machine.precision"));
     // Cells help no longer where discs hardly move.
@@ -366,7 +366,7 @@ fn discs_that_are_too_fast_at_the_start_are_refused() {
     // Five diameters a step.
     let scene = discs([100.0, 9.0], "[[10.0, 4.0], [30.0, 4.0]]", "[[500.0, 0.0], [0.0, 0.0]]", 0.01);
     let said = refused(&scene, &["law.stiffness=1e12"]);
-    assert!(said.contains("disc 1 moves at 5.0000e2") && said.contains("on_long_step"), "{said}");
+    assert!(said.contains("disc 1 moves at 500,") && said.contains("on_long_step"), "{said}");
     let counted = ["law.stiffness=1e9", "integrator.on_long_step=count", "integrator.dt=0.002"];
     assert!(refused(&scene, &counted).contains("steps"), "a collision of less than a step");
 }

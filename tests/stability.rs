@@ -115,7 +115,7 @@ fn maps_that_cannot_be_are_refused_with_what_may_be() {
     refused(&["--over", "damping"], 2, &["has no damping", "--range"]);
     refused(&["--range", "5", "1"], 2, &["--range 5 1", "rises"]);
     refused(&["--range", "0", "1"], 2, &["--range 0 1"]);
-    refused(&["--over", "size-ratio", "--range", "0.5", "2"], 2, &["size-ratio", "from 1e0"]);
+    refused(&["--over", "size-ratio", "--range", "0.5", "2"], 2, &["size-ratio", "from 1 at"]);
     refused(&["--tolerance", "0"], 2, &["tolerance"]);
     let other = folder.path().join("other");
     assert!(map(scene.to_str().unwrap(), &other, &[]).status.success());

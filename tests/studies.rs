@@ -159,7 +159,7 @@ fn scenes_without_an_answer_are_refused_with_what_was_tried() {
     };
     refused(&["--set", "run.time=0.01"], 4, &["over after 5 steps", "run.thermo_every"]);
     let soft = ["--set", "law.stiffness=1e-6", "--set", "run.time=5"];
-    refused(&soft, 4, &["tried were", "overlap", "step 2e-3", "step 2.5e-4"]);
+    refused(&soft, 4, &["tried were", "overlap", "step 0.002", "step 2.5e-4"]);
     refused(&["--set", "law.friction=-1"], 3, &["law.friction"]);
     refused(&["--budget", "0"], 2, &["1..=86400"]);
     refused(&["--repeats", "101"], 2, &["1..=100"]);

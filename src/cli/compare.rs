@@ -3,6 +3,7 @@
 use crate::console::{Common, Failure, print, print_json};
 use crate::domain::Domain;
 use crate::method::{Methods, Prepared, Purpose, Simulation, Until, load};
+use crate::number::significant;
 use crate::particles::Particles;
 use crate::report::table::{Cell, Table};
 use crate::report::terminal;
@@ -140,8 +141,10 @@ fn text(scene: &str, comparison: &Comparison) -> String {
         Some(at) => {
             let (before, seen) = (&looks[at - 1], &looks[at]);
             format!(
-                "{scene}: the same bits up to time {:.6}, then different: at most {:.1e} at time {:.6}",
-                before.time, seen.position, seen.time
+                "{scene}: the same bits up to time {:.6}, then different: at most {} at time {:.6}",
+                before.time,
+                significant(seen.position, 2),
+                seen.time
             )
         }
     };
@@ -151,8 +154,8 @@ fn text(scene: &str, comparison: &Comparison) -> String {
             Cell::Count(if has_events { look.events } else { look.steps }),
             Cell::Number(look.time, 6),
             Cell::Text(if look.same_bits { "yes".into() } else { "no".into() }),
-            Cell::Text(format!("{:.1e}", look.position)),
-            Cell::Text(format!("{:.1e}", look.velocity)),
+            Cell::Text(significant(look.position, 2)),
+            Cell::Text(significant(look.velocity, 2)),
             Cell::Text(look.particle.map_or(String::new(), |id| id.to_string())),
             Cell::Count(look.unmatched as u64),
         ]

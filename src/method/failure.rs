@@ -2,6 +2,7 @@
 //! that they are of.
 
 use super::clock::Clock;
+use crate::number::significant;
 use crate::reported::{Class, Reported};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::{Map, Value, json};
@@ -76,7 +77,12 @@ pub struct Culprit {
 impl fmt::Display for Culprit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Culprit { id, position: [x, y], velocity: [vx, vy] } = self;
-        write!(f, "disc {id} at ({x:.9}, {y:.9}) with velocity ({vx:.4e}, {vy:.4e})")
+        write!(
+            f,
+            "disc {id} at ({x:.9}, {y:.9}) with velocity ({vx}, {vy})",
+            vx = significant(*vx, 5),
+            vy = significant(*vy, 5)
+        )
     }
 }
 
@@ -212,7 +218,7 @@ mod tests {
         let failure = at(Clock { steps: 61, time: 0.5, events: 0 });
         assert_eq!(
             failure.to_string(),
-            "step 61: first disc 7 at (1.000000000, NaN) with velocity (5.0000e-1, 0.0000e0)\n  help: halve dt"
+            "step 61: first disc 7 at (1.000000000, NaN) with velocity (0.5, 0)\n  help: halve dt"
         );
         assert_eq!((failure.value("limit"), failure.value("depth")), (Some(0.25), None));
         let data = json!({

@@ -5,6 +5,7 @@
 mod folder;
 pub mod forecast;
 mod frames;
+mod growing;
 mod identity;
 mod recorder;
 mod summary;

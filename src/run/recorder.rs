@@ -1,19 +1,16 @@
 //! The folder of a run: what is written when.
 
-use super::folder::{DATA, DCD, DUMP, EVENTS, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY};
-use super::frames::Frames;
+use super::folder::{DATA, DCD, DUMP, EVENTS, RunFolder, SCENE, SUMMARY, TRAJECTORY};
+use super::growing::{Growing, Kept};
 use super::identity::{BITS, Identity, same_scene};
 use super::{Existing, RunError, Summary};
 use crate::domain::Domain;
 use crate::io::checkpoint::{Checkpoint, Counter, Latest, NAME, read_latest};
-use crate::io::dcd::{self, Positions};
-use crate::io::extxyz::{self, Frame};
-use crate::io::growing_file::{GrowingFile, Mark};
-use crate::io::table_file::TableFile;
+use crate::io::dcd::Positions;
+use crate::io::extxyz::Frame;
 use crate::io::{FileError, lammps};
 use crate::method::{Clock, Failure, FailureKind, Prepared, Quantity, Schedule, Simulation, Snapshot, Until};
 use crate::scene::Output;
-use std::collections::BTreeMap;
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -32,26 +29,13 @@ pub(super) struct Recorder {
     quantities: &'static [Quantity],
     /// When the next row, the next snapshot and the next checkpoint are due.
     due: [Option<Until>; 3],
-    thermo: TableFile,
-    trajectory: Frames<Frame>,
-    dump: Option<Frames<Frame>>,
-    dcd: Option<Frames<Positions>>,
-    events: Option<GrowingFile>,
+    growing: Growing,
     /// What was out of the ordinary, in the order of the run's sessions.
     notes: Vec<String>,
     /// Which of them are of this session.
     new_notes: usize,
     /// When the newest checkpoint was written, if it says all that there is to say.
     checkpointed: Option<Clock>,
-}
-
-/// The growing files of a run, verified but not yet cut.
-struct Growing {
-    thermo: TableFile,
-    trajectory: Frames<Frame>,
-    dump: Option<Frames<Frame>>,
-    dcd: Option<Frames<Positions>>,
-    events: Option<GrowingFile>,
 }
 
 impl Recorder {
@@ -99,15 +83,8 @@ impl Recorder {
         notes: Vec<String>,
     ) -> Result<Recorder, RunError> {
         folder.clear()?;
-        let output = prepared.output();
         folder.claim(&on_request(prepared))?;
-        let thermo = TableFile::create(folder.file(THERMO), &columns(quantities))?;
-        let trajectory = Frames::create(folder.file(TRAJECTORY), extxyz::write)?;
-        let dump = output.lammps_dump.then(|| Frames::create(folder.file(DUMP), lammps::write_dump));
-        let dcd = output.dcd.then(|| Frames::create(folder.file(DCD), dcd::write));
-        let (dump, dcd) = (dump.transpose()?, dcd.transpose()?);
-        let events = begin_events(&folder, prepared)?;
-        let growing = Growing { thermo, trajectory, dump, dcd, events };
+        let growing = Growing::begin(&folder, prepared, quantities)?;
         let mut recorder =
             Recorder::with(folder, (prepared, quantities), growing, &simulation.clock(), notes);
         recorder.new_notes = recorder.notes.len();
@@ -122,7 +99,7 @@ impl Recorder {
     fn with(
         folder: RunFolder,
         (prepared, quantities): (&dyn Prepared, &'static [Quantity]),
-        Growing { thermo, trajectory, dump, dcd, events }: Growing,
+        growing: Growing,
         clock: &Clock,
         notes: Vec<String>,
     ) -> Recorder {
@@ -137,11 +114,7 @@ impl Recorder {
             domain: prepared.domain(),
             quantities,
             due,
-            thermo,
-            trajectory,
-            dump,
-            dcd,
-            events,
+            growing,
             notes,
             new_notes: 0,
             checkpointed: None,
@@ -184,72 +157,16 @@ impl Recorder {
             };
             return Err(RunError::FewerSteps { folder: folder.path().to_owned(), done, asked });
         }
-        let count = |name: &str| match checkpoint.counters.get(name) {
-            Some(Counter::Count(count)) => Ok(*count),
-            _ => Err(foreign(format!("the counter {name} is missing"))),
-        };
-        let mark = |file: &str| -> Result<Mark, RunError> {
-            let checksum = count(&format!("{file} checksum"))?;
-            let checksum = u32::try_from(checksum)
-                .map_err(|_| foreign(format!("the checksum of {file} has more than 32 bits")))?;
-            Ok(Mark { bytes: count(&format!("{file} bytes"))?, checksum })
-        };
-        let last_frame = |file: &str| count(&format!("{file} last")).ok();
-        let mut growing = Growing {
-            thermo: TableFile::resume(folder.file(THERMO), &columns(quantities), mark(THERMO)?)?,
-            trajectory: Frames::resume(
-                folder.file(TRAJECTORY),
-                extxyz::write,
-                mark(TRAJECTORY)?,
-                last_frame(TRAJECTORY),
-            )?,
-            dump: match mark(DUMP) {
-                Ok(mark) => {
-                    Some(Frames::resume(folder.file(DUMP), lammps::write_dump, mark, last_frame(DUMP))?)
-                }
-                Err(_) => None,
-            },
-            dcd: match mark(DCD) {
-                Ok(mark) => Some(Frames::resume(folder.file(DCD), dcd::write, mark, last_frame(DCD))?),
-                Err(_) => None,
-            },
-            events: match mark(EVENTS) {
-                Ok(mark) => Some(GrowingFile::resume(folder.file(EVENTS), mark)?),
-                Err(_) => None,
-            },
-        };
+        let kept = Kept::new(&checkpoint.counters);
+        let mut growing = Growing::resume(&folder, quantities, &kept, foreign)?;
         let snapshot = Snapshot {
             counters: std::mem::take(&mut checkpoint.counters),
             columns: std::mem::take(&mut checkpoint.columns),
         };
         simulation.restore(clock, snapshot).map_err(foreign)?;
 
-        let output = prepared.output();
         folder.claim(&on_request(prepared))?;
-        growing.thermo.cut()?;
-        growing.trajectory.cut()?;
-        match &mut growing.dump {
-            Some(dump) => dump.cut()?,
-            // Begun after the checkpoint, if it is there at all.
-            None => folder.remove_own(DUMP)?,
-        }
-        match &mut growing.dcd {
-            Some(dcd) => dcd.cut()?,
-            None => folder.remove_own(DCD)?,
-        }
-        if growing.dump.is_none() && output.lammps_dump {
-            growing.dump = Some(Frames::create(folder.file(DUMP), lammps::write_dump)?);
-        }
-        if growing.dcd.is_none() && output.dcd {
-            growing.dcd = Some(Frames::create(folder.file(DCD), dcd::write)?);
-        }
-        match &mut growing.events {
-            Some(events) => events.cut()?,
-            None => {
-                folder.remove_own(EVENTS)?;
-                growing.events = begin_events(&folder, prepared)?;
-            }
-        }
+        growing.cut(&mut folder, prepared)?;
         // They speak of an end that is not reached yet.
         folder.remove_own(SUMMARY)?;
         folder.remove_own(DATA)?;
@@ -302,7 +219,7 @@ impl Recorder {
 
     /// Adds rows of events, where the scene asks for them.
     pub(super) fn log(&mut self, rows: &str) -> Result<(), RunError> {
-        if let Some(events) = self.events.as_mut() {
+        if let Some(events) = self.growing.events.as_mut() {
             let written = events.write_all(rows.as_bytes());
             written.map_err(FileError::at(events.path(), "writing events"))?;
         }
@@ -316,7 +233,7 @@ impl Recorder {
         if let Some((quantity, &value)) = named.into_iter().find(|(_, value)| !value.is_finite()) {
             return Ok(Some(overflow(clock, quantity.name, value)));
         }
-        self.thermo.append(clock.steps, &row)?;
+        self.growing.thermo.append(clock.steps, &row)?;
         Ok(None)
     }
 
@@ -336,7 +253,7 @@ impl Recorder {
     /// A frame in each of the files that are asked for and do not have it yet.
     fn snapshot(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
         let step = simulation.clock().steps;
-        if let Some(dcd) = self.dcd.as_mut().filter(|_| self.output.dcd) {
+        if let Some(dcd) = self.growing.dcd.as_mut().filter(|_| self.output.dcd) {
             let cell = self.domain.lengths();
             dcd.add(step, || Positions { step, cell, places: simulation.positions() })?;
         }
@@ -344,11 +261,11 @@ impl Recorder {
             return Ok(());
         }
         let frame = self.frame(simulation);
-        if let Some(dump) = self.dump.as_mut().filter(|_| self.output.lammps_dump) {
+        if let Some(dump) = self.growing.dump.as_mut().filter(|_| self.output.lammps_dump) {
             dump.add(step, || frame.clone())?;
         }
         if self.output.trajectory {
-            self.trajectory.add(step, || frame)?;
+            self.growing.trajectory.add(step, || frame)?;
         }
         Ok(())
     }
@@ -356,8 +273,8 @@ impl Recorder {
     /// The state of a failed step, whether snapshots are due or not, and what there is to say of it.
     pub(super) fn fail(&mut self, simulation: &dyn Simulation, summary: Summary) -> Result<(), RunError> {
         let frame = self.frame(simulation);
-        self.trajectory.add(frame.step, || frame)?;
-        self.sync()?;
+        self.growing.trajectory.add(frame.step, || frame)?;
+        self.growing.sync()?;
         self.summary(summary).map(drop)
     }
 
@@ -366,38 +283,13 @@ impl Recorder {
         self.folder.file(TRAJECTORY)
     }
 
-    /// Returns when everything is on the disk; gives what a checkpoint keeps of it.
-    fn sync(&mut self) -> Result<BTreeMap<String, Counter>, RunError> {
-        let mut counters = BTreeMap::new();
-        let mut keep = |file: &str, mark: Mark, last: Option<u64>| {
-            counters.insert(format!("{file} bytes"), Counter::Count(mark.bytes));
-            counters.insert(format!("{file} checksum"), Counter::Count(mark.checksum.into()));
-            last.map(|step| counters.insert(format!("{file} last"), Counter::Count(step)));
-        };
-        keep(THERMO, self.thermo.sync()?, None);
-        let (mark, last) = self.trajectory.sync()?;
-        keep(TRAJECTORY, mark, last);
-        if let Some(dump) = &mut self.dump {
-            let (mark, last) = dump.sync()?;
-            keep(DUMP, mark, last);
-        }
-        if let Some(dcd) = &mut self.dcd {
-            let (mark, last) = dcd.sync()?;
-            keep(DCD, mark, last);
-        }
-        if let Some(events) = &mut self.events {
-            keep(EVENTS, events.sync()?, None);
-        }
-        Ok(counters)
-    }
-
     /// The complete state, after everything before it is on the disk.
     pub(super) fn checkpoint(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
         let clock = simulation.clock();
         if self.checkpointed == Some(clock) {
             return Ok(());
         }
-        let mut counters = self.sync()?;
+        let mut counters = self.growing.sync()?;
         counters.insert("bits".to_owned(), Counter::Count(BITS));
         counters.insert(EVENT_COUNT.to_owned(), Counter::Count(clock.events));
         let snapshot = simulation.snapshot();
@@ -425,7 +317,7 @@ impl Recorder {
     ) -> Result<Summary, RunError> {
         self.checkpoint(simulation)?;
         self.snapshot(simulation)?;
-        self.sync()?;
+        self.growing.sync()?;
         if self.output.lammps_data {
             let frame = self.frame(simulation);
             self.folder.write(DATA, |out| lammps::write_data(&frame, out))?;
@@ -451,19 +343,6 @@ fn overflow(at: Clock, quantity: &'static str, value: f64) -> Failure {
     let remedy = "the units make masses, speeds or stiffness too large for double precision; choose units in which they are \
                   nearer to 1";
     Failure::new(FailureKind::Overflow, what, remedy).at(at).with([(quantity, value)])
-}
-
-/// The names of the columns of `thermo.csv` after the step.
-fn columns(quantities: &'static [Quantity]) -> Vec<&'static str> {
-    quantities.iter().map(|quantity| quantity.name).collect()
-}
-
-/// The file of events with its heading, where the scene asks for them.
-fn begin_events(folder: &RunFolder, prepared: &dyn Prepared) -> Result<Option<GrowingFile>, RunError> {
-    let Some(columns) = prepared.event_columns() else { return Ok(None) };
-    let mut file = GrowingFile::create(folder.file(EVENTS))?;
-    writeln!(file, "{columns}").map_err(FileError::at(file.path(), "writing"))?;
-    Ok(Some(file))
 }
 
 /// The files that a scene asks for beyond what every run writes.

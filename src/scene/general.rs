@@ -8,6 +8,7 @@ use super::keys::Fallback::{Is, Otherwise, Required};
 use super::keys::Kind::{Number, OneOf, Switch, Text, Whole};
 use super::keys::{Use, define_keys};
 use super::values::Values;
+use crate::number::significant;
 
 /// The version of the scene format that this program reads.
 pub const FORMAT_VERSION: u64 = 2;
@@ -97,9 +98,9 @@ impl Run {
 pub fn too_many_steps(values: &Values) -> Vec<SceneError> {
     let given = values.given(&TIME).and_then(|_| Some((values.number(&TIME)?, values.number(&DT)?)));
     let Some((time, dt)) = given.filter(|(time, dt)| time / dt > MOST_STEPS as f64) else { return vec![] };
-    let message = format!("`run.time` = {time} takes {:.3e} steps of dt = {dt}", time / dt);
+    let message = format!("`run.time` = {time} takes {} steps of dt = {dt}", significant(time / dt, 4));
     let error = values.spot(&TIME).error(Reason::Range, message);
-    vec![error.expecting(format!("at most {:.0e} steps", MOST_STEPS as f64))]
+    vec![error.expecting(format!("at most {} steps", significant(MOST_STEPS as f64, 1)))]
 }
 
 /// Which files are written.

@@ -132,7 +132,7 @@ pub fn overlaps(
         });
         let reach = discs[first].radius + discs[second].radius;
         let message = format!(
-            "{a} and {b} overlap at the start by {penetration:.4} of the sum of their radii, {:.4e}; {reason}",
+            "{a} and {b} overlap at the start by {penetration:.4} of the sum of their radii, {:.4}; {reason}",
             penetration * reach
         );
         let least = format!("centres at least {:.6e} apart", (1.0 - limit) * reach);

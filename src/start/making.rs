@@ -118,10 +118,9 @@ pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
         warnings.push(Warning {
             key: FILE.path(),
             message: format!(
-                "{count} wall discs have a velocity or spin in the start file, first wall disc {} with ({:.4e}, {:.4e}) and \
-                 {:.4e}; walls move as particles.wall_motion says, so these are not used",
-                first.id, first.velocity[0], first.velocity[1], first.omega
-            ),
+                "{count} wall discs have a velocity or spin in the start file, first wall disc {} with ({}, {}) and \
+                 {}; walls move as particles.wall_motion says, so these are not used",
+                first.id, significant(first.velocity[0], 5), significant(first.velocity[1], 5), significant(first.omega, 5)),
             suggestion: "set particles.wall_motion, or make them grains (species Si)".to_owned(),
         });
     }
@@ -146,7 +145,10 @@ fn resolved(stated: &Stated<'_>, domain: &Domain, radii: Option<[f64; 2]>) -> Re
             let far_away = domain.origin[axis].abs() > domain.length(axis);
             let key: &Key = if far_away { &ORIGIN } else { &SIDES };
             let message = format!(
-                "positions as far as {farthest:e} are known to {step:.1e} only, too coarse for discs of radius {smallest:e}"
+                "positions as far as {farthest} are known to {step} only, too coarse for discs of radius {smallest}",
+                farthest = significant(farthest, 6),
+                step = significant(step, 2),
+                smallest = significant(smallest, 6)
             );
             let error = stated.spot(key).error(Reason::Geometry, message);
             return Err(error.advising("bring the box nearer to the origin, or choose units that suit it"));
@@ -261,7 +263,11 @@ pub(super) fn grain_count(
     let fraction = count * share;
     let refuse = |message: String| stated.spot(key).error(Reason::Placement, message);
     if count > MOST {
-        return Err(refuse(format!("{count:.4e} discs are more than the {MOST:.3e} that can be numbered")));
+        return Err(refuse(format!(
+            "{count} discs are more than the {MOST} that can be numbered",
+            count = significant(count, 5),
+            MOST = significant(MOST, 4)
+        )));
     }
     if count < 1.0 {
         return Err(refuse(format!("no disc: one alone fills {share:.4} of the area open to grains")));
@@ -318,7 +324,11 @@ fn lined(
 ) -> Result<Vec<Particle>, SceneError> {
     let each = domain.length(0) / lining.spacing;
     if each * rows.len() as f64 > MOST {
-        let message = format!("a row takes {each:.4e} wall discs; more than {MOST:.3e} cannot be numbered");
+        let message = format!(
+            "a row takes {each} wall discs; more than {MOST} cannot be numbered",
+            each = significant(each, 5),
+            MOST = significant(MOST, 4)
+        );
         return Err(stated.spot(&WALL_SPACING).error(Reason::Placement, message));
     }
     placeable(stated, each * rows.len() as f64 + count as f64, &WALL_SPACING)?;

@@ -3,6 +3,7 @@
 use super::Stated;
 use super::making::{MOST, disc, placeable};
 use crate::domain::Domain;
+use crate::number::significant;
 use crate::particles::{Kind, Particle, Particles};
 use crate::placement::{mesh, stir};
 use crate::scene::{Amount, COUNT, Grains, PACKING_FRACTION, Reason, SPACING, SceneError};
@@ -27,7 +28,9 @@ pub(super) fn on_mesh(
     let refuse = |message: String| stated.spot(key).error(Reason::Placement, message);
     if !(1.0..=MOST).contains(&count) {
         return Err(refuse(format!(
-            "{count:.4e} discs are none, or more than the {MOST:.3e} that can be numbered"
+            "{count} discs are none, or more than the {MOST} that can be numbered",
+            count = significant(count, 5),
+            MOST = significant(MOST, 4)
         )));
     }
     if count > counts[0] * counts[1] {
@@ -41,8 +44,10 @@ pub(super) fn on_mesh(
     }
     if counts[0] * counts[1] > MOST {
         let message = format!(
-            "a mesh of {} × {} places is more than the {MOST:.3e} that can be numbered",
-            counts[0], counts[1]
+            "a mesh of {} × {} places is more than the {MOST} that can be numbered",
+            counts[0],
+            counts[1],
+            MOST = significant(MOST, 4)
         );
         let error = stated.spot(&SPACING).error(Reason::Placement, message);
         return Err(error.advising("set a larger particles.spacing"));

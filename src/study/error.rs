@@ -1,6 +1,7 @@
 //! Why a study has no result.
 
 use crate::method::Failure;
+use crate::number::significant;
 use crate::reported::{Class, Reported};
 use crate::results::JournalError;
 use crate::scene::SceneErrors;
@@ -57,8 +58,8 @@ pub enum StudyError {
     NothingOfTheKind(&'static str),
     /// A range that cannot be.
     #[error(
-        "--range {} {} is none for {name}: it rises, from {:e} at the least to {:e} at the most",
-        range[0], range[1], bounds[0], bounds[1]
+        "--range {} {} is none for {name}: it rises, from {} at the least to {} at the most",
+        range[0], range[1], significant(bounds[0], 3), significant(bounds[1], 3)
     )]
     OutOfRange {
         /// What is to be varied.

@@ -6,6 +6,7 @@ use super::state::{State, displaced};
 use super::subject::Subject;
 use super::trial::advance;
 use crate::method::{Decides, Failure, Prepared, Purpose, Simulation};
+use crate::number::significant;
 use crate::statistics::slope;
 use serde::{Deserialize, Serialize};
 
@@ -81,7 +82,9 @@ pub fn growth(
         }
         match found {
             Ok(growth) => return Ok(growth),
-            Err(why) => tried.push((format!("{} with step {step:e}", choice.label()), why)),
+            Err(why) => {
+                tried.push((format!("{} with step {step}", choice.label(), step = significant(step, 6)), why))
+            }
         }
     }
     Err(tried)

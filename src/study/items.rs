@@ -13,14 +13,14 @@ pub const ITEMS: &[Item] = &[
     Item {
         name: diagram_section::NAME,
         doc: "Speed against accuracy of four scenes: which integrator, step and precision for which wish",
-        seconds: [8.0, 80.0],
+        seconds: [8.0, 28.0],
         is_quick: true,
         make: speed_against_accuracy,
     },
     Item {
         name: map_section::NAME,
         doc: "Where the method works: maps over the step and a second parameter, beside theory",
-        seconds: [8.0, 100.0],
+        seconds: [8.0, 50.0],
         is_quick: true,
         make: where_it_works,
     },
@@ -42,7 +42,7 @@ fn beside_others(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
 fn speed_against_accuracy(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let (budget, repeats, phases) = match effort {
         Effort::Quick => (1.5, 1, 4),
-        Effort::Full => (8.0, 3, 16),
+        Effort::Full => (5.0, 3, 16),
     };
     let effort = work_precision::Effort { budget, repeats, phases, machine: None };
     let shown: Vec<_> =
@@ -61,7 +61,7 @@ fn speed_against_accuracy(effort: Effort, progress: Progress<'_>) -> Result<Made
 fn where_it_works(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let effort = match effort {
         Effort::Quick => stability::Effort { budget: 1.5, size: 6, seeds: 1, tolerance: 0.2 },
-        Effort::Full => stability::Effort { budget: 6.0, size: 20, seeds: 3, tolerance: 0.05 },
+        Effort::Full => stability::Effort { budget: 6.0, size: 16, seeds: 2, tolerance: 0.05 },
     };
     let mapped: Vec<_> =
         METHODS.iter().filter_map(|method| method.trials).flat_map(|trials| trials.mapped).collect();

@@ -19,13 +19,13 @@ macro_rules! items {
 pub(super) const ITEMS: &[Item] = items! {
     "hard-disks-fluid", [30.0, 30.0], false, pressure, "Hard discs: pressure and collision rate of the fluid";
     "hard-disks-structure", [20.0, 20.0], false, melting, "Hard discs: order, free times and speeds on both sides of melting";
-    "hard-disks-rates", [4.0, 25.0], true, speed, "Hard discs: collisions a second, the fast engine and the source's";
+    "hard-disks-rates", [4.0, 18.0], true, speed, "Hard discs: collisions a second, the fast engine and the source's";
     "hard-disks-masks", [3.0, 20.0], true, comparison, "Hard discs: cost over mask and density, and the source's formula";
     "hard-disks-cooling", [6.0, 6.0], false, haff, "Hard discs: Haff's law, and inelastic collapse";
-    "hard-disks-collapse", [20.0, 20.0], false, collapses, "Hard discs: inelastic collapse over restitution and number of discs";
-    "hard-disks-precision", [25.0, 25.0], false, error, "Hard discs: error of Z against processor time";
-    "hard-disks-atmosphere", [25.0, 25.0], false, open_system, "Hard discs above a hot floor, without a ceiling";
-    "soft-hard", [2.0, 20.0], true, limit, "Soft discs of growing stiffness against hard ones";
+    "hard-disks-collapse", [24.0, 24.0], false, collapses, "Hard discs: inelastic collapse over restitution and number of discs";
+    "hard-disks-precision", [15.0, 15.0], false, error, "Hard discs: error of Z against processor time";
+    "hard-disks-atmosphere", [14.0, 14.0], false, open_system, "Hard discs above a hot floor, without a ceiling";
+    "soft-hard", [2.0, 12.0], true, limit, "Soft discs of growing stiffness against hard ones";
 };
 
 fn pressure(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
@@ -55,7 +55,7 @@ fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 fn comparison(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let (densities, turns): (&[f64], _) = match effort {
         Effort::Quick => (&[0.10, 0.50], (1, 10_000)),
-        Effort::Full => (&[0.02, 0.10, 0.30, 0.50, 0.70], (3, 15_000)),
+        Effort::Full => (&[0.02, 0.10, 0.30, 0.50, 0.70], (3, 10_000)),
     };
     let data = masks::masks(2500, densities, turns, progress)?;
     Made::new(sections::masks::section(&data), &data)
@@ -72,13 +72,13 @@ fn collapses(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 }
 
 fn error(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let effort = precision::Effort { discs: vec![100, 1000, 10_000], collisions: 500_000 };
+    let effort = precision::Effort { discs: vec![100, 1000, 10_000], collisions: 250_000 };
     let data = precision::precision(&effort, progress)?;
     Made::new(sections::precision::section(&data), &data)
 }
 
 fn open_system(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let data = atmosphere::atmosphere(1000, progress)?;
+    let data = atmosphere::atmosphere(600, progress)?;
     Made::new(sections::atmosphere::section(&data), &data)
 }
 

@@ -134,8 +134,9 @@ impl Running {
         let culprits: Vec<Culprit> = discs.into_iter().flatten().map(|disc| self.culprit(disc)).collect();
         let named: Vec<String> = culprits.iter().map(ToString::to_string).collect();
         let message = format!(
-            "inelastic collapse: {events} collisions within a time of {duration:.3e}, the last of {}",
-            named.join(" and ")
+            "inelastic collapse: {events} collisions within a time of {duration}, the last of {}",
+            named.join(" and "),
+            duration = significant(duration, 4)
         );
         let remedy = "set law.contact_duration to a small part of the mean free time: collisions that come sooner are then elastic; \
                       or raise law.restitution";

@@ -16,10 +16,10 @@ macro_rules! items {
 /// Every item, in the order of the page: name, seconds that it takes about (quick and in full), whether it is made
 /// where only little time is given (what is the same everywhere is made in full or not at all), and what makes it.
 pub(super) const ITEMS: &[Item] = items! {
-    "langevin-losses", [30.0, 30.0], false, lost, "Langevin: particles lost over the step";
+    "langevin-losses", [21.0, 21.0], false, lost, "Langevin: particles lost over the step";
     "langevin-sectors", [3.0, 30.0], true, cost, "Langevin: wall time over the number of sectors, and where it goes";
-    "langevin-diffusion", [30.0, 30.0], false, displaced, "Langevin: mean square displacement, velocities, temperature";
-    "langevin-accuracy", [8.0, 60.0], false, errors, "Langevin: the error of the step in a Lennard-Jones fluid";
+    "langevin-diffusion", [13.0, 13.0], false, displaced, "Langevin: mean square displacement, velocities, temperature";
+    "langevin-accuracy", [8.0, 20.0], false, errors, "Langevin: the error of the step in a Lennard-Jones fluid";
     "langevin-programs", [1.0, 1.0], true, counted, "Langevin: the law as whole-array operations, counted and charged by clocks";
 };
 
@@ -31,7 +31,7 @@ fn lost(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 fn cost(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let effort = match effort {
         Effort::Quick => sectors::Effort { fewest: 100, seconds: 0.1, rounds: 1 },
-        Effort::Full => sectors::Effort { fewest: 3, seconds: 0.12, rounds: 3 },
+        Effort::Full => sectors::Effort { fewest: 3, seconds: 0.06, rounds: 3 },
     };
     let data = sectors::sectors(&effort, progress)?;
     Made::new(sections::sectors::section(&data), &data)
@@ -43,7 +43,7 @@ fn displaced(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 }
 
 fn errors(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let time = if effort == Effort::Full { 300.0 } else { 100.0 };
+    let time = if effort == Effort::Full { 200.0 } else { 100.0 };
     let data = accuracy::accuracy(time, progress)?;
     Made::new(sections::accuracy::section(&data), &data)
 }

@@ -14,6 +14,7 @@ use crate::memory::{Foreseen, PROGRAM, available};
 use crate::method::{
     Every, Fact, Failure, Prepared, Purpose, Schedule, Simulation, StepLimit, Until, VectorProgram, compress,
 };
+use crate::number::significant;
 use crate::particles::{Particle, Particles};
 use crate::scene::{
     DT, GENERATE, Output, Precision, RADIUS, Read, Reason, SIDES, SceneError, SceneErrors, Spot, Values,
@@ -135,10 +136,10 @@ fn too_long(scene: &Scene, diameter: f64, mass: f64) -> Option<Warning> {
     (scene.law != PairLaw::None && scene.dt > step).then(|| Warning {
         key: DT.path(),
         message: format!(
-            "dt = {} is beyond √(2 m r_c/F) = {step:.4e}, in which a particle crosses the cut-off: particles will be lost",
+            "dt = {} is beyond √(2 m r_c/F) = {step}, in which a particle crosses the cut-off: particles will be lost",
             scene.dt
-        ),
-        suggestion: format!("take a step of at most {:.1e}", 0.1 * step),
+        , step = significant(step, 5)),
+        suggestion: format!("take a step of at most {}", significant(0.1 * step, 2)),
     })
 }
 
@@ -182,7 +183,7 @@ fn found(
             let (lists, skin) = lists(scene);
             lists.map_err(|cause| {
                 let spot = if values.gives(&SKIN) { values.spot(&SKIN) } else { box_spot() };
-                let error = spot.error(Reason::Geometry, format!("{cause}, with a skin of {skin:.4e}"));
+                let error = spot.error(Reason::Geometry, format!("{cause}, with a skin of {skin}", skin = significant(skin, 5)));
                 error.advising("make the box larger, lower search.skin, or set search.by = \"sectors\"")
             })?
         }

@@ -94,7 +94,8 @@ impl Running {
         let limits = self.checked.limits();
         let shortest = limits.iter().map(|limit| limit.step).fold(f64::INFINITY, f64::min);
         let remedy = format!(
-            "the time step is too long for the pairs: take integrator.dt below {shortest:.2e}, or allow losses by run.most_lost"
+            "the time step is too long for the pairs: take integrator.dt below {shortest}, or allow losses by run.most_lost",
+            shortest = significant(shortest, 3)
         );
         let failure = Failure { message, remedy, kind: FailureKind::Lost, ..failure };
         failure.with([("lost", lost as f64), ("most_lost", most as f64)])

@@ -3,6 +3,7 @@
 use super::Totals;
 use super::balance::Balance;
 use crate::method::RunWarning;
+use crate::number::significant;
 
 /// The balance of energy may be off by this part of what passed through.
 const BALANCED: f64 = 0.01;
@@ -48,11 +49,9 @@ pub(super) fn energy(balance: &Balance, passed: f64) -> Option<RunWarning> {
     (!is_balanced).then(|| {
         let [has, is_wrong] = if off < 0.0 { ["lost", "too little"] } else { ["made", "too much"] };
         let message = format!(
-            "the integration has {has} {:.2} % of the energy that passed through, {:.3e} {is_wrong}: lower dt, or choose another \
+            "the integration has {has} {:.2} % of the energy that passed through, {} {is_wrong}: lower dt, or choose another \
              integrator",
-            100.0 * off.abs(),
-            balance.balance_error.abs()
-        );
+            100.0 * off.abs(), significant(balance.balance_error.abs(), 4));
         RunWarning { check: "energy-balance", value: off, limit: BALANCED, message }
     })
 }

@@ -39,17 +39,17 @@ pub(super) const ITEMS: &[Item] = items! {
     "misprints", [0.5, 0.5], true, misprints, "What the misprints of the contact law do";
     "cost", [1.0, 1.0], true, cost, "BP93, figures 3 and 4: cost over particles and density, by the model";
     "useful-work", [1.0, 1.0], true, useful_work, "Operations that act on real contacts, over the density";
-    "measured", [8.0, 60.0], true, measured, "The same, measured on this host";
-    "validation", [4.0, 150.0], true, validation, "The timing model of this host against wall time";
-    "atlas", [5.0, 110.0], true, atlas, "Who wins where: occupancy, number of particles, method and machine";
-    "crossover", [4.0, 150.0], true, crossover, "Lattice, neighbour lists and sectors: which is the fastest at which density, on this host";
-    "threads", [3.0, 60.0], true, threads, "What more threads give, and what the machine has to give";
+    "measured", [8.0, 17.0], true, measured, "The same, measured on this host";
+    "validation", [4.0, 32.0], true, validation, "The timing model of this host against wall time";
+    "atlas", [5.0, 31.0], true, atlas, "Who wins where: occupancy, number of particles, method and machine";
+    "crossover", [4.0, 30.0], true, crossover, "Lattice, neighbour lists and sectors: which is the fastest at which density, on this host";
+    "threads", [3.0, 18.0], true, threads, "What more threads give, and what the machine has to give";
     "identity", [3.0, 3.0], true, identity, "Lattice and neighbour lists: the same to the bit";
-    "precision", [60.0, 60.0], false, precision, "What single and mixed precision cost: forces, energy, trajectories";
+    "precision", [26.0, 26.0], false, precision, "What single and mixed precision cost: forces, energy, trajectories";
     "pipe-small", [3.0, 3.0], true, pipe_small, "BP93, figures 5 and 6, in two fifths of the pipe";
-    "pipe", [120.0, 120.0], false, pipe, "BP93, figures 5 and 6, in the whole pipe";
-    "pipe-thin", [30.0, 30.0], false, pipe_thin, "The whole pipe with fewer grains: waves both ways";
-    "waves", [60.0, 60.0], false, waves, "Density waves over dissipation, and controls without";
+    "pipe", [15.0, 15.0], false, pipe, "BP93, figures 5 and 6, in the whole pipe";
+    "pipe-thin", [13.0, 13.0], false, pipe_thin, "The whole pipe with fewer grains: waves both ways";
+    "waves", [14.0, 14.0], false, waves, "Density waves over dissipation, and controls without";
 };
 
 fn table(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
@@ -128,7 +128,7 @@ fn pipe(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let title = "Density waves in the whole pipe (figures 5 and 6)";
     let question = "Do grains that fall through the source's whole pipe form density waves?";
     let showing = Showing { name: "pipe", title, question, from: 10.0, snapshots: 14 };
-    pipes(showing, ("pipe", &[]), &[1, 2, 3, 4], progress)
+    pipes(showing, ("pipe", &[]), &[1, 2], progress)
 }
 
 fn pipe_thin(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
@@ -163,7 +163,7 @@ fn validation(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
             made(sections::model_validation::section(&data), &data)
         }
         Effort::Full => {
-            let (effort, best) = (calibration::Effort { seconds: 30.0 }, InstructionSet::best());
+            let (effort, best) = (calibration::Effort { seconds: 25.0 }, InstructionSet::best());
             let host = calibration::calibrate(origin::host(), best, effort, |share| progress(0.5 * share))?;
             let runs = runs(vec![150, 4000], vec![0.072, 0.24], bound(6, VALIDATION));
             let data = model_validation(&host, Calibrated::Now, &runs, |share| progress(0.5 + 0.5 * share))?;
@@ -175,7 +175,7 @@ fn validation(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 /// Seconds that rounds of the validation and of the atlas may take in full, so that all that is said of this host's model takes
 /// a minute and a half: scenes are laid out before, and the model is fitted after.
 const VALIDATION: u64 = 15;
-const ATLAS: u64 = 25;
+const ATLAS: u64 = 12;
 
 fn bound(most: usize, seconds: u64) -> Bound {
     Bound { most, within: Some(Duration::from_secs(seconds)) }
@@ -226,7 +226,7 @@ fn crossover_effort(effort: Effort) -> crossover::Effort {
             particles: vec![10_000, 100_000],
             packing_fractions: vec![0.84, 0.8, 0.6, 0.3, 0.1, 0.03],
             steps: 40,
-            repeats: 3,
+            repeats: 2,
         },
     }
 }
@@ -240,7 +240,7 @@ fn threads_effort(effort: Effort) -> threads::Effort {
             particle_steps: 1_000_000,
         },
         Effort::Full => threads::Effort {
-            particles: vec![10_000, 100_000, 1_000_000],
+            particles: vec![10_000, 100_000, 300_000],
             packing_fractions: vec![0.84, 0.3],
             rounds: 5,
             particle_steps: 4_000_000,

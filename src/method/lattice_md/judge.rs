@@ -3,6 +3,7 @@
 use super::{OnLongStep, Totals, Watch};
 use crate::method::pairwise::Named;
 use crate::method::{Clock, Culprit, Failure, FailureKind};
+use crate::number::significant;
 
 /// Counts discs that are so fast that contacts may pass unseen in a step, and stops if there must be none.
 pub(super) fn judge_steps(
@@ -67,7 +68,10 @@ fn long_step(at: Clock, count: u64, first: Culprit, limit: f64, dt: f64) -> Fail
         "{count} discs moved farther than {limit:.6} in the step, first {first}; contacts deeper than law.max_penetration \
          could pass unseen between two steps"
     );
-    let remedy = format!("lower dt to {dt:.4e}, slow the discs, or set integrator.on_long_step = \"count\"");
+    let remedy = format!(
+        "lower dt to {dt}, slow the discs, or set integrator.on_long_step = \"count\"",
+        dt = significant(dt, 5)
+    );
     let failure = Failure::new(FailureKind::LongStep, what, remedy).at(at).of(count, [first]);
     failure.with([("limit", limit), ("dt", dt)])
 }

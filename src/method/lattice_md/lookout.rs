@@ -6,6 +6,7 @@ use super::theory::contact::HertzContact;
 use super::theory::limits;
 use crate::io::checkpoint::Counter;
 use crate::method::RunWarning;
+use crate::number::significant;
 use crate::particles::{Particle, Particles};
 use std::collections::BTreeMap;
 
@@ -86,10 +87,11 @@ impl Lookout {
         let mut warnings = vec![];
         if steps < LEAST_STEPS {
             let message = format!(
-                "discs typically met at up to {most:.3e}, where a contact lasts {:.3e}, {steps:.1} steps: below {LEAST_STEPS} \
-                 collisions change the energy by percents; a dt of {:.3e} gives as many",
-                contact.duration(),
-                contact.duration() / LEAST_STEPS
+                "discs typically met at up to {most}, where a contact lasts {}, {steps:.1} steps: below {LEAST_STEPS} \
+                 collisions change the energy by percents; a dt of {} gives as many",
+                significant(contact.duration(), 4),
+                significant(contact.duration() / LEAST_STEPS, 4),
+                most = significant(most, 4)
             );
             warnings.push(RunWarning {
                 check: "steps-per-contact",
@@ -103,8 +105,10 @@ impl Lookout {
             && rounding > MUCH_LOST * step
         {
             let message = format!(
-                "positions in single precision are rounded by up to {rounding:.1e}, where discs typically moved as little as \
-                 {step:.1e} in a step: \"mixed\" or \"f64\" loses no motion"
+                "positions in single precision are rounded by up to {rounding}, where discs typically moved as little as \
+                 {step} in a step: \"mixed\" or \"f64\" loses no motion",
+                rounding = significant(rounding, 2),
+                step = significant(step, 2)
             );
             warnings.push(RunWarning {
                 check: "rounding",

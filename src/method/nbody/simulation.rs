@@ -88,8 +88,9 @@ impl Running {
             let energy = self.conserved()?.energy();
             if energy >= 0.0 {
                 let message = format!(
-                    "bodies that were bound are not any more: the energy was {:.4e} and is {energy:.4e}",
-                    self.energy
+                    "bodies that were bound are not any more: the energy was {} and is {energy}",
+                    significant(self.energy, 5),
+                    energy = significant(energy, 5)
                 );
                 let remedy =
                     "the integrator loses the orbit: take a smaller dt, another integrator, or a softening";

@@ -14,6 +14,18 @@ pub struct Drawing {
     pub shapes: Vec<Shape>,
     /// What the shades mean: lowest and highest value and the quantity with its unit; none where shade means nothing.
     pub shades: Option<(f64, f64, String)>,
+    /// What stands below it of places: a bar of a round length, and gravity; none where the coordinates mean nothing.
+    #[serde(default)]
+    pub guide: Option<Guide>,
+}
+
+/// How long things are, and which way they fall.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Guide {
+    /// The unit of the drawing's coordinates.
+    pub unit: String,
+    /// Which way gravity pulls, in the drawing's coordinates; none without it.
+    pub gravity: Option<[f64; 2]>,
 }
 
 /// Something drawn.

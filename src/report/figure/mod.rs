@@ -19,7 +19,7 @@ mod svg;
 pub use chart::{Along, Axis, Band, Chart, Point, Scale, Series, Style};
 pub use data::{data, data_file};
 pub use draw::ends;
-pub use drawing::{Drawing, Shape, Tint};
+pub use drawing::{Drawing, Guide, Shape, Tint};
 pub use error::{Fault, FigureError};
 pub use map::Map;
 pub use picture::{Figure, Picture};

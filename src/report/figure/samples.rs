@@ -1,6 +1,6 @@
 //! A figure of each kind, for the tests of everything that draws.
 
-use super::{Axis, Band, Chart, Drawing, Figure, Map, Picture, Point, Series, Shape, Style, Tint};
+use super::{Axis, Band, Chart, Drawing, Figure, Guide, Map, Picture, Point, Series, Shape, Style, Tint};
 
 /// All of them.
 pub fn all() -> Vec<Figure> {
@@ -108,7 +108,8 @@ pub fn mask() -> Figure {
             shapes.push(Shape::Text { centre: [x, y], height: 0.26, words });
         }
     }
-    let picture = Drawing { window: [[-2.5, -2.5], [2.5, 2.5]], width: 420.0, shapes, shades: None };
+    let picture =
+        Drawing { window: [[-2.5, -2.5], [2.5, 2.5]], width: 420.0, shapes, shades: None, guide: None };
     figure("mask", "The 24 neighbours of a cell, in the order of their turn", Picture::Drawing(picture))
 }
 
@@ -139,6 +140,7 @@ fn pipe_of(name: &str, columns: u32, width: f64, title: &str) -> Figure {
         }
     }
     let window = [[0.0, -0.5], [length, 10.5]];
+    let guide = Some(Guide { unit: "diameters".into(), gravity: Some([1.0, -0.5]) });
     let shades = Some((-40.0, 40.0, "Spin (1/s)".into()));
-    figure(name, title, Picture::Drawing(Drawing { window, width, shapes, shades }))
+    figure(name, title, Picture::Drawing(Drawing { window, width, shapes, shades, guide }))
 }

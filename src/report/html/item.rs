@@ -63,17 +63,16 @@ fn figure(section: &Section, figure: &Figure, drawn: &dyn Fn(&Section, &Figure) 
     // What stands before the element itself belongs to a file of its own.
     let svg = PreEscaped(svg.find("<svg").map_or("", |start| &svg[start..]));
     let file = format!("{}/{}.svg", section.folder(), figure.name);
-    // Charts and maps are drawn by a script from their data: the page carries no picture twice.
-    let instead = html! { p { "Without scripts and on paper this picture is the file " a href=(file) { code { (file) } } "." } };
-    let instead = instead.into_string();
-    let instead = PreEscaped(instead.as_str());
+    // Charts and maps are drawn by a script from their data: the page carries no picture twice. The file is read where no script
+    // runs, and on paper.
+    let instead = html! { img.on-paper loading="lazy" src=(file) alt=(figure.title); };
     let label = format!("{}. {}", figure.title, figure.caption);
     html! {
         figure id={ (section.name) "-" (figure.name) } {
             @match &figure.picture {
                 Picture::Drawing(_) => div.drawing role="img" aria-label=(label) { (svg) },
-                Picture::Chart(chart) => (live("chart", &label, &data::chart(chart), instead)),
-                Picture::Map(map) => (live("map", &label, &data::map(map), instead)),
+                Picture::Chart(chart) => (live("chart", &label, &data::chart(chart), &instead)),
+                Picture::Map(map) => (live("map", &label, &data::map(map), &instead)),
             }
             figcaption {
                 (heading(&figure.title)) " " (prose(&figure.caption))
@@ -95,20 +94,20 @@ fn heading(title: &str) -> Markup {
 }
 
 /// A picture that a script draws from its data, and what stands for it where no script runs.
-fn live(kind: &str, label: &str, data: &serde_json::Value, instead: PreEscaped<&str>) -> Markup {
+fn live(kind: &str, label: &str, data: &serde_json::Value, instead: &Markup) -> Markup {
     html! {
         div.picture data-kind=(kind) data-label=(label) {
             (data::embedded("", data))
-            noscript { (instead) }
+            (instead)
         }
     }
 }
 
 fn moving(section: &Section, shown: &Film) -> Markup {
-    let instead = html! { p { "The film needs JavaScript. Its frames are in the folder " (folder(&section.folder())) "." } };
+    let instead = html! { noscript { p { "The film needs JavaScript. Its frames are in the folder " (folder(&section.folder())) "." } } };
     html! {
         figure id={ (section.name) "-film" } {
-            (live("film", &shown.title, &film::data(shown), PreEscaped(&instead.into_string())))
+            (live("film", &shown.title, &film::data(shown), &instead))
             figcaption { (heading(&shown.title)) }
         }
     }

@@ -33,7 +33,7 @@ const SCRIPTS: [&str; 8] = [
 
 /// The content policy for the browser: nothing that is not in the file itself.
 const POLICY: &str =
-    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src 'self' file: data:";
 
 /// What stands near the beginning of every such page and of no other.
 pub const MARK: &str = "<title>Stripmine: what came out</title>";

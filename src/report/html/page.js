@@ -79,13 +79,6 @@ function colourBar(parent, { label, unit, log, ends }) {
   element("span", "", bar).textContent = readable(ends[1], 3);
 }
 
-/** The drawing that stands in the page for readers without scripts. */
-function drawnInstead(holder) {
-  const made = element("div", "", holder);
-  made.innerHTML = holder.querySelector("noscript").textContent;
-  return made;
-}
-
 /** Makes the pictures of a kind. Where that fails, the drawing for readers without scripts is shown. */
 function pictures(kind, make) {
   for (const holder of document.querySelectorAll(`.picture[data-kind="${kind}"]`)) {
@@ -94,17 +87,10 @@ function pictures(kind, make) {
     } catch (error) {
       console.error(holder.dataset.label, error);
       holder.querySelectorAll(":scope > div").forEach((part) => part.remove());
-      drawnInstead(holder);
+      holder.querySelector(".on-paper")?.classList.add("instead");
     }
   }
 }
-
-// On paper, charts and maps are these drawings: sharp at any size.
-window.addEventListener("beforeprint", () => {
-  for (const holder of document.querySelectorAll(".picture:not([data-kind=film]):not(:has(> .on-paper))")) {
-    drawnInstead(holder).className = "on-paper";
-  }
-});
 
 for (const button of document.querySelectorAll("[data-copy]")) {
   button.addEventListener("click", async () => {

@@ -13,7 +13,8 @@ function layOut(film, width) {
   // A tall window lies down, its lower end to the right.
   const tall = film.long && high > wide;
   const [length, thick] = tall ? [high, wide] : [wide, high];
-  const free = film.long ? width - GUTTER : width;
+  // A page that is being laid out may have no width yet.
+  const free = Math.max(film.long ? width - GUTTER : width, 1);
   let strips = 1;
   if (film.long) {
     strips = Math.min(Math.max(Math.ceil((LOWEST_STRIP * length) / (free * thick)), 4), MOST_STRIPS);

@@ -21,6 +21,7 @@ use super::choice::Choice;
 use super::meter::Meter;
 use super::{StudyError, Subject};
 use crate::method::{Decides, Parameter, Progress, probed};
+use crate::number::significant;
 use crate::results::{Journal, JournalError};
 use crate::statistics::median;
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
@@ -227,7 +228,12 @@ fn tried(values: &[f64], steps: &[f64], map: &[Vec<Cell>], parameter: &Parameter
     let every = values.len().div_ceil(TRIED).max(1);
     let first = |(value, cells): (&f64, &Vec<Cell>)| {
         let Cell { class, what, .. } = cells.first()?;
-        let tried = format!("{} = {value:e}, step {:e}", parameter.name, steps[0]);
+        let tried = format!(
+            "{} = {value}, step {}",
+            parameter.name,
+            significant(steps[0], 6),
+            value = significant(*value, 6)
+        );
         Some((tried, format!("{}: {what}", class.name())))
     };
     values.iter().zip(map).step_by(every).filter_map(first).collect()

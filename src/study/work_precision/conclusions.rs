@@ -2,6 +2,7 @@
 
 use super::dataset::{Run, WorkPrecision};
 use super::measures::Measure;
+use crate::number::in_tens;
 use crate::study::observables::CHANCE;
 
 /// Wishes: errors of positions (the method's length).
@@ -52,7 +53,7 @@ pub fn short(value: f64) -> String {
             format!("{value:.decimals$}")
         }
         0.0 => "0".to_owned(),
-        _ => format!("{value:.1e}"),
+        _ => in_tens(value, 2),
     }
 }
 
@@ -121,8 +122,8 @@ fn cheap(data: &WorkPrecision) -> Option<String> {
     let it = fulfilled(data).into_iter().next()?;
     let share = it.of_own.filter(|share| *share < 0.9)?;
     Some(format!(
-        "For an error of at most {:.0e} {} {} at {} is the cheapest, for {:.0} % of the scene's own cost.",
-        it.wish,
+        "For an error of at most {} {} {} at {} is the cheapest, for {:.0} % of the scene's own cost.",
+        in_tens(it.wish, 1),
         data.unit,
         data.ways[it.run.way].label,
         multiple(it.run.power),

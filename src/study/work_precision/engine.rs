@@ -6,6 +6,7 @@ use super::measures::{Errors, Measure, errors};
 use super::plan::{BELOW, COARSEST, Plan};
 use super::{Effort, MEANS_SHARE};
 use crate::method::{Decides, Prepared, Purpose, Simulation, probed};
+use crate::number::significant;
 use crate::results::{Journal, JournalError};
 use crate::scene::SceneErrors;
 use crate::study::choice::Choice;
@@ -151,7 +152,11 @@ impl Work<'_> {
             let key = format!("reference|{}|{power}", choice.label());
             self.journal.recall(&key, || {
                 self.ended(choice, power, each).map_err(|why| {
-                    let what = format!("the reference by {}, step {:e}", choice.label(), self.step(power));
+                    let what = format!(
+                        "the reference by {}, step {}",
+                        choice.label(),
+                        significant(self.step(power), 6)
+                    );
                     StudyError::EveryRunFails { tried: vec![(what, why)] }
                 })
             })

@@ -23,6 +23,7 @@ use super::observables::SEEDS;
 use super::{StudyError, Subject};
 use crate::method::Progress;
 use crate::model::machine::MachineModel;
+use crate::number::significant;
 use crate::results::{Journal, JournalError};
 use crate::statistics::median;
 use engine::{Work, probes, way};
@@ -91,7 +92,10 @@ pub fn work_precision(
     let mut runs = work.runs(&reference, &state)?;
     if runs.iter().all(|run| run.outcome.is_err()) {
         let tried = runs.iter().filter_map(|run| {
-            Some((format!("{}, step {:e}", choices[run.way].label(), run.step), run.outcome.clone().err()?))
+            Some((
+                format!("{}, step {}", choices[run.way].label(), significant(run.step, 6)),
+                run.outcome.clone().err()?,
+            ))
         });
         return Err(StudyError::EveryRunFails { tried: tried.take(TRIED).collect() });
     }

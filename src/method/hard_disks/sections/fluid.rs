@@ -1,6 +1,7 @@
 //! Pressure and collision rate of the fluid.
 
 use crate::method::hard_disks::study::fluid::{Fluids, Mean, henderson, luding};
+use crate::number::in_tens;
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use crate::report::{Cell, Part, Section, Table, Verdict};
 
@@ -25,9 +26,10 @@ pub fn section(data: &Fluids) -> Section {
             .into(),
         answer: format!("Z is within {:.2} % and ω within {:.2} % of theirs up to ν = 0.65.", worst(0), worst(1)),
         details: vec![format!(
-            "{} discs and {} collisions at each packing fraction; the energy is off by {energy:.1e} of itself.",
+            "{} discs and {} collisions at each packing fraction; the energy is off by {} of itself.",
             Cell::Number(data.discs as f64, 0).for_reading(),
-            Cell::Number(data.collisions as f64, 0).for_reading()
+            Cell::Number(data.collisions as f64, 0).for_reading(),
+            in_tens(energy, 2)
         )],
         verdict: Verdict::reproduced(agrees),
         again: "stripmine reproduce --only hard-disks-fluid".into(),

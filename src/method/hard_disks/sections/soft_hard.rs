@@ -1,6 +1,7 @@
 //! Soft against hard.
 
 use crate::method::hard_disks::study::soft_hard::{Mean, Model, SoftHard};
+use crate::number::in_tens;
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use crate::report::{Cell, Part, Section, Table, Verdict};
 
@@ -24,10 +25,10 @@ pub fn section(data: &SoftHard, again: String) -> Section {
                    Henderson)."
             .into(),
         answer: format!(
-            "From k_N = {:.0e} to {:.0e} the pressure comes from {first:.1} % to {last:.1} % of that of hard discs, and the stiffest discs cost \
+            "From a stiffness of {} to {} the pressure comes from {first:.1} % to {last:.1} % of that of hard discs, and the stiffest discs cost \
              {dearer:.0} times as much as hard ones.",
-            soft.first().and_then(|model| model.stiffness).unwrap_or(f64::NAN),
-            soft.last().and_then(|model| model.stiffness).unwrap_or(f64::NAN),
+            in_tens(soft.first().and_then(|model| model.stiffness).unwrap_or(f64::NAN), 2),
+            in_tens(soft.last().and_then(|model| model.stiffness).unwrap_or(f64::NAN), 2),
         ),
         details: vec![format!("{} discs at ν = {}.", data.discs, data.question.packing_fraction)],
         verdict: Verdict::reproduced(last.abs() < first.abs() && last.abs() < 2.0),

@@ -1,7 +1,9 @@
 //! Order, free times and speeds on both sides of melting.
 
 use crate::method::hard_disks::study::structure::{Structure, Structures};
-use crate::report::figure::{Axis, Chart, Drawing, Figure, Picture, Point, Series, Shape, Style, Tint};
+use crate::report::figure::{
+    Axis, Chart, Drawing, Figure, Guide, Picture, Point, Series, Shape, Style, Tint,
+};
 use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// Free times over their mean that are drawn; longer ones are too few.
@@ -130,6 +132,7 @@ fn picture(it: &Structure) -> Figure {
             width: 640.0,
             shapes: shapes.collect(),
             shades: Some((-1.0, 1.0, "ψ₆ along the mean of all".into())),
+            guide: Some(Guide { unit: "diameters".into(), gravity: None }),
         }),
     }
 }

@@ -20,7 +20,7 @@ const RESOLUTION: f64 = 2e-4;
 const RESTITUTIONS: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 const DISCS: [u64; 6] = [16, 64, 256, 1024, 4096, 16_384];
 /// Seeds of a place of the map.
-const SEEDS: u64 = 4;
+const SEEDS: u64 = 3;
 /// Collisions of a disc in the runs of the map.
 const COLLISIONS: f64 = 200.0;
 /// Packing fraction of the gases of the map.
@@ -86,7 +86,7 @@ pub fn collapses(progress: Progress<'_>) -> Result<Collapses, Failure> {
     });
     let rows: Vec<Row> = rows.collect::<Result<_, Failure>>()?;
     // The largest take longest: first.
-    let gases = DISCS.into_par_iter().rev().map(|discs| gases(discs, &tick));
+    let gases = DISCS.into_par_iter().rev().map(|discs| gases(discs, tick));
     let mut gases: Vec<Gases> = gases.collect::<Result<_, Failure>>()?;
     gases.reverse();
     Ok(Collapses { rows, restitutions: RESTITUTIONS.to_vec(), gases, seeds: SEEDS, collisions: COLLISIONS })

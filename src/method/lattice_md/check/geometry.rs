@@ -7,6 +7,7 @@ use crate::method::lattice_md::keys::{CELL_EDGE, MASK, SEARCH, SKIN};
 use crate::method::lattice_md::model::sides_of;
 use crate::method::lattice_md::scene::By;
 use crate::method::pairwise::search::OnConflict;
+use crate::number::significant;
 use crate::scene::{
     COUNT, FILE, Key, Precision, RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, Reason, SIDES, SceneError, Spot,
     Start, WALL_RADIUS,
@@ -246,10 +247,10 @@ fn lattice(
         .find(|&axis| domain.length(axis) / bounds.least >= 2f64.powi(32) || !domain.length(axis).is_finite())
     {
         let message = format!(
-            "the side along {}, {:e} long, takes more cells of {:e} than the 2^32 − 1 that an index numbers",
+            "the side along {}, {} long, takes more cells of {} than the 2^32 − 1 that an index numbers",
             ["x", "y"][axis],
-            domain.length(axis),
-            bounds.most()
+            significant(domain.length(axis), 6),
+            significant(bounds.most(), 6)
         );
         let error = box_spot(document).error(Reason::Geometry, message);
         return Err(vec![error.advising("make the box smaller, or the discs larger")]);

@@ -8,6 +8,7 @@ use crate::method::lattice_md::model::{GearValues, OnLongStep, Scheme};
 use crate::method::lattice_md::scene::{Inertia, Integrator, Scene};
 use crate::method::lattice_md::theory::contact::HertzContact;
 use crate::method::lattice_md::theory::step_matrix::largest_step;
+use crate::number::significant;
 use crate::particles::{Particle, Particles, longest_step};
 use crate::scene::{
     DT, GRAVITY, INSTRUCTION_SET, Key, PRECISION, Precision, Reason, SceneError, WallMotion, Warning,
@@ -119,9 +120,9 @@ pub(super) fn instability(document: &Document) -> Option<SceneError> {
         );
         let error = document.values.spot(&DT).error(Reason::Stability, message);
         error
-            .expecting(format!("dt below {:.4e} (time), {:.4e} where packings are dense", limit / gamma, {
+            .expecting(format!("dt below {} (time), {} where packings are dense", significant(limit / gamma, 5), significant({
                 limit / (NETWORK * gamma)
-            }))
+            }, 5)))
             .advising(match scheme {
                 Scheme::Gear(GearValues::Four) | Scheme::VelocityVerlet => "lower dt or law.normal_damping",
                 _ => "lower dt or law.normal_damping, or use fewer Gear values",
@@ -150,14 +151,16 @@ pub(super) fn long_steps(
     {
         let (what, speed) = (noun(disc.kind), speed(disc));
         let message = format!(
-            "{what} {} moves at {speed:.4e}, {:.4e} in a step; beyond {limit:.4e} contacts deeper than law.max_penetration = {} \
+            "{what} {} moves at {speed}, {} in a step; beyond {limit} contacts deeper than law.max_penetration = {} \
              could pass unseen between two steps",
             disc.id,
-            speed * dt,
-            scene.law.max_penetration
+            significant(speed * dt, 5),
+            scene.law.max_penetration,
+            speed = significant(speed, 5),
+            limit = significant(limit, 5)
         );
         let error = document.values.spot(&DT).error(Reason::Stability, message);
-        errors.push(error.expecting(format!("dt below {:.4e} (time)", limit / speed)).advising(
+        errors.push(error.expecting(format!("dt below {} (time)", significant(limit / speed, 5))).advising(
             "lower dt, slow the discs, or count such steps instead: integrator.on_long_step = \"count\"",
         ));
     }
@@ -165,15 +168,16 @@ pub(super) fn long_steps(
         && steps < FEWEST_STEPS
     {
         let message = format!(
-            "a contact at speed {:.4e} lasts {duration:.4e}, {steps:.2} steps: with fewer than {FEWEST_STEPS} a collision \
+            "a contact at speed {} lasts {duration}, {steps:.2} steps: with fewer than {FEWEST_STEPS} a collision \
              changes the energy by tens of percent, up or down",
-            estimates.approach_speed
+            significant(estimates.approach_speed, 5),
+            duration = significant(duration, 5)
         );
         let error = document.values.spot(&DT).error(Reason::Stability, message);
         errors.push(error.expecting(format!(
-            "dt below {:.4e} (time), and below {:.4e} for {LEAST_STEPS} steps a contact",
-            duration / FEWEST_STEPS,
-            duration / LEAST_STEPS
+            "dt below {} (time), and below {} for {LEAST_STEPS} steps a contact",
+            significant(duration / FEWEST_STEPS, 5),
+            significant(duration / LEAST_STEPS, 5)
         )));
     }
     if let Some((rounding, step)) = lost_motion(scene, domain, geometry, &estimates)
@@ -181,12 +185,14 @@ pub(super) fn long_steps(
     {
         let absolute = are_absolute(scene);
         let message = format!(
-            "positions in single precision, {}, are rounded by up to {rounding:.1e}, but a typical step is {step:.1e}: \
+            "positions in single precision, {}, are rounded by up to {rounding}, but a typical step is {step}: \
              discs would move by wrong distances or not at all",
-            if absolute { "measured from the origin" } else { "measured from the cells' centres" }
+            if absolute { "measured from the origin" } else { "measured from the cells' centres" },
+            rounding = significant(rounding, 2),
+            step = significant(step, 2)
         );
         let error = document.values.spot(&PRECISION).error(Reason::Geometry, message);
-        errors.push(error.expecting(format!("steps longer than {:.1e} (length)", rounding / MOST_LOST)).advising(
+        errors.push(error.expecting(format!("steps longer than {} (length)", significant(rounding / MOST_LOST, 2))).advising(
             match absolute {
                 true => "set machine.coordinates = \"cell-relative\", or machine.precision = \"mixed\" or \"f64\"",
                 false => "set machine.precision = \"mixed\" or \"f64\"",
@@ -256,7 +262,10 @@ pub(super) fn warnings(
                 estimates.network_damping,
                 scheme_in_words(scheme)
             ),
-            format!("dt below {:.4e}, or fewer Gear values", limit / (NETWORK * contact.normal_damping)),
+            format!(
+                "dt below {}, or fewer Gear values",
+                significant(limit / (NETWORK * contact.normal_damping), 5)
+            ),
         );
     }
     if scene.law.has_friction() {
@@ -270,7 +279,7 @@ pub(super) fn warnings(
                     "{words}·shear_damping·dt = {:.4} for a contact that rolls, stable below about {limit:.2}",
                     rate * dt
                 ),
-                format!("dt below {:.4e}, or a smaller shear_damping", limit / rate),
+                format!("dt below {}, or a smaller shear_damping", significant(limit / rate, 5)),
             );
         }
     } else if contact.friction > 0.0 {
@@ -286,10 +295,11 @@ pub(super) fn warnings(
         warn(
             &DT,
             format!(
-                "a contact at speed {:.4e} lasts {duration:.4e}, {steps:.1} steps",
-                estimates.approach_speed
+                "a contact at speed {} lasts {duration}, {steps:.1} steps",
+                significant(estimates.approach_speed, 5),
+                duration = significant(duration, 5)
             ),
-            format!("dt below {:.4e} for {LEAST_STEPS} steps a contact", duration / LEAST_STEPS),
+            format!("dt below {} for {LEAST_STEPS} steps a contact", significant(duration / LEAST_STEPS, 5)),
         );
     }
     depth_warnings(scene, estimates, &mut warn);
@@ -308,8 +318,9 @@ pub(super) fn warnings(
         && rounding > MUCH_LOST * step
     {
         let message = format!(
-            "positions in single precision are rounded by up to {rounding:.1e}, {:.1e} of a typical step",
-            rounding / step
+            "positions in single precision are rounded by up to {rounding}, {} of a typical step",
+            significant(rounding / step, 2),
+            rounding = significant(rounding, 2)
         );
         warn(&PRECISION, message, "use \"mixed\" or \"f64\"".to_owned());
     }
@@ -328,13 +339,14 @@ fn depth_warnings(scene: &Scene, estimates: &Estimates, warn: &mut impl FnMut(&K
         warn(
             &STIFFNESS,
             format!(
-                "approaches {FASTEST} times as fast as {:.4e} reach a penetration of {deepest:.3}, above \
+                "approaches {FASTEST} times as fast as {} reach a penetration of {deepest:.3}, above \
                  law.max_penetration = {most}",
-                estimates.approach_speed
+                significant(estimates.approach_speed, 5)
             ),
-            format!("a stiffness above {:.4e}, with a smaller dt, or slower discs", {
-                scene.law.contact.stiffness * (deepest / most).powf(2.5)
-            }),
+            format!(
+                "a stiffness above {}, with a smaller dt, or slower discs",
+                significant(scene.law.contact.stiffness * (deepest / most).powf(2.5), 5)
+            ),
         );
     }
     let rest = DEEPEST_REST * most / 0.1;
@@ -346,9 +358,10 @@ fn depth_warnings(scene: &Scene, estimates: &Estimates, warn: &mut impl FnMut(&K
                  press each other deeper than law.max_penetration = {most}",
                 estimates.resting_depth
             ),
-            format!("a stiffness above {:.4e}, or lighter grains", {
-                scene.law.contact.stiffness * (estimates.resting_depth / rest).powf(1.5)
-            }),
+            format!(
+                "a stiffness above {}, or lighter grains",
+                significant(scene.law.contact.stiffness * (estimates.resting_depth / rest).powf(1.5), 5)
+            ),
         );
     }
 }

@@ -62,6 +62,7 @@ fn drawing(name: &str, title: &str, mask: &Mask) -> Figure {
             width: 480.0,
             shapes,
             shades: None,
+            guide: None,
         }),
     }
 }

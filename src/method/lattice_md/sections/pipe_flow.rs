@@ -4,7 +4,9 @@ use crate::method::lattice_md::study::pipe_flow::{FANO_BIN, MAP_BIN, PipeFlow};
 use crate::observe::waves::Directions;
 use crate::particles::{Kind, Particle, Particles};
 use crate::report;
-use crate::report::figure::{Axis, Chart, Drawing, Figure, Map, Picture, Point, Series, Shape, Style, Tint};
+use crate::report::figure::{
+    Axis, Chart, Drawing, Figure, Guide, Map, Picture, Point, Series, Shape, Style, Tint,
+};
 use crate::report::section::{Film, Frame};
 use crate::report::{Cell, Section, Table, Verdict};
 
@@ -123,6 +125,7 @@ fn piece(flow: &PipeFlow) -> Figure {
             width: 1200.0,
             shapes,
             shades: Some((-SPIN, SPIN, "rim speed ΩR (m/s)".into())),
+            guide: guide(),
         }),
     }
 }
@@ -144,8 +147,7 @@ fn snapshots(showing: Showing, flow: &PipeFlow) -> Figure {
         let grains = flow.frames[at].grains().iter();
         shapes.extend(grains.map(|disc| shape(disc, [0.0, down], Tint::Hue(0))));
     }
-    let below = -(shown.len() as f64 + 0.1) * pitch;
-    shapes.extend(gravity_and_scale(flow.length, below, pitch));
+    let below = -(shown.len() as f64 - 0.4) * pitch;
     Figure {
         name: "figure_6".into(),
         title: "Snapshots of the pipe: crowds of grains drift and dissolve".into(),
@@ -153,34 +155,18 @@ fn snapshots(showing: Showing, flow: &PipeFlow) -> Figure {
                   the left. Every grain is a dot."
             .into(),
         picture: Picture::Drawing(Drawing {
-            window: [[-left, below - 0.6 * pitch], [1.01 * flow.length, 0.6 * pitch]],
+            window: [[-left, below], [1.01 * flow.length, 0.6 * pitch]],
             width: 1200.0,
             shapes,
             shades: None,
+            guide: guide(),
         }),
     }
 }
 
-/// An arrow along gravity, and a bar of a round length, below the pictures of a pipe.
-fn gravity_and_scale(length: f64, y: f64, pitch: f64) -> Vec<Shape> {
-    let line = |from: [f64; 2], to: [f64; 2]| Shape::Line { ends: [from, to] };
-    let text = |x: f64, words: String| Shape::Text { centre: [x, y], height: 0.45 * pitch, words };
-    let (begin, end, wing) = (0.09 * length, 0.19 * length, 0.2 * pitch);
-    // The largest power of ten that is no more than an eighth of the pipe.
-    let bar = (length / 8.0).log10().floor();
-    let bar = 10f64.powf(bar);
-    let right = 0.75 * length;
-    let words = if bar < 1.0 { format!("{:.0} cm", 100.0 * bar) } else { format!("{bar:.0} m") };
-    vec![
-        text(0.04 * length, "gravity".into()),
-        line([begin, y], [end, y]),
-        line([end, y], [end - 2.0 * wing, y + wing]),
-        line([end, y], [end - 2.0 * wing, y - wing]),
-        line([right, y], [right + bar, y]),
-        line([right, y - wing], [right, y + wing]),
-        line([right + bar, y - wing], [right + bar, y + wing]),
-        text(right - 0.05 * length, words),
-    ]
+/// Metres, and gravity along the pipe, which lies.
+fn guide() -> Option<Guide> {
+    Some(Guide { unit: "m".into(), gravity: Some([1.0, 0.0]) })
 }
 
 /// The looks that are drawn: evenly spread from the time asked on.

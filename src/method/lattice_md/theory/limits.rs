@@ -128,8 +128,10 @@ fn mask(checked: &Checked) -> Option<StepLimit> {
     let depth = checked.scene.law.max_penetration;
     let longest = longest_step(checked.geometry.radii[0], depth);
     let why = format!(
-        "a disc at {fastest:.3e} may move {longest:.3e} in a step; beyond, contacts deeper than law.max_penetration = {depth} could \
-         pass unseen"
+        "a disc at {fastest} may move {longest} in a step; beyond, contacts deeper than law.max_penetration = {depth} could \
+         pass unseen",
+        fastest = significant(fastest, 4),
+        longest = significant(longest, 4)
     );
     let step = longest / fastest;
     let share = checked.scene.integrator.dt / step;

@@ -1,7 +1,10 @@
 //! A cold sphere that falls in on itself.
 
 use crate::method::nbody::study::collapse::{BODIES, Bound, Collapse, LATE, Moment};
-use crate::report::figure::{Axis, Chart, Drawing, Figure, Picture, Point, Series, Shape, Style, Tint};
+use crate::number::in_tens;
+use crate::report::figure::{
+    Axis, Chart, Drawing, Figure, Guide, Picture, Point, Series, Shape, Style, Tint,
+};
 use crate::report::section::{Film, Frame};
 use crate::report::{Part, Section, Verdict};
 
@@ -39,7 +42,9 @@ pub fn section(data: &Collapse) -> Section {
             100.0 * share
         ),
         details: vec![format!(
-            "At the closest, half of the mass is within {radius:.3}. The energy is off by at most {error:.1e}, the momentum by {momentum:.0e}."
+            "At the closest, half of the mass is within {radius:.3}. The energy is off by at most {}, the momentum by {}.",
+            in_tens(error, 2),
+            in_tens(momentum, 1)
         )],
         verdict: Verdict::reproduced(fell),
         again: "stripmine reproduce --only nbody-collapse".into(),
@@ -79,6 +84,7 @@ fn picture(data: &Collapse, time: f64) -> Option<Figure> {
             width: 420.0,
             shapes: shapes.collect(),
             shades: Some((0.0, FASTEST, "speed (√(GM/R))".into())),
+            guide: Some(Guide { unit: "R".into(), gravity: None }),
         }),
     })
 }

@@ -2,6 +2,7 @@
 
 use crate::method::nbody::schemes::SchemeName;
 use crate::method::nbody::study::energy::{Energies, KNOWN, STEPS};
+use crate::number::in_tens;
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use crate::report::{Cell, Part, Section, Table, Verdict};
 use crate::words::Words;
@@ -24,7 +25,7 @@ pub fn section(data: &Energies) -> Section {
     // From the longest to the shortest step.
     let of = |scheme: SchemeName| {
         let own = data.errors.iter().filter(|it| it.scheme == scheme.word());
-        let said = own.map(|it| it.error.map_or("lost".to_owned(), |error| format!("{error:.1e}")));
+        let said = own.map(|it| it.error.map_or("lost".to_owned(), |error| in_tens(error, 2)));
         said.collect::<Vec<_>>().join(", ")
     };
     Section {
@@ -41,9 +42,10 @@ pub fn section(data: &Energies) -> Section {
         details: vec![
             format!(
                 "The source's scheme has errors of {} (from the longest step to the shortest); with the ½ that it lacks, {}. The largest \
-                 momentum on the way is {momentum:.0e}.",
+                 momentum on the way is {}.",
                 of(SchemeName::DampedEuler),
                 of(SchemeName::EulerWithHalf),
+                in_tens(momentum, 1),
             ),
             format!(
                 "Damping acts once a step, so what it does depends on the step: 0.9999 makes the orbit's energy {} times as large in ten \

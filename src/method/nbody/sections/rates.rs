@@ -1,6 +1,7 @@
 //! Interactions a second.
 
 use crate::method::nbody::study::rates::Rates;
+use crate::number::in_tens;
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use crate::report::{Cell, Part, Section, Table, Verdict};
 
@@ -12,7 +13,7 @@ pub fn section(data: &Rates) -> Section {
     };
     let said = |precision: &str| {
         best(precision).map_or(String::new(), |it| {
-            format!("{:.1}·10⁹ at a force error of {:.1e}", it.rates[0], it.error[0])
+            format!("{:.1}·10⁹ at a force error of {}", it.rates[0], in_tens(it.error[0], 2))
         })
     };
     let reached = |precision: &str, aim: f64, error: f64| {

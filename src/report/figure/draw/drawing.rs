@@ -4,6 +4,7 @@ use super::super::style::{self, Colour};
 use super::super::{Drawing, Shape, Tint, font};
 use super::axis::linear;
 use super::frame::{colour as paint, theme};
+use super::guide;
 use super::words::{self, Title};
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, Scene, TextAnchor};
@@ -47,9 +48,14 @@ pub fn scene(title: &str, drawing: &Drawing) -> Scene {
     });
     view.shapes(&mut scene);
     scene.add(Primitive::ClipEnd);
+    let mut bottom = view.corner[1];
+    if let Some(guide) = &drawing.guide {
+        bottom = guide::add_to(&mut scene, guide, scale, zoom, [margin, margin + width], bottom);
+        scene.height = bottom + 0.5 * margin;
+    }
     if let Some((lowest, highest, what)) = &drawing.shades {
-        let below =
-            colour_bar(&mut scene, [*lowest, *highest], what, zoom, view.corner[1] + 0.75 * zoom * GAP);
+        let gap = if drawing.guide.is_some() { 0.25 } else { 0.75 };
+        let below = colour_bar(&mut scene, [*lowest, *highest], what, zoom, bottom + gap * zoom * GAP);
         scene.height = below + margin;
     }
     scene
@@ -87,6 +93,9 @@ fn colour_bar(scene: &mut Scene, ends: [f64; 2], what: &str, zoom: f64, top: f64
     }
     numbers + size * (style::LINE_SPACING * lines.len() as f64 + font::DESCENT)
 }
+
+/// Dots that are drawn together: whether they are in front, their colour and their diameter (tenths of a pixel).
+type Dots = (bool, [u8; 3], i64);
 
 /// A drawing on its picture.
 struct View<'a> {
@@ -158,8 +167,8 @@ impl View<'_> {
     /// Filled discs; which of them is in front makes no difference. Those of one colour and size are the round ends of the
     /// shortest lines of that width, a sixth of what circles take; outlines are larger discs behind all of them.
     fn dots<'b>(&self, scene: &mut Scene, discs: impl Iterator<Item = &'b Shape>) {
-        // By front, colour and diameter: the path, and where it has come to. In tenths of a pixel; outlines first.
-        let mut paths: BTreeMap<(bool, [u8; 3], i64), (String, [i64; 2])> = BTreeMap::new();
+        // The path, and where it has come to (tenths of a pixel); outlines first.
+        let mut paths: BTreeMap<Dots, (String, [i64; 2])> = BTreeMap::new();
         let tenths = |pixels: f64| (10.0 * pixels).round() as i64;
         for shape in discs {
             let Shape::Disc { centre, radius, tint } = shape else { continue };

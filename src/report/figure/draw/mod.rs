@@ -7,6 +7,7 @@ mod chart;
 mod colours;
 mod drawing;
 mod frame;
+mod guide;
 mod legend;
 mod map;
 mod marker;

@@ -1,12 +1,11 @@
 //! `stripmine plot`: a run to look at, without another program.
 
+mod particles;
+
 use crate::console::{Common, Failure, print, print_json, say};
-use crate::io::extxyz::{self, Which};
 use crate::io::replace::replace;
 use crate::method::{Methods, Quantity};
-use crate::report::figure::{
-    Axis, Chart, Drawing, Figure, Picture, Point, Series, Shape, Style, Tint, png, svg,
-};
+use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style, png, svg};
 use crate::report::table::{Cell, Table};
 use crate::report::terminal;
 use clap::Args;
@@ -16,7 +15,7 @@ use std::fs;
 use std::io::{Error, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-/// A run to look at: its observables over time and its last state as pictures, and small in the terminal
+/// A run to look at: its observables over time, its last state and the density along a long box as pictures, and small in the terminal
 #[derive(Args)]
 pub(super) struct PlotVerb {
     /// The folder of a run
@@ -35,18 +34,15 @@ const CURVES: usize = 5;
 const POINTS: usize = 2000;
 /// Characters of a curve in the terminal.
 const SMALL: usize = 40;
-/// Particles of a picture: more cannot be seen, and files would be large.
-const SHOWN: usize = 20_000;
 
 impl PlotVerb {
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
         let table = Observed::read(&self.run.join("thermo.csv"))?;
         let wanted = table.wanted(&self.columns, methods)?;
         let mut figures = table.figures(&wanted);
-        let trajectory = self.run.join("trajectory.xyz");
-        match extxyz::read(&trajectory, Which::Last) {
-            Ok(frame) => figures.push(state(&frame)),
-            Err(why) if !common.quiet => say(format_args!("the last state is not drawn: {why}")),
+        match particles::pictures(&self.run) {
+            Ok(pictures) => figures.extend(pictures),
+            Err(why) if !common.quiet => say(format_args!("the particles are not drawn: {why}")),
             Err(_) => {}
         }
         let out = self.out.clone().unwrap_or_else(|| {
@@ -222,37 +218,6 @@ fn course(values: &[f64]) -> String {
         STEPS[((share * 8.0) as usize).min(7)]
     };
     (0..count).map(of).collect()
-}
-
-/// The particles of a frame, their speed as shade.
-fn state(frame: &extxyz::Frame) -> Figure {
-    let speed = |v: [f64; 3]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
-    let all = frame.particles.all();
-    let mut speeds: Vec<f64> = all.iter().map(|particle| speed(particle.velocity)).collect();
-    speeds.sort_by(f64::total_cmp);
-    // Few are much faster than the others: they look like the fastest of a hundred.
-    let fastest = crate::statistics::quantile(&speeds, 0.99).filter(|fastest| *fastest > 0.0).unwrap_or(1.0);
-    let every = all.len().div_ceil(SHOWN);
-    let shapes = all.iter().step_by(every).map(|particle| Shape::Disc {
-        centre: particle.place(),
-        radius: particle.radius,
-        tint: match particle.kind {
-            crate::particles::Kind::Wall => Tint::Still,
-            crate::particles::Kind::Grain => Tint::Shade((speed(particle.velocity) / fastest).min(1.0)),
-        },
-    });
-    let ([x, y], [width, height]) = (frame.origin, frame.cell);
-    Figure {
-        name: "last-state".into(),
-        title: format!("The particles at time {:.6}", frame.time),
-        caption: "Shade: speed.".into(),
-        picture: Picture::Drawing(Drawing {
-            window: [[x, y], [x + width, y + height]],
-            width: 720.0,
-            shapes: shapes.collect(),
-            shades: Some((0.0, fastest, "speed (the scene's unit)".into())),
-        }),
-    }
 }
 
 #[cfg(test)]
