@@ -2,10 +2,10 @@
 
 use super::super::style::{self, Colour};
 use super::super::{Drawing, Shape, Tint, font};
-use super::axis::linear;
 use super::frame::{colour as paint, theme};
 use super::guide;
 use super::words::{self, Title};
+use crate::number::significant;
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, Scene, TextAnchor};
 use std::collections::BTreeMap;
@@ -82,7 +82,7 @@ fn colour_bar(scene: &mut Scene, ends: [f64; 2], what: &str, zoom: f64, top: f64
     let size = style::LABEL * zoom;
     let numbers = top + height + size * 1.2;
     for part in [0.0, 0.5, 1.0] {
-        let number = linear(ends).format(ends[0] + part * (ends[1] - ends[0]));
+        let number = significant(ends[0] + part * (ends[1] - ends[0]), 3).replace('-', "−");
         scene.add(words::line([left + part * width, numbers], TextAnchor::Middle, size, &number));
     }
     let size = style::HEADING * zoom;
