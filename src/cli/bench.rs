@@ -3,6 +3,7 @@
 use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
 use crate::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
 use crate::method::{Bench, Entry, Methods};
+use crate::report::terminal;
 use crate::scene::{SceneErrors, Values};
 use clap::Args;
 use serde_json::Value;
@@ -137,7 +138,7 @@ impl BenchVerb {
             MeasurementError::Scene(mistakes) => Failure::Options(in_options(mistakes, &given)),
             error => error.into(),
         })?;
-        if common.json { print_json(&result) } else { print(&text(&result)) }
+        if common.json { print_json(&result) } else { print(&(terminal::fitted(&text(&result)) + "\n")) }
     }
 
     fn measured(
@@ -183,23 +184,26 @@ fn brief(value: &Value) -> String {
 fn text(result: &Throughput) -> String {
     let Throughput { what, particles, settings, .. } = result;
     let each = |seconds: f64| 1e9 * seconds / (*particles as f64 * result.steps as f64);
-    let phases: Vec<String> =
-        result.phases.iter().map(|(phase, &seconds)| format!("{phase} {:.1}", each(seconds))).collect();
+    let phases: Vec<String> = result
+        .phases
+        .iter()
+        .map(|(phase, &seconds)| format!("{} {:.1}", phase.replace('_', " "), each(seconds)))
+        .collect();
     let settings: Vec<String> =
         settings.iter().map(|(name, value)| format!("{} {}", name.replace('_', " "), brief(value))).collect();
     let compared = result.compared.iter().map(|(name, [from, to])| format!("{name} {from:.5} to {to:.5}"));
     let at_end = result.at_end.iter().map(|(name, value)| format!("{name} {value}"));
     let observed: Vec<String> = compared.chain(at_end).collect();
     format!(
-        "{what}: {particles} particles, {}, {} threads\n{:.2} million a second (median {:.2}) over {} repeats of {} steps: \
-         {}\nnanoseconds a particle and step: {:.1} in all; {}\n{}\nchecksum {}\n",
+        "{what}: {particles} particles, {}, {} threads\n{:.2} million {} a second (median {:.2}) over {} repeats of {} steps\n\
+         nanoseconds a particle and step: {:.1} in all; {}\n{}\nchecksum {}\n",
         settings.join(", "),
         result.threads,
         result.rate * 1e-6,
+        result.rate_name.trim_end_matches("_per_second").replace('_', "-"),
         result.median_rate * 1e-6,
         result.repeats,
         result.steps,
-        result.rate_name,
         each(result.seconds),
         phases.join(", "),
         observed.join(", "),

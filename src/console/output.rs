@@ -3,6 +3,7 @@
 
 use super::{Common, Failure};
 use crate::quoted;
+use crate::report::terminal;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -23,8 +24,9 @@ fn shown() -> MutexGuard<'static, Option<ProgressBar>> {
 /// Writes a line to standard error, above the progress.
 pub fn say(message: impl Display) {
     let line = || {
+        let text = terminal::fitted(&quoted::message(&message.to_string()));
         // Where standard error is full or closed there is nowhere to say so.
-        let _ = writeln!(io::stderr().lock(), "{}", quoted::message(&message.to_string()));
+        let _ = writeln!(io::stderr().lock(), "{text}");
     };
     let bar = shown().clone();
     match bar {

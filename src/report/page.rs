@@ -96,7 +96,7 @@ fn item(section: &Section) -> String {
     }
     let seeds: Vec<_> = section.seeds.iter().map(u64::to_string).collect();
     let seeds = if seeds.is_empty() { String::new() } else { format!(" Seeds {}.", seeds.join(", ")) };
-    let _ = write!(text, "*Again:* `{again}`. *Data:* [{folder}/]({folder}/){further}.{seeds}");
+    let _ = write!(text, "*Again:* `{again}`. *Data:* [folder]({folder}/){further}.{seeds}");
     if let Some(provenance) = &section.provenance {
         let _ = write!(text, " {}", provenance.in_short(&format!("{folder}/provenance.json")));
     }

@@ -13,9 +13,28 @@ const NARROWEST: usize = 20;
 
 /// The table as text, no wider than `COLUMNS` says, or the terminal where there is one.
 pub fn render(table: &Table) -> String {
+    render_within(table, width())
+}
+
+/// Characters of a line: what `COLUMNS` says, or the terminal where there is one.
+fn width() -> Option<usize> {
     let said = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     let width: Option<usize> = said.or_else(|| comfy_table::Table::new().width().map(usize::from));
-    render_within(table, width.map(|width| width.max(NARROWEST)))
+    width.map(|width| width.max(NARROWEST))
+}
+
+/// A message whose lines are broken at blanks where they are longer than a line of the terminal.
+pub fn fitted(message: &str) -> String {
+    fitted_within(message, width())
+}
+
+fn fitted_within(message: &str, width: Option<usize>) -> String {
+    let Some(width) = width else { return message.to_owned() };
+    let one = |line: &str| match line.chars().count() > width {
+        true => wrapped(line, width).trim_end().to_owned(),
+        false => line.to_owned(),
+    };
+    message.lines().map(one).collect::<Vec<_>>().join("\n")
 }
 
 /// The same within a number of columns, or as wide as it is.
@@ -117,6 +136,15 @@ mod tests {
                 "A note that is longer than a narrow terminal is wide, and is broken at blanks.".into(),
             ],
         }
+    }
+
+    #[test]
+    fn long_messages_are_broken_at_blanks_and_short_ones_stay() {
+        let message = "error: a scene that cannot be\n  expected: dt below 0.0083249 (time), or slower discs\n    ^ here";
+        let text = fitted_within(message, Some(30));
+        assert!(text.lines().all(|line| line.chars().count() <= 30), "{text}");
+        assert!(text.contains("0.0083249") && text.ends_with("\n    ^ here"), "{text}");
+        assert_eq!(fitted_within(message, None), message);
     }
 
     /// Whatever the width: every number and every word of a heading in one piece, and no line wider than asked.

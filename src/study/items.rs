@@ -40,13 +40,18 @@ fn beside_others(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
 
 /// The scenes that methods state for it.
 fn speed_against_accuracy(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    // Of each method the first scene alone, where time is short.
+    let most = if effort == Effort::Quick { 1 } else { usize::MAX };
     let (budget, repeats, phases) = match effort {
-        Effort::Quick => (1.5, 1, 4),
+        Effort::Quick => (0.7, 1, 4),
         Effort::Full => (5.0, 3, 16),
     };
     let effort = work_precision::Effort { budget, repeats, phases, machine: None };
-    let shown: Vec<_> =
-        METHODS.iter().filter_map(|method| method.trials).flat_map(|trials| trials.shown).collect();
+    let shown: Vec<_> = METHODS
+        .iter()
+        .filter_map(|method| method.trials)
+        .flat_map(|trials| trials.shown.iter().take(most))
+        .collect();
     let mut scenes = vec![];
     for (at, (name, preset, overrides)) in shown.iter().enumerate() {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
@@ -59,12 +64,16 @@ fn speed_against_accuracy(effort: Effort, progress: Progress<'_>) -> Result<Made
 
 /// The maps that methods state for it.
 fn where_it_works(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let most = if effort == Effort::Quick { 1 } else { usize::MAX };
     let effort = match effort {
-        Effort::Quick => stability::Effort { budget: 1.5, size: 6, seeds: 1, tolerance: 0.2 },
+        Effort::Quick => stability::Effort { budget: 0.7, size: 6, seeds: 1, tolerance: 0.2 },
         Effort::Full => stability::Effort { budget: 6.0, size: 16, seeds: 2, tolerance: 0.05 },
     };
-    let mapped: Vec<_> =
-        METHODS.iter().filter_map(|method| method.trials).flat_map(|trials| trials.mapped).collect();
+    let mapped: Vec<_> = METHODS
+        .iter()
+        .filter_map(|method| method.trials)
+        .flat_map(|trials| trials.mapped.iter().take(most))
+        .collect();
     // Every scene is read before the first takes its time.
     let mut surveys = vec![];
     for map in mapped {

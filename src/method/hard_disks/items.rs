@@ -54,7 +54,7 @@ fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 
 fn comparison(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let (densities, turns): (&[f64], _) = match effort {
-        Effort::Quick => (&[0.10, 0.50], (1, 10_000)),
+        Effort::Quick => (&[0.10, 0.50], (1, 3000)),
         Effort::Full => (&[0.02, 0.10, 0.30, 0.50, 0.70], (3, 10_000)),
     };
     let data = masks::masks(2500, densities, turns, progress)?;

@@ -30,7 +30,7 @@ fn lost(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 
 fn cost(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let effort = match effort {
-        Effort::Quick => sectors::Effort { fewest: 100, seconds: 0.1, rounds: 1 },
+        Effort::Quick => sectors::Effort { fewest: 100, seconds: 0.05, rounds: 1 },
         Effort::Full => sectors::Effort { fewest: 3, seconds: 0.06, rounds: 3 },
     };
     let data = sectors::sectors(&effort, progress)?;
