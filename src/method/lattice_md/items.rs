@@ -41,7 +41,7 @@ pub(super) const ITEMS: &[Item] = items! {
     "useful-work", [1.0, 1.0], true, useful_work, "Operations that act on real contacts, over the density";
     "measured", [8.0, 17.0], true, measured, "The same, measured on this host";
     "validation", [4.0, 32.0], true, validation, "The timing model of this host against wall time";
-    "atlas", [5.0, 31.0], true, atlas, "Who wins where: occupancy, number of particles, method and machine";
+    "atlas", [44.0, 44.0], false, atlas, "Who wins where: occupancy, number of particles, method and machine";
     "crossover", [4.0, 30.0], true, crossover, "Lattice, neighbour lists and sectors: which is the fastest at which density, on this host";
     "threads", [3.0, 18.0], true, threads, "What more threads give, and what the machine has to give";
     "identity", [3.0, 3.0], true, identity, "Lattice and neighbour lists: the same to the bit";
