@@ -12,7 +12,7 @@ const FIGURES: usize = 1;
 /// Lines of a program's text that it shows.
 const LINES: usize = 8;
 /// Letters of an item's details that it shows; more stand on the page with charts.
-const DETAILS: usize = 300;
+const DETAILS: usize = 260;
 
 /// The page. Pictures and data lie in a folder for each item, which bears its name. `left_out` names items that the folder has,
 /// but of another version of the program.
