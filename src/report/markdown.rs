@@ -3,7 +3,7 @@
 use super::Table;
 
 /// Rows of a table that a page shows; a longer one is for programs.
-const ROWS: usize = 6;
+const ROWS: usize = 8;
 
 /// The table without its notes, which the page with charts has; of a long one, where it lies in an item's folder.
 pub fn render(table: &Table, folder: &str) -> String {

@@ -12,7 +12,9 @@ const FIGURES: usize = 1;
 /// Lines of a program's text that it shows.
 const LINES: usize = 8;
 /// Letters of an item's details that it shows; more stand on the page with charts.
-const DETAILS: usize = 260;
+const DETAILS: usize = 200;
+/// Letters of a picture's caption that it shows, in whole sentences; the rest stands on the page with charts.
+const CAPTION: usize = 110;
 
 /// The page. Pictures and data lie in a folder for each item, which bears its name. `left_out` names items that the folder has,
 /// but of another version of the program.
@@ -74,7 +76,8 @@ fn item(section: &Section) -> String {
         let _ = write!(text, "More in words: [index.html](index.html#{}).\n\n", section.name);
     }
     for figure in section.figures.iter().take(FIGURES) {
-        let _ = write!(text, "![{}]({folder}/{}.svg)\n\n{}\n\n", figure.title, figure.name, figure.caption);
+        let caption = beginning(&figure.caption, CAPTION);
+        let _ = write!(text, "![{}]({folder}/{}.svg)\n\n{caption}\n\n", figure.title, figure.name);
     }
     for table in section.tables.iter().take(TABLES) {
         let _ = writeln!(text, "{}", markdown::render(table, &folder));
@@ -102,6 +105,19 @@ fn item(section: &Section) -> String {
     }
     text.push('\n');
     text
+}
+
+/// The first sentences of a text, one at least, and as many as have no more letters than `most`.
+fn beginning(text: &str, most: usize) -> &str {
+    let ends = text.match_indices(". ").map(|(at, _)| at + 1).chain([text.len()]);
+    let (mut kept, mut ends) = (text.len(), ends.peekable());
+    if let Some(first) = ends.next() {
+        kept = first;
+    }
+    while let Some(end) = ends.next_if(|end| text[..*end].chars().count() <= most) {
+        kept = end;
+    }
+    &text[..kept]
 }
 
 /// What a heading is called in links, by the rule of the common hosts: lower case, words joined by dashes.
