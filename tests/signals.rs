@@ -114,7 +114,7 @@ fn finished_items_are_kept_whole() {
                 let name = entry.file_name().unwrap().to_str().unwrap();
                 assert!(items.contains(&name), "{name}");
                 assert!(entry.join("provenance.json").exists(), "{name}");
-                assert!(page.contains(&format!("[{name}/]({name}/)")), "{name} is not on the page");
+                assert!(page.contains(&format!("]({name}/)")), "{name} is not on the page");
             }
         }
     }
