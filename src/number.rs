@@ -18,14 +18,25 @@ pub fn significant(value: f64, digits: usize) -> String {
 pub fn in_tens(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
     let Some((mantissa, exponent)) = text.split_once('e') else { return text };
-    let raised = |digit: char| match digit.to_digit(10) {
-        Some(digit) => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize],
-        None => '⁻',
-    };
-    let power: String = exponent.chars().map(raised).collect();
+    let Ok(exponent) = exponent.parse() else { return text };
     match mantissa {
-        "1" => format!("10{power}"),
-        mantissa => format!("{mantissa}·10{power}"),
+        "1" => ten_to(exponent),
+        mantissa => format!("{mantissa}·{}", ten_to(exponent)),
+    }
+}
+
+/// A power of ten in short.
+pub fn ten_to(power: i32) -> String {
+    match power {
+        0 => "1".to_owned(),
+        1 => "10".to_owned(),
+        _ => {
+            let raised = |digit: char| match digit.to_digit(10) {
+                Some(digit) => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize],
+                None => '⁻',
+            };
+            format!("10{}", power.to_string().chars().map(raised).collect::<String>())
+        }
     }
 }
 

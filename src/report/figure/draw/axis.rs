@@ -1,6 +1,7 @@
 //! Where numbers lie on an axis, and how they are written there.
 
 use super::super::{Axis, Fault, Scale};
+use crate::number::ten_to;
 use kuva::prelude::TickFormat;
 use std::sync::Arc;
 
@@ -145,21 +146,6 @@ fn plain(number: f64) -> String {
     let size = libm::pow(10.0, f64::from(10 - exponent(number).max(-300)));
     let rounded = if number == 0.0 { 0.0 } else { (number * size).round() / size };
     rounded.to_string().replace('-', "−")
-}
-
-/// A power of ten in short.
-fn ten_to(power: i32) -> String {
-    match power {
-        0 => "1".to_owned(),
-        1 => "10".to_owned(),
-        _ => {
-            let raised = |digit: char| match digit.to_digit(10) {
-                Some(digit) => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize],
-                None => '⁻',
-            };
-            format!("10{}", power.to_string().chars().map(raised).collect::<String>())
-        }
-    }
 }
 
 #[cfg(test)]
