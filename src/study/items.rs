@@ -13,7 +13,7 @@ pub const ITEMS: &[Item] = &[
     Item {
         name: diagram_section::NAME,
         doc: "Speed against accuracy of four scenes: which integrator, step and precision for which wish",
-        seconds: [8.0, 28.0],
+        seconds: [3.0, 50.0],
         is_quick: true,
         make: speed_against_accuracy,
     },
@@ -44,7 +44,7 @@ fn speed_against_accuracy(effort: Effort, progress: Progress<'_>) -> Result<Made
     let most = if effort == Effort::Quick { 1 } else { usize::MAX };
     let (budget, repeats, phases) = match effort {
         Effort::Quick => (0.7, 1, 4),
-        Effort::Full => (5.0, 3, 16),
+        Effort::Full => (12.0, 3, 16),
     };
     let effort = work_precision::Effort { budget, repeats, phases, machine: None };
     let shown: Vec<_> = METHODS

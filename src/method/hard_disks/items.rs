@@ -23,7 +23,7 @@ pub(super) const ITEMS: &[Item] = items! {
     "hard-disks-masks", [3.0, 20.0], true, comparison, "Hard discs: cost over mask and density, and the source's formula";
     "hard-disks-cooling", [6.0, 6.0], false, haff, "Hard discs: Haff's law, and inelastic collapse";
     "hard-disks-collapse", [24.0, 24.0], false, collapses, "Hard discs: inelastic collapse over restitution and number of discs";
-    "hard-disks-precision", [15.0, 15.0], false, error, "Hard discs: error of Z against processor time";
+    "hard-disks-precision", [63.0, 63.0], false, error, "Hard discs: error of Z against processor time";
     "hard-disks-atmosphere", [14.0, 14.0], false, open_system, "Hard discs above a hot floor, without a ceiling";
     "soft-hard", [2.0, 12.0], true, limit, "Soft discs of growing stiffness against hard ones";
 };
@@ -72,7 +72,7 @@ fn collapses(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 }
 
 fn error(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let effort = precision::Effort { discs: vec![100, 1000, 10_000], collisions: 250_000 };
+    let effort = precision::Effort { discs: vec![100, 1000, 10_000], collisions: 1_000_000 };
     let data = precision::precision(&effort, progress)?;
     Made::new(sections::precision::section(&data), &data)
 }

@@ -19,7 +19,7 @@ pub(super) const ITEMS: &[Item] = items! {
     "langevin-losses", [21.0, 21.0], false, lost, "Langevin: particles lost over the step";
     "langevin-sectors", [3.0, 30.0], true, cost, "Langevin: wall time over the number of sectors, and where it goes";
     "langevin-diffusion", [13.0, 13.0], false, displaced, "Langevin: mean square displacement, velocities, temperature";
-    "langevin-accuracy", [8.0, 20.0], false, errors, "Langevin: the error of the step in a Lennard-Jones fluid";
+    "langevin-accuracy", [8.0, 93.0], false, errors, "Langevin: the error of the step in a Lennard-Jones fluid";
     "langevin-programs", [1.0, 1.0], true, counted, "Langevin: the law as whole-array operations, counted and charged by clocks";
 };
 
@@ -43,7 +43,7 @@ fn displaced(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 }
 
 fn errors(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let time = if effort == Effort::Full { 200.0 } else { 100.0 };
+    let time = if effort == Effort::Full { 1000.0 } else { 100.0 };
     let data = accuracy::accuracy(time, progress)?;
     Made::new(sections::accuracy::section(&data), &data)
 }

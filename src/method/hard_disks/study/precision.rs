@@ -12,7 +12,7 @@ pub const KNOWN_TO: f64 = 1e-3;
 /// Collisions of a disc until the lattice of the start is forgotten.
 const FORGOTTEN: f64 = 100.0;
 /// Seeds, each an independent run.
-const SEEDS: u64 = 6;
+const SEEDS: u64 = 8;
 
 /// How much is measured.
 #[derive(Clone, Debug)]
