@@ -3,16 +3,22 @@
 
 mod support;
 
-use stripmine::method::lattice_md::{Contacts, ListOptions, Rebuild};
+use stripmine::method::lattice_md::{Contacts, Engine, ListOptions, Machine, Model, ProgramText, Rebuild};
+use stripmine::particles::Particles;
 use stripmine::scene::Precision;
 use stripmine_kernels::sweep::lattice::Coordinates;
-use support::{advance, fast, gas, simulate};
+use stripmine_kernels::{Execution, InstructionSet};
+use support::{advance, fast, gas, printed_gas, simulate};
 
 fn trajectories_agree(precision: Precision, coordinates: Coordinates, rebuild: Rebuild, steps: u64) {
     let mut start = gas(400, 0.84, 7);
     start.0.coordinates = coordinates;
-    let mut lattice = simulate(precision, &start, Contacts::Lattice, fast());
-    let mut list = simulate(precision, &start, Contacts::Lists(ListOptions { rebuild, skin: 0.2 }), fast());
+    agree(precision, &start, rebuild, steps);
+}
+
+fn agree(precision: Precision, start: &(Model, Particles), rebuild: Rebuild, steps: u64) {
+    let mut lattice = simulate(precision, start, Contacts::Lattice, fast());
+    let mut list = simulate(precision, start, Contacts::Lists(ListOptions { rebuild, skin: 0.2 }), fast());
     for _ in 0..10 {
         advance(lattice.as_mut(), steps / 10);
         advance(list.as_mut(), steps / 10);
@@ -40,4 +46,70 @@ fn trajectories_are_equal_to_the_bit_with_absolute_positions_and_lists_of_all_pa
 #[test]
 fn trajectories_are_equal_to_the_bit_in_single_precision() {
     trajectories_agree(Precision::F32, Coordinates::CellRelative, Rebuild::Cells, 2_000);
+}
+
+#[test]
+fn trajectories_of_the_printed_text_are_equal_to_the_bit() {
+    agree(Precision::F64, &printed_gas(400, 0.84, 7), Rebuild::AllPairs, 2_000);
+}
+
+/// Every execution of the printed text, on every instruction set, is the same run; ours is it but for rounding.
+#[test]
+fn the_printed_text_runs_the_same_by_every_execution_and_beside_ours() {
+    const STEPS: u64 = 200;
+    let start = printed_gas(200, 0.84, 3);
+    let after = |start: &(Model, Particles), execution, set| {
+        let mut engine = simulate(Precision::F64, start, Contacts::Lattice, Machine { execution, set });
+        advance(engine.as_mut(), STEPS);
+        engine
+    };
+    let state = |engine: &dyn Engine| engine.state();
+    let printed = after(&start, Execution::Chained, InstructionSet::Scalar);
+    for set in InstructionSet::available() {
+        for execution in [Execution::Eager, Execution::Strip(64), Execution::Strip(7), Execution::Chained] {
+            let same = state(after(&start, execution, set).as_ref()) == state(printed.as_ref());
+            assert!(same, "{execution:?} on {set:?} differs");
+        }
+    }
+    let ours = Model { text: ProgramText::Ours, ..start.0.clone() };
+    let ours = after(&(ours, start.1.clone()), Execution::Chained, InstructionSet::best());
+    let (printed, ours) = (printed.particles(), ours.particles());
+    let mut moved = 0.0_f64;
+    for ((printed, ours), begun) in printed.all().iter().zip(ours.all()).zip(start.1.all()) {
+        for axis in 0..2 {
+            let off = (printed.velocity[axis] - ours.velocity[axis]).abs();
+            assert!(off < 1e-10, "disc {}: velocities differ by {off}", printed.id);
+            moved = moved.max((printed.velocity[axis] - begun.velocity[axis]).abs());
+        }
+        assert!((printed.omega - ours.omega).abs() < 1e-9, "disc {}", printed.id);
+    }
+    assert!(moved > 0.05, "collisions must have happened: {moved}");
+}
+
+/// Fixed and moving walls, a closed side, gravity: the small pipe by both texts.
+#[test]
+fn the_pipe_of_the_printed_text_is_ours_but_for_rounding() {
+    use stripmine::method::lattice_md::{Document, assemble};
+    let run = |preset: &str, overrides: &[&str]| {
+        let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
+        let mut engine = assemble(&Document::load(preset, &overrides).unwrap().check().unwrap()).unwrap();
+        advance(engine.as_mut(), 300);
+        engine.particles()
+    };
+    let walls = [
+        "particles.wall_motion=oscillating",
+        "particles.wall_amplitude=[0.0002,0.0]",
+        "particles.wall_frequency=30",
+    ];
+    for more in [&[][..], &walls] {
+        let printed = run("pipe-small-printed", more);
+        let same_law = ["law.cohesionless=false", "machine.engine=programs", "machine.coordinates=absolute"];
+        let ours = run("pipe-small", &[&same_law, more].concat());
+        for (printed, ours) in printed.all().iter().zip(ours.all()) {
+            for axis in 0..2 {
+                let off = (printed.position[axis] - ours.position[axis]).abs();
+                assert!(off < 1e-9, "disc {}: {:?} and {:?}", ours.id, printed.position, ours.position);
+            }
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! The scene of the benches: a dense packing of discs with all contacts at work.
 
 use stripmine::method::lattice_md::{
-    Arrays, Discs, GearValues, Model, Part, Scheme, StepProgram, execute, programs,
+    Arrays, Discs, GearValues, Model, Part, ProgramText, Scheme, StepProgram, execute, programs,
 };
 use stripmine::particles::Particles;
 use stripmine::placement::hexagonal;
@@ -28,6 +28,7 @@ pub fn dense<P: Precision>(cells: usize, friction: bool) -> (Model, Particles, A
     let edge = [packing.sides[0] / counts[0] as f64, packing.sides[1] / counts[1] as f64];
     let mask = Mask::square(2);
     let model = Model {
+        text: ProgramText::Ours,
         shape: LatticeShape::new(counts[0], counts[1], &mask, [true; 2]).expect("large enough"),
         frame: Frame { origin: [0.0; 2], edge },
         sides: [0, 1].map(|axis| counts[axis] as f64 * edge[axis]),

@@ -47,6 +47,7 @@ pub mod law;
 pub mod ledger;
 pub mod mask;
 pub mod noise;
+pub mod printed;
 mod program;
 pub mod sweep;
 mod threads;

@@ -90,6 +90,7 @@ fn by_lists<L: Law<2>>(start: &System<f64, f64>, case: &Case, law: &L) -> [f64; 
         omega,
         radius: &system.radius,
         inverse_mass: &system.lattice_inverse_mass,
+        mass: &system.mass,
         cell: &system.cell,
     };
     let met = walk(law, &lists, &offsets, discs, system.discs, 2.3, ASKED, |_, _| ());

@@ -28,6 +28,9 @@ pub(super) struct BenchVerb {
     /// What moves the particles: auto, fast, or programs of lattice MD, reference of hard discs; the fastest by default
     #[arg(long)]
     engine: Option<String>,
+    /// Whose programs: ours, or printed for the source's own; implies programs
+    #[arg(long)]
+    text: Option<String>,
     /// How programs are executed: eager, strip:N or chained; implies programs
     #[arg(long)]
     execution: Option<String>,
@@ -84,6 +87,7 @@ impl BenchVerb {
             ("precision", self.precision.clone()),
             ("integrator", self.integrator.clone()),
             ("engine", self.engine.clone()),
+            ("text", self.text.clone()),
             ("execution", self.execution.clone()),
             ("instruction-set", self.instruction_set.clone()),
             ("frictionless", self.frictionless.then(String::new)),

@@ -3,7 +3,9 @@
 
 use rand::RngExt;
 use stripmine::method::lattice_md::Engine;
-use stripmine::method::lattice_md::{Contacts, Discs, GearValues, Machine, Model, Scheme, Watch, start};
+use stripmine::method::lattice_md::{
+    Contacts, Discs, GearValues, Machine, Model, ProgramText, Scheme, Watch, start,
+};
 use stripmine::particles::{Kind, Particle, Particles, in_space};
 use stripmine::placement::hexagonal;
 use stripmine::scene::{Precision, WallMotion};
@@ -40,6 +42,7 @@ pub fn gas(least: usize, packing_fraction: f64, seed: u64) -> (Model, Particles)
     let counts = packing.sides.map(|side| (side / 0.5) as usize);
     let edge = [packing.sides[0] / counts[0] as f64, packing.sides[1] / counts[1] as f64];
     let model = Model {
+        text: ProgramText::Ours,
         shape: LatticeShape::new(counts[0], counts[1], &mask, [true; 2]).unwrap(),
         frame: Frame { origin: [0.0; 2], edge },
         sides: [0, 1].map(|axis| counts[axis] as f64 * edge[axis]),
@@ -55,6 +58,14 @@ pub fn gas(least: usize, packing_fraction: f64, seed: u64) -> (Model, Particles)
         watch: Some(Watch::new(0.1, 0.3, 0.45)),
     };
     (model, particles)
+}
+
+/// The same gas by the source's own program, which has no clamp and measures positions from the origin.
+pub fn printed_gas(least: usize, packing_fraction: f64, seed: u64) -> (Model, Particles) {
+    let (model, particles) = gas(least, packing_fraction, seed);
+    let contact = Contact { cohesionless: false, ..model.contact };
+    let coordinates = Coordinates::Absolute;
+    (Model { text: ProgramText::Printed, contact, coordinates, ..model }, particles)
 }
 
 /// A running simulation. Compiled in the library, so that test files build fast.

@@ -198,6 +198,17 @@ impl<'m, R: Registers> Strip<'m, R> {
         }
     }
 
+    /// As [`Machine::scatter`].
+    #[inline(always)]
+    pub(crate) fn scatter_to<T: Element>(self, column: Column<T>, index: R::Index, value: R::V) {
+        self.disperse(value, |lane, number| {
+            let place = index.lane(lane);
+            if place != 0 {
+                column.write(place as usize - 1, T::from_f64(number.to_f64()));
+            }
+        });
+    }
+
     /// Builds a vector lane by lane.
     #[inline(always)]
     fn assemble(self, mut number: impl FnMut(usize) -> R::Lane) -> R::V {
@@ -290,6 +301,11 @@ impl<R: Registers> Machine for Strip<'_, R> {
     #[inline(always)]
     fn scatter_index(self, slot: Slot<u32>, index: R::Index, value: R::Index) {
         self.scatter_index_to(self.memory.column(slot), index, value);
+    }
+
+    #[inline(always)]
+    fn scatter<T: Element>(self, slot: Slot<T>, index: R::Index, value: R::V) {
+        self.scatter_to(self.memory.column(slot), index, value);
     }
 
     #[inline(always)]

@@ -12,7 +12,7 @@ use crate::isa::{Array, Counter, Element, Machine, Slot, Vector};
 pub const DERIVATIVES: usize = 6;
 
 const VELOCITY: [Array; 3] = [Array::DiscVx, Array::DiscVy, Array::DiscOmega];
-const FORCE: [Array; 3] = [Array::Fx, Array::Fy, Array::Torque];
+pub(crate) const FORCE: [Array; 3] = [Array::Fx, Array::Fy, Array::Torque];
 
 /// Counts discs whose new state is no finite number. Written by programs that are
 /// [`checked`](gear::Corrector::checked).

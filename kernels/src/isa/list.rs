@@ -52,7 +52,7 @@ macro_rules! for_each_op {
                 (LoadShifted, "lds", Shift, "load at a shift: the shifted copy of a lattice vector", [Number LoadShifted]),
                 (Store, "st", Store, "store at the own place", [Effect Store, Effect StoreIndex]),
                 (Gather, "gth", Gather, "load through an index vector", [Number Gather, Indices Gather]),
-                (Scatter, "sct", Scatter, "store through an index vector", [Effect Scatter]),
+                (Scatter, "sct", Scatter, "store through an index vector", [Effect Scatter, Effect ScatterIndex]),
             }
         }
     };

@@ -55,6 +55,11 @@ pub trait Machine: Copy {
     /// # Panics
     /// If a number lies beyond the array.
     fn scatter_index(self, slot: Slot<u32>, index: Self::I, value: Self::I);
+    /// The same for numbers.
+    ///
+    /// # Panics
+    /// If a number lies beyond the array.
+    fn scatter<T: Element>(self, slot: Slot<T>, index: Self::I, value: Self::V);
 
     /// Adds how many lanes hold to `counter`.
     fn count(self, counter: Counter, predicate: Self::P);

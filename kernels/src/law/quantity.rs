@@ -22,8 +22,10 @@ pub enum Field {
     Radius,
     /// Inverse mass; 0 for a fixed particle.
     InverseMass,
-    /// Mass of a body in space.
+    /// Mass.
     Mass,
+    /// 1 where there is a particle, 0 in an empty cell: BP93 (3).
+    Occupied,
 }
 
 /// A sum over partners that a law contributes to.
@@ -44,7 +46,7 @@ impl Axis {
 
 impl Field {
     /// Every field.
-    pub const ALL: [Field; 7] = [
+    pub const ALL: [Field; 8] = [
         Field::Velocity(Axis::X),
         Field::Velocity(Axis::Y),
         Field::Velocity(Axis::Z),
@@ -52,19 +54,26 @@ impl Field {
         Field::Radius,
         Field::InverseMass,
         Field::Mass,
+        Field::Occupied,
     ];
     /// The fields that there are in two dimensions.
-    pub const PLANAR: [Field; 5] =
-        [Field::Velocity(Axis::X), Field::Velocity(Axis::Y), Field::Omega, Field::Radius, Field::InverseMass];
+    pub const PLANAR: [Field; 7] = [
+        Field::Velocity(Axis::X),
+        Field::Velocity(Axis::Y),
+        Field::Omega,
+        Field::Radius,
+        Field::InverseMass,
+        Field::Mass,
+        Field::Occupied,
+    ];
 
     /// Whether a particle has it in so many dimensions.
     #[inline(always)]
     pub const fn is_in(self, dimensions: usize) -> bool {
         match self {
             Field::Velocity(axis) => (axis as usize) < dimensions,
-            Field::Omega => dimensions == 2,
-            Field::Mass => dimensions == 3,
-            Field::Radius | Field::InverseMass => true,
+            Field::Omega | Field::Occupied => dimensions == 2,
+            Field::Radius | Field::InverseMass | Field::Mass => true,
         }
     }
 
@@ -79,6 +88,7 @@ impl Field {
             Field::Radius => "the radius",
             Field::InverseMass => "the inverse mass",
             Field::Mass => "the mass",
+            Field::Occupied => "whether there is a particle",
         }
     }
 }

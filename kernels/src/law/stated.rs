@@ -80,6 +80,7 @@ const fn bit_of_field(field: Field) -> u32 {
         Field::Radius => 4,
         Field::InverseMass => 5,
         Field::Mass => 6,
+        Field::Occupied => 7,
     }
 }
 

@@ -78,6 +78,8 @@ pub struct Discs<'a, P> {
     pub radius: &'a [P],
     /// Inverse masses.
     pub inverse_mass: &'a [P],
+    /// Masses.
+    pub mass: &'a [P],
     /// Cells, numbered from 1 in the padded lattice.
     pub cell: &'a [u32],
 }
@@ -174,13 +176,14 @@ struct OneByOne<'a, P> {
 impl<'a, P: Precision> OneByOne<'a, P> {
     #[inline]
     fn field(&self, field: Field, disc: usize) -> P {
-        let Discs { velocity, omega, radius, inverse_mass, .. } = self.discs;
+        let Discs { velocity, omega, radius, inverse_mass, mass, .. } = self.discs;
         match field {
             Field::Velocity(axis) => velocity[axis as usize][disc],
             Field::Omega => omega[disc],
             Field::Radius => radius[disc],
             Field::InverseMass => inverse_mass[disc],
-            Field::Mass => P::from_f64(1.0) / inverse_mass[disc],
+            Field::Mass => mass[disc],
+            Field::Occupied => P::from_f64(1.0),
         }
     }
 }

@@ -70,9 +70,10 @@ pub struct System<S, P> {
     pub velocity: [Vec<P>; 3],
     pub radius: Vec<P>,
     pub lattice_inverse_mass: Vec<P>,
+    pub mass: Vec<P>,
     pub cell: Vec<u32>,
     pub index: Vec<u32>,
-    pub lattice: [Vec<P>; 7],
+    pub lattice: [Vec<P>; 9],
     pub sums: [Vec<P>; 3],
     /// What the sweep of the lattice gives beside the sums: power, energy, virial.
     pub observed: [Vec<P>; 3],
@@ -81,6 +82,19 @@ pub struct System<S, P> {
 }
 
 pub const DT: f64 = 1e-3;
+
+/// The lattice vectors of a system, in their order.
+pub const LATTICE: [Array; 9] = [
+    Array::X,
+    Array::Y,
+    Array::Vx,
+    Array::Vy,
+    Array::Omega,
+    Array::Radius,
+    Array::InverseMass,
+    Array::Mass,
+    Array::Test,
+];
 
 impl<S: Precision, P: Precision> System<S, P> {
     /// Discs of mean radius 1 at random places, with random velocities and spins.
@@ -132,6 +146,7 @@ impl<S: Precision, P: Precision> System<S, P> {
             on_lattice: [zeros.clone(), zeros],
             radius: radius.iter().map(|&r| P::from_f64(r)).collect(),
             lattice_inverse_mass: radius.iter().map(|r| P::from_f64(1.0 / mass(r))).collect(),
+            mass: radius.iter().map(|r| P::from_f64(mass(r))).collect(),
             cell: vec![0; discs],
             index: vec![0; shape.padded()],
             lattice: std::array::from_fn(|_| padded.clone()),
@@ -163,11 +178,12 @@ impl<S: Precision, P: Precision> System<S, P> {
         system.on_lattice = [column(&|_| 0.0), column(&|_| 0.0)];
         system.radius = column(&|disc| disc.radius);
         system.lattice_inverse_mass = column(&|disc| disc.inverse_mass);
+        system.mass = column(&|disc| 1.0 / disc.inverse_mass);
         system.cell = vec![0; discs.len()];
         system
     }
 
-    fn memory<R>(
+    pub fn memory<R>(
         &mut self,
         halo: &[Vec<u32>; 2],
         constant: &[Vec<P>; 4],
@@ -188,6 +204,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         }
         memory = memory.read(Slot::<P>::new(Array::DiscRadius), &self.radius);
         memory = memory.read(Slot::<P>::new(Array::DiscInverseMass), &self.lattice_inverse_mass);
+        memory = memory.read(Slot::<P>::new(Array::DiscMass), &self.mass);
         memory = memory.write(Slot::new(Array::DiscCell), &mut self.cell);
         memory = memory.write(Slot::new(Array::Index), &mut self.index);
         memory = memory.read(Slot::new(Array::HaloCell), &halo[0]);
@@ -197,9 +214,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         {
             memory = memory.read(Slot::<P>::new(array), column);
         }
-        let lattice =
-            [Array::X, Array::Y, Array::Vx, Array::Vy, Array::Omega, Array::Radius, Array::InverseMass];
-        for (array, column) in lattice.into_iter().zip(&mut self.lattice) {
+        for (array, column) in LATTICE.into_iter().zip(&mut self.lattice) {
             memory = memory.write(Slot::<P>::new(array), column);
         }
         for (array, column) in [Array::Fx, Array::Fy, Array::Torque].into_iter().zip(&mut self.sums) {
@@ -216,8 +231,8 @@ impl<S: Precision, P: Precision> System<S, P> {
         result
     }
 
-    /// Index and lattice vectors of the positions as they stand.
-    pub fn index<L: Law<2>>(&mut self, case: &Case, _: &L, how: (Execution, InstructionSet)) {
+    /// Halo cells and what they repeat; and the lattice vectors that stay: far, interior, how far images lie.
+    pub fn constants(&self) -> ([Vec<u32>; 2], [Vec<P>; 4]) {
         let shape = self.shape;
         let images = shape.images();
         let halo = [
@@ -232,15 +247,20 @@ impl<S: Precision, P: Precision> System<S, P> {
             }
         }
         let [x, y] = shift;
-        let constant = [shape.far(self.frame), shape.interior(), x, y];
-        let (frame, discs) = (self.frame, self.discs);
+        (halo, [shape.far(self.frame), shape.interior(), x, y])
+    }
+
+    /// Index and lattice vectors of the positions as they stand.
+    pub fn index<L: Law<2>>(&mut self, case: &Case, _: &L, how: (Execution, InstructionSet)) {
+        let (halo, constant) = self.constants();
+        let (shape, frame, discs, images) = (self.shape, self.frame, self.discs, halo[0].len());
         self.memory(&halo, &constant, |memory| {
             let (execution, set) = how;
             Program::new(Clear).run(memory, 0..shape.padded(), execution, set).unwrap();
             let enter = Enter::<S, P>::new(shape, frame, case.coordinates);
             Program::new(enter).run(memory, 0..discs, execution, set).unwrap();
             Program::new(Check).run(memory, 0..discs, execution, set).unwrap();
-            Program::new(Images).run(memory, 0..images.len(), execution, set).unwrap();
+            Program::new(Images).run(memory, 0..images, execution, set).unwrap();
             let spread = Spread::<P>::new(shape, case.coordinates, L::FIELDS);
             Program::new(spread).run(memory, 0..shape.padded(), execution, set).unwrap();
         });

@@ -1,5 +1,6 @@
 //! The arrays a step works on.
 
+use super::options::ProgramText;
 use super::programs::scales;
 use super::{Discs, Model};
 use crate::particles::{Kind, Particle, Particles};
@@ -8,6 +9,7 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::STATE;
 use stripmine_kernels::isa::{AlignedColumn, Array, Memory, Slot};
 use stripmine_kernels::ledger::Length;
+use stripmine_kernels::printed;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
 /// How long the vectors of a step are for a scene.
@@ -155,7 +157,16 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
                     of_grains(|disc, factor| 1.0 / (factor * disc.mass * disc.radius * disc.radius));
                 state.push(convert(Array::DiscInverseInertia, inertia));
             }
-            constant.push(on_lattice(Array::DiscInverseMass, inverse_mass));
+            match model.text {
+                ProgramText::Ours => constant.push(on_lattice(Array::DiscInverseMass, inverse_mass)),
+                ProgramText::Printed => {
+                    let heaviest = particles.grains().iter().map(|disc| disc.mass).fold(0.0, f64::max);
+                    let fixed = printed::mass_of_fixed_disc(heaviest);
+                    let mass = |disc: &Particle| if disc.kind == Kind::Grain { disc.mass } else { fixed };
+                    let masses = particles.all().iter().map(mass).collect();
+                    constant.push(on_lattice(Array::DiscMass, masses));
+                }
+            }
             let radii = particles.all().iter().map(|disc| disc.radius).collect();
             constant.push(on_lattice(Array::DiscRadius, radii));
         }
@@ -177,17 +188,27 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
             let zeros = |array| AlignedColumn::filled(array as usize, P::from_f64(0.0), length);
             lattice.extend(arrays.iter().map(|&array| (array, zeros(array))));
         };
-        columns(&[Array::DiscX, Array::DiscY, Array::DiscVx, Array::DiscVy], discs);
+        let is_printed = model.text == ProgramText::Printed;
+        if is_printed {
+            columns(&[Array::Test, Array::Mass], padded);
+        } else {
+            columns(&[Array::DiscX, Array::DiscY, Array::DiscVx, Array::DiscVy], discs);
+            if model.friction {
+                columns(&[Array::DiscOmega], discs);
+            }
+        }
         let forces = if by_disc { discs } else { padded };
         columns(&[Array::X, Array::Y, Array::Vx, Array::Vy], padded);
         columns(&[Array::Fx, Array::Fy], forces);
         if model.friction {
-            columns(&[Array::DiscOmega], discs);
             columns(&[Array::Omega], padded);
             columns(&[Array::Torque], forces);
         }
         if model.discs == Discs::Varying {
-            columns(&[Array::Radius, Array::InverseMass], padded);
+            columns(&[Array::Radius], padded);
+            if !is_printed {
+                columns(&[Array::InverseMass], padded);
+            }
         }
         let asked = model.asked();
         if asked.watched.is_some() {

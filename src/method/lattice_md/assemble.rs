@@ -2,7 +2,7 @@
 
 use super::check::Checked;
 use super::model::sides_of;
-use super::scene::By;
+use super::scene::{By, ProgramText};
 use super::{Contacts, Discs, Engine, FastSearch, ListOptions, Machine, Model, Watch, start};
 use crate::method::Failure;
 use stripmine_kernels::law::granular::Disc;
@@ -11,21 +11,23 @@ use stripmine_kernels::law::granular::Disc;
 pub fn model(checked: &Checked) -> Model {
     let Checked { scene, domain, particles, alike, geometry, .. } = checked;
     let factor = scene.law.inertia.factor();
+    let is_printed = scene.machine.text == ProgramText::Printed;
     let discs = match particles.grains().first() {
-        Some(disc) if *alike => Discs::Equal {
+        Some(disc) if *alike && !is_printed => Discs::Equal {
             disc: Disc { radius: disc.radius, inverse_mass: 1.0 / disc.mass },
             inverse_inertia: 1.0 / (factor * disc.mass * disc.radius * disc.radius),
         },
         _ => Discs::Varying,
     };
     Model {
+        text: scene.machine.text,
         shape: geometry.shape,
         frame: geometry.frame,
         sides: sides_of(domain, &geometry.shape, &geometry.frame),
         mask: geometry.mask.clone(),
         coordinates: scene.machine.coordinates,
         contact: scene.law.contact,
-        friction: scene.law.has_friction(),
+        friction: scene.law.has_friction() || is_printed,
         discs,
         inertia_factor: factor,
         scheme: scene.integrator.scheme,

@@ -62,6 +62,11 @@ const OPTIONS: &[BenchOption] = options! {
         None => vec![format!("integrator.kind={name}")],
     };
     "engine", ["auto", "fast", "programs"], |engine| vec![format!("machine.engine={engine}")];
+    // The source has no clamp.
+    "text", ["ours", "printed"], |text| {
+        let clamped = format!("law.cohesionless={}", text != "printed");
+        vec!["machine.engine=programs".to_owned(), format!("machine.text={text}"), clamped]
+    };
     "execution", [], |execution| {
         vec!["machine.engine=programs".to_owned(), format!("machine.execution={execution}")]
     };

@@ -3,7 +3,7 @@
 //! The choice depends on the scene alone, never on the machine or its threads, so that a run is the same everywhere.
 
 use super::OnConflict;
-use super::scene::{By, EngineChoice, Scene};
+use super::scene::{By, EngineChoice, ProgramText, Scene};
 use crate::domain::Domain;
 use crate::particles::Particles;
 use crate::scene::Precision;
@@ -56,7 +56,8 @@ pub(super) fn engine(scene: &mut Scene) -> Option<String> {
         return None;
     }
     let machine = &scene.machine;
-    let of_programs = machine.execution != Execution::Chained
+    let of_programs = machine.text == ProgramText::Printed
+        || machine.execution != Execution::Chained
         || machine.coordinates != Coordinates::CellRelative
         || scene.search.rebuild == super::Rebuild::AllPairs;
     let (engine, reason) = match of_programs {

@@ -8,7 +8,7 @@ use super::study::model_validation::{self, Calibrated, model_validation};
 use super::study::rounds::Bound;
 use super::study::{
     break_even, crossover, damping, density_cost, efficiency_table, host_ladder, identity, ladder, listing,
-    measured_cost, misprints, pipe_flow, precision, threads, useful_work,
+    measured_cost, misprints, pipe_flow, precision, printed_cost, threads, useful_work,
 };
 use crate::console::Failure;
 use crate::method::{Item, Progress};
@@ -39,6 +39,7 @@ pub(super) const ITEMS: &[Item] = items! {
     "misprints", [0.5, 0.5], true, misprints, "What the misprints of the contact law do";
     "cost", [1.0, 1.0], true, cost, "BP93, figures 3 and 4: cost over particles and density, by the model";
     "useful-work", [1.0, 1.0], true, useful_work, "Operations that act on real contacts, over the density";
+    "printed", [6.0, 75.0], true, printed, "The printed text run the CRAY's way: NOP·(n + D) against wall time, and what thirty years made of it";
     "measured", [8.0, 17.0], true, measured, "The same, measured on this host";
     "validation", [4.0, 32.0], true, validation, "The timing model of this host against wall time";
     "atlas", [44.0, 44.0], false, atlas, "Who wins where: occupancy, number of particles, method and machine";
@@ -89,6 +90,29 @@ fn cost(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
 fn useful_work(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
     let data = useful_work::useful_work()?;
     made(sections::useful_work::section(&data), &data)
+}
+
+fn printed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let effort = match effort {
+        Effort::Quick => printed_cost::Effort {
+            cells: vec![100, 1000, 10_000, 100_000],
+            occupancies: vec![1.0],
+            samples: 8,
+            particles: 1000,
+            rounds: Bound::of(3),
+        },
+        Effort::Full => printed_cost::Effort {
+            cells: vec![
+                100, 300, 1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000, 3_000_000, 10_000_000,
+            ],
+            occupancies: vec![0.05, 0.1, 0.5, 1.0],
+            samples: 24,
+            particles: 10_000,
+            rounds: bound(15, 20),
+        },
+    };
+    let data = printed_cost::printed_cost(&effort, progress)?;
+    made(sections::printed_cost::section(&data), &data)
 }
 
 fn measured(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {

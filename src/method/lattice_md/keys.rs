@@ -2,7 +2,7 @@
 
 use super::model::OnLongStep;
 use super::neighbor_list::Rebuild;
-use super::options::{By, EngineChoice, Inertia, IntegratorKind};
+use super::options::{By, EngineChoice, Inertia, IntegratorKind, ProgramText};
 use crate::method::pairwise::search::OnConflict;
 use crate::scene::Bounds::{NonNegative, Positive, Within};
 use crate::scene::Fallback::{Is, Otherwise, Required};
@@ -10,7 +10,8 @@ use crate::scene::Kind::{Choice, Number, OneOf, Switch};
 use crate::scene::keys::define_keys;
 use crate::scene::{
     ARITHMETIC, DISC_RIVALS, DISCS, DURATION, HEADING, INSTRUCTIONS, Key, KeySet, OUTPUT, PLANAR_DOMAIN,
-    Reason, Renamed, STEP, STEPPED_RUN, SceneError, Use, Values, Vocabulary, disagreements, too_many_steps,
+    PRECISION, Reason, Renamed, STEP, STEPPED_RUN, SceneError, Use, Value, Values, Vocabulary, disagreements,
+    too_many_steps,
 };
 use crate::words::Words;
 use stripmine_kernels::law::granular::ContactArm;
@@ -69,9 +70,11 @@ define_keys! {
 
     ENGINE = "machine" "engine", Choice(EngineChoice::WORDS), "", Is("\"auto\""), ALWAYS,
         "What steps the discs: fast, each pair once and the law for contacts only; or the source's vector programs over the whole lattice, equal but for rounding. auto is fast, unless a key of the programs is given.";
+    TEXT = "machine" "text", Choice(ProgramText::WORDS), "", Is("\"ours\""), PROGRAMS,
+        "Whose programs: ours, or the source's own as printed, with its vectors Index, Test and contact_i, products in place of branches and Gear's derivatives as they are.";
     EXECUTION = "machine" "execution", Choice(&["chained", "eager", "strip:N"]), "", Is("\"chained\""), PROGRAMS,
         "How programs are executed: instructions register by register, one whole-lattice pass each, or by strips of N, all to the same bits.";
-    COORDINATES = "machine" "coordinates", Choice(Coordinates::WORDS), "", Is("\"cell-relative\""), PROGRAMS,
+    COORDINATES = "machine" "coordinates", Choice(Coordinates::WORDS), "", Otherwise("cell-relative; absolute for the printed text"), PROGRAMS,
         "What positions on the lattice are measured from by programs.";
 }
 
@@ -123,7 +126,35 @@ fn own_rules(values: &Values) -> Vec<SceneError> {
         errors.push(values.spot(later).error(Reason::Contradiction, message));
     }
     errors.extend(search_and_engine(values));
+    if values.choice(&TEXT).as_deref() == Some(ProgramText::Printed.word()) {
+        errors.extend(beyond_the_print(values));
+    }
     errors
+}
+
+/// What the source's own text has no equation for.
+fn beyond_the_print(values: &Values) -> Vec<SceneError> {
+    let demands: [(&Key, &str, &str); 5] = [
+        (&PRECISION, "\"f64\"", "the source has one precision, that of a CRAY's words of 64 bits"),
+        (&COORDINATES, "\"absolute\"", "(5) and (6) subtract the positions themselves"),
+        (&INTEGRATOR, "\"gear\"", "appendix A is Gear's predictor-corrector"),
+        (&COHESIONLESS, "false", "(14) has no clamp"),
+        (&CONTACT_ARM, "\"radius\"", "the arm of (12) is the radius"),
+    ];
+    let differs = |key: &Key, demanded: &str| match values.value(key) {
+        Some(Value::Word(word)) => format!("\"{word}\"") != demanded,
+        Some(Value::Switch(is_on)) => is_on.to_string() != demanded,
+        _ => false,
+    };
+    let refused = demands.into_iter().filter(|(key, demanded, _)| differs(key, demanded));
+    refused
+        .map(|(key, demanded, why)| {
+            let by = if values.gives(key) { key } else { &TEXT };
+            let message = format!("the source's own text does not have it: {why}");
+            let error = values.spot(by).error(Reason::Contradiction, message);
+            error.expecting(format!("{} = {demanded}, or text = \"ours\"", key.path()))
+        })
+        .collect()
 }
 
 /// Whether a scene asks for programs: by name, or by a key that only they have.
@@ -131,7 +162,10 @@ pub(super) fn asks_for_programs(values: &Values) -> bool {
     let is = |key: &Key, word: &str| values.choice(key).as_deref() == Some(word);
     is(&ENGINE, "programs")
         || is(&ENGINE, "auto")
-            && (values.gives(&EXECUTION) || values.gives(&COORDINATES) || is(&REBUILD, "all-pairs"))
+            && (values.gives(&TEXT)
+                || values.gives(&EXECUTION)
+                || values.gives(&COORDINATES)
+                || is(&REBUILD, "all-pairs"))
 }
 
 /// Pairs that one of the engines cannot find as asked.
@@ -143,7 +177,7 @@ fn search_and_engine(values: &Values) -> Option<SceneError> {
     let given = |keys: &[&'static Key]| keys.iter().copied().find(|key| values.gives(key));
     let refused = |key: &Key, message: &str| values.spot(key).error(Reason::Contradiction, message);
     if asks_for_programs(values) {
-        let by = given(&[&ENGINE, &EXECUTION, &COORDINATES, &REBUILD]).unwrap_or(&ENGINE);
+        let by = given(&[&ENGINE, &TEXT, &EXECUTION, &COORDINATES, &REBUILD]).unwrap_or(&ENGINE);
         if is(&SEARCH, "sectors") {
             let message = "sectors have no vector programs: only the fast engine searches them";
             return Some(refused(by, message).expecting("engine = \"fast\", and no key of programs"));

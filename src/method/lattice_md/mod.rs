@@ -21,9 +21,11 @@
 //! use stripmine::model::machines;
 //!
 //! let table = efficiency_table(&Question::default(), &machines::preset("paper")?)?;
-//! let forces = table.parts.iter().find(|row| row.part == "forces").expect("a step has forces");
-//! assert_eq!(forces.printed, Some(1656));
-//! assert!(forces.counted < 1656);
+//! use stripmine::method::lattice_md::Part;
+//! let forces = table.source.iter().find(|row| row.part == "forces").expect("a step has forces");
+//! assert_eq!(forces.nop, 1656);
+//! // The source's own program, and ours.
+//! assert!(table.printed.of(Part::Forces) < 1656 && table.ours.of(Part::Forces) < 1656);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -73,6 +75,7 @@ pub use entry::ENTRY;
 pub use fast::FastSearch;
 pub use model::{Discs, GearValues, Model, OnLongStep, Scheme, Watch};
 pub use neighbor_list::{ListOptions, Rebuild};
+pub use options::ProgramText;
 pub use programs::{Part, StepProgram, execute, ledger, programs, rival_ledger};
 pub use scene::{Inertia, Scene};
 pub use simulation::{Contacts, LatticeMd, Machine, start};

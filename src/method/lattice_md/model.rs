@@ -1,5 +1,6 @@
 //! What is modelled: no more than a scene needs.
 
+use super::options::ProgramText;
 use crate::domain::Domain;
 use crate::observe::Scenery;
 use crate::particles::longest_step;
@@ -142,6 +143,8 @@ pub fn sides_of(domain: &Domain, shape: &LatticeShape, frame: &Frame) -> [f64; 2
 /// What is modelled, on which lattice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
+    /// Whose programs step it. The source's own have friction, different discs and absolute positions, whatever a scene needs.
+    pub text: ProgramText,
     /// The lattice.
     pub shape: LatticeShape,
     /// Where it lies.

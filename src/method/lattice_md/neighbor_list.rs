@@ -1,6 +1,7 @@
 //! The rival: scalar neighbour lists on the lattice method's state.
 
-use super::programs::with_law;
+use super::options::ProgramText;
+use super::programs::with_law_of_text;
 use super::{Arrays, Discs, Model};
 use crate::domain::Domain;
 use crate::method::pairwise::WithLaw;
@@ -130,7 +131,7 @@ impl<P: Precision> Rival<P> {
         for sum in &mut sums {
             sum.resize(arrays.lengths().grains, P::from_f64(0.0));
         }
-        self.met = with_law(model, Walk { rival: self, model, arrays, sums: &mut sums });
+        self.met = with_law_of_text(model, Walk { rival: self, model, arrays, sums: &mut sums });
         for (array, sum) in [Array::Fx, Array::Fy, Array::Torque].into_iter().zip(sums) {
             if let Some(column) = arrays.lattice_mut(array) {
                 column[..sum.len()].copy_from_slice(&sum);
@@ -157,14 +158,27 @@ impl<S: Precision, P: Precision> WithLaw for Walk<'_, S, P> {
     type Output = Met;
 
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Met {
-        let column = |array| self.arrays.lattice(array).unwrap_or(&[]);
         let constant = |array| self.arrays.constant(array).unwrap_or(&[]);
+        // Of the printed text positions and velocities are the state itself.
+        let of_state = |array| -> Vec<P> {
+            let column = self.arrays.state(array).unwrap_or(&[]).iter();
+            column.map(|value| P::from_f64(value.to_f64())).collect()
+        };
+        let state = match self.model.text {
+            ProgramText::Ours => [const { vec![] }; 5],
+            ProgramText::Printed => [Array::X0, Array::Y0, Array::X1, Array::Y1, Array::Phi1].map(of_state),
+        };
+        let of_text = |array, number: usize| match self.model.text {
+            ProgramText::Ours => self.arrays.lattice(array).unwrap_or(&[]),
+            ProgramText::Printed => state[number].as_slice(),
+        };
         let discs = neighbor_list::Discs {
-            position: [column(Array::DiscX), column(Array::DiscY)],
-            velocity: [column(Array::DiscVx), column(Array::DiscVy)],
-            omega: column(Array::DiscOmega),
+            position: [of_text(Array::DiscX, 0), of_text(Array::DiscY, 1)],
+            velocity: [of_text(Array::DiscVx, 2), of_text(Array::DiscVy, 3)],
+            omega: of_text(Array::DiscOmega, 4),
             radius: constant(Array::DiscRadius),
             inverse_mass: constant(Array::DiscInverseMass),
+            mass: constant(Array::DiscMass),
             cell: self.arrays.cell(),
         };
         debug_assert!(self.model.discs != Discs::Varying || discs.radius.len() == discs.cell.len());

@@ -54,6 +54,16 @@ define_words! {
 }
 
 define_words! {
+    /// Whose programs are run.
+    pub enum ProgramText {
+        /// Ours: no more than a scene needs, positions relative to the cell, checks among the equations.
+        Ours = "ours",
+        /// The source's own, as printed: Index, Test and contact_i, Gear's derivatives as they are.
+        Printed = "printed",
+    }
+}
+
+define_words! {
     /// A kind of integrator.
     pub enum IntegratorKind {
         /// Gear's predictor–corrector.

@@ -125,6 +125,7 @@ impl Prepared for Discs {
             ("precision", json!(scene.machine.precision.word())),
             ("integrator", json!(scene.integrator.scheme.name())),
             ("execution", json!(scene.machine.execution_name())),
+            ("text", json!((!scene.machine.is_fast()).then(|| scene.machine.text.word()))),
             ("friction", json!(scene.law.has_friction())),
             ("cell_edge", json!(cell_edge)),
             ("instruction_set", json!(scene.machine.instructions().name())),

@@ -18,5 +18,7 @@ define_presets![
     "two-discs",
     "shaken-box",
     "wide-sizes",
-    "bench"
+    "bench",
+    "pipe-small-printed",
+    "dense-gas-printed"
 ];

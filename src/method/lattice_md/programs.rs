@@ -1,5 +1,6 @@
 //! The programs of a step, compiled for what a model needs.
 
+use super::options::ProgramText;
 use super::{Discs, GearValues, Lengths, Model, Scheme};
 use crate::method::pairwise::{CarriedBy, WithLaw, WithScheme};
 use std::marker::PhantomData;
@@ -12,6 +13,7 @@ use stripmine_kernels::law::granular::{Disc, Granular};
 use stripmine_kernels::law::{Field, Law};
 use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_kernels::mask::Mask;
+use stripmine_kernels::printed;
 use stripmine_kernels::sweep::lattice::cells::{Check, Clear, Enter, Images};
 use stripmine_kernels::sweep::lattice::forces::Forces;
 use stripmine_kernels::sweep::lattice::vectors::Spread;
@@ -45,10 +47,17 @@ macro_rules! define_parts {
 
 define_parts! {
     (Predictor, "predictor", "Gear's prediction of all derivatives"),
+    (Box, "box", "positions brought back into a periodic box: of the printed text, which has no equation for it"),
     (Index, "index", "the cell of every disc, the scatter into the Index, the check that no disc was lost"),
+    (Halo, "halo", "images in the halo, the check that no disc was lost: of the printed text, which has no equation for it"),
     (Lattice, "lattice", "the discs' quantities as lattice vectors"),
     (Forces, "forces", "the contact law at every place of the mask"),
     (Corrector, "corrector", "forces gathered back, and Gear's correction of all derivatives"),
+}
+
+impl Part {
+    /// What a step does before the forces once positions are predicted and lie in the box.
+    pub(super) const CELLS: &'static [Part] = &[Part::Index, Part::Halo];
 }
 
 /// One program of the step.
@@ -63,7 +72,76 @@ pub struct StepProgram {
 
 /// The programs of a step of `model`, with state of precision `S` and forces of precision `P`, in their order.
 pub fn programs<S: Precision, P: Precision>(model: &Model) -> Vec<StepProgram> {
-    let step = |part, length, program| StepProgram { part, length, program };
+    match model.text {
+        ProgramText::Ours => ours::<S, P>(model),
+        ProgramText::Printed => printed_programs(model),
+    }
+}
+
+fn step(part: Part, length: Length, program: Box<dyn Runnable>) -> StepProgram {
+    StepProgram { part, length, program }
+}
+
+/// The source's own, which have one precision.
+fn printed_programs(model: &Model) -> Vec<StepProgram> {
+    let Model { shape, frame, ref mask, contact, coordinates, .. } = *model;
+    let law = printed::Printed { contact };
+    let forces = Forces::<f64, _>::new(law, mask, shape, frame, coordinates).asked(model.asked());
+    let into_box = printed::beside::IntoBox::<f64>::new(shape, frame);
+    let mut programs = vec![
+        step(Part::Predictor, Length::Grains, printed_predictor(model)),
+        step(Part::Box, Length::Discs, Box::new(Program::new(into_box))),
+        step(Part::Index, Length::PaddedCells, Box::new(Program::new(printed::Clear::<f64>::default()))),
+        step(
+            Part::Index,
+            Length::Discs,
+            Box::new(Program::new(printed::Enter::<f64, f64>::new(shape, frame))),
+        ),
+        step(Part::Halo, Length::Discs, Box::new(Program::new(Check))),
+    ];
+    if shape.periodic().contains(&true) {
+        let images = printed::beside::Images::<f64>::default();
+        programs.push(step(Part::Halo, Length::HaloCells, Box::new(Program::new(images))));
+    }
+    programs.extend([
+        step(
+            Part::Lattice,
+            Length::PaddedCells,
+            Box::new(Program::new(printed::Map::<f64, f64>::new(shape))),
+        ),
+        step(Part::Forces, Length::SweptCells, Box::new(Program::new(forces))),
+        step(Part::Corrector, Length::Grains, printed_corrector(model)),
+    ]);
+    programs
+}
+
+fn printed_predictor(model: &Model) -> Box<dyn Runnable> {
+    match model.scheme {
+        Scheme::Gear(GearValues::Five) => {
+            Box::new(Program::new(printed::Predictor::<f64, 5, 3>::new(model.dt)))
+        }
+        Scheme::Gear(GearValues::Six) => {
+            Box::new(Program::new(printed::Predictor::<f64, 6, 3>::new(model.dt)))
+        }
+        // No other scheme is the source's: a scene with one is refused.
+        _ => Box::new(Program::new(printed::Predictor::<f64, 4, 3>::new(model.dt))),
+    }
+}
+
+fn printed_corrector(model: &Model) -> Box<dyn Runnable> {
+    fn corrector<const VALUES: usize>(model: &Model) -> Box<dyn Runnable> {
+        let Model { dt, gravity, .. } = *model;
+        let corrector = printed::Corrector::<f64, f64, VALUES, 3>::new(dt, model.acceleration(), gravity);
+        Box::new(Program::new(if model.watch.is_some() { corrector.checked() } else { corrector }))
+    }
+    match model.scheme {
+        Scheme::Gear(GearValues::Five) => corrector::<5>(model),
+        Scheme::Gear(GearValues::Six) => corrector::<6>(model),
+        _ => corrector::<4>(model),
+    }
+}
+
+fn ours<S: Precision, P: Precision>(model: &Model) -> Vec<StepProgram> {
     let (forces, fields) = with_law(model, LatticeSweep::<P>(model, PhantomData));
     let mut programs = vec![
         step(Part::Predictor, Length::Grains, predictor::<S, P>(model)),
@@ -104,7 +182,7 @@ pub fn ledger(programs: &[StepProgram]) -> Ledger {
 /// the law as its own text counts it, asked for its distance by every candidate and for the rest by every pair.
 pub fn rival_ledger<S: Precision, P: Precision>(model: &Model) -> Ledger {
     let one_place = Model { mask: Mask::one_place(), ..model.clone() };
-    let (law, _) = with_law(&one_place, LatticeSweep::<P>(&one_place, PhantomData));
+    let (law, _) = with_law_of_text(&one_place, LatticeSweep::<P>(&one_place, PhantomData));
     let part = Part::Forces.name();
     let mut ledger = Ledger::default();
     for step in programs::<S, P>(model) {
@@ -129,6 +207,14 @@ pub fn rival_ledger<S: Precision, P: Precision>(model: &Model) -> Ledger {
         }
     }
     ledger
+}
+
+/// The law of the programs' text.
+pub(super) fn with_law_of_text<W: WithLaw>(model: &Model, task: W) -> W::Output {
+    match model.text {
+        ProgramText::Ours => with_law(model, task),
+        ProgramText::Printed => task.with(printed::Printed { contact: model.contact }),
+    }
 }
 
 /// The list of the law's compiled variants.
@@ -157,6 +243,9 @@ pub(super) fn with_scheme<W: WithScheme>(model: &Model, work: W) -> W::Output {
 
 /// What the derivatives are multiplied by in the state that the programs carry.
 pub(super) fn scales(model: &Model) -> [f64; DERIVATIVES] {
+    if model.text == ProgramText::Printed {
+        return [1.0; DERIVATIVES];
+    }
     with_scheme(model, CarriedBy { dt: model.dt }).scales
 }
 

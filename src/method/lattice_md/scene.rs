@@ -3,7 +3,7 @@
 use super::keys::*;
 use super::model::{GearValues, OnLongStep, Scheme};
 use super::neighbor_list::Rebuild;
-pub use super::options::{By, EngineChoice, Inertia, IntegratorKind};
+pub use super::options::{By, EngineChoice, Inertia, IntegratorKind, ProgramText};
 use crate::method::pairwise::search::OnConflict;
 use crate::scene::{
     Binding, DT, Domain, Output, Precision, Run, Start, WallMotion, Write, bind_arithmetic, bind_execution,
@@ -125,6 +125,8 @@ impl Search {
 pub struct Machine {
     /// What steps the discs.
     pub engine: EngineChoice,
+    /// Whose programs are run.
+    pub text: ProgramText,
     /// How programs are executed.
     pub execution: Execution,
     /// What positions are measured from by programs.
@@ -139,6 +141,7 @@ impl Default for Machine {
     fn default() -> Self {
         Machine {
             engine: EngineChoice::Auto,
+            text: ProgramText::Ours,
             execution: Execution::Chained,
             coordinates: Coordinates::CellRelative,
             precision: Precision::F64,
@@ -168,6 +171,10 @@ impl Machine {
         // What auto becomes has no such keys, unless one of them is given.
         let is_open = self.engine == EngineChoice::Auto && binding.reads();
         if self.engine == EngineChoice::Programs || is_open {
+            binding.choice(&TEXT, &mut self.text);
+            if self.text == ProgramText::Printed {
+                self.coordinates = Coordinates::Absolute;
+            }
             bind_execution(binding, &EXECUTION, &mut self.execution);
             binding.choice(&COORDINATES, &mut self.coordinates);
         }

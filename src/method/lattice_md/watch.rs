@@ -1,5 +1,6 @@
 //! Which discs broke a precondition, once a counter says that one did.
 
+use super::options::ProgramText;
 use super::{Arrays, Model};
 use crate::domain::Domain;
 use crate::method::pairwise::{Named, conflict, not_finite, outside};
@@ -52,8 +53,12 @@ impl<S: Precision, P: Precision> Named for Names<'_, S, P> {
     }
 
     fn velocity(&self, disc: usize) -> [f64; 2] {
-        [Array::DiscVx, Array::DiscVy]
-            .map(|axis| self.arrays.lattice(axis).map_or(f64::NAN, |column| column[disc].to_f64()))
+        match self.model.text {
+            ProgramText::Ours => [Array::DiscVx, Array::DiscVy]
+                .map(|axis| self.arrays.lattice(axis).map_or(f64::NAN, |column| column[disc].to_f64())),
+            ProgramText::Printed => [Array::X1, Array::Y1]
+                .map(|axis| self.arrays.state(axis).map_or(f64::NAN, |column| column[disc].to_f64())),
+        }
     }
 
     fn radius(&self, disc: usize) -> f64 {
@@ -64,9 +69,22 @@ impl<S: Precision, P: Precision> Named for Names<'_, S, P> {
 }
 
 impl<S: Precision, P: Precision> Names<'_, S, P> {
+    /// Whether a disc belongs to no cell.
+    fn is_stray(&self, disc: usize) -> bool {
+        match self.model.text {
+            ProgramText::Ours => self.arrays.cell()[disc] == 0,
+            // Its cell is not looked for where there is a stray.
+            ProgramText::Printed => {
+                let (at, domain) = (self.position(disc), self.model.domain());
+                let [low, sides] = [domain.corner(), domain.lengths()];
+                (0..2).any(|axis| !(low[axis]..=low[axis] + sides[axis]).contains(&at[axis]))
+            }
+        }
+    }
+
     /// Discs that belong to no cell.
     pub(super) fn stray(&self, count: u64) -> Option<Failure> {
-        let strays = || (0..self.ids.len()).filter(|&disc| self.arrays.cell()[disc] == 0);
+        let strays = || (0..self.ids.len()).filter(|&disc| self.is_stray(disc));
         let lost = |disc: &usize| self.position(*disc).iter().any(|r| !r.is_finite());
         // Those that are nowhere come before those that are outside.
         let (first, count) = match strays().find(lost) {

@@ -112,8 +112,10 @@ pub enum Effect<L> {
     Store(Reference, Operand<L>),
     /// Indices to memory.
     StoreIndex(Reference, RegisterName),
+    /// Numbers to memory through an index vector: address, value.
+    Scatter(Reference, RegisterName, Operand<L>),
     /// Indices to memory through an index vector: address, value.
-    Scatter(Reference, RegisterName, RegisterName),
+    ScatterIndex(Reference, RegisterName, RegisterName),
 }
 
 /// What an instruction does to which operands, and the register that it writes: the type says of which file.
@@ -178,9 +180,12 @@ impl<L: Element> Instruction<L> {
         match self.action {
             Action::Number(_, Number::Load(r) | Number::LoadShifted(r) | Number::Gather(r, ..))
             | Action::Indices(_, Indices::Load(r) | Indices::Gather(r, _))
-            | Action::Effect(Effect::Store(r, _) | Effect::StoreIndex(r, _) | Effect::Scatter(r, ..)) => {
-                Some(r)
-            }
+            | Action::Effect(
+                Effect::Store(r, _)
+                | Effect::StoreIndex(r, _)
+                | Effect::Scatter(r, ..)
+                | Effect::ScatterIndex(r, ..),
+            ) => Some(r),
             _ => None,
         }
     }
@@ -188,7 +193,7 @@ impl<L: Element> Instruction<L> {
     /// The operations it counts as: its own, and a conversion where memory holds another precision than the lanes.
     pub fn operations(&self) -> impl Iterator<Item = Op> {
         let numbers = match self.action {
-            Action::Number(..) | Action::Effect(Effect::Store(..)) => self.reference(),
+            Action::Number(..) | Action::Effect(Effect::Store(..) | Effect::Scatter(..)) => self.reference(),
             _ => None,
         };
         let converts = numbers.is_some_and(|reference| reference.element != L::NAME);
@@ -198,9 +203,10 @@ impl<L: Element> Instruction<L> {
     /// Whether it writes to the array that `reference` names.
     pub fn overwrites(&self, reference: Reference) -> bool {
         match self.action {
-            Action::Effect(Effect::Store(to, _) | Effect::StoreIndex(to, _) | Effect::Scatter(to, ..)) => {
-                (to.array, to.element) == (reference.array, reference.element)
-            }
+            Action::Effect(Effect::Count(..)) => false,
+            Action::Effect(_) => self
+                .reference()
+                .is_some_and(|to| (to.array, to.element) == (reference.array, reference.element)),
             _ => false,
         }
     }
@@ -210,7 +216,7 @@ impl<L: Element> Instruction<L> {
         match &mut self.action {
             Action::Number(_, Number::Unary(_, a) | Number::Gather(_, _, a))
             | Action::Indices(_, Indices::ToIndex(a))
-            | Action::Effect(Effect::Store(_, a)) => visit(a),
+            | Action::Effect(Effect::Store(_, a) | Effect::Scatter(_, _, a)) => visit(a),
             Action::Number(_, Number::Binary(_, a, b) | Number::Select(_, a, b))
             | Action::Truth(_, Truth::Compare(_, a, b)) => {
                 visit(a);
@@ -222,7 +228,7 @@ impl<L: Element> Instruction<L> {
             )
             | Action::Truth(_, Truth::Connective(..) | Truth::Negation(..))
             | Action::Indices(_, Indices::Load(_) | Indices::Gather(..))
-            | Action::Effect(Effect::Count(..) | Effect::StoreIndex(..) | Effect::Scatter(..)) => {}
+            | Action::Effect(Effect::Count(..) | Effect::StoreIndex(..) | Effect::ScatterIndex(..)) => {}
         }
     }
 
@@ -237,8 +243,10 @@ impl<L: Element> Instruction<L> {
             Action::Number(_, Number::Select(a, ..) | Number::Gather(_, a, _) | Number::FromIndex(a))
             | Action::Truth(_, Truth::Negation(_, a))
             | Action::Indices(_, Indices::Gather(_, a))
-            | Action::Effect(Effect::Count(a, _) | Effect::StoreIndex(_, a)) => visit(a),
-            Action::Truth(_, Truth::Connective(_, a, b)) | Action::Effect(Effect::Scatter(_, a, b)) => {
+            | Action::Effect(Effect::Count(a, _) | Effect::StoreIndex(_, a) | Effect::Scatter(_, a, _)) => {
+                visit(a);
+            }
+            Action::Truth(_, Truth::Connective(_, a, b)) | Action::Effect(Effect::ScatterIndex(_, a, b)) => {
                 visit(a);
                 visit(b);
             }

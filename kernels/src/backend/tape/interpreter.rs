@@ -383,7 +383,11 @@ impl<R: Registers> RegisterFiles<R> {
                     span.at(i).store_index_to(column, value.get());
                 }
             }
-            Effect::Scatter(to, index, value) => {
+            Effect::Scatter(to, index, value) => match to.element {
+                f64::NAME => self.scatter(span, span.column::<f64>(to.array), *index, value),
+                _ => self.scatter(span, span.column::<f32>(to.array), *index, value),
+            },
+            Effect::ScatterIndex(to, index, value) => {
                 let (column, index, value) = (span.column(to.array), self.index(*index), self.index(*value));
                 for (i, (index, value)) in index[..span.length].iter().zip(value).enumerate() {
                     span.at(i).scatter_index_to(column, index.get(), value.get());
@@ -404,6 +408,22 @@ impl<R: Registers> RegisterFiles<R> {
             // SAFETY: the source is a register of the file or admitted memory, with all lanes of the span; i is below its length.
             let value = unsafe { span.lanes(value, i) };
             span.at(i).store_to(column, value);
+        }
+    }
+
+    #[inline(always)]
+    fn scatter<T: Element>(
+        &self,
+        span: Span<'_, R>,
+        column: Column<T>,
+        index: RegisterName,
+        value: &Operand<R::Lane>,
+    ) {
+        let value = self.source(value, span);
+        for (i, index) in self.index(index)[..span.length].iter().enumerate() {
+            // SAFETY: the source is a register of the file or admitted memory, with all lanes of the span; i is below its length.
+            let value = unsafe { span.lanes(value, i) };
+            span.at(i).scatter_to(column, index.get(), value);
         }
     }
 }

@@ -73,6 +73,7 @@ fn line<L: Element>(section: &'static str, instruction: &Instruction<L>) -> Line
             Effect::Store(to, value) => (Some(word(to)), vec![word(value)]),
             Effect::StoreIndex(to, value) => (Some(word(to)), vec![word(value)]),
             Effect::Scatter(to, index, value) => (Some(format!("{to}({index})")), vec![word(value)]),
+            Effect::ScatterIndex(to, index, value) => (Some(format!("{to}({index})")), vec![word(value)]),
         },
     };
     Line {

@@ -81,7 +81,9 @@ impl Outline {
             Action::Effect(Effect::Store(to, _) | Effect::StoreIndex(to, _)) => {
                 writes = Some(Place::Memory(to));
             }
-            Action::Effect(Effect::Scatter(to, ..)) => writes = Some(Place::Indexed(to)),
+            Action::Effect(Effect::Scatter(to, ..) | Effect::ScatterIndex(to, ..)) => {
+                writes = Some(Place::Indexed(to))
+            }
             _ => {}
         }
         Outline { op: instruction.op(), converts: instruction.operations().count() > 1, reads, writes }

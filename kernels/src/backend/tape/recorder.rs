@@ -209,7 +209,10 @@ impl<'t, L: Element> Machine for Recording<'t, L> {
         self.0.indices(Indices::Gather(reference(slot, 0), index))
     }
     fn scatter_index(self, slot: Slot<u32>, index: RegisterName, value: RegisterName) {
-        self.0.push(Action::Effect(Effect::Scatter(reference(slot, 0), index, value)));
+        self.0.push(Action::Effect(Effect::ScatterIndex(reference(slot, 0), index, value)));
+    }
+    fn scatter<T: Element>(self, slot: Slot<T>, index: RegisterName, value: Value<'t, L>) {
+        self.0.push(Action::Effect(Effect::Scatter(reference(slot, 0), index, value.operand)));
     }
     fn count(self, counter: Counter, predicate: TruthValue<'t, L>) {
         self.0.push(Action::Effect(Effect::Count(predicate.register, counter.0)));

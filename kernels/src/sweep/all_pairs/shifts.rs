@@ -35,7 +35,9 @@ pub const fn body_array(field: Field) -> Array {
     match field {
         Field::Mass => Array::BodyMass,
         Field::Velocity(axis) => [Array::BodyVx, Array::BodyVy, Array::BodyVz][axis as usize],
-        Field::Omega | Field::Radius | Field::InverseMass => panic!("bodies have no such quantity"),
+        Field::Omega | Field::Radius | Field::InverseMass | Field::Occupied => {
+            panic!("bodies have no such quantity")
+        }
     }
 }
 

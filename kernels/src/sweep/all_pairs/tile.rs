@@ -57,7 +57,9 @@ impl<R: Registers, const SUMS: usize, const BOTH: bool> Meeting<'_, R, SUMS, BOT
         match field {
             Field::Mass => of.mass,
             Field::Velocity(axis) => of.velocity[axis as usize],
-            Field::Omega | Field::Radius | Field::InverseMass => self.registers.splat(R::Lane::default()),
+            Field::Omega | Field::Radius | Field::InverseMass | Field::Occupied => {
+                self.registers.splat(R::Lane::default())
+            }
         }
     }
 

@@ -53,7 +53,7 @@ impl<'a, S: Element> Discs<'a, S> {
             Field::Omega => self.omega,
             Field::Radius => self.radius,
             Field::InverseMass => self.inverse_mass,
-            Field::Mass => &[],
+            Field::Mass | Field::Occupied => &[],
         }
     }
 
@@ -134,7 +134,7 @@ impl<R: Registers, S: Element> Gathered<'_, R, S> {
         let value = self.gather(self.discs.column(field), discs);
         match field {
             Field::Velocity(_) | Field::Omega => value * self.uniform(self.discs.per_time),
-            Field::Radius | Field::InverseMass | Field::Mass => value,
+            Field::Radius | Field::InverseMass | Field::Mass | Field::Occupied => value,
         }
     }
 }

@@ -29,6 +29,14 @@ unsafe impl Text for Clear {
     }
 }
 
+/// A position at most a period (length) outside a periodic side, brought back between `low` and `high`.
+#[inline(always)]
+pub(crate) fn wrapped<V: Vector>(r: V, [low, high]: [V; 2], period: V) -> V {
+    let r = V::select(r.less_than(low), r + period, r);
+    // Rounded, a period below the far side may lie below the near one.
+    V::select(high.less_equal(r), (r - period).max(low), r)
+}
+
 /// Finds the cell of every disc and enters the disc there. Vector length: the discs.
 ///
 /// Positions (state precision `S`) wrap around periodic sides; the lattice's copy of them (force precision `P`) is
@@ -125,10 +133,7 @@ impl<S: Element, P: Element> Enter<S, P> {
         let mut r = m.load(position);
         if self.shape.periodic()[axis] {
             m.section("wrap");
-            let period = m.uniform(cells * edge);
-            r = M::V::select(r.less_than(low), r + period, r);
-            // Rounded, a period below the far side may lie below the near one.
-            r = M::V::select(high.less_equal(r), (r - period).max(low), r);
+            r = wrapped(r, [low, high], m.uniform(cells * edge));
             m.store(position, r);
         }
 

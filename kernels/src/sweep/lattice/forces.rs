@@ -1,7 +1,7 @@
 //! A law at every place of the mask: the force computation of BP93, section 2, step 4.
 
 use super::shape::{Coordinates, Frame, LatticeShape};
-use super::vectors::arrays;
+use super::vectors::lattice_vector;
 use crate::isa::{Array, Counter, Element, Machine, Slot, Text, Vector};
 use crate::law::{Asked, Env, Field, Law, Stated, Sum};
 use crate::mask::Mask;
@@ -96,7 +96,7 @@ impl<M: Machine> Env<2> for &Around<M> {
 
     #[inline(always)]
     fn own(self, field: Field) -> M::V {
-        self.machine.load(Slot::<M::Lane>::new(arrays(field).1))
+        self.machine.load(Slot::<M::Lane>::new(lattice_vector(field)))
     }
 
     #[inline(always)]
@@ -113,7 +113,7 @@ impl<M: Machine> Env<2> for &Around<M> {
 
     #[inline(always)]
     fn partner(self, field: Field, place: Neighbour) -> M::V {
-        self.machine.load_shifted(Slot::<M::Lane>::new(arrays(field).1), place.shift)
+        self.machine.load_shifted(Slot::<M::Lane>::new(lattice_vector(field)), place.shift)
     }
 
     #[inline(always)]

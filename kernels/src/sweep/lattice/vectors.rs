@@ -5,26 +5,38 @@ use crate::isa::{Array, Element, Machine, Slot, Text};
 use crate::law::Field;
 use std::marker::PhantomData;
 
-/// Which arrays hold a quantity: disc by disc, and cell by cell; and what an empty cell has.
+/// The lattice vector of a quantity.
 #[inline]
-pub(super) const fn arrays(field: Field) -> (Array, Array, f64) {
+pub(crate) const fn lattice_vector(field: Field) -> Array {
     match field {
-        Field::Velocity(axis) => {
-            [(Array::DiscVx, Array::Vx, 0.0), (Array::DiscVy, Array::Vy, 0.0)][axis as usize]
-        }
-        Field::Omega => (Array::DiscOmega, Array::Omega, 0.0),
-        Field::Radius => (Array::DiscRadius, Array::Radius, 0.0),
+        Field::Velocity(axis) => [Array::Vx, Array::Vy][axis as usize],
+        Field::Omega => Array::Omega,
+        Field::Radius => Array::Radius,
+        Field::InverseMass => Array::InverseMass,
+        Field::Mass => Array::Mass,
+        Field::Occupied => Array::Test,
+    }
+}
+
+/// Where a quantity stands disc by disc, and what an empty cell has.
+#[inline]
+const fn of_discs(field: Field) -> (Array, f64) {
+    match field {
+        Field::Velocity(axis) => ([Array::DiscVx, Array::DiscVy][axis as usize], 0.0),
+        Field::Omega => (Array::DiscOmega, 0.0),
+        Field::Radius => (Array::DiscRadius, 0.0),
         // An effective mass of two empty cells must be a number.
-        Field::InverseMass => (Array::DiscInverseMass, Array::InverseMass, 1.0),
-        Field::Mass => panic!("a law of the plane states inverse masses"),
+        Field::InverseMass => (Array::DiscInverseMass, 1.0),
+        Field::Mass => (Array::DiscMass, 1.0),
+        Field::Occupied => panic!("an empty cell stands far from everything: no law of ours asks"),
     }
 }
 
 /// Maps the discs' quantities to lattice vectors through the Index (BP93 section 2, step 3). Vector length: the padded
 /// lattice, so that the halo is filled in the same sweep.
 ///
-/// An empty cell gets a position far from everything, which makes every contact with it impossible: the source's
-/// vector Test is not needed.
+/// An empty cell gets a position far from everything, which makes every contact with it impossible, in place of the
+/// source's vector Test ([`printed`](crate::printed) has it).
 #[derive(Clone, Copy, Debug)]
 pub struct Spread<P> {
     fields: &'static [Field],
@@ -65,8 +77,9 @@ unsafe impl<P: Element> Text for Spread<P> {
             m.store(Slot::<P>::new(to), r);
         }
         for &field in self.fields {
-            let (from, to, empty) = arrays(field);
-            m.store(Slot::<P>::new(to), m.gather(Slot::<P>::new(from), index, m.uniform(empty)));
+            let (from, empty) = of_discs(field);
+            let to = Slot::<P>::new(lattice_vector(field));
+            m.store(to, m.gather(Slot::<P>::new(from), index, m.uniform(empty)));
         }
     }
 }

@@ -178,6 +178,7 @@ impl Meeting<'_> {
             Field::Radius => body.radius,
             Field::InverseMass => body.inverse_mass,
             Field::Mass => 1.0 / body.inverse_mass,
+            Field::Occupied => 1.0,
         }
     }
 

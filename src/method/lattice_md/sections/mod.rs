@@ -15,5 +15,6 @@ pub mod misprints;
 pub mod model_validation;
 pub mod pipe_flow;
 pub mod precision;
+pub mod printed_cost;
 pub mod threads;
 pub mod useful_work;

@@ -6,6 +6,7 @@ mod saved;
 use super::fast::{self, FastSearch};
 use super::judge::judge_depth;
 use super::neighbor_list::Rival;
+use super::options::ProgramText;
 use super::programs::{rival_ledger, scales};
 use super::walls::walls_at;
 use super::watch::Names;
@@ -202,6 +203,11 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             if let Some(position) = self.arrays.state_mut([Array::X0, Array::Y0][axis]) {
                 position[grains..].iter_mut().zip(start).for_each(|(to, from)| *to = S::from_f64(from));
             }
+            if self.model.text == ProgramText::Printed
+                && let Some(rate) = self.arrays.state_mut([Array::X1, Array::Y1][axis])
+            {
+                rate[grains..].fill(S::from_f64(velocity[axis]));
+            }
             if let Some(column) = self.arrays.lattice_mut([Array::DiscVx, Array::DiscVy][axis]) {
                 column[grains..].fill(P::from_f64(velocity[axis]));
             }
@@ -215,8 +221,13 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             self.anchor.clear();
             self.anchor.extend_from_slice(self.arrays.cell());
         }
-        let counted = timings.time(Phase::Index, || self.run(&[Part::Index]))?;
-        let strays = counted[STRAYS.0 as usize];
+        // Where the printed text says nothing of discs outside, they are found before it looks for their cells.
+        let mut strays = timings.time(Phase::Index, || self.run(&[Part::Box]))?[STRAYS.0 as usize];
+        let mut conflicts = 0;
+        if strays == 0 {
+            let counted = timings.time(Phase::Index, || self.run(Part::CELLS))?;
+            (strays, conflicts) = (counted[STRAYS.0 as usize], counted[CONFLICTS.0 as usize]);
+        }
         if strays > 0
             && let Some(failure) = self.names().stray(strays)
         {
@@ -230,7 +241,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         }
         // From now on discs are seen from the cells that they are in.
         self.anchor.clear();
-        if counted[CONFLICTS.0 as usize] > 0
+        if conflicts > 0
             && self.rival.is_none()
             && let Some(failure) = self.names().conflicting()
         {

@@ -71,6 +71,8 @@ pub fn ladder(question: &Question, machine: &MachineModel) -> Result<Ladder, Que
         .iter()
         .map(|step| (step.part, Work::of(step.program.as_ref()), lengths.range(step.length).len() as u64))
         .collect();
+    let there: Vec<Part> =
+        Part::ALL.iter().copied().filter(|part| works.iter().any(|(of, ..)| of == part)).collect();
     let of_part = |part: Part| works.iter().filter(move |(of, ..)| *of == part);
     let clocks = |clock: Clock, machine: &MachineModel, part: Part| -> f64 {
         of_part(part).map(|(_, work, n)| clock.clocks(machine, work, *n)).sum()
@@ -78,7 +80,7 @@ pub fn ladder(question: &Question, machine: &MachineModel) -> Result<Ladder, Que
     let period = machine.clock_period_ns().value;
     let mut rungs: Vec<Rung> = vec![];
     for &clock in Clock::ALL {
-        let parts: Vec<f64> = Part::ALL.iter().map(|&part| clocks(clock, machine, part)).collect();
+        let parts: Vec<f64> = there.iter().map(|&part| clocks(clock, machine, part)).collect();
         let sum: f64 = parts.iter().sum();
         rungs.push(Rung {
             clock: clock.name(),
@@ -91,9 +93,9 @@ pub fn ladder(question: &Question, machine: &MachineModel) -> Result<Ladder, Que
     }
     let known = machine.without_assumed_start_ups();
     let last = |machine: &MachineModel| -> f64 {
-        Part::ALL.iter().map(|&part| clocks(Clock::Ports, machine, part)).sum()
+        there.iter().map(|&part| clocks(Clock::Ports, machine, part)).sum()
     };
-    let convoys = Part::ALL.iter().map(|&part| {
+    let convoys = there.iter().map(|&part| {
         let count = |memory| -> (usize, usize) {
             let sets = of_part(part).filter_map(|(_, work, _)| work.order());
             let sets = sets.map(|order| convoys(machine, order, memory));
@@ -112,7 +114,7 @@ pub fn ladder(question: &Question, machine: &MachineModel) -> Result<Ladder, Que
         clock_period_ns: period,
         assumed: machine.assumed(),
         assumed_share: 1.0 - last(&known) / last(machine),
-        parts: Part::ALL.iter().map(|part| part.name()).collect(),
+        parts: there.iter().map(|part| part.name()).collect(),
         convoys: convoys.collect(),
         rungs,
     })
@@ -145,7 +147,7 @@ mod tests {
         let table = crate::method::lattice_md::study::efficiency_table::efficiency_table(&question, &machine)
             .unwrap();
         let ladder = ladder(&question, &machine).unwrap();
-        assert_eq!(ladder.rungs[2].clocks, table.counted_clocks);
-        assert_eq!(ladder.rungs[1].clocks, table.scalar_clocks);
+        assert_eq!(ladder.rungs[2].clocks, table.ours.clocks);
+        assert_eq!(ladder.rungs[1].clocks, table.ours.scalar_clocks);
     }
 }

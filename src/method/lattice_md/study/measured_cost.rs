@@ -12,6 +12,8 @@ use stripmine_kernels::InstructionSet;
 pub struct Variant {
     /// Its name in a legend.
     pub name: &'static str,
+    /// Whose programs: `machine.text`.
+    pub text: &'static str,
     /// `search.by`.
     pub kind: &'static str,
     /// `machine.execution`, for the lattice.
@@ -22,11 +24,41 @@ pub struct Variant {
 
 /// The variants that are compared.
 pub const VARIANTS: [Variant; 5] = [
-    Variant { name: "eager (unchained)", kind: "lattice", execution: Some("eager"), rebuild: None },
-    Variant { name: "strips of 256", kind: "lattice", execution: Some("strip:256"), rebuild: None },
-    Variant { name: "chained", kind: "lattice", execution: Some("chained"), rebuild: None },
-    Variant { name: "lists, all pairs", kind: "neighbor-list", execution: None, rebuild: Some("all-pairs") },
-    Variant { name: "lists, by cells", kind: "neighbor-list", execution: None, rebuild: Some("cells") },
+    Variant {
+        name: "printed, eager (the CRAY's way)",
+        text: "printed",
+        kind: "lattice",
+        execution: Some("eager"),
+        rebuild: None,
+    },
+    Variant {
+        name: "printed, strips of 256",
+        text: "printed",
+        kind: "lattice",
+        execution: Some("strip:256"),
+        rebuild: None,
+    },
+    Variant {
+        name: "ours, chained",
+        text: "ours",
+        kind: "lattice",
+        execution: Some("chained"),
+        rebuild: None,
+    },
+    Variant {
+        name: "printed law, scalar lists of all pairs",
+        text: "printed",
+        kind: "neighbor-list",
+        execution: None,
+        rebuild: Some("all-pairs"),
+    },
+    Variant {
+        name: "ours, scalar lists by cells",
+        text: "ours",
+        kind: "neighbor-list",
+        execution: None,
+        rebuild: Some("cells"),
+    },
 ];
 
 /// How much is measured.
@@ -128,11 +160,14 @@ fn sample(
     occupancy: f64,
     effort: &Effort,
 ) -> Result<Sample, MeasurementError> {
-    let Variant { kind, execution, rebuild, .. } = VARIANTS[variant];
+    let Variant { text, kind, execution, rebuild, .. } = VARIANTS[variant];
     let mut overrides = vec![
         format!("particles.count={particles}"),
         format!("particles.packing_fraction={}", PI * occupancy),
         format!("search.by=\"{kind}\""),
+        format!("machine.text={text}"),
+        // The source has no clamp.
+        "law.cohesionless=false".to_owned(),
     ];
     if kind == "lattice" {
         // As the source has it; the largest cell that the geometry allows would need fewer.

@@ -17,6 +17,7 @@ pub mod phase_times;
 pub mod pipe_flow;
 pub mod precision;
 pub mod predicted_step;
+pub mod printed_cost;
 mod reported;
 pub mod rounds;
 pub mod samples;

@@ -1,13 +1,14 @@
 //! What does a step cost, by the source's count and by ours? BP93 section 3.
 
-pub mod differences;
+pub mod conventions;
 
 use crate::method::lattice_md::{
-    Discs, GearValues, Lengths, Model, Part, Scheme, StepProgram, ledger, programs,
+    Discs, GearValues, Lengths, Model, Part, ProgramText, Scheme, StepProgram, ledger, programs,
 };
 use crate::model::clock::{Clock, Work};
 use crate::model::machine::MachineModel;
-use differences::DifferenceRow;
+use crate::words::Words;
+use conventions::Conventions;
 use serde::Serialize;
 use stripmine_kernels::isa::{Op, OpClass, OpCounts};
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc};
@@ -36,6 +37,9 @@ impl Default for Question {
 /// What of the method a scene needs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Choice {
+    /// Whose programs. The source's own have friction, different discs and absolute positions, whatever is said of these.
+    #[serde(serialize_with = "word")]
+    pub text: ProgramText,
     /// Friction, and with it rotation, torque and spin.
     pub friction: bool,
     /// Whether radii and masses differ.
@@ -48,10 +52,29 @@ pub struct Choice {
     pub cell_relative: bool,
 }
 
+fn word<S: serde::Serializer>(text: &ProgramText, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(text.word())
+}
+
+impl Choice {
+    /// The same by the source's own programs.
+    #[must_use]
+    pub fn printed(self) -> Choice {
+        Choice {
+            text: ProgramText::Printed,
+            friction: true,
+            varying_discs: true,
+            cell_relative: false,
+            ..self
+        }
+    }
+}
+
 impl Default for Choice {
     /// The source's own scene: rough discs of different sizes, absolute positions, 24 places.
     fn default() -> Self {
         Choice {
+            text: ProgramText::Ours,
             friction: true,
             varying_discs: true,
             gear_values: 5,
@@ -87,7 +110,8 @@ pub const fn printed_nop(part: Part) -> Option<u64> {
     match part {
         Part::Predictor => Some(59),
         Part::Index => Some(12),
-        Part::Lattice => None,
+        // The source has no entry for the lattice vectors, nor for what is ours alone.
+        Part::Box | Part::Halo | Part::Lattice => None,
         Part::Forces => Some(1656),
         Part::Corrector => Some(54),
     }
@@ -117,17 +141,19 @@ pub struct EfficiencyTable {
     pub clock_period_ns: f64,
     /// Numbers of the machine that are assumed.
     pub assumed: Vec<String>,
-    /// A row for each part and vector length.
-    pub parts: Vec<PartRow>,
+    /// What the source prints, part by part.
+    pub source: Vec<SourceRow>,
     /// Clock periods of a step by the source's formula and its NOP; on the machine asked, with one pipeline depth.
-    pub printed_clocks: f64,
-    /// Clock periods of a step by the paper clock and our count.
-    pub counted_clocks: f64,
-    /// The same operations on a scalar machine.
-    pub scalar_clocks: f64,
-    /// What of predictor, index and corrector the source's count has.
-    pub differences: Vec<DifferenceRow>,
-    /// Where the operations of the forces go, for each mask place.
+    pub source_clocks: f64,
+    /// The source's own text, counted.
+    pub printed: TextCount,
+    /// The text asked, counted.
+    pub ours: TextCount,
+    /// Ways of counting, and what each makes of the parts.
+    pub conventions: Conventions,
+    /// Where the operations of the printed forces go, for each mask place.
+    pub printed_sections: Vec<SectionRow>,
+    /// The same of the text asked.
     pub force_sections: Vec<SectionRow>,
     /// Operations of each class in each part.
     pub classes: Vec<ClassRow>,
@@ -135,13 +161,51 @@ pub struct EfficiencyTable {
     pub savings: Vec<SavingRow>,
 }
 
-/// A part of the step.
+/// A part as the source prints it.
+#[derive(Clone, Debug, Serialize)]
+pub struct SourceRow {
+    /// The part.
+    pub part: &'static str,
+    /// NOP.
+    pub nop: u64,
+    /// n.
+    pub n: u64,
+    /// NOP·(n + D).
+    pub clocks: f64,
+}
+
+/// What the programs of a text execute in a step.
+#[derive(Clone, Debug, Serialize)]
+pub struct TextCount {
+    /// A row for each part and vector length.
+    pub parts: Vec<PartRow>,
+    /// Clock periods of a step by the source's clock.
+    pub clocks: f64,
+    /// The same operations on a scalar machine.
+    pub scalar_clocks: f64,
+}
+
+impl TextCount {
+    /// Operations of a part, whatever the length of its vectors.
+    pub fn of(&self, part: Part) -> u64 {
+        self.parts.iter().filter(|row| row.part == part.name()).map(|row| row.counted).sum()
+    }
+
+    /// Clock periods of the parts that the source has.
+    pub fn clocks_of_the_sources_parts(&self) -> f64 {
+        let known = |row: &&PartRow| SOURCES_PARTS.iter().any(|part| part.name() == row.part);
+        self.parts.iter().filter(known).map(|row| row.clocks).sum()
+    }
+}
+
+/// The parts of the source's table.
+pub const SOURCES_PARTS: [Part; 4] = [Part::Predictor, Part::Index, Part::Forces, Part::Corrector];
+
+/// A part of the step over vectors of one length.
 #[derive(Clone, Debug, Serialize)]
 pub struct PartRow {
     /// The part.
     pub part: &'static str,
-    /// NOP as printed, on the row of the part's main vector length.
-    pub printed: Option<u64>,
     /// NOP as counted.
     pub counted: u64,
     /// Of these, operations that compute.
@@ -152,10 +216,8 @@ pub struct PartRow {
     pub length: &'static str,
     /// Vector length.
     pub n: u64,
-    /// Clock periods as the source has them.
-    pub printed_clocks: Option<f64>,
-    /// Clock periods of our count.
-    pub counted_clocks: f64,
+    /// Clock periods.
+    pub clocks: f64,
 }
 
 /// A section of the force computation.
@@ -163,14 +225,12 @@ pub struct PartRow {
 pub struct SectionRow {
     /// The section.
     pub section: &'static str,
-    /// Operations of the whole sweep.
-    pub counted: u64,
-    /// Operations for each place of the mask.
-    pub each_place: f64,
-    /// Of these, loads and shifted copies.
-    pub loads_each_place: f64,
-    /// Of these, quotients and square roots.
-    pub divides_and_roots_each_place: f64,
+    /// Operations of a place of the mask.
+    pub in_a_place: u64,
+    /// Of these, shifted copies.
+    pub shifts_in_a_place: u64,
+    /// Operations beside the places, once a cell.
+    pub once: u64,
     /// Share of all operations of the forces.
     pub share: f64,
 }
@@ -180,10 +240,10 @@ pub struct SectionRow {
 pub struct ClassRow {
     /// The class.
     pub class: &'static str,
-    /// Operations in each part, in the order of the step.
-    pub parts: Vec<u64>,
-    /// Their sum.
-    pub total: u64,
+    /// Operations in each part of the step in its order, of the printed text and of the one asked.
+    pub parts: Vec<[u64; 2]>,
+    /// Their sums.
+    pub total: [u64; 2],
 }
 
 /// A variant of the scene.
@@ -212,6 +272,7 @@ pub fn counting_model(cells: usize, choice: Choice) -> Result<Model, ShapeError>
     let coordinates = if choice.cell_relative { Coordinates::CellRelative } else { Coordinates::Absolute };
     let disc = Disc { radius: 0.5, inverse_mass: 1.0 };
     Ok(Model {
+        text: choice.text,
         shape: LatticeShape::new(columns, rows, &mask, [true, true])?,
         frame: Frame { origin: [0.0, 0.0], edge: [0.5, 0.5] },
         sides: [columns, rows].map(|count| 0.5 * count as f64),
@@ -222,7 +283,7 @@ pub fn counting_model(cells: usize, choice: Choice) -> Result<Model, ShapeError>
             normal_damping: 1000.0,
             shear_damping: 300.0,
             friction: 0.5,
-            cohesionless: true,
+            cohesionless: choice.text == ProgramText::Ours,
             arm: ContactArm::Radius,
         },
         friction: choice.friction,
@@ -243,11 +304,11 @@ pub fn counting_model(cells: usize, choice: Choice) -> Result<Model, ShapeError>
     })
 }
 
-/// The programs of a step, and how long their vectors are, for a question.
+/// The model of a question.
 ///
 /// # Errors
 /// [`QuestionError`] if no such lattice exists.
-pub fn step(question: &Question) -> Result<(Vec<StepProgram>, Lengths), QuestionError> {
+fn model_of(question: &Question) -> Result<Model, QuestionError> {
     let &Question { particles, occupancy, choice } = question;
     if particles == 0 {
         return Err(QuestionError::NoParticles);
@@ -256,12 +317,16 @@ pub fn step(question: &Question) -> Result<(Vec<StepProgram>, Lengths), Question
         return Err(QuestionError::Occupancy(occupancy));
     }
     let cells = (particles as f64 / occupancy).ceil() as usize;
-    let model = counting_model(cells, choice).map_err(|cause| QuestionError::Shape {
-        particles,
-        occupancy,
-        cause,
-    })?;
-    let lengths = Lengths::new(&model, particles, particles);
+    counting_model(cells, choice).map_err(|cause| QuestionError::Shape { particles, occupancy, cause })
+}
+
+/// The programs of a step, and how long their vectors are, for a question.
+///
+/// # Errors
+/// [`QuestionError`] if no such lattice exists.
+pub fn step(question: &Question) -> Result<(Vec<StepProgram>, Lengths), QuestionError> {
+    let model = model_of(question)?;
+    let lengths = Lengths::new(&model, question.particles, question.particles);
     Ok((programs::<f64, f64>(&model), lengths))
 }
 
@@ -273,55 +338,58 @@ pub fn efficiency_table(
     question: &Question,
     machine: &MachineModel,
 ) -> Result<EfficiencyTable, QuestionError> {
+    let source_question = Question { choice: question.choice.printed(), ..question.clone() };
+    let (printed_programs, _) = step(&source_question)?;
     let (programs, lengths) = step(question)?;
-    let ledger = ledger(&programs);
-    let n = |length| lengths.range(length).len() as u64;
-    let clocks = |counts: &OpCounts, n| Clock::Paper.clocks(machine, &counts.clone().into(), n);
-
-    let mut parts: Vec<PartRow> = Vec::new();
-    for (part, length, counts) in ledger.parts() {
-        let named = Part::ALL.iter().copied().find(|known| known.name() == part);
-        let main = match named {
-            Some(Part::Forces) => length == Length::SweptCells,
-            Some(Part::Index) => length == Length::Discs,
-            Some(Part::Predictor | Part::Corrector) => length == Length::Grains,
-            Some(Part::Lattice) | None => false,
-        };
-        let printed = named.filter(|_| main).and_then(printed_nop);
-        let printed_n = named.map_or(0, |part| printed_length(part, &lengths));
-        parts.push(PartRow {
-            part,
-            printed,
-            counted: counts.total(),
-            computing: counts.total() - moving(&counts),
-            moving: moving(&counts),
-            length: length.symbol(),
-            n: n(length),
-            printed_clocks: printed.map(|nop| clocks(&any_operations(nop), printed_n)),
-            counted_clocks: clocks(&counts, n(length)),
-        });
-    }
-
+    let (printed, ours) = (ledger(&printed_programs), ledger(&programs));
+    let source: Vec<SourceRow> = SOURCES_PARTS
+        .iter()
+        .filter_map(|&part| {
+            let (nop, n) = (printed_nop(part)?, printed_length(part, &lengths));
+            let clocks = Clock::Paper.clocks(machine, &any_operations(nop).into(), n);
+            Some(SourceRow { part: part.name(), nop, n, clocks })
+        })
+        .collect();
     Ok(EfficiencyTable {
         particles: lengths.discs,
         cells: lengths.cells,
         occupancy: lengths.discs as f64 / lengths.cells as f64,
         lengths: [Length::Grains, Length::Discs, Length::SweptCells, Length::PaddedCells, Length::HaloCells]
-            .map(|length| (length.symbol(), n(length)))
+            .map(|length| (length.symbol(), lengths.range(length).len() as u64))
             .to_vec(),
         choice: question.choice,
         machine: machine.title().to_owned(),
         clock_period_ns: machine.clock_period_ns().value,
         assumed: machine.assumed(),
-        printed_clocks: parts.iter().filter_map(|row| row.printed_clocks).sum(),
-        counted_clocks: parts.iter().map(|row| row.counted_clocks).sum(),
-        scalar_clocks: step_clocks(Clock::Scalar, &ledger, &lengths, machine),
-        parts,
-        differences: differences::differences(&ledger),
-        force_sections: force_sections(&ledger, question.choice),
-        classes: classes(&ledger),
+        source_clocks: source.iter().map(|row| row.clocks).sum(),
+        source,
+        conventions: conventions::conventions(&source_question)?,
+        printed_sections: force_sections(&source_question)?,
+        force_sections: force_sections(question)?,
+        classes: classes([&printed, &ours]),
+        printed: text_count(&printed, &lengths, machine),
+        ours: text_count(&ours, &lengths, machine),
         savings: savings(question, machine)?,
     })
+}
+
+fn text_count(ledger: &Ledger, lengths: &Lengths, machine: &MachineModel) -> TextCount {
+    let n = |length| lengths.range(length).len() as u64;
+    let parts = ledger.parts().into_iter().map(|(part, length, counts)| PartRow {
+        part,
+        counted: counts.total(),
+        computing: counts.total() - moving(&counts),
+        moving: moving(&counts),
+        length: length.symbol(),
+        n: n(length),
+        clocks: Clock::Paper.clocks(machine, &counts.into(), n(length)),
+    });
+    let parts: Vec<PartRow> = parts.collect();
+    TextCount {
+        clocks: parts.iter().map(|row| row.clocks).sum(),
+        scalar_clocks: step_clocks(Clock::Scalar, ledger, lengths, machine),
+        parts,
+    }
 }
 
 /// `nop` operations of no particular kind: sums, which every machine has.
@@ -345,32 +413,41 @@ fn step_clocks(clock: Clock, ledger: &Ledger, lengths: &Lengths, machine: &Machi
         .sum()
 }
 
-fn force_sections(ledger: &Ledger, choice: Choice) -> Vec<SectionRow> {
-    let forces = || ledger.entries().iter().filter(|entry| entry.part == Part::Forces.name());
-    let total: u64 = forces().map(|entry| entry.counts.total()).sum();
-    let places = Mask::square(choice.mask_half_width).offsets().len() as f64;
-    let rows = forces().map(|entry| {
-        let of = |classes: &[OpClass]| {
-            classes.iter().map(|&class| entry.counts.of_class(class)).sum::<u64>() as f64
-        };
+/// What a section does once, and what it does at a place, by the sweeps over all places and over one.
+fn force_sections(question: &Question) -> Result<Vec<SectionRow>, QuestionError> {
+    let tally = |model: &Model| -> Vec<(&'static str, OpCounts)> {
+        let forces = programs::<f64, f64>(model).into_iter().filter(|step| step.part == Part::Forces);
+        forces.flat_map(|step| step.program.tally()).collect()
+    };
+    let model = model_of(question)?;
+    let more = (model.mask.offsets().len() - 1) as u64;
+    let all = tally(&model);
+    let one = tally(&Model { mask: Mask::one_place(), ..model });
+    let total: u64 = all.iter().map(|(_, counts)| counts.total()).sum();
+    let rows = all.iter().map(|(section, counts)| {
+        let of_one = one.iter().find(|(name, _)| name == section).map(|(_, counts)| counts);
+        let at_one = |count: fn(&OpCounts) -> u64| of_one.map_or(0, count);
+        let shifts = |counts: &OpCounts| counts.of_class(OpClass::Shift);
+        let in_a_place = (counts.total() - at_one(OpCounts::total)) / more;
         SectionRow {
-            section: entry.section,
-            counted: entry.counts.total(),
-            each_place: entry.counts.total() as f64 / places,
-            loads_each_place: of(&[OpClass::Load, OpClass::Shift]) / places,
-            divides_and_roots_each_place: of(&[OpClass::Divide, OpClass::SquareRoot]) / places,
-            share: entry.counts.total() as f64 / total as f64,
+            section,
+            in_a_place,
+            shifts_in_a_place: (shifts(counts) - at_one(shifts)) / more,
+            once: at_one(OpCounts::total) - in_a_place,
+            share: counts.total() as f64 / total as f64,
         }
     });
-    rows.collect()
+    Ok(rows.collect())
 }
 
-fn classes(ledger: &Ledger) -> Vec<ClassRow> {
+fn classes(ledgers: [&Ledger; 2]) -> Vec<ClassRow> {
     let rows = OpClass::ALL.iter().map(|&class| {
-        let parts: Vec<u64> = Part::ALL.iter().map(|part| ledger.part(part.name()).of_class(class)).collect();
-        ClassRow { class: class.name(), total: parts.iter().sum(), parts }
+        let of = |part: &Part| ledgers.map(|ledger| ledger.part(part.name()).of_class(class));
+        let parts: Vec<[u64; 2]> = Part::ALL.iter().map(of).collect();
+        let total = [0, 1].map(|text| parts.iter().map(|counts| counts[text]).sum());
+        ClassRow { class: class.name(), total, parts }
     });
-    rows.filter(|row| row.total > 0).collect()
+    rows.filter(|row| row.total != [0, 0]).collect()
 }
 
 /// The scene asked, and scenes that need less or more.

@@ -75,7 +75,13 @@ impl AsPrinted {
 impl Law<2> for AsPrinted {
     type Own<V: Copy> = [V; 2];
 
-    const FIELDS: &'static [Field] = &Field::PLANAR;
+    const FIELDS: &'static [Field] = &[
+        Field::Velocity(Axis::X),
+        Field::Velocity(Axis::Y),
+        Field::Omega,
+        Field::Radius,
+        Field::InverseMass,
+    ];
     const SUMS: &'static [Sum] = &Sum::PLANAR;
 
     fn own<E: Env<2>>(&self, env: E) -> [E::V; 2] {

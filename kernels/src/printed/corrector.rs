@@ -1,0 +1,82 @@
+//! Section 2, step 5 and appendix A, steps 2 and 3: the forces back to the discs, and the correction.
+
+use super::index::CELL;
+use super::predictor::factor;
+use crate::integrator::gear::{Acceleration, STATE, coefficients};
+use crate::integrator::{FORCE, NOT_FINITE};
+use crate::isa::{Array, Element, Machine, Predicate, Slot, Text, Vector};
+use std::marker::PhantomData;
+
+/// r_k ← r_k + C_k (r''corr − r''pr) for `VALUES` derivatives, as they are, of each of `FREEDOMS` degrees of freedom, with C_k =
+/// c_k k!/2 δt^(2−k), so that C_2 = 1 as printed. Vector length: the discs that move.
+///
+/// # As printed
+/// Appendix A multiplies the coefficients by r''corr; it must be its difference from the predicted one.
+#[derive(Clone, Copy, Debug)]
+pub struct Corrector<S, P, const VALUES: usize, const FREEDOMS: usize> {
+    coefficients: [f64; 6],
+    gravity: [f64; 2],
+    checked: bool,
+    precisions: PhantomData<(S, P)>,
+}
+
+impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Corrector<S, P, VALUES, FREEDOMS> {
+    /// For steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
+    #[inline]
+    pub fn new(dt: f64, acceleration: Acceleration, gravity: [f64; 2]) -> Self {
+        let mut coefficients = coefficients(VALUES, acceleration);
+        for (k, c) in coefficients.iter_mut().enumerate() {
+            *c *= factor(dt, 2) / factor(dt, k);
+        }
+        // Exactly, whatever dt.
+        coefficients[2] = 1.0;
+        Corrector { coefficients, gravity, checked: false, precisions: PhantomData }
+    }
+
+    /// The same program, which also counts the discs whose correction is no finite number in [`NOT_FINITE`].
+    #[must_use]
+    #[inline]
+    pub fn checked(self) -> Self {
+        Corrector { checked: true, ..self }
+    }
+}
+
+// SAFETY: the slots depend on the const parameters only.
+unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Text
+    for Corrector<S, P, VALUES, FREEDOMS>
+{
+    type Lane = S;
+
+    #[inline(always)]
+    fn body<M: Machine<Lane = S>>(&self, m: M) {
+        m.section("step 5");
+        let cell = m.load_index(CELL);
+        let mut magnitude = m.uniform(0.0);
+        for freedom in 0..FREEDOMS {
+            m.section("step 5");
+            let force = m.gather(Slot::<P>::new(FORCE[freedom]), cell, m.uniform(0.0));
+            m.section("(1)");
+            let inverse = [Array::DiscInverseMass, Array::DiscInverseInertia][freedom / 2];
+            let mut acceleration = m.load(Slot::<S>::new(inverse)) * force;
+            if freedom < 2 && self.gravity[freedom] != 0.0 {
+                m.section("gravity");
+                acceleration = acceleration + m.uniform(self.gravity[freedom]);
+            }
+            m.section("A 3");
+            let r = STATE[freedom].map(Slot::<S>::new);
+            let difference = acceleration - m.load(r[2]);
+            for k in 0..VALUES {
+                let c = self.coefficients[k];
+                let step = if k == 2 { difference } else { m.uniform(c) * difference };
+                m.store(r[k], m.load(r[k]) + step);
+            }
+            if self.checked {
+                magnitude = magnitude + difference.abs();
+            }
+        }
+        if self.checked {
+            m.section("check");
+            m.count(NOT_FINITE, magnitude.less_than(m.uniform(f64::INFINITY)).not());
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Section 2, step 4: what a cell and the one at place i of the mask do to each other.
+//!
+//! The sweep over the places is that of every law ([`Forces`](crate::sweep::lattice::forces::Forces)).
+
+use crate::isa::Vector;
+use crate::law::granular::Contact;
+use crate::law::{Axis, Env, Field, Law, Sum};
+
+/// BP93 (4)–(17) as products of whole vectors: no branch, and no merge but the 1 and 0 of (7).
+///
+/// Every cell has its own share of a pair: a law for sweeps that meet pairs from both sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Printed {
+    /// k_N, γ_N, γ_S and μ; the source has no clamp and one arm, so the other parameters are not read.
+    pub contact: Contact,
+}
+
+/// The own cell.
+#[derive(Clone, Copy)]
+pub struct Own<V> {
+    position: [V; 2],
+    velocity: [V; 2],
+    omega: V,
+    radius: V,
+    /// −R: the sign in front of the sum of (12).
+    minus_radius: V,
+    mass: V,
+    test: V,
+}
+
+impl Law<2> for Printed {
+    type Own<V: Copy> = Own<V>;
+
+    const FIELDS: &'static [Field] = &[
+        Field::Velocity(Axis::X),
+        Field::Velocity(Axis::Y),
+        Field::Omega,
+        Field::Radius,
+        Field::Mass,
+        Field::Occupied,
+    ];
+    const SUMS: &'static [Sum] = &Sum::PLANAR;
+
+    #[inline(always)]
+    fn own<E: Env<2>>(&self, env: E) -> Own<E::V> {
+        env.section("step 3");
+        let position = env.own_position();
+        let velocity = [env.own(Field::Velocity(Axis::X)), env.own(Field::Velocity(Axis::Y))];
+        let [omega, radius, mass, test] =
+            [Field::Omega, Field::Radius, Field::Mass, Field::Occupied].map(|field| env.own(field));
+        env.section("(12)");
+        let minus_radius = env.uniform(0.0) - radius;
+        Own { position, velocity, omega, radius, minus_radius, mass, test }
+    }
+
+    /// # As printed
+    /// (10), (11): (n_y, −n_x) there and (−n_y, n_x) in (13), which (12) goes with: so here. (14): γ_N M_eff times the normal
+    /// component, with the sign that takes energy out; the power 3/2 of contact_i times the overlap, for where there is no
+    /// contact it has no value. (15): bounded on both sides. (16): the component along the tangent, both spins with one sign.
+    #[inline(always)]
+    fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &Own<E::V>) {
+        let Contact { stiffness, normal_damping, shear_damping, friction, .. } = self.contact;
+        let uniform = |value: f64| env.uniform(value);
+        let (zero, one) = (uniform(0.0), uniform(1.0));
+
+        env.section("(5), (6)");
+        let [dx, dy] = env.displacement(own.position, place);
+        env.section("(4)");
+        let dist = (dx * dx + dy * dy).sqrt();
+        env.section("(7)");
+        let radius = env.partner(Field::Radius, place);
+        let overlap = (own.radius + radius) - dist;
+        let contact = E::V::select(zero.less_than(overlap), one, zero);
+        if env.watches() {
+            env.watch(overlap);
+        }
+
+        env.section("(17)");
+        let mass = env.partner(Field::Mass, place);
+        let m_eff = (own.mass * mass) / (own.mass + mass);
+        env.section("(14)");
+        let vx = own.velocity[0] - env.partner(Field::Velocity(Axis::X), place);
+        let vy = own.velocity[1] - env.partner(Field::Velocity(Axis::Y), place);
+        let inverse = one / dist;
+        let separation = (vx * dx + vy * dy) * inverse;
+        let xi = contact * overlap;
+        let elastic = uniform(stiffness) * (xi * xi.sqrt());
+        let normal = elastic - (uniform(normal_damping) * m_eff) * separation;
+        env.section("(16)");
+        let sliding = (vy * dx - vx * dy) * inverse;
+        let v_rel = sliding - own.radius * own.omega - radius * env.partner(Field::Omega, place);
+        env.section("(15)");
+        let limit = uniform(friction) * normal.abs();
+        let shear = ((uniform(-shear_damping) * m_eff) * v_rel).min(limit).max(zero - limit);
+
+        env.section("(8)");
+        let touching = (own.test * env.partner(Field::Occupied, place)) * contact;
+        let fn_ = touching * normal;
+        env.section("(9)");
+        let fs = touching * shear;
+        env.section("(10)");
+        env.own_add(Sum::Force(Axis::X), inverse * (dx * fn_ - dy * fs));
+        env.section("(11)");
+        env.own_add(Sum::Force(Axis::Y), inverse * (dy * fn_ + dx * fs));
+        env.section("(12)");
+        env.own_add(Sum::Torque, own.minus_radius * fs);
+
+        // What a run asks for beside the print: of what a pair has the own disc's share is as its recoil.
+        if env.counts_dissipation() || env.observes_energy() {
+            env.section("share");
+            let share = touching * (m_eff / own.mass);
+            if env.counts_dissipation() {
+                env.section("dissipation");
+                env.dissipate(share * ((elastic - normal) * separation - shear * v_rel));
+            }
+            if env.observes_energy() {
+                env.section("energy");
+                env.energy(share * self.contact.energy(uniform, xi));
+                env.virial(share * (normal * dist));
+            }
+        }
+    }
+}

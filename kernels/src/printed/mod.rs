@@ -1,0 +1,127 @@
+//! BP93's own program: Index, Test and contact_i as lattice vectors, products by 0 and 1 in place of branches, Gear's
+//! scheme with derivatives as they are. One file a part of the step, each line beside its equation; a section of a
+//! listing is named by the equation that it is ([`EQUATIONS`]), and so is every array ([`ARRAYS`]).
+//!
+//! Four lines of it, equations (4) to (6):
+//!
+//! ```text
+//! let [dx, dy] = env.displacement(own.position, place); // (5), (6)
+//! let distance = (dx * dx + dy * dy).sqrt();            // (4)
+//! ```
+//!
+//! # As printed
+//! What cannot work as it stands in the print is mended, and nothing else; every place says so where it is:
+//!
+//! - (10), (11) take the other tangent than (13), (14) adds a vector to a number and feeds energy in, (15) bounds one side of
+//!   a signed number, (16) gives the spins opposite signs, appendix A multiplies the coefficients by the acceleration and not
+//!   by its difference from the predicted one: the misprints of [`granular`](crate::law::granular), mended as there.
+//! - (14) raises R_i + R_j − |r_i − r_j| to the power 3/2, which has no value where discs do not touch: it is taken of
+//!   contact_i times that ([`forces`]).
+//! - (2) gives an empty cell the particle number 0. The print does not say what stands at x(0): see below.
+//!
+//! What the print has no equation for runs beside it ([`beside`]): positions brought back into a periodic box, images in
+//! a halo, the check that no disc was lost. It is counted apart.
+//!
+//! # What an empty cell holds
+//! Index is 0 there, so x, y, R, M, … of an empty cell are those of a "particle 0". Read like that, all empty cells stand at
+//! one place: two of them have dist = 0, (10) to (12) divide by it, and 1/0 · 0 is no number. These readings exist:
+//!
+//! | an empty cell stands | two empty cells | here (IEEE) | on a CRAY |
+//! |---|---|---|---|
+//! | at one place, that of particle 0 | 0/0 in their own sums, which no disc reads | the discs' forces are right | has no infinity and no NaN: the quotient is out of range, which interrupts the program unless it has turned that off |
+//! | at one place, and a disc comes there | 1/0 · 0 in the disc's own sums | that disc's forces are NaN | as above, and the disc's forces are wrong |
+//! | where its last disc was (nothing clears x) | as particle 0 until discs have come and gone | right by chance | as above at the start |
+//! | at a place of its own, x(0) + (1 − Test)·far | finite | right | right: nothing out of range is met |
+//!
+//! The last is what [`lattice`] does: three more operations on the lattice, exact, and the only reading that a CRAY runs as it is.
+//! `kernels/tests/printed.rs` shows what the others do.
+
+pub mod beside;
+mod corrector;
+mod forces;
+mod index;
+mod lattice;
+mod predictor;
+
+pub use corrector::Corrector;
+pub use forces::Printed;
+pub use index::{Clear, Enter};
+pub use lattice::Map;
+pub use predictor::Predictor;
+
+use crate::isa::Array;
+
+/// Every section of the programs, and the equation that it is.
+pub const EQUATIONS: &[(&str, &str)] = &[
+    ("(1)", "r'' = F/m"),
+    ("gravity", "the rest of the F of (1)"),
+    ("(2)", "Index: the number of the disc in each cell"),
+    ("i of (2)", "cells are numbered from 1, behind a halo: i ∈ [1, LMAX]"),
+    ("way back", "the cell of each disc, kept for step 5"),
+    ("(3)", "Test: 1 where there is a disc"),
+    ("step 3", "Index maps the discs' observables to lattice vectors"),
+    ("step 5", "Index maps the sums back to the discs"),
+    ("(4)", "dist_i"),
+    ("(5), (6)", "Δx_i, Δy_i, by shifted vectors"),
+    ("(7)", "contact_i"),
+    ("(8)", "Test · Test{i} · contact_i · F_n"),
+    ("(9)", "Test · Test{i} · contact_i · F_s"),
+    ("(10)", "F_x"),
+    ("(11)", "F_y"),
+    ("(12)", "the torque"),
+    ("sums", "the left sides of (10) to (12), stored"),
+    ("(14)", "F_n between two discs"),
+    ("(15)", "F_s between two discs"),
+    ("(16)", "v_rel"),
+    ("(17)", "M_eff"),
+    ("A 1", "Taylor expansion over a step"),
+    ("A 3", "correction of every derivative"),
+];
+
+/// Every array of the programs, as the print calls it.
+pub const ARRAYS: &[(Array, &str)] = &[
+    (Array::X0, "x of the discs (A 1)"),
+    (Array::X1, "x' (A 1)"),
+    (Array::X2, "x'' (A 1)"),
+    (Array::X3, "x''' (A 1)"),
+    (Array::X4, "fourth derivative of x (A 1)"),
+    (Array::X5, "fifth derivative of x (A 1)"),
+    (Array::Y0, "y of the discs (A 1)"),
+    (Array::Y1, "y' (A 1)"),
+    (Array::Y2, "y'' (A 1)"),
+    (Array::Y3, "y''' (A 1)"),
+    (Array::Y4, "fourth derivative of y (A 1)"),
+    (Array::Y5, "fifth derivative of y (A 1)"),
+    (Array::Phi0, "Ω, the angle (16)"),
+    (Array::Phi1, "Ω' (16)"),
+    (Array::Phi2, "Ω'' (A 1)"),
+    (Array::Phi3, "Ω''' (A 1)"),
+    (Array::Phi4, "fourth derivative of Ω (A 1)"),
+    (Array::Phi5, "fifth derivative of Ω (A 1)"),
+    (Array::DiscRadius, "R of the discs (13)"),
+    (Array::DiscMass, "M of the discs (17)"),
+    (Array::DiscInverseMass, "1/m of the discs (1)"),
+    (Array::DiscInverseInertia, "(1) for the rotation: 1/I of the discs"),
+    (Array::DiscCell, "the inverse of Index: the cell of each disc (2)"),
+    (Array::Index, "Index (2)"),
+    (Array::Test, "Test (3)"),
+    (Array::FarX, "the place of an empty cell: mended, see What an empty cell holds"),
+    (Array::ImageX, "the periodically continued region (section 2)"),
+    (Array::ImageY, "the periodically continued region (section 2)"),
+    (Array::X, "x (5)"),
+    (Array::Y, "y (6)"),
+    (Array::Vx, "x' (14)"),
+    (Array::Vy, "y' (14)"),
+    (Array::Omega, "Ω' (16)"),
+    (Array::Radius, "R (13)"),
+    (Array::Mass, "M (17)"),
+    (Array::Fx, "F_x (10)"),
+    (Array::Fy, "F_y (11)"),
+    (Array::Torque, "M, the torque (12)"),
+];
+
+/// Mass of a fixed disc (mass), beside grains of at most `largest`: a power of two so large that M_i M/(M_i + M) of (17) is M_i
+/// to the last bit.
+pub fn mass_of_fixed_disc(largest: f64) -> f64 {
+    (largest.log2().ceil() + 60.0).exp2()
+}

@@ -1,0 +1,50 @@
+//! Appendix A, step 1: positions and derivatives a step ahead.
+
+use crate::integrator::gear::STATE;
+use crate::isa::{Element, Machine, Slot, Text};
+use std::marker::PhantomData;
+
+/// Taylor expansion of `VALUES` derivatives of each of `FREEDOMS` degrees of freedom, as they are, not scaled:
+/// r_k ← r_k + δt r_{k+1} + ½ δt² r_{k+2} + …, term by term from the left. Vector length: the discs that move.
+#[derive(Clone, Copy, Debug)]
+pub struct Predictor<S, const VALUES: usize, const FREEDOMS: usize> {
+    dt: f64,
+    precision: PhantomData<S>,
+}
+
+impl<S: Element, const VALUES: usize, const FREEDOMS: usize> Predictor<S, VALUES, FREEDOMS> {
+    /// For steps of `dt` (time).
+    #[inline]
+    pub fn new(dt: f64) -> Self {
+        Predictor { dt, precision: PhantomData }
+    }
+}
+
+/// δt^k/k!.
+#[inline(always)]
+pub(super) fn factor(dt: f64, k: usize) -> f64 {
+    (1..=k).fold(1.0, |factor, k| factor * dt / k as f64)
+}
+
+// SAFETY: the slots depend on the const parameters only.
+unsafe impl<S: Element, const VALUES: usize, const FREEDOMS: usize> Text for Predictor<S, VALUES, FREEDOMS> {
+    type Lane = S;
+
+    #[inline(always)]
+    fn body<M: Machine<Lane = S>>(&self, m: M) {
+        m.section("A 1");
+        for row in &STATE[..FREEDOMS] {
+            let r = row.map(Slot::<S>::new);
+            let mut q = [m.uniform(0.0); VALUES];
+            for k in 0..VALUES {
+                q[k] = m.load(r[k]);
+            }
+            for k in 0..VALUES - 1 {
+                for term in 1..VALUES - k {
+                    q[k] = q[k] + m.uniform(factor(self.dt, term)) * q[k + term];
+                }
+                m.store(r[k], q[k]);
+            }
+        }
+    }
+}
