@@ -265,47 +265,6 @@ fn files_removed_meanwhile_are_missed() {
     }
 }
 
-/// Every method goes on to the same files and the same summary, but for times: also the lists of the rival, as they were.
-#[test]
-fn every_method_has_the_same_summary_after_going_on() {
-    let folder = tempfile::tempdir().unwrap();
-    for (i, method) in [
-        &["--set", "machine.execution=chained"][..],
-        &["--set", "search.by=neighbor-list", "--set", "machine.execution=chained"],
-        &[
-            "--set",
-            "search.by=neighbor-list",
-            "--set",
-            "machine.execution=chained",
-            "--set",
-            "machine.precision=f32",
-        ],
-        &["--set", "search.by=neighbor-list", "--set", "machine.engine=fast"],
-        &["--set", "search.by=sectors", "--set", "machine.engine=fast"],
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(format!("{name}{i}")));
-        let go = |path: &Path, steps: &str, more: &[&str]| {
-            let output =
-                stripmine("pipe-small", path, &[method, &["--set", steps], more].concat()).output().unwrap();
-            succeed(&output);
-        };
-        go(&whole, "run.steps=300", &[]);
-        for steps in ["run.steps=70", "run.steps=171", "run.steps=300"] {
-            go(&parts, steps, &["--resume"]);
-        }
-        assert!(bits(&whole) == bits(&parts), "{method:?}");
-        let of_physics = |path: &Path| {
-            let mut summary = summary(path);
-            ["begun", "ended", "seconds", "phases"].into_iter().for_each(|name| summary[name] = Value::Null);
-            summary
-        };
-        assert_eq!(of_physics(&whole), of_physics(&parts), "{method:?}");
-    }
-}
-
 /// What was chosen when a run began stays chosen, also where another choice would be made today.
 #[test]
 fn a_choice_stays() {

@@ -4,6 +4,7 @@ use assert_cmd::cargo::CommandCargoExt;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use stripmine::method::{Every, METHODS, load};
 
 fn stripmine(arguments: &[&str]) -> Command {
     let mut command = Command::cargo_bin("stripmine").unwrap();
@@ -38,26 +39,6 @@ fn succeed(output: Output) {
 
 /// The files that the physics alone decides.
 const BITS: [&str; 3] = ["thermo.csv", "trajectory.xyz", "dump.lammpstrj"];
-
-/// A run in two sessions leaves the bytes of a run in one, and writing checkpoints changes nothing.
-#[test]
-fn a_resumed_run_is_the_uninterrupted_one_to_the_bit() {
-    let folder = tempfile::tempdir().unwrap();
-    let (whole, parts, without) =
-        (folder.path().join("whole"), folder.path().join("parts"), folder.path().join("without"));
-    succeed(pipe(&whole, &["--set", "run.steps=1000"]));
-    succeed(pipe(&parts, &["--set", "run.steps=430"]));
-    succeed(pipe(&parts, &["--set", "run.steps=1000", "--resume"]));
-    succeed(pipe(&without, &["--set", "run.steps=1000", "--set", "run.checkpoint_every=0"]));
-    for name in BITS {
-        assert!(read(&whole, name) == read(&parts, name), "{name} differs after resumption");
-        assert!(read(&whole, name) == read(&without, name), "{name} differs with checkpoints");
-    }
-    let last = |folder: &Path| -> Value {
-        serde_json::from_slice::<Value>(&read(folder, "summary.json")).unwrap()["last"].clone()
-    };
-    assert_eq!(last(&whole), last(&parts));
-}
 
 /// The same bytes for any number of threads and every way of execution.
 #[test]
@@ -154,6 +135,9 @@ fn a_folder_with_a_run_is_respected() {
     let before = read(&run, "thermo.csv");
     let again = pipe(&run, &steps);
     assert_eq!((again.status.code(), said(&again).contains("--resume")), (Some(2), true), "{}", said(&again));
+    // Before anything is computed, a forecast for example.
+    let loud = output(&[&["run", "pipe-small", "--out", run.to_str().unwrap()][..], &steps].concat());
+    assert!(loud.status.code() == Some(2) && !said(&loud).contains("expected"), "{}", said(&loud));
     let other = pipe(&run, &[&steps[..], &["--resume", "--set", "law.friction=0.3"]].concat());
     assert_eq!((other.status.code(), said(&other).contains("friction")), (Some(2), true), "{}", said(&other));
     assert!(read(&run, "thermo.csv") == before);
@@ -265,5 +249,22 @@ fn bench_prints_what_it_promises() {
         }
         let [start, end] = [0, 1].map(|i| result["temperature"][i].as_f64().unwrap());
         assert!(start > 0.005 && end > 0.005, "the gas must be warm: {start} {end}");
+    }
+}
+
+/// No method writes checkpoints more often than the wall clock asks for, unless its scene does.
+#[test]
+fn checkpoints_are_written_by_the_wall_clock() {
+    for preset in METHODS.iter().flat_map(|method| method.vocabulary.presets) {
+        let checkpoints =
+            |more: &[String]| load(preset.name, more, METHODS).unwrap().0.schedule().checkpoints;
+        let by_default = checkpoints(&[]);
+        assert!(
+            matches!(by_default, Every::Seconds(_)) || preset.name == "bench",
+            "{}: {by_default:?}",
+            preset.name
+        );
+        let given = checkpoints(&["run.checkpoint_every=7".to_owned()]);
+        assert!(matches!(given, Every::Steps(7) | Every::Time(7.0)), "{}: {given:?}", preset.name);
     }
 }

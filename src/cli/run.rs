@@ -1,8 +1,9 @@
 //! `stripmine run`: one simulation into a folder.
 
 use crate::console::{Common, Failure, STEPS, bar, clear_progress, print, print_json, say, warn};
-use crate::method::{Methods, Prepared, prepare, vocabularies};
-use crate::run::{Ending, Existing, Summary, chosen_otherwise, forecast, run};
+use crate::method::{Clock, Methods, Prepared, prepare, vocabularies};
+use crate::number::significant;
+use crate::run::{Ending, Existing, Summary, begins, chosen_otherwise, forecast, run};
 use crate::scene::Values;
 use crate::signals;
 use clap::Args;
@@ -52,8 +53,9 @@ impl RunVerb {
             _ => Existing::Refuse,
         };
         prepared.memory().fits(&self.scene)?;
+        let begins = begins(&folder, existing)?;
         if !common.quiet {
-            before(prepared.as_ref());
+            before(prepared.as_ref(), begins);
         }
         let bar = bar(common, 0, STEPS);
         let progress = |done, all| {
@@ -76,14 +78,15 @@ impl RunVerb {
                 }
                 print(&text(&summary, &folder))
             }
-            Ending::Interrupted { clock } => Err(Failure::Interrupted { step: clock.steps, folder }),
+            Ending::Interrupted { clock } => Err(Failure::Interrupted { moment: clock.to_string(), folder }),
         }
     }
 }
 
-/// Says what is to be expected.
-fn before(prepared: &dyn Prepared) {
-    let of_this_host = forecast::of_the_time(prepared).into_iter().chain([forecast::of_the_memory(prepared)]);
+/// Says what is to be expected: of the time, of a run that begins at the start.
+fn before(prepared: &dyn Prepared, begins: bool) {
+    let of_the_time = begins.then(|| forecast::of_the_time(prepared)).flatten();
+    let of_this_host = of_the_time.into_iter().chain([forecast::of_the_memory(prepared)]);
     let facts = forecast::of_the_step(prepared).into_iter().chain(of_this_host);
     for (label, words) in facts.filter_map(|fact| fact.words) {
         say(format_args!("expected: {label}: {words}"));
@@ -91,12 +94,11 @@ fn before(prepared: &dyn Prepared) {
 }
 
 fn text(summary: &Summary, folder: &Path) -> String {
-    let Summary { steps, events, time, seconds, in_words, .. } = summary;
-    let done = match (steps, events) {
-        (0, 1..) => format!("{events} events"),
-        _ => format!("{steps} steps"),
-    };
-    let mut text = format!("{done} in {seconds:.2} s, time {time:.6}: {in_words}\n");
+    let &Summary { steps, events, time, seconds, from, .. } = summary;
+    let done = Clock { steps, time, events }.done();
+    let session = if from == Clock::default() { String::new() } else { format!(" (from {from} on)") };
+    let time = significant(time, 9);
+    let mut text = format!("{done}, time {time}, in {seconds:.2} s{session}: {}\n", summary.in_words);
     for choice in &summary.choices {
         text.push_str(&format!("chosen: {choice}\n"));
     }

@@ -138,6 +138,7 @@ fn check(name: &str, overrides: &[String], common: &Common, methods: Methods) ->
     }
     let mut facts = prepared.facts();
     facts.extend(forecast::of_the_step(prepared.as_ref()));
+    facts.extend(forecast::of_the_files(prepared.as_ref()));
     facts.extend(forecast::of_the_time(prepared.as_ref()));
     facts.push(forecast::of_the_memory(prepared.as_ref()));
     if !common.json {

@@ -52,10 +52,10 @@ pub enum Failure {
     #[error("{0}")]
     Reported(Box<dyn Reported>),
     /// Interrupted or terminated: exit code 130.
-    #[error("interrupted at step {step}; a checkpoint is written, go on with --resume --out {}", folder.display())]
+    #[error("interrupted at {moment}; a checkpoint is written, go on with --resume --out {}", folder.display())]
     Interrupted {
-        /// Steps done.
-        step: u64,
+        /// How far the run has come.
+        moment: String,
         /// The folder of the run.
         folder: PathBuf,
     },

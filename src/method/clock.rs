@@ -13,12 +13,31 @@ pub struct Clock {
     pub events: u64,
 }
 
+impl Clock {
+    /// What rows and frames are numbered by: steps, or events where a method takes no steps. Moments between which nothing
+    /// happens have the same number; their times differ.
+    pub fn number(&self) -> u64 {
+        if self.steps > 0 { self.steps } else { self.events }
+    }
+
+    /// How much has been done, in words.
+    pub fn done(&self) -> String {
+        if self.takes_steps() { format!("{} steps", self.steps) } else { format!("{} events", self.events) }
+    }
+
+    /// Whether steps have been done, or nothing at all.
+    fn takes_steps(&self) -> bool {
+        self.steps > 0 || self.events == 0 && self.time == 0.0
+    }
+}
+
 impl fmt::Display for Clock {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Clock { steps, time, events } = self;
-        match (steps, events) {
-            (0, 1..) => write!(f, "event {events}, time {time:?}"),
-            _ => write!(f, "step {steps}"),
+        match (self.takes_steps(), steps) {
+            (true, 0) => f.write_str("the start"),
+            (true, _) => write!(f, "step {steps}"),
+            (false, _) => write!(f, "event {events}, time {time:?}"),
         }
     }
 }
@@ -62,6 +81,15 @@ impl Until {
         }
     }
 
+    /// The moment after twice as many of its units.
+    pub fn doubled(self) -> Until {
+        match self {
+            Until::Steps(steps) => Until::Steps(steps.saturating_mul(2)),
+            Until::Time(time) => Until::Time(2.0 * time),
+            Until::Events(events) => Until::Events(events.saturating_mul(2)),
+        }
+    }
+
     /// How much of the way is done, and how long it is, in its unit; a time in parts of a million.
     pub fn progress(self, clock: &Clock) -> (u64, u64) {
         const PARTS: f64 = 1e6;
@@ -93,7 +121,12 @@ pub enum Every {
     Steps(u64),
     /// After as long a time (time).
     Time(f64),
+    /// After so many seconds of the wall clock: at no moment that the simulation knows.
+    Seconds(f64),
 }
+
+/// Checkpoints are this far apart on the wall clock (s) where a scene says nothing else: what they take is little beside that.
+const BETWEEN_CHECKPOINTS: f64 = 10.0;
 
 impl Every {
     /// As many steps; never for 0.
@@ -101,10 +134,35 @@ impl Every {
         if steps == 0 { Every::Never } else { Every::Steps(steps) }
     }
 
+    /// As long a time (time); never for 0.
+    pub fn time(time: f64) -> Every {
+        if time > 0.0 { Every::Time(time) } else { Every::Never }
+    }
+
+    /// Checkpoints: as a scene says, or by the wall clock, for no result depends on them.
+    pub fn checkpoints(given: Option<Every>) -> Every {
+        given.unwrap_or(Every::Seconds(BETWEEN_CHECKPOINTS))
+    }
+
+    /// How often it comes up to an end, and whether the last time is the end itself; none where the end is in other units.
+    fn times(self, until: Until) -> Option<(u64, bool)> {
+        match (self, until) {
+            (Every::Never, _) => Some((0, false)),
+            (Every::Steps(every), Until::Steps(steps)) => Some((steps / every, steps % every == 0)),
+            (Every::Time(every), Until::Time(time)) => {
+                let mut times = (time / every).floor();
+                // The quotient may be rounded to the next whole number.
+                times += f64::from((times + 1.0) * every <= time) - f64::from(times * every > time);
+                Some((times as u64, times * every == time))
+            }
+            _ => None,
+        }
+    }
+
     /// The next moment after the one that the clock shows.
     pub fn next(self, clock: &Clock) -> Option<Until> {
         match self {
-            Every::Never => None,
+            Every::Never | Every::Seconds(_) => None,
             Every::Steps(steps) => Some(Until::Steps((clock.steps / steps + 1) * steps)),
             Every::Time(time) => {
                 let whole = (clock.time / time).floor();
@@ -129,6 +187,20 @@ pub struct Schedule {
     pub checkpoints: Every,
 }
 
+impl Schedule {
+    /// Rows of observables of the whole run, that of the start among them; none where it is not known beforehand.
+    pub fn row_count(&self) -> Option<u64> {
+        self.rows.times(self.until).map(|(times, _)| times + 1)
+    }
+
+    /// Snapshots of the whole run: the start, those that are due, and the end.
+    pub fn snapshot_count(&self) -> Option<u64> {
+        let (times, ends) = self.snapshots.times(self.until)?;
+        let is_over = self.until.has_come(&Clock::default());
+        Some(times + 1 + u64::from(!ends && !is_over))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -149,5 +221,49 @@ mod tests {
         }
         assert!(Until::Steps(5).has_come(&at(5, 0.0)) && !Until::Steps(5).has_passed(&at(5, 0.0)));
         assert_eq!(Until::Time(2.0).progress(&at(0, 0.5)), (250_000, 1_000_000));
+    }
+
+    #[test]
+    fn rows_and_snapshots_are_counted_beforehand() {
+        let schedule =
+            |until, every| Schedule { until, rows: every, snapshots: every, checkpoints: Every::Never };
+        let counts = |until, every| {
+            let schedule = schedule(until, every);
+            (schedule.row_count(), schedule.snapshot_count())
+        };
+        assert_eq!(counts(Until::Steps(70), Every::Steps(30)), (Some(3), Some(4)));
+        assert_eq!(counts(Until::Steps(60), Every::Steps(30)), (Some(3), Some(3)));
+        assert_eq!(counts(Until::Steps(60), Every::Never), (Some(1), Some(2)));
+        assert_eq!(counts(Until::Steps(0), Every::Never), (Some(1), Some(1)));
+        assert_eq!(counts(Until::Events(9), Every::Time(1.0)), (None, None));
+        // Against the moments one by one.
+        for (until, every) in
+            [(0.3, 0.1), (0.7, 0.1), (20.0, 1.0), (4.95, 0.05), (1.0, 0.3), (0.1, 0.3), (5e6, 0.7)]
+        {
+            let (mut clock, mut moments) = (Clock::default(), 0);
+            while let Some(Until::Time(next)) =
+                Every::Time(every).next(&clock).filter(|next| !matches!(next, Until::Time(it) if *it > until))
+            {
+                clock.time = next;
+                moments += 1;
+            }
+            let last = u64::from(clock.time != until);
+            assert_eq!(
+                counts(Until::Time(until), Every::Time(every)),
+                (Some(moments + 1), Some(moments + 1 + last))
+            );
+        }
+    }
+
+    /// What a user reads of a moment: never a step where a method takes none.
+    #[test]
+    fn moments_are_named_by_what_the_method_counts() {
+        let at = |steps, time, events| Clock { steps, time, events };
+        let named = |clock: Clock| (clock.to_string(), clock.done(), clock.number());
+        let words = |moment: &str, done: &str, number| (moment.to_owned(), done.to_owned(), number);
+        assert_eq!(named(at(0, 0.0, 0)), words("the start", "0 steps", 0));
+        assert_eq!(named(at(7, 0.5, 0)), words("step 7", "7 steps", 7));
+        assert_eq!(named(at(0, 0.5, 9)), words("event 9, time 0.5", "9 events", 9));
+        assert_eq!(named(at(0, 0.5, 0)), words("event 0, time 0.5", "0 events", 0));
     }
 }

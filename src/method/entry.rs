@@ -2,10 +2,10 @@
 
 use super::clock::{Clock, Schedule, Until};
 use super::failure::Failure;
+use super::snapshot::Snapshot;
 use super::trials::Trials;
 use crate::console;
 use crate::domain::Domain;
-use crate::io::checkpoint::{Column, Counter};
 use crate::memory::Foreseen;
 use crate::model::machine::MachineModel;
 use crate::particles::Particles;
@@ -296,15 +296,6 @@ pub trait Prepared: Send + Sync {
     fn started_from(&self, particles: Particles) -> Box<dyn Prepared>;
 }
 
-/// Everything that the future of a simulation depends on.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Snapshot {
-    /// Counts and sums, by name.
-    pub counters: BTreeMap<String, Counter>,
-    /// Columns, by name.
-    pub columns: Vec<(String, Column)>,
-}
-
 /// A simulation under way. It never prints and never writes a file.
 pub trait Simulation: Send {
     /// Goes on until the first of some moments has come, or `interrupted` is set; soon after that in either case.
@@ -327,7 +318,7 @@ pub trait Simulation: Send {
     /// A value for each of the method's quantities.
     fn observe(&self) -> Vec<f64>;
 
-    /// Everything that the future depends on.
+    /// Everything that the future depends on, and what has been counted: a summary is the same in however many sessions.
     fn snapshot(&self) -> Snapshot;
 
     /// Takes up a snapshot that was made when the clock showed `clock`.

@@ -34,6 +34,8 @@ pub enum FailureKind {
     BackInTime,
     /// Collisions without end in a finite time.
     InelasticCollapse,
+    /// Particles that lie still where contacts do not last.
+    Resting,
     /// Nothing will ever happen.
     Idle,
     /// Bodies that were bound are not any more.
@@ -56,6 +58,7 @@ impl FailureKind {
             FailureKind::Machine => "machine",
             FailureKind::BackInTime => "back-in-time",
             FailureKind::InelasticCollapse => "inelastic-collapse",
+            FailureKind::Resting => "resting",
             FailureKind::Idle => "idle",
             FailureKind::Unbound => "unbound",
             FailureKind::Lost => "lost",

@@ -10,18 +10,20 @@ mod list;
 pub mod nbody;
 mod pairwise;
 mod probe;
+mod snapshot;
 pub mod throughput;
 mod trials;
 
 pub use clock::{Clock, Every, Schedule, Until};
 pub use entry::{
     Bench, BenchOption, Beyond, Entry, Fact, Item, Prepared, Progress, Purpose, Quantity, RunWarning,
-    Simulation, Snapshot, StepLimit, VectorProgram, Verb,
+    Simulation, StepLimit, VectorProgram, Verb,
 };
 pub use failure::{Culprit, Failure, FailureKind};
 pub use hard_disks::compress;
 pub use list::{METHODS, Methods, load, method, prepare, vocabularies};
 pub use probe::probed;
+pub use snapshot::Snapshot;
 pub use trials::{
     Axis, Balance, Decides, Length, Mapped, Parameter, SMALLEST_RADIUS, Setting, Theory, Trials,
 };

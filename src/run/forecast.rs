@@ -1,17 +1,24 @@
 //! What is to be expected of a run, before it begins: the step against its limits, its error, how long it takes.
 
 use crate::memory::in_words;
-use crate::method::{Beyond, Clock, Every, Fact, Failure, Prepared, Purpose, Until};
+use crate::method::{Beyond, Clock, Fact, Failure, Prepared, Purpose, Until};
 use crate::number::significant;
 use indicatif::HumanDuration;
 use serde_json::{Map, Value, json};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use std::time::{Duration, Instant};
 
-/// Steps of a probe at most.
-const PROBED: u64 = 4096;
-/// Steps are timed over about this long.
-const LONG_ENOUGH: Duration = Duration::from_millis(20);
+/// So many stretches of the beginning are timed, after the first.
+const STRETCHES: usize = 9;
+/// A stretch is timed if it takes as long.
+const LONG_ENOUGH: Duration = Duration::from_millis(3);
+/// No stretch is begun after so long, nor waited for.
+const PATIENCE: Duration = Duration::from_millis(400);
+/// The part of a run for a time that is the first stretch.
+const FIRST_STRETCH: f64 = 1e-9;
+/// What a run may be faster or slower than its beginning: what moves thickens or thins, and other programs come and go.
+const MARGIN: f64 = 1.5;
 
 /// What is to be expected of the step of a scene, the same on every host.
 pub fn of_the_step(prepared: &dyn Prepared) -> Vec<Fact> {
@@ -42,44 +49,132 @@ pub fn of_the_memory(prepared: &dyn Prepared) -> Fact {
     Fact::new("memory", json!(memory), "memory of a run", words)
 }
 
-/// How long it takes on this host, by its first steps and one row of observables; none where it has no given number of steps, or
-/// does not come so far.
+/// How often rows and frames are written, where that is known beforehand.
+pub fn of_the_files(prepared: &dyn Prepared) -> Vec<Fact> {
+    let schedule = prepared.schedule();
+    let counts = [
+        ("rows", "rows of thermo.csv", schedule.row_count()),
+        ("frames", "frames of a trajectory", schedule.snapshot_count()),
+    ];
+    let known = counts.into_iter().filter_map(|(name, label, count)| Some((name, label, count?)));
+    known.map(|(name, label, count)| Fact::new(name, count, label, count.to_string())).collect()
+}
+
+/// How long it takes on this host, as a range, by its first stretches once it is warm and one row of observables; none where it does
+/// not come so far.
 pub fn of_the_time(prepared: &dyn Prepared) -> Option<Fact> {
     let schedule = prepared.schedule();
-    let Until::Steps(steps) = schedule.until else { return None };
-    let [each, row] = timed(prepared, steps.min(PROBED)).ok()?;
-    let rows = match schedule.rows {
-        Every::Steps(every) => steps / every,
-        Every::Never | Every::Time(_) => 0,
+    let Probed { each, row } = probed(prepared).ok()??;
+    let length = length(schedule.until);
+    let rows = schedule.row_count().unwrap_or(0) as f64;
+    let seconds = each.map(|each| each * length + row * rows);
+    let (unit, name) = match schedule.until {
+        Until::Steps(_) => ("steps", "seconds_per_step"),
+        Until::Events(_) => ("events", "seconds_per_event"),
+        Until::Time(_) => ("units of time", "seconds_per_time"),
     };
-    let seconds = each * steps as f64 + row * rows as f64;
-    let about = match seconds {
-        1.0.. => HumanDuration(Duration::from_secs_f64(seconds)).to_string(),
-        _ => format!("{seconds:.2} seconds"),
-    };
+    let [low, typical, high] = seconds;
     let words = format!(
-        "about {about}: {steps} steps of {:.1} µs and {rows} rows of {:.1} µs, as the first ones take here; snapshots are not counted",
-        1e6 * each,
-        1e6 * row
+        "{} to {}: {} {unit} of about {} µs, as the first ones take here once warm, and what is written every so often",
+        about(low),
+        about(high),
+        significant(length, 6),
+        significant(1e6 * each[1], 2),
     );
-    let data = json!({ "seconds": seconds, "seconds_per_step": each, "seconds_per_row": row });
+    let data = json!({ "seconds": typical, "at_least": low, "at_most": high, name: each[1], "seconds_per_row": row });
     Some(Fact::new("expected_time", data, "time of a run", words))
 }
 
-/// Wall seconds of a step of a run, and of a row of observables.
-fn timed(prepared: &dyn Prepared, most: u64) -> Result<[f64; 2], Failure> {
-    let mut simulation = prepared.start(Purpose::Run)?;
-    let (begun, mut steps) = (Instant::now(), 0);
-    while steps < most && begun.elapsed() < LONG_ENOUGH {
-        let moment = Until::Steps((2 * steps).clamp(1, most));
-        simulation.advance(&[moment], &AtomicBool::new(false))?;
-        let Clock { steps: done, .. } = simulation.clock();
-        steps = done;
+fn about(seconds: f64) -> String {
+    match seconds {
+        1.0.. => HumanDuration(Duration::from_secs_f64(seconds)).to_string(),
+        _ => format!("{} seconds", significant(seconds, 2)),
     }
-    let each = begun.elapsed().as_secs_f64() / steps.max(1) as f64;
+}
+
+/// How far a run goes, in the unit of its end.
+fn length(until: Until) -> f64 {
+    match until {
+        Until::Steps(steps) => steps as f64,
+        Until::Events(events) => events as f64,
+        Until::Time(time) => time,
+    }
+}
+
+/// How far it has come, in that unit.
+fn gone(until: Until, clock: &Clock) -> f64 {
+    match until {
+        Until::Steps(_) => clock.steps as f64,
+        Until::Events(_) => clock.events as f64,
+        Until::Time(_) => clock.time,
+    }
+}
+
+/// What the beginning of a run has taken.
+struct Probed {
+    /// Wall seconds of a unit of its end: the fewest and the most to be expected, and in between the median.
+    each: [f64; 3],
+    /// Wall seconds of a row of observables.
+    row: f64,
+}
+
+/// Runs the beginning of a scene. Stretches that are over too soon to be timed are doubled; the first that is not has met cold
+/// memory and threads that had not begun, and does not count where others follow. None where there is nothing to do.
+fn probed(prepared: &dyn Prepared) -> Result<Option<Probed>, Failure> {
+    let until = prepared.schedule().until;
+    let mut simulation = prepared.start(Purpose::Run)?;
+    let mut stretch = match until {
+        Until::Steps(_) => Until::Steps(1),
+        Until::Events(_) => Until::Events(1),
+        Until::Time(time) => Until::Time(time * FIRST_STRETCH),
+    };
+    let (begun, mut each) = (Instant::now(), vec![]);
+    let is_late = AtomicBool::new(false);
+    thread::scope(|scope| -> Result<(), Failure> {
+        let timer = scope.spawn(|| {
+            thread::park_timeout(PATIENCE);
+            is_late.store(true, Ordering::Relaxed);
+        });
+        let mut probe = || {
+            while !until.has_come(&simulation.clock()) && each.len() <= STRETCHES {
+                let (from, start) = (simulation.clock(), Instant::now());
+                simulation.advance(&[until, stretch.after(&from)], &is_late)?;
+                let seconds = start.elapsed();
+                let gone = gone(until, &simulation.clock()) - gone(until, &from);
+                match seconds < LONG_ENOUGH {
+                    true => stretch = stretch.doubled(),
+                    false => each.push(seconds.as_secs_f64() / gone),
+                }
+                if is_late.load(Ordering::Relaxed) {
+                    break;
+                }
+            }
+            Ok(())
+        };
+        let done = probe();
+        timer.thread().unpark();
+        done
+    })?;
+    let all = gone(until, &simulation.clock());
+    if each.len() > 1 {
+        each.remove(0);
+    }
+    if all > 0.0 && each.is_empty() {
+        each.push(begun.elapsed().as_secs_f64() / all);
+    }
+    // A stretch that was cut off before anything happened says nothing.
+    each.retain(|seconds| seconds.is_finite());
+    each.sort_by(f64::total_cmp);
+    let mut rows: Vec<f64> = (0..3).map(|_| timed(|| simulation.observe())).collect();
+    rows.sort_by(f64::total_cmp);
+    let [Some(first), Some(last)] = [each.first(), each.last()] else { return Ok(None) };
+    Ok(Some(Probed { each: [first / MARGIN, each[each.len() / 2], last * MARGIN], row: rows[1] }))
+}
+
+fn timed<R>(work: impl FnOnce() -> R) -> f64 {
     let begun = Instant::now();
-    let _values = simulation.observe();
-    Ok([each, begun.elapsed().as_secs_f64()])
+    let _done = work();
+    begun.elapsed().as_secs_f64()
 }
 
 /// Facts as data, by name.

@@ -2,6 +2,7 @@
 
 use crate::io::FileError;
 use crate::io::growing_file::{GrowingFile, GrowingFileError, Mark};
+use crate::method::Clock;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -17,8 +18,8 @@ pub(super) struct Frames<F> {
     path: PathBuf,
     writing: Arc<Mutex<Writing>>,
     format: Format<F>,
-    /// Step of the last frame.
-    last: Option<u64>,
+    /// The moment of the last frame.
+    last: Option<Clock>,
     /// Where frames go, from the first one on.
     writer: Option<Writer<F>>,
 }
@@ -86,7 +87,7 @@ impl<F: Send + 'static> Frames<F> {
         Ok(Frames::of(GrowingFile::create(path)?, format, None))
     }
 
-    /// Goes on at a mark, where the last frame was that of step `last`.
+    /// Goes on at a mark, where the last frame was that of the moment `last`.
     ///
     /// # Errors
     /// If what was there at the mark is not there any more.
@@ -94,12 +95,12 @@ impl<F: Send + 'static> Frames<F> {
         path: PathBuf,
         format: Format<F>,
         mark: Mark,
-        last: Option<u64>,
+        last: Option<Clock>,
     ) -> Result<Frames<F>, GrowingFileError> {
         Ok(Frames::of(GrowingFile::resume(path, mark)?, format, last))
     }
 
-    fn of(file: GrowingFile, format: Format<F>, last: Option<u64>) -> Frames<F> {
+    fn of(file: GrowingFile, format: Format<F>, last: Option<Clock>) -> Frames<F> {
         let path = file.path().to_owned();
         Frames {
             path,
@@ -118,15 +119,15 @@ impl<F: Send + 'static> Frames<F> {
         locked(&self.writing).file.cut()
     }
 
-    /// Hands the frame of a step to the thread that writes, unless the last one is of that step already.
+    /// Hands the frame of a moment to the thread that writes, unless the last one is of that moment already.
     ///
     /// # Errors
     /// If the system did not let this one or one before it be written.
-    pub(super) fn add(&mut self, step: u64, frame: impl FnOnce() -> F) -> Result<(), FileError> {
-        if self.last == Some(step) {
+    pub(super) fn add(&mut self, moment: Clock, frame: impl FnOnce() -> F) -> Result<(), FileError> {
+        if self.last == Some(moment) {
             return Ok(());
         }
-        self.last = Some(step);
+        self.last = Some(moment);
         let at = |cause| failed(&self.path, cause);
         if self.writer.is_none() {
             self.writer = Some(Writer::begin(&self.writing, self.format).map_err(at)?);
@@ -139,11 +140,11 @@ impl<F: Send + 'static> Frames<F> {
         sent.map_err(|_| failed(&self.path, io::Error::other("the thread that writes has ended")))
     }
 
-    /// Returns when every frame is on the disk; as [`GrowingFile::sync`], with the step of the last frame.
+    /// Returns when every frame is on the disk; as [`GrowingFile::sync`], with the moment of the last frame.
     ///
     /// # Errors
     /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
-    pub(super) fn sync(&mut self) -> Result<(Mark, Option<u64>), FileError> {
+    pub(super) fn sync(&mut self) -> Result<(Mark, Option<Clock>), FileError> {
         if self.writer.is_some() {
             let (answer, answered) = sync_channel(1);
             self.order(Order::Answer(answer))?;
@@ -187,13 +188,20 @@ mod tests {
         };
         let path = folder.path().join("frames");
         let mut frames = Frames::create(path.clone(), format).unwrap();
+        let at = |steps| Clock { steps, ..Clock::default() };
         for step in [0, 1, 1, 2, 5] {
-            frames.add(step, || step).unwrap();
+            frames.add(at(step), || step).unwrap();
         }
         let (mark, last) = frames.sync().unwrap();
-        assert_eq!((mark.bytes, last), (8, Some(5)));
+        assert_eq!((mark.bytes, last), (8, Some(at(5))));
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "0\n1\n2\n5\n");
-        frames.add(7, || 7).unwrap();
+        // A method without steps: frames are of other moments where the time or the events are others.
+        for (time, events) in [(1.0, 8), (1.0, 8), (2.0, 8), (2.0, 9)] {
+            frames.add(Clock { steps: 0, time, events }, || events).unwrap();
+        }
+        frames.sync().unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "0\n1\n2\n5\n8\n8\n9\n");
+        frames.add(at(7), || 7).unwrap();
         assert!(frames.sync().unwrap_err().to_string().contains("no seven"));
     }
 }

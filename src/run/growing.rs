@@ -9,7 +9,7 @@ use crate::io::extxyz::{self, Frame};
 use crate::io::growing_file::{GrowingFile, Mark};
 use crate::io::table_file::TableFile;
 use crate::io::{FileError, lammps};
-use crate::method::{Prepared, Quantity};
+use crate::method::{Clock, Prepared, Quantity};
 use std::collections::BTreeMap;
 use std::io::Write;
 
@@ -22,7 +22,7 @@ pub(super) struct Growing {
     pub(super) events: Option<GrowingFile>,
 }
 
-/// What a checkpoint keeps of a file: how far it was written, and the step of its last frame.
+/// What a checkpoint keeps of a file: how far it was written, and the moment of its last frame.
 pub(super) struct Kept<'c> {
     counters: &'c BTreeMap<String, Counter>,
 }
@@ -46,8 +46,10 @@ impl<'c> Kept<'c> {
         Ok(Mark { bytes: self.count(&format!("{file} bytes"))?, checksum })
     }
 
-    fn last_frame(&self, file: &str) -> Option<u64> {
-        self.count(&format!("{file} last")).ok()
+    fn last_frame(&self, file: &str) -> Option<Clock> {
+        let [steps, time, events] = last_names(file);
+        let Some(Counter::Sum(time)) = self.counters.get(&time) else { return None };
+        Some(Clock { steps: self.count(&steps).ok()?, time: *time, events: self.count(&events).ok()? })
     }
 }
 
@@ -131,10 +133,12 @@ impl Growing {
     /// Returns when everything is on the disk; gives what a checkpoint keeps of it.
     pub(super) fn sync(&mut self) -> Result<BTreeMap<String, Counter>, RunError> {
         let mut counters = BTreeMap::new();
-        let mut keep = |file: &str, mark: Mark, last: Option<u64>| {
+        let mut keep = |file: &str, mark: Mark, last: Option<Clock>| {
             counters.insert(format!("{file} bytes"), Counter::Count(mark.bytes));
             counters.insert(format!("{file} checksum"), Counter::Count(mark.checksum.into()));
-            last.map(|step| counters.insert(format!("{file} last"), Counter::Count(step)));
+            let Some(Clock { steps, time, events }) = last else { return };
+            let moment = [Counter::Count(steps), Counter::Sum(time), Counter::Count(events)];
+            counters.extend(last_names(file).into_iter().zip(moment));
         };
         keep(THERMO, self.thermo.sync()?, None);
         let (mark, last) = self.trajectory.sync()?;
@@ -152,6 +156,11 @@ impl Growing {
         }
         Ok(counters)
     }
+}
+
+/// The counters of the moment of a file's last frame: step, time and events.
+fn last_names(file: &str) -> [String; 3] {
+    ["last", "last time", "last events"].map(|what| format!("{file} {what}"))
 }
 
 /// The names of the columns of `thermo.csv` after the step.

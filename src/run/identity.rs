@@ -3,7 +3,7 @@
 use super::RunError;
 use super::folder::SCENE;
 use crate::io::checkpoint::{Checkpoint, Counter};
-use crate::method::Prepared;
+use crate::method::{Clock, Prepared};
 use crate::origin::Origin;
 use crate::particles::{Kind, Particle, Particles};
 use crate::scene::{Values, Vocabulary};
@@ -13,7 +13,7 @@ use std::path::Path;
 
 /// Which bits this program promises: raised whenever the same scene gives other bits, or a column of the state or a file of
 /// a run means something else. Programs of one number may go on with each other's runs.
-pub(super) const BITS: u64 = 2;
+pub(super) const BITS: u64 = 3;
 
 /// What a run was begun with.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,6 +54,7 @@ impl Identity {
         &self,
         folder: &Path,
         checkpoint: &Checkpoint,
+        moment: Clock,
         other_version: bool,
     ) -> Result<Vec<String>, RunError> {
         same_scene(folder, &checkpoint.scene, &self.scene)?;
@@ -85,9 +86,8 @@ impl Identity {
             } else {
                 "which does not promise the same bits"
             };
-            let step = checkpoint.step;
             notes.push(format!(
-                "gone on at step {step} with {}, {promise}; before, with {}",
+                "gone on at {moment} with {}, {promise}; before, with {}",
                 program(&here),
                 program(&theirs)
             ));

@@ -25,6 +25,7 @@ use crate::signals;
 use recorder::Recorder;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 /// What to do with a folder that holds a run already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -218,8 +219,22 @@ pub enum Ending {
     },
 }
 
-/// At most this part of a run goes by without a word of its progress.
+/// At most this part of a run goes by without a word of its progress; a smaller one where that takes longer than a second.
 const STRIDES: u64 = 1000;
+const LONGEST_STRIDE: Duration = Duration::from_secs(1);
+
+/// Whether a run into a folder begins at the start, as far as the folder tells before anything is computed.
+///
+/// # Errors
+/// If the folder is another's, or holds a run that is to stay.
+pub fn begins(folder: &Path, existing: Existing) -> Result<bool, RunError> {
+    let holds = folder::listed(folder)?.is_some_and(|names| !names.is_empty());
+    match existing {
+        Existing::Refuse if holds => Err(RunError::Exists(folder.to_owned())),
+        Existing::Resume { .. } => Ok(!holds),
+        Existing::Refuse | Existing::Overwrite => Ok(true),
+    }
+}
 
 /// Runs a scene into `folder`. `interrupted` is looked at after every step; `progress(done, all)` hears now and then how much
 /// of the way is done; `notice` hears what is out of the ordinary about going on with a run.
@@ -237,7 +252,7 @@ pub fn run(
 ) -> Result<Ending, RunError> {
     prepared.memory().fits("scene")?;
     // What would be refused in the end is refused before anything takes its time.
-    folder::listed(folder)?;
+    begins(folder, existing)?;
     let mut simulation = prepared.start(Purpose::Run).map_err(RunError::Start)?;
     // A beginning that is cut off would leave a folder without a checkpoint; a run that is resumed has one.
     let held = (!matches!(existing, Existing::Resume { .. })).then(signals::hold);
@@ -245,15 +260,21 @@ pub fn run(
     let _held = held.unwrap_or_else(signals::hold);
     recorder.new_notes().iter().map(String::as_str).for_each(notice);
     let until = prepared.schedule().until;
-    let start = std::time::Instant::now();
+    let from = simulation.clock();
+    let mut strides = STRIDES;
+    let start = Instant::now();
     while !until.has_come(&simulation.clock()) {
         if interrupted.load(Ordering::Relaxed) {
             recorder.checkpoint(simulation.as_ref())?;
             return Ok(Ending::Interrupted { clock: simulation.clock() });
         }
-        let mut moments = vec![until, stride(until).after(&simulation.clock())];
+        let mut moments = vec![until, stride(until, strides).after(&simulation.clock())];
         moments.extend(recorder.due());
+        let begun = Instant::now();
         let advanced = simulation.advance(&moments, interrupted);
+        if begun.elapsed() > LONGEST_STRIDE {
+            strides = strides.saturating_mul(2);
+        }
         recorder.log(&simulation.take_events())?;
         let failed = match advanced {
             Ok(()) => recorder.write_what_is_due(simulation.as_ref())?,
@@ -261,7 +282,7 @@ pub fn run(
         };
         if let Some(failure) = failed {
             let seconds = start.elapsed().as_secs_f64();
-            let summary = Summary::of(prepared, simulation.as_ref(), seconds, Some(&failure));
+            let summary = Summary::of(prepared, simulation.as_ref(), from, seconds, Some(&failure));
             recorder.fail(simulation.as_ref(), summary)?;
             return Err(RunError::Physics { failure, snapshot: recorder.trajectory_path() });
         }
@@ -269,16 +290,16 @@ pub fn run(
         progress(done, all);
     }
     let seconds = start.elapsed().as_secs_f64();
-    let summary = Summary::of(prepared, simulation.as_ref(), seconds, None);
+    let summary = Summary::of(prepared, simulation.as_ref(), from, seconds, None);
     let summary = recorder.finish(simulation.as_ref(), summary)?;
     Ok(Ending::Done(Box::new(summary)))
 }
 
-/// How far a run goes between two words of its progress.
-fn stride(until: Until) -> Until {
+/// How far a run goes between two words of its progress, and looks at the wall clock.
+fn stride(until: Until, strides: u64) -> Until {
     match until {
-        Until::Steps(steps) => Until::Steps((steps / STRIDES).max(1)),
-        Until::Time(time) => Until::Time(time / STRIDES as f64),
-        Until::Events(events) => Until::Events((events / STRIDES).max(1)),
+        Until::Steps(steps) => Until::Steps((steps / strides).max(1)),
+        Until::Time(time) => Until::Time(time / strides as f64),
+        Until::Events(events) => Until::Events((events / strides).max(1)),
     }
 }

@@ -9,11 +9,14 @@ use crate::io::checkpoint::{Checkpoint, Counter, Latest, NAME, read_latest};
 use crate::io::dcd::Positions;
 use crate::io::extxyz::Frame;
 use crate::io::{FileError, lammps};
-use crate::method::{Clock, Failure, FailureKind, Prepared, Quantity, Schedule, Simulation, Snapshot, Until};
+use crate::method::{
+    Clock, Every, Failure, FailureKind, Prepared, Quantity, Schedule, Simulation, Snapshot, Until,
+};
 use crate::scene::Output;
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// The counter of events in a checkpoint.
 const EVENT_COUNT: &str = "events";
@@ -36,6 +39,8 @@ pub(super) struct Recorder {
     new_notes: usize,
     /// When the newest checkpoint was written, if it says all that there is to say.
     checkpointed: Option<Clock>,
+    /// Since when none has been written, on the wall clock.
+    unsaved_since: Instant,
 }
 
 impl Recorder {
@@ -118,6 +123,7 @@ impl Recorder {
             notes,
             new_notes: 0,
             checkpointed: None,
+            unsaved_since: Instant::now(),
         }
     }
 
@@ -133,21 +139,20 @@ impl Recorder {
         let newest = folder.file(NAME);
         let foreign = |reason: String| RunError::Foreign { file: latest.file.clone(), reason };
         let mut checkpoint = latest.checkpoint;
-        let said = checkpoint.origin.get("notes").map_or(0, |notes| notes.lines().count());
-        let mut notes = Identity::of(prepared).check(folder.path(), &checkpoint, other_version)?;
-        notes.extend(session);
-        if latest.file != newest {
-            notes.push(format!(
-                "{} was missing: gone on from the older checkpoint, of step {}",
-                newest.display(),
-                checkpoint.step
-            ));
-        }
         let events = match checkpoint.counters.remove(EVENT_COUNT) {
             Some(Counter::Count(events)) => events,
             _ => 0,
         };
         let clock = Clock { steps: checkpoint.step, time: checkpoint.time, events };
+        let said = checkpoint.origin.get("notes").map_or(0, |notes| notes.lines().count());
+        let mut notes = Identity::of(prepared).check(folder.path(), &checkpoint, clock, other_version)?;
+        notes.extend(session);
+        if latest.file != newest {
+            notes.push(format!(
+                "{} was missing: gone on from the older checkpoint, of {clock}",
+                newest.display()
+            ));
+        }
         let asked = prepared.schedule().until;
         if asked.has_passed(&clock) {
             let done = match asked {
@@ -197,9 +202,12 @@ impl Recorder {
         simulation: &dyn Simulation,
     ) -> Result<Option<Failure>, RunError> {
         let clock = simulation.clock();
-        let [rows, snapshots, checkpoints] =
+        let [rows, snapshots, mut checkpoints] =
             self.due.map(|due| due.is_some_and(|moment| moment.has_come(&clock)));
         let Schedule { rows: row, snapshots: snapshot, checkpoints: checkpoint, .. } = self.schedule;
+        if let Every::Seconds(seconds) = checkpoint {
+            checkpoints = self.unsaved_since.elapsed().as_secs_f64() >= seconds;
+        }
         if rows {
             self.due[0] = row.next(&clock);
             if let Some(failure) = self.thermo(simulation)? {
@@ -233,7 +241,7 @@ impl Recorder {
         if let Some((quantity, &value)) = named.into_iter().find(|(_, value)| !value.is_finite()) {
             return Ok(Some(overflow(clock, quantity.name, value)));
         }
-        self.growing.thermo.append(clock.steps, &row)?;
+        self.growing.thermo.append(clock.number(), &row)?;
         Ok(None)
     }
 
@@ -245,27 +253,27 @@ impl Recorder {
             origin: domain.corner(),
             periodic: Some(domain.periodic()),
             time: clock.time,
-            step: clock.steps,
+            step: clock.number(),
             seed: self.seed,
         }
     }
 
     /// A frame in each of the files that are asked for and do not have it yet.
     fn snapshot(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
-        let step = simulation.clock().steps;
+        let moment = simulation.clock();
         if let Some(dcd) = self.growing.dcd.as_mut().filter(|_| self.output.dcd) {
             let cell = self.domain.lengths();
-            dcd.add(step, || Positions { step, cell, places: simulation.positions() })?;
+            dcd.add(moment, || Positions { step: moment.number(), cell, places: simulation.positions() })?;
         }
         if !(self.output.trajectory || self.output.lammps_dump) {
             return Ok(());
         }
         let frame = self.frame(simulation);
         if let Some(dump) = self.growing.dump.as_mut().filter(|_| self.output.lammps_dump) {
-            dump.add(step, || frame.clone())?;
+            dump.add(moment, || frame.clone())?;
         }
         if self.output.trajectory {
-            self.growing.trajectory.add(step, || frame)?;
+            self.growing.trajectory.add(moment, || frame)?;
         }
         Ok(())
     }
@@ -273,7 +281,7 @@ impl Recorder {
     /// The state of a failed step, whether snapshots are due or not, and what there is to say of it.
     pub(super) fn fail(&mut self, simulation: &dyn Simulation, summary: Summary) -> Result<(), RunError> {
         let frame = self.frame(simulation);
-        self.growing.trajectory.add(frame.step, || frame)?;
+        self.growing.trajectory.add(simulation.clock(), || frame)?;
         self.growing.sync()?;
         self.summary(summary).map(drop)
     }
@@ -304,6 +312,7 @@ impl Recorder {
         };
         checkpoint.write_atomically(self.folder.file(NAME))?;
         self.checkpointed = Some(clock);
+        self.unsaved_since = Instant::now();
         // Later than the checkpoint, so that what is still there can be gone on with.
         Ok(self.folder.check(true)?)
     }

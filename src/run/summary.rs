@@ -1,7 +1,7 @@
 //! What a run says of itself at the end.
 
 use super::forecast;
-use crate::method::{Failure, Prepared, RunWarning, Simulation};
+use crate::method::{Clock, Failure, Prepared, RunWarning, Simulation};
 use crate::origin::{Origin, host, moment};
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -53,6 +53,9 @@ pub struct Summary {
     /// What the method says of itself.
     #[serde(flatten)]
     pub method: Map<String, Value>,
+    /// Where this session began.
+    #[serde(skip)]
+    pub from: Clock,
     /// The last state, in a line.
     #[serde(skip)]
     pub in_words: String,
@@ -62,6 +65,7 @@ impl Summary {
     pub(super) fn of(
         prepared: &dyn Prepared,
         simulation: &dyn Simulation,
+        from: Clock,
         seconds: f64,
         failure: Option<&Failure>,
     ) -> Summary {
@@ -90,6 +94,7 @@ impl Summary {
             seconds,
             phases: simulation.phases(),
             method: simulation.summary(),
+            from,
             in_words: simulation.in_words(),
         }
     }

@@ -39,8 +39,8 @@ define_keys! {
         "Steps between rows of thermo.csv; 0 for none.";
     SNAPSHOT_EVERY = "run" "snapshot_every", Whole(0, MOST_STEPS), "steps", Is("1000"), ALWAYS,
         "Steps between snapshots; 0 for none but the first and the last.";
-    CHECKPOINT_EVERY = "run" "checkpoint_every", Whole(0, MOST_STEPS), "steps", Is("10000"), ALWAYS,
-        "Steps between checkpoints; 0 for one at the end only.";
+    CHECKPOINT_EVERY = "run" "checkpoint_every", Whole(0, MOST_STEPS), "steps", Otherwise("by the wall clock"), ALWAYS,
+        "Steps between checkpoints; 0 for one at the end only. Without it there is one in ten seconds. No result depends on it.";
 }
 
 define_keys! {
@@ -75,8 +75,8 @@ pub struct Run {
     pub thermo_every: u64,
     /// Steps between snapshots.
     pub snapshot_every: u64,
-    /// Steps between checkpoints.
-    pub checkpoint_every: u64,
+    /// Steps between checkpoints; by the wall clock if none.
+    pub checkpoint_every: Option<u64>,
 }
 
 impl Run {
@@ -90,7 +90,7 @@ impl Run {
         }
         binding.whole(&THERMO_EVERY, &mut self.thermo_every);
         binding.whole(&SNAPSHOT_EVERY, &mut self.snapshot_every);
-        binding.whole(&CHECKPOINT_EVERY, &mut self.checkpoint_every);
+        binding.whole_if_any(&CHECKPOINT_EVERY, &mut self.checkpoint_every);
     }
 }
 

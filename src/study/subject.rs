@@ -43,7 +43,7 @@ impl Subject {
         let Some(step) = values.number(trials.step) else { return Err(nothing) };
         let first = match prepared.schedule().rows {
             Every::Steps(steps) => steps,
-            Every::Never | Every::Time(_) => 1,
+            Every::Never | Every::Time(_) | Every::Seconds(_) => 1,
         };
         if steps < first.max(1) {
             return Err(StudyError::OverBeforeOutput { steps, first: first.max(1) });

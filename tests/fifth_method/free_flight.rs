@@ -142,7 +142,7 @@ impl Prepared for Flight {
             until: Until::Steps(self.run.steps),
             rows: Every::steps(self.run.thermo_every),
             snapshots: Every::steps(self.run.snapshot_every),
-            checkpoints: Every::steps(self.run.checkpoint_every),
+            checkpoints: Every::checkpoints(self.run.checkpoint_every.map(Every::steps)),
         }
     }
 

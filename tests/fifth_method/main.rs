@@ -3,7 +3,11 @@
 //!
 //! The test is its own command: with the environment variable set it carries out its arguments with that list of methods.
 
+#[path = "../promises/files.rs"]
+mod files;
 mod free_flight;
+#[path = "../promises/table.rs"]
+mod table;
 
 use std::path::Path;
 use std::process::{Command, ExitCode, Output};
@@ -18,7 +22,8 @@ fn main() -> ExitCode {
         return stripmine::cli::run_with(std::env::args_os(), METHODS);
     }
     scenes_are_listed_checked_and_refused();
-    a_run_is_observed_and_goes_on_to_the_same_bytes();
+    a_run_is_observed();
+    it_keeps_what_every_method_promises();
     it_is_measured();
     it_is_studied();
     it_is_documented();
@@ -26,9 +31,14 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
+fn command() -> Command {
+    let mut command = Command::new(std::env::current_exe().expect("the test has a path"));
+    command.env(AS_COMMAND, "1");
+    command
+}
+
 fn stripmine(arguments: &[&str]) -> Output {
-    let this = std::env::current_exe().expect("the test has a path");
-    Command::new(this).env(AS_COMMAND, "1").args(arguments).output().expect("the test can be run")
+    command().args(arguments).output().expect("the test can be run")
 }
 
 fn succeeds(arguments: &[&str]) -> String {
@@ -58,17 +68,12 @@ fn scenes_are_listed_checked_and_refused() {
     }
 }
 
-fn a_run_is_observed_and_goes_on_to_the_same_bytes() {
+fn a_run_is_observed() {
     let folder = tempfile::tempdir().expect("there is room");
     let path = |name: &str| folder.path().join(name).display().to_string();
-    let (whole, parts) = (path("whole"), path("parts"));
+    let whole = path("whole");
     succeeds(&["run", "drift", "--out", &whole]);
-    succeeds(&["run", "drift", "--out", &parts, "--set", "run.steps=40"]);
-    succeeds(&["run", "drift", "--out", &parts, "--resume"]);
     let read = |run: &str, file: &str| std::fs::read_to_string(Path::new(run).join(file)).expect(file);
-    for file in ["thermo.csv", "trajectory.xyz", "scene.toml"] {
-        assert_eq!(read(&whole, file), read(&parts, file), "{file}");
-    }
     let rows: Vec<Vec<f64>> = read(&whole, "thermo.csv")
         .lines()
         .skip(1)
@@ -81,6 +86,12 @@ fn a_run_is_observed_and_goes_on_to_the_same_bytes() {
     assert_eq!((summary["discs"].as_u64(), summary["steps"].as_u64()), (Some(20), Some(64)));
     let refused = stripmine(&["run", "drift", "--out", &whole, "--resume", "--set", "run.steps=3"]);
     assert_eq!(refused.status.code(), Some(2));
+}
+
+fn it_keeps_what_every_method_promises() {
+    static FIFTH: Methods = &[&free_flight::ENTRY];
+    let held = table::hold(FIFTH, command, table::Extent::Quick);
+    assert!(held.presets == 1 && held.engines == 1 && held.sessions > 2, "{held:?}");
 }
 
 fn it_is_measured() {

@@ -20,7 +20,7 @@ const BIN: f64 = 2.5;
 /// [`ReadError`] if the trajectory cannot be read.
 pub fn pictures(run: &Path) -> Result<Vec<Figure>, ReadError> {
     let (mut last, mut slices) = (None, vec![]);
-    for frame in Frames::open(run.join("trajectory.xyz"))? {
+    for frame in Frames::open(run.join("trajectory.xyz"))?.in_space() {
         let frame: Frame = frame?;
         slices.extend(slice(&frame).map(|counts| (frame.time, counts)));
         last = Some(frame);
@@ -39,6 +39,20 @@ fn gravity(run: &Path) -> Option<[f64; 2]> {
     ([x, y] != [0.0, 0.0]).then_some([x, y])
 }
 
+/// The lower left corner of what is shown of the plane, and its sides (length): the box, or where there is none all particles.
+fn window(frame: &Frame) -> ([f64; 2], [f64; 2]) {
+    if frame.cell.iter().all(|side| side.is_finite()) {
+        return (frame.origin, frame.cell);
+    }
+    let all = frame.particles.all().iter();
+    let ends = all.fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], particle| {
+        let (place, radius) = (particle.place(), particle.radius);
+        let low = [0, 1].map(|axis| low[axis].min(place[axis] - radius));
+        [low, [0, 1].map(|axis| high[axis].max(place[axis] + radius))]
+    });
+    (ends[0], [0, 1].map(|axis| ends[1][axis] - ends[0][axis]))
+}
+
 /// The particles of a frame, their speed as shade.
 fn state(frame: &Frame, gravity: Option<[f64; 2]>) -> Figure {
     let speed = |v: [f64; 3]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
@@ -48,7 +62,7 @@ fn state(frame: &Frame, gravity: Option<[f64; 2]>) -> Figure {
     // Few are much faster than the others: they look like the fastest of a hundred.
     let fastest = crate::statistics::quantile(&speeds, 0.99).filter(|fastest| *fastest > 0.0).unwrap_or(1.0);
     let every = all.len().div_ceil(SHOWN);
-    let ([x, y], [width, height]) = (frame.origin, frame.cell);
+    let ([x, y], [width, height]) = window(frame);
     // A tall box lies down, its upper end to the left.
     let lies = height > LONG * width;
     let place = |[a, b]: [f64; 2]| if lies { [y + height - b, a - x] } else { [a, b] };

@@ -1,5 +1,6 @@
 //! The rows of a frame: where `Properties` puts each column, and a disc from its fields.
 
+use super::Room;
 use super::error::{Mistake, Reason};
 use crate::particles::{Kind, Particle};
 
@@ -73,7 +74,7 @@ impl Layout {
     pub(super) fn disc<'a>(
         &self,
         text: &'a str,
-        line: usize,
+        (line, room): (usize, Room),
         fields: &mut Vec<&'a str>,
     ) -> Result<Particle, Mistake> {
         fields.clear();
@@ -89,10 +90,12 @@ impl Layout {
             [other, ..] => return Err(row.wrong(other, Reason::Species((*other).to_owned()))),
         };
         let [x, y, z] = row.vector(POS)?;
-        row.zeros(POS, &[(2, z)])?;
         let id = row.id()?;
         let [u, v, w] = row.vector(VELO)?;
-        row.zeros(VELO, &[(2, w)])?;
+        if room == Room::Plane {
+            row.zeros(POS, &[(2, z)])?;
+            row.zeros(VELO, &[(2, w)])?;
+        }
         let radius = row.positive(RADIUS)?;
         let mass = row.positive(MASS)?;
         let [about_x, about_y, omega] = row.vector(OMEGA)?;

@@ -1,6 +1,7 @@
 //! What every way to find events offers, and what it says of them. All give the same events at the same times, to the bit.
 
 use super::event::{Arena, Impact};
+use crate::method::Snapshot;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::flight::Disc;
 
@@ -19,11 +20,17 @@ pub trait Engine: Send {
     /// [`Stopped`]: what must not be.
     fn next(&mut self, until: f64, most: u64) -> Result<Option<Happened>, Stopped>;
 
-    /// The time of the last event, or up to which it is known that there is none.
-    fn time(&self) -> f64;
-
     /// How often the partners of a disc were found, of all discs together over their number.
     fn fillings(&self) -> u64;
+
+    /// What a checkpoint keeps of it beside the discs, so that it goes on as if there had been none.
+    fn snapshot(&self) -> Snapshot;
+
+    /// Takes up discs, by their numbers, and what was kept beside them.
+    ///
+    /// # Errors
+    /// A sentence, if it is not of this engine and these discs.
+    fn restore(&mut self, discs: Vec<Disc>, kept: &Snapshot) -> Result<(), String>;
 
     /// What it says of itself in a summary: names and values.
     fn figures(&self) -> Vec<(&'static str, f64)>;

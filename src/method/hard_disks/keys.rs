@@ -60,8 +60,8 @@ define_keys! {
         "Time between rows of thermo.csv; 0 for none.";
     SNAPSHOT_EVERY = "run" "snapshot_every", Number(NonNegative), "time", Is("10.0"), ALWAYS,
         "Time between snapshots; 0 for none but the first and the last.";
-    CHECKPOINT_EVERY = "run" "checkpoint_every", Number(NonNegative), "time", Is("100.0"), ALWAYS,
-        "Time between checkpoints; 0 for one at the end only.";
+    CHECKPOINT_EVERY = "run" "checkpoint_every", Number(NonNegative), "time", Otherwise("by the wall clock"), ALWAYS,
+        "Time between checkpoints; 0 for one at the end only. Without it there is one in ten seconds. No result depends on it.";
 }
 
 /// A run lasts for a number of events, or for a time.

@@ -9,6 +9,7 @@ mod entry;
 mod event;
 mod fast;
 mod floor;
+mod idle;
 mod items;
 mod keys;
 mod options;

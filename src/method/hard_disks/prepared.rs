@@ -3,6 +3,7 @@
 use super::collision_log::COLUMNS;
 use super::compress::compress;
 use super::fast;
+use super::idle::never;
 use super::keys::{ENGINE, EVENTS, FLOOR_AMPLITUDE, MASK, MASKS};
 use super::options::EngineChoice;
 use super::reference::choice::{candidates, mask};
@@ -60,7 +61,6 @@ pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> 
     errors.extend(beyond_sides(&values, &domain, &particles));
     errors.extend(squeezed(&values, &scene, &domain, &particles));
     errors.extend(fixed(&values, &particles));
-    errors.extend(nothing_moves(&values, &scene, &particles));
     let mut choices = vec![];
     let mask = match particles.radii() {
         Some(radii) => way_of(&values, &mut scene, &domain, radii, &particles, &mut choices),
@@ -71,6 +71,7 @@ pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> 
         None
     });
     SceneErrors::none_of(errors)?;
+    SceneErrors::none_of(without_events(&values, &scene, domain, &particles).into_iter().collect())?;
     Ok(Box::new(Checked { scene, domain, particles, mask, warnings: made.warnings, choices }))
 }
 
@@ -121,14 +122,36 @@ fn fixed(values: &Values, particles: &Particles) -> Option<SceneError> {
     })
 }
 
-/// Discs at rest, which have no events.
-fn nothing_moves(values: &Values, scene: &Scene, particles: &Particles) -> Option<SceneError> {
-    let moves = particles.all().iter().any(|disc| disc.velocity != [0.0; 3]);
-    (!moves && matches!(scene.run.until, Until::Events(_))).then(|| {
-        let error =
-            values.spot(&EVENTS).error(Reason::Contradiction, "no disc moves: nothing will ever happen");
-        error.advising("give the discs a temperature or velocities, or ask for a time")
+/// Events of discs that have none.
+fn without_events(
+    values: &Values,
+    scene: &Scene,
+    domain: Domain,
+    particles: &Particles,
+) -> Option<SceneError> {
+    let (discs, _) = discs(&domain, particles);
+    let is_idle = matches!(scene.run.until, Until::Events(_)) && never(&scene.arena(domain), &discs);
+    is_idle.then(|| {
+        let message = "nothing will ever happen: no disc meets another one or a side";
+        let error = values.spot(&EVENTS).error(Reason::Contradiction, message);
+        error.advising("give the discs a temperature or other velocities, or ask for a time")
     })
+}
+
+/// The discs by id, as events see them at the start; and for each the place of its particle.
+fn discs(domain: &Domain, particles: &Particles) -> (Vec<Disc>, Vec<usize>) {
+    let all = particles.all();
+    let mut order: Vec<usize> = (0..all.len()).collect();
+    order.sort_by_key(|&place| all[place].id);
+    let disc = |&place: &usize| Disc {
+        position: domain.wrapped(all[place].place()),
+        velocity: all[place].planar_velocity(),
+        time: 0.0,
+        radius: all[place].radius,
+        mass: all[place].mass,
+        events: 0,
+    };
+    (order.iter().map(disc).collect(), order)
 }
 
 /// How events are found: the mask of the source's way; none for the fast one.
@@ -212,18 +235,7 @@ fn serving(
 impl Checked {
     /// The discs by id, as events see them at the start; and for each the place of its particle.
     pub(super) fn discs(&self) -> (Vec<Disc>, Vec<usize>) {
-        let all = self.particles.all();
-        let mut order: Vec<usize> = (0..all.len()).collect();
-        order.sort_by_key(|&place| all[place].id);
-        let disc = |&place: &usize| Disc {
-            position: self.domain.wrapped(all[place].place()),
-            velocity: all[place].planar_velocity(),
-            time: 0.0,
-            radius: all[place].radius,
-            mass: all[place].mass,
-            events: 0,
-        };
-        (order.iter().map(disc).collect(), order)
+        discs(&self.domain, &self.particles)
     }
 
     fn packing_fraction(&self) -> f64 {

@@ -45,8 +45,8 @@ pub struct Run {
     pub thermo_every: f64,
     /// Time between snapshots.
     pub snapshot_every: f64,
-    /// Time between checkpoints.
-    pub checkpoint_every: f64,
+    /// Time between checkpoints; by the wall clock if none.
+    pub checkpoint_every: Option<f64>,
 }
 
 impl Default for Scene {
@@ -64,7 +64,7 @@ impl Default for Scene {
                 until: Until::Events(0),
                 thermo_every: 0.0,
                 snapshot_every: 0.0,
-                checkpoint_every: 0.0,
+                checkpoint_every: None,
             },
             output: Output::default(),
             collision_log: false,
@@ -89,17 +89,16 @@ impl Run {
         }
         binding.number(&THERMO_EVERY, &mut self.thermo_every);
         binding.number(&SNAPSHOT_EVERY, &mut self.snapshot_every);
-        binding.number(&CHECKPOINT_EVERY, &mut self.checkpoint_every);
+        binding.number_if_any(&CHECKPOINT_EVERY, &mut self.checkpoint_every);
     }
 
     /// As every method states it.
     pub fn schedule(&self) -> Schedule {
-        let every = |time: f64| if time > 0.0 { Every::Time(time) } else { Every::Never };
         Schedule {
             until: self.until,
-            rows: every(self.thermo_every),
-            snapshots: every(self.snapshot_every),
-            checkpoints: every(self.checkpoint_every),
+            rows: Every::time(self.thermo_every),
+            snapshots: Every::time(self.snapshot_every),
+            checkpoints: Every::checkpoints(self.checkpoint_every.map(Every::time)),
         }
     }
 }

@@ -1,13 +1,14 @@
 //! Hard discs under way, observed.
 
-use super::collapse::{Collapse, Watch};
+use super::collapse::{Endless, Watch};
 use super::collision_log::Log;
 use super::engine::{Engine, Happened, Partner, Stopped};
 use super::event::Arena;
 use super::fast::Fast;
+use super::idle::never;
 use super::prepared::Checked;
 use super::reference;
-use crate::io::checkpoint::{Column, Counter};
+use crate::io::checkpoint::Column;
 use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
 use crate::particles::{Particles, in_space};
@@ -22,21 +23,18 @@ use stripmine_kernels::mask::Mask;
 
 /// Events, or fillings of the grid, between looks at whether a run is to be interrupted.
 const UNHEARD: u64 = 4096;
-/// After the grid was filled this often without an event nothing will ever happen: discs fly beside each other.
-const IDLE: u64 = 200_000;
 
 /// Discs under way.
 pub(super) struct Running {
     engine: Box<dyn Engine>,
-    way: Way,
     arena: Arena,
     clock: Clock,
     totals: Totals,
     watch: Watch,
     /// Kinetic energy at the start.
     kinetic: f64,
-    /// How often partners were found up to the last event.
-    filled: u64,
+    /// Whether it is not known that nothing will ever happen, though it was asked since the last event.
+    may_meet: bool,
     /// The particles of the start, and the place among them of each disc.
     particles: Particles,
     places: Vec<usize>,
@@ -75,7 +73,7 @@ impl Running {
         let (discs, places) = checked.discs();
         let arena = checked.scene.arena(checked.domain);
         let kinetic = kinetic(discs.iter(), &arena, 0.0);
-        let watch = Watch::new(0.0, crossing(discs.iter()), discs.len());
+        let watch = Watch::new(crossing(discs.iter()), falling(&discs, &arena), discs.len());
         let way = match &checked.mask {
             Some(mask) => Way::Reference(mask.clone()),
             None => Way::Fast(checked.scene.instructions()),
@@ -85,7 +83,6 @@ impl Running {
         let engine = way.begin(arena, discs.clone(), 0.0).map_err(stopped)?;
         Ok(Running {
             engine,
-            way,
             arena,
             clock: Clock::default(),
             totals: Totals::default(),
@@ -93,7 +90,7 @@ impl Running {
             kinetic,
             particles: checked.particles.clone(),
             places,
-            filled: 0,
+            may_meet: false,
             log: logs.then(Log::default),
             seconds: 0.0,
         })
@@ -107,6 +104,7 @@ impl Running {
     fn count(&mut self, happened: &Happened) {
         self.clock.events += 1;
         self.clock.time = happened.time;
+        self.may_meet = false;
         if let Some(impact) = happened.impact {
             self.totals.collisions += 1;
             self.totals.made_elastic += u64::from(impact.was_made_elastic);
@@ -119,28 +117,51 @@ impl Running {
         }
     }
 
-    /// Whether nothing has happened for so long that nothing will.
-    fn is_idle(&self) -> bool {
-        self.engine.fillings() > self.filled + IDLE
+    /// Whether it is proved that nothing will ever happen. Between events nobody has to ask twice.
+    fn is_idle(&mut self) -> bool {
+        if !self.may_meet {
+            let discs: Vec<Disc> = self.discs().copied().collect();
+            self.may_meet = !never(&self.arena, &discs);
+        }
+        !self.may_meet
+    }
+
+    fn idle(&self) -> Failure {
+        let message = "no disc will ever meet another one or a side";
+        let remedy = "ask for a time instead of events, or give the discs other velocities";
+        Failure::new(FailureKind::Idle, message, remedy).at(self.clock)
     }
 
     fn failure(&self, why: Stopped) -> Failure {
         failure(why, &|disc| *self.engine.disc(disc), &self.particles, &self.places, self.clock)
     }
 
-    fn collapsed(&self, happened: &Happened, Collapse { events, duration }: Collapse) -> Failure {
+    fn endless(&self, happened: &Happened, Endless { rests, events, duration }: Endless) -> Failure {
         let discs =
             [Some(happened.disc), if let Partner::Disc(other) = happened.with { Some(other) } else { None }];
         let culprits: Vec<Culprit> = discs.into_iter().flatten().map(|disc| self.culprit(disc)).collect();
         let named: Vec<String> = culprits.iter().map(ToString::to_string).collect();
-        let message = format!(
-            "inelastic collapse: {events} collisions within a time of {duration}, the last of {}",
-            named.join(" and "),
-            duration = significant(duration, 4)
-        );
-        let remedy = "set law.contact_duration to a small part of the mean free time: collisions that come sooner are then elastic; \
-                      or raise law.restitution";
-        let failure = Failure::new(FailureKind::InelasticCollapse, message, remedy).at(self.clock);
+        let (named, took) = (named.join(" and "), significant(duration, 4));
+        let (kind, message, remedy) = if rests {
+            let message = format!(
+                "{named} has come to rest: {events} events of it and what it lies on within a time of {took}, and hard discs have \
+                 no contact that lasts"
+            );
+            let least = significant(1e-4 * falling(self.discs(), &self.arena), 1);
+            let remedy = format!(
+                "raise law.contact_duration to {least} or more, so that discs at rest bounce less often; raise law.wall_restitution; or \
+                 take soft discs, method.kind = \"lattice-md\""
+            );
+            (FailureKind::Resting, message, remedy)
+        } else {
+            let message = format!(
+                "inelastic collapse: {events} collisions within a time of {took}, the last of {named}"
+            );
+            let remedy = "set law.contact_duration to a small part of the mean free time: collisions that come sooner are then \
+                          elastic; or raise law.restitution";
+            (FailureKind::InelasticCollapse, message, remedy.to_owned())
+        };
+        let failure = Failure::new(kind, message, remedy).at(self.clock);
         let rate = events as f64 / duration.max(f64::MIN_POSITIVE);
         failure.of(culprits.len() as u64, culprits).with([
             ("events", events as f64),
@@ -172,6 +193,13 @@ fn crossing<'d>(discs: impl Iterator<Item = &'d Disc>) -> f64 {
         smallest = disc.radius.min(smallest);
     }
     smallest / (squares / count).sqrt()
+}
+
+/// The time in which a disc falls through the radius of the smallest; infinite where nothing falls.
+fn falling<'d>(discs: impl IntoIterator<Item = &'d Disc>, arena: &Arena) -> f64 {
+    let [gx, gy] = arena.space.gravity().unwrap_or_default();
+    let smallest = discs.into_iter().map(|disc| disc.radius).fold(f64::INFINITY, f64::min);
+    (2.0 * smallest / gx.hypot(gy)).sqrt()
 }
 
 fn culprit(number: u32, disc: &Disc, particles: &Particles, places: &[usize]) -> Culprit {
@@ -228,7 +256,6 @@ impl Simulation for Running {
             Until::Steps(_) | Until::Events(_) => None,
         });
         let end = end.fold(f64::INFINITY, f64::min);
-        let awaits_events = until.iter().any(|moment| matches!(moment, Until::Events(_)));
         while !until.iter().any(|moment| moment.has_come(&self.clock)) {
             if self.clock.events.is_multiple_of(UNHEARD) && interrupted.load(Ordering::Relaxed) {
                 break;
@@ -238,27 +265,22 @@ impl Simulation for Running {
                 Err(why) => return Err(self.failure(why)),
                 Ok(Some(happened)) => {
                     self.count(&happened);
-                    self.filled = self.engine.fillings();
                     let engine = &self.engine;
                     let crossing = || crossing((0..engine.count() as u32).map(|number| engine.disc(number)));
-                    if let Some(collapse) = self.watch.see(happened.time, crossing) {
-                        return Err(self.collapsed(&happened, collapse));
+                    if let Some(endless) = self.watch.see(&happened, crossing) {
+                        return Err(self.endless(&happened, endless));
                     }
                 }
+                // Nothing is expected any more, or nothing up to the end, or nothing has happened for long.
                 Ok(None) if self.engine.fillings() < unheard && end.is_finite() => self.clock.time = end,
-                Ok(None) if self.engine.fillings() >= unheard && !(awaits_events && self.is_idle()) => {
-                    if interrupted.load(Ordering::Relaxed) {
-                        break;
+                Ok(None) if self.engine.fillings() < unheard || self.is_idle() => {
+                    if end.is_infinite() {
+                        return Err(self.idle());
                     }
+                    self.clock.time = end;
                 }
-                Ok(None) => {
-                    let message = format!(
-                        "no disc meets another one or a side: nothing happened up to {:?}",
-                        self.engine.time()
-                    );
-                    let remedy = "ask for a time instead of events, or give the discs other velocities";
-                    return Err(Failure::new(FailureKind::Idle, message, remedy).at(self.clock));
-                }
+                Ok(None) if interrupted.load(Ordering::Relaxed) => break,
+                Ok(None) => {}
             }
         }
         self.seconds += begun.elapsed().as_secs_f64();
@@ -311,52 +333,33 @@ impl Simulation for Running {
         let column = |(name, of): (&str, Field)| {
             (name.to_owned(), Column::F64(self.discs().map(|disc| *of(&mut { *disc })).collect()))
         };
-        let events = Column::U64(self.discs().map(|disc| disc.events).collect());
+        let mut kept = self.engine.snapshot();
+        kept.columns.extend(FIELDS.map(column));
+        kept.add_column("events", Column::U64(self.discs().map(|disc| disc.events).collect()));
         let Totals { collisions, made_elastic, virial } = self.totals;
-        let counters = [
-            ("collisions", Counter::Count(collisions)),
-            ("made_elastic", Counter::Count(made_elastic)),
-            ("virial", Counter::Sum(virial)),
-        ];
-        Snapshot {
-            counters: counters.map(|(name, counter)| (name.to_owned(), counter)).into_iter().collect(),
-            columns: FIELDS.map(column).into_iter().chain([("events".to_owned(), events)]).collect(),
-        }
+        kept.add_count("collisions", collisions);
+        kept.add_count("made_elastic", made_elastic);
+        kept.add_sum("virial", virial);
+        self.watch.keep(&mut kept);
+        kept
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
-        let Snapshot { counters, columns } = snapshot;
         let mut discs: Vec<Disc> = self.discs().copied().collect();
         for (name, of) in FIELDS {
-            let column = columns.iter().find(|(there, _)| there == name);
-            let Some((_, Column::F64(values))) = column.filter(|(_, values)| values.len() == discs.len())
-            else {
-                return Err(format!("the column {name} is missing"));
-            };
+            let values = snapshot.numbers(name, discs.len())?;
             discs.iter_mut().zip(values).for_each(|(disc, &value)| *of(disc) = value);
         }
-        let events = columns.iter().find(|(there, _)| there == "events");
-        let Some((_, Column::U64(events))) = events.filter(|(_, values)| values.len() == discs.len()) else {
-            return Err("the column events is missing".to_owned());
-        };
+        let events = snapshot.counts("events", discs.len())?;
         discs.iter_mut().zip(events).for_each(|(disc, &count)| disc.events = count);
-        let count = |name: &str| match counters.get(name) {
-            Some(Counter::Count(count)) => Ok(*count),
-            _ => Err(format!("the counter {name} is missing")),
-        };
-        let Some(Counter::Sum(virial)) = counters.get("virial") else {
-            return Err("the counter virial is missing".to_owned());
-        };
         self.totals = Totals {
-            collisions: count("collisions")?,
-            made_elastic: count("made_elastic")?,
-            virial: *virial,
+            collisions: snapshot.count("collisions")?,
+            made_elastic: snapshot.count("made_elastic")?,
+            virial: snapshot.sum("virial")?,
         };
-        self.watch = Watch::new(clock.time, crossing(discs.iter()), discs.len());
-        let engine = self.way.begin(self.arena, discs, clock.time);
-        self.engine = engine.map_err(|why| self.failure(why).what())?;
-        self.clock = clock;
-        self.filled = 0;
+        self.watch.restore(&snapshot)?;
+        self.engine.restore(discs, &snapshot)?;
+        (self.clock, self.may_meet) = (clock, false);
         Ok(())
     }
 
@@ -402,12 +405,12 @@ impl Simulation for Running {
     fn in_words(&self) -> String {
         let values = self.observe();
         format!(
-            "{} discs, {} collisions of pairs; temperature {}, compressibility {:.4}, {:.4} collisions of a disc in a unit of time",
+            "{} discs, {} collisions of pairs; temperature {}, compressibility {}, {} collisions of a disc in a unit of time",
             self.places.len(),
             self.totals.collisions,
             significant(values[5], 5),
-            values[9],
-            values[10]
+            significant(values[9], 5),
+            significant(values[10], 5)
         )
     }
 }

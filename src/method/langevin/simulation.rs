@@ -14,6 +14,8 @@ use stripmine_kernels::law::Asked;
 
 /// Columns that are sums of forces; those of a step that is made again begin with none.
 const SUMS: [&str; 3] = ["Fx", "Fy", "torque"];
+/// How often lists were made, in a checkpoint and in the summary.
+const LISTS_MADE: &str = "lists_made";
 /// Energy and virial of the pairs in a checkpoint.
 const OF_PAIRS: [&str; 2] = ["potential", "virial"];
 
@@ -29,6 +31,9 @@ pub(super) struct Running {
     of_pairs: [f64; 2],
     /// Particles moved so far: particles times steps.
     work: u64,
+    /// How often lists were made by other steppers before this one, whatever this one had to make to take their place; counts
+    /// wrap around.
+    made_before: u64,
 }
 
 impl Running {
@@ -42,7 +47,8 @@ impl Running {
         let stepper = stepper(checked, start.clone(), follows)?;
         let losses = Losses::new(follows && checked.scene.losses);
         let checked = checked.clone();
-        let mut running = Running { checked, purpose, stepper, start, losses, of_pairs: [0.0; 2], work: 0 };
+        let mut running =
+            Running { checked, purpose, stepper, start, losses, of_pairs: [0.0; 2], work: 0, made_before: 0 };
         running.meet()?;
         Ok(running)
     }
@@ -111,13 +117,25 @@ impl Running {
         let columns: Vec<(String, Column)> =
             self.stepper.columns().into_iter().map(|(name, column)| kept(name, column, &stays)).collect();
         let elapsed = self.stepper.elapsed();
-        let (steps, timings) = (elapsed.steps, elapsed.timings);
+        let (steps, timings, made) = (elapsed.steps, elapsed.timings, self.lists_made());
         let follows = self.purpose == Purpose::Run;
         self.stepper = stepper(&self.checked, start.clone(), follows).map_err(|failure| failure.what())?;
         self.stepper.restore(steps, &columns)?;
         self.stepper.elapsed_mut().timings = timings;
         self.start = start;
+        self.count_lists_from(made.unwrap_or_default());
         Ok(())
+    }
+
+    /// How often lists were made since the start; none where there are none.
+    fn lists_made(&self) -> Option<u64> {
+        self.stepper.lists().map(|(_, made)| self.made_before.wrapping_add(made))
+    }
+
+    /// So often they were made so far.
+    fn count_lists_from(&mut self, made: u64) {
+        let by_this = self.stepper.lists().map_or(0, |(_, made)| made);
+        self.made_before = made.wrapping_sub(by_this);
     }
 
     /// Displacements since the start, as if there were no sides (length).
@@ -206,25 +224,27 @@ impl Simulation for Running {
 
     fn snapshot(&self) -> Snapshot {
         let counters = OF_PAIRS.into_iter().zip(self.of_pairs);
-        let counters = counters.map(|(name, sum)| (name.to_owned(), Counter::Sum(sum)));
+        let made = self.lists_made().map(|made| (LISTS_MADE, Counter::Count(made)));
+        let counters = counters.map(|(name, sum)| (name, Counter::Sum(sum))).chain(made);
+        let counters = counters.map(|(name, counter)| (name.to_owned(), counter));
         let columns = self.stepper.columns().into_iter().chain(self.losses.columns());
         Snapshot { counters: counters.collect(), columns: columns.collect() }
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
-        let Snapshot { counters, columns } = snapshot;
         for (name, sum) in OF_PAIRS.into_iter().zip(&mut self.of_pairs) {
-            let Some(Counter::Sum(value)) = counters.get(name) else {
-                return Err(format!("the sum {name} is missing"));
-            };
-            *sum = *value;
+            *sum = snapshot.sum(name)?;
         }
+        let made = if self.stepper.lists().is_some() { snapshot.count(LISTS_MADE)? } else { 0 };
+        let columns = snapshot.columns;
         self.losses.take_up(&columns)?;
         let lost: BTreeSet<u32> = self.losses.ids().collect();
         if !lost.is_empty() {
             self.without(&|_, particle| lost.contains(&particle.id))?;
         }
-        self.stepper.restore(clock.steps, &columns)
+        self.stepper.restore(clock.steps, &columns)?;
+        self.count_lists_from(made);
+        Ok(())
     }
 
     fn phases(&self) -> BTreeMap<&'static str, f64> {
@@ -245,7 +265,7 @@ impl Simulation for Running {
             ("particles", json!(self.start.len())),
             ("lost", json!(self.losses.count())),
             ("listed_pairs", json!(lists.map(|(entries, _)| entries))),
-            ("lists_made", json!(lists.map(|(_, made)| made))),
+            (LISTS_MADE, json!(self.lists_made())),
             ("potential", json!(self.of_pairs[0])),
         ];
         entries.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()

@@ -5,7 +5,7 @@ use super::conserved::Conserved;
 use super::field::Attraction;
 use super::prepared::Checked;
 use super::schemes::Scheme;
-use crate::io::checkpoint::{Column, Counter};
+use crate::io::checkpoint::Column;
 use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
 use crate::particles::{Particles, in_plane};
@@ -18,6 +18,9 @@ use std::time::Instant;
 /// Bodies are looked at this often (steps), and so few of them at every step, whether they are still bound.
 const BETWEEN_LOOKS: u64 = 64;
 const FEW: usize = 64;
+
+/// How often forces were found, in a checkpoint and in the summary.
+const EVALUATIONS: &str = "evaluations";
 
 const COLUMNS: [&str; 6] = ["x", "y", "z", "vx", "vy", "vz"];
 
@@ -170,35 +173,32 @@ impl Simulation for Running {
         let carried = carried.iter().enumerate().flat_map(|(order, columns)| {
             columns.iter().enumerate().map(move |(axis, column)| (format!("carried.{order}.{axis}"), column))
         });
-        let all = named.zip(state).chain(carried);
-        Snapshot {
-            counters: BTreeMap::from([("energy".to_owned(), Counter::Sum(self.energy))]),
-            columns: all
-                .map(|(name, column)| (name, Column::F64(column.iter().take(count).copied().collect())))
-                .collect(),
+        let mut kept = Snapshot::default();
+        for (name, column) in named.zip(state).chain(carried) {
+            kept.add_column(&name, Column::F64(column.iter().take(count).copied().collect()));
         }
+        kept.add_sum("energy", self.energy);
+        kept.add_count(EVALUATIONS, self.field.borrow().evaluations);
+        kept
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
         let count = self.bodies.len();
-        let find = |name: &str| match snapshot.columns.iter().find(|(there, _)| there == name) {
-            Some((_, Column::F64(values))) if values.len() == count => Ok(values.clone()),
-            _ => Err(format!("the column {name} is missing")),
-        };
-        let Some(Counter::Sum(energy)) = snapshot.counters.get("energy") else {
-            return Err("the sum energy is missing".to_owned());
-        };
+        let find = |name: &str| snapshot.numbers(name, count);
+        let (energy, evaluations) = (snapshot.sum("energy")?, snapshot.count(EVALUATIONS)?);
         let state = self.bodies.position.iter_mut().chain(&mut self.bodies.velocity);
         for (name, column) in COLUMNS.into_iter().zip(state) {
-            column[..count].copy_from_slice(&find(name)?);
+            column[..count].copy_from_slice(find(name)?);
         }
         let mut carried = vec![];
         for order in 0.. {
-            let Ok(x) = find(&format!("carried.{order}.0")) else { break };
-            carried.push([x, find(&format!("carried.{order}.1"))?, find(&format!("carried.{order}.2"))?]);
+            let along = |axis: u8| find(&format!("carried.{order}.{axis}")).map(<[f64]>::to_vec);
+            let Ok(x) = along(0) else { break };
+            carried.push([x, along(1)?, along(2)?]);
         }
         self.scheme.take_up(&self.bodies, carried);
-        (self.energy, self.steps) = (*energy, clock.steps);
+        self.field.get_mut().evaluations = evaluations;
+        (self.energy, self.steps) = (energy, clock.steps);
         Ok(())
     }
 
@@ -220,7 +220,7 @@ impl Simulation for Running {
             ("bodies", json!(self.bodies.len())),
             ("energy", json!(seen.energy())),
             ("energy_error", json!(if self.energy != 0.0 { seen.energy() / self.energy - 1.0 } else { 0.0 })),
-            ("evaluations", json!(self.field.borrow().evaluations)),
+            (EVALUATIONS, json!(self.field.borrow().evaluations)),
             ("order", json!(self.scheme.order())),
         ];
         entries.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()

@@ -10,6 +10,8 @@ mod lists;
 mod queue;
 
 use crate::domain::Side;
+use crate::io::checkpoint::Column;
+use crate::method::Snapshot;
 use crate::method::hard_disks::engine::{Engine, Happened, Stopped};
 use crate::method::hard_disks::event::Arena;
 use lists::Lists;
@@ -46,6 +48,9 @@ struct Expected {
 impl Expected {
     const RENEWAL: Expected = Expected { with: RENEWAL, events: 0 };
 }
+
+/// Where discs were registered, in a checkpoint.
+const REGISTERED: [&str; 2] = ["registered.x", "registered.y"];
 
 /// Discs under way.
 pub struct Fast {
@@ -351,12 +356,69 @@ impl Engine for Fast {
         found
     }
 
-    fn time(&self) -> f64 {
-        self.time
-    }
-
     fn fillings(&self) -> u64 {
         self.renewals / self.discs.len().max(1) as u64
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        let mut kept = Snapshot::default();
+        let by_number =
+            |of: &dyn Fn(u32) -> f64| Column::F64(self.places.iter().map(|&place| of(place)).collect());
+        for (axis, name) in REGISTERED.into_iter().enumerate() {
+            kept.add_column(name, by_number(&|place| self.lists.place(place)[axis]));
+        }
+        kept.add_column("expected.time", by_number(&|place| self.queue.times()[place as usize]));
+        let expected = || self.places.iter().map(|&place| self.partners[place as usize]);
+        let number = |with: u32| if with >= WALL[0] { with } else { self.numbers[with as usize] };
+        kept.add_column("expected.with", Column::U32(expected().map(|it| number(it.with)).collect()));
+        kept.add_column("expected.events", Column::U32(expected().map(|it| it.events).collect()));
+        kept.add_sum("engine.time", self.time);
+        kept.add_sum("engine.leash", self.leash);
+        kept.add_count("engine.stride", self.lists.stride() as u64);
+        kept.add_count("engine.renewals", self.renewals);
+        kept.add_count("engine.events", self.events);
+        kept.add_count("engine.sorted_until", self.sorted_until);
+        kept
+    }
+
+    fn restore(&mut self, discs: Vec<Disc>, kept: &Snapshot) -> Result<(), String> {
+        let count = discs.len();
+        let registered = [kept.numbers(REGISTERED[0], count)?, kept.numbers(REGISTERED[1], count)?];
+        let times = kept.numbers("expected.time", count)?;
+        let [with, events] = [kept.codes("expected.with", count)?, kept.codes("expected.events", count)?];
+        if with.iter().any(|&with| with < WALL[0] && with as usize >= count) {
+            return Err("a disc expects one that is not there".to_owned());
+        }
+        let (stride, leash) = (kept.count("engine.stride")?, kept.sum("engine.leash")?);
+        if stride > MOST_PARTNERS as u64 + 1 || !(0.0..f64::INFINITY).contains(&leash) {
+            return Err(format!("lists of {stride} entries within {leash}"));
+        }
+        self.leash = leash;
+        self.time = kept.sum("engine.time")?;
+        self.renewals = kept.count("engine.renewals")?;
+        self.events = kept.count("engine.events")?;
+        self.sorted_until = kept.count("engine.sorted_until")?;
+        self.discs = AlignedColumn::new(0, discs);
+        self.numbers = AlignedColumn::new(1, 0..count as u32);
+        self.sort(self.time);
+        let place_of = |number: u32| {
+            let number = number as usize;
+            [registered[0][number], registered[1][number]]
+        };
+        let places: Vec<[f64; 2]> = self.numbers.iter().map(|&number| place_of(number)).collect();
+        let (domain, discs) = (self.arena.domain, &self.discs);
+        let mut lists = Lists::new(domain, count, self.leash, self.largest, LISTED, stride as usize);
+        let full = lists.begin(&places, |disc| discs[disc as usize].radius);
+        full.map_err(|disc| format!("the list of disc number {} is full", self.numbers[disc as usize]))?;
+        self.lists = lists;
+        self.queue = Queue::new(count);
+        for (place, &number) in self.numbers.iter().enumerate() {
+            let expects = with[number as usize];
+            let with = if expects >= WALL[0] { expects } else { self.places[expects as usize] };
+            self.partners[place] = Expected { with, events: events[number as usize] };
+            self.queue.set(place, number, times[number as usize]);
+        }
+        Ok(())
     }
 
     fn figures(&self) -> Vec<(&'static str, f64)> {

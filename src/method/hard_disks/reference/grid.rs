@@ -3,8 +3,6 @@
 //! Of a box every cell is stored; of a system without ceiling (`half_space`) those only that hold a disc.
 
 use crate::domain::{Domain, Side};
-use crate::method::hard_disks::event::Arena;
-use stripmine_kernels::flight::Disc;
 use stripmine_kernels::mask::Mask;
 
 /// Stands for no disc.
@@ -55,11 +53,11 @@ impl Sizes {
 
 /// Where the discs were when they were last put into cells.
 pub trait Cells: Send {
-    /// Puts every disc into the cell of its position at a time.
+    /// Puts every disc into the cell of its place inside the box (length).
     ///
     /// # Errors
     /// [`Misfit`]: why that cannot be.
-    fn fill(&mut self, discs: &[Disc], time: f64) -> Result<(), Misfit>;
+    fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), Misfit>;
 
     /// Where a disc was when it was put into its cell (length).
     fn place(&self, disc: u32) -> [f64; 2];
@@ -83,7 +81,7 @@ pub enum Misfit {
 /// Every cell of a box.
 #[derive(Clone, Debug)]
 pub struct Grid {
-    arena: Arena,
+    domain: Domain,
     sizes: Sizes,
     /// Cells beyond each side, which show what lies across a periodic one.
     margin: usize,
@@ -100,12 +98,12 @@ pub struct Grid {
 
 impl Grid {
     /// Of a box, for a mask; no disc is in it.
-    pub fn new(arena: Arena, sizes: Sizes, mask: &Mask) -> Grid {
+    pub fn new(domain: Domain, sizes: Sizes, mask: &Mask) -> Grid {
         let margin = mask.half_width() as usize;
         let [width, height] = sizes.cells.map(|cells| cells + 2 * margin);
         let offset = |columns: i32, rows: i32| columns as isize + rows as isize * width as isize;
         Grid {
-            arena,
+            domain,
             sizes,
             margin,
             width,
@@ -119,7 +117,7 @@ impl Grid {
     /// Shows in the margins what lies across periodic sides.
     fn mirror(&mut self) {
         let ([columns, rows], margin, width) = (self.sizes.cells, self.margin, self.width);
-        let is_periodic = |axis: usize| matches!(self.arena.domain.sides[axis], Side::Periodic(_));
+        let is_periodic = |axis: usize| matches!(self.domain.sides[axis], Side::Periodic(_));
         if is_periodic(0) {
             for row in self.discs.chunks_exact_mut(width) {
                 row.copy_within(columns..columns + margin, 0);
@@ -134,22 +132,20 @@ impl Grid {
 }
 
 impl Cells for Grid {
-    fn fill(&mut self, discs: &[Disc], time: f64) -> Result<(), Misfit> {
+    fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), Misfit> {
         self.discs.fill(EMPTY);
         self.cell.clear();
-        self.places.clear();
-        for (number, disc) in discs.iter().enumerate() {
-            let at = self.arena.place(disc, time);
-            let [column, row] = [0, 1]
-                .map(|axis| self.sizes.along(axis, at[axis] - self.arena.domain.origin[axis]) + self.margin);
+        for (number, at) in places.iter().enumerate() {
+            let [column, row] =
+                [0, 1].map(|axis| self.sizes.along(axis, at[axis] - self.domain.origin[axis]) + self.margin);
             let cell = row * self.width + column;
             if self.discs[cell] != EMPTY {
                 return Err(Misfit::Shared([self.discs[cell], number as u32]));
             }
             self.discs[cell] = number as u32;
             self.cell.push(cell as u32);
-            self.places.push(at);
         }
+        self.places = places;
         self.mirror();
         Ok(())
     }
@@ -176,17 +172,8 @@ impl Cells for Grid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::hard_disks::event::Law;
     use rand::RngExt;
     use stripmine_kernels::noise::{Purpose, Stream};
-
-    fn arena(domain: Domain) -> Arena {
-        Arena::new(domain, [0.0; 2], Law::ELASTIC)
-    }
-
-    fn disc(position: [f64; 2]) -> Disc {
-        Disc { position, velocity: [0.0; 2], time: 0.0, radius: 0.5, mass: 1.0, events: 0 }
-    }
 
     /// Discs at random places: whatever is within reach is in the mask, also across periodic sides.
     #[test]
@@ -200,20 +187,20 @@ mod tests {
             let domain = Domain::planar([-1.0, 2.0], [14.0, 11.3], periodic);
             let sizes = Sizes::new(&domain, 0.5);
             assert!(sizes.bears(&domain, &mask) && sizes.edge.iter().all(|edge| *edge < 0.5 * 2f64.sqrt()));
-            let mut discs: Vec<Disc> = vec![];
+            let mut discs: Vec<[f64; 2]> = vec![];
             while discs.len() < 60 {
                 let at =
                     [0, 1].map(|axis| domain.origin[axis] + stream.random_range(0.0..domain.length(axis)));
-                if discs.iter().all(|other| domain.distance(other.position, at) > 1.0) {
-                    discs.push(disc(at));
+                if discs.iter().all(|other| domain.distance(*other, at) > 1.0) {
+                    discs.push(at);
                 }
             }
-            let mut grid = Grid::new(arena(domain), sizes, &mask);
-            grid.fill(&discs, 0.0).unwrap();
+            let mut grid = Grid::new(domain, sizes, &mask);
+            grid.fill(discs.clone()).unwrap();
             for (number, here) in discs.iter().enumerate() {
                 let seen: Vec<u32> = grid.around(number as u32).collect();
                 for (other, there) in discs.iter().enumerate().filter(|(other, _)| *other != number) {
-                    let distance = domain.distance(here.position, there.position);
+                    let distance = domain.distance(*here, *there);
                     assert!(distance >= sizes.reach(&mask) || seen.contains(&(other as u32)), "{distance}");
                 }
             }
@@ -223,8 +210,8 @@ mod tests {
     #[test]
     fn two_in_a_cell_are_named() {
         let domain = Domain::planar([0.0; 2], [10.0; 2], [true; 2]);
-        let mut grid = Grid::new(arena(domain), Sizes::new(&domain, 0.5), &Mask::square(2));
-        let discs = [disc([5.0, 5.0]), disc([1.0, 1.0]), disc([5.01, 5.01])];
-        assert_eq!(grid.fill(&discs, 0.0), Err(Misfit::Shared([0, 2])));
+        let mut grid = Grid::new(domain, Sizes::new(&domain, 0.5), &Mask::square(2));
+        let places = vec![[5.0, 5.0], [1.0, 1.0], [5.01, 5.01]];
+        assert_eq!(grid.fill(places), Err(Misfit::Shared([0, 2])));
     }
 }

@@ -13,8 +13,7 @@
 //! height of the highest disc.
 
 use super::grid::{Cells, EMPTY, Misfit, Sizes};
-use crate::method::hard_disks::event::Arena;
-use stripmine_kernels::flight::Disc;
+use crate::domain::Domain;
 use stripmine_kernels::mask::Mask;
 
 /// L: cells of a block.
@@ -25,7 +24,7 @@ const MOST: usize = 1 << 28;
 /// The occupied cells.
 #[derive(Clone, Debug)]
 pub struct HalfSpace {
-    arena: Arena,
+    domain: Domain,
     sizes: Sizes,
     /// From a cell to those of its mask: columns and rows.
     offsets: Vec<[isize; 2]>,
@@ -40,9 +39,9 @@ pub struct HalfSpace {
 
 impl HalfSpace {
     /// Above a floor, for a mask; no disc is in it.
-    pub fn new(arena: Arena, sizes: Sizes, mask: &Mask) -> HalfSpace {
+    pub fn new(domain: Domain, sizes: Sizes, mask: &Mask) -> HalfSpace {
         let offsets = mask.offsets().iter().map(|it| [it.columns as isize, it.rows as isize]).collect();
-        HalfSpace { arena, sizes, offsets, occupied: vec![], starts: vec![], cell: vec![], places: vec![] }
+        HalfSpace { domain, sizes, offsets, occupied: vec![], starts: vec![], cell: vec![], places: vec![] }
     }
 
     /// The disc in a cell; [`EMPTY`] if there is none.
@@ -56,19 +55,17 @@ impl HalfSpace {
 }
 
 impl Cells for HalfSpace {
-    fn fill(&mut self, discs: &[Disc], time: f64) -> Result<(), Misfit> {
-        self.places.clear();
+    fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), Misfit> {
         self.cell.clear();
         self.occupied.clear();
-        for (number, disc) in discs.iter().enumerate() {
-            let at = self.arena.place(disc, time);
-            let [x, y] = [0, 1].map(|axis| at[axis] - self.arena.domain.origin[axis]);
+        for (number, at) in places.iter().enumerate() {
+            let [x, y] = [0, 1].map(|axis| at[axis] - self.domain.origin[axis]);
             let row = (y / self.sizes.edge[1]).min(f64::from(u32::MAX)) as u32;
             let cell = [self.sizes.along(0, x) as u32, row];
-            self.places.push(at);
             self.cell.push(cell);
             self.occupied.push((number as u32, cell[0], cell[1]));
         }
+        self.places = places;
         self.occupied.sort_unstable_by_key(|&(disc, column, row)| (row, column, disc));
         let shares = |pair: &&[(u32, u32, u32)]| (pair[0].1, pair[0].2) == (pair[1].1, pair[1].2);
         if let Some(pair) = self.occupied.windows(2).find(shares) {
@@ -99,7 +96,7 @@ impl Cells for HalfSpace {
 
     fn around(&self, disc: u32) -> impl Iterator<Item = u32> + '_ {
         let [column, row] = self.cell[disc as usize].map(|at| at as usize);
-        let (columns, wraps) = (self.sizes.cells[0], self.arena.domain.is_periodic(0));
+        let (columns, wraps) = (self.sizes.cells[0], self.domain.is_periodic(0));
         let there = move |&[right, up]: &[isize; 2]| {
             let row = row.checked_add_signed(up)?;
             let column = match column.checked_add_signed(right) {
@@ -121,27 +118,21 @@ impl Cells for HalfSpace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::domain::{Domain, Side};
-    use crate::method::hard_disks::event::Law;
-
-    fn disc(position: [f64; 2]) -> Disc {
-        Disc { position, velocity: [0.0; 2], time: 0.0, radius: 0.5, mass: 1.0, events: 0 }
-    }
+    use crate::domain::Side;
 
     fn half_space(periodic: bool) -> HalfSpace {
         let first = if periodic { Side::Periodic(10.0) } else { Side::Closed(10.0) };
         let domain = Domain { origin: [0.0; 3], sides: [first, Side::Open, Side::Flat] };
-        let arena = Arena::new(domain, [0.0, -1.0], Law::ELASTIC);
-        HalfSpace::new(arena, Sizes::new(&domain, 0.5), &Mask::square(2))
+        HalfSpace::new(domain, Sizes::new(&domain, 0.5), &Mask::square(2))
     }
 
     /// By hand: neighbours beside, above and across the side; one disc 10⁵ high takes as many rows of blocks.
     #[test]
     fn a_mask_finds_the_discs_of_the_occupied_cells() {
-        let discs = [[0.6, 0.6], [1.7, 0.6], [0.6, 1.7], [9.8, 0.6], [5.0, 1e5]].map(disc);
+        let places = vec![[0.6, 0.6], [1.7, 0.6], [0.6, 1.7], [9.8, 0.6], [5.0, 1e5]];
         for (periodic, near) in [(true, vec![1, 2, 3]), (false, vec![1, 2])] {
             let mut cells = half_space(periodic);
-            cells.fill(&discs, 0.0).unwrap();
+            cells.fill(places.clone()).unwrap();
             let mut seen: Vec<u32> = cells.around(0).collect();
             seen.sort_unstable();
             assert_eq!(seen, near);
@@ -158,9 +149,7 @@ mod tests {
     #[test]
     fn two_in_a_cell_and_one_too_high_are_named() {
         let mut cells = half_space(true);
-        let fill = |cells: &mut HalfSpace, places: &[[f64; 2]]| {
-            cells.fill(&places.iter().copied().map(disc).collect::<Vec<_>>(), 0.0)
-        };
+        let fill = |cells: &mut HalfSpace, places: &[[f64; 2]]| cells.fill(places.to_vec());
         assert_eq!(fill(&mut cells, &[[5.0, 5.0], [1.0, 1.0], [5.01, 5.01]]), Err(Misfit::Shared([0, 2])));
         assert!(matches!(fill(&mut cells, &[[5.0, 1.0], [5.0, 1e12]]), Err(Misfit::TooHigh(1, _))));
     }

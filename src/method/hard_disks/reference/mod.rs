@@ -9,6 +9,8 @@ mod tournament;
 use super::engine::{Engine, Happened, Partner, Stopped};
 use super::event::Arena;
 use crate::domain::Side;
+use crate::io::checkpoint::Column;
+use crate::method::Snapshot;
 use grid::{Cells, Grid, Misfit, Sizes};
 use half_space::HalfSpace;
 use stripmine_kernels::flight::{Disc, Space, meeting};
@@ -62,6 +64,11 @@ pub struct Reference<C> {
     speeds: Vec<f64>,
 }
 
+/// Where discs were put into cells, in a checkpoint.
+const FILLED_AT: [&str; 2] = ["filled.x", "filled.y"];
+/// What else a checkpoint keeps.
+const SUMS: [&str; 5] = ["engine.time", "engine.slack", "engine.since", "engine.fastest", "engine.filled"];
+
 /// Distances that may not be exceeded are taken this much larger.
 const ROUNDED_UP: f64 = 1.0 + 1e-9;
 
@@ -75,10 +82,10 @@ pub fn begin(arena: Arena, discs: Vec<Disc>, mask: &Mask, time: f64) -> Result<B
     let reach = sizes.reach(mask);
     Ok(match arena.domain.sides[1] {
         Side::Open => {
-            let cells = HalfSpace::new(arena, sizes, mask);
+            let cells = HalfSpace::new(arena.domain, sizes, mask);
             Box::new(Reference::new(arena, discs, cells, reach, time)?)
         }
-        _ => Box::new(Reference::new(arena, discs, Grid::new(arena, sizes, mask), reach, time)?),
+        _ => Box::new(Reference::new(arena, discs, Grid::new(arena.domain, sizes, mask), reach, time)?),
     })
 }
 
@@ -206,12 +213,17 @@ impl<C: Cells> Reference<C> {
         })
     }
 
-    /// Fills the grid with the discs as they are at a time, and finds what each meets next.
-    fn remap(&mut self, time: f64) -> Result<(), Stopped> {
-        self.grid.fill(&self.discs, time).map_err(|why| match why {
+    /// Puts the discs into the cells of their places (length).
+    fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), Stopped> {
+        self.grid.fill(places).map_err(|why| match why {
             Misfit::Shared(pair) => Stopped::SharedCell(pair),
             Misfit::TooHigh(disc, blocks) => Stopped::TooHigh(disc, blocks),
-        })?;
+        })
+    }
+
+    /// Fills the grid with the discs as they are at a time, and finds what each meets next.
+    fn remap(&mut self, time: f64) -> Result<(), Stopped> {
+        self.fill(self.discs.iter().map(|disc| self.arena.place(disc, time)).collect())?;
         self.time = time;
         self.since = time;
         self.slack = self.whole_slack;
@@ -283,12 +295,37 @@ impl<C: Cells> Engine for Reference<C> {
         }
     }
 
-    fn time(&self) -> f64 {
-        self.time
-    }
-
     fn fillings(&self) -> u64 {
         self.remaps
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        let mut kept = Snapshot::default();
+        for (axis, name) in FILLED_AT.into_iter().enumerate() {
+            let along = (0..self.discs.len() as u32).map(|disc| self.grid.place(disc)[axis]);
+            kept.add_column(name, Column::F64(along.collect()));
+        }
+        let Reference { time, slack, since, fastest, filled, remaps, .. } = *self;
+        for (name, value) in SUMS.into_iter().zip([time, slack, since, fastest, filled]) {
+            kept.add_sum(name, value);
+        }
+        kept.add_count("engine.remaps", remaps);
+        kept
+    }
+
+    fn restore(&mut self, discs: Vec<Disc>, kept: &Snapshot) -> Result<(), String> {
+        let count = discs.len();
+        let filled_at = [kept.numbers(FILLED_AT[0], count)?, kept.numbers(FILLED_AT[1], count)?];
+        let places = (0..count).map(|disc| filled_at.map(|along| along[disc]));
+        self.fill(places.collect()).map_err(|_| "two discs are in one cell")?;
+        let [time, slack, since, fastest, filled] = SUMS.map(|name| kept.sum(name));
+        (self.time, self.slack, self.since, self.fastest) = (time?, slack?, since?, fastest?);
+        (self.filled, self.remaps) = (filled?, kept.count("engine.remaps")?);
+        self.discs = discs;
+        self.events = (0..count as u32).map(|disc| self.predicted(disc)).collect();
+        let events = &self.events;
+        self.tree.renew(events.len(), |disc| events[disc as usize].time);
+        Ok(())
     }
 
     fn figures(&self) -> Vec<(&'static str, f64)> {

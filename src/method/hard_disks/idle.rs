@@ -1,0 +1,83 @@
+//! Whether anything will ever happen: what can be proved of it.
+
+use super::event::Arena;
+use stripmine_kernels::flight::Disc;
+
+/// Of more discs nothing is proved: each may meet each.
+const MOST: usize = 4096;
+/// Distances at which discs miss each other are this much larger than those at which they touch: rounding.
+const ROUNDED_UP: f64 = 1.0 + 1e-9;
+
+/// Whether it is certain that no disc will ever meet another one or a side. What is not certain may happen.
+pub fn never(arena: &Arena, discs: &[Disc]) -> bool {
+    if discs.iter().any(|disc| arena.wall(disc).0 < f64::INFINITY) {
+        return false;
+    }
+    // No side ahead: then nothing falls either, and all fly straight on along periodic sides, or are at rest.
+    if discs.windows(2).all(|pair| pair[0].velocity == pair[1].velocity) {
+        return true;
+    }
+    let mut others = discs.iter().enumerate();
+    discs.len() <= MOST && others.all(|(i, a)| discs[..i].iter().all(|b| pass(arena, a, b)))
+}
+
+/// Whether two discs that fly straight along periodic sides miss each other, with all their images. Seen from one, the centres of
+/// the other's images fly on parallel lines: those are apart by the greatest common measure of the sides' lengths across the way.
+fn pass(arena: &Arena, a: &Disc, b: &Disc) -> bool {
+    let [u, v] = [0, 1].map(|axis| b.velocity[axis] - a.velocity[axis]);
+    if [u, v] == [0.0; 2] {
+        return true;
+    }
+    let time = a.time.max(b.time);
+    let [dx, dy] = arena.domain.displacement(a.at(&arena.space, time), b.at(&arena.space, time));
+    let period = |axis: usize| if arena.domain.is_periodic(axis) { arena.domain.length(axis) } else { 0.0 };
+    let lines = common_measure((period(0) * v).abs(), (period(1) * u).abs());
+    let off = (dx * v - dy * u).abs();
+    let off = if lines > 0.0 { (off % lines).min(lines - off % lines) } else { off };
+    off > (a.radius + b.radius) * u.hypot(v) * ROUNDED_UP
+}
+
+/// The largest number of which both are multiples: 0 of two zeros. The remainder of two numbers is exact.
+fn common_measure(a: f64, b: f64) -> f64 {
+    if b == 0.0 { a } else { common_measure(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::event::Law;
+    use super::*;
+    use crate::domain::Domain;
+
+    fn disc(position: [f64; 2], velocity: [f64; 2]) -> Disc {
+        Disc { position, velocity, time: 0.0, radius: 0.5, mass: 1.0, events: 0 }
+    }
+
+    /// By hand: at rest, alone, side by side, past each other on straight and on slanted ways; and what may meet.
+    #[test]
+    fn what_never_meets_is_told_from_what_may() {
+        let here = disc([2.0, 2.0], [0.0; 2]);
+        let (open, closed) = ([true; 2], [true, false]);
+        for (periodic, other, is_never) in [
+            (open, disc([5.0, 5.0], [0.0; 2]), true),
+            (open, disc([5.0, 3.5], [1.0, 0.0]), true),
+            (open, disc([5.0, 2.9], [1.0, 0.0]), false),
+            (open, disc([5.0, 3.0], [1.0, 0.0]), false),
+            // Lines at 45 degrees are the side over √2 apart, once round.
+            (open, disc([7.0, 2.0], [1.0, 1.0]), true),
+            (open, disc([3.2, 2.0], [1.0, 1.0]), false),
+            // Five times as steep: the lines lie closer, but not so close.
+            (open, disc([3.0, 3.0], [1.0, 5.0]), false),
+            // No common measure to speak of: all of the box is passed.
+            (open, disc([7.0, 2.0], [1.0, 1.0 + 1e-9]), false),
+            (closed, disc([5.0, 5.0], [1.0, 0.0]), true),
+            (closed, disc([5.0, 5.0], [1.0, 1e-9]), false),
+        ] {
+            let domain = Domain::planar([0.0; 2], [10.0; 2], periodic);
+            let arena = Arena::new(domain, [0.0; 2], Law::ELASTIC);
+            assert_eq!(never(&arena, &[here, other]), is_never, "{other:?}");
+            assert!(never(&arena, &[disc([5.0; 2], [1.0, 0.0])]));
+        }
+        let falling = Arena::new(Domain::planar([0.0; 2], [10.0; 2], closed), [0.0, -1.0], Law::ELASTIC);
+        assert!(!never(&falling, &[here]));
+    }
+}

@@ -1,0 +1,27 @@
+//! What every method promises, with every engine, for every file, however often a run is stopped.
+
+mod files;
+mod table;
+
+use std::process::Command;
+use stripmine::method::METHODS;
+use table::{Extent, hold};
+
+fn command() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_stripmine"))
+}
+
+#[test]
+fn every_method_keeps_its_promises() {
+    let held = hold(METHODS, command, Extent::Quick);
+    println!("{held:?}");
+    assert!(held.presets == METHODS.iter().map(|method| method.vocabulary.presets.len()).sum::<usize>());
+    assert!(held.engines > held.presets && held.killed > 0, "{held:?}");
+}
+
+/// The whole table.
+#[test]
+#[ignore = "long: cargo test --release --test promises -- --ignored --nocapture"]
+fn every_engine_keeps_every_promise() {
+    println!("{:?}", hold(METHODS, command, Extent::Full));
+}

@@ -1,0 +1,444 @@
+//! One table of promises over all methods: whatever is in a list of methods is in it, with all its presets and engines.
+//!
+//! A scene, made short, is run whole; interrupted at random moments and gone on with; killed and gone on with. Every file has
+//! as many frames and rows as the scene says, ends with the final state, and is the same bytes each time; so is the summary, but for times.
+
+use super::files::{Places, TextFrame, dcd, extended_xyz, lammps_dump, table};
+use rand::RngExt;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::thread;
+use stripmine::method::{Clock, Entry, Every, Methods, Prepared, Purpose, Schedule, Until, load};
+use stripmine::particles::Particles;
+use stripmine::run::{Ending, Existing, run};
+use stripmine::scene::Kind;
+use stripmine_kernels::noise::{Purpose as Of, Stream};
+
+/// How much of the table is held.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Extent {
+    /// Every preset as it runs by default, in every way; every other engine of a method on one preset, whole and interrupted.
+    Quick,
+    /// Everything, at twenty times as many moments.
+    Full,
+}
+
+/// Runs of more particles are made of this many.
+const MANY: usize = 500;
+const FEWER: usize = 200;
+/// Cases at a time: most of the time goes by until files are on the disk.
+const AT_A_TIME: usize = 6;
+
+/// What the files of a run are, where it has all.
+const FILES: [&str; 7] = [
+    "thermo.csv",
+    "trajectory.xyz",
+    "trajectory.dcd",
+    "dump.lammpstrj",
+    "final.data",
+    "events.csv",
+    "scene.toml",
+];
+/// What a summary says of its session alone.
+const OF_THE_SESSION: [&str; 5] = ["begun", "ended", "seconds", "phases", "notes"];
+
+/// A scene made short, and a way to run it.
+struct Case {
+    entry: &'static Entry,
+    preset: &'static str,
+    overrides: Vec<String>,
+    /// Whether it is what the preset is by default: then its pictures and words are looked at, too.
+    is_plain: bool,
+}
+
+/// What has been held.
+#[derive(Debug, Default)]
+pub struct Held {
+    pub presets: usize,
+    pub engines: usize,
+    pub runs: usize,
+    pub sessions: usize,
+    pub killed: usize,
+    pub frames: usize,
+    pub rows: usize,
+    pub files: usize,
+    pub pictures: usize,
+}
+
+/// Holds the table over some methods; `command` is the program with them.
+pub fn hold(methods: Methods, command: fn() -> Command, extent: Extent) -> Held {
+    let cases: Vec<Case> = methods.iter().flat_map(|entry| cases(methods, entry, extent)).collect();
+    let presets: BTreeSet<&str> = cases.iter().map(|case| case.preset).collect();
+    let held = Held { presets: presets.len(), engines: cases.len(), ..Held::default() };
+    let (next, held) = (AtomicUsize::new(0), Mutex::new(held));
+    thread::scope(|scope| {
+        for _ in 0..AT_A_TIME {
+            scope.spawn(|| {
+                while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let found = case.hold(methods, command, extent);
+                    held.lock().expect("no case panicked").add(&found);
+                }
+            });
+        }
+    });
+    held.into_inner().expect("no case panicked")
+}
+
+impl Held {
+    fn add(&mut self, other: &Held) {
+        self.runs += other.runs;
+        self.sessions += other.sessions;
+        self.killed += other.killed;
+        self.frames += other.frames;
+        self.rows += other.rows;
+        self.files += other.files;
+        self.pictures += other.pictures;
+    }
+}
+
+/// Every preset of a method, with every engine and every search that the scene allows.
+fn cases(methods: Methods, entry: &'static Entry, extent: Extent) -> Vec<Case> {
+    let words = |section: &'static str, name: &'static str| {
+        let words = match entry.vocabulary.keys.key(section, name).map(|key| key.kind) {
+            Some(Kind::Choice(words)) => words,
+            _ => &[],
+        };
+        let given = words.iter().filter(|word| **word != "auto");
+        std::iter::once(vec![]).chain(given.map(move |word| vec![format!("{section}.{name}={word}")]))
+    };
+    let engines = words("machine", "engine")
+        .flat_map(|engine| words("search", "by").map(move |by| [engine.clone(), by].concat()));
+    let precise = words("machine", "precision").skip(1);
+    let ways: Vec<Vec<String>> = engines.chain(precise).collect();
+    let (mut cases, mut seen) = (vec![], BTreeSet::new());
+    for preset in entry.vocabulary.presets {
+        let short = shortened(methods, entry, preset.name);
+        let mut scenes = BTreeSet::new();
+        for way in &ways {
+            let overrides = [short.clone(), way.clone()].concat();
+            let Ok((prepared, _)) = load(preset.name, &overrides, methods) else { continue };
+            let is_plain = way.is_empty();
+            let is_new = scenes.insert(prepared.scene());
+            if is_plain || is_new && (extent == Extent::Full || seen.insert(way.clone())) {
+                cases.push(Case { entry, preset: preset.name, overrides, is_plain });
+            }
+        }
+    }
+    cases
+}
+
+/// What makes a preset short: fewer particles, a part of its length, all files, rows and frames that are due at several moments, of
+/// which the end is none for frames.
+fn shortened(methods: Methods, entry: &'static Entry, preset: &str) -> Vec<String> {
+    let prepared = |overrides: &[String]| load(preset, overrides, methods).map(|(prepared, _)| prepared);
+    let whole = prepared(&[]).expect("a preset is a scene");
+    let mut overrides: Vec<String> = entry
+        .vocabulary
+        .keys
+        .section("output")
+        .filter(|key| key.kind == Kind::Switch)
+        .map(|key| format!("output.{}=true", key.name))
+        .collect();
+    let fewer = [overrides.clone(), vec![format!("particles.count={FEWER}")]].concat();
+    if whole.particles().len() > MANY && prepared(&fewer).is_ok() {
+        overrides = fewer;
+    }
+    overrides.push(match whole.schedule().until {
+        Until::Steps(steps) => format!("run.steps={}", steps.min(60)),
+        Until::Events(events) => format!("run.events={}", events / 100),
+        Until::Time(time) => format!("run.time={:?}", time / 8.0),
+    });
+    let short = prepared(&overrides).expect("it is a scene that is short");
+    let (clock, ..) = end_of(short.as_ref());
+    let every = |parts: f64| match short.schedule().rows {
+        Every::Time(_) => format!("{:?}", clock.time / parts),
+        _ => format!("{}", (clock.steps as f64 / parts) as u64),
+    };
+    overrides.extend([
+        format!("run.thermo_every={}", every(11.0)),
+        format!("run.snapshot_every={}", every(7.3)),
+        format!("run.checkpoint_every={}", every(4.1)),
+    ]);
+    overrides
+}
+
+/// How a scene ends that nothing is written of: when, with which particles, and their positions alone.
+fn end_of(prepared: &dyn Prepared) -> (Clock, Particles, Vec<[f32; 3]>) {
+    let mut simulation = prepared.start(Purpose::Run).expect("it starts");
+    simulation.advance(&[prepared.schedule().until], &AtomicBool::new(false)).expect("it does not break");
+    (simulation.clock(), simulation.particles(), simulation.positions())
+}
+
+/// The moments at which something is due up to the end, that of the start among them.
+fn moments(every: Every, end: &Clock) -> Vec<f64> {
+    let (every, end) = match every {
+        Every::Time(every) => (every, end.time),
+        Every::Steps(every) => (every as f64, end.steps as f64),
+        Every::Never | Every::Seconds(_) => return vec![0.0],
+    };
+    (0..).map(|times| f64::from(times) * every).take_while(|moment| *moment <= end).collect()
+}
+
+fn places(particles: &Particles) -> Places {
+    particles.all().iter().map(|particle| (particle.id, particle.position)).collect()
+}
+
+/// What a summary says of the physics.
+fn of_physics(mut summary: Value) -> Value {
+    OF_THE_SESSION.into_iter().for_each(|name| summary[name] = Value::Null);
+    summary
+}
+
+fn summary(folder: &Path) -> Value {
+    serde_json::from_slice(&fs::read(folder.join("summary.json")).expect("a run has a summary"))
+        .expect("JSON")
+}
+
+impl Case {
+    fn label(&self) -> String {
+        let Case { preset, overrides, .. } = self;
+        format!(
+            "stripmine run {preset} {}",
+            overrides.iter().map(|it| format!("--set {it} ")).collect::<String>()
+        )
+    }
+
+    fn hold(&self, methods: Methods, command: fn() -> Command, extent: Extent) -> Held {
+        let folder = tempfile::tempdir().expect("there is room");
+        let (prepared, _) = load(self.preset, &self.overrides, methods).expect("it was a scene before");
+        let path = folder.path().join("whole");
+        let (_, words) = self.session(prepared.as_ref(), &path, None);
+        let mut held = Held { runs: 1, sessions: 1, ..Held::default() };
+        self.files(prepared.as_ref(), &path, &mut held);
+        let mut stream = Stream::new(self.label().len() as u64, Of::Test, 0);
+        let ways = if extent == Extent::Full { 20 } else { 1 };
+        for way in 0..ways {
+            let parts = folder.path().join(format!("parts{way}"));
+            held.sessions += self.interrupted(prepared.as_ref(), &parts, words, &mut stream);
+            self.same("interrupted", &path, &parts);
+            held.runs += 1;
+        }
+        if self.is_plain || extent == Extent::Full {
+            let killed = folder.path().join("killed");
+            held.killed += self.killed(command, &killed);
+            self.same("killed", &path, &killed);
+            held.runs += 1;
+        }
+        if self.is_plain {
+            held.pictures += self.pictures(command, &path);
+            self.itself(command);
+            self.check(command, &path);
+        }
+        held
+    }
+
+    /// Begins or goes on, and is interrupted when the run has said so often how far it has come; whether it is done, and how often
+    /// that was.
+    fn session(&self, prepared: &dyn Prepared, folder: &Path, stop: Option<u64>) -> (bool, u64) {
+        let (is_interrupted, mut words) = (AtomicBool::new(false), 0);
+        let progress = |_, _| {
+            words += 1;
+            is_interrupted.store(Some(words) == stop, Ordering::Relaxed);
+        };
+        let existing = Existing::Resume { other_version: false };
+        let ending =
+            run(prepared, self.entry.quantities, folder, existing, &is_interrupted, progress, |_| {});
+        let ending = ending.unwrap_or_else(|error| panic!("{}: {error}", self.label()));
+        (matches!(ending, Ending::Done(_)), words)
+    }
+
+    /// Interrupted three times, at random.
+    fn interrupted(&self, prepared: &dyn Prepared, folder: &Path, words: u64, stream: &mut Stream) -> usize {
+        for stops in 0..3 {
+            let stop = stream.random_range(1..(words / 2).max(2));
+            if self.session(prepared, folder, Some(stop)).0 {
+                return stops + 1;
+            }
+        }
+        assert!(self.session(prepared, folder, None).0);
+        4
+    }
+
+    fn command(&self, command: fn() -> Command, verb: &[&str]) -> Command {
+        let mut command = command();
+        command.args(verb).arg(self.preset).stdin(Stdio::null());
+        command.args(self.overrides.iter().flat_map(|it| ["--set", it]));
+        command
+    }
+
+    fn output(&self, command: &mut Command) -> String {
+        let output = command.output().expect("the program runs");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{}: {command:?}: {said}", self.label());
+        String::from_utf8(output.stdout).expect("it prints text")
+    }
+
+    /// Killed as soon as there is a checkpoint, and gone on with; whether it was not over yet.
+    fn killed(&self, command: fn() -> Command, folder: &Path) -> usize {
+        let go = |more: &[&str]| {
+            let mut command = self.command(command, &["run"]);
+            command.args(["--quiet", "--out"]).arg(folder).args(more);
+            command
+        };
+        let mut child =
+            go(&[]).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program runs");
+        while !folder.join("run.checkpoint").exists() && child.try_wait().expect("it is there").is_none() {
+            thread::sleep(std::time::Duration::from_millis(1));
+        }
+        // It may be over.
+        let _ = child.kill();
+        let was_killed = child.wait().expect("it is there").code().is_none();
+        let words = self.output(&mut go(&["--resume"]));
+        self.closing_words(&words, &summary(folder));
+        usize::from(was_killed)
+    }
+
+    /// What a run says at its end is what its summary says.
+    fn closing_words(&self, words: &str, summary: &Value) {
+        let line = words.lines().next().unwrap_or_default();
+        let parts: Vec<&str> = line.split([',', ':']).collect();
+        let (count, unit) = parts[0].split_once(' ').expect("a count and a unit");
+        assert!(["steps", "events"].contains(&unit), "{}: {line}", self.label());
+        assert_eq!(count, summary[unit].to_string(), "{}: {line}", self.label());
+        let time: f64 = parts[1].trim_start_matches(" time ").parse().expect("a time");
+        let known = summary["time"].as_f64().expect("a time");
+        assert!((time - known).abs() <= 1e-8 * known, "{}: {line}: {known}", self.label());
+    }
+
+    /// The same bytes and the same summary.
+    fn same(&self, way: &str, whole: &Path, parts: &Path) {
+        for name in FILES {
+            let [one, other] = [whole, parts].map(|folder| fs::read(folder.join(name)).ok());
+            assert!(one == other, "{}: {name} differs, {way}", self.label());
+        }
+        let [one, other] = [whole, parts].map(|folder| of_physics(summary(folder)));
+        assert_eq!(one, other, "{}: the summary differs, {way}", self.label());
+    }
+
+    /// As many frames and rows as the scene says, the last ones those of the end.
+    fn files(&self, prepared: &dyn Prepared, folder: &Path, held: &mut Held) {
+        let Schedule { rows, snapshots, .. } = prepared.schedule();
+        let (clock, particles, positions) = end_of(prepared);
+        let label = self.label();
+        let (expected, (columns, table)) = (moments(rows, &clock), table(&folder.join("thermo.csv")));
+        assert!(expected.len() > 5 && table.len() == expected.len(), "{label}: {} rows", table.len());
+        let named = |name: &str| columns.iter().position(|column| column == name).expect(name);
+        let moment = named(if matches!(rows, Every::Time(_)) { "time" } else { "step" });
+        assert_eq!(table.iter().map(|row| row[moment]).collect::<Vec<_>>(), expected, "{label}");
+        held.rows += table.len();
+
+        let mut expected = moments(snapshots, &clock);
+        let end = if matches!(snapshots, Every::Time(_)) { clock.time } else { clock.steps as f64 };
+        expected.extend(Some(end).filter(|end| expected.last() != Some(end)));
+        let ends = [places(prepared.particles()), places(&particles)];
+        let xyz = extended_xyz(&folder.join("trajectory.xyz"));
+        let moment = |frame: &TextFrame| match snapshots {
+            Every::Time(_) => frame.time.expect("it has one"),
+            _ => frame.number as f64,
+        };
+        assert!(expected.len() > 5);
+        assert_eq!(xyz.iter().map(moment).collect::<Vec<_>>(), expected, "{label}: moments of the frames");
+        let dump = lammps_dump(&folder.join("dump.lammpstrj"));
+        for (name, frames) in [("trajectory.xyz", &xyz), ("dump.lammpstrj", &dump)] {
+            assert_eq!(frames.len(), expected.len(), "{label}: {name}");
+            assert!(
+                frames.windows(2).all(|two| two[0].number <= two[1].number),
+                "{label}: {name}: numbers grow"
+            );
+            assert!(frames[0].number < frames[frames.len() - 1].number, "{label}: {name}: numbers grow");
+            assert!(
+                frames[frames.len() - 1].places == ends[1],
+                "{label}: {name}: the last frame is the final state"
+            );
+        }
+        assert!(ends[0] != ends[1], "{label}: nothing moves");
+        let frames = dcd(&folder.join("trajectory.dcd"));
+        assert_eq!(frames.len(), expected.len(), "{label}: trajectory.dcd");
+        let bits =
+            |places: &[[f32; 3]]| places.iter().map(|place| place.map(f32::to_bits)).collect::<Vec<_>>();
+        assert!(
+            bits(&frames[frames.len() - 1]) == bits(&positions),
+            "{label}: trajectory.dcd: the last frame"
+        );
+        held.frames += 3 * expected.len();
+
+        let data = fs::read_to_string(folder.join("final.data")).expect("it is asked for");
+        for [x, y, z] in ends[1].values() {
+            assert!(data.contains(&format!(" {x:?} {y:?} {z:?}\n")), "{label}: final.data");
+        }
+        let (summary, events) = (summary(folder), fs::read_to_string(folder.join("events.csv")));
+        assert_eq!(
+            [&summary["steps"], &summary["events"]].map(Value::as_u64),
+            [Some(clock.steps), Some(clock.events)]
+        );
+        assert_eq!(summary["time"].as_f64(), Some(clock.time), "{label}");
+        if let (Ok(events), true) = (events, clock.events > 0) {
+            assert_eq!(events.lines().count() as u64, clock.events + 1, "{label}: events.csv");
+        }
+        held.files += FILES.iter().filter(|name| folder.join(name).exists()).count();
+    }
+
+    /// Curves and, where they are read, particles.
+    fn pictures(&self, command: fn() -> Command, run: &Path) -> usize {
+        let plots = run.with_extension("plots");
+        let mut plot = command();
+        self.output(plot.arg("plot").arg(run).arg("--out").arg(&plots));
+        let names: Vec<String> = fs::read_dir(&plots)
+            .expect("there are pictures")
+            .map(|file| file.expect("a file").file_name().into_string().expect("a name"))
+            .collect();
+        for kind in ["svg", "png"] {
+            let state = format!("last-state.{kind}");
+            assert!(names.contains(&state), "{}: {names:?}", self.label());
+            assert!(
+                names.iter().any(|name| name.ends_with(kind) && *name != state),
+                "{}: {names:?}",
+                self.label()
+            );
+        }
+        let is_there = |name: &String| fs::metadata(plots.join(name)).is_ok_and(|file| file.len() > 500);
+        assert!(names.iter().all(is_there), "{}: {names:?}", self.label());
+        names.len()
+    }
+
+    /// Beside itself a scene is the same.
+    fn itself(&self, command: fn() -> Command) {
+        let against = self.overrides.last().expect("it was made short");
+        let mut compare = self.command(command, &["compare"]);
+        let found = self.output(compare.args(["--json", "--against", against]));
+        let found: Value = serde_json::from_str(&found).expect("JSON");
+        assert_eq!(found["same_bits"], true, "{}: {found}", self.label());
+        assert!(found["looks"].as_array().is_some_and(|looks| looks.len() > 2), "{}: {found}", self.label());
+    }
+
+    /// What is said before the run is what the run says.
+    fn check(&self, command: fn() -> Command, folder: &Path) {
+        let mut check = self.command(command, &["scene", "check"]);
+        let found: Value = serde_json::from_str(&self.output(check.arg("--json"))).expect("JSON");
+        let summary = summary(folder);
+        let (_, table) = table(&folder.join("thermo.csv"));
+        let frames = dcd(&folder.join("trajectory.dcd"));
+        for (name, count) in [("rows", table.len()), ("frames", frames.len())] {
+            let foreseen = found[name].as_u64();
+            assert!(
+                foreseen.is_none_or(|foreseen| foreseen == count as u64),
+                "{}: {name} {found}",
+                self.label()
+            );
+        }
+        let said = found.as_object().expect("facts");
+        let of_the_step = summary["foreseen"].as_object().expect("facts");
+        for (name, value) in said.iter().filter(|(name, _)| *name != "warnings") {
+            let ours = summary.get(name).or(of_the_step.get(name));
+            assert!(ours.is_none_or(|ours| ours == value), "{}: {name}: {value} and {ours:?}", self.label());
+        }
+        let time = &found["expected_time"];
+        let [low, typical, high] = ["at_least", "seconds", "at_most"].map(|name| time[name].as_f64());
+        assert!(time.is_null() || low <= typical && typical <= high, "{}: {time}", self.label());
+    }
+}
