@@ -8,8 +8,10 @@ pub mod langevin;
 pub mod lattice_md;
 mod list;
 pub mod nbody;
+pub mod observed;
 mod pairwise;
 mod probe;
+pub mod programs;
 pub mod throughput;
 mod trials;
 

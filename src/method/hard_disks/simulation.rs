@@ -1,5 +1,6 @@
 //! Hard discs under way, observed.
 
+use super::benches::QUANTITIES;
 use super::collapse::{Collapse, Watch};
 use super::collision_log::Log;
 use super::engine::{Engine, Happened, Partner, Stopped};
@@ -8,6 +9,7 @@ use super::fast::Fast;
 use super::prepared::Checked;
 use super::reference;
 use crate::io::checkpoint::{Column, Counter};
+use crate::method::observed::place;
 use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
 use crate::particles::{Particles, in_space};
@@ -400,14 +402,20 @@ impl Simulation for Running {
     }
 
     fn in_words(&self) -> String {
+        const SAID: [usize; 3] = [
+            place(QUANTITIES, "temperature"),
+            place(QUANTITIES, "compressibility"),
+            place(QUANTITIES, "collision_rate"),
+        ];
         let values = self.observe();
+        let [temperature, compressibility, rate] = SAID.map(|at| values[at]);
         format!(
             "{} discs, {} collisions of pairs; temperature {}, compressibility {:.4}, {:.4} collisions of a disc in a unit of time",
             self.places.len(),
             self.totals.collisions,
-            significant(values[5], 5),
-            values[9],
-            values[10]
+            significant(temperature, 5),
+            compressibility,
+            rate
         )
     }
 }
