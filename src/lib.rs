@@ -8,13 +8,14 @@
 //!
 //! ```
 //! use std::sync::atomic::AtomicBool;
+//! use stripmine::method::observed::observed;
 //! use stripmine::method::{METHODS, Purpose, load};
 //!
 //! let (prepared, method) = load("two-discs", &["run.steps=100".to_owned()], METHODS)?;
 //! let mut simulation = prepared.start(Purpose::Run)?;
 //! simulation.advance(&[prepared.schedule().until], &AtomicBool::new(false))?;
-//! let momentum = method.quantities.iter().position(|quantity| quantity.name == "momentum_x");
-//! assert!((simulation.observe()[momentum.expect("it is observed")] - 1.0).abs() < 1e-12);
+//! let [momentum] = observed(method.quantities, &simulation.observe(), ["momentum_x"])?;
+//! assert!((momentum - 1.0).abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

@@ -25,6 +25,23 @@ pub fn in_tens(value: f64, digits: usize) -> String {
     }
 }
 
+/// From the lowest to the highest of some numbers, for sentences; one number where they are the same in so many digits.
+pub fn range(values: impl IntoIterator<Item = f64>, digits: usize) -> String {
+    let mut values: Vec<f64> = values.into_iter().collect();
+    values.sort_by(f64::total_cmp);
+    let [Some(low), Some(high)] =
+        [values.first(), values.last()].map(|end| end.map(|end| in_tens(*end, digits)))
+    else {
+        return "nothing".to_owned();
+    };
+    if low == high { low } else { format!("{low} to {high}") }
+}
+
+/// So many of something, for sentences: `1 scene`, `3 scenes`.
+pub fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
 /// A power of ten in short.
 pub fn ten_to(power: i32) -> String {
     match power {
@@ -48,6 +65,14 @@ fn trimmed(number: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn ranges_rise_and_words_have_their_number() {
+        assert_eq!(range([3.3e-6, 2.7e-6], 2), "2.7·10⁻⁶ to 3.3·10⁻⁶");
+        assert_eq!(range([0.1201, 0.1204], 2), "0.12");
+        assert_eq!(range([], 2), "nothing");
+        assert_eq!([1, 3].map(|count| counted(count, "run", "runs")), ["1 run", "3 runs"]);
+    }
 
     #[test]
     fn sentences_have_powers_of_ten() {

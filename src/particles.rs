@@ -125,3 +125,18 @@ pub fn longest_step(smallest_radius: f64, max_penetration: f64) -> f64 {
     let closest = 1.0 - max_penetration;
     2.0 * smallest_radius * (1.0 - closest * closest).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two discs that pass each other just deep enough, each by the longest step: apart before it and after it, no more.
+    #[test]
+    fn what_moves_the_longest_step_passes_by_just_unseen() {
+        let (radius, depth) = (0.5, 0.1);
+        let step = longest_step(radius, depth);
+        let apart = (1.0 - depth) * 2.0 * radius;
+        // Together they move twice the step along lines that far apart, half of it before they are nearest.
+        assert!((step.hypot(apart) - 2.0 * radius).abs() < 1e-12, "{step}");
+    }
+}

@@ -134,6 +134,14 @@ mod tests {
             let found = kolmogorov_smirnov(values, |x: f64| (x + shift - 0.5 / f64::from(count)).min(1.0));
             assert!((found / p - 1.0).abs() < 0.02, "{found} {p}");
         }
+        // Few values: of ten the critical distance is 0.4092 for 5 of 100. The distribution lies above them, or below.
+        for above in [true, false] {
+            let values: Vec<f64> =
+                (0..10).map(|at| f64::from(at) / 10.0 + if above { 0.1 } else { 0.0 }).collect();
+            let shift = if above { 0.4092 - 0.1 } else { -(0.4092 - 0.1) };
+            let found = kolmogorov_smirnov(values, |x| x + shift);
+            assert!((found / 0.05 - 1.0).abs() < 0.03, "{above}: {found}");
+        }
         assert_eq!(
             kolmogorov_smirnov((0..100).map(|at| (f64::from(at) + 0.5) / 100.0).collect(), |x| x),
             1.0

@@ -182,6 +182,125 @@ fn clock_periods_are_those_of_programs() {
     assert!(out.join("host/work-precision/pressed_clocks.svg").exists());
 }
 
+/// The rows of a CSV file, cut at commas outside of quotes.
+fn rows(path: &Path) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(path).unwrap();
+    let cut = |line: &str| {
+        let mut is_quoted = false;
+        let mut cells = vec![String::new()];
+        for c in line.chars() {
+            match c {
+                '"' => is_quoted = !is_quoted,
+                ',' if !is_quoted => cells.push(String::new()),
+                c => cells.last_mut().unwrap().push(c),
+            }
+        }
+        cells
+    };
+    text.lines().skip(1).map(cut).collect()
+}
+
+/// Discs that fall for a hundredth of a scene in which they lie on a floor at last: in the time that is compared nothing touches.
+const FALLING: &str = r#"format = 2
+units = "reduced"
+[method]
+kind = "lattice-md"
+[domain]
+sides = [40.0, 400.0]
+periodic = [true, false]
+gravity = [0.0, -1.0]
+[particles]
+generate = "box"
+count = 300
+fill_height = 300.0
+radius = 0.5
+wall_radius = 0.45
+wall_spacing = 1.25
+mass = 1.0
+speed = 0.0
+[law]
+stiffness = 1e6
+normal_damping = 10.0
+[integrator]
+dt = 2e-4
+[run]
+time = 200.0
+"#;
+
+/// A scene of which the compared time shows nothing gets no advice: neither on the page nor in the data nor in the wishes.
+#[test]
+fn where_hardly_anything_happens_nothing_is_decided() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, out) = (folder.path().join("falling.toml"), folder.path().join("study"));
+    fs::write(&scene, FALLING).unwrap();
+    let data = succeeds(&study(&scene, &out, &["--budget", "2", "--repeats", "1"]));
+    let data = &data["falling"];
+    let why = data["undecided"].as_str().unwrap();
+    assert!(why.contains("contacts in the mean, fewer than 3"), "{why}");
+    assert!(data["encounters"]["each"].as_f64().unwrap() < 3.0);
+    assert!(data["duration"].as_f64().unwrap() < 0.1 * data["scene_time"].as_f64().unwrap());
+    let wishes = rows(&out.join("host/work-precision/wishes.csv"));
+    assert!(!wishes.is_empty());
+    for row in &wishes {
+        assert!(
+            row[2].starts_with("not decided: in the time that is compared") && row[3].is_empty(),
+            "{row:?}"
+        );
+    }
+    let page = fs::read_to_string(out.join("README.md")).unwrap();
+    assert!(
+        page.contains("Not decided, because too little happens in the time that is compared: falling."),
+        "{page}"
+    );
+    assert!(!page.contains("at least as accurate") && !page.contains("is the cheapest, for"), "{page}");
+}
+
+/// What is recommended is no run that theory, a check or a warning speaks against; there are such runs.
+#[test]
+fn no_way_is_recommended_that_something_speaks_against() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("study");
+    let data = succeeds(&study(Path::new("two-discs"), &out, &["--budget", "8", "--set", "run.time=3.2"]));
+    let data = &data["two-discs"];
+    assert!(data["undecided"].is_null(), "{}", data["undecided"]);
+    assert!(data["encounters"]["each"].as_f64().unwrap() >= 1.0);
+    let runs = data["runs"].as_array().unwrap();
+    let objected = |run: &Value| !run["objections"].as_array().unwrap().is_empty();
+    // Sixteen times its own step is beyond what theory allows, and would be the cheapest for some wish.
+    let coarse: Vec<&Value> =
+        runs.iter().filter(|run| run["power"] == 4 && run["outcome"]["Ok"].is_object()).collect();
+    assert!(coarse.iter().any(|run| run["outcome"]["Ok"]["position"].as_f64().unwrap() < 3e-2), "{coarse:?}");
+    assert!(coarse.iter().all(|run| objected(run)), "{coarse:?}");
+    let all = rows(&out.join("host/work-precision/runs.csv"));
+    assert!(all.iter().any(|row| row.last().unwrap().contains("of theory")));
+    let wishes = rows(&out.join("host/work-precision/wishes.csv"));
+    let named: Vec<&Vec<String>> = wishes.iter().filter(|row| !row[3].is_empty()).collect();
+    assert!(!named.is_empty(), "{wishes:?}");
+    let power = |step: &str| match step {
+        "its own step" => 0,
+        _ => (-4..=4).find(|&power| step == multiple(power)).unwrap(),
+    };
+    for row in named {
+        let way = data["ways"].as_array().unwrap().iter().position(|way| way["label"] == row[2]).unwrap();
+        let run = runs.iter().find(|run| run["way"] == way && run["power"] == power(&row[3])).unwrap();
+        assert!(!objected(run), "{row:?}: {run}");
+    }
+    for (measure, front) in data["fronts"].as_array().unwrap().iter().map(|front| (&front[0], &front[1])) {
+        for place in front.as_array().unwrap() {
+            assert!(!objected(&runs[place.as_u64().unwrap() as usize]), "{measure}");
+        }
+    }
+}
+
+/// A step as pages write it.
+fn multiple(power: i32) -> String {
+    if power > 0 {
+        format!("{} times its own step", 1 << power)
+    } else {
+        format!("1/{} of its own step", 1 << -power)
+    }
+}
+
 /// Studies know methods by their entries alone.
 #[test]
 fn no_study_names_a_method() {

@@ -1,7 +1,7 @@
 //! Work cut into parts, on the threads of the current `rayon` pool.
 //!
-//! That the threads that wait awake never wait for each other for ever is shown by `kernels/tests/waiting.rs`, which tries
-//! every order of events.
+//! `kernels/tests/waiting.rs` runs this code again and again, from outside of a pool and in it, and sees whether threads that wait awake
+//! ever wait for each other for ever.
 //!
 //! Parts are called through a pointer, so that the pool's machinery is compiled once and not for every kind of work.
 

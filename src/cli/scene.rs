@@ -1,6 +1,7 @@
 //! `stripmine scene`: presets, keys, and the check of a scene.
 
 use crate::console::{Common, Failure, print, print_json, warn};
+use crate::method::programs::Programs;
 use crate::method::{Fact, Methods, Prepared, VectorProgram, load, method};
 use crate::model::machine::MachineModel;
 use crate::model::machines;
@@ -9,7 +10,6 @@ use crate::report::terminal;
 use crate::run::forecast;
 use crate::scene::{Fallback, Key, Preset, SECTIONS};
 use crate::study::StudyError;
-use crate::study::programs::Programs;
 use clap::{Args, Subcommand};
 use serde::Serialize;
 use serde_json::{Map, json};

@@ -1,5 +1,6 @@
 //! How fast is a method? Moving particles, timed.
 
+use crate::method::observed::{UnknownName, find};
 use crate::method::{Bench, Failure, Prepared, Purpose, Simulation};
 use crate::reported::{Class, Reported};
 use crate::scene::SceneErrors;
@@ -31,6 +32,9 @@ pub enum MeasurementError {
     /// The physics.
     #[error(transparent)]
     Physics(#[from] Failure),
+    /// A quantity that the bench is to say and the method does not observe.
+    #[error(transparent)]
+    Unknown(#[from] UnknownName),
     /// No thread to measure on.
     #[error("no thread to measure on: {0}")]
     Threads(rayon::ThreadPoolBuildError),
@@ -127,6 +131,9 @@ pub struct Running {
     simulation: Box<dyn Simulation>,
     steps: u64,
     before: Vec<f64>,
+    /// Names and places of what is said at the start and at the end, and at the end alone.
+    compared: Vec<(&'static str, usize)>,
+    at_end: Vec<(&'static str, usize)>,
     repeats: Vec<Repeat>,
 }
 
@@ -142,7 +149,15 @@ impl Running {
         steps: u64,
     ) -> Result<Self, MeasurementError> {
         let simulation = prepared.start(Purpose::Measurement)?;
-        let mut running = Running { bench, prepared, simulation, steps, before: vec![], repeats: vec![] };
+        let places = |names: &'static [&'static str]| {
+            names
+                .iter()
+                .map(|&name| Ok((name, find(bench.quantities, name)?)))
+                .collect::<Result<_, UnknownName>>()
+        };
+        let [compared, at_end] = [places(bench.compared)?, places(bench.at_end)?];
+        let (before, repeats) = (vec![], vec![]);
+        let mut running = Running { bench, prepared, simulation, steps, before, compared, at_end, repeats };
         running.advance(equilibration)?;
         running.before = running.simulation.observe();
         Ok(running)
@@ -180,13 +195,8 @@ impl Running {
     pub fn measured(mut self) -> Throughput {
         self.repeats.sort_by(|a, b| a.wall.total_cmp(&b.wall));
         let after = self.simulation.observe();
-        let Running { bench, prepared, simulation, steps, before, repeats } = self;
+        let Running { bench, prepared, simulation, steps, before, compared, at_end, repeats } = self;
         let (best, median) = (&repeats[0], &repeats[repeats.len() / 2]);
-        let observed = |name: &str, values: &[f64]| {
-            let place = bench.quantities.iter().position(|quantity| quantity.name == name);
-            place.and_then(|place| values.get(place)).copied().unwrap_or(f64::NAN)
-        };
-        let compared = bench.compared.iter();
         Throughput {
             what: bench.name,
             particles: prepared.particles().grain_count(),
@@ -202,10 +212,8 @@ impl Running {
             rate: best.work / best.wall,
             median_rate: median.work / median.wall,
             phases: best.phases.clone(),
-            compared: compared
-                .map(|&name| (name, [observed(name, &before), observed(name, &after)]))
-                .collect(),
-            at_end: bench.at_end.iter().map(|&name| (name, observed(name, &after))).collect(),
+            compared: compared.into_iter().map(|(name, at)| (name, [before[at], after[at]])).collect(),
+            at_end: at_end.into_iter().map(|(name, at)| (name, after[at])).collect(),
         }
     }
 }
@@ -222,6 +230,7 @@ impl Reported for MeasurementError {
         match self {
             MeasurementError::Scene(errors) => errors.class(),
             MeasurementError::Physics(failure) => failure.class(),
+            MeasurementError::Unknown(error) => error.class(),
             MeasurementError::Threads(_) => Class::InputOutput,
         }
     }
@@ -230,6 +239,7 @@ impl Reported for MeasurementError {
         match self {
             MeasurementError::Scene(errors) => Some(errors),
             MeasurementError::Physics(failure) => Some(failure),
+            MeasurementError::Unknown(error) => Some(error),
             MeasurementError::Threads(_) => None,
         }
     }

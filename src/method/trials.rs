@@ -6,7 +6,7 @@ use crate::particles::Particles;
 use crate::scene::{Key, SceneErrors, Values};
 
 /// How the scenes of a method may be run, and what is measured of them.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Trials {
     /// The key of the step (time).
     pub step: &'static Key,

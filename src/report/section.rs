@@ -122,6 +122,15 @@ impl Verdict {
         if holds { Verdict::Reproduced } else { Verdict::Partly }
     }
 
+    /// Of several statements of a source or theory, each of which came out or did not.
+    pub fn of_claims(came_out: &[bool]) -> Verdict {
+        match came_out.iter().filter(|came_out| **came_out).count() {
+            0 => Verdict::NotReproduced,
+            all if all == came_out.len() => Verdict::Reproduced,
+            _ => Verdict::Partly,
+        }
+    }
+
     /// Of an aim.
     pub const fn aim(is_met: bool) -> Verdict {
         if is_met { Verdict::AimMet } else { Verdict::AimMissed }

@@ -44,11 +44,9 @@ impl<'s> Averages<'s> {
     /// Takes a look that counts, at which `values` were observed.
     pub fn add(&mut self, simulation: &dyn Simulation, values: &[f64]) {
         self.looks += 1;
-        let observed = |name: &str| Some(vec![*values.get(self.subject.quantity(name)?)?]);
-        let trials = self.subject.trials;
-        let is_known = self.subject.prepared.seed().is_some();
-        let named = trials.observables.iter().filter(|name| is_known || !trials.fluctuating.contains(name));
-        let observed = named.filter_map(|name| Some(((*name).to_owned(), observed(name)?)));
+        let has_seeds = self.subject.prepared.seed().is_some();
+        let means = self.subject.observed.means.iter().filter(|watched| has_seeds || !watched.fluctuates);
+        let observed = means.map(|watched| (watched.name.to_owned(), vec![values[watched.place]]));
         let state = State::of(&simulation.particles());
         let profile = profile(&state, &self.domain);
         let share = 1.0 / (LOOKS + 1 - LOOKS / 2) as f64;

@@ -1,6 +1,7 @@
 //! Why a study has no result.
 
 use crate::method::Failure;
+use crate::method::observed::UnknownName;
 use crate::number::significant;
 use crate::reported::{Class, Reported};
 use crate::results::JournalError;
@@ -26,6 +27,9 @@ pub enum StudyError {
          for a lattice\n  help: choose a scene of lattice-md, langevin with pairs, or nbody"
     )]
     NoPrograms(String),
+    /// The method names something in its trials that it does not observe.
+    #[error(transparent)]
+    Unknown(#[from] UnknownName),
     /// The scene.
     #[error(transparent)]
     Scene(#[from] SceneErrors),
@@ -92,6 +96,7 @@ impl Reported for StudyError {
             | StudyError::NoSuchParameter { .. }
             | StudyError::NothingOfTheKind(_)
             | StudyError::OutOfRange { .. } => Class::Usage,
+            StudyError::Unknown(error) => error.class(),
             StudyError::Scene(errors) => errors.class(),
             StudyError::Physics(failure) => failure.class(),
             StudyError::OverBeforeOutput { .. } | StudyError::EveryRunFails { .. } => Class::Precondition,

@@ -21,11 +21,13 @@ const LOOKS: u64 = 64;
 /// Where the window ends after fewer looks, runs as long as the window are looked at more closely.
 const FEW: usize = 8;
 /// Steps are halved this often where the scene's own does not serve.
-const HALVINGS: i32 = 3;
+pub const HALVINGS: i32 = 3;
 
 /// What came out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Growth {
+    /// The way it was run.
+    pub way: String,
     /// The step of the runs (time).
     pub step: f64,
     /// Times of the looks (time).
@@ -53,21 +55,22 @@ pub enum EndedBy {
     Budget,
 }
 
-/// Follows a run, one whose start is disturbed and one with half the step, for at most `most` own steps of the scene.
+/// Follows a run in some way, one whose start is disturbed and one with half the step, for at most `most` own steps of the scene;
+/// where the step does not serve it is halved up to `halvings` times.
 ///
 /// # Errors
 /// What was tried, and why it failed, if no run comes to its end.
 pub fn growth(
     subject: &Subject,
+    (choice, halvings): (&Choice, i32),
     most: u64,
     each: f64,
     meter: &Meter<'_>,
 ) -> Result<Growth, Vec<(String, String)>> {
-    let choice = own_in_full_digits(subject);
     let mut tried = vec![];
-    for halvings in 0..=HALVINGS {
+    for halvings in 0..=halvings {
         let step = subject.step * 0.5f64.powi(halvings);
-        let closely = |most: u64| at_step(subject, &choice, step, most, each, meter);
+        let closely = |most: u64| at_step(subject, choice, step, most, each, meter);
         let mut found = closely(most << halvings);
         while let Ok(growth) = &found
             && growth.ended_by == EndedBy::Growth
@@ -91,7 +94,7 @@ pub fn growth(
 }
 
 /// The scene's own way, with the digits of the reference: a small disturbance must not be lost in rounding.
-fn own_in_full_digits(subject: &Subject) -> Choice {
+pub fn own_in_full_digits(subject: &Subject) -> Choice {
     let is_of_digits = |name: &str| {
         subject.trials.axes.iter().any(|axis| axis.name == name && axis.decides == Decides::Digits)
     };
@@ -120,6 +123,7 @@ fn at_step(
     let mut runs = [begin(base.as_ref())?, begin(disturbed.as_ref())?, begin(halved.as_ref())?];
     let looks = LOOKS.min(most);
     let mut growth = Growth {
+        way: choice.label(),
         step,
         times: vec![],
         separation: vec![],

@@ -3,13 +3,14 @@
 mod averages;
 mod choice;
 mod collision;
+mod encounters;
 mod error;
 mod growth;
 mod items;
 mod meter;
 mod observables;
+mod observed;
 mod orders;
-pub mod programs;
 pub mod rivals;
 pub mod stability;
 mod state;

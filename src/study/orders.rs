@@ -53,4 +53,14 @@ mod tests {
         assert!(fit(&errors, 0.0, 1.0).unwrap().order < 2.5);
         assert_eq!(fit(&errors[..2], 0.0, 1.0), None);
     }
+
+    /// Large steps are of no convergence: the smallest alone are taken.
+    #[test]
+    fn a_fit_takes_the_smallest_steps() {
+        let steps = (0..9).map(|k| f64::from(1 << k));
+        let errors: Vec<(f64, f64)> =
+            steps.map(|h| (h, if h > 16.0 { 1e-3 * h } else { 1e-6 * h * h })).collect();
+        let fitted = fit(&errors, 0.0, f64::INFINITY).unwrap();
+        assert!((fitted.order - 2.0).abs() < 1e-12 && fitted.points == 5, "{fitted:?}");
+    }
 }

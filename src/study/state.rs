@@ -48,7 +48,7 @@ impl State {
         });
         let (sum, largest) = squares.fold((0.0, 0.0), |(sum, largest): (f64, f64), square| {
             // A number that is none is the largest distance there is.
-            (sum + square, if square <= largest { largest } else { square })
+            (sum + square, if square <= largest || largest.is_nan() { largest } else { square })
         });
         [(sum / self.0.len().max(1) as f64).sqrt(), largest.sqrt()]
     }
@@ -131,6 +131,9 @@ mod tests {
         let mut domain = Domain::planar([0.0; 2], [10.0; 2], [true, false]);
         let [a, b] = [[[9.5, 1.0], [4.0, 4.0]], [[0.5, 1.0], [4.0, 4.0]]].map(|at| State::of(&particles(at)));
         assert_eq!(a.distance(&b, &domain), [0.5f64.sqrt(), 1.0]);
+        // What is nowhere is as far as can be, whoever comes after it.
+        let lost = State::of(&particles([[9.5, 1.0], [f64::NAN, 4.0]]));
+        assert!(a.distance(&lost, &domain).iter().all(|distance| distance.is_nan()));
         assert_eq!((a.momentum(), a.angular_momentum(&domain, None)), (([6.0, 0.0], 6.0), None));
         domain = Domain::planar([0.0; 2], [10.0; 2], [false; 2]);
         // −m y u: 2·1·2 and 2·4·1; spin: ½·2·¼·2 each.

@@ -1,10 +1,14 @@
 //! The scene of a study, and what its method states of the trials that may be made of it.
 
+use super::observed::Observed;
 use super::{Choice, StudyError};
 use crate::method::{Every, Methods, Prepared, Setting, Trials, Until, prepare, vocabularies};
 use crate::results::Identity;
 use crate::scene::{SceneErrors, Values};
 use sha2::{Digest, Sha256};
+
+/// The form in which studies keep finished runs; another one whenever these hold other things.
+const JOURNALED: &str = "2";
 
 /// A scene under study.
 pub struct Subject {
@@ -17,9 +21,8 @@ pub struct Subject {
     pub values: Values,
     /// The scene as it was given.
     pub prepared: Box<dyn Prepared>,
-    /// The names of the quantities that its method observes.
-    pub quantities: Vec<&'static str>,
-    units: Vec<&'static str>,
+    /// What is observed of it.
+    pub observed: Observed,
     /// How the scene itself is run.
     pub own: Choice,
     /// Its own step (time).
@@ -57,8 +60,7 @@ impl Subject {
             trials,
             values,
             prepared,
-            quantities: entry.quantities.iter().map(|quantity| quantity.name).collect(),
-            units: entry.quantities.iter().map(|quantity| quantity.unit).collect(),
+            observed: Observed::of(trials, entry.quantities)?,
             own,
             step,
             steps,
@@ -120,20 +122,15 @@ impl Subject {
         (self.trials.length.of)(self.prepared.particles())
     }
 
-    /// Whether a quantity is a velocity: a mean of it means nothing but beside the speeds.
+    /// Whether a mean is of a velocity: it means nothing but beside the speeds.
     pub fn is_velocity(&self, name: &str) -> bool {
-        self.quantity(name).is_some_and(|place| self.units[place] == "length/time")
-    }
-
-    /// The place of a quantity among those observed.
-    pub fn quantity(&self, name: &str) -> Option<usize> {
-        self.quantities.iter().position(|known| *known == name)
+        self.observed.means.iter().any(|watched| watched.name == name && watched.is_velocity)
     }
 
     /// What a study of it depends on: the resolved scene, the options and the version of the program.
     pub fn identity(&self, study: &str, options: &str) -> Identity {
         let mut sum = Sha256::new();
-        for part in [study, options, env!("CARGO_PKG_VERSION"), &self.prepared.scene()] {
+        for part in [study, JOURNALED, options, env!("CARGO_PKG_VERSION"), &self.prepared.scene()] {
             sum.update(part.as_bytes());
             sum.update([0]);
         }

@@ -1,5 +1,6 @@
 //! Hard discs under way, observed.
 
+use super::benches::QUANTITIES;
 use super::collapse::{Endless, Watch};
 use super::collision_log::Log;
 use super::engine::{Engine, Happened, Partner, Stopped};
@@ -9,6 +10,7 @@ use super::idle::never;
 use super::prepared::Checked;
 use super::reference;
 use crate::io::checkpoint::Column;
+use crate::method::observed::place;
 use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
 use crate::particles::{Particles, in_space};
@@ -403,14 +405,20 @@ impl Simulation for Running {
     }
 
     fn in_words(&self) -> String {
+        const SAID: [usize; 3] = [
+            place(QUANTITIES, "temperature"),
+            place(QUANTITIES, "compressibility"),
+            place(QUANTITIES, "collision_rate"),
+        ];
         let values = self.observe();
+        let [temperature, compressibility, rate] = SAID.map(|at| values[at]);
         format!(
             "{} discs, {} collisions of pairs; temperature {}, compressibility {}, {} collisions of a disc in a unit of time",
             self.places.len(),
             self.totals.collisions,
-            significant(values[5], 5),
-            significant(values[9], 5),
-            significant(values[10], 5)
+            significant(temperature, 5),
+            significant(compressibility, 5),
+            significant(rate, 5)
         )
     }
 }

@@ -3,9 +3,9 @@
 use super::sections;
 use super::study::{accuracy, diffusion, losses, prepared, sectors};
 use crate::console::Failure;
+use crate::method::programs;
 use crate::method::{Item, Progress};
 use crate::results::{Effort, Made};
-use crate::study::programs;
 
 macro_rules! items {
     ($($name:literal, $seconds:expr, $is_quick:literal, $make:ident, $doc:literal;)*) => {

@@ -1,9 +1,11 @@
 //! Particles in a bath under way, observed; what is thrown out is counted, and the run goes on without it.
 
+use super::benches::QUANTITIES;
 use super::dynamics::{Stepper, is_loss, stepper};
 use super::losses::Losses;
 use super::prepared::Checked;
 use crate::io::checkpoint::{Column, Counter};
+use crate::method::observed::place;
 use crate::method::{Clock, Failure, FailureKind, Purpose, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
 use crate::particles::{Particle, Particles};
@@ -286,14 +288,17 @@ impl Simulation for Running {
     }
 
     fn in_words(&self) -> String {
+        const SAID: [usize; 3] =
+            [place(QUANTITIES, "temperature"), place(QUANTITIES, "pressure"), place(QUANTITIES, "msd")];
         let seen = self.observe();
+        let [temperature, pressure, square] = SAID.map(|at| seen[at]);
         format!(
             "{} particles, {} lost; temperature {:.4}, pressure {}, mean square displacement {}",
             self.start.len(),
             self.losses.count(),
-            seen[3],
-            significant(seen[4], 5),
-            significant(seen[5], 5)
+            temperature,
+            significant(pressure, 5),
+            significant(square, 5)
         )
     }
 }

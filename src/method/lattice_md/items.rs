@@ -41,7 +41,7 @@ pub(super) const ITEMS: &[Item] = items! {
     "useful-work", [1.0, 1.0], true, useful_work, "Operations that act on real contacts, over the density";
     "printed", [6.0, 75.0], true, printed, "The printed text run the CRAY's way: NOP·(n + D) against wall time, and what thirty years made of it";
     "measured", [8.0, 17.0], true, measured, "The same, measured on this host";
-    "validation", [4.0, 32.0], true, validation, "The timing model of this host against wall time";
+    "validation", [4.0, 32.0], true, validation, "The timing model of a host against wall time here";
     "atlas", [44.0, 44.0], false, atlas, "Who wins where: occupancy, number of particles, method and machine";
     "crossover", [4.0, 30.0], true, crossover, "Lattice, neighbour lists and sectors: which is the fastest at which density, on this host";
     "threads", [3.0, 18.0], true, threads, "What more threads give, and what the machine has to give";
@@ -63,8 +63,9 @@ fn ladder(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
         .into_iter()
         .map(|name| Ok(ladder::ladder(&Question::default(), &machines::preset(name)?)?))
         .collect::<Result<_, Failure>>()?;
-    let host = host_ladder::host_ladder(&Question::default(), &default_model()?)?;
+    let host = host_ladder::host_ladder(&Question::default(), &default_model()?, Calibrated::Shipped)?;
     let mut section = sections::ladder::section(&ladders);
+    section.details.push(format!("The step of a host, term by term, is by {}.", host.model));
     section.tables.push(sections::ladder::of_host(&host));
     made(section, &serde_json::json!({ "machines": ladders, "host": host }))
 }
@@ -144,21 +145,21 @@ fn precision(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 fn pipe_small(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let title = "Density waves in a short pipe (figures 5 and 6)";
     let question = "Do grains that fall through two fifths of the pipe form density waves?";
-    let showing = Showing { name: "pipe-small", title, question, from: 0.0, snapshots: 11 };
+    let showing = Showing { name: "pipe-small", title, question, asks_ways: false, from: 0.0, snapshots: 11 };
     pipes(showing, ("pipe-small", &[]), &[1], progress)
 }
 
 fn pipe(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let title = "Density waves in the whole pipe (figures 5 and 6)";
     let question = "Do grains that fall through the source's whole pipe form density waves?";
-    let showing = Showing { name: "pipe", title, question, from: 10.0, snapshots: 14 };
+    let showing = Showing { name: "pipe", title, question, asks_ways: false, from: 10.0, snapshots: 14 };
     pipes(showing, ("pipe", &[]), &[1, 2], progress)
 }
 
 fn pipe_thin(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let title = "Density waves both ways in a thinner filling";
     let question = "Do the waves run both ways where the pipe is filled less?";
-    let showing = Showing { name: "pipe-thin", title, question, from: 0.0, snapshots: 0 };
+    let showing = Showing { name: "pipe-thin", title, question, asks_ways: true, from: 0.0, snapshots: 0 };
     pipes(showing, ("pipe", &["particles.packing_fraction=0.35"]), &[1, 2], progress)
 }
 
@@ -205,7 +206,8 @@ fn bound(most: usize, seconds: u64) -> Bound {
     Bound { most, within: Some(Duration::from_secs(seconds)) }
 }
 
-/// The machine of the source, the CRAY of the application, and this host, by the model that comes with the program.
+/// The machine of the source, the CRAY of the application, and the host whose model comes with the program, beside what is measured
+/// here.
 fn atlas(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let machines = [machines::preset("paper")?, machines::preset("cray-y-mp-el")?];
     let host = default_model()?;
@@ -213,7 +215,7 @@ fn atlas(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
         Effort::Quick => (&[300], Bound::of(2)),
         Effort::Full => (&[100, 300, 1000, 3000, 10_000], bound(6, ATLAS)),
     };
-    let data = break_even::atlas(&machines, &host, measured, rounds, progress)?;
+    let data = break_even::atlas(&machines, (&host, Calibrated::Shipped), measured, rounds, progress)?;
     made(sections::break_even::section(&data, "stripmine reproduce --only atlas"), &data)
 }
 

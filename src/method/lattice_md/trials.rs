@@ -4,6 +4,7 @@ use super::benches::QUANTITIES;
 use super::document::Document;
 use super::keys::{FRICTION, INERTIA, MAX_PENETRATION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
 use super::options::Inertia;
+use crate::method::observed::place;
 use crate::method::{
     Axis, Balance, Decides, Mapped, Parameter, Prepared, Purpose, SMALLEST_RADIUS, Setting, Theory, Trials,
 };
@@ -291,8 +292,7 @@ fn theory(values: &Values, prepared: &dyn Prepared, integrator: &Setting) -> Opt
 /// Whether discs touch at the start while they move; where all are at rest the third derivatives are zero.
 fn touches(prepared: &dyn Prepared) -> bool {
     let moves = prepared.particles().grains().iter().any(|disc| disc.velocity != [0.0; 3]);
-    let place = QUANTITIES.iter().position(|quantity| quantity.name == "contacts");
-    let observed = || prepared.start(Purpose::Measurement).ok().map(|simulation| simulation.observe());
-    let contacts = |place: usize| Some(*observed()?.get(place)?);
-    moves && place.and_then(contacts).is_some_and(|contacts| contacts > 0.0)
+    const CONTACTS: usize = place(QUANTITIES, "contacts");
+    let started = || prepared.start(Purpose::Measurement);
+    moves && started().is_ok_and(|simulation| simulation.observe()[CONTACTS] > 0.0)
 }

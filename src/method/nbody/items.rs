@@ -5,10 +5,10 @@ use super::prepared::prepare;
 use super::sections;
 use super::study::{collapse, energy, rates};
 use crate::console::Failure;
+use crate::method::programs;
 use crate::method::{Item, Progress};
 use crate::results::{Effort, Made};
 use crate::scene::Values;
-use crate::study::programs;
 
 macro_rules! items {
     ($($name:literal, $seconds:expr, $is_quick:literal, $make:ident, $doc:literal;)*) => {

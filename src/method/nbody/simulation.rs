@@ -1,11 +1,13 @@
 //! Bodies under way, observed.
 
+use super::benches::QUANTITIES;
 use super::bodies::Bodies;
 use super::conserved::Conserved;
 use super::field::Attraction;
 use super::prepared::Checked;
 use super::schemes::Scheme;
 use crate::io::checkpoint::Column;
+use crate::method::observed::place;
 use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
 use crate::particles::{Particles, in_plane};
@@ -228,7 +230,7 @@ impl Simulation for Running {
 
     fn warnings(&self) -> Vec<RunWarning> {
         const MOST: f64 = 0.01;
-        let error = self.observe()[3];
+        let error = self.observe()[const { place(QUANTITIES, "energy_error") }];
         let message = format!(
             "the energy is off by {:.2} % of itself: take a smaller dt or an integrator of higher order",
             100.0 * error
@@ -239,13 +241,19 @@ impl Simulation for Running {
     }
 
     fn in_words(&self) -> String {
+        const SAID: [usize; 3] = [
+            place(QUANTITIES, "energy_error"),
+            place(QUANTITIES, "virial_ratio"),
+            place(QUANTITIES, "momentum"),
+        ];
         let seen = self.observe();
+        let [energy_error, virial_ratio, momentum] = SAID.map(|at| seen[at]);
         format!(
             "{} bodies; energy error {}, virial ratio {:.3}, momentum {}",
             self.bodies.len(),
-            significant(seen[3], 3),
-            seen[4],
-            significant(seen[5], 2)
+            significant(energy_error, 3),
+            virial_ratio,
+            significant(momentum, 2)
         )
     }
 }

@@ -242,6 +242,32 @@ mod tests {
         assert_eq!(cost(1024.0, false), 0.25);
     }
 
+    /// By hand: 100 elements of 8 bytes, met a byte at a time at the costs of memory far away.
+    #[test]
+    fn a_pass_waits_for_what_it_fetches_and_writes_back() {
+        let mut levels = levels();
+        levels[1].passes = Transfer { fetch: 0.5, fetch_array: 2.0, write_back: 0.25, first: 7.0, line: 3.0 };
+        let array = Vector::Array(Array::X, "f64");
+        let touch = |since, written, indexed| Touch { vector: array, bytes: 8.0, since, written, indexed };
+        let far = Neighbourhood { extent: 800.0, distance: 1e9 };
+        let arrays = BTreeMap::from([((Array::X, "f64"), far)]);
+        let around = Surroundings { whole: 100.0, arrays };
+        let wait = |touch: Touch| around.wait(&levels, &[touch], 100.0, |level| level.passes);
+        let streamed = |touch| wait(touch).streamed;
+        // In the same pass: 800 bytes at 0.5, and 0.25 more where they go back; as an array: at 2, and the first byte.
+        assert_eq!(streamed(touch(Since::Here(1e7), false, false)), 400.0);
+        assert_eq!(streamed(touch(Since::Here(1e7), true, false)), 600.0);
+        assert_eq!(streamed(touch(Since::Before, false, false)), 1607.0);
+        assert_eq!(streamed(touch(Since::Here(1.0), true, false)), 0.0);
+        // Eight elements a line: lines after those before cost their bytes, the others a line each.
+        let met = wait(touch(Since::Before, false, true));
+        let Lines { foreseen, unforeseen } = Lines::met(8.0, false);
+        assert!((met.streamed - (7.0 + 100.0 * foreseen * LINE * 2.0)).abs() < 1e-9, "{met:?}");
+        assert!((met.indexed - 100.0 * unforeseen * 3.0).abs() < 1e-9 && met.indexed > 0.0, "{met:?}");
+        assert_eq!(met.sum(), met.streamed + met.indexed);
+        assert_eq!(met.far, 1.0);
+    }
+
     #[test]
     fn lines_are_foreseen_where_none_is_passed_over() {
         // Every element its own line, far from the others; many on every line; and lines in order.

@@ -74,6 +74,13 @@ mod tests {
     use stripmine_kernels::backend::tape::{Outline, Place};
     use stripmine_kernels::isa::Op;
 
+    #[test]
+    fn of_the_shorter_a_share_hides_and_lines_of_an_index_do_not() {
+        let of = |share| overlapped(share, [10.0, 4.0, 3.0]);
+        assert_eq!([of(1.0), of(0.5), of(0.0)], [13.0, 15.0, 17.0]);
+        assert_eq!(overlapped(0.5, [4.0, 10.0, 0.0]), 12.0);
+    }
+
     /// By hand: two sums and a division of 16 elements in registers of 8, and of 3 more.
     #[test]
     fn a_loop_is_charged_by_its_classes() {

@@ -216,3 +216,71 @@ impl HostModel {
         Ok(begin + overlapped(self.loops.overlap, parts))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::cost::{Estimate, PassCost};
+    use super::*;
+    use stripmine_kernels::backend::tape::Outline;
+
+    /// A host on which a pass takes 10 ns to begin and 0.5 an element, and a run 100.
+    fn host() -> HostModel {
+        let of = |value: f64| Estimate { value, interval: 0.0 };
+        let add = PassCost { element: of(0.5), start: of(10.0) };
+        let lane =
+            LaneCosts { lanes: 1, passes: BTreeMap::from([("add".to_owned(), add)]), ..LaneCosts::default() };
+        HostModel {
+            format: 0,
+            title: String::new(),
+            instruction_set: String::new(),
+            measured: Measured {
+                state: String::new(),
+                seconds: 1.0,
+                samples: 1.0,
+                timer: 1.0,
+                spread: 0.0,
+                low: 0.0,
+                disagreement: 0.0,
+                shortest: 8,
+                longest: 1000,
+                residual: 0.0,
+            },
+            operand: 0.0,
+            begin: 1.0,
+            bind: 0.0,
+            run: 100.0,
+            clock: 0.0,
+            levels: vec![Level::default()],
+            lanes: BTreeMap::from([("f64".to_owned(), lane)]),
+            loops: LoopCosts::default(),
+            rates: BTreeMap::new(),
+        }
+    }
+
+    fn sums(count: usize) -> Outlines {
+        let pass = Outline { op: Op::Add, converts: false, reads: vec![], writes: None };
+        Outlines { lane: "f64", instructions: vec![], passes: vec![pass; count], registers: [0; 3] }
+    }
+
+    /// By hand: two passes over 100 elements at once, or in strips of 32 of which the last has 4.
+    #[test]
+    fn every_strip_begins_and_the_last_is_charged_what_is_left() {
+        let (host, around) = (host(), Surroundings::default());
+        let ns = |execution| host.program(&sums(2), 100, execution, &around);
+        assert_eq!(ns(Execution::Eager), Ok(100.0 + 2.0 * (10.0 + 50.0)));
+        assert_eq!(ns(Execution::Strip(32)), Ok(100.0 + 2.0 * (4.0 * 10.0 + 50.0)));
+        assert_eq!(ns(Execution::Strip(50)), Ok(100.0 + 2.0 * (2.0 * 10.0 + 50.0)));
+        assert_eq!(host.program(&sums(2), 0, Execution::Eager, &around), Ok(0.0));
+        assert!(matches!(
+            host.program(&sums(2), 1001, Execution::Eager, &around),
+            Err(OutOfRange::Length { n: 1001, .. })
+        ));
+    }
+
+    #[test]
+    fn the_baseline_charges_every_operation_of_every_element() {
+        let instruction = Outline { op: Op::Add, converts: false, reads: vec![], writes: None };
+        let program = Outlines { instructions: vec![instruction; 3], ..sums(1) };
+        assert_eq!(host().baseline(&program, 40, Execution::Eager), 0.5 * 120.0);
+    }
+}

@@ -199,11 +199,9 @@ impl Survey<'_> {
             } else {
                 averages.pass();
             }
-            if let Some(balance) = self.subject.trials.balance {
-                let value = |name: &&str| self.subject.quantity(name).map_or(0.0, |place| values[place]);
-                let sum = |names: &[&str]| names.iter().map(|name| value(name).abs()).sum::<f64>();
-                scale = f64::max(scale, sum(balance.energies) + sum(balance.inputs));
-                energy = Some(value(&balance.error));
+            if let Some(balance) = &self.subject.observed.balance {
+                scale = f64::max(scale, balance.energies(&values) + balance.inputs(&values));
+                energy = Some(balance.error(&values));
             }
             if looks == LOOKS {
                 warned = simulation.warnings().iter().map(|warning| warning.check.to_owned()).collect();

@@ -19,17 +19,43 @@ pub struct Fulfilled<'d> {
     pub of_own: Option<f64>,
 }
 
-/// The cheapest run for each wish that is above the reference's own error and that some run fulfils.
-pub fn fulfilled(data: &WorkPrecision) -> Vec<Fulfilled<'_>> {
+/// A wish for which no way is recommended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Denied {
+    /// The error that is wished for at most (the method's length).
+    pub wish: f64,
+    /// Why not.
+    pub why: String,
+}
+
+/// What becomes of each wish that is above the reference's own error and that some run fulfils: the cheapest run against which
+/// nothing speaks; none where nothing is decided, or something speaks against every run.
+pub fn wishes(data: &WorkPrecision) -> Vec<Result<Fulfilled<'_>, Denied>> {
     let floor = data.reference.floor.get(&Measure::Position).copied().unwrap_or(0.0);
     let own = own_run(data).and_then(Run::cost);
-    let cheapest = |wish: f64| {
+    let answer = |wish: f64| {
         let serves = |run: &&Run| run.error(Measure::Position).is_some_and(|error| error <= wish);
-        let timed = data.runs.iter().filter(serves).filter_map(|run| Some((run, run.cost()?)));
-        let (run, cost) = timed.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some(Fulfilled { wish, run, of_own: own.map(|own| cost / own) })
+        let timed = || data.runs.iter().filter(serves).filter_map(|run| Some((run, run.cost()?)));
+        let cheapest = |a: &(&Run, f64), b: &(&Run, f64)| a.1.total_cmp(&b.1);
+        let (first, _) = timed().min_by(cheapest)?;
+        if let Some(why) = &data.undecided {
+            return Some(Err(Denied { wish, why: format!("not decided: {why}") }));
+        }
+        let sound = timed().filter(|(run, _)| run.is_sound()).min_by(cheapest);
+        Some(match sound {
+            Some((run, cost)) => Ok(Fulfilled { wish, run, of_own: own.map(|own| cost / own) }),
+            None => {
+                let why = format!(
+                    "something speaks against every way; against {} at {}: {}",
+                    data.ways[first.way].label,
+                    multiple(first.power),
+                    first.objections.join("; ")
+                );
+                Err(Denied { wish, why })
+            }
+        })
     };
-    WISHES.into_iter().filter(|wish| *wish > floor).filter_map(cheapest).collect()
+    WISHES.into_iter().filter(|wish| *wish > floor).filter_map(answer).collect()
 }
 
 /// The scene's own way with its own step.
@@ -39,7 +65,7 @@ pub fn own_run(data: &WorkPrecision) -> Option<&Run> {
 
 /// Sentences on a scene.
 pub fn sentences(data: &WorkPrecision) -> Vec<String> {
-    [own(data), cheap(data), digits(data), orders(data), means(data), cut(data)]
+    [own(data), undecided(data), cheap(data), digits(data), orders(data), means(data), cut(data)]
         .into_iter()
         .flatten()
         .collect()
@@ -80,11 +106,16 @@ pub struct AsGood {
     pub of_own: f64,
 }
 
-/// The cheapest run that is as accurate as the scene's own way; none where that one breaks or was not timed.
+/// The cheapest run that is as accurate as the scene's own way and against which nothing speaks; none where nothing is decided, or the
+/// scene's own way breaks or was not timed.
 pub fn as_good(data: &WorkPrecision) -> Option<AsGood> {
+    if data.undecided.is_some() {
+        return None;
+    }
     let own = own_run(data)?;
     let (error, cost) = (own.error(Measure::Position)?, own.cost()?);
-    let as_good = data.runs.iter().filter(|run| run.error(Measure::Position).is_some_and(|it| it <= error));
+    let is_as_good = |run: &&Run| run.error(Measure::Position).is_some_and(|it| it <= error);
+    let as_good = data.runs.iter().filter(|run| run.is_sound()).filter(is_as_good);
     let timed = as_good.filter_map(|run| Some((run, run.cost()?)));
     let (best, least) = timed.min_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(AsGood { way: data.ways[best.way].label.clone(), power: best.power, of_own: least / cost })
@@ -98,14 +129,17 @@ fn own(data: &WorkPrecision) -> Option<String> {
         }
         (Ok(_), error) => error?,
     };
-    let best = as_good(data)?;
-    let begin = format!(
+    let mut begin = format!(
         "The scene's own way, {}, errs by {} {} after a time of {}",
         data.own,
         short(error),
         data.unit,
         short(data.duration)
     );
+    if !own.is_sound() {
+        begin.push_str(&format!(" ({})", own.objections.join("; ")));
+    }
+    let Some(best) = as_good(data) else { return Some(begin + ".") };
     if best.of_own > WORTH {
         return Some(format!("{begin}; no run that is as accurate is cheaper by more than 5 %."));
     }
@@ -117,9 +151,17 @@ fn own(data: &WorkPrecision) -> Option<String> {
     ))
 }
 
+/// Why no way is recommended.
+fn undecided(data: &WorkPrecision) -> Option<String> {
+    let why = data.undecided.as_ref()?;
+    Some(format!(
+        "Which way is the cheapest is not decided: {why}. More --budget compares a longer time, as far as trajectories are comparable."
+    ))
+}
+
 /// What the largest wish costs, where that is less than the scene's own way.
 fn cheap(data: &WorkPrecision) -> Option<String> {
-    let it = fulfilled(data).into_iter().next()?;
+    let it = wishes(data).into_iter().next()?.ok()?;
     let share = it.of_own.filter(|share| *share < 0.9)?;
     Some(format!(
         "For an error of at most {} {} {} at {} is the cheapest, for {:.0} % of the scene's own cost.",

@@ -4,6 +4,7 @@ use super::measures::{Errors, Measure};
 use super::plan::Plan;
 use crate::statistics::median;
 use crate::study::collision::Collision;
+use crate::study::encounters::Encounters;
 use crate::study::growth::{COMPARABLE, Growth};
 use crate::study::observables::Observables;
 use crate::study::orders::Fitted;
@@ -28,6 +29,12 @@ pub struct WorkPrecision {
     pub plan: Plan,
     /// The time that is compared (time).
     pub duration: f64,
+    /// The time of the scene (time).
+    pub scene_time: f64,
+    /// What happens to a particle in the time that is compared.
+    pub encounters: Encounters,
+    /// Why no way is recommended: too little happens in the time that is compared; none where enough does.
+    pub undecided: Option<String>,
     /// The reference.
     pub reference: Reference,
     /// Every way to run it.
@@ -97,6 +104,8 @@ pub struct Run {
     pub power: i32,
     /// Its errors, or why it broke.
     pub outcome: Result<Errors, String>,
+    /// What speaks against it: a limit of the step by theory, a check, a warning of the run.
+    pub objections: Vec<String>,
     /// Clock periods for a unit of time; none where no operations are counted.
     pub clocks: Option<f64>,
     /// Processor seconds for a unit of time in each repeat.
@@ -112,6 +121,11 @@ impl Run {
     /// An error.
     pub fn error(&self, measure: Measure) -> Option<f64> {
         self.outcome.as_ref().ok()?.get(&measure).copied()
+    }
+
+    /// Whether nothing speaks against it.
+    pub fn is_sound(&self) -> bool {
+        self.objections.is_empty()
     }
 
     /// Whether its trajectories have parted from the reference's.

@@ -18,6 +18,7 @@ use crate::study::state::State;
 use crate::study::trial::{Course, follow, timed};
 use crate::study::{StudyError, Subject};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
 /// Looks at the energy in a run.
@@ -89,11 +90,31 @@ pub struct Work<'w> {
     pub plan: &'w Plan,
 }
 
-/// The end of a run, its error of the balance, and its clock periods a step.
-type Ended = (State, Option<f64>, Option<f64>);
+/// A run that came to its end.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Ended {
+    state: State,
+    /// Error of the balance of energy (energy that moves).
+    balance: Option<f64>,
+    /// Clock periods a step.
+    clocks: Option<f64>,
+    /// What speaks against the way and the step.
+    objections: Vec<String>,
+}
+
+/// What limits of theory and checks say against a scene before it runs.
+fn objections(scene: &dyn Prepared) -> Vec<String> {
+    let limits = scene.step_limits().into_iter().filter(|limit| limit.share > 1.0);
+    let limits = limits.map(|limit| {
+        format!("the step is {} times the limit \"{}\" of theory", significant(limit.share, 3), limit.name)
+    });
+    let checks = scene.warnings().iter().map(|warning| format!("checked: {}", warning.message));
+    limits.chain(checks).collect()
+}
 
 impl Work<'_> {
-    fn duration(&self) -> f64 {
+    /// The time that is compared (time).
+    pub fn duration(&self) -> f64 {
         self.plan.own_steps as f64 * self.subject.step
     }
 
@@ -117,21 +138,28 @@ impl Work<'_> {
         let steps = self.steps(power);
         let course = Course { steps, looks: LOOKS.min(steps), each };
         let (mut worst, mut scale) = (0.0, 0.0);
+        let mut objections = objections(scene.as_ref());
+        let mut looks = 0;
         let see = |simulation: &dyn Simulation| {
-            let Some(balance) = self.subject.trials.balance else { return };
+            if looks == course.looks {
+                let warned = simulation.warnings().into_iter();
+                objections.extend(warned.map(|warning| format!("warned of: {}", warning.message)));
+            }
+            looks += 1;
+            let Some(balance) = &self.subject.observed.balance else { return };
             let values = simulation.observe();
-            let value = |name: &str| self.subject.quantity(name).map_or(0.0, |place| values[place].abs());
-            worst = f64::max(worst, value(balance.error));
-            scale = f64::max(scale, balance.energies.iter().map(|part| value(part)).sum());
+            worst = f64::max(worst, balance.error(&values).abs());
+            scale = f64::max(scale, balance.energies(&values));
         };
         let machine = self.effort.machine.as_ref();
         let end = follow(scene.as_ref(), Purpose::Run, course, machine, self.meter, see);
         let end = end.map_err(|failure| first_line(&failure.what()))?;
-        let has_balance = self.subject.trials.balance.is_some() && scale > 0.0;
-        Ok((end.state, has_balance.then(|| worst / scale), end.clocks))
+        let has_balance = self.subject.observed.balance.is_some() && scale > 0.0;
+        let balance = has_balance.then(|| worst / scale);
+        Ok(Ended { state: end.state, balance, clocks: end.clocks, objections })
     }
 
-    fn errors(&self, (state, balance, _): &Ended, reference: &State) -> Errors {
+    fn errors(&self, Ended { state, balance, .. }: &Ended, reference: &State) -> Errors {
         let inertia = (self.subject.trials.inertia)(&self.subject.values);
         let mut errors =
             errors(state, reference, (&self.subject.prepared.domain(), self.subject.length()), inertia);
@@ -163,8 +191,8 @@ impl Work<'_> {
         });
         let ends: Vec<Ended> = ends.collect::<Result<_, StudyError>>()?;
         let [best, whole, other] = ends.as_slice() else { unreachable!("there are three cases") };
-        let [halving, second_off] = [whole, other].map(|end| self.errors(end, &best.0));
-        let mut floor = self.errors(best, &best.0);
+        let [halving, second_off] = [whole, other].map(|end| self.errors(end, &best.state));
+        let mut floor = self.errors(best, &best.state);
         for (measure, error) in &mut floor {
             let off = [&halving, &second_off].map(|errors| errors.get(measure).copied().unwrap_or(0.0));
             // The balance is an error of the run itself, not a difference.
@@ -173,7 +201,10 @@ impl Work<'_> {
             }
         }
         let ways = [first.label(), second.label()];
-        Ok((Reference { ways, step: self.step(power), halving, second: second_off, floor }, best.0.clone()))
+        Ok((
+            Reference { ways, step: self.step(power), halving, second: second_off, floor },
+            best.state.clone(),
+        ))
     }
 
     /// Every run, without its cost.
@@ -213,12 +244,14 @@ impl Work<'_> {
         let each = self.rates[way].unwrap_or(0.0);
         self.journal.recall(&format!("run|{}|{power}", choice.label()), || {
             let end = self.ended(choice, power, each);
-            let clocks = end.as_ref().ok().and_then(|(.., clocks)| *clocks);
+            let clocks = end.as_ref().ok().and_then(|end| end.clocks);
+            let objections = end.as_ref().map_or(vec![], |end| end.objections.clone());
             Ok(Run {
                 way,
                 step: self.step(power),
                 power,
                 outcome: end.map(|end| self.errors(&end, reference)).and_then(all_finite),
+                objections,
                 clocks: clocks.map(|each| each * self.steps(power) as f64 / self.duration()),
                 costs: vec![],
             })
@@ -291,10 +324,10 @@ impl Work<'_> {
         collision(self.subject, &steps, self.effort.phases, self.journal, self.meter)
     }
 
-    /// Places among the runs that no other beats in cost and error; an error below the reference's own counts as that.
+    /// Places among the runs that nothing speaks against and no other such run beats in cost and error; an error below the reference's own counts as that.
     pub fn front(&self, runs: &[Run], reference: &Reference, measure: Measure) -> Vec<usize> {
         let floor = reference.floor.get(&measure).copied().unwrap_or(0.0);
-        let points = runs.iter().enumerate().filter(|(_, run)| !run.is_lost());
+        let points = runs.iter().enumerate().filter(|(_, run)| !run.is_lost() && run.is_sound());
         let points = points
             .filter_map(|(place, run)| Some((place, (run.cost()?, run.error(measure)?.max(floor)))))
             .collect::<Vec<_>>();

@@ -17,7 +17,8 @@ pub use measures::{Errors, Measure};
 pub use plan::Plan;
 
 use super::choice::Choice;
-use super::growth::{Growth, growth};
+use super::encounters::{Encounters, encounters};
+use super::growth::{EndedBy, Growth, HALVINGS, growth, own_in_full_digits};
 use super::meter::Meter;
 use super::observables::SEEDS;
 use super::{StudyError, Subject};
@@ -34,6 +35,8 @@ use std::time::Instant;
 const GROWTH_SHARE: f64 = 0.1;
 /// The share that means over seeds take at most.
 const MEANS_SHARE: f64 = 0.2;
+/// Contacts, or turns of its motion, that a particle has at least in a time from which a way is recommended.
+const FEW: f64 = 3.0;
 /// Failures that an error names at most.
 const TRIED: usize = 8;
 
@@ -78,9 +81,7 @@ pub fn work_precision(
     let own_rate = rates[own_place].unwrap_or_else(|| median(all_rates()));
     let most = (GROWTH_SHARE * effort.budget / (4.0 * own_rate)) as u64;
     let most = subject.steps.min(most.max(1 << COARSEST));
-    let growth: Growth = journal.recall("growth", || {
-        growth(subject, most, own_rate, &meter).map_err(|tried| StudyError::EveryRunFails { tried })
-    })?;
+    let growth = longest_growth(subject, most, own_rate, journal, &meter)?;
     let comparable = (growth.window / subject.step).round() as u64;
     let plan: Plan = journal.recall("plan", || {
         Ok::<_, JournalError>(plan(&choices, &rates, &subject.own, comparable, effort.budget, effort.repeats))
@@ -99,6 +100,10 @@ pub fn work_precision(
         });
         return Err(StudyError::EveryRunFails { tried: tried.take(TRIED).collect() });
     }
+    let counted = (&own_in_full_digits(subject), growth.step);
+    let encounters: Encounters = journal.recall("encounters", || {
+        Ok::<_, JournalError>(encounters(subject, counted, work.duration(), own_rate, &meter))
+    })?;
     let observables = work.observables(own_rate)?;
     let collision = work.collision()?;
     work.time(&mut runs, start)?;
@@ -110,7 +115,10 @@ pub fn work_precision(
         unit: subject.trials.length.unit.to_owned(),
         step: subject.step,
         own: subject.own.label(),
-        duration: plan.own_steps as f64 * subject.step,
+        duration: work.duration(),
+        scene_time: subject.steps as f64 * subject.step,
+        undecided: undecided(&encounters, work.duration(), subject),
+        encounters,
         growth,
         orders: work.orders(&runs, &reference),
         reference,
@@ -122,5 +130,44 @@ pub fn work_precision(
         collision,
         machine: effort.machine.as_ref().map(|machine| machine.title().to_owned()),
         plan,
+    })
+}
+
+/// How long trajectories are comparable: those of the scene's own way, or, where its error alone ends the time, those of the reference's.
+fn longest_growth(
+    subject: &Subject,
+    most: u64,
+    each: f64,
+    journal: &Journal,
+    meter: &Meter<'_>,
+) -> Result<Growth, StudyError> {
+    let own = own_in_full_digits(subject);
+    let first: Growth = journal.recall("growth", || {
+        growth(subject, (&own, HALVINGS), most, each, meter)
+            .map_err(|tried| StudyError::EveryRunFails { tried })
+    })?;
+    let reference = subject.own.with(subject.trials.references[0]);
+    if first.ended_by != EndedBy::Growth || reference == own {
+        return Ok(first);
+    }
+    let second: Option<Growth> = journal.recall("growth of the reference", || {
+        Ok::<_, JournalError>(growth(subject, (&reference, 0), most, each, meter).ok())
+    })?;
+    Ok(second.filter(|second| second.window > first.window).unwrap_or(first))
+}
+
+/// Why nothing is decided: hardly anything happens in the time that is compared.
+fn undecided(encounters: &Encounters, duration: f64, subject: &Subject) -> Option<String> {
+    let whole = subject.steps as f64 * subject.step;
+    // Of a scene that is compared as a whole nothing is left out; something must happen in it.
+    let least = if duration > 0.95 * whole { 1.0 } else { FEW };
+    (encounters.each < least).then(|| {
+        format!(
+            "in the time that is compared, {} of {}, a particle has {} {} in the mean, fewer than {least}",
+            significant(duration, 3),
+            significant(whole, 3),
+            significant(encounters.each, 2),
+            encounters.name(),
+        )
     })
 }

@@ -17,15 +17,19 @@ const SHARE: f64 = 0.6;
 struct Scope {
     /// Whether ways that cost otherwise but give the same are run in every scheme and precision.
     every_cost: bool,
+    /// Whether every scheme is run in every precision.
+    every_precision: bool,
     /// The smallest step is this power of two below the scene's own.
     finest: i32,
 }
 
-const SCOPES: [Scope; 4] = [
-    Scope { every_cost: true, finest: 4 },
-    Scope { every_cost: false, finest: 4 },
-    Scope { every_cost: false, finest: 3 },
-    Scope { every_cost: false, finest: 2 },
+const SCOPES: [Scope; 6] = [
+    Scope { every_cost: true, every_precision: true, finest: 4 },
+    Scope { every_cost: false, every_precision: true, finest: 4 },
+    Scope { every_cost: false, every_precision: true, finest: 3 },
+    Scope { every_cost: false, every_precision: true, finest: 2 },
+    Scope { every_cost: false, every_precision: false, finest: 2 },
+    Scope { every_cost: false, every_precision: false, finest: 1 },
 ];
 
 /// What is run.
@@ -82,6 +86,9 @@ pub fn plan(
                 .to_owned(),
         );
     }
+    if !scope.every_precision {
+        left_out.push("integrators other than the scene's own in precisions other than its own".to_owned());
+    }
     if scope.finest < SCOPES[0].finest {
         left_out.push(format!("steps below 1/{} of the scene's own", 1 << scope.finest));
     }
@@ -95,7 +102,13 @@ pub fn plan(
 
 fn is_run(choice: &Choice, own: &Choice, scope: Scope) -> bool {
     let same = |decides| choice.agrees(own, decides);
-    same(Decides::Cost) || scope.every_cost || same(Decides::Order) && same(Decides::Digits)
+    let [order, digits, cost] = [Decides::Order, Decides::Digits, Decides::Cost].map(same);
+    match scope {
+        Scope { every_cost: true, .. } => true,
+        Scope { every_precision: true, .. } => cost || order && digits,
+        // One thing differs at most.
+        _ => [order, digits, cost].into_iter().filter(|same| !same).count() < 2,
+    }
 }
 
 #[cfg(test)]
@@ -112,7 +125,7 @@ mod tests {
         rates[1] = None;
         let [rich, poor] = [1e4, 0.5].map(|budget| plan(&choices, &rates, &own, 10_000, budget, 3));
         assert_eq!((rich.choices.len(), rich.finest, rich.left_out.len()), (choices.len() - 1, 4, 0));
-        assert!(poor.choices.len() < rich.choices.len() && poor.finest == 2 && poor.left_out.len() == 3);
+        assert!(poor.choices.len() < rich.choices.len() && poor.finest == 1 && poor.left_out.len() == 4);
         assert!(poor.own_steps < rich.own_steps && poor.own_steps.is_multiple_of(16));
         assert!(poor.seconds <= 0.5, "{}", poor.seconds);
     }

@@ -14,24 +14,47 @@ pub const NAME: &str = "work-precision";
 
 /// In how many scenes something else than the scene's own way is as accurate for less.
 fn answer(scenes: &[(String, WorkPrecision)]) -> String {
+    let undecided: Vec<&str> =
+        scenes.iter().filter(|(_, data)| data.undecided.is_some()).map(|(name, _)| name.as_str()).collect();
+    let open = match undecided.as_slice() {
+        [] => String::new(),
+        names => format!(
+            " Not decided, because too little happens in the time that is compared: {}.",
+            names.join(", ")
+        ),
+    };
+    let decided = scenes.len() - undecided.len();
     let cheaper = scenes.iter().filter_map(|(name, data)| Some((name, as_good(data)?)));
     let mut cheaper: Vec<_> = cheaper.filter(|(_, found)| found.of_own < WORTH).collect();
     cheaper.sort_by(|a, b| a.1.of_own.total_cmp(&b.1.of_own));
-    let Some((name, best)) = cheaper.first() else {
-        return format!(
-            "In none of {} scenes is anything as accurate as the scene's own way and cheaper.",
-            scenes.len()
-        );
+    let said = match (cheaper.first(), scenes, decided) {
+        (_, _, 0) => return open.trim_start().to_owned(),
+        (None, [(name, _)], _) => {
+            format!("In {name} nothing is as accurate as the scene's own way and cheaper.")
+        }
+        (None, ..) => format!(
+            "In none of the {decided} scenes that are decided is anything as accurate as the scene's own way and cheaper."
+        ),
+        (Some((name, best)), all, _) => {
+            let begin = match all {
+                [_] => format!(
+                    "In {name} another way or step is at least as accurate as the scene's own and cheaper:"
+                ),
+                _ => format!(
+                    "In {} of the {decided} scenes that are decided another way or step is at least as accurate as the scene's own and \
+                     cheaper; most in {name},",
+                    cheaper.len()
+                ),
+            };
+            format!(
+                "{begin} {} at {} for {:.0} % of the cost.",
+                best.way,
+                multiple(best.power),
+                100.0 * best.of_own
+            )
+        }
     };
-    format!(
-        "In {} of {} scenes another way or step is at least as accurate as the scene's own and cheaper; most in {name}, {} at {} for \
-         {:.0} % of the cost.",
-        cheaper.len(),
-        scenes.len(),
-        best.way,
-        multiple(best.power),
-        100.0 * best.of_own
-    )
+    said + &open
 }
 
 /// The page over scenes, each with a name for its files, and `again`, the command that makes it.

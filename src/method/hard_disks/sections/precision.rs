@@ -27,9 +27,10 @@ pub fn section(data: &Precision) -> Section {
             100.0 * KNOWN_TO
         ),
         answer: format!(
-            "The fast engine comes to {}, the source's way to {}.",
+            "The fast engine comes to {}, the source's way to {}; Z itself is known to {} % only.",
             said("fast"),
-            said("reference")
+            said("reference"),
+            100.0 * KNOWN_TO
         ),
         details: vec![],
         verdict: Verdict::Measured,

@@ -13,6 +13,13 @@ pub fn section(data: &Rates) -> Section {
         let all = data.rates.iter().filter(|rate| rate.engine == engine).map(Rate::median);
         1e-6 * all.fold(0.0, f64::max)
     };
+    // The aim is of 2500 discs, and of packing fractions from a half on.
+    let aimed = |engine: &str| {
+        let of = data.rates.iter().filter(|rate| {
+            rate.engine == engine && rate.discs.next_power_of_two() == 4096 && rate.packing_fraction >= 0.5
+        });
+        1e-6 * of.map(Rate::median).fold(0.0, f64::max)
+    };
     Section {
         name: "hard-disks-rates".into(),
         title: "Hard discs: collisions a second".into(),
@@ -28,7 +35,7 @@ pub fn section(data: &Rates) -> Section {
             best(ENGINES[1])
         ),
         details: vec!["Both engines find the same collisions, to the bit.".into()],
-        verdict: Verdict::aim(best(ENGINES[0]) >= 5.5 && best(ENGINES[1]) >= 1.0),
+        verdict: Verdict::aim(aimed(ENGINES[0]) >= 5.5 && aimed(ENGINES[1]) >= 1.0),
         again: "stripmine reproduce --only hard-disks-rates".into(),
         figures: vec![figure(data)],
         tables: vec![table(data)],

@@ -2,6 +2,7 @@
 
 use super::Running;
 use crate::console::Failure;
+use crate::method::observed::summed_up;
 use crate::method::{Progress, Until};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
@@ -92,7 +93,7 @@ fn look_up(scene: &'static str) -> Result<LookUp, Failure> {
     Ok(LookUp {
         scene,
         discs: source.0.particles().len(),
-        entries: source.0.summary()["blocks"].as_f64().unwrap_or(f64::NAN),
+        entries: summed_up(&source.0.summary(), "blocks")?,
         events: source.0.clock().events,
         agrees: source.0.particles().all() == fast.0.particles().all(),
     })
@@ -132,7 +133,7 @@ fn profile(layers: f64, restitution: f64, looks: usize) -> Result<Profile, Failu
                 *count += 1.0;
             }
         }
-        temperature += share * gas.observed(["kinetic"])[0] / discs as f64;
+        temperature += share * gas.observed(["kinetic"])?[0] / discs as f64;
         for (bin, count) in counts.into_iter().enumerate() {
             // The barometric law has N/h of them on a unit of height at the floor.
             let density = count / (discs as f64 * BIN);

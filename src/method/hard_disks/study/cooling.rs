@@ -2,6 +2,7 @@
 
 use super::Running;
 use crate::console::Failure;
+use crate::method::observed::summed_up;
 use crate::method::{FailureKind, Progress};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
@@ -91,19 +92,19 @@ fn gas(discs: u64, restitution: f64, each: f64) -> Result<Gas, Failure> {
     let mut elastic = begin(1.0)?;
     let count = elastic.0.particles().grain_count() as f64;
     elastic.events((10.0 * count) as u64)?;
-    let [time, collisions, ..] = elastic.observed(names);
+    let [time, collisions, ..] = elastic.observed(names)?;
     elastic.events((20.0 * count) as u64)?;
-    let after = elastic.observed(names);
+    let after = elastic.observed(names)?;
     let elastic_rate = 2.0 * (after[1] - collisions) / (count * (after[0] - time)) / after[2].sqrt();
     let mut gas = begin(restitution)?;
     // A collision of each disc, and the lattice is no more.
     gas.events(count as u64)?;
-    let first = gas.observed(names);
+    let first = gas.observed(names)?;
     let haff_time = 4.0 / ((1.0 - restitution * restitution) * elastic_rate * first[2].sqrt());
     let mut looks = vec![first];
     for _ in 0..(each / BETWEEN) as usize {
         gas.events((BETWEEN * 0.5 * count) as u64)?;
-        looks.push(gas.observed(names));
+        looks.push(gas.observed(names)?);
     }
     let last = looks[looks.len() - 1];
     let temperature = last[2] / first[2];
@@ -140,16 +141,14 @@ fn fate(discs: u64, restitution: f64, contact_duration: f64) -> Result<Fate, Fai
         Err(failure) if failure.kind == FailureKind::InelasticCollapse => Some(failure.what()),
         Err(failure) => return Err(failure.into()),
     };
-    let [collisions] = gas.observed(["collisions"]);
+    let [collisions] = gas.observed(["collisions"])?;
     let made_elastic = match collapse {
         None => None,
         Some(_) => {
             let mut cured = begin(contact_duration)?;
             cured.events(events)?;
             let summary = cured.0.summary();
-            let [made, all] =
-                ["made_elastic", "collisions"].map(|name| summary[name].as_f64().unwrap_or(f64::NAN));
-            Some(made / all)
+            Some(summed_up(&summary, "made_elastic")? / summed_up(&summary, "collisions")?)
         }
     };
     Ok(Fate { restitution, collisions: 2.0 * collisions / count, collapse, made_elastic })

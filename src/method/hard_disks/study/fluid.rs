@@ -120,11 +120,11 @@ fn state(packing_fraction: f64, known: [f64; 2], effort: &Effort) -> Result<Stat
     // The lattice of the start melts within some tens of collisions of each disc.
     fluid.events((100.0 * discs) as u64)?;
     let names = ["time", "virial", "collisions", "temperature", "energy_error"];
-    let mut before = fluid.observed(names);
+    let mut before = fluid.observed(names)?;
     let (mut pressures, mut rates) = (vec![], vec![]);
     for _ in 0..PARTS {
         fluid.events(effort.collisions / PARTS)?;
-        let after = fluid.observed(names);
+        let after = fluid.observed(names)?;
         let [time, virial, collisions] = [0, 1, 2].map(|which| after[which] - before[which]);
         let temperature = after[3];
         pressures.push(1.0 + virial / (2.0 * discs * temperature * time));

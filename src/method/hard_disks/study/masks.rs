@@ -4,6 +4,7 @@ use super::{Running, prepared};
 use crate::console::Failure;
 use crate::method::Progress;
 use crate::method::hard_disks::keys::MASKS;
+use crate::method::observed::summed_up;
 use crate::statistics::{median, non_negative};
 use serde::Serialize;
 
@@ -76,8 +77,8 @@ pub fn masks(
             system.events(10 * discs)?;
             running.push((system, vec![]));
         }
-        let remaps = |system: &Running| system.0.summary()["remaps"].as_f64().unwrap_or(f64::NAN);
-        let before: Vec<f64> = running.iter().map(|(system, _)| remaps(system)).collect();
+        let remaps = |system: &Running| summed_up(&system.0.summary(), "remaps");
+        let before: Vec<f64> = running.iter().map(|(system, _)| remaps(system)).collect::<Result<_, _>>()?;
         for round in 0..rounds {
             for (system, times) in &mut running {
                 let begun = cpu_time::ProcessTime::now();
@@ -93,14 +94,14 @@ pub fn masks(
             count = system.0.particles().grain_count();
             let places = crate::method::hard_disks::reference::choice::mask(mask);
             let places = places.map_or(0, |mask| mask.offsets().len());
-            let occupancy = system.0.summary()["occupancy"].as_f64().unwrap_or(f64::NAN);
+            let occupancy = summed_up(&system.0.summary(), "occupancy")?;
             here.push(Cost {
                 mask,
                 places,
                 candidates: places as f64 * occupancy,
                 packing_fraction,
                 seconds: median(times.iter().copied()),
-                fillings: (remaps(system) - before) / (rounds as u64 * collisions) as f64,
+                fillings: (remaps(system)? - before) / (rounds as u64 * collisions) as f64,
                 fitted: 0.0,
             });
         }

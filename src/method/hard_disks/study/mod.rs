@@ -14,6 +14,7 @@ use super::benches::QUANTITIES;
 use super::keys::VOCABULARY;
 use super::prepared::prepare;
 use crate::console::Failure;
+use crate::method::observed::{UnknownName, observed};
 use crate::method::{Prepared, Purpose, Simulation, Until};
 use crate::scene::Values;
 use std::sync::atomic::AtomicBool;
@@ -41,11 +42,10 @@ impl Running {
     }
 
     /// What is observed now, by its name.
-    fn observed<const N: usize>(&self, names: [&str; N]) -> [f64; N] {
-        let values = self.0.observe();
-        names.map(|name| {
-            let place = QUANTITIES.iter().position(|quantity| quantity.name == name);
-            place.and_then(|place| values.get(place)).copied().unwrap_or(f64::NAN)
-        })
+    ///
+    /// # Errors
+    /// [`UnknownName`] if it is not observed.
+    fn observed<const N: usize>(&self, names: [&str; N]) -> Result<[f64; N], UnknownName> {
+        observed(QUANTITIES, &self.0.observe(), names)
     }
 }

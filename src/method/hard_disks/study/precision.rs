@@ -94,13 +94,13 @@ fn way(engine: &'static str, discs: u64, most: u64) -> Result<Way, Failure> {
         count = fluid.0.particles().grain_count();
         fluid.events((0.5 * FORGOTTEN * count as f64) as u64)?;
         let names = ["time", "virial", "temperature"];
-        let [begun, virial, _] = fluid.observed(names);
+        let [begun, virial, _] = fluid.observed(names)?;
         let (before, mut done) = (cpu_time::ProcessTime::now(), 0);
         for (&collisions, (seconds, values)) in looks.iter().zip(&mut seen) {
             fluid.events(collisions - done)?;
             done = collisions;
             *seconds += before.elapsed().as_secs_f64() / SEEDS as f64;
-            let [time, sum, temperature] = fluid.observed(names);
+            let [time, sum, temperature] = fluid.observed(names)?;
             values.push(1.0 + (sum - virial) / (2.0 * count as f64 * temperature * (time - begun)));
         }
     }

@@ -2,7 +2,8 @@
 
 use super::fluid::luding;
 use crate::console::Failure;
-use crate::method::{METHODS, Prepared, Progress, Purpose, Simulation, Until};
+use crate::method::observed::{UnknownName, observed};
+use crate::method::{Entry, METHODS, Prepared, Progress, Purpose, Quantity, Simulation, Until, method};
 use crate::scene::Values;
 use crate::statistics::median;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -165,6 +166,12 @@ impl Way {
         if let Way::Soft { step, .. } = self { Some(*step) } else { None }
     }
 
+    fn entry(&self) -> Result<&'static Entry, UnknownName> {
+        let name = if let Way::Hard = self { "hard-disks" } else { "lattice-md" };
+        let known = METHODS.iter().map(|entry| entry.vocabulary.keys.method);
+        method(METHODS, name).ok_or_else(|| UnknownName::new("method", name, known))
+    }
+
     fn prepared(&self, question: &Question, seed: u64, elastic: bool) -> Result<Box<dyn Prepared>, Failure> {
         let Question { discs, packing_fraction, restitution, .. } = question;
         let mut overrides = vec![
@@ -173,11 +180,11 @@ impl Way {
             format!("particles.seed={seed}"),
             "particles.temperature=1.0".to_owned(),
         ];
-        let (method, preset) = match self {
+        let preset = match self {
             Way::Hard => {
                 let restitution = if elastic { 1.0 } else { *restitution };
                 overrides.push(format!("law.restitution={restitution}"));
-                ("hard-disks", "hard-disks")
+                "hard-disks"
             }
             Way::Soft { stiffness, damping, step } => {
                 let damping = if elastic { 0.0 } else { *damping };
@@ -189,17 +196,10 @@ impl Way {
                     format!("integrator.dt={step}"),
                     "run.steps=1".to_owned(),
                 ]);
-                ("lattice-md", "bench")
+                "bench"
             }
         };
-        let entry = METHODS.iter().find(|entry| entry.vocabulary.keys.method == method);
-        let entry = entry.ok_or_else(|| {
-            Failure::from(crate::method::Failure::new(
-                crate::method::FailureKind::Idle,
-                format!("there is no method {method}"),
-                "this must not happen: report it",
-            ))
-        })?;
+        let entry = self.entry()?;
         Ok((entry.prepare)(Values::load(preset, &overrides, &[entry.vocabulary])?)?)
     }
 
@@ -213,11 +213,11 @@ impl Way {
         fluid.until(melted, &none)?;
         let begun = cpu_time::ThreadTime::now();
         let mut pressure = 0.0;
-        let (virial, time) = (fluid.value("virial"), fluid.simulation.clock().time);
+        let (virial, time) = (fluid.value("virial")?, fluid.simulation.clock().time);
         for look in 1..=LOOKS {
             fluid.until(melted + question.time * look as f64 / LOOKS as f64, &none)?;
             if let Way::Soft { .. } = self {
-                pressure += fluid.value("pressure") * area / (discs as f64 * fluid.value("temperature"));
+                pressure += fluid.value("pressure")? * area / (discs as f64 * fluid.value("temperature")?);
             }
         }
         let flown = fluid.simulation.clock().time - time;
@@ -225,31 +225,29 @@ impl Way {
         let compressibility = match self {
             Way::Soft { .. } => pressure / LOOKS as f64,
             Way::Hard => {
-                1.0 + (fluid.value("virial") - virial)
-                    / (2.0 * discs as f64 * fluid.value("temperature") * flown)
+                1.0 + (fluid.value("virial")? - virial)
+                    / (2.0 * discs as f64 * fluid.value("temperature")? * flown)
             }
         };
         let prepared = self.prepared(question, seed, false)?;
         let mut gas = Observed::begin(prepared.as_ref(), self)?;
-        let start = gas.value("temperature");
+        let start = gas.value("temperature")?;
         gas.until(cooling_time, &none)?;
-        Ok(One { discs, compressibility, cooled: gas.value("temperature") / start, cost })
+        Ok(One { discs, compressibility, cooled: gas.value("temperature")? / start, cost })
     }
 }
 
-/// A simulation, with the names of what is observed.
+/// A simulation, with what is observed of it.
 struct Observed {
     simulation: Box<dyn Simulation>,
-    names: Vec<&'static str>,
+    quantities: &'static [Quantity],
     step: Option<f64>,
 }
 
 impl Observed {
     fn begin(prepared: &dyn Prepared, way: &Way) -> Result<Observed, Failure> {
-        let method = if let Way::Hard = way { "hard-disks" } else { "lattice-md" };
-        let entry = METHODS.iter().find(|entry| entry.vocabulary.keys.method == method);
-        let names = entry.iter().flat_map(|entry| entry.quantities).map(|quantity| quantity.name).collect();
-        Ok(Observed { simulation: prepared.start(Purpose::Run)?, names, step: way.step() })
+        let quantities = way.entry()?.quantities;
+        Ok(Observed { simulation: prepared.start(Purpose::Run)?, quantities, step: way.step() })
     }
 
     /// Up to a time: the step that is nearest to it, where there are steps.
@@ -261,9 +259,9 @@ impl Observed {
         Ok(self.simulation.advance(&[moment], interrupted)?)
     }
 
-    fn value(&self, name: &str) -> f64 {
-        let place = self.names.iter().position(|known| *known == name);
-        place.and_then(|place| self.simulation.observe().get(place).copied()).unwrap_or(f64::NAN)
+    fn value(&self, name: &str) -> Result<f64, UnknownName> {
+        let [value] = observed(self.quantities, &self.simulation.observe(), [name])?;
+        Ok(value)
     }
 }
 

@@ -3,6 +3,7 @@
 use super::{Running, prepared};
 use crate::console::Failure;
 use crate::domain::Domain;
+use crate::method::observed::UnknownName;
 use crate::method::{Progress, Purpose, Until};
 use crate::near::Near;
 use crate::statistics::kolmogorov_smirnov;
@@ -111,14 +112,14 @@ fn structure(packing_fraction: f64, discs: usize) -> Result<Structure, Failure> 
     }
     let mut running = Running(scene.started_from(start).start(Purpose::Run)?);
     let count = running.0.particles().grain_count();
-    let begin = maxwell(&running);
+    let begin = maxwell(&running)?;
     for _ in 0..SETTLING {
         running.events(count as u64 / 2)?;
         // Their free times are not asked for.
         running.0.take_events();
     }
     let names = ["time", "virial", "collisions", "temperature"];
-    let before = running.observed(names);
+    let before = running.observed(names)?;
     let (mut order, mut pairs, mut drawn) = ([0.0; 2], vec![0.0; DISTANCES.1], vec![]);
     let between = before[0] * LOOKS.1 as f64 / SETTLING as f64;
     for look in 0..LOOKS.0 {
@@ -135,7 +136,7 @@ fn structure(packing_fraction: f64, discs: usize) -> Result<Structure, Failure> 
         let along = |bond: [f64; 2]| (bond[0] * sum[0] + bond[1] * sum[1]) / whole;
         drawn = places.iter().copied().zip(bonds.into_iter().map(along)).collect();
     }
-    let after = running.observed(names);
+    let after = running.observed(names)?;
     let [time, virial, collisions] = [0, 1, 2].map(|which| after[which] - before[which]);
     let compressibility = 1.0 + virial / (2.0 * count as f64 * after[3] * time);
     let free_time = count as f64 * time / (2.0 * collisions);
@@ -154,7 +155,7 @@ fn structure(packing_fraction: f64, discs: usize) -> Result<Structure, Failure> 
         free_times: free_times(&running.0.take_events(), free_time),
         // The mean speed of discs of m = kT = 1 is √(π/2).
         free: [free_time, free_time * (0.5 * PI * after[3]).sqrt()],
-        maxwell: [begin, maxwell(&running)],
+        maxwell: [begin, maxwell(&running)?],
         sides: domain.lengths(),
         discs: drawn,
     })
@@ -198,12 +199,12 @@ fn count_pairs(domain: Domain, places: &[[f64; 2]], bins: &mut [f64]) {
 }
 
 /// The probability that the components of the velocities are Maxwell's.
-fn maxwell(running: &Running) -> f64 {
-    let [temperature] = running.observed(["temperature"]);
+fn maxwell(running: &Running) -> Result<f64, UnknownName> {
+    let [temperature] = running.observed(["temperature"])?;
     let particles = running.0.particles();
     let components = particles.grains().iter().flat_map(|disc| disc.planar_velocity());
     let scaled = components.map(|v| v / temperature.sqrt()).collect();
-    kolmogorov_smirnov(scaled, |x| 0.5 * libm::erfc(-x / 2f64.sqrt()))
+    Ok(kolmogorov_smirnov(scaled, |x| 0.5 * libm::erfc(-x / 2f64.sqrt())))
 }
 
 /// The density of the free times in rows of collisions, over their mean.

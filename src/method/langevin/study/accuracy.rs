@@ -92,7 +92,7 @@ fn fluid(scheme: SchemeKind, dt: f64, time: f64) -> Result<Fluid, Failure> {
         let mut sums = [0.0; 3];
         for _ in 0..looks {
             done = done.and_then(|()| running.steps(between));
-            let seen = running.observed(["potential", "pressure", "temperature"]);
+            let seen = running.observed(["potential", "pressure", "temperature"])?;
             sums.iter_mut().zip(seen).for_each(|(sum, seen)| *sum += seen / looks as f64);
         }
         let [potential, pressure, temperature] = sums;

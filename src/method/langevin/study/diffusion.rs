@@ -121,14 +121,14 @@ fn followed(particles: u64, side: f64, law: &str) -> Result<Followed, Failure> {
         });
         let inside = inside.sum::<f64>() / particles as f64;
         times.push(running.0.clock().time);
-        square.push([running.observed(["msd"])[0], inside]);
+        square.push([running.observed(["msd"])?[0], inside]);
     }
     Ok(Followed {
         particles,
         side,
         times,
         square,
-        maxwell: [maxwell(&running), running.observed(["temperature"])[0]],
+        maxwell: [maxwell(&running), running.observed(["temperature"])?[0]],
     })
 }
 
@@ -152,7 +152,7 @@ fn heated(scheme: SchemeKind, dt: f64) -> Result<Heated, Failure> {
     running.steps(2 * between)?;
     for _ in 0..PARTS {
         running.steps(between)?;
-        temperatures.push(running.observed(["temperature"])[0]);
+        temperatures.push(running.observed(["temperature"])?[0]);
     }
     Ok(Heated { scheme: scheme.word(), dt, temperature: Mean::of(&temperatures), maxwell: maxwell(&running) })
 }

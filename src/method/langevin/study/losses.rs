@@ -3,6 +3,7 @@
 use super::{Running, prepared};
 use crate::console::Failure;
 use crate::method::langevin::options::SchemeKind;
+use crate::method::observed::UnknownName;
 use crate::method::{Progress, Purpose};
 use crate::words::Words;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -71,7 +72,7 @@ fn lost(particles: u64, dt: f64, more: &[String]) -> Result<u64, Failure> {
     let mut running =
         Running::begin("langevin-report", &overrides(particles, dt, more), Purpose::Measurement)?;
     Ok(match running.steps(STEPS) {
-        Ok(()) => running.observed(["lost"])[0] as u64,
+        Ok(()) => running.observed(["lost"])?[0] as u64,
         Err(_) => particles,
     })
 }
@@ -115,9 +116,11 @@ fn boundary(particles: u64, strength: f64, temperature: f64) -> Result<Boundary,
         format!("particles.temperature={temperature:?}"),
     ];
     let limits = prepared("langevin-report", &overrides(particles, 0.001, &more))?.step_limits();
-    let step =
-        |name: &str| limits.iter().find(|limit| limit.name == name).map_or(f64::NAN, |limit| limit.step);
-    let bounds = [step("source-bound"), step("hardest-collision")];
+    let step = |name: &str| {
+        let unknown = || UnknownName::new("limit of the step", name, limits.iter().map(|limit| limit.name));
+        limits.iter().find(|limit| limit.name == name).map(|limit| limit.step).ok_or_else(unknown)
+    };
+    let bounds = [step("source-bound")?, step("hardest-collision")?];
     let (mut low, mut high) = (0.05 * bounds[1], 4.0 * bounds[1]);
     while high / low > 1.0 + TOLERANCE {
         let middle = (low * high).sqrt();

@@ -1,6 +1,7 @@
 //! The identity of lattice and lists: tables, figures and what came out.
 
 use crate::method::lattice_md::study::identity::Identity;
+use crate::number::counted;
 use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// What came out.
@@ -27,8 +28,8 @@ pub fn section(data: &Identity) -> Section {
         question: "Do the lattice and neighbour lists give the same motion?".into(),
         expected: "BP93, section 4: no differences in the results compared to simulations with neighbour lists.".into(),
         answer: format!(
-            "{equal} of {states} states along {} trajectories are the same to the last bit: positions, velocities and spins.",
-            data.pairs.len()
+            "{equal} of {states} states along {} are the same to the last bit: positions, velocities and spins.",
+            counted(data.pairs.len(), "trajectory", "trajectories")
         ),
         details: vec![],
         verdict: if data.holds() { Verdict::Reproduced } else { Verdict::NotReproduced },

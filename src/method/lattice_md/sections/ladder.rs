@@ -140,7 +140,7 @@ pub fn of_host(data: &HostLadder) -> Table {
     ));
     Table {
         name: "host_ladder".into(),
-        title: format!("One step as the host model predicts it: {}", data.host),
+        title: format!("One step by {}", data.model),
         columns,
         rows: rows.collect(),
         notes,

@@ -29,7 +29,11 @@ pub fn section(data: &ModelValidation) -> Section {
         expected: "BP93 predicts times and checks none of them. Our aim, against the middle of the samples: whole steps to 6 % in the \
                    median and nine of ten to 15 %, phases to 10 % and 25 %, laws that were not calibrated for to 12 % in the median."
             .into(),
-        answer: [STEPS, STEPS_OF_DATA].into_iter().filter_map(group).map(said).collect::<Vec<_>>().join(" "),
+        answer: format!(
+            "By {}: {}",
+            data.calibrated.model_of(&data.host),
+            [STEPS, STEPS_OF_DATA].into_iter().filter_map(group).map(said).collect::<Vec<_>>().join(" ")
+        ),
         details: [PHASES, PHASES_OF_DATA, STRANGERS].into_iter().filter_map(group).map(said).collect(),
         verdict: Verdict::aim(reached),
         again: match data.calibrated {

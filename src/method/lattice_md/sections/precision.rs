@@ -4,7 +4,7 @@ use crate::method::lattice_md::study::precision::energy::{self, EnergyCase, STEP
 use crate::method::lattice_md::study::precision::forces::ForceError;
 use crate::method::lattice_md::study::precision::trajectories::{self, Divergence};
 use crate::method::lattice_md::study::precision::{EQUILIBRATION, PACKING_FRACTIONS, Precisions, SEEDS};
-use crate::number::in_tens;
+use crate::number::{in_tens, range};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use crate::report::{Cell, Part, Section, Table, Verdict};
 use crate::statistics::Spread;
@@ -53,12 +53,9 @@ fn over_boxes(data: &Precisions, name: &str) -> [f64; 2] {
 fn answer(data: &Precisions) -> String {
     let [single, mixed] = ["f32, fast", "mixed, fast"].map(|name| over_boxes(data, name));
     format!(
-        "In boxes of a thousand to a hundred thousand discs the forces err by {} to {} of their size in f32, and by {} to \
-         {} in mixed precision.",
-        in_tens(single[0], 2),
-        in_tens(single[1], 2),
-        in_tens(mixed[0], 2),
-        in_tens(mixed[1], 2)
+        "In boxes of a thousand to a hundred thousand discs the forces err by {} of their size in f32, and by {} in mixed precision.",
+        range(single, 2),
+        range(mixed, 2)
     )
 }
 
@@ -70,10 +67,10 @@ fn details(data: &Precisions) -> String {
     let dense = || data.trajectories.iter().filter(|rival| rival.packing_fraction == PACKING_FRACTIONS[0]);
     let rates: Vec<String> =
         dense().map(|rival| format!("{:.3} ({})", rival.rate.mean, named(rival))).collect();
-    let [smallest, largest] = over_boxes(data, "mixed, programs, absolute").map(|error| in_tens(error, 2));
+    let absolute = range(over_boxes(data, "mixed, programs, absolute"), 2);
     format!(
         "Errors are roots of mean squares at packing fraction {}, of the fast engine; programs in mixed precision whose positions count \
-         from the corner of the box have {smallest} to {largest}. Over {} undamped steps of {} with dt = {} the energy strays by \
+         from the corner of the box have {absolute}. Over {} undamped steps of {} with dt = {} the energy strays by \
          {}. Trajectories part from those in f64 at the rates {} in a unit of time, which is the chaos of the gas itself: digits only \
          set where it starts.",
         PACKING_FRACTIONS[0],

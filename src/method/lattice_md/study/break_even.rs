@@ -3,6 +3,7 @@
 
 use super::StudyError;
 use super::density_cost::{ListFigures, grid, list_figures};
+use super::model_validation::Calibrated;
 use super::phase_times::{FAST, FAST_LISTS, HALF_MASK, LISTS, PhaseTimes, Run, Sampling, phase_times};
 use super::predicted_step::{Step, of_precision};
 use super::rounds::Bound;
@@ -71,6 +72,8 @@ pub struct Sheet {
 /// The dataset.
 #[derive(Clone, Debug, Serialize)]
 pub struct Atlas {
+    /// Whose model of a host it is.
+    pub model: String,
     /// What lists hold at each density, measured in a run of about a thousand discs: what the models take for the number of
     /// candidates and contacts everywhere.
     pub lists: Vec<ListFigures>,
@@ -96,6 +99,17 @@ pub struct Named {
 }
 
 impl Atlas {
+    /// The method that is the cheapest at most of the measured places, and at how many: what a model is worth that always names it.
+    pub fn baseline(&self) -> Option<(&str, usize)> {
+        let sheet = self.sheets.iter().find(|sheet| sheet.measured)?;
+        let wins = |method: usize| {
+            let winners = sheet.places.iter().filter_map(Place::winner);
+            winners.filter(|(winner, _)| *winner == method).count()
+        };
+        let counted = sheet.methods.iter().enumerate().map(|(method, name)| (name.as_str(), wins(method)));
+        counted.max_by_key(|(_, wins)| *wins)
+    }
+
     /// Every measured place with the method that the model of the host names there.
     pub fn named(&self) -> Vec<Named> {
         let sheet =
@@ -139,7 +153,7 @@ pub enum AtlasError {
 /// [`AtlasError`] if a scene breaks or lies outside what was calibrated.
 pub fn atlas(
     machines: &[MachineModel],
-    host: &HostModel,
+    (host, calibrated): (&HostModel, Calibrated),
     measured: &[usize],
     rounds: Bound,
     progress: impl Fn(f64) + Sync,
@@ -178,7 +192,7 @@ pub fn atlas(
     }
     sheets.push(Sheet {
         name: "atlas_host".to_owned(),
-        title: format!("{}, by its model", host.title),
+        title: format!("by {}", calibrated.model_of(&host.title)),
         unit: "ns",
         measured: false,
         methods: methods.clone(),
@@ -214,7 +228,7 @@ pub fn atlas(
         methods,
         places,
     });
-    Ok(Atlas { lists, fast_lists, sheets })
+    Ok(Atlas { model: calibrated.model_of(&host.title), lists, fast_lists, sheets })
 }
 
 fn run(particles: usize, occupancy: f64, (name, _): &(&'static str, Option<Execution>)) -> Run {
@@ -305,10 +319,20 @@ mod tests {
     }
 
     #[test]
+    fn the_baseline_names_what_wins_most_often() {
+        let mut measured = sheet(true, [10.0, 5.0]);
+        measured
+            .places
+            .extend([sheet(true, [3.0, 4.0]), sheet(true, [9.0, 1.0])].into_iter().flat_map(|it| it.places));
+        let atlas = Atlas { model: String::new(), lists: vec![], fast_lists: vec![], sheets: vec![measured] };
+        assert_eq!(atlas.baseline(), Some(("b", 2)));
+    }
+
+    #[test]
     fn a_wrong_winner_costs_what_it_is_dearer() {
         for (measured, cheapest, dearer) in [([10.0, 20.0], "a", 1.0), ([10.0, 5.0], "b", 2.0)] {
             let sheets = vec![sheet(false, [1.0, 2.0]), sheet(true, measured)];
-            let named = Atlas { lists: vec![], fast_lists: vec![], sheets }.named();
+            let named = Atlas { model: String::new(), lists: vec![], fast_lists: vec![], sheets }.named();
             let [only] = named.as_slice() else { panic!("{named:?}") };
             assert_eq!((only.named.as_str(), only.cheapest.as_str(), only.dearer), ("a", cheapest, dearer));
         }

@@ -1,6 +1,7 @@
-//! What does each term of the host model add? One step on this host, term by term, then in other executions.
+//! What does each term of the host model add? One step on a host, term by term, then in other executions.
 
 use super::efficiency_table::{Question, QuestionError, step};
+use super::model_validation::Calibrated;
 use super::predicted_step::Step;
 use crate::method::lattice_md::Phase;
 use crate::model::host::{HostModel, OutOfRange};
@@ -16,6 +17,8 @@ pub struct HostLadder {
     pub cells: usize,
     /// The host.
     pub host: String,
+    /// Whose model it is.
+    pub model: String,
     /// A row for each rung.
     pub rungs: Vec<Rung>,
 }
@@ -48,7 +51,11 @@ pub enum LadderError {
 ///
 /// # Errors
 /// [`LadderError`] if no such lattice exists or the model does not reach.
-pub fn host_ladder(question: &Question, host: &HostModel) -> Result<HostLadder, LadderError> {
+pub fn host_ladder(
+    question: &Question,
+    host: &HostModel,
+    calibrated: Calibrated,
+) -> Result<HostLadder, LadderError> {
     let (programs, lengths) = step(question)?;
     let step = Step::new(&programs, &lengths);
     let passes = host.in_cache();
@@ -74,7 +81,13 @@ pub fn host_ladder(question: &Question, host: &HostModel) -> Result<HostLadder, 
         let phases: Vec<f64> = phases.collect::<Result<_, OutOfRange>>()?;
         rungs.push(Rung { name, meaning, ns: phases.iter().sum(), phases });
     }
-    Ok(HostLadder { particles: lengths.discs, cells: lengths.cells, host: host.title.clone(), rungs })
+    Ok(HostLadder {
+        particles: lengths.discs,
+        cells: lengths.cells,
+        host: host.title.clone(),
+        model: calibrated.model_of(&host.title),
+        rungs,
+    })
 }
 
 #[cfg(test)]
@@ -84,7 +97,8 @@ mod tests {
 
     #[test]
     fn every_term_costs_something_and_chaining_pays() {
-        let ladder = host_ladder(&Question::default(), &default_model().unwrap()).unwrap();
+        let ladder =
+            host_ladder(&Question::default(), &default_model().unwrap(), Calibrated::Shipped).unwrap();
         let ns: Vec<f64> = ladder.rungs.iter().map(|rung| rung.ns).collect();
         assert!(ns[1] <= ns[2] && ns[2] < ns[3], "{ns:?}");
         assert!(ns[5] < ns[3], "{ns:?}");
@@ -93,7 +107,7 @@ mod tests {
     #[test]
     fn beyond_the_calibrated_range_there_is_no_prediction() {
         let question = Question { particles: 2_000_000, occupancy: 0.25, ..Question::default() };
-        let error = host_ladder(&question, &default_model().unwrap()).unwrap_err();
+        let error = host_ladder(&question, &default_model().unwrap(), Calibrated::Shipped).unwrap_err();
         assert!(matches!(error, LadderError::OutOfRange(OutOfRange::Length { .. })), "{error}");
     }
 }

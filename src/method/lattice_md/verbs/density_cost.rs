@@ -39,7 +39,7 @@ impl DensityCostVerb {
         let machine = machines::find(&self.machine)?;
         // Before anything takes its time.
         let folder = Folder::open(&self.out, &["cost", "measured", "atlas"], false)?;
-        let (host, _) = host_model(self.host.as_deref(), common)?;
+        let (host, calibrated) = host_model(self.host.as_deref(), common)?;
         let again = format!("stripmine chart density-cost --machine {}", self.machine);
         let bar = progress(common, "chart");
         let show = |from: f64, share: f64| bar.set_position((1e3 * (from + 0.5 * share)) as u64);
@@ -70,7 +70,9 @@ impl DensityCostVerb {
         write(section, &measured_data, start)?;
 
         let start = Instant::now();
-        let atlas = atlas(&[machine], &host, &[100, 1000, 10_000], Bound::of(3), |share| show(0.5, share))?;
+        let atlas = atlas(&[machine], (&host, calibrated), &[100, 1000, 10_000], Bound::of(3), |share| {
+            show(0.5, share)
+        })?;
         let section = sections::break_even::section(&atlas, &again);
         answers.push(said(&section));
         let atlas_data = value(serde_json::to_value(&atlas))?;

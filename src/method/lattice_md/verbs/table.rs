@@ -37,8 +37,8 @@ pub(super) fn machine_help() -> String {
 impl TableVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
         if let Some(file) = &self.host {
-            let (host, _) = host_model(file.as_deref(), common)?;
-            let data = host_ladder(&self.scene.question(), &host)?;
+            let (host, calibrated) = host_model(file.as_deref(), common)?;
+            let data = host_ladder(&self.scene.question(), &host, calibrated)?;
             if common.json {
                 return print_json(&data);
             }

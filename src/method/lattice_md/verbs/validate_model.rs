@@ -57,8 +57,8 @@ const DENSEST: f64 = 0.907;
 /// Rounds over all runs at most.
 const ROUNDS: usize = 12;
 
-/// The model of a host file, or the one that comes with the program; whether it is the latter.
-pub(super) fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, bool), Failure> {
+/// The model of a host file, or the one that comes with the program; which of them it is.
+pub(super) fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, Calibrated), Failure> {
     let Some(file) = file else {
         let model = default_model()?;
         if !common.quiet {
@@ -67,7 +67,7 @@ pub(super) fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostMo
                 model.title
             ));
         }
-        return Ok((model, true));
+        return Ok((model, Calibrated::Shipped));
     };
     let model = HostModel::load(file)?;
     if !model.measured.was_quiet() && !common.quiet {
@@ -77,7 +77,7 @@ pub(super) fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostMo
             model.measured.state
         ));
     }
-    Ok((model, false))
+    Ok((model, Calibrated::Before))
 }
 
 impl ValidateModel {
@@ -129,8 +129,7 @@ impl ValidateModel {
             })?;
             (model, Calibrated::Now)
         } else {
-            let (model, shipped) = host_model(self.host.as_deref(), common)?;
-            (model, if shipped { Calibrated::Shipped } else { Calibrated::Before })
+            host_model(self.host.as_deref(), common)?
         };
         let begun = if self.calibrate { 0.4 } else { 0.0 };
         let data = model_validation(&model, calibrated, effort, |share| show(begun + (1.0 - begun) * share))?;

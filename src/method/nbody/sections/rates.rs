@@ -1,7 +1,7 @@
 //! Interactions a second.
 
 use crate::method::nbody::study::rates::Rates;
-use crate::number::in_tens;
+use crate::number::{counted, in_tens};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use crate::report::{Cell, Part, Section, Table, Verdict};
 
@@ -31,7 +31,7 @@ pub fn section(data: &Rates) -> Section {
                    2·10⁻¹⁵."
             .into(),
         answer: format!(
-            "One core, {}: forces in single precision {}, in double {}.",
+            "Directed interactions a second (N² a step) on one core, {}: with forces in single precision {}, in double {}.",
             data.instruction_set,
             said("mixed"),
             said("f64"),
@@ -73,8 +73,8 @@ fn figure(data: &Rates) -> Figure {
         title: "Error of the forces over speed, one thread".into(),
         caption: format!(
             "A point for each number of bodies. Largest error of an acceleration over the largest acceleration. Errors of 0 have no \
-             place on this axis: {} points are absent.",
-            exact.len()
+             place on this axis: {}.",
+            counted(exact.len(), "point is absent", "points are absent")
         ),
         picture: Picture::Chart(Chart {
             x: Axis::linear("directed interactions", Some("10⁹/s")),

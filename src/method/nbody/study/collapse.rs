@@ -43,6 +43,8 @@ pub struct Bound {
     pub share: f64,
     /// Their kinetic over their potential energy, about their own mean motion.
     pub virial_ratio: f64,
+    /// Their kinetic energy over Σ r·F, Clausius' virial, which is the potential energy where nothing is softened.
+    pub clausius_ratio: f64,
 }
 
 /// What came out.
@@ -66,7 +68,7 @@ pub fn collapse(progress: Progress<'_>) -> Result<Collapse, Failure> {
             running.steps(BETWEEN)?;
         }
         let names = ["time", "virial_ratio", "half_mass_radius", "energy_error", "momentum"];
-        let [time, virial_ratio, half_mass_radius, energy_error, momentum] = running.observed(names);
+        let [time, virial_ratio, half_mass_radius, energy_error, momentum] = running.observed(names)?;
         let particles = running.0.particles();
         let seen = particles.all().iter().take(SHOWN).map(|body| {
             let [x, y, _] = body.position;
@@ -96,20 +98,24 @@ fn bound(time: f64, particles: &Particles) -> Bound {
             let others = inside.iter().filter(|other| other.id != body.id).map(|other| {
                 let square: f64 =
                     (0..3).map(|axis| (body.position[axis] - other.position[axis]).powi(2)).sum();
-                -other.mass / (square + SOFTENING * SOFTENING).sqrt()
+                let softened = square + SOFTENING * SOFTENING;
+                let potential = -other.mass / softened.sqrt();
+                [potential, potential * square / softened]
             });
-            [0.5 * speed, others.sum::<f64>()]
+            let [potential, virial] = others.fold([0.0; 2], |sum, more| [sum[0] + more[0], sum[1] + more[1]]);
+            [0.5 * speed, potential, virial]
         });
-        let energies: Vec<[f64; 2]> = energies.collect();
+        let energies: Vec<[f64; 3]> = energies.collect();
         let before = inside.len();
-        if energies.iter().all(|[kinetic, potential]| kinetic + potential < 0.0) {
+        if energies.iter().all(|[kinetic, potential, _]| kinetic + potential < 0.0) {
             let sum = |which: usize| {
                 inside.iter().zip(&energies).map(|(body, energies)| body.mass * energies[which]).sum::<f64>()
             };
-            let virial_ratio = sum(0) / (0.5 * sum(1)).abs();
-            return Bound { time, share: before as f64 / particles.len() as f64, virial_ratio };
+            let [virial_ratio, clausius_ratio] = [1, 2].map(|which| sum(0) / (0.5 * sum(which)).abs());
+            let share = before as f64 / particles.len() as f64;
+            return Bound { time, share, virial_ratio, clausius_ratio };
         }
-        let stays = energies.iter().map(|[kinetic, potential]| kinetic + potential < 0.0);
+        let stays = energies.iter().map(|[kinetic, potential, _]| kinetic + potential < 0.0);
         inside = inside.into_iter().zip(stays).filter(|(_, stays)| *stays).map(|(body, _)| body).collect();
     }
 }

@@ -138,7 +138,7 @@ pub fn energies(progress: Progress<'_>) -> Result<Energies, Failure> {
 fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, Failure> {
     let mut running = Running::begin("kepler", &overrides(scheme, steps, 0.5))?;
     let names = ["energy_error", "momentum", "angular_momentum_z"];
-    let turning = running.observed(names)[2];
+    let turning = running.observed(names)?[2];
     let (mut largest, mut drift, before) = (0.0f64, [0.0f64; 2], running.0.work());
     let mut done = Ok(());
     // Energy and momenta are looked at so often that the passage of the centre has a dozen looks.
@@ -148,7 +148,7 @@ fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, Failure> {
         if done.is_err() {
             break;
         }
-        let [error, momentum, angular] = running.observed(names);
+        let [error, momentum, angular] = running.observed(names)?;
         largest = largest.max(error.abs());
         drift = [drift[0].max(momentum), drift[1].max((angular - turning).abs())];
     }
@@ -173,7 +173,7 @@ fn keeps(scheme: SchemeName, steps: u64, eccentricity: f64) -> Result<bool, Fail
         if running.steps(steps).is_err() {
             return Ok(false);
         }
-        let [error] = running.observed(["energy_error"]);
+        let [error] = running.observed(["energy_error"])?;
         if error.is_nan() || error.abs() > LOST {
             return Ok(false);
         }
@@ -204,6 +204,6 @@ fn damped_orbit(steps: u64, damping: f64) -> Result<Damped, Failure> {
     with.push(format!("integrator.damping={damping}"));
     let mut running = Running::begin("kepler", &with)?;
     let done = running.steps(10 * steps);
-    let [error] = running.observed(["energy_error"]);
+    let [error] = running.observed(["energy_error"])?;
     Ok(Damped { steps, damping, energy: done.is_ok().then_some(1.0 + error) })
 }

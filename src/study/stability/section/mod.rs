@@ -7,6 +7,7 @@ use super::conclusions::{of_theory, sentences};
 use super::dataset::Stability;
 use super::outcome::Class;
 use crate::console::Failure;
+use crate::number::{counted, range};
 use crate::report::{Part, Section, Verdict, csv};
 use crate::results::Made;
 
@@ -23,17 +24,24 @@ fn answer(maps: &[(String, Stability)]) -> String {
         wrong += said.all;
         unsaid += said.unsaid();
     }
-    let theory = match (ratios.iter().copied().reduce(f64::min), ratios.iter().copied().reduce(f64::max)) {
-        (Some(least), Some(most)) => format!(
-            "What works ends at {least:.2} to {most:.2} times the step beyond which theory says that errors grow ({} maps); of",
-            ratios.len()
+    let theory = match ratios.as_slice() {
+        [] => String::new(),
+        ratios => format!(
+            "What works ends at {} times the step beyond which theory says that errors grow ({}). ",
+            range(ratios.iter().copied(), 3),
+            counted(ratios.len(), "map", "maps")
         ),
-        _ => "Of".to_owned(),
     };
-    format!(
-        "{theory} {wrong} runs that come to an end and are wrong the program says nothing of {:.1} %.",
-        100.0 * unsaid as f64 / wrong.max(1) as f64
-    )
+    let silent = match wrong {
+        0 => "No run comes to an end and is wrong.".to_owned(),
+        _ => format!(
+            "Of {} to an end and {} wrong the program says nothing of {:.1} %.",
+            counted(wrong, "run that comes", "runs that come"),
+            if wrong == 1 { "is" } else { "are" },
+            100.0 * unsaid as f64 / wrong as f64
+        ),
+    };
+    theory + &silent
 }
 
 /// The page over maps, each with a name for its files, and `again`, the command that makes it.

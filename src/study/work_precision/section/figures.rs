@@ -132,7 +132,7 @@ fn diagram(file: &str, name: &str, data: &WorkPrecision, measure: Measure) -> Op
         caption: format!(
             "{} particles over a time of {}; the scene's own step is {}, along each line it doubles from point to point. Cost: the \
              median of the repeats, which differ by {:.0} % in the middle; search and execution as the scene has them ({}). The front is over \
-             all ways to run it.",
+             all ways to run it against which nothing speaks.",
             data.particles,
             short(data.duration),
             short(data.step),

@@ -1,6 +1,6 @@
 //! The tables over all scenes.
 
-use super::super::conclusions::{fulfilled, multiple, short};
+use super::super::conclusions::{multiple, short, wishes as wishes_of};
 use super::super::dataset::WorkPrecision;
 use super::super::measures::Measure;
 use crate::report::{Cell, Table};
@@ -30,8 +30,8 @@ fn number(value: Option<f64>, decimals: usize) -> Cell {
 
 fn wishes(scenes: &Scenes) -> Table {
     let rows = scenes.iter().flat_map(|(name, data)| {
-        fulfilled(data).into_iter().map(move |it| {
-            vec![
+        wishes_of(data).into_iter().map(move |answer| match answer {
+            Ok(it) => vec![
                 text(name),
                 text(format!("{:.0e}", it.wish)),
                 text(&data.ways[it.run.way].label),
@@ -39,7 +39,11 @@ fn wishes(scenes: &Scenes) -> Table {
                 text(it.run.error(Measure::Position).map_or(String::new(), short)),
                 number(it.run.cost().map(|cost| 1e3 * cost), 3),
                 number(it.of_own.map(|share| 100.0 * share), 0),
-            ]
+            ],
+            Err(denied) => {
+                let begin = [text(name), text(format!("{:.0e}", denied.wish)), text(denied.why)];
+                begin.into_iter().chain([const { Cell::Nothing }; 4]).collect()
+            }
         })
     });
     table(
@@ -56,7 +60,8 @@ fn wishes(scenes: &Scenes) -> Table {
         ],
         rows.collect(),
         &[
-            "Errors of positions at the end of the time that is compared. A way: integrator, precision, search, execution.",
+            "Errors of positions at the end of the time that is compared. A way: integrator, precision, search, execution. No way is \
+             named where too little happens in that time, nor one that theory, a check or a warning of its run speaks against.",
         ],
     )
 }
@@ -202,6 +207,7 @@ fn references(scenes: &Scenes) -> Table {
             text(short(data.growth.window)),
             text(ended_by),
             text(short(data.duration)),
+            text(format!("{} {}", short(data.encounters.each), data.encounters.name())),
             text(&data.reference.ways[0]),
             text(short(data.reference.step)),
             of(&data.reference.halving),
@@ -221,6 +227,7 @@ fn references(scenes: &Scenes) -> Table {
             "comparable up to (time)",
             "because",
             "compared (time)",
+            "in that time, for a particle",
             "reference",
             "its step",
             "off by twice the step ",
@@ -295,13 +302,21 @@ pub fn runs(scenes: &Scenes) -> Table {
             let ends = [f64::min, f64::max].map(|end| run.costs.iter().copied().reduce(end));
             row.extend([run.cost(), ends[0], ends[1], run.clocks].map(|value| number(value, 0)));
             row.push(run.outcome.as_ref().err().map_or(Cell::Nothing, text));
+            row.push(if run.is_sound() { Cell::Nothing } else { text(run.objections.join("; ")) });
             row
         })
     });
     let columns: Vec<&str> = ["scene", "way", "step"]
         .into_iter()
         .chain(measures)
-        .chain(["cost (s)", "least cost (s)", "largest cost (s)", "clock periods", "failed"])
+        .chain([
+            "cost (s)",
+            "least cost (s)",
+            "largest cost (s)",
+            "clock periods",
+            "failed",
+            "what speaks against it",
+        ])
         .collect();
     table("runs", "Every run", &columns, rows.collect(), &[])
 }

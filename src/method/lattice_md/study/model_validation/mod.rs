@@ -76,6 +76,17 @@ pub enum Calibrated {
     Now,
 }
 
+impl Calibrated {
+    /// Whose model it is, for sentences: a model of another machine is never called one of this host.
+    pub fn model_of(self, title: &str) -> String {
+        match self {
+            Calibrated::Shipped => format!("the shipped model of {title}"),
+            Calibrated::Before => format!("the model of {title} from a host file"),
+            Calibrated::Now => format!("the model of this host, {title}, calibrated just before"),
+        }
+    }
+}
+
 /// The dataset.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelValidation {

@@ -1,0 +1,125 @@
+//! What is observed, by its name: the one place where names of quantities are looked up.
+
+use super::entry::Quantity;
+use crate::reported::{Class, Reported};
+use serde_json::{Map, Value};
+
+/// A name that does not occur.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{name}` is no {what}\n  help: one of {}", known.join(", "))]
+pub struct UnknownName {
+    /// What was looked for.
+    pub what: &'static str,
+    /// Its name.
+    pub name: String,
+    /// The names that there are.
+    pub known: Vec<String>,
+}
+
+impl UnknownName {
+    /// Of a kind of thing, beside those that there are.
+    pub fn new<'n>(what: &'static str, name: &str, known: impl IntoIterator<Item = &'n str>) -> Self {
+        UnknownName { what, name: name.to_owned(), known: known.into_iter().map(str::to_owned).collect() }
+    }
+}
+
+impl Reported for UnknownName {
+    fn class(&self) -> Class {
+        Class::Precondition
+    }
+}
+
+/// The place of a quantity among those observed, as a constant: a name that is misspelt does not compile.
+///
+/// # Panics
+/// If there is none of that name.
+pub const fn place(quantities: &[Quantity], name: &str) -> usize {
+    let mut at = 0;
+    while at < quantities.len() {
+        if is_same(quantities[at].name, name) {
+            return at;
+        }
+        at += 1;
+    }
+    panic!("no quantity of that name is observed")
+}
+
+const fn is_same(one: &str, other: &str) -> bool {
+    let (one, other) = (one.as_bytes(), other.as_bytes());
+    let mut at = 0;
+    while at < one.len() && at < other.len() && one[at] == other[at] {
+        at += 1;
+    }
+    at == one.len() && at == other.len()
+}
+
+/// The place of a quantity among those observed.
+///
+/// # Errors
+/// [`UnknownName`] if there is none of that name.
+pub fn find(quantities: &[Quantity], name: &str) -> Result<usize, UnknownName> {
+    let unknown = || {
+        UnknownName::new("quantity that is observed", name, quantities.iter().map(|quantity| quantity.name))
+    };
+    quantities.iter().position(|quantity| quantity.name == name).ok_or_else(unknown)
+}
+
+/// Values of quantities, by their names, among `values`, one for each of the quantities.
+///
+/// # Errors
+/// [`UnknownName`] if one is not observed.
+pub fn observed<const N: usize>(
+    quantities: &[Quantity],
+    values: &[f64],
+    names: [&str; N],
+) -> Result<[f64; N], UnknownName> {
+    let mut found = [0.0; N];
+    for (found, name) in found.iter_mut().zip(names) {
+        *found = values[find(quantities, name)?];
+    }
+    Ok(found)
+}
+
+/// A number of a summary.
+///
+/// # Errors
+/// [`UnknownName`] if it has no number of that name.
+pub fn summed_up(summary: &Map<String, Value>, name: &str) -> Result<f64, UnknownName> {
+    let numbers = summary.iter().filter(|(_, value)| value.is_number()).map(|(name, _)| name.as_str());
+    let unknown = || UnknownName::new("number of the summary", name, numbers);
+    summary.get(name).and_then(Value::as_f64).ok_or_else(unknown)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::METHODS;
+
+    const QUANTITIES: &[Quantity] =
+        &[Quantity { name: "time", unit: "time", doc: "" }, Quantity { name: "flow", unit: "", doc: "" }];
+
+    #[test]
+    fn a_misspelt_quantity_is_an_error_that_names_those_there_are() {
+        assert_eq!(observed(QUANTITIES, &[1.0, 2.0], ["flow", "time"]), Ok([2.0, 1.0]));
+        let said = observed(QUANTITIES, &[1.0, 2.0], ["flwo"]).unwrap_err().to_string();
+        assert_eq!(said, "`flwo` is no quantity that is observed\n  help: one of time, flow");
+        assert_eq!(place(QUANTITIES, "flow"), 1);
+        assert!(std::panic::catch_unwind(|| place(QUANTITIES, "flo")).is_err());
+        let summary: Map<String, Value> = serde_json::from_str(r#"{"remaps": 3, "mask": "min"}"#).unwrap();
+        assert_eq!(summed_up(&summary, "remaps"), Ok(3.0));
+        let said = summed_up(&summary, "remap").unwrap_err().to_string();
+        assert!(said.contains("`remap`") && said.ends_with("one of remaps"), "{said}");
+    }
+
+    /// Every name that a method states of its benches occurs among what it observes.
+    #[test]
+    fn names_of_benches_are_observed() {
+        for method in METHODS {
+            for bench in method.benches {
+                for name in bench.compared.iter().chain(bench.at_end) {
+                    assert!(find(bench.quantities, name).is_ok(), "{}: {name}", bench.name);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! What happens to particles in a time: contacts that begin, or, where nothing touches, turns of the motion. A comparison over a time
+//! in which hardly anything happens says nothing of a scene.
+
+use super::choice::Choice;
+use super::meter::Meter;
+use super::subject::Subject;
+use super::trial::{Course, follow};
+use crate::domain::Domain;
+use crate::method::{Purpose, Simulation};
+use crate::near::Near;
+use crate::particles::Particles;
+use serde::{Deserialize, Serialize};
+use std::collections::{HashMap, HashSet};
+use std::f64::consts::{PI, TAU};
+
+/// Looks at a run at most: contacts that begin and end between two looks are not seen.
+const LOOKS: u64 = 1024;
+
+/// How much happens to a particle, in the mean.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Encounters {
+    /// Whether contacts are counted, or turns of the motion.
+    pub of_contacts: bool,
+    /// Contacts of a particle that begin, those of the start among them; or whole turns of its velocity.
+    pub each: f64,
+}
+
+impl Encounters {
+    /// What is counted.
+    pub fn name(&self) -> &'static str {
+        if self.of_contacts { "contacts" } else { "turns of the velocity" }
+    }
+}
+
+/// Counts along a run of the scene in some way with some step (time), over `duration` (time). Where the run breaks, what came before
+/// is counted.
+pub fn encounters(
+    subject: &Subject,
+    (choice, step): (&Choice, f64),
+    duration: f64,
+    each: f64,
+    meter: &Meter<'_>,
+) -> Encounters {
+    let of_contacts = subject.trials.has_contacts;
+    let domain = subject.prepared.domain();
+    let (mut contacts, mut turns) = (Contacts::new(domain), Turns::default());
+    if let Ok(scene) = subject.prepared_as(choice, step, &[]) {
+        let steps = (duration / step).round() as u64;
+        let course = Course { steps, looks: LOOKS.min(steps), each };
+        let look = |simulation: &dyn Simulation| {
+            let particles = simulation.particles();
+            if of_contacts { contacts.look(&particles) } else { turns.look(&particles) }
+        };
+        // A run that breaks has been seen up to there.
+        let _ended = follow(scene.as_ref(), Purpose::Measurement, course, None, meter, look);
+    }
+    let grains = subject.prepared.particles().grain_count().max(1) as f64;
+    let all = if of_contacts { contacts.begun as f64 } else { turns.angle / TAU };
+    Encounters { of_contacts, each: all / grains }
+}
+
+/// Contacts as they begin.
+struct Contacts {
+    domain: Domain,
+    standing: HashSet<[u32; 2]>,
+    /// Begun so far: one between two grains is one of each.
+    begun: u64,
+}
+
+impl Contacts {
+    fn new(domain: Domain) -> Contacts {
+        Contacts { domain, standing: HashSet::new(), begun: 0 }
+    }
+
+    fn look(&mut self, particles: &Particles) {
+        let (discs, grains) = (particles.all(), particles.grain_count());
+        let largest = particles.radii().map_or(0.0, |[_, largest]| largest);
+        let places = discs.iter().map(|disc| self.domain.wrapped(disc.place()));
+        let near = Near::among(self.domain, places, 2.0 * largest);
+        let mut standing = HashSet::new();
+        for (disc, number) in discs[..grains].iter().zip(0_u32..) {
+            let place = self.domain.wrapped(disc.place());
+            for (other, there) in near.of(place).filter(|(other, _)| *other > number) {
+                let partner = &discs[other as usize];
+                if self.domain.distance(place, there) < disc.radius + partner.radius {
+                    let pair = [disc.id, partner.id];
+                    if standing.insert(pair) && !self.standing.contains(&pair) {
+                        self.begun += if (other as usize) < grains { 2 } else { 1 };
+                    }
+                }
+            }
+        }
+        self.standing = standing;
+    }
+}
+
+/// Turns of velocities.
+#[derive(Default)]
+struct Turns {
+    directions: HashMap<u32, f64>,
+    /// Turned so far, added up over the particles (radian).
+    angle: f64,
+}
+
+impl Turns {
+    fn look(&mut self, particles: &Particles) {
+        for body in particles.grains() {
+            let [u, v] = body.planar_velocity();
+            if u == 0.0 && v == 0.0 {
+                continue;
+            }
+            let direction = libm::atan2(v, u);
+            if let Some(before) = self.directions.insert(body.id, direction) {
+                let turn = (direction - before).abs();
+                self.angle += if turn > PI { TAU - turn } else { turn };
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::particles::{Kind, Particle, in_space};
+
+    fn disc(id: u32, kind: Kind, x: f64, velocity: [f64; 2]) -> Particle {
+        Particle {
+            id,
+            kind,
+            position: in_space([x, 1.0]),
+            velocity: in_space(velocity),
+            angle: 0.0,
+            omega: 0.0,
+            radius: 0.5,
+            mass: 1.0,
+        }
+    }
+
+    /// By hand: a contact across the periodic side, which ends and begins again, and one with a wall disc.
+    #[test]
+    fn a_contact_counts_when_it_begins() {
+        let domain = Domain::planar([0.0; 2], [10.0, 4.0], [true, false]);
+        let mut contacts = Contacts::new(domain);
+        let mut look = |x: [f64; 3]| {
+            let kinds = [Kind::Grain, Kind::Grain, Kind::Wall];
+            let all = kinds.iter().zip(x).zip(1..);
+            contacts.look(&Particles::new(all.map(|((&kind, x), id)| disc(id, kind, x, [0.0; 2])).collect()));
+            contacts.begun
+        };
+        let seen = [[0.2, 9.5, 5.0], [0.2, 9.4, 5.0], [0.2, 9.1, 5.0], [0.2, 9.4, 1.1], [0.2, 9.4, 1.1]]
+            .map(&mut look);
+        assert_eq!(seen, [2, 2, 2, 5, 5]);
+    }
+
+    #[test]
+    fn a_circle_is_a_turn_whatever_its_sense() {
+        let mut turns = Turns::default();
+        for step in 0..=16 {
+            let angle = TAU * f64::from(step) / 16.0;
+            let velocities = [[angle.cos(), angle.sin()], [angle.cos(), -angle.sin()]];
+            let all = velocities.iter().zip(1..);
+            turns.look(&Particles::new(all.map(|(&v, id)| disc(id, Kind::Grain, 2.0, v)).collect()));
+        }
+        assert!((turns.angle / TAU - 2.0).abs() < 1e-12, "{}", turns.angle);
+    }
+}

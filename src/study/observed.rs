@@ -1,0 +1,112 @@
+//! What studies observe of a scene: places of the quantities that its method names in its trials, looked up once.
+
+use crate::method::observed::{UnknownName, find};
+use crate::method::{Quantity, Trials};
+
+/// A quantity that has a mean in a run.
+#[derive(Debug)]
+pub struct Watched {
+    /// Its name.
+    pub name: &'static str,
+    /// Its place among those observed.
+    pub place: usize,
+    /// Whether it comes and goes with single contacts, so that it has a mean over independent seeds alone.
+    pub fluctuates: bool,
+    /// Whether it is a velocity: a mean of it means nothing but beside the speeds.
+    pub is_velocity: bool,
+}
+
+/// The balance of energy.
+#[derive(Debug)]
+pub struct Balanced {
+    error: usize,
+    energies: Vec<usize>,
+    inputs: Vec<usize>,
+}
+
+impl Balanced {
+    /// Its error (energy).
+    pub fn error(&self, values: &[f64]) -> f64 {
+        values[self.error]
+    }
+
+    /// Magnitudes of the energies that move, added up (energy).
+    pub fn energies(&self, values: &[f64]) -> f64 {
+        self.energies.iter().map(|&place| values[place].abs()).sum()
+    }
+
+    /// Magnitudes of the work from outside, added up (energy).
+    pub fn inputs(&self, values: &[f64]) -> f64 {
+        self.inputs.iter().map(|&place| values[place].abs()).sum()
+    }
+}
+
+/// What is observed of a scene.
+#[derive(Debug)]
+pub struct Observed {
+    /// Quantities that have a mean in a run.
+    pub means: Vec<Watched>,
+    /// The balance of energy, where the method observes one.
+    pub balance: Option<Balanced>,
+}
+
+impl Observed {
+    /// What the trials of a method name, among what the method observes.
+    ///
+    /// # Errors
+    /// [`UnknownName`] if it observes nothing of such a name.
+    pub fn of(trials: &Trials, quantities: &[Quantity]) -> Result<Observed, UnknownName> {
+        let places = |names: &[&str]| -> Result<Vec<usize>, UnknownName> {
+            names.iter().map(|name| find(quantities, name)).collect()
+        };
+        let mean = |&name: &&'static str| {
+            let place = find(quantities, name)?;
+            let fluctuates = trials.fluctuating.contains(&name);
+            let is_velocity = quantities[place].unit == "length/time";
+            Ok(Watched { name, place, fluctuates, is_velocity })
+        };
+        let stranger = trials.fluctuating.iter().find(|name| !trials.observables.contains(name));
+        if let Some(name) = stranger {
+            let known = trials.observables.iter().copied();
+            return Err(UnknownName::new("quantity that has a mean in a run", name, known));
+        }
+        let balance = trials.balance.map(|balance| {
+            let error = find(quantities, balance.error)?;
+            Ok(Balanced { error, energies: places(balance.energies)?, inputs: places(balance.inputs)? })
+        });
+        let means = trials.observables.iter().map(mean).collect::<Result<_, UnknownName>>()?;
+        Ok(Observed { means, balance: balance.transpose()? })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::{Balance, METHODS};
+
+    #[test]
+    fn trials_that_name_what_is_not_observed_are_refused() {
+        for method in METHODS {
+            let Some(trials) = method.trials else { continue };
+            let observed = Observed::of(trials, method.quantities).unwrap();
+            assert_eq!(observed.means.len(), trials.observables.len());
+            let wrong: [fn(Trials) -> Trials; 4] = [
+                |trials| Trials { observables: &["temprature"], fluctuating: &[], ..trials },
+                |trials| Trials { fluctuating: &["temprature"], ..trials },
+                |trials| {
+                    let balance = Balance { error: "temprature", energies: &[], inputs: &[] };
+                    Trials { balance: Some(balance), ..trials }
+                },
+                |trials| {
+                    let balance = Balance { error: "time", energies: &["temprature"], inputs: &[] };
+                    Trials { balance: Some(balance), ..trials }
+                },
+            ];
+            for wrong in wrong {
+                let error = Observed::of(&wrong(trials.clone()), method.quantities).unwrap_err();
+                assert_eq!(error.name, "temprature");
+                assert!(!error.known.is_empty(), "{error}");
+            }
+        }
+    }
+}
