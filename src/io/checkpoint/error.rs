@@ -116,9 +116,11 @@ fn advice(file: &Path, kept: &Kept) -> String {
     match kept {
         Kept::Nothing => "\n  help: no older checkpoint is kept beside it; start the run again".to_owned(),
         Kept::Whole { file: older, step } => format!(
-            "\n  kept: the older one, {}, of step {step}, is whole\
+            "\n  kept: the older one, {},{} is whole\
              \n  help: to go on from it, rename it to {}",
             quoted::path(older),
+            // A method that takes no steps counts none.
+            if *step > 0 { format!(" of step {step},") } else { String::new() },
             quoted::path(file)
         ),
         Kept::Unusable { file: older } => format!(

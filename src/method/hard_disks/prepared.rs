@@ -129,9 +129,8 @@ fn without_events(
     domain: Domain,
     particles: &Particles,
 ) -> Option<SceneError> {
-    let (discs, _) = discs(&domain, particles);
-    let is_idle = matches!(scene.run.until, Until::Events(_)) && never(&scene.arena(domain), &discs);
-    is_idle.then(|| {
+    let is_idle = || never(&scene.arena(domain), &discs(&domain, particles).0);
+    (matches!(scene.run.until, Until::Events(_)) && is_idle()).then(|| {
         let message = "nothing will ever happen: no disc meets another one or a side";
         let error = values.spot(&EVENTS).error(Reason::Contradiction, message);
         error.advising("give the discs a temperature or other velocities, or ask for a time")
