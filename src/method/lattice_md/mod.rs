@@ -50,6 +50,7 @@ mod options;
 mod prepared;
 mod presets;
 mod programs;
+mod quantities;
 pub mod scene;
 pub mod sections;
 mod simulation;
