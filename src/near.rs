@@ -2,6 +2,7 @@
 
 use crate::domain::Domain;
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 /// Positions in a box, sorted into squares at least as wide as a reach, so that what is within the reach is found without
 /// looking at all. Takes memory for what is added, not for the box.
@@ -10,8 +11,27 @@ pub struct Near {
     domain: Domain,
     squares: [f64; 2],
     /// The last member that came into a square.
-    last: HashMap<[i64; 2], u32>,
+    last: HashMap<[i64; 2], u32, BuildHasherDefault<SquareHasher>>,
     members: Vec<Member>,
+}
+
+/// Of the two numbers of a square: several times as fast as a hash that withstands an adversary, and nothing depends on the order
+/// of the table.
+#[derive(Default)]
+struct SquareHasher(u64);
+
+impl Hasher for SquareHasher {
+    fn write(&mut self, bytes: &[u8]) {
+        for number in bytes.chunks(8) {
+            let number = number.iter().fold(0, |number, &byte| number << 8 | u64::from(byte));
+            let mixed = (self.0.rotate_left(5) ^ number).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            self.0 = mixed ^ (mixed >> 32);
+        }
+    }
+
+    fn finish(&self) -> u64 {
+        self.0.wrapping_mul(0xff51_afd7_ed55_8ccd)
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +55,7 @@ impl Near {
         // Whole squares fill a side, so that a periodic one closes; 2^30 of them number far more than there are discs.
         // What is no number becomes one square.
         let squares = domain.lengths().map(|side| (side / reach).floor().max(1.0).min(2f64.powi(30)));
-        Near { domain, squares, last: HashMap::new(), members: Vec::new() }
+        Near { domain, squares, last: HashMap::default(), members: Vec::new() }
     }
 
     /// All of these positions, numbered from 0 on.

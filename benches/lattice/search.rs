@@ -54,7 +54,7 @@ pub fn search(criterion: &mut Criterion) {
         }
         occupancy.repeat_images();
         let codes = Codes::<f64>::new(&occupancy, model.frame);
-        let lattice = Lattice { occupancy: &occupancy, codes: &codes };
+        let lattice = Lattice { occupancy: &occupancy, codes: &codes, slack: 0.0 };
 
         let domain = model.domain();
         let grid = Grid::new(domain.corner(), domain.lengths(), domain.periodic(), 1.0, f64::INFINITY, count)

@@ -4,7 +4,7 @@ use crate::backend::tape::Outlines;
 use crate::backend::{
     GROUP, InstructionSet, Line, Precision, Registers, Scalar, Strip, Tape, Task, dispatch,
 };
-use crate::isa::{Footprint, Memory, OpCounts, ProgramError, Text};
+use crate::isa::{Footprint, Memory, OpCounts, ProgramError, Storage, Text};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
 
@@ -149,6 +149,18 @@ pub trait Runnable: Send + Sync {
         set: InstructionSet,
     ) -> Result<(), ProgramError>;
 
+    /// Bytes of the register files that an execution keeps for a range of elements, and the precision of the programs that
+    /// share them: of numbers, of predicates, of indices. None where instructions feed each other.
+    ///
+    /// # Errors
+    /// [`ProgramError::NoSuchInstructionSet`].
+    fn register_bytes(
+        &self,
+        range: &Range<usize>,
+        execution: Execution,
+        set: InstructionSet,
+    ) -> Result<(&'static str, [usize; 3]), ProgramError>;
+
     /// What is executed, section by section.
     fn tally(&self) -> Vec<(&'static str, OpCounts)>;
 
@@ -174,6 +186,20 @@ where
         set: InstructionSet,
     ) -> Result<(), ProgramError> {
         self.run_on_threads(memory, range, execution, set)
+    }
+
+    fn register_bytes(
+        &self,
+        range: &Range<usize>,
+        execution: Execution,
+        set: InstructionSet,
+    ) -> Result<(&'static str, [usize; 3]), ProgramError> {
+        let bytes = match execution {
+            Execution::Chained => [0; 3],
+            Execution::Eager => self.tape.register_bytes(range.len(), set)?,
+            Execution::Strip(length) => self.tape.register_bytes(length.min(range.len()), set)?,
+        };
+        Ok((T::Lane::NAME, bytes))
     }
 
     fn tally(&self) -> Vec<(&'static str, OpCounts)> {

@@ -202,6 +202,27 @@ pub fn in_pieces<T: Send>(column: &mut [T], work: impl Fn(usize, &mut [T]) + Syn
     on_threads(parts, |(number, piece)| work(number * PIECE, piece));
 }
 
+/// Entries that one thread works on at a time, where an entry takes some ten nanoseconds or more.
+const PART: usize = 2048;
+
+/// What `work` makes of each part of a range, in their order, where an entry takes longer than for [`over_pieces`]. The parts
+/// depend on the range alone.
+#[inline]
+pub fn over_parts<R: Send>(range: Range<usize>, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
+    on_threads(pieces(range, PART), work)
+}
+
+/// Does `work` on every part of two columns of one length, with the number of its first entry.
+///
+/// # Panics
+/// If one is longer than the other.
+#[inline]
+pub fn in_parts<T: Send>([a, b]: [&mut [T]; 2], work: impl Fn(usize, [&mut [T]; 2]) + Sync) {
+    assert_eq!(a.len(), b.len(), "columns of one length");
+    let parts = a.chunks_mut(PART).zip(b.chunks_mut(PART)).enumerate();
+    on_threads(parts, |(number, (a, b))| work(number * PART, [a, b]));
+}
+
 /// A column in another order: entry `n` is what entry `order[n]` was.
 ///
 /// # Panics

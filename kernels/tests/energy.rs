@@ -3,7 +3,7 @@
 mod support;
 
 use stripmine_kernels::isa::Element;
-use stripmine_kernels::law::granular::{ContactArm, Granular};
+use stripmine_kernels::law::granular::{Contact, ContactArm, Granular};
 use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::forces::Forces;
@@ -21,8 +21,21 @@ fn some_fixed(case: &Case) -> System<f64, f64> {
     system
 }
 
-/// Energy and virial of all pairs, each looked at alone, and how many of fixed discs alone touch.
-fn by_pairs<L: Law<2>>(system: &System<f64, f64>, law: &L) -> ([f64; 2], usize) {
+/// What all pairs come to, each looked at alone.
+#[derive(Default)]
+struct Alone {
+    /// Energy and virial.
+    energy: [f64; 2],
+    /// Contacts of which at least one disc may move, and the deepest of them.
+    contacts: u64,
+    deepest: f64,
+    /// Contacts of fixed discs alone.
+    fixed: usize,
+}
+
+/// Energy, virial and contacts of all pairs, each looked at alone. The virial is by the forces: (r_i − r_j)·F_i, where neither is
+/// fixed.
+fn by_pairs<L: Law<2>>(system: &System<f64, f64>, law: &L) -> Alone {
     let sides = [system.shape.columns(), system.shape.rows()];
     let body = |disc: usize| Body {
         position: [0, 1].map(|axis| system.state[axis][0][disc]),
@@ -31,7 +44,7 @@ fn by_pairs<L: Law<2>>(system: &System<f64, f64>, law: &L) -> ([f64; 2], usize) 
         radius: system.radius[disc],
         inverse_mass: system.lattice_inverse_mass[disc],
     };
-    let (mut sums, mut fixed) = ([0.0; 2], 0);
+    let mut all = Alone::default();
     for i in 0..system.discs {
         for j in 0..i {
             let mut bodies = [body(i), body(j)];
@@ -43,14 +56,26 @@ fn by_pairs<L: Law<2>>(system: &System<f64, f64>, law: &L) -> ([f64; 2], usize) 
                 }
             }
             let pair = Pair { bodies };
-            let alone = bodies.iter().all(|body| body.inverse_mass == 0.0);
-            fixed += usize::from(alone && pair.depth() > 0.0);
-            let found = pair.energy_and_virial(law);
-            assert!(!alone || found == [0.0; 2], "{found:?}");
-            sums.iter_mut().zip(found).for_each(|(sum, more)| *sum += more);
+            let fixed = bodies.iter().filter(|body| body.inverse_mass == 0.0).count();
+            let [energy, virial] = pair.energy_and_virial(law);
+            assert!(fixed < 2 || [energy, virial] == [0.0; 2], "{energy} {virial}");
+            if pair.depth() > 0.0 {
+                let apart = [0, 1].map(|axis| bodies[0].position[axis] - bodies[1].position[axis]);
+                let [[fx, fy, _], _] = pair.sums(law);
+                let expected = if fixed == 0 { apart[0] * fx + apart[1] * fy } else { 0.0 };
+                assert!(
+                    (virial - expected).abs() < 1e-12 * (1.0 + expected.abs()),
+                    "{virial}, not {expected}"
+                );
+                all.fixed += usize::from(fixed == 2);
+                all.contacts += u64::from(fixed < 2);
+                let reach = bodies[0].radius + bodies[1].radius;
+                all.deepest = all.deepest.max(if fixed < 2 { pair.depth() / reach } else { 0.0 });
+            }
+            all.energy.iter_mut().zip([energy, virial]).for_each(|(sum, more)| *sum += more);
         }
     }
-    (sums, fixed)
+    all
 }
 
 /// Power, energy and virial as the lattice's sweep gives them: shares summed over the discs that may move.
@@ -102,13 +127,17 @@ fn every_sweep_gives_power_energy_and_virial_of_all_pairs() {
     let mut fixed_pairs = 0;
     for (seed, periodic) in [[true, true], [false, true], [false, false]].into_iter().enumerate() {
         let case = Case { periodic, seed: seed as u64, fill: 0.6, ..Case::new(23, 17) };
-        let law = varying::<true>(CONTACT);
+        let arm = [ContactArm::Radius, ContactArm::Overlap, ContactArm::Lammps][seed];
+        let law = varying::<true>(Contact { arm, ..CONTACT });
         let system = some_fixed(&case);
-        let (pairs, fixed) = by_pairs(&system, &law);
-        fixed_pairs += fixed;
+        let alone = by_pairs(&system, &law);
+        let pairs = alone.energy;
+        fixed_pairs += alone.fixed;
         let order: Vec<u32> = (0..system.discs as u32).collect();
         let (_, fast) = system.fast_forces(&law, &order, InstructionSet::best()).unwrap();
         let power = fast.dissipated;
+        assert_eq!(fast.contacts, alone.contacts);
+        assert!((fast.deepest / alone.deepest - 1.0).abs() < 1e-11, "{} {}", fast.deepest, alone.deepest);
         let expected = [power, pairs[0], pairs[1]];
         assert!(expected.iter().all(|&sum| sum > 1.0), "{expected:?}");
         let agrees = |found: [f64; 3], by: &str| {
@@ -130,7 +159,7 @@ fn every_sweep_gives_power_energy_and_virial_of_all_pairs() {
 fn what_is_not_asked_for_is_not_recorded() {
     let case = Case::new(9, 7);
     let system = System::<f64, f64>::random(&case);
-    let contact = stripmine_kernels::law::granular::Contact { arm: ContactArm::Overlap, ..CONTACT };
+    let contact = Contact { arm: ContactArm::Overlap, ..CONTACT };
     let sections = |asked: Asked| {
         let law: Granular<true, false> = varying(contact);
         let mask = Mask::square(case.half_width);

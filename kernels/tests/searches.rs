@@ -170,7 +170,7 @@ fn a_lattice_takes_only_its_own_codes_and_columns() {
     let [(narrow, frame), (wide, _)] = [lattice(20), lattice(40)];
     let [of_narrow, of_wide] = [&narrow, &wide].map(|occupancy| Codes::<f64>::new(occupancy, frame));
     let refused = |codes, entries| {
-        let lattice = Lattice { occupancy: &narrow, codes };
+        let lattice = Lattice { occupancy: &narrow, codes, slack: 0.0 };
         catch_unwind(AssertUnwindSafe(|| search(&lattice, entries))).is_err()
     };
     assert!(!refused(&of_narrow, 1 + SENTINELS));

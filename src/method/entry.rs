@@ -90,6 +90,28 @@ pub struct Quantity {
     pub doc: &'static str,
 }
 
+/// A quantity, and how it is read off what a method has seen of a moment.
+#[derive(Clone, Copy)]
+pub struct Observable<S: 'static> {
+    /// Name, unit and meaning.
+    pub quantity: Quantity,
+    /// Its value.
+    pub of: fn(&S) -> f64,
+}
+
+/// What is observed, without the values: the columns of a table of them.
+pub const fn quantities<S: 'static, const COUNT: usize>(
+    observables: &[Observable<S>; COUNT],
+) -> [Quantity; COUNT] {
+    let mut quantities = [observables[0].quantity; COUNT];
+    let mut place = 1;
+    while place < COUNT {
+        quantities[place] = observables[place].quantity;
+        place += 1;
+    }
+    quantities
+}
+
 /// A measurement of throughput.
 #[derive(Debug)]
 pub struct Bench {

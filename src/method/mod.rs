@@ -18,8 +18,8 @@ mod trials;
 
 pub use clock::{Clock, Every, Schedule, Until};
 pub use entry::{
-    Bench, BenchOption, Beyond, Entry, Fact, Item, Prepared, Progress, Purpose, Quantity, RunWarning,
-    Simulation, StepLimit, VectorProgram, Verb,
+    Bench, BenchOption, Beyond, Entry, Fact, Item, Observable, Prepared, Progress, Purpose, Quantity,
+    RunWarning, Simulation, StepLimit, VectorProgram, Verb, quantities,
 };
 pub use failure::{Culprit, Failure, FailureKind};
 pub use hard_disks::compress;

@@ -1,13 +1,19 @@
 //! What is measured of particles, whatever method moves them.
 
+mod contacts;
+mod grains;
 pub mod waves;
 
+pub use contacts::{ContactSums, contacts};
+pub use grains::GrainSums;
+
 use crate::domain::Domain;
-use crate::near::Near;
-use crate::particles::{Kind, Particle, Particles};
+use crate::particles::{Particle, Particles};
+use contacts::Placed;
 use serde::Serialize;
-use stripmine_kernels::law::granular::{Contact, Disc, Granular};
-use stripmine_kernels::sweep::pair::{Body, Pair};
+use std::ops::Range;
+use stripmine_kernels::law::granular::Contact;
+use stripmine_kernels::over_parts;
 
 /// The scene as observers see it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,50 +60,89 @@ pub struct Observation {
     pub contacts: u64,
 }
 
-impl Observation {
-    /// Observes particles.
-    pub fn of(step: u64, time: f64, particles: &Particles, scenery: &Scenery) -> Observation {
-        let Scenery { domain, contact, gravity, inertia_factor } = *scenery;
-        let mut seen = Observation { step, time, ..Observation::default() };
-        let grains = particles.grains();
-        let mut mass = 0.0;
-        let mut sum_velocity = [0.0; 2];
-        for grain in grains {
-            let [vx, vy] = grain.planar_velocity();
-            seen.kinetic += 0.5 * grain.mass * (vx * vx + vy * vy);
-            let inertia = inertia_factor * grain.mass * grain.radius * grain.radius;
-            seen.rotational += 0.5 * inertia * grain.omega * grain.omega;
-            for axis in 0..2 {
-                let height = grain.position[axis] - domain.origin[axis];
-                seen.gravitational -= grain.mass * gravity[axis] * height;
-                sum_velocity[axis] += grain.velocity[axis];
-            }
-            seen.momentum_x += grain.mass * vx;
-            seen.momentum_y += grain.mass * vy;
-            mass += grain.mass;
+/// What is summed up over the discs of a moment, once: all that is observed of them is read off these.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sums {
+    /// Over the grains.
+    pub grains: GrainSums,
+    /// Over the contacts.
+    pub contacts: ContactSums,
+}
+
+impl Sums {
+    /// Of particles as a state has them, part by part on all threads. `work` gives what gravity has done to a grain, by its number,
+    /// and is asked only where there is gravity.
+    pub fn over_parts(
+        particles: &Particles,
+        scenery: &Scenery,
+        work: impl Fn(usize, &Particle, [f64; 2]) -> f64 + Sync,
+    ) -> Sums {
+        let discs = Placed::new(particles, &scenery.domain);
+        let parts = over_parts(0..particles.grain_count(), |grains| {
+            Sums::over(grains, &discs, particles, scenery, &work)
+        });
+        let mut sums = Sums::default();
+        for part in &parts {
+            sums.grains.join(&part.grains);
+            sums.contacts.join(&part.contacts);
         }
-        if !grains.is_empty() {
-            let n = grains.len() as f64;
-            let drift =
-                (seen.momentum_x * seen.momentum_x + seen.momentum_y * seen.momentum_y) / (2.0 * mass);
-            seen.temperature = (seen.kinetic - drift) / n;
+        sums
+    }
+
+    /// Over some grains, one after the other.
+    fn over(
+        grains: Range<usize>,
+        discs: &Placed<'_>,
+        particles: &Particles,
+        scenery: &Scenery,
+        work: impl Fn(usize, &Particle, [f64; 2]) -> f64,
+    ) -> Sums {
+        let mut sums = GrainSums::default();
+        for number in grains.clone() {
+            let grain = &particles.all()[number];
+            sums.add(scenery, grain, grain.planar_velocity(), grain.omega, || discs.place(number));
+            if scenery.gravity != [0.0; 2] {
+                sums.gravity_work += work(number, grain, grain.place());
+            }
+        }
+        Sums { grains: sums, contacts: ContactSums::over(grains, discs, &scenery.contact) }
+    }
+}
+
+impl Observation {
+    /// Observes particles, one after the other.
+    pub fn of(step: u64, time: f64, particles: &Particles, scenery: &Scenery) -> Observation {
+        let (discs, grains) = (Placed::new(particles, &scenery.domain), 0..particles.grain_count());
+        Observation::new(step, time, &Sums::over(grains, &discs, particles, scenery, |_, _, _| 0.0), scenery)
+    }
+
+    /// What sums say.
+    pub fn new(step: u64, time: f64, sums: &Sums, scenery: &Scenery) -> Observation {
+        let Sums { grains, contacts } = sums;
+        let [momentum_x, momentum_y] = grains.momentum;
+        let mut seen = Observation {
+            step,
+            time,
+            kinetic: grains.kinetic,
+            rotational: grains.rotational,
+            elastic: contacts.elastic,
+            gravitational: grains.gravitational,
+            momentum_x,
+            momentum_y,
+            deepest_penetration: contacts.deepest,
+            contacts: contacts.count,
+            ..Observation::default()
+        };
+        let n = grains.count as f64;
+        if grains.count > 0 {
+            let drift = (momentum_x * momentum_x + momentum_y * momentum_y) / (2.0 * grains.mass);
+            seen.temperature = (grains.kinetic - drift) / n;
+            let gravity = scenery.gravity;
             let strength = gravity[0].hypot(gravity[1]);
             let along = if strength > 0.0 { gravity.map(|g| g / strength) } else { [1.0, 0.0] };
-            seen.flow = (sum_velocity[0] * along[0] + sum_velocity[1] * along[1]) / n;
+            seen.flow = (grains.velocity[0] * along[0] + grains.velocity[1] * along[1]) / n;
         }
-        let all = particles.all();
-        let mut virial = 0.0;
-        for (i, j, penetration, reach) in contacts(particles, &domain) {
-            let depth = penetration * reach;
-            seen.contacts += 1;
-            seen.elastic += contact.energy(|number| number, depth);
-            seen.deepest_penetration = seen.deepest_penetration.max(penetration);
-            if all[j].kind == Kind::Grain {
-                virial += virial_of(&contact, &domain, &all[i], &all[j]);
-            }
-        }
-        let area = domain.length(0) * domain.length(1);
-        seen.pressure = (grains.len() as f64 * seen.temperature + 0.5 * virial) / area;
+        seen.pressure = (n * seen.temperature + 0.5 * contacts.virial) / scenery.domain.area();
         seen
     }
 
@@ -105,47 +150,4 @@ impl Observation {
     pub fn energy(&self) -> f64 {
         self.kinetic + self.rotational + self.elastic + self.gravitational
     }
-}
-
-/// (r_i − r_j)·F_i of two grains in contact (energy), damping included. Friction acts across the way between the centres
-/// and has no part in it.
-fn virial_of(contact: &Contact, domain: &Domain, grain: &Particle, partner: &Particle) -> f64 {
-    let body = |particle: &Particle, [x, y]: [f64; 2]| Body {
-        velocity: particle.planar_velocity(),
-        radius: particle.radius,
-        inverse_mass: 1.0 / particle.mass,
-        ..Body::at(x, y)
-    };
-    // The law reads each disc's own radius and mass.
-    let alike = Disc { radius: grain.radius, inverse_mass: 1.0 / grain.mass };
-    let law = Granular::<false, false> { contact: *contact, disc: alike };
-    let apart = domain.displacement(grain.place(), partner.place());
-    Pair { bodies: [body(grain, apart), body(partner, [0.0; 2])] }.energy_and_virial(&law)[1]
-}
-
-/// Pairs in contact with at least one grain: the two, the penetration (fraction of the sum of the radii) and that sum
-/// (length). In order of the first disc, then of the second.
-pub fn contacts(particles: &Particles, domain: &Domain) -> Vec<(usize, usize, f64, f64)> {
-    let all = particles.all();
-    let Some([_, largest]) = particles.radii() else { return vec![] };
-    let near = Near::among(*domain, all.iter().map(Particle::place), 2.0 * largest);
-    let mut found = Vec::new();
-    let mut partners = Vec::new();
-    for (i, disc) in particles.grains().iter().enumerate() {
-        partners.clear();
-        partners.extend(near.of(disc.place()).map(|(number, _)| number as usize));
-        partners.sort_unstable();
-        for &j in &partners {
-            let once = j > i || all[j].kind == Kind::Wall;
-            if once && j != i {
-                let [dx, dy] = domain.displacement(disc.place(), all[j].place());
-                let reach = disc.radius + all[j].radius;
-                let penetration = 1.0 - dx.hypot(dy) / reach;
-                if penetration > 0.0 {
-                    found.push((i, j, penetration, reach));
-                }
-            }
-        }
-    }
-    found
 }

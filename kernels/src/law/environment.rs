@@ -10,7 +10,7 @@ pub struct Asked {
     pub watched: Option<f64>,
     /// Whether the power that contacts dissipate is summed up.
     pub dissipation: bool,
-    /// Whether the energy and the virial of the pairs are summed up.
+    /// Whether pairs are observed: their energy and virial are summed up, their contacts counted.
     pub energy: bool,
 }
 
@@ -65,9 +65,13 @@ pub trait Env<const DIM: usize>: Copy {
     /// Reports the energy that every pair stores, 0 without contact; where a pair is met from both sides, the own particle's
     /// share, of which a fixed one has none. Called only where [`Env::observes_energy`].
     fn energy(self, energy: Self::V);
-    /// Reports the virial of every pair, (r_own − r_partner)·F_own (energy), or the own particle's share of it, as
-    /// [`Env::energy`]. Called only where [`Env::observes_energy`].
+    /// Reports the virial of every pair of which neither is fixed, (r_own − r_partner)·F_own (energy), or the own particle's
+    /// share of it, as [`Env::energy`]. Called only where [`Env::observes_energy`].
     fn virial(self, virial: Self::V);
+    /// Reports how deep every pair is in contact, as a fraction of the sum of the radii: 0 without contact, and of two fixed
+    /// particles. Called only where [`Env::observes_energy`], by laws that know contacts.
+    #[inline(always)]
+    fn contact(self, _penetration: Self::V) {}
     /// Names what follows, for the ledger and the listing.
     fn section(self, name: &'static str);
 }

@@ -1,7 +1,7 @@
 //! Granular discs: Hertz contacts with viscous damping, Coulomb friction and rotation.
 
 use super::{Axis::X, Axis::Y, Env, Field, Law, Sum};
-use crate::isa::Vector;
+use crate::isa::{Predicate, Vector};
 
 /// Where the tangential force acts, as seen from a centre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -164,9 +164,12 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         let dissipate = |power: E::V| env.dissipate(E::V::select(contact, shared(power), zero));
         if env.observes_energy() {
             env.section("energy");
-            // Friction acts across the way between the centres and has no virial.
             env.energy(E::V::select(contact, shared(self.contact.energy(uniform, overlap)), zero));
-            env.virial(E::V::select(contact, shared(normal * distance), zero));
+            // Friction acts across the way between the centres and has no virial; what walls bear is none of the discs' own.
+            let both_move = zero.less_than(own.inverse_mass.min(inverse_mass));
+            env.virial(E::V::select(contact.and(both_move), shared(normal * distance), zero));
+            let one_moves = zero.less_than(own.inverse_mass.max(inverse_mass));
+            env.contact(E::V::select(contact.and(one_moves), penetration / reach, zero));
         }
 
         if !FRICTION {

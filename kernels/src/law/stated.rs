@@ -192,6 +192,10 @@ impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for Stated<E, L> {
         self.env.virial(virial);
     }
     #[inline(always)]
+    fn contact(self, penetration: E::V) {
+        self.env.contact(penetration);
+    }
+    #[inline(always)]
     fn section(self, name: &'static str) {
         self.env.section(name);
     }

@@ -339,7 +339,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         let mut sums = [0, 1, 2].map(|_| vec![P::default(); self.discs]);
         let [fx, fy, torque] = &mut sums;
         let codes = Codes::new(&occupancy, self.frame);
-        let lattice = Lattice { occupancy: &occupancy, codes: &codes };
+        let lattice = Lattice { occupancy: &occupancy, codes: &codes, slack: 0.0 };
         let mut sweep = Sweep::new(Finder::<S, P>::rows(&lattice));
         let asked = Asked { watched: Some(0.1), dissipation: true, energy: true };
         let met = sweep.run(law, &lattice, &discs, [fx, fy, torque], asked, set)?;

@@ -152,10 +152,13 @@ impl Running {
     }
 }
 
-/// The entries of a column that stay; sums of forces begin with none.
+/// The entries of a column that stay; sums of forces begin with none. What has not an entry a particle stays as it is.
 fn kept(name: String, column: Column, stays: &[bool]) -> (String, Column) {
     fn of<T: Copy>(values: Vec<T>, stays: &[bool]) -> Vec<T> {
         values.into_iter().zip(stays).filter(|(_, stays)| **stays).map(|(value, _)| value).collect()
+    }
+    if column.len() != stays.len() {
+        return (name, column);
     }
     let is_sum = SUMS.contains(&name.as_str());
     let column = match column {

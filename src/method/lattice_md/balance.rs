@@ -2,19 +2,62 @@
 
 use super::{Engine, Totals};
 use crate::domain::Domain;
-use crate::observe::Observation;
-use crate::particles::{Particle, Particles};
+use crate::observe::{Observation, Scenery, Sums};
+use crate::particles::Particle;
 
 /// What the energy of the grains is held against: what was there at the start, what gravity and walls have put in, and what
 /// contacts have taken out.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Work {
-    domain: Domain,
-    gravity: [f64; 2],
+    way: Way,
     /// Kinetic, rotational and elastic energy at the start.
     start: f64,
-    /// Grains at the start.
+}
+
+/// What gravity does to grains on their way from where they were at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Way {
+    domain: Domain,
+    gravity: [f64; 2],
+    /// Grains at the start, as if there were no sides (length); none where nothing pulls.
     from: Vec<[f64; 2]>,
+}
+
+impl Way {
+    /// From where the grains of an engine are now on.
+    pub(super) fn begin(engine: &dyn Engine, scenery: &Scenery) -> Way {
+        let Scenery { domain, gravity, .. } = *scenery;
+        let mut way = Way { domain, gravity, from: vec![] };
+        if gravity != [0.0; 2] {
+            let standing = engine.standing();
+            let grains = standing.grains().iter().enumerate();
+            way.from = grains
+                .map(|(number, grain)| way.unfolded(number, grain.place(), engine.crossings()))
+                .collect();
+        }
+        way
+    }
+
+    /// A position (length), as the state has it, with the periods that the grain has crossed.
+    fn unfolded(&self, number: usize, position: [f64; 2], crossings: &[[f64; 2]]) -> [f64; 2] {
+        let periods = crossings.get(number).copied().unwrap_or_default();
+        // Along an axis that is not periodic nothing is crossed.
+        [0, 1].map(|axis| position[axis] + periods[axis] * self.domain.length(axis))
+    }
+
+    /// What gravity has done to a grain that is now at a position (energy).
+    pub(super) fn work(
+        &self,
+        number: usize,
+        grain: &Particle,
+        position: [f64; 2],
+        crossings: &[[f64; 2]],
+    ) -> f64 {
+        let (from, now) = (self.from[number], self.unfolded(number, position, crossings));
+        // Where nothing pulls, nothing is followed, and the way may be an image's.
+        let pulling = (0..2).filter(|&axis| self.gravity[axis] != 0.0);
+        grain.mass * pulling.map(|axis| self.gravity[axis] * (now[axis] - from[axis])).sum::<f64>()
+    }
 }
 
 /// Energies since the start (mass · length²/time²).
@@ -32,14 +75,13 @@ pub struct Balance {
 
 impl Work {
     /// From the first observation on.
-    pub(super) fn begin(
-        seen: &Observation,
-        particles: &Particles,
-        domain: Domain,
-        gravity: [f64; 2],
-    ) -> Work {
-        let from = particles.grains().iter().map(Particle::place).collect();
-        Work { domain, gravity, start: inner(seen), from }
+    pub(super) fn begin(way: Way, first: &Observation) -> Work {
+        Work { way, start: inner(first) }
+    }
+
+    /// The way of the grains.
+    pub(super) fn way(&self) -> &Way {
+        &self.way
     }
 
     /// The energy that there was at the start, and what gravity and walls have put in or taken out since.
@@ -47,22 +89,11 @@ impl Work {
         self.start + balance.gravity_work.abs() + balance.wall_work.abs()
     }
 
-    /// The balance of a moment, with the particles as the state has them: consistent with the crossings counted.
-    pub(super) fn balance(&self, seen: &Observation, particles: &Particles, engine: &dyn Engine) -> Balance {
-        let crossings = engine.crossings();
-        let mut gravity_work = 0.0;
-        for (number, (grain, from)) in particles.grains().iter().zip(&self.from).enumerate() {
-            let periods = crossings.get(number).copied().unwrap_or_default();
-            let along = |axis: usize| {
-                let way = (grain.position[axis] - from[axis]) + periods[axis] * self.domain.length(axis);
-                self.gravity[axis] * way
-            };
-            // Where nothing pulls, nothing is followed, and the way may be an image's.
-            gravity_work +=
-                grain.mass * (0..2).filter(|&axis| self.gravity[axis] != 0.0).map(along).sum::<f64>();
-        }
-        let Totals { dissipated, wall_work, .. } = engine.totals();
-        let balance_error = inner(seen) - self.start - gravity_work - wall_work + dissipated;
+    /// The balance of a moment.
+    pub(super) fn balance(&self, now: &Observation, sums: &Sums, totals: &Totals) -> Balance {
+        let Totals { dissipated, wall_work, .. } = *totals;
+        let gravity_work = sums.grains.gravity_work;
+        let balance_error = inner(now) - self.start - gravity_work - wall_work + dissipated;
         Balance { dissipated, gravity_work, wall_work, balance_error }
     }
 }

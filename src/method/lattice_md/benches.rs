@@ -1,7 +1,8 @@
-//! What is observed and what is measured of granular discs.
+//! What is measured of granular discs.
 
 use super::document::Document;
-use crate::method::{Bench, BenchOption, Quantity, Until};
+use super::quantities::QUANTITIES;
+use crate::method::{Bench, BenchOption, Until};
 use crate::words::Words;
 
 impl Document {
@@ -73,32 +74,4 @@ const OPTIONS: &[BenchOption] = options! {
     "instruction-set", [], |set| vec![format!("machine.instruction_set={set}")];
     "frictionless", [], |_| vec!["law.friction=0".to_owned()];
     "cell-edge", [], |edge| vec![format!("search.cell_edge={edge}")];
-};
-
-macro_rules! quantities {
-    ($($name:literal, $unit:literal, $doc:literal;)*) => {
-        &[$(Quantity { name: $name, unit: $unit, doc: $doc }),*]
-    };
-}
-
-/// What is observed, in the order of the columns.
-pub(super) const QUANTITIES: &[Quantity] = quantities! {
-    "time", "time", "The time.";
-    "kinetic", "energy", "Kinetic energy of the grains' translation.";
-    "rotational", "energy", "Kinetic energy of their rotation.";
-    "elastic", "energy", "Energy of the Hertz contacts.";
-    "gravitational", "energy", "Potential energy in gravity, from the box's corner; jumps where a grain crosses a periodic side along gravity.";
-    "dissipated", "energy", "What contacts have turned into heat since the start.";
-    "gravity_work", "energy", "What gravity has put in since the start.";
-    "wall_work", "energy", "What moving walls have put in since the start.";
-    "balance_error", "energy", "The energy that there is, less what there should be.";
-    "momentum_x", "mass·length/time", "Momentum of the grains along x.";
-    "momentum_y", "mass·length/time", "Momentum of the grains along y.";
-    "temperature", "energy", "Kinetic energy a grain and dimension, about the mean motion.";
-    "pressure", "force/length", "Pressure of the grains, of their motion and of the contacts between them, over the area of the whole box.";
-    "flow", "length/time", "Mean velocity of the grains along gravity, or along x without gravity.";
-    "deepest_penetration", "", "The deepest contact, as a fraction of the sum of the radii.";
-    "contacts", "", "Contacts with at least one grain.";
-    "deep_disc_steps", "", "Grains in contacts deeper than law.max_penetration, summed over the steps.";
-    "long_steps", "", "Discs that moved farther in a step than contacts can be seen, summed over the steps.";
 };

@@ -1,8 +1,10 @@
 //! What the ways of stepping granular discs have in common: vector programs, the fast sweeps, and the source's rival.
 
+use super::balance::Way;
 use super::{Elapsed, Timings, Totals};
 use crate::io::checkpoint::Column;
 use crate::method::Failure;
+use crate::observe::{Scenery, Sums};
 use crate::particles::Particles;
 use stripmine_kernels::ledger::{Ledger, Length};
 
@@ -26,6 +28,10 @@ pub trait Engine: Send {
     /// The same as the state has them: the last correction may have taken a position beyond a periodic side, and no
     /// [crossing](Self::crossings) is counted before the next step.
     fn standing(&self) -> Particles;
+
+    /// Sums over the discs and their contacts as they stand, with what gravity has done on their way. Summed in an order that
+    /// depends on the scene alone.
+    fn sums(&self, scenery: &Scenery, way: &Way) -> Sums;
 
     /// Force along x and y and torque on every particle, as of the last step.
     fn forces(&self) -> Vec<[f64; 3]>;

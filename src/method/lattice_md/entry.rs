@@ -1,9 +1,10 @@
 //! The entry of lattice molecular dynamics in the list of methods.
 
-use super::benches::{BENCHES, QUANTITIES};
+use super::benches::BENCHES;
 use super::document::Document;
 use super::items::ITEMS;
 use super::keys::VOCABULARY;
+use super::quantities::QUANTITIES;
 use super::trials::TRIALS;
 use super::verbs::{CHARTS, VERBS};
 use crate::method::Entry;

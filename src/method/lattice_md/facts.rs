@@ -11,7 +11,6 @@ use serde_json::json;
 /// Every fact of a scene.
 pub(super) fn facts(checked: &Checked) -> Vec<Fact> {
     let Checked { scene, domain, particles, alike, geometry, estimates: e, .. } = checked;
-    let sides = |[x, y]: [f64; 2]| format!("{x:.6} × {y:.6}");
     let or_none = |value: Option<f64>, words: fn(f64) -> String| value.map_or("nothing moves".into(), words);
     let (grains, walls) = (particles.grain_count(), particles.len() - particles.grain_count());
     let mut facts = vec![
@@ -19,9 +18,7 @@ pub(super) fn facts(checked: &Checked) -> Vec<Fact> {
         Fact::new("grains", grains, "grains", grains.to_string()),
         Fact::new("wall_discs", walls, "wall discs", walls.to_string()),
         Fact::data("discs_alike", *alike),
-        Fact::new("radii", json!(geometry.radii), "radii", {
-            format!("{:.6} to {:.6}", geometry.radii[0], geometry.radii[1])
-        }),
+        Fact::new("radii", json!(geometry.radii), "radii", range(geometry.radii)),
         Fact::data("origin", json!(domain.corner())),
         Fact::new("sides", json!(domain.lengths()), "box", sides(domain.lengths())),
         Fact::data("periodic", json!(domain.periodic())),
@@ -34,36 +31,45 @@ pub(super) fn facts(checked: &Checked) -> Vec<Fact> {
     facts.extend([
         Fact::data("dt", scene.integrator.dt),
         Fact::new("steps", scene.run.steps, "steps", {
-            format!("{} of {} are {:.6}", scene.run.steps, scene.integrator.dt, scene.duration())
+            let [dt, duration] = [scene.integrator.dt, scene.duration()].map(|time| significant(time, 7));
+            format!("{} of {dt} are {duration}", scene.run.steps)
         }),
         Fact::data("duration", scene.duration()),
         Fact::new("estimates", json!(e), "approach speed", significant(e.approach_speed, 5)),
         Fact::words("steps per contact", or_none(e.steps_per_contact, |steps| format!("{steps:.1}"))),
-        Fact::words("penetration of an impact", format!("{:.4}", e.impact_penetration)),
+        Fact::words("penetration of an impact", significant(e.impact_penetration, 4)),
         Fact::words("damping γ dt, dense 3 γ dt, limit", {
-            format!("{:.4}, {:.4}, {:.2}", e.damping, e.network_damping, e.damping_limit)
+            [e.damping, e.network_damping, e.damping_limit].map(|number| significant(number, 4)).join(", ")
         }),
     ]);
     facts
 }
 
+/// Two lengths, in whatever unit.
+fn sides(sides: [f64; 2]) -> String {
+    sides.map(|side| significant(side, 7)).join(" × ")
+}
+
+/// From one length to another.
+fn range(ends: [f64; 2]) -> String {
+    ends.map(|end| significant(end, 7)).join(" to ")
+}
+
 /// What there is to be said of the lattice of a scene that needs one.
 fn lattice_facts(checked: &Checked) -> Vec<Fact> {
     let geometry = &checked.geometry;
-    let sides = |[x, y]: [f64; 2]| format!("{x:.6} × {y:.6}");
     let [columns, rows] = [geometry.shape.columns(), geometry.shape.rows()];
     let mask = 2 * geometry.mask.half_width() + 1;
-    let [shortest, longest] = geometry.edge_bounds;
     vec![
         Fact::data("columns", columns),
         Fact::data("rows", rows),
         Fact::new("cells", columns * rows, "cells", format!("{columns} × {rows} = {}", columns * rows)),
         Fact::new("cell_edges", json!(geometry.frame.edge), "cell", sides(geometry.frame.edge)),
         Fact::new("cell_edge_bounds", json!(geometry.edge_bounds), "cell edge allowed", {
-            format!("{shortest:.6} to {longest:.6}")
+            range(geometry.edge_bounds)
         }),
         Fact::new("mask", mask, "mask", format!("{mask} × {mask}")),
-        Fact::new("occupancy", geometry.occupancy, "occupancy", format!("{:.4}", geometry.occupancy)),
+        Fact::new("occupancy", geometry.occupancy, "occupancy", significant(geometry.occupancy, 4)),
     ]
 }
 

@@ -2,6 +2,7 @@
 //! only, corrector and next predictor in one pass. Equal to the programs but for rounding. Beside the lattice stand its
 //! rivals, sectors and Verlet lists: the same state, law and integrator, and another way of finding contacts.
 
+use super::balance::Way;
 use super::judge::{judge_depth, judge_steps};
 use super::programs::{with_law, with_scheme};
 use super::walls::{wall_power, walls_at};
@@ -13,7 +14,8 @@ use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, Sea
 use crate::method::pairwise::{
     self, Dynamics, Elapsed, Named, Prescribed, Sort, System, WithLaw, WithScheme,
 };
-use crate::particles::Particles;
+use crate::observe::{Scenery, Sums};
+use crate::particles::{Particle, Particles};
 use crate::scene::WallMotion;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
@@ -179,6 +181,14 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine for FastMd<S, P, Q> {
 
     fn standing(&self) -> Particles {
         self.engine.standing()
+    }
+
+    fn sums(&self, scenery: &Scenery, way: &Way) -> Sums {
+        let (engine, crossings) = (&self.engine, self.crossings());
+        let corrected = engine.corrected_discs();
+        let work = |number: usize, grain: &Particle, position| way.work(number, grain, position, crossings);
+        let grains = engine.grain_sums(&corrected, scenery, work);
+        Sums { grains, contacts: engine.contact_sums(&corrected) }
     }
 
     fn forces(&self) -> Vec<[f64; 3]> {

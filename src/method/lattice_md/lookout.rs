@@ -7,10 +7,10 @@ use super::theory::limits;
 use crate::io::checkpoint::Counter;
 use crate::method::RunWarning;
 use crate::number::significant;
-use crate::particles::{Particle, Particles};
+use crate::observe::GrainSums;
 use std::collections::BTreeMap;
 
-/// Steps from one look to the next: a look costs as much as some twenty steps.
+/// Steps from one look to the next: a look costs as much as a row.
 const EVERY: u64 = 1024;
 /// Names of the counters.
 const COUNTERS: [&str; 2] = ["looked.fastest", "looked.slowest"];
@@ -22,22 +22,22 @@ pub(super) struct Lookout {
     dt: f64,
     /// By how much a position is rounded (length), where that is in single precision.
     rounding: Option<f64>,
+    has_walls: bool,
     /// The largest and the smallest typical speed of approach, √2 of the root mean square speed (length/time); the smallest of
     /// the looks at which anything moved, because discs at rest have no motion to lose.
     typical: [f64; 2],
 }
 
 impl Lookout {
-    /// At the start of a scene.
+    /// Of a scene, before the first look.
     pub(super) fn of(checked: &Checked) -> Lookout {
-        let mut lookout = Lookout {
+        Lookout {
             contact: limits::contact(checked, 1.0),
             dt: checked.scene.integrator.dt,
             rounding: rounding(&checked.scene, &checked.domain, &checked.geometry),
+            has_walls: checked.particles.len() > checked.particles.grain_count(),
             typical: [0.0, f64::INFINITY],
-        };
-        lookout.look(&checked.particles);
-        lookout
+        }
     }
 
     /// Whether it is time for a look.
@@ -45,16 +45,13 @@ impl Lookout {
         step.is_multiple_of(EVERY)
     }
 
-    /// Looks at the discs.
-    pub(super) fn look(&mut self, particles: &Particles) {
-        let grains = particles.grains();
-        let count = grains.len().max(1) as f64;
-        let mean = |of: &dyn Fn(&Particle) -> f64| grains.iter().map(of).sum::<f64>() / count;
-        let square = mean(&|disc| disc.velocity.iter().map(|part| part * part).sum());
+    /// Looks at the grains.
+    pub(super) fn look(&mut self, grains: &GrainSums) {
+        let count = grains.count.max(1) as f64;
+        let square = grains.square / count;
         // What flies together does not meet; but it may meet walls.
-        let has_walls = particles.len() > grains.len();
         let drift =
-            if has_walls { 0.0 } else { (0..2).map(|axis| mean(&|disc| disc.velocity[axis]).powi(2)).sum() };
+            if self.has_walls { 0.0 } else { grains.velocity.map(|sum| (sum / count).powi(2)).iter().sum() };
         let [approach, moving] = [square - drift, square].map(|square: f64| (2.0 * square.max(0.0)).sqrt());
         let [most, least] = self.typical;
         self.typical = [most.max(approach), if moving > 0.0 { least.min(moving) } else { least }];

@@ -1,16 +1,17 @@
 //! The memory that a run needs, before it is taken.
 //!
 //! Formulas follow the allocations, term by term: `method/lattice_md/{arrays,neighbor_list}`,
-//! `method/pairwise/{state,search}` and the sweeps below them for what a method keeps, `observe` and `io/checkpoint` for what
-//! comes and goes. What does not grow with the discs or the cells is one number.
+//! `method/pairwise/{state,search}` and the sweeps below them for what a method keeps, `method/pairwise/{observing,saved}`, `observe`
+//! and `io/checkpoint` for what comes and goes. What does not grow with the discs or the cells is one number.
 
 use super::assemble::{contacts, model_following_energy};
 use super::check::Checked;
-use super::{Contacts, Discs, FastSearch, Model, Scheme};
+use super::{Contacts, Discs, FastSearch, Lengths, Model, Scheme, programs};
 use crate::memory::{Foreseen, PROGRAM, available};
 use crate::near::Near;
 use crate::particles::Particle;
 use crate::scene::Precision;
+use std::collections::BTreeMap;
 use stripmine_kernels::sweep::fast::lattice::SPARSE;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
@@ -24,20 +25,27 @@ const DISC: f64 = size_of::<Particle>() as f64;
 /// The memory that a run of a checked scene takes at most.
 pub fn foreseen(checked: &Checked) -> Foreseen {
     let of = Sizes::of(checked);
-    let kept = PROGRAM + 2.0 * DISC * of.discs + 16.0 * of.grains + of.followed();
-    let (engine, columns) = match contacts(checked) {
-        Contacts::Fast(search) => of.fast(search),
-        Contacts::Lattice => of.programs(false),
+    let from = if of.model.gravity == [0.0; 2] { 0.0 } else { 16.0 * of.grains };
+    let kept = PROGRAM + 2.0 * DISC * of.discs + from + of.followed();
+    let near = Near::bytes(checked.particles.len()) as f64;
+    let ([engine, columns], observed) = match contacts(checked) {
+        Contacts::Fast(search) => (of.fast(search), of.observed()),
+        Contacts::Lattice => {
+            let [arrays, columns] = of.programs(false);
+            ([arrays + registers(checked, &of.model), columns], (DISC + 16.0) * of.discs + near)
+        }
         Contacts::Lists(options) => {
-            let (programs, columns) = of.programs(true);
-            (programs + of.rival(options.skin), columns)
+            let [arrays, columns] = of.programs(true);
+            ([arrays + of.rival(options.skin), columns], (DISC + 16.0) * of.discs + near)
         }
     };
-    // Either is gone before the other comes. While discs are observed, a frame of them is written.
-    let observing = 2.0 * DISC * of.discs + Near::bytes(checked.particles.len()) as f64;
-    let writing = columns + of.followed();
+    let columns = columns + of.followed();
+    // One of them is gone before the next comes. While discs are observed or their columns written, a frame of them is written;
+    // a run that is gone on with has read one column more than it has taken up, and its cells are looked up.
+    let frame = DISC * of.discs;
+    let moments = [2.0 * frame, frame + observed, frame + columns, columns + (8.0 + 40.0) * of.discs];
     Foreseen {
-        needed: (kept + engine + observing.max(writing)) as u64,
+        needed: (kept + engine + moments.into_iter().fold(0.0, f64::max)) as u64,
         available: available(),
         what: format!("{} discs in {} cells", checked.particles.len(), checked.geometry.shape.cells()),
         remedy: "take fewer discs, a smaller box or machine.precision = \"f32\"; where most cells are empty, search.by = \
@@ -107,8 +115,14 @@ impl Sizes {
         (density * std::f64::consts::PI * distance * distance).min(self.discs)
     }
 
+    /// Bytes that the fast engine takes while discs are observed.
+    fn observed(&self) -> f64 {
+        let corrected = 2.0 * self.freedoms();
+        (8.0 * (corrected + 3.0 + 2.0 * self.varying()) + 4.0) * self.discs
+    }
+
     /// Bytes that a fast method keeps, and of the columns of its checkpoints.
-    fn fast(&self, search: FastSearch) -> (f64, f64) {
+    fn fast(&self, search: FastSearch) -> [f64; 2] {
         let carried = match self.model.scheme {
             Scheme::Gear(values) => values.count(),
             Scheme::VelocityVerlet => 2,
@@ -135,11 +149,11 @@ impl Sizes {
                 sectors() + (2.0 * self.state + 8.0 * pairs) * self.discs
             }
         };
-        (columns * self.discs + found, written * self.discs)
+        [columns * self.discs + found, written * self.discs]
     }
 
     /// Bytes of the arrays of the programs, and of the columns of their checkpoints.
-    fn programs(&self, lists: bool) -> (f64, f64) {
+    fn programs(&self, lists: bool) -> [f64; 2] {
         let Sizes { model, discs, state, force, .. } = self;
         let (varying, friction) = (self.varying(), self.friction());
         let padded = model.shape.padded() as f64;
@@ -163,7 +177,8 @@ impl Sizes {
             kinds.iter().map(|(columns, elements, bytes)| columns * row(elements * bytes)).sum();
         // The cells as they were, where they are asked for.
         let before = if self.state == 4.0 || self.followed() > 0.0 { 4.0 * discs } else { 0.0 };
-        (SHARED + arrays + before + 4.0 * discs, of_state * state * discs)
+        let cells = if self.state == 4.0 || self.followed() > 0.0 { 8.0 } else { 0.0 };
+        [SHARED + arrays + before + 4.0 * discs, (of_state * state + cells) * discs]
     }
 
     /// Bytes of the chained neighbour lists beside those arrays.
@@ -171,6 +186,29 @@ impl Sizes {
         let listed = self.neighbours(self.reach + skin);
         (4.0 + 4.0 * listed + 16.0 + self.varying() * self.force) * self.discs
     }
+}
+
+/// Bytes of the vector registers of an execution that writes every result down.
+fn registers(checked: &Checked, model: &Model) -> f64 {
+    let (machine, particles) = (&checked.scene.machine, &checked.particles);
+    let lengths = Lengths::new(model, particles.grain_count(), particles.len());
+    let programs = match machine.precision {
+        Precision::F64 => programs::<f64, f64>(model),
+        Precision::F32 => programs::<f32, f32>(model),
+        Precision::Mixed => programs::<f64, f32>(model),
+    };
+    // Programs of one precision share their registers, which are as many and as long as the largest asks for.
+    let mut largest: BTreeMap<&str, [usize; 3]> = BTreeMap::new();
+    for step in programs {
+        let range = lengths.range(step.length);
+        // A set that the processor lacks is refused when the run starts.
+        let bytes = step.program.register_bytes(&range, machine.execution, machine.instructions());
+        if let Ok((precision, bytes)) = bytes {
+            let files = largest.entry(precision).or_default();
+            files.iter_mut().zip(bytes).for_each(|(file, bytes)| *file = bytes.max(*file));
+        }
+    }
+    largest.values().flatten().map(|&bytes| row(bytes as f64)).sum()
 }
 
 /// Bytes of a row of the programs: a long one has large pages to itself.

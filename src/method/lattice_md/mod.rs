@@ -52,6 +52,7 @@ mod options;
 mod prepared;
 mod presets;
 mod programs;
+mod quantities;
 pub mod scene;
 pub mod sections;
 mod simulation;

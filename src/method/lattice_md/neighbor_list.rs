@@ -104,6 +104,8 @@ impl<P: Precision> Rival<P> {
         let domain = model.domain();
         let discs = made_at.len();
         let limit = self.reach + self.options.skin;
+        // Not beside the new ones: they are as large.
+        self.lists = Lists::default();
         let near = |i: usize, j: usize| square(&domain, made_at[i], made_at[j]) < limit * limit;
         self.lists = match self.options.rebuild {
             Rebuild::AllPairs => Lists::by_all_pairs(discs, near),

@@ -1,12 +1,13 @@
 //! A checked scene and its simulation, as every method offers them.
 
-use super::balance::{Balance, Work};
+use super::balance::{Way, Work};
 use super::check::{Checked, Estimates};
 use super::checks;
 use super::document::Document;
 use super::engine::Engine;
 use super::facts::{expected_error, facts};
 use super::lookout::Lookout;
+use super::quantities::{OBSERVABLES, Seen};
 use super::theory::limits::step_limits;
 use super::{
     Lengths, Model, StepProgram, Total, Totals, assemble, assemble_following_energy, ledger, memory, model,
@@ -22,15 +23,17 @@ use crate::method::{
 use crate::model::clock;
 use crate::model::machine::MachineModel;
 use crate::number::significant;
-use crate::observe::{Observation, Scenery};
+use crate::observe::{Observation, Scenery, Sums};
 use crate::particles::Particles;
 use crate::scene::{Output, SceneErrors, Warning};
 use crate::words::Words;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
+use std::cell::{Cell, OnceCell};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 /// A checked scene of granular discs.
 struct Discs(Checked);
@@ -165,6 +168,9 @@ impl Prepared for Discs {
     }
 }
 
+/// The phase in which discs are observed.
+const OBSERVING: &str = "observe";
+
 /// A simulation of granular discs, observed.
 struct Running {
     engine: Box<dyn Engine>,
@@ -173,6 +179,10 @@ struct Running {
     max_penetration: f64,
     /// The balance of energy since the start.
     work: Work,
+    /// What is seen of this moment, once somebody has asked.
+    seen: OnceCell<Seen>,
+    /// Seconds that this has taken: a phase that belongs to no step.
+    observing: Cell<f64>,
     /// Columns and rows of the lattice, where the scene needs one, and discs for each cell.
     lattice: Option<([usize; 2], f64)>,
     discs: [usize; 2],
@@ -185,8 +195,13 @@ impl Running {
         let Checked { scene, particles, geometry, .. } = checked;
         let model = model(checked);
         let scenery = Scenery::of(&model);
-        let seen = Observation::of(engine.steps(), engine.time(), &engine.particles(), &scenery);
-        let work = Work::begin(&seen, &engine.standing(), scenery.domain, scenery.gravity);
+        let way = Way::begin(engine.as_ref(), &scenery);
+        let sums = engine.sums(&scenery, &way);
+        let work = Work::begin(way, &Observation::new(engine.steps(), engine.time(), &sums, &scenery));
+        let lookout = lookout.map(|mut lookout| {
+            lookout.look(&sums.grains);
+            lookout
+        });
         let grains = particles.grain_count();
         let cells = [geometry.shape.columns(), geometry.shape.rows()];
         Running {
@@ -195,17 +210,30 @@ impl Running {
             scenery,
             max_penetration: scene.law.max_penetration,
             work,
+            seen: OnceCell::new(),
+            observing: Cell::default(),
             lattice: scene.needs_lattice().then_some((cells, geometry.occupancy)),
             discs: [grains, particles.len() - grains],
             lookout,
         }
     }
 
-    fn seen(&self) -> (Observation, Balance) {
-        let engine = self.engine.as_ref();
-        let seen = Observation::of(engine.steps(), engine.time(), &engine.particles(), &self.scenery);
-        let balance = self.work.balance(&seen, &engine.standing(), engine);
-        (seen, balance)
+    /// What is to be seen of this moment: looked at once, however many ask.
+    fn seen(&self) -> &Seen {
+        self.seen.get_or_init(|| {
+            let (engine, sums) = (self.engine.as_ref(), self.sums());
+            let now = Observation::new(engine.steps(), engine.time(), &sums, &self.scenery);
+            let totals = engine.totals();
+            Seen { now, balance: self.work.balance(&now, &sums, &totals), totals }
+        })
+    }
+
+    /// Sums over the discs and their contacts as they stand, with the time that they take.
+    fn sums(&self) -> Sums {
+        let start = Instant::now();
+        let sums = self.engine.sums(&self.scenery, self.work.way());
+        self.observing.set(self.observing.get() + start.elapsed().as_secs_f64());
+        sums
     }
 
     /// What leaving out saves: the programs as they are against those of the fullest model, on the same lattice; none where
@@ -256,11 +284,11 @@ impl Simulation for Running {
             if interrupted.load(Ordering::Relaxed) {
                 break;
             }
+            self.seen.take();
             self.engine.step()?;
-            if let Some(lookout) = &mut self.lookout
-                && Lookout::is_due(self.engine.steps())
-            {
-                lookout.look(&self.engine.particles());
+            if self.lookout.is_some() && Lookout::is_due(self.engine.steps()) {
+                let sums = self.sums();
+                self.lookout.iter_mut().for_each(|lookout| lookout.look(&sums.grains));
             }
         }
         Ok(())
@@ -275,28 +303,7 @@ impl Simulation for Running {
     }
 
     fn observe(&self) -> Vec<f64> {
-        let (seen, balance) = self.seen();
-        let totals = self.engine.totals();
-        vec![
-            seen.time,
-            seen.kinetic,
-            seen.rotational,
-            seen.elastic,
-            seen.gravitational,
-            balance.dissipated,
-            balance.gravity_work,
-            balance.wall_work,
-            balance.balance_error,
-            seen.momentum_x,
-            seen.momentum_y,
-            seen.temperature,
-            seen.pressure,
-            seen.flow,
-            seen.deepest_penetration,
-            seen.contacts as f64,
-            totals.deep_disc_steps as f64,
-            totals.long_steps as f64,
-        ]
+        OBSERVABLES.iter().map(|observable| (observable.of)(self.seen())).collect()
     }
 
     fn snapshot(&self) -> Snapshot {
@@ -317,15 +324,18 @@ impl Simulation for Running {
         if let Some(lookout) = &mut self.lookout {
             lookout.restore(&snapshot.counters)?;
         }
+        self.seen.take();
         self.engine.restore(clock.steps, totals, snapshot.columns)
     }
 
     fn phases(&self) -> BTreeMap<&'static str, f64> {
-        self.engine.timings().named()
+        let observing = Some((OBSERVING, self.observing.get())).filter(|(_, seconds)| *seconds > 0.0);
+        self.engine.timings().named().into_iter().chain(observing).collect()
     }
 
     fn reset_phases(&mut self) {
         self.engine.reset_timings();
+        self.observing.take();
     }
 
     fn work(&self) -> f64 {
@@ -342,7 +352,8 @@ impl Simulation for Running {
     }
 
     fn summary(&self) -> Map<String, Value> {
-        let ((seen, balance), totals) = (self.seen(), self.engine.totals());
+        let Seen { now, balance, totals, .. } = self.seen();
+        let lists = self.engine.lists();
         let entries = [
             ("discs", json!({ "grains": self.discs[0], "walls": self.discs[1] })),
             (
@@ -355,36 +366,35 @@ impl Simulation for Running {
             ("deep_disc_steps", json!(totals.deep_disc_steps)),
             ("resolved_conflicts", json!(totals.shared_cells)),
             ("deepest_watched", json!(totals.deepest)),
+            ("listed_pairs", json!(lists.map(|(entries, _)| entries))),
+            ("lists_made", json!(lists.map(|(_, made)| made))),
             ("ledger", json!(ledger_rows(self.engine.as_ref()))),
             ("work_relative_to_everything", json!(self.relative_work())),
-            ("last", json!(seen)),
+            ("last", json!(now)),
         ];
         entries.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
     }
 
     fn warnings(&self) -> Vec<RunWarning> {
-        let (_, balance) = self.seen();
-        let energy = self.lookout.as_ref().and_then(|_| checks::energy(&balance, self.work.passed(&balance)));
+        let Seen { balance, totals, .. } = self.seen();
+        let energy = self.lookout.as_ref().and_then(|_| checks::energy(balance, self.work.passed(balance)));
         let looked = self.lookout.iter().flat_map(Lookout::warnings);
-        checks::counted(&self.engine.totals(), self.max_penetration)
-            .into_iter()
-            .chain(looked)
-            .chain(energy)
-            .collect()
+        checks::counted(totals, self.max_penetration).into_iter().chain(looked).chain(energy).collect()
     }
 
     fn in_words(&self) -> String {
-        let ([grains, walls], (seen, _)) = (self.discs, self.seen());
+        let ([grains, walls], Seen { now, .. }) = (self.discs, self.seen());
         let mut text = format!("{grains} grains and {walls} wall discs");
         if let Some(([columns, rows], occupancy)) = self.lattice {
-            text.push_str(&format!(" on {columns}×{rows} cells, occupancy {occupancy:.3}"));
+            let occupancy = significant(occupancy, 4);
+            text.push_str(&format!(" on {columns}×{rows} cells, occupancy {occupancy}"));
         }
         text.push_str(&format!(
-            "; temperature {}, flow {}, contacts {}, deepest penetration {:.4}",
-            significant(seen.temperature, 5),
-            significant(seen.flow, 5),
-            seen.contacts,
-            seen.deepest_penetration
+            "; temperature {}, flow {}, contacts {}, deepest penetration {}",
+            significant(now.temperature, 5),
+            significant(now.flow, 5),
+            now.contacts,
+            significant(now.deepest_penetration, 4)
         ));
         if let Some(share) = self.relative_work().filter(|&share| share < 1.0) {
             let saved = 100.0 * (1.0 - share);

@@ -1,9 +1,9 @@
 //! How granular discs may be run, and what theory says of the error.
 
-use super::benches::QUANTITIES;
 use super::document::Document;
 use super::keys::{FRICTION, INERTIA, MAX_PENETRATION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
 use super::options::Inertia;
+use super::quantities::QUANTITIES;
 use crate::method::observed::place;
 use crate::method::{
     Axis, Balance, Decides, Mapped, Parameter, Prepared, Purpose, SMALLEST_RADIUS, Setting, Theory, Trials,

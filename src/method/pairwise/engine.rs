@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::integrator::{DERIVATIVES, Scheme};
+use stripmine_kernels::integrator::Scheme;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::{Advance, Met, Motion, Passed};
@@ -27,7 +27,7 @@ const FEW: usize = 5000;
 pub struct Engine<S, P, Q, D> {
     pub(super) dynamics: D,
     pub(super) system: System,
-    set: InstructionSet,
+    pub(super) set: InstructionSet,
     pub(super) start: Particles,
     pub(super) state: State<S>,
     /// Force along x, along y, torque.
@@ -98,6 +98,11 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         self.start.len()
     }
 
+    /// Whether the discs are so few that one thread does all the work.
+    pub(super) fn is_small(&self) -> bool {
+        self.discs() < FEW
+    }
+
     /// How many discs are in cells that are another disc's.
     pub fn shared_cells(&self) -> usize {
         self.search.cells().shared_cells()
@@ -144,7 +149,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     /// # Errors
     /// [`Failure`] if a disc left the box, or came into another's cell.
     pub fn advance(&mut self) -> Result<Vec<u32>, Failure> {
-        alone_if(self.discs() < FEW, || self.moved_on())
+        alone_if(self.is_small(), || self.moved_on())
     }
 
     fn moved_on(&mut self) -> Result<Vec<u32>, Failure> {
@@ -181,7 +186,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     /// [`Failure`] if a force is no finite number, or the machine refuses the law.
     pub fn meet(&mut self, asked: Asked) -> Result<Met, Failure> {
         let mut timings = self.elapsed.timings;
-        let met = timings.time(Phase::Forces, || alone_if(self.discs() < FEW, || self.add_forces(asked)))?;
+        let met = timings.time(Phase::Forces, || alone_if(self.is_small(), || self.add_forces(asked)))?;
         self.elapsed.timings = timings;
         self.awaits_forces = false;
         self.refuse_not_finite(&met)?;
@@ -212,16 +217,34 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         }
     }
 
-    /// A row of a disc's state at the end of the step.
-    fn corrected(&self, freedom: usize, disc: usize) -> [S; DERIVATIVES] {
-        let row = self.state.row(freedom, disc);
-        if self.elapsed.steps == 0 || self.awaits_forces || disc >= self.start.grain_count() {
-            return row;
-        }
-        let Engine { system, state, .. } = self;
-        let force = S::from_f64(self.sums[freedom][disc].to_f64());
+    /// A degree of freedom of a disc at the end of the step, and its rate of change.
+    fn corrected(&self, freedom: usize, disc: usize) -> [f64; 2] {
+        let [mut value, mut rate] = [[0.0]; 2];
+        self.correct(freedom, disc, [&mut value, &mut rate]);
+        [value[0], rate[0]]
+    }
+
+    /// A degree of freedom of some discs from `first` on at the end of the step, and its rates of change. The state stays as it is.
+    pub(super) fn correct(&self, freedom: usize, first: usize, [values, rates]: [&mut [f64]; 2]) {
+        let Engine { system, state, sums, .. } = self;
         let steps = self.elapsed.steps;
-        self.dynamics.with_scheme(Correcting { system, state, steps, freedom, disc, row, force })
+        let is_standing = steps == 0 || self.awaits_forces;
+        let moving = if is_standing { 0 } else { self.start.grain_count() };
+        let moving = moving.saturating_sub(first).min(values.len());
+        let [(values, others), (rates, rates_of_others)] =
+            [values, rates].map(|column| column.split_at_mut(moving));
+        self.dynamics.with_scheme(Correcting {
+            system,
+            state,
+            sums: &sums[freedom],
+            steps,
+            freedom,
+            first,
+            to: [values, rates],
+        });
+        for (disc, (value, rate)) in (first + moving..).zip(others.iter_mut().zip(rates_of_others)) {
+            [*value, *rate] = state.value_and_rate(&state.row(freedom, disc));
+        }
     }
 
     /// The particles as they stand, positions inside the box.
@@ -233,7 +256,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     pub fn positions(&self) -> Vec<[f32; 3]> {
         let mut places = vec![[0.0; 3]; self.start.len()];
         for disc in 0..self.start.len() {
-            let place = [0, 1].map(|freedom| self.corrected(freedom, disc)[0].to_f64());
+            let place = [0, 1].map(|freedom| self.corrected(freedom, disc)[0]);
             let place = self.system.domain.wrapped(in_space(self.seen_from_origin(disc, place)));
             places[self.state.number(disc)] = place.map(|x| x as f32);
         }
@@ -245,10 +268,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         let freedoms = self.system.freedoms;
         let of = |disc: usize| {
             let [x, y, angle] = [0, 1, 2].map(|freedom| match freedom < freedoms {
-                true => {
-                    let row = self.corrected(freedom, disc);
-                    [row[0].to_f64(), self.state.rate(&row)]
-                }
+                true => self.corrected(freedom, disc),
                 false => [0.0; 2],
             });
             let position = self.seen_from_origin(disc, [x[0], y[0]]);
@@ -342,25 +362,30 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> WithScheme for Passing<'_, S, 
     }
 }
 
-/// One row at the end of the step, from the one that the pass left.
-struct Correcting<'a, S> {
+/// A degree of freedom of discs at the end of the step, from the rows that the pass left.
+struct Correcting<'a, S, P> {
     system: &'a System,
     state: &'a State<S>,
+    sums: &'a [P],
     steps: u64,
     freedom: usize,
-    disc: usize,
-    row: [S; DERIVATIVES],
-    force: S,
+    first: usize,
+    to: [&'a mut [f64]; 2],
 }
 
-impl<S: Precision> WithScheme for Correcting<'_, S> {
-    type Output = [S; DERIVATIVES];
+impl<S: Precision, P: Precision> WithScheme for Correcting<'_, S, P> {
+    type Output = ();
 
-    fn with<C: Scheme>(self, scheme: C) -> [S; DERIVATIVES] {
-        let Correcting { system, state, steps, freedom, disc, row, force } = self;
-        let inverse = system.inertia.inverse(freedom, S::from_f64, || state.inverse(freedom)[disc]);
-        let who = (steps, state.id(disc));
-        motion(system, scheme).corrected(who, freedom, row, force, inverse)
+    fn with<C: Scheme>(self, scheme: C) {
+        let Correcting { system, state, sums, steps, freedom, first, to: [values, rates] } = self;
+        let motion = motion(system, scheme);
+        for (disc, (value, rate)) in (first..).zip(values.iter_mut().zip(rates)) {
+            let force = S::from_f64(sums[disc].to_f64());
+            let inverse = system.inertia.inverse(freedom, S::from_f64, || state.inverse(freedom)[disc]);
+            let (who, row) = ((steps, state.id(disc)), state.row(freedom, disc));
+            let corrected = motion.corrected(who, freedom, row, force, inverse);
+            [*value, *rate] = state.value_and_rate(&corrected);
+        }
     }
 }
 

@@ -20,6 +20,7 @@ mod elapsed;
 mod engine;
 mod losing;
 mod named;
+mod observing;
 mod saved;
 pub mod search;
 mod standing;

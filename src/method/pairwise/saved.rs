@@ -11,6 +11,8 @@ use stripmine_kernels::isa::Element;
 const SUMS: [&str; 3] = ["Fx", "Fy", "torque"];
 const CELL: [&str; 2] = ["cell.column", "cell.row"];
 const MADE_AT: [&str; 2] = ["listed.x", "listed.y"];
+/// How often lists were made: one entry, whatever the discs.
+const LISTS_MADE: &str = "listed.made";
 
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
     /// A column in the scene's order, from a value for each disc.
@@ -40,27 +42,27 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
                 let made_at = lists.made_at(axis);
                 columns.push(((*name).to_owned(), self.column(|disc| made_at[disc])));
             }
+            columns.push((LISTS_MADE.to_owned(), Column::U64(vec![lists.made()])));
         }
         columns.extend(self.elapsed.crossings.columns());
         columns
     }
 
-    /// Takes up columns that [`columns`](Self::columns) gave after `steps` steps.
+    /// Takes up columns that [`columns`](Self::columns) gave after `steps` steps. Where they are not those of these discs, nothing can
+    /// be done with the engine any more.
     ///
     /// # Errors
     /// A sentence, if the columns are not those of these discs.
     pub fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
         let numbers = self.state.numbers().to_vec();
-        let mut state = self.state.clone();
-        for (names, rows) in STATE.iter().zip(&mut state.columns) {
+        for (names, rows) in STATE.iter().zip(&mut self.state.columns) {
             for (name, column) in names.iter().zip(rows) {
                 let values = in_order::<S>(columns, name.label(), &numbers)?;
                 // The sentinels stay.
                 column[..values.len()].copy_from_slice(&values);
             }
         }
-        let mut sums = self.sums.clone();
-        for (name, sum) in SUMS.iter().zip(&mut sums) {
+        for (name, sum) in SUMS.iter().zip(&mut self.sums) {
             *sum = in_order::<P>(columns, name, &numbers)?;
         }
         let cells =
@@ -77,16 +79,21 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             ]),
             None => None,
         };
+        let lists_made = columns.iter().find(|(name, _)| name == LISTS_MADE).map(|(_, column)| column);
+        let lists_made = match lists_made {
+            Some(Column::U64(made)) if made.len() == 1 => made[0],
+            _ if made_at.is_some() => return Err(format!("the column {LISTS_MADE} is missing, or no count")),
+            _ => 0,
+        };
         self.elapsed.crossings.take_up(columns)?;
         (0..numbers.len()).for_each(|disc| self.search.cells_mut().leave(disc));
         for (disc, (&column, &row)) in cells[0].iter().zip(&cells[1]).enumerate() {
             let cell = [column as usize, row as usize];
-            let to = Move { disc, cell, place: state.place(disc), periods: [0.0; 2] };
-            let entered = self.search.cells_mut().enter(&to, &state);
+            let to = Move { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
+            let entered = self.search.cells_mut().enter(&to, &self.state);
             entered.map_err(|_| "two discs are in one cell".to_owned())?;
         }
-        self.search.cells_mut().arrange(&state);
-        (self.state, self.sums) = (state, sums);
+        self.search.cells_mut().arrange(&self.state);
         // Lists are made of the places at which they were made before, so that they are the same.
         let now: Vec<[f64; 2]> = (0..numbers.len()).map(|disc| self.state.place(disc)).collect();
         if let Some(made_at) = &made_at {
@@ -98,6 +105,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         for (disc, before) in order.into_iter().enumerate() {
             self.state.put(disc, now[before as usize]);
         }
+        self.search.set_lists_made(lists_made);
         self.elapsed.steps = steps;
         self.give_walls_their_velocity();
         Ok(())

@@ -100,6 +100,11 @@ impl<S: Precision> State<S> {
         row[1].to_f64() / self.velocity_scale
     }
 
+    /// The first entry of a row (a position, the angle) and its rate of change, in the scene's units.
+    pub fn value_and_rate(&self, row: &[S; DERIVATIVES]) -> [f64; 2] {
+        [row[0].to_f64(), self.rate(row)]
+    }
+
     /// The place of a disc, seen from the centre of its cell (length).
     pub fn place(&self, disc: usize) -> [f64; 2] {
         [self.columns[0][0][disc].to_f64(), self.columns[1][0][disc].to_f64()]

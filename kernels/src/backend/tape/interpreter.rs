@@ -24,6 +24,35 @@ impl<L: Precision> Tape<L> {
     ) -> Result<(), ProgramError> {
         dispatch(set, Passes { tape: self, memory, range, strip })
     }
+
+    /// Bytes of the register files that [`interpret`](Self::interpret) keeps for strips of so many elements: of numbers, of
+    /// predicates, of indices.
+    pub(crate) fn register_bytes(
+        &self,
+        strip: usize,
+        set: InstructionSet,
+    ) -> Result<[usize; 3], ProgramError> {
+        let mut bytes = [0; 3];
+        dispatch::<L, _>(set, Sizes { counts: self.pass_sizes, strip, bytes: &mut bytes })?;
+        Ok(bytes)
+    }
+}
+
+/// How large the register files are for an instruction set.
+struct Sizes<'r> {
+    counts: [usize; 3],
+    strip: usize,
+    bytes: &'r mut [usize; 3],
+}
+
+impl<L: Precision> Task<L> for Sizes<'_> {
+    #[inline(always)]
+    fn on<R: Registers<Lane = L>>(self, _: R) {
+        let entries = [size_of::<R::V>(), size_of::<TruthOf<R>>(), size_of::<R::Index>()];
+        for (file, bytes) in self.bytes.iter_mut().enumerate() {
+            *bytes = self.counts[file] * self.strip.div_ceil(R::LANES) * entries[file];
+        }
+    }
 }
 
 /// An admitted run of a tape.

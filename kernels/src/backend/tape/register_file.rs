@@ -29,7 +29,8 @@ impl<X: Copy> RegisterFile<X> {
         self.stride = in_line * lines_apart(length.div_ceil(in_line));
         let needed = count * self.stride;
         if self.entries.len() < needed {
-            // Nothing of the old entries is worth a copy.
+            // Nothing of the old entries is worth a copy, or to be kept beside the new ones.
+            self.entries = AlignedColumn::default();
             self.entries = AlignedColumn::filled(0, Cell::new(entry), needed);
         }
     }

@@ -54,6 +54,10 @@ pub struct Met {
     pub dissipated: f64,
     /// Energy and virial of the pairs (energy), where they are asked for. Summed likewise.
     pub energy: [f64; 2],
+    /// Contacts of which at least one disc may move, where energy is asked for.
+    pub contacts: u64,
+    /// The deepest of them (a fraction of the sum of the radii).
+    pub deepest: f64,
 }
 
 /// A law over all contacts, each met once.
@@ -142,6 +146,8 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
             met.dissipated += std::mem::take(&mut band.notes.dissipated);
             let energy = std::mem::take(&mut band.notes.energy);
             met.energy.iter_mut().zip(energy).for_each(|(sum, of_band)| *sum += of_band);
+            met.contacts += std::mem::take(&mut band.notes.contacts);
+            met.deepest = met.deepest.max(std::mem::take(&mut band.notes.deepest));
         }
         Ok(met)
     }

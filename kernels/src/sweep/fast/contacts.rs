@@ -86,6 +86,9 @@ pub(super) struct Notes {
     pub(super) dissipated: f64,
     /// Energy and virial of the pairs (energy).
     pub(super) energy: [f64; 2],
+    /// Contacts, and the deepest of them (a fraction of the sum of the radii).
+    pub(super) contacts: u64,
+    pub(super) deepest: f64,
 }
 
 /// Evaluates the law for pairs.
@@ -114,6 +117,7 @@ struct Gathered<'a, R: Registers, S> {
     power: Cell<R::V>,
     /// Energy and virial.
     energy: [Cell<R::V>; 2],
+    contact: Cell<R::V>,
     own_sums: [Cell<R::V>; 3],
     partner_sums: [Cell<R::V>; 3],
 }
@@ -227,6 +231,10 @@ impl<R: Registers, S: Element> Env<2> for &Gathered<'_, R, S> {
         self.energy[1].set(virial);
     }
     #[inline(always)]
+    fn contact(self, penetration: R::V) {
+        self.contact.set(penetration);
+    }
+    #[inline(always)]
     fn section(self, _: &'static str) {}
 }
 
@@ -273,6 +281,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
             penetration: zero(),
             power: zero(),
             energy: [zero(), zero()],
+            contact: zero(),
             own_sums: [zero(), zero(), zero()],
             partner_sums: [zero(), zero(), zero()],
         };
@@ -328,6 +337,14 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
             let [energy, virial] = &mut notes.energy;
             add(gathered.energy[0].get(), energy);
             add(gathered.energy[1].get(), virial);
+            let contact = gathered.contact.get();
+            // Sentinels never touch: what fills up a register is no contact.
+            let there = registers.bits(registers.splat(P::default()).less_than(contact));
+            if there != 0 {
+                notes.contacts += u64::from(there.count_ones());
+                let depths = spill(registers, contact).into_iter().take(count);
+                notes.deepest = depths.map(|depth| depth.to_f64()).fold(notes.deepest, f64::max);
+            }
         }
         if let Some(depth) = self.asked.watched {
             let depth = registers.splat(P::from_f64(depth));

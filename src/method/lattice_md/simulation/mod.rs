@@ -3,6 +3,7 @@
 mod account;
 mod saved;
 
+use super::balance::Way;
 use super::fast::{self, FastSearch};
 use super::judge::judge_depth;
 use super::neighbor_list::Rival;
@@ -15,6 +16,7 @@ use super::{Elapsed, Engine, Phase, Timings, Totals};
 use crate::io::checkpoint::Column;
 use crate::method::Failure;
 use crate::method::pairwise::{Crossings, Named, Prescribed, standing, wrapped};
+use crate::observe::{Scenery, Sums};
 use crate::particles::Particles;
 use crate::scene::{Precision, WallMotion};
 use stripmine_kernels::backend;
@@ -309,20 +311,29 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
 
     fn standing(&self) -> Particles {
         let column = |array| self.arrays.state(array).unwrap_or(&[]);
+        let places = [Array::X0, Array::Y0].map(column);
+        let rates = [Array::X1, Array::Y1, Array::Phi1].map(column);
+        let angle = column(Array::Phi0);
         let velocity_scale = scales(&self.model)[1];
-        let value = |array, disc: usize| column(array).get(disc).map_or(0.0, |x: &S| x.to_f64());
+        let value = |column: &[S], disc: usize| column.get(disc).map_or(0.0, |x: &S| x.to_f64());
         let of = |disc: usize| {
-            let place = [Array::X0, Array::Y0].map(|array| value(array, disc));
+            let place = places.map(|column| value(column, disc));
             let [x, y] = match self.model.is_anchored::<S>() {
                 true => self.model.position(self.arrays.cell()[disc], place),
                 false => place,
             };
-            let [vx, vy, omega] =
-                [Array::X1, Array::Y1, Array::Phi1].map(|array| value(array, disc) / velocity_scale);
-            (disc, [[x, vx], [y, vy], [value(Array::Phi0, disc), omega]])
+            let [vx, vy, omega] = rates.map(|column| value(column, disc) / velocity_scale);
+            (disc, [[x, vx], [y, vy], [value(angle, disc), omega]])
         };
         let walls = walls_at(self.walls, self.time()).velocity;
         standing(&self.start, walls, (0..self.start.len()).map(of))
+    }
+
+    fn sums(&self, scenery: &Scenery, way: &Way) -> Sums {
+        let crossings = self.crossings();
+        Sums::over_parts(&self.standing(), scenery, |number, grain, position| {
+            way.work(number, grain, position, crossings)
+        })
     }
 
     fn forces(&self) -> Vec<[f64; 3]> {

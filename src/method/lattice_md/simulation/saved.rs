@@ -12,11 +12,17 @@ const MADE_AT: [&str; 2] = ["listed.x", "listed.y"];
 const LIST_COUNTS: &str = "listed.counts";
 
 impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
+    /// Whether the next step depends on the cells that discs were in: positions are seen from them, or a crossing is the way from
+    /// one cell to another.
+    fn keeps_cells(&self) -> bool {
+        self.model.is_anchored::<S>() || self.elapsed.crossings.is_followed()
+    }
+
     /// Everything that the next step depends on, by name.
     pub(super) fn columns(&self) -> Vec<(String, Column)> {
         let column = |values: &[S]| real_column(values.iter().copied());
         let arrays = self.arrays.states().map(|(array, values)| (array.label().to_owned(), column(values)));
-        let cells = self.model.is_anchored::<S>().then(|| {
+        let cells = self.keeps_cells().then(|| {
             let cells = self.arrays.cell().iter().map(|&cell| f64::from(cell));
             (Array::DiscCell.label().to_owned(), real_column(cells))
         });
@@ -40,7 +46,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             let to = self.arrays.state_mut(array).unwrap_or(&mut []);
             to.copy_from_slice(&find_column::<S>(columns, array.label(), to.len())?);
         }
-        if self.model.is_anchored::<S>() {
+        if self.keeps_cells() {
             let label = Array::DiscCell.label();
             let cells = columns.iter().find(|(name, _)| name == label).map(|(_, column)| column);
             let most = self.model.shape.padded() as f64;

@@ -1,6 +1,6 @@
 //! Pairs found on a lattice with at most one disc a cell.
 
-use super::{Cells, Search, rows};
+use super::{Cells, Search, observed, rows};
 use crate::method::pairwise::state::{Move, State};
 use crate::words::define_words;
 use stripmine_kernels::InstructionSet;
@@ -99,6 +99,8 @@ pub struct LatticeSearch<P> {
     cells: LatticeCells,
     codes: Codes<P>,
     sweep: Sweep<Candidates>,
+    /// The smallest radius (length).
+    smallest: f64,
 }
 
 impl<P: Precision> LatticeSearch<P> {
@@ -115,8 +117,10 @@ impl<P: Precision> LatticeSearch<P> {
         let occupancy =
             Occupancy::new(shape, frame, discs, 2.0 * largest.unwrap_or(1.0), smallest != largest);
         let codes = Codes::new(&occupancy, frame);
-        let sweep = Sweep::new(rows::<S, P, _>(&Lattice { occupancy: &occupancy, codes: &codes }));
-        LatticeSearch { cells: LatticeCells { occupancy, on_conflict }, codes, sweep }
+        let lattice = Lattice { occupancy: &occupancy, codes: &codes, slack: 0.0 };
+        let sweep = Sweep::new(rows::<S, P, _>(&lattice));
+        let smallest = smallest.unwrap_or(1.0);
+        LatticeSearch { cells: LatticeCells { occupancy, on_conflict }, codes, sweep, smallest }
     }
 }
 
@@ -144,7 +148,21 @@ impl<S: Precision, P: Precision> Search<S, P> for LatticeSearch<P> {
         asked: Asked,
         set: InstructionSet,
     ) -> Result<Met, ProgramError> {
-        let LatticeSearch { cells: LatticeCells { occupancy, .. }, codes, sweep } = self;
-        sweep.run(law, &Lattice { occupancy, codes }, discs, sums, asked, set)
+        let LatticeSearch { cells: LatticeCells { occupancy, .. }, codes, sweep, .. } = self;
+        sweep.run(law, &Lattice { occupancy, codes, slack: 0.0 }, discs, sums, asked, set)
+    }
+
+    fn observe<L: Law<2> + Sync>(
+        &self,
+        law: &L,
+        discs: &Discs<'_, f64>,
+        moved: f64,
+        set: InstructionSet,
+    ) -> Result<Met, ProgramError> {
+        let occupancy = &self.cells.occupancy;
+        let codes = Codes::new(occupancy, occupancy.grid().frame);
+        // Two discs may each have come nearer; no contact distance is less than two smallest radii.
+        let slack = moved / self.smallest;
+        observed(law, &Lattice { occupancy, codes: &codes, slack }, discs, set)
     }
 }

@@ -1,6 +1,6 @@
 //! Pairs found in Verlet lists, made again whenever a disc has moved half the skin.
 
-use super::{Search, rows};
+use super::{Search, observed, rows};
 use crate::method::pairwise::state::State;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
@@ -68,6 +68,19 @@ impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
         }
     }
 
+    fn observe<L: Law<2> + Sync>(
+        &self,
+        law: &L,
+        discs: &Discs<'_, f64>,
+        _: f64,
+        set: InstructionSet,
+    ) -> Result<Met, ProgramError> {
+        match &self.listed.list {
+            Some(list) => observed(law, list, discs, set),
+            None => Ok(Met::default()),
+        }
+    }
+
     fn make_lists(&mut self, state: &State<S>) {
         let ListSearch { sectors, listed, .. } = self;
         let places = state.places();
@@ -75,8 +88,14 @@ impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
             made_at.resize(places.len(), S::default());
             in_pieces(made_at, |first, piece| piece.copy_from_slice(&places[first..first + piece.len()]));
         }
+        // Not beside the new ones: they are as large.
+        listed.list = None;
         listed.list = Some(VerletList::new(sectors, places, listed.skin));
         listed.made += 1;
+    }
+
+    fn set_lists_made(&mut self, made: u64) {
+        self.listed.made = made;
     }
 
     fn lists(&self) -> Option<&Listed<S>> {

@@ -15,7 +15,7 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::lattice::Taken;
-use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Finder, Grid, Met, Rows};
+use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Finder, Grid, Met, Rows, Sweep};
 
 /// Cells, and which discs are in them. A disc's place is seen from the centre of its cell.
 pub trait Cells<S: Precision>: Send + Sync {
@@ -88,13 +88,42 @@ pub trait Search<S: Precision, P: Precision>: Send + Sync {
         set: InstructionSet,
     ) -> Result<Met, ProgramError>;
 
+    /// Energy, virial, number and depth of the contacts of discs in the cells or lists as they stand, at places up to `moved`
+    /// (length) from those of the last [`sweep`](Self::sweep). Nothing is changed.
+    ///
+    /// # Errors
+    /// As [`sweep`](Self::sweep).
+    fn observe<L: Law<2> + Sync>(
+        &self,
+        law: &L,
+        discs: &Discs<'_, f64>,
+        moved: f64,
+        set: InstructionSet,
+    ) -> Result<Met, ProgramError>;
+
     /// Makes lists, where there are such, from the state as it stands. Due whenever discs were renumbered.
     fn make_lists(&mut self, _state: &State<S>) {}
+
+    /// From now on lists count as made so often.
+    fn set_lists_made(&mut self, _made: u64) {}
 
     /// The lists, where there are such.
     fn lists(&self) -> Option<&Listed<S>> {
         None
     }
+}
+
+/// What a sweep in double precision sees of the pairs of a finder: the sweep of the forces in that precision, so that nothing
+/// more is compiled; its forces are thrown away.
+fn observed<F: Finder<f64, f64>, L: Law<2> + Sync>(
+    law: &L,
+    finder: &F,
+    discs: &Discs<'_, f64>,
+    set: InstructionSet,
+) -> Result<Met, ProgramError> {
+    let mut sums = [0, 1, 2].map(|_| vec![0.0; discs.place[0].len()]);
+    let asked = Asked { energy: true, ..Asked::default() };
+    Sweep::new(finder.rows()).run(law, finder, discs, sums.each_mut().map(Vec::as_mut_slice), asked, set)
 }
 
 /// The rows that a sweep for a finder is made for.

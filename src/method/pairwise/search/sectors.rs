@@ -1,6 +1,6 @@
 //! Pairs found in sectors, which hold any number of discs.
 
-use super::{Cells, Search, rows};
+use super::{Cells, Search, observed, rows};
 use crate::method::pairwise::state::{Move, State};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
@@ -79,5 +79,15 @@ impl<S: Precision, P: Precision> Search<S, P> for SectorSearch<P> {
         set: InstructionSet,
     ) -> Result<Met, ProgramError> {
         self.sweep.run(law, &self.sectors, discs, sums, asked, set)
+    }
+
+    fn observe<L: Law<2> + Sync>(
+        &self,
+        law: &L,
+        discs: &Discs<'_, f64>,
+        _: f64,
+        set: InstructionSet,
+    ) -> Result<Met, ProgramError> {
+        observed(law, &self.sectors, discs, set)
     }
 }

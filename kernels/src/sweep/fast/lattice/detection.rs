@@ -35,6 +35,8 @@ const PLACES: usize = 64 / GROUP;
 /// Searches groups of cells from `cursor` to the end of the rows, until `full` candidates are found.
 pub(super) struct Search<'a> {
     pub(super) occupancy: &'a Occupancy,
+    /// By what the square of the contact distance is multiplied, beside the margin.
+    pub(super) beyond: f64,
     pub(super) rows: Range<usize>,
     pub(super) cursor: &'a mut Cursor,
     pub(super) full: usize,
@@ -62,7 +64,8 @@ const fn words(half_width: usize) -> usize {
 impl Search<'_> {
     #[inline(always)]
     fn with<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(self, registers: R) {
-        let Search { occupancy, rows, cursor, full, found } = self;
+        let Search { occupancy, beyond, rows, cursor, full, found } = self;
+        let limit = registers.splat((MARGIN * beyond) as f32);
         let shape = occupancy.shape();
         let stride = shape.stride();
         let [x, y] = occupancy.places();
@@ -93,6 +96,7 @@ impl Search<'_> {
                             radii.add(base),
                             stride,
                             occupancy.edge(),
+                            limit,
                         )
                     };
                     for (word, near) in near.into_iter().take(const { words(H) }).enumerate() {
@@ -118,9 +122,9 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
     radii: *const f32,
     stride: usize,
     edge: [f32; 2],
+    limit: R::V,
 ) -> [u64; 6] {
     let mut near = [0; 6];
-    let limit = registers.splat(MARGIN as f32);
     let mut part = 0;
     while part < GROUP {
         // SAFETY: part + LANES <= GROUP, and the caller promises the own cells of a group.

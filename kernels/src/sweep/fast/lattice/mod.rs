@@ -46,6 +46,9 @@ pub struct Lattice<'a, P> {
     pub occupancy: &'a Occupancy,
     /// What pairs of cells are packed into.
     pub codes: &'a Codes<P>,
+    /// By how much more than its contact distance a pair may be apart and is still found, as a fraction of that: 0 but where
+    /// places are others than those that the occupancy was last given.
+    pub slack: f64,
 }
 
 /// The pairs found on a lattice.
@@ -80,7 +83,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
         found: &mut Candidates,
         set: InstructionSet,
     ) -> Result<(), ProgramError> {
-        let Lattice { occupancy, codes } = *self;
+        let Lattice { occupancy, codes, slack } = *self;
         let Candidates { candidates: found, cells, shape } = found;
         assert!(codes.are_of(occupancy), "codes of this lattice");
         let entries = occupancy.discs() + SENTINELS;
@@ -94,7 +97,8 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
                 SparseSearch { occupancy, codes, places, reach, rows, cursor, full: AT_ONCE, found, cells },
             )
         } else {
-            dispatch(set, Search { occupancy, rows, cursor, full: AT_ONCE, found })
+            let beyond = (1.0 + slack) * (1.0 + slack);
+            dispatch(set, Search { occupancy, beyond, rows, cursor, full: AT_ONCE, found })
         }
     }
 

@@ -9,7 +9,7 @@ use crate::method::lattice_md::{Part, StepProgram, programs};
 use serde::Serialize;
 use stripmine_kernels::backend::Tape;
 use stripmine_kernels::integrator::gear::{Acceleration, STATE, coefficients};
-use stripmine_kernels::isa::{Array, Machine, Op, OpClass, OpCounts, Slot, Text};
+use stripmine_kernels::isa::{Array, Machine, Op, OpClass, OpCounts, Slot, Text, Vector};
 use stripmine_kernels::ledger::Length;
 use stripmine_kernels::mask::Mask;
 

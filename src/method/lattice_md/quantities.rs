@@ -1,0 +1,56 @@
+//! What is observed of granular discs: one list of quantities, each with how it is read off what was seen.
+
+use super::Totals;
+use super::balance::Balance;
+use crate::method::{Observable, Quantity, quantities};
+use crate::observe::Observation;
+
+/// All that is seen of a moment, once: rows, warnings, summary and closing words read the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Seen {
+    /// What the discs and their contacts sum up to.
+    pub(super) now: Observation,
+    /// Where energy has come from and gone to.
+    pub(super) balance: Balance,
+    /// What has been counted and summed up since the start.
+    pub(super) totals: Totals,
+}
+
+macro_rules! observables {
+    ($($name:literal, $unit:literal, $of:expr, $doc:literal;)*) => {
+        [$(Observable { quantity: Quantity { name: $name, unit: $unit, doc: $doc }, of: $of }),*]
+    };
+}
+
+/// What is observed, in the order of the columns.
+pub(super) const OBSERVABLES: [Observable<Seen>; 18] = observables! {
+    "time", "time", |seen| seen.now.time, "The time.";
+    "kinetic", "energy", |seen| seen.now.kinetic, "Kinetic energy of the grains' translation.";
+    "rotational", "energy", |seen| seen.now.rotational, "Kinetic energy of their rotation.";
+    "elastic", "energy", |seen| seen.now.elastic, "Energy of the Hertz contacts.";
+    "gravitational", "energy", |seen| seen.now.gravitational,
+        "Potential energy in gravity, from the box's corner; jumps where a grain crosses a periodic side along gravity.";
+    "dissipated", "energy", |seen| seen.balance.dissipated, "What contacts have turned into heat since the start.";
+    "gravity_work", "energy", |seen| seen.balance.gravity_work, "What gravity has put in since the start.";
+    "wall_work", "energy", |seen| seen.balance.wall_work, "What moving walls have put in since the start.";
+    "balance_error", "energy", |seen| seen.balance.balance_error,
+        "The energy that there is, less what there should be.";
+    "momentum_x", "mass·length/time", |seen| seen.now.momentum_x, "Momentum of the grains along x.";
+    "momentum_y", "mass·length/time", |seen| seen.now.momentum_y, "Momentum of the grains along y.";
+    "temperature", "energy", |seen| seen.now.temperature,
+        "Kinetic energy a grain and dimension, about the mean motion.";
+    "pressure", "force/length", |seen| seen.now.pressure,
+        "Pressure of the grains, of their motion and of the contacts between them, over the area of the whole box.";
+    "flow", "length/time", |seen| seen.now.flow,
+        "Mean velocity of the grains along gravity, or along x without gravity.";
+    "deepest_penetration", "", |seen| seen.now.deepest_penetration,
+        "The deepest contact, as a fraction of the sum of the radii.";
+    "contacts", "", |seen| seen.now.contacts as f64, "Contacts with at least one grain.";
+    "deep_disc_steps", "", |seen| seen.totals.deep_disc_steps as f64,
+        "Grains in contacts deeper than law.max_penetration, summed over the steps.";
+    "long_steps", "", |seen| seen.totals.long_steps as f64,
+        "Discs that moved farther in a step than contacts can be seen, summed over the steps.";
+};
+
+/// Their names, units and meanings.
+pub(super) const QUANTITIES: &[Quantity] = &quantities(&OBSERVABLES);

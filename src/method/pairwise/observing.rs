@@ -1,0 +1,151 @@
+//! The discs as they stand at the end of a step, for whoever observes them. Nothing of the engine is changed.
+//!
+//! ```text
+//! corrected      columns in double precision, in the order in memory     in parts of them, on all threads
+//! grains         sums over the grains, in the scene's order              in parts of the scene, on all threads
+//! contacts       a sweep of the search over the corrected places         in bands, on all threads
+//! ```
+//!
+//! Places are those of the cells or lists as they are: a correction may take a disc a little beyond its cell, by far less than cells
+//! leave room for. No sum depends on the numbers of threads, the order in memory, or how the run came here.
+
+use super::search::Search;
+use super::{Dynamics, Engine, WithLaw};
+use crate::observe::{ContactSums, GrainSums, Scenery};
+use crate::particles::{Kind, Particle};
+use std::marker::PhantomData;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::integrator::Inertia;
+use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::law::Law;
+use stripmine_kernels::sweep::fast::{Discs, Met, SENTINELS};
+use stripmine_kernels::{InstructionSet, alone_if, in_parts, over_parts};
+
+/// All discs at the end of a step, an entry a disc in the order in memory and sentinels behind.
+pub struct Corrected {
+    place: [Vec<f64>; 2],
+    velocity: [Vec<f64>; 2],
+    /// Empty where discs do not turn.
+    omega: Vec<f64>,
+    /// Which disc in memory each of the scene's is.
+    disc: Vec<u32>,
+    /// The farthest that the correction moved a disc (length).
+    moved: f64,
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
+    /// The discs at the end of the step.
+    pub fn corrected_discs(&self) -> Corrected {
+        alone_if(self.is_small(), || {
+            let discs = self.start.len();
+            let mut disc = vec![0; discs];
+            self.state.numbers().iter().zip(0..).for_each(|(&number, at)| disc[number as usize] = at);
+            let mut moved = [0.0; 2];
+            let mut column = |freedom: usize| {
+                let [mut value, mut rate] = [0, 1].map(|_| vec![0.0; discs]);
+                in_parts([&mut value, &mut rate], |first, columns| self.correct(freedom, first, columns));
+                if freedom < 2 {
+                    let before = self.state.places()[freedom];
+                    let ways = value.iter().zip(before).map(|(now, before)| (now - before.to_f64()).abs());
+                    moved[freedom] = ways.fold(0.0, f64::max);
+                }
+                // The sentinels stand farther apart than any pair acts.
+                let far = if freedom == 0 { 4.0 * self.system.reach } else { 0.0 };
+                value.extend([far, 0.0]);
+                rate.extend([0.0; SENTINELS]);
+                [value, rate]
+            };
+            let [[x, vx], [y, vy]] = [0, 1].map(&mut column);
+            let [_, omega] = if self.system.freedoms == 3 { column(2) } else { [vec![], vec![]] };
+            Corrected { place: [x, y], velocity: [vx, vy], omega, disc, moved: moved[0].hypot(moved[1]) }
+        })
+    }
+
+    /// Sums over the grains. `work` gives what gravity has done to a grain (by its number in the scene) that is at a position
+    /// (length), which is consistent with the periods that are counted as crossed; it is asked only where there is gravity.
+    pub fn grain_sums(
+        &self,
+        corrected: &Corrected,
+        scenery: &Scenery,
+        work: impl Fn(usize, &Particle, [f64; 2]) -> f64 + Sync,
+    ) -> GrainSums {
+        let grains = self.start.grains();
+        let has_gravity = scenery.gravity != [0.0; 2];
+        let parts = alone_if(self.is_small(), || {
+            over_parts(0..grains.len(), |numbers| {
+                let mut sums = GrainSums::default();
+                for number in numbers {
+                    let (grain, disc) = (&grains[number], corrected.disc[number] as usize);
+                    let velocity = corrected.velocity.each_ref().map(|along| along[disc]);
+                    let omega = corrected.omega.get(disc).copied().unwrap_or(0.0);
+                    let place = || corrected.place.each_ref().map(|along| along[disc]);
+                    let standing = || self.seen_from_origin(disc, place());
+                    sums.add(scenery, grain, velocity, omega, || scenery.domain.wrapped(standing()));
+                    if has_gravity {
+                        sums.gravity_work += work(number, grain, standing());
+                    }
+                }
+                sums
+            })
+        });
+        let mut sums = GrainSums::default();
+        parts.iter().for_each(|part| sums.join(part));
+        sums
+    }
+
+    /// Sums over the contacts.
+    pub fn contact_sums(&self, corrected: &Corrected) -> ContactSums {
+        alone_if(self.is_small(), || {
+            let (mut radius, mut inverse_mass) = (vec![], vec![]);
+            if self.system.inertia == Inertia::Varying {
+                [radius, inverse_mass] = [0, 1].map(|_| vec![0.0; self.start.len()]);
+                in_parts([&mut radius, &mut inverse_mass], |first, [radius, inverse_mass]| {
+                    for (at, (radius, inverse_mass)) in radius.iter_mut().zip(inverse_mass).enumerate() {
+                        let disc = &self.start.all()[self.state.number(first + at)];
+                        *radius = disc.radius;
+                        *inverse_mass = if disc.kind == Kind::Grain { 1.0 / disc.mass } else { 0.0 };
+                    }
+                });
+                radius.extend([0.5 * self.system.reach; SENTINELS]);
+                inverse_mass.extend([1.0; SENTINELS]);
+            }
+            let discs = Discs {
+                place: corrected.place.each_ref().map(Vec::as_slice),
+                velocity: corrected.velocity.each_ref().map(Vec::as_slice),
+                omega: &corrected.omega,
+                per_time: 1.0,
+                radius: &radius,
+                inverse_mass: &inverse_mass,
+            };
+            let observing = Observing {
+                search: &self.search,
+                discs: &discs,
+                moved: corrected.moved,
+                set: self.set,
+                precisions: PhantomData,
+            };
+            let met = self.dynamics.with_law(observing);
+            // The machine has had this law and this instruction set in every step.
+            let Met { energy: [elastic, virial], contacts: count, deepest, .. } =
+                met.unwrap_or_else(|_| Met { energy: [f64::NAN; 2], ..Met::default() });
+            ContactSums { count, elastic, virial, deepest }
+        })
+    }
+}
+
+/// A sweep that observes.
+struct Observing<'a, S, P, Q> {
+    search: &'a Q,
+    discs: &'a Discs<'a, f64>,
+    moved: f64,
+    set: InstructionSet,
+    precisions: PhantomData<(S, P)>,
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>> WithLaw for Observing<'_, S, P, Q> {
+    type Output = Result<Met, ProgramError>;
+
+    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
+        self.search.observe(&law, self.discs, self.moved, self.set)
+    }
+}

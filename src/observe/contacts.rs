@@ -1,0 +1,117 @@
+//! Contacts and sums over them, one after the other in the order of the discs: what every faster way is held against.
+
+use crate::domain::Domain;
+use crate::near::Near;
+use crate::particles::{Kind, Particle, Particles};
+use std::ops::Range;
+use stripmine_kernels::law::granular::{Contact, Disc, Granular};
+use stripmine_kernels::sweep::pair::{Body, Pair};
+
+/// What is summed up over the contacts with at least one grain.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactSums {
+    /// How many.
+    pub count: u64,
+    /// The energy that they store.
+    pub elastic: f64,
+    /// (r_i − r_j)·F_i of those between grains (energy), damping included.
+    pub virial: f64,
+    /// The deepest (fraction of the sum of the radii).
+    pub deepest: f64,
+}
+
+impl ContactSums {
+    /// Over the contacts of some grains with the discs behind each of them.
+    pub(super) fn over(grains: Range<usize>, discs: &Placed<'_>, contact: &Contact) -> ContactSums {
+        let mut sums = ContactSums::default();
+        discs.each_contact(grains, |i, j, penetration, reach| {
+            sums.count += 1;
+            sums.elastic += contact.energy(|number| number, penetration * reach);
+            sums.deepest = sums.deepest.max(penetration);
+            if discs.all[j].kind == Kind::Grain {
+                sums.virial += discs.virial(contact, i, j);
+            }
+        });
+        sums
+    }
+
+    /// Those of grains that follow.
+    pub(super) fn join(&mut self, more: &ContactSums) {
+        self.count += more.count;
+        self.elastic += more.elastic;
+        self.virial += more.virial;
+        self.deepest = self.deepest.max(more.deepest);
+    }
+}
+
+/// Discs, grains first, by their places inside the box.
+pub(super) struct Placed<'a> {
+    domain: Domain,
+    all: &'a [Particle],
+    /// Inside the box (length).
+    places: Vec<[f64; 2]>,
+    near: Near,
+}
+
+impl<'a> Placed<'a> {
+    /// Particles, also where they stand beyond a periodic side.
+    pub(super) fn new(particles: &'a Particles, domain: &Domain) -> Self {
+        let all = particles.all();
+        let places: Vec<[f64; 2]> = all.iter().map(|disc| domain.wrapped(disc.place())).collect();
+        let reach = 2.0 * particles.radii().map_or(1.0, |[_, largest]| largest);
+        let near = Near::among(*domain, places.iter().copied(), reach);
+        Placed { domain: *domain, all, places, near }
+    }
+
+    /// Where a disc is (length).
+    pub(super) fn place(&self, disc: usize) -> [f64; 2] {
+        self.places[disc]
+    }
+
+    /// Calls `take(i, j, penetration, sum of the radii)` for each contact of some grains `i` with discs `j` behind them.
+    fn each_contact(&self, grains: Range<usize>, mut take: impl FnMut(usize, usize, f64, f64)) {
+        let mut near: Vec<usize> = Vec::new();
+        for i in grains {
+            near.clear();
+            near.extend(self.near.of(self.places[i]).map(|(j, _)| j as usize).filter(|&j| j > i));
+            near.sort_unstable();
+            for &j in &near {
+                let [dx, dy] = self.domain.displacement(self.places[i], self.places[j]);
+                let reach = self.all[i].radius + self.all[j].radius;
+                let penetration = 1.0 - dx.hypot(dy) / reach;
+                if penetration > 0.0 {
+                    take(i, j, penetration, reach);
+                }
+            }
+        }
+    }
+
+    /// (r_i − r_j)·F_i of two grains in contact (energy). Friction acts across the way between the centres and has no part in
+    /// it.
+    fn virial(&self, contact: &Contact, i: usize, j: usize) -> f64 {
+        let [own, partner] = [&self.all[i], &self.all[j]];
+        let body = |particle: &Particle, [x, y]: [f64; 2]| Body {
+            velocity: particle.planar_velocity(),
+            radius: particle.radius,
+            inverse_mass: 1.0 / particle.mass,
+            ..Body::at(x, y)
+        };
+        // The law reads each disc's own radius and mass.
+        let alike = Disc { radius: own.radius, inverse_mass: 1.0 / own.mass };
+        let law = Granular::<false, false> { contact: *contact, disc: alike };
+        // From the partner to the own disc: each has the velocity of its own place.
+        let apart = self.domain.displacement(self.places[j], self.places[i]);
+        Pair { bodies: [body(own, apart), body(partner, [0.0; 2])] }.energy_and_virial(&law)[1]
+    }
+}
+
+/// Pairs in contact with at least one grain: the two, the penetration (fraction of the sum of the radii) and that sum
+/// (length). In order of the first disc, then of the second.
+pub fn contacts(particles: &Particles, domain: &Domain) -> Vec<(usize, usize, f64, f64)> {
+    let mut found = Vec::new();
+    let discs = Placed::new(particles, domain);
+    discs.each_contact(0..particles.grain_count(), |i, j, penetration, reach| {
+        found.push((i, j, penetration, reach));
+    });
+    found
+}

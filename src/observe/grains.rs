@@ -1,0 +1,76 @@
+//! Sums over the grains.
+
+use super::Scenery;
+use crate::particles::Particle;
+
+/// What is summed up over the grains as they stand.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GrainSums {
+    /// How many.
+    pub count: u64,
+    /// Mass.
+    pub mass: f64,
+    /// Kinetic energy of their translation.
+    pub kinetic: f64,
+    /// Kinetic energy of their rotation.
+    pub rotational: f64,
+    /// Potential energy in gravity, from the box's corner.
+    pub gravitational: f64,
+    /// Momentum (mass · length/time).
+    pub momentum: [f64; 2],
+    /// Velocity (length/time).
+    pub velocity: [f64; 2],
+    /// Square of the velocity (length²/time²).
+    pub square: f64,
+    /// What gravity has put in since the start (energy).
+    pub gravity_work: f64,
+}
+
+impl GrainSums {
+    /// Adds a grain of the mass and radius of `grain` with a velocity (length/time) and a spin (1/time); `place` gives where it
+    /// is inside the box (length), and is asked only where there is gravity.
+    #[inline]
+    pub fn add(
+        &mut self,
+        scenery: &Scenery,
+        grain: &Particle,
+        velocity: [f64; 2],
+        omega: f64,
+        place: impl FnOnce() -> [f64; 2],
+    ) {
+        let Scenery { domain, gravity, inertia_factor, .. } = scenery;
+        let Particle { mass, radius, .. } = *grain;
+        let square = velocity[0] * velocity[0] + velocity[1] * velocity[1];
+        self.count += 1;
+        self.mass += mass;
+        self.kinetic += 0.5 * mass * square;
+        let inertia = inertia_factor * mass * radius * radius;
+        self.rotational += 0.5 * inertia * omega * omega;
+        self.square += square;
+        for axis in 0..2 {
+            self.momentum[axis] += mass * velocity[axis];
+            self.velocity[axis] += velocity[axis];
+        }
+        if *gravity != [0.0; 2] {
+            let place = place();
+            for axis in 0..2 {
+                self.gravitational -= mass * gravity[axis] * (place[axis] - domain.origin[axis]);
+            }
+        }
+    }
+
+    /// Those of grains that follow.
+    pub fn join(&mut self, more: &GrainSums) {
+        self.count += more.count;
+        self.mass += more.mass;
+        self.kinetic += more.kinetic;
+        self.rotational += more.rotational;
+        self.gravitational += more.gravitational;
+        self.square += more.square;
+        self.gravity_work += more.gravity_work;
+        for axis in 0..2 {
+            self.momentum[axis] += more.momentum[axis];
+            self.velocity[axis] += more.velocity[axis];
+        }
+    }
+}

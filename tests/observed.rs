@@ -1,0 +1,296 @@
+//! What is observed of granular discs: the same sums by every engine, in every order of work, and in one piece or gone on with.
+
+use rand::RngExt;
+use serde_json::{Map, Value};
+use std::sync::atomic::AtomicBool;
+use stripmine::domain::Domain;
+use stripmine::method::lattice_md::{Document, model};
+use stripmine::method::{METHODS, Purpose, Simulation, Until, load};
+use stripmine::observe::{Observation, Scenery};
+use stripmine::particles::{Kind, Particle, Particles, in_space};
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::law::granular::{Contact, ContactArm};
+use stripmine_kernels::noise::{Purpose as Draw, Stream};
+
+/// Overrides.
+type Sets<'a> = &'a [&'a str];
+
+fn owned(sets: &[Sets<'_>]) -> Vec<String> {
+    sets.iter().flat_map(|sets| sets.iter()).map(|&set| set.to_owned()).collect()
+}
+
+fn begin(scene: &str, sets: &[Sets<'_>]) -> Box<dyn Simulation> {
+    let prepared = Document::load(scene, &owned(sets)).unwrap().prepare().unwrap();
+    prepared.start(Purpose::Run).unwrap()
+}
+
+fn advance(simulation: &mut dyn Simulation, steps: u64) {
+    simulation.advance(&[Until::Steps(steps)], &AtomicBool::new(false)).unwrap();
+}
+
+fn scenery(scene: &str, sets: &[Sets<'_>]) -> Scenery {
+    Scenery::of(&model(&Document::load(scene, &owned(sets)).unwrap().check().unwrap()))
+}
+
+/// The place of a quantity in a row.
+fn column(name: &str) -> usize {
+    let quantities = stripmine::method::lattice_md::ENTRY.quantities;
+    quantities.iter().position(|quantity| quantity.name == name).unwrap()
+}
+
+/// Every way of stepping granular discs.
+const WAYS: [Sets<'static>; 8] = [
+    &["machine.engine=fast", "search.by=lattice"],
+    &["machine.engine=fast", "search.by=sectors"],
+    &["machine.engine=fast", "search.by=neighbor-list"],
+    &["machine.engine=fast", "search.by=neighbor-list", "machine.precision=f32"],
+    &["machine.engine=fast", "search.by=lattice", "machine.precision=mixed"],
+    &["machine.engine=programs", "search.by=lattice"],
+    &["machine.engine=programs", "search.by=lattice", "machine.precision=f32"],
+    &["machine.engine=programs", "search.by=neighbor-list"],
+];
+
+/// Scenes with damping, friction, spins, walls that rest and walls that move, gravity along a periodic side, and none of these; and
+/// dense ones, on whose lattice registers of cells are compared.
+const SCENES: [(&str, Sets<'static>); 5] = [
+    ("pipe-small", &[]),
+    ("shaken-box", &["law.contact_arm=lammps"]),
+    ("bench", &["particles.count=1500", "particles.packing_fraction=0.84", "law.contact_arm=overlap"]),
+    ("dense-gas", &["particles.packing_fraction=0.70"]),
+    ("bench", &["particles.count=800", "integrator.kind=velocity-verlet", "law.cohesionless=false"]),
+];
+
+/// A row against the naive sums over the particles as they stand.
+#[test]
+fn a_row_says_what_the_naive_sums_say() {
+    for (scene, of_scene) in SCENES {
+        for way in WAYS {
+            let sets = [of_scene, way];
+            let scenery = scenery(scene, &sets);
+            let mut simulation = begin(scene, &sets);
+            for steps in [0, 30, 120] {
+                advance(simulation.as_mut(), steps);
+                let row = simulation.observe();
+                let particles = simulation.particles();
+                let naive = Observation::of(steps, simulation.clock().time, &particles, &scenery);
+                assert_eq!(row[column("contacts")], naive.contacts as f64, "{scene} {way:?} {steps}");
+                // What sums up to next to nothing is off by the rounding of what it sums up.
+                let count = particles.grain_count() as f64;
+                let energy = naive.kinetic + naive.elastic + naive.rotational;
+                let mass: f64 = particles.grains().iter().map(|grain| grain.mass).sum();
+                let momentum = (2.0 * mass * naive.kinetic).sqrt();
+                let area = scenery.domain.area();
+                let speed = (2.0 * naive.kinetic / mass).sqrt();
+                for (name, expected, scale) in [
+                    ("time", naive.time, 0.0),
+                    ("kinetic", naive.kinetic, energy),
+                    ("rotational", naive.rotational, energy),
+                    ("elastic", naive.elastic, energy),
+                    ("gravitational", naive.gravitational, naive.gravitational.abs()),
+                    ("momentum_x", naive.momentum_x, momentum),
+                    ("momentum_y", naive.momentum_y, momentum),
+                    ("temperature", naive.temperature, energy / count),
+                    ("pressure", naive.pressure, naive.pressure.abs().max(energy / area)),
+                    ("flow", naive.flow, speed),
+                    ("deepest_penetration", naive.deepest_penetration, 0.1),
+                ] {
+                    let off = (row[column(name)] - expected).abs();
+                    assert!(
+                        off <= 2e-11 * scale,
+                        "{scene} {way:?} {steps}: {name} is off by {off} of {scale}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+fn bits(row: &[f64]) -> Vec<u64> {
+    row.iter().map(|value| value.to_bits()).collect()
+}
+
+/// Neither threads nor instructions change a bit, with more discs than one thread is left with.
+#[test]
+fn no_thread_and_no_instruction_changes_a_row() {
+    for way in &WAYS[..5] {
+        let row = |threads: usize, set: InstructionSet| {
+            let instructions = format!("machine.instruction_set={}", set.name());
+            let sets: [Sets<'_>; 3] =
+                [&["particles.count=6000", "particles.packing_fraction=0.80"], way, &[&instructions]];
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut simulation = begin("bench", &sets);
+                advance(simulation.as_mut(), 30);
+                bits(&simulation.observe())
+            })
+        };
+        let first = row(1, InstructionSet::best());
+        assert_eq!(row(3, InstructionSet::best()), first, "{way:?}");
+        for set in InstructionSet::available() {
+            assert_eq!(row(2, set), first, "{way:?} by {set:?}");
+        }
+    }
+}
+
+/// What a summary says, less what is of a session only.
+fn of_the_run(simulation: &dyn Simulation) -> (Map<String, Value>, String) {
+    (simulation.summary(), simulation.in_words())
+}
+
+/// Gone on with, at once and after more steps, everything that is said is said as of one piece: grains that have crossed periodic
+/// sides have not crossed them again, counters have not begun again.
+#[test]
+fn what_is_gone_on_with_says_what_one_piece_says() {
+    let more: [Sets<'_>; 3] = [
+        &["machine.engine=programs", "machine.execution=eager", "search.by=lattice"],
+        &["machine.engine=programs", "machine.coordinates=absolute", "search.by=lattice"],
+        &["machine.engine=programs", "machine.precision=f32", "search.by=neighbor-list"],
+    ];
+    for (scene, of_scene, [cut, end]) in
+        [("pipe-small", &[][..], [500, 600]), ("shaken-box", &["particles.count=40"], [150, 200])]
+    {
+        for way in WAYS.into_iter().chain(more) {
+            let sets = [of_scene, way];
+            let mut whole = begin(scene, &sets);
+            advance(whole.as_mut(), cut);
+            let (clock, snapshot) = (whole.clock(), whole.snapshot());
+            let mut resumed = begin(scene, &sets);
+            resumed.restore(clock, snapshot).unwrap();
+            for steps in [cut, cut + 1, end] {
+                advance(whole.as_mut(), steps);
+                advance(resumed.as_mut(), steps);
+                let what = format!("{scene} {way:?} after {steps} of {cut}");
+                assert_eq!(bits(&resumed.observe()), bits(&whole.observe()), "{what}");
+                assert_eq!(of_the_run(resumed.as_ref()), of_the_run(whole.as_ref()), "{what}");
+                assert_eq!(resumed.warnings(), whole.warnings(), "{what}");
+            }
+            assert!(scene != "pipe-small" || whole.warnings().is_empty(), "{way:?}: {:?}", whole.warnings());
+        }
+    }
+}
+
+/// Lists that the engine of all methods makes are counted on.
+#[test]
+fn lists_are_counted_on_by_other_methods() {
+    let sets = owned(&[&["search.by=neighbor-list", "run.steps=200"]]);
+    let begin = || {
+        let (prepared, _) = load("langevin-dense", &sets, METHODS).unwrap();
+        prepared.start(Purpose::Run).unwrap()
+    };
+    let mut whole = begin();
+    advance(whole.as_mut(), 100);
+    let (clock, snapshot) = (whole.clock(), whole.snapshot());
+    let mut resumed = begin();
+    resumed.restore(clock, snapshot).unwrap();
+    for steps in [100, 200] {
+        advance(whole.as_mut(), steps);
+        advance(resumed.as_mut(), steps);
+        assert_eq!(resumed.summary(), whole.summary());
+    }
+    assert!(whole.summary()["lists_made"].as_u64() > Some(2));
+}
+
+/// A disc on the lower rim of a periodic side has crossed nothing, wherever rounding finds it.
+#[test]
+fn a_disc_on_the_rim_has_crossed_nothing() {
+    for origin in ["0.0", "0.1", "-0.7", "1e3", "-3.3", "0.3"] {
+        for way in WAYS {
+            let origin_of_box = format!("domain.origin=[{origin}, {origin}]");
+            let position = format!("particles.positions=[[{origin}, {origin}]]");
+            let sets: [Sets<'_>; 2] = [
+                &[
+                    "domain.sides=[7.3, 7.3]",
+                    "domain.periodic=[true, true]",
+                    "domain.gravity=[0.0, -1.0]",
+                    &origin_of_box,
+                    &position,
+                    "particles.velocities=[[0.0, 0.0]]",
+                    "particles.omegas=[0.0]",
+                ],
+                way,
+            ];
+            let mut simulation = begin("two-discs", &sets);
+            let work = |simulation: &dyn Simulation| simulation.observe()[column("gravity_work")];
+            assert_eq!(work(simulation.as_ref()), 0.0, "{origin} {way:?}");
+            advance(simulation.as_mut(), 100);
+            // m g (g t²/2), with rounding of positions in single precision.
+            let expected = 0.5 * 0.1 * 0.1;
+            assert!((work(simulation.as_ref()) - expected).abs() < 1e-2 * expected, "{origin} {way:?}");
+        }
+    }
+}
+
+/// What is observed is a phase of its own, and is looked at once however many ask.
+#[test]
+fn a_moment_is_observed_once() {
+    let mut simulation = begin("dense-gas", &[]);
+    advance(simulation.as_mut(), 10);
+    simulation.reset_phases();
+    assert!(!simulation.phases().contains_key("observe"));
+    simulation.observe();
+    let once = simulation.phases()["observe"];
+    assert!(once > 0.0);
+    simulation.observe();
+    simulation.summary();
+    simulation.warnings();
+    simulation.in_words();
+    assert_eq!(simulation.phases()["observe"], once);
+}
+
+/// The pressure of discs and walls at random, by the formula written out: (N T + ½ Σ F_N |r_i − r_j|)/A over the contacts between
+/// grains, F_N = max(k_N ξ^{3/2} − γ_N M_eff (v_i − v_j)·n, 0).
+#[test]
+fn the_pressure_is_that_of_the_formula() {
+    let domain = Domain::planar([-1.0, 2.0], [7.0, 9.0], [true, false]);
+    let mut by_damping = 0.0;
+    for seed in 0..20 {
+        let mut random = Stream::new(seed, Draw::Test, 0);
+        let mut spread = |width: f64| random.random_range(-0.5 * width..=0.5 * width);
+        let contact = Contact {
+            stiffness: 18.7,
+            normal_damping: 4.0 + spread(4.0),
+            shear_damping: 3.0,
+            friction: 0.5,
+            cohesionless: seed % 2 == 0,
+            arm: [ContactArm::Radius, ContactArm::Overlap, ContactArm::Lammps][seed as usize % 3],
+        };
+        let discs = (0..60).map(|id| Particle {
+            id,
+            kind: if id % 7 == 0 { Kind::Wall } else { Kind::Grain },
+            position: in_space([2.5 + spread(7.0), 6.5 + spread(9.0)]),
+            velocity: in_space([spread(4.0), spread(4.0)]),
+            angle: 0.0,
+            omega: spread(8.0),
+            radius: 0.5 + spread(0.1),
+            mass: 1.0 + spread(1.0),
+        });
+        let particles = Particles::new(discs.collect());
+        let scenery = Scenery { domain, contact, gravity: [0.0; 2], inertia_factor: 0.5 };
+        let seen = Observation::of(0, 0.0, &particles, &scenery);
+        let grains = particles.grains();
+        let (mut virial, mut undamped) = (0.0, 0.0);
+        for (i, a) in grains.iter().enumerate() {
+            for b in &grains[..i] {
+                let mut x = a.position[0] - b.position[0];
+                x -= (x / 7.0).round() * 7.0;
+                let y = a.position[1] - b.position[1];
+                let distance = (x * x + y * y).sqrt();
+                let depth = a.radius + b.radius - distance;
+                if depth > 0.0 {
+                    let effective = a.mass * b.mass / (a.mass + b.mass);
+                    let [u, v] = [0, 1].map(|axis| a.velocity[axis] - b.velocity[axis]);
+                    let parting = (u * x + v * y) / distance;
+                    let spring = contact.stiffness * depth.powf(1.5);
+                    let force = spring - contact.normal_damping * effective * parting;
+                    virial += distance * if contact.cohesionless { force.max(0.0) } else { force };
+                    undamped += distance * spring;
+                }
+            }
+        }
+        let n = grains.len() as f64;
+        let expected = (n * seen.temperature + 0.5 * virial) / 63.0;
+        assert!((seen.pressure / expected - 1.0).abs() < 1e-12, "{} instead of {expected}", seen.pressure);
+        by_damping += (virial / undamped - 1.0).abs();
+    }
+    assert!(by_damping > 0.1, "damping has a part in it");
+}
