@@ -13,6 +13,7 @@ const FLOORS: [(&str, &[&[&str]]); 2] = [
             &["backend", "law", "noise"],
             &["flight", "integrator", "program"],
             &["ledger", "sweep"],
+            &["printed"],
         ],
     ),
     (

@@ -6,6 +6,7 @@
 
 use super::assemble::{contacts, model_following_energy};
 use super::check::Checked;
+use super::options::ProgramText;
 use super::{Contacts, Discs, FastSearch, Lengths, Model, Scheme, programs};
 use crate::memory::{Foreseen, PROGRAM, available};
 use crate::near::Near;
@@ -161,14 +162,21 @@ impl Sizes {
         let watched = f64::from(u8::from(model.watch.is_some()));
         let absolute = f64::from(u8::from(model.coordinates == Coordinates::Absolute));
         let power = f64::from(u8::from(model.counts_dissipation()));
+        // The printed text has R and M beside the state, and the lattice vector Test.
+        let printed = model.text == ProgramText::Printed;
+        let test = f64::from(u8::from(printed));
         // Lists keep forces disc by disc, with the numbers of the discs in place of the cells'.
         let (forces, numbers) = if lists { (*discs, 2.0) } else { (padded, 1.0) };
         let of_state = derivatives + varying * (1.0 + friction);
         let kinds = [
             // How many columns of how many elements of how many bytes.
             (of_state, *discs, *state),
-            (4.0 + friction + 2.0 * varying, *discs, *force),
-            (1.0 + 2.0 * absolute + 4.0 + friction + 2.0 * varying + 2.0 * watched + power, padded, *force),
+            (if printed { 2.0 } else { 4.0 + friction + 2.0 * varying }, *discs, *force),
+            (
+                1.0 + 2.0 * absolute + 4.0 + friction + 2.0 * varying + 2.0 * watched + power + test,
+                padded,
+                *force,
+            ),
             (2.0 + friction, forces, *force),
             (numbers, *discs, 4.0),
             (1.0, padded, 4.0),
