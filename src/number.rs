@@ -25,6 +25,19 @@ pub fn in_tens(value: f64, digits: usize) -> String {
     }
 }
 
+/// Two numbers with so many significant digits as a range, the smaller one first; one where they look alike.
+pub fn range(one: f64, other: f64, digits: usize) -> String {
+    let [low, high] = [one.min(other), one.max(other)].map(|end| in_tens(end, digits));
+    if low == high { low } else { format!("{low} to {high}") }
+}
+
+/// How many of something, in the singular or the plural: `1 layer`, `2 layers`.
+pub fn counted(count: impl std::fmt::Display, what: &str) -> String {
+    let count = count.to_string();
+    let ending = if count == "1" { "" } else { "s" };
+    format!("{count} {what}{ending}")
+}
+
 /// A power of ten in short.
 pub fn ten_to(power: i32) -> String {
     match power {
@@ -53,6 +66,13 @@ mod tests {
     fn sentences_have_powers_of_ten() {
         let texts = [8.2e-8, 1e-12, 0.25, 3e9].map(|value| in_tens(value, 2));
         assert_eq!(texts, ["8.2·10⁻⁸", "10⁻¹²", "0.25", "3·10⁹"]);
+    }
+
+    #[test]
+    fn ranges_rise_and_one_is_singular() {
+        assert_eq!(range(3.3e-6, 2.7e-6, 2), "2.7·10⁻⁶ to 3.3·10⁻⁶");
+        assert_eq!(range(1.0, 1.01, 2), "1");
+        assert_eq!([0, 1, 2].map(|n| counted(n, "layer")), ["0 layers", "1 layer", "2 layers"]);
     }
 
     #[test]

@@ -2,6 +2,8 @@
 
 use crate::console::{Common, Failure, STEPS, bar, clear_progress, print, print_json, say, warn};
 use crate::method::{Methods, Prepared, prepare, vocabularies};
+use crate::number::counted;
+use crate::quoted;
 use crate::run::{Ending, Existing, Summary, chosen_otherwise, forecast, run};
 use crate::scene::Values;
 use crate::signals;
@@ -93,8 +95,8 @@ fn before(prepared: &dyn Prepared) {
 fn text(summary: &Summary, folder: &Path) -> String {
     let Summary { steps, events, time, seconds, in_words, .. } = summary;
     let done = match (steps, events) {
-        (0, 1..) => format!("{events} events"),
-        _ => format!("{steps} steps"),
+        (0, 1..) => counted(events, "event"),
+        _ => counted(steps, "step"),
     };
     let mut text = format!("{done} in {seconds:.2} s, time {time:.6}: {in_words}\n");
     for choice in &summary.choices {
@@ -103,6 +105,6 @@ fn text(summary: &Summary, folder: &Path) -> String {
     for reason in &summary.left_out {
         text.push_str(&format!("left out: {reason}\n"));
     }
-    text.push_str(&format!("results in {}\n", folder.display()));
+    text.push_str(&format!("results in {}\n", quoted::path(folder)));
     text
 }

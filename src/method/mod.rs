@@ -10,6 +10,7 @@ mod list;
 pub mod nbody;
 mod pairwise;
 mod probe;
+mod restored;
 pub mod throughput;
 mod trials;
 

@@ -17,6 +17,7 @@ mod oracle;
 mod prepared;
 mod presets;
 mod reference;
+mod restored;
 mod scene;
 mod sections;
 mod simulation;

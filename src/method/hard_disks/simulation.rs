@@ -7,7 +7,9 @@ use super::event::Arena;
 use super::fast::Fast;
 use super::prepared::Checked;
 use super::reference;
+use super::restored::sound;
 use crate::io::checkpoint::{Column, Counter};
+use crate::method::restored::{find_column, find_count, find_counts, find_sum};
 use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
 use crate::particles::{Particles, in_space};
@@ -325,32 +327,21 @@ impl Simulation for Running {
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
+        clock.of_events()?;
         let Snapshot { counters, columns } = snapshot;
         let mut discs: Vec<Disc> = self.discs().copied().collect();
         for (name, of) in FIELDS {
-            let column = columns.iter().find(|(there, _)| there == name);
-            let Some((_, Column::F64(values))) = column.filter(|(_, values)| values.len() == discs.len())
-            else {
-                return Err(format!("the column {name} is missing"));
-            };
-            discs.iter_mut().zip(values).for_each(|(disc, &value)| *of(disc) = value);
+            let values = find_column::<f64>(&columns, name, discs.len())?;
+            discs.iter_mut().zip(values).for_each(|(disc, value)| *of(disc) = value);
         }
-        let events = columns.iter().find(|(there, _)| there == "events");
-        let Some((_, Column::U64(events))) = events.filter(|(_, values)| values.len() == discs.len()) else {
-            return Err("the column events is missing".to_owned());
-        };
+        let events = find_counts(&columns, "events", discs.len(), clock.events)?;
         discs.iter_mut().zip(events).for_each(|(disc, &count)| disc.events = count);
-        let count = |name: &str| match counters.get(name) {
-            Some(Counter::Count(count)) => Ok(*count),
-            _ => Err(format!("the counter {name} is missing")),
-        };
-        let Some(Counter::Sum(virial)) = counters.get("virial") else {
-            return Err("the counter virial is missing".to_owned());
-        };
+        sound(&self.arena, &self.particles, &discs, &clock)?;
+        let collisions = find_count(&counters, "collisions", clock.events)?;
         self.totals = Totals {
-            collisions: count("collisions")?,
-            made_elastic: count("made_elastic")?,
-            virial: *virial,
+            collisions,
+            made_elastic: find_count(&counters, "made_elastic", collisions)?,
+            virial: find_sum(&counters, "virial")?,
         };
         self.watch = Watch::new(clock.time, crossing(discs.iter()), discs.len());
         let engine = self.way.begin(self.arena, discs, clock.time);

@@ -4,6 +4,7 @@ use super::dynamics::{Stepper, is_loss, stepper};
 use super::losses::Losses;
 use super::prepared::Checked;
 use crate::io::checkpoint::{Column, Counter};
+use crate::method::restored::find_sum;
 use crate::method::{Clock, Failure, FailureKind, Purpose, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
 use crate::particles::{Particle, Particles};
@@ -213,13 +214,12 @@ impl Simulation for Running {
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
         let Snapshot { counters, columns } = snapshot;
+        clock.of_steps(self.checked.scene.dt)?;
         for (name, sum) in OF_PAIRS.into_iter().zip(&mut self.of_pairs) {
-            let Some(Counter::Sum(value)) = counters.get(name) else {
-                return Err(format!("the sum {name} is missing"));
-            };
-            *sum = *value;
+            *sum = find_sum(&counters, name)?;
         }
-        self.losses.take_up(&columns)?;
+        let ids: BTreeSet<u32> = self.start.all().iter().map(|particle| particle.id).collect();
+        self.losses.take_up(clock.steps, &ids, &columns)?;
         let lost: BTreeSet<u32> = self.losses.ids().collect();
         if !lost.is_empty() {
             self.without(&|_, particle| lost.contains(&particle.id))?;

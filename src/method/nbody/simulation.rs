@@ -6,6 +6,7 @@ use super::field::Attraction;
 use super::prepared::Checked;
 use super::schemes::Scheme;
 use crate::io::checkpoint::{Column, Counter};
+use crate::method::restored::{find_column, find_sum};
 use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
 use crate::particles::{Particles, in_plane};
@@ -180,25 +181,23 @@ impl Simulation for Running {
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
+        clock.of_steps(self.dt)?;
         let count = self.bodies.len();
-        let find = |name: &str| match snapshot.columns.iter().find(|(there, _)| there == name) {
-            Some((_, Column::F64(values))) if values.len() == count => Ok(values.clone()),
-            _ => Err(format!("the column {name} is missing")),
-        };
-        let Some(Counter::Sum(energy)) = snapshot.counters.get("energy") else {
-            return Err("the sum energy is missing".to_owned());
-        };
+        let find = |name: &str| find_column::<f64>(&snapshot.columns, name, count);
+        let energy = find_sum(&snapshot.counters, "energy")?;
         let state = self.bodies.position.iter_mut().chain(&mut self.bodies.velocity);
         for (name, column) in COLUMNS.into_iter().zip(state) {
             column[..count].copy_from_slice(&find(name)?);
         }
+        // Before the first step nothing is carried.
+        let orders = if clock.steps == 0 { 0 } else { self.scheme.carries() };
         let mut carried = vec![];
-        for order in 0.. {
-            let Ok(x) = find(&format!("carried.{order}.0")) else { break };
-            carried.push([x, find(&format!("carried.{order}.1"))?, find(&format!("carried.{order}.2"))?]);
+        for order in 0..orders {
+            let [x, y, z] = [0, 1, 2].map(|axis| find(&format!("carried.{order}.{axis}")));
+            carried.push([x?, y?, z?]);
         }
         self.scheme.take_up(&self.bodies, carried);
-        (self.energy, self.steps) = (*energy, clock.steps);
+        (self.energy, self.steps) = (energy, clock.steps);
         Ok(())
     }
 

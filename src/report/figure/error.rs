@@ -31,6 +31,16 @@ pub enum Fault {
         /// The number.
         value: f64,
     },
+    /// A place or size far beyond the picture.
+    #[error("{place} is {value}, which is {pixels:.1e} pixels on the picture")]
+    TooFar {
+        /// Where it stands.
+        place: String,
+        /// The number.
+        value: f64,
+        /// How long it is on the picture.
+        pixels: f64,
+    },
     /// Nothing to draw.
     #[error("there is nothing in it")]
     Empty,

@@ -17,21 +17,28 @@ fn answer(scenes: &[(String, WorkPrecision)]) -> String {
     let cheaper = scenes.iter().filter_map(|(name, data)| Some((name, as_good(data)?)));
     let mut cheaper: Vec<_> = cheaper.filter(|(_, found)| found.of_own < WORTH).collect();
     cheaper.sort_by(|a, b| a.1.of_own.total_cmp(&b.1.of_own));
+    let one = scenes.len() == 1;
     let Some((name, best)) = cheaper.first() else {
-        return format!(
-            "In none of {} scenes is anything as accurate as the scene's own way and cheaper.",
-            scenes.len()
-        );
+        return match one {
+            true => "Nothing is as accurate as the scene's own way and cheaper.".to_owned(),
+            false => format!(
+                "In none of {} scenes is anything as accurate as the scene's own way and cheaper.",
+                scenes.len()
+            ),
+        };
     };
-    format!(
-        "In {} of {} scenes another way or step is at least as accurate as the scene's own and cheaper; most in {name}, {} at {} for \
-         {:.0} % of the cost.",
-        cheaper.len(),
-        scenes.len(),
-        best.way,
-        multiple(best.power),
-        100.0 * best.of_own
-    )
+    let (way, cost) = (format!("{} at {}", best.way, multiple(best.power)), 100.0 * best.of_own);
+    match one {
+        true => format!(
+            "Another way or step is at least as accurate as the scene's own and cheaper: {way} for {cost:.0} % of the cost."
+        ),
+        false => format!(
+            "In {} of {} scenes another way or step is at least as accurate as the scene's own and cheaper; most in {name}, {way} \
+             for {cost:.0} % of the cost.",
+            cheaper.len(),
+            scenes.len(),
+        ),
+    }
 }
 
 /// The page over scenes, each with a name for its files, and `again`, the command that makes it.

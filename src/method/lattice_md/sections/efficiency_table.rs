@@ -3,6 +3,7 @@
 use crate::method::lattice_md::Part;
 use crate::method::lattice_md::study::efficiency_table::EfficiencyTable;
 use crate::method::lattice_md::study::efficiency_table::differences::{PASCAL_FACTORS, by_the_source};
+use crate::number::significant;
 use crate::report;
 use crate::report::{Cell, Section, Table, Verdict};
 
@@ -146,7 +147,7 @@ fn parts(data: &EfficiencyTable) -> Table {
     ];
     notes.push(format!(
         "At {} ns a clock period such a step takes {:.4} s by the printed count, {:.4} s by ours.",
-        data.clock_period_ns,
+        significant(data.clock_period_ns, 4),
         data.printed_clocks * data.clock_period_ns * 1e-9,
         data.counted_clocks * data.clock_period_ns * 1e-9
     ));

@@ -4,7 +4,7 @@ use crate::method::lattice_md::study::precision::energy::{self, EnergyCase, STEP
 use crate::method::lattice_md::study::precision::forces::ForceError;
 use crate::method::lattice_md::study::precision::trajectories::{self, Divergence};
 use crate::method::lattice_md::study::precision::{EQUILIBRATION, PACKING_FRACTIONS, Precisions, SEEDS};
-use crate::number::in_tens;
+use crate::number::{in_tens, range};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use crate::report::{Cell, Part, Section, Table, Verdict};
 use crate::statistics::Spread;
@@ -53,12 +53,10 @@ fn over_boxes(data: &Precisions, name: &str) -> [f64; 2] {
 fn answer(data: &Precisions) -> String {
     let [single, mixed] = ["f32, fast", "mixed, fast"].map(|name| over_boxes(data, name));
     format!(
-        "In boxes of a thousand to a hundred thousand discs the forces err by {} to {} of their size in f32, and by {} to \
-         {} in mixed precision.",
-        in_tens(single[0], 2),
-        in_tens(single[1], 2),
-        in_tens(mixed[0], 2),
-        in_tens(mixed[1], 2)
+        "In boxes of a thousand to a hundred thousand discs the forces err by {} of their size in f32, and by {} in mixed \
+         precision.",
+        range(single[0], single[1], 2),
+        range(mixed[0], mixed[1], 2)
     )
 }
 
