@@ -123,7 +123,6 @@ fn standard_output_carries_none_either() {
             (with(&["run", &file, "--out", &run]), true),
             (with(&["scene", "check", &file]), true),
             (with(&["scene", "check", &file, "--json"]), true),
-            (words(&["scene", "programs", &file]), true),
             (with(&["compare", &file, "--against", "machine.engine=programs"]), true),
             (words(&["plot", &run, "--out", &plots]), true),
             (words(&["plot", &run, "--out", &plots, "--json"]), true),

@@ -19,13 +19,13 @@ const SCENES: &[(&str, &[&str])] = &[
     ("dense-gas", &["search.by=neighbor-list", "search.rebuild=all-pairs", "particles.count=20"]),
     ("hard-disks", &["particles.count=24"]),
     ("hard-disks", &["particles.count=24", "machine.engine=reference"]),
-    ("langevin-dense", &["particles.count=24", "search.by=lattice"]),
+    ("langevin-dense", &["particles.count=24", "search.by=sectors"]),
     ("langevin-dense", &["particles.count=24", "search.by=neighbor-list"]),
     ("langevin-free", &["particles.count=24"]),
-    ("kepler", &["integrator.scheme=gear-6"]),
-    ("kepler", &["integrator.scheme=hermite-4"]),
-    ("kepler", &["integrator.scheme=leapfrog"]),
-    ("kepler", &["integrator.scheme=damped-euler"]),
+    ("kepler", &["integrator.kind=gear-6"]),
+    ("kepler", &["integrator.kind=hermite-4"]),
+    ("kepler", &["integrator.kind=leapfrog"]),
+    ("kepler", &["integrator.kind=damped-euler"]),
 ];
 
 /// Steps before the snapshot, and after it.

@@ -98,9 +98,9 @@ fn check_drawing(drawing: &Drawing) -> Result<(), Fault> {
 
 /// The least width of a drawing (pixels): a word must find its place.
 const LEAST_WIDTH: f64 = 100.0;
-/// The farthest that a shape may lie from the corner of its window, and the longest that it may be (pixels): beyond it
-/// the whole numbers of pixels run out.
-const FARTHEST: f64 = 1e9;
+/// The farthest that a shape may lie from the corner of its window, and the longest that it may be (pixels): the
+/// libraries that draw count in small whole numbers.
+const FARTHEST: f64 = 1e6;
 /// The largest side of a drawing (pixels).
 const LARGEST_SIDE: f64 = 50_000.0;
 
