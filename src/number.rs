@@ -38,8 +38,9 @@ pub fn range(values: impl IntoIterator<Item = f64>, digits: usize) -> String {
 }
 
 /// So many of something, for sentences: `1 scene`, `3 scenes`.
-pub fn counted(count: usize, one: &str, many: &str) -> String {
-    format!("{count} {}", if count == 1 { one } else { many })
+pub fn counted(count: impl std::fmt::Display, one: &str, many: &str) -> String {
+    let count = count.to_string();
+    format!("{count} {}", if count == "1" { one } else { many })
 }
 
 /// A power of ten in short.

@@ -36,6 +36,38 @@ pub fn message(text: &str) -> String {
     text.split('\n').map(|line| shortened(line, LONGEST_LINE)).collect::<Vec<_>>().join("\n")
 }
 
+/// All of a text for a terminal, whatever names it repeats, with its line ends and tabs.
+pub fn shown(text: &str) -> String {
+    // Numbers have narrow blanks between their digits.
+    let is_plain = |c: char| matches!(c, ' '..='~' | '\n' | '\t' | '\u{202f}');
+    let pieces = text.split_inclusive(|c| matches!(c, '\n' | '\t' | '\u{202f}'));
+    let one = |piece: &str| match piece.strip_suffix(['\n', '\t', '\u{202f}']) {
+        _ if piece.chars().all(is_plain) => piece.to_owned(),
+        Some(rest) => spelled(rest.chars()) + &piece[rest.len()..],
+        None => spelled(piece.chars()),
+    };
+    pieces.map(one).collect()
+}
+
+/// JSON in which strings hold what is not seen as escapes of JSON, so that they read back to the same.
+pub fn in_json(text: &str) -> String {
+    if text.is_ascii() {
+        return text.to_owned();
+    }
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        // An accent alone is one too: after its letter it reads back as well.
+        let is_seen = c == '\n' || c.is_ascii() || !is_blank(c) && !is_mark(c) && c.escape_debug().eq([c]);
+        match is_seen {
+            true => out.push(c),
+            false => {
+                c.encode_utf16(&mut [0; 2]).iter().for_each(|unit| out.push_str(&format!("\\u{unit:04x}")))
+            }
+        }
+    }
+    out
+}
+
 fn spelled(text: impl Iterator<Item = char>) -> String {
     let mut shown = String::new();
     let mut marks = 0;
@@ -69,6 +101,17 @@ fn is_blank(c: char) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn standard_output_keeps_its_shape_and_hides_nothing() {
+        assert_eq!(shown("a\tb\u{202f}c\nd é\n"), "a\tb\u{202f}c\nd é\n");
+        assert_eq!(shown("\u{1b}[2J\n\u{202e}x\r\n"), "\\u{1b}[2J\n\\u{202e}x\\r\n");
+        assert_eq!(shown(&"x".repeat(5000)).len(), 5000);
+        let nasty = "a\u{202e}\u{9b}e\u{301}\u{e0041}é";
+        let json = in_json(&serde_json::to_string(&nasty).unwrap());
+        assert!(json.chars().all(|c| c.is_ascii() || c == 'é'), "{json}");
+        assert_eq!(serde_json::from_str::<String>(&json).unwrap(), nasty);
+    }
 
     #[test]
     fn what_is_not_seen_is_spelled_out() {

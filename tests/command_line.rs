@@ -156,3 +156,32 @@ fn an_unwritable_folder_exits_with_5() {
     assert_eq!(output.status.code(), Some(5));
     assert!(String::from_utf8_lossy(&output.stderr).contains("below"));
 }
+
+/// A word that is nearly right, or right in another place, is answered with what was meant.
+#[test]
+fn mistaken_words_are_answered_with_what_was_meant() {
+    for (arguments, code, meant) in [
+        (&["rnu", "two-discs"][..], 2, "'run'"),
+        (&["polt", "x"], 2, "'plot'"),
+        (&["scene", "chekc", "x"], 2, "'check'"),
+        (&["run", "two-discs", "--seed", "3"], 2, "--set particles.seed=3"),
+        (&["run", "two-discs", "--seed=3"], 2, "--set particles.seed=3"),
+        (&["run", "two-discs", "--dt", "1e-5"], 2, "--set integrator.dt=1e-5"),
+        (
+            &["scene", "check", "two-discs", "--packing-fraction", "0.3"],
+            2,
+            "--set particles.packing_fraction=0.3",
+        ),
+        (&["compare", "two-discs", "--against", "engine=programs"], 3, "--against engine=programs: "),
+        (&["compare", "two-discs", "--against", "engine=programs"], 3, "`machine.engine`"),
+        (&["compare", "two-discs", "--against", "engin=programs"], 3, "`machine.engine`"),
+        (&["scene", "check", "two-discs", "--set", "stiffnes=1"], 3, "`law.stiffness`"),
+        (&["scene", "check", "two-discs", "--set", "search.engine=fast"], 3, "`machine.engine`"),
+        (&["plot", ".", "--columns", "x"], 5, "thermo.csv"),
+    ] {
+        let output = stripmine(arguments);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
+        assert!(said.contains(meant), "{arguments:?} is not answered with {meant}: {said}");
+    }
+}

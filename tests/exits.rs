@@ -220,3 +220,40 @@ fn the_limit_of_file_sizes_ends_in_an_exit_code() {
         assert!(said.contains("too large"), "{arguments}: {said}");
     }
 }
+
+/// A checkpoint that is whole but says what cannot be, of every method: exit code 6, and the file.
+#[test]
+fn forged_checkpoints_end_with_6() {
+    use stripmine::io::checkpoint::{Checkpoint, Column};
+    let folder = tempfile::tempdir().unwrap();
+    for (preset, short, column) in [
+        ("two-discs", "run.steps=20", "x1"),
+        ("hard-disks", "run.events=200", "local_time"),
+        ("langevin-free", "run.steps=10", "x1"),
+        ("kepler", "run.steps=16", "carried.0.1"),
+    ] {
+        let set = ["--set", short];
+        let begun = stripmine(folder.path(), &[&["run", preset, "--quiet"][..], &set].concat());
+        assert!(begun.status.success(), "{}", String::from_utf8_lossy(&begun.stderr));
+        let file = folder.path().join(format!("{preset}.run/run.checkpoint"));
+        let whole = Checkpoint::read(&file).unwrap();
+        let names: Vec<&str> = whole.columns.iter().map(|(name, _)| name.as_str()).collect();
+        let at =
+            names.iter().position(|name| *name == column).unwrap_or_else(|| panic!("{preset}: {names:?}"));
+        let count = whole.columns[at].1.len();
+        for forged in [
+            Column::F64(vec![f64::NAN; count]),
+            Column::F64(vec![0.0; count / 2]),
+            Column::U64(vec![0; count]),
+        ] {
+            let mut checkpoint = whole.clone();
+            checkpoint.columns[at].1 = forged;
+            checkpoint.write_atomically(&file).unwrap();
+            let resumed =
+                stripmine(folder.path(), &[&["run", preset, "--resume", "--quiet"][..], &set].concat());
+            let said = String::from_utf8_lossy(&resumed.stderr).into_owned();
+            assert_eq!(resumed.status.code(), Some(6), "{preset}: {said}");
+            assert!(said.contains("run.checkpoint") && said.contains(column), "{preset}: {said}");
+        }
+    }
+}

@@ -363,3 +363,83 @@ fn committed_results_are_known_as_ours() {
         assert!(contents(&item).keys().all(|name| listed.contains(&name.as_str())), "{}", item.display());
     }
 }
+
+/// Every verb that has an `--out`, with a file of the user's where its own would be: it is refused by name and stays.
+#[test]
+fn no_verb_writes_over_what_it_did_not_write() {
+    let folder = tempfile::tempdir().unwrap();
+    let there = folder.path().join("there");
+    succeed(run(&there, &["--set", "run.thermo_every=5"]));
+    let there = there.to_str().unwrap();
+    let verbs: [(&[&str], &str); 9] = [
+        (&["run", "two-discs"], "thermo.csv"),
+        (&["plot", there], "last-state.png"),
+        (&["plot", there], "plot.files"),
+        (&["reproduce", "--only", "mask"], "README.md"),
+        (&["chart", "stability", "two-discs"], "journal.jsonl"),
+        (&["chart", "work-precision", "two-discs"], "README.md"),
+        (&["chart", "density-cost"], "index.html"),
+        (&["chart", "soft-hard"], "thesis.tex"),
+        (&["validate-model"], "validation"),
+    ];
+    for (number, (arguments, name)) in verbs.into_iter().enumerate() {
+        let out = folder.path().join(number.to_string());
+        fs::create_dir(&out).unwrap();
+        fs::write(out.join(name), "mine").unwrap();
+        let mut command = stripmine(arguments);
+        command.args(["--out", out.to_str().unwrap()]);
+        refused(command, 2, &[name]);
+        assert_eq!(contents(&out), BTreeMap::from([(name.to_owned(), b"mine".to_vec())]), "{arguments:?}");
+    }
+    let file = folder.path().join("host.toml");
+    fs::write(&file, "mine").unwrap();
+    let mut command = stripmine(&["calibrate"]);
+    command.args(["--out", file.to_str().unwrap()]);
+    refused(command, 2, &["host.toml", "--force"]);
+    // All there are: a verb with an --out that is not tried here fails this.
+    let tried = ["run", "plot", "reproduce", "chart stability", "chart work-precision", "chart density-cost"];
+    let tried: Vec<&str> =
+        tried.into_iter().chain(["chart soft-hard", "validate-model", "calibrate"]).collect();
+    let help = |verb: &[&str]| {
+        String::from_utf8(stripmine(&[verb, &["--help"]].concat()).output().unwrap().stdout).unwrap()
+    };
+    let below = |text: &str, heading: &str| -> Vec<String> {
+        let names =
+            text.lines().skip_while(|line| *line != heading).skip(1).take_while(|line| !line.is_empty());
+        let first = |line: &str| line.strip_prefix("  ")?.split(' ').next().map(str::to_owned);
+        names.filter_map(first).filter(|name| !name.is_empty() && name != "help").collect()
+    };
+    let verbs = below(&help(&[]), "Commands:");
+    let charts = below(&help(&["chart"]), "What to chart:");
+    assert!(verbs.len() > 8 && charts.len() == 4, "{verbs:?} {charts:?}");
+    for verb in
+        verbs.iter().map(|verb| vec![verb.as_str()]).chain(charts.iter().map(|name| vec!["chart", name]))
+    {
+        let writes = help(&verb).contains("--out <");
+        assert_eq!(writes, tried.contains(&verb.join(" ").as_str()), "{verb:?}");
+    }
+}
+
+/// Pictures are drawn again where they were drawn before, and over another's only where that is asked for.
+#[test]
+fn pictures_are_written_over_where_they_are_ours() {
+    let folder = tempfile::tempdir().unwrap();
+    let [there, out] = ["there", "pictures"].map(|name| folder.path().join(name));
+    succeed(run(&there, &["--set", "run.thermo_every=5"]));
+    let plot = |more: &[&str]| {
+        let mut command = stripmine(&["plot", there.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+        command.args(more);
+        command
+    };
+    fs::create_dir(&out).unwrap();
+    fs::write(out.join("thesis.tex"), "mine").unwrap();
+    succeed(plot(&[]));
+    let drawn = contents(&out);
+    succeed(plot(&[]));
+    assert_eq!(contents(&out), drawn);
+    fs::remove_file(out.join("plot.files")).unwrap();
+    refused(plot(&[]), 2, &["--overwrite", "was not written by this command"]);
+    succeed(plot(&["--overwrite"]));
+    assert_eq!(contents(&out), drawn);
+    assert_eq!(drawn["thesis.tex"], b"mine");
+}

@@ -100,6 +100,71 @@ fn no_message_carries_what_a_terminal_obeys() {
     }
 }
 
+/// Names of files and folders, columns of tables and scenes come back on standard output, as words and as data, without what a
+/// terminal obeys; data reads back to the same.
+#[test]
+fn standard_output_carries_none_either() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = Command::cargo_bin("stripmine")
+        .unwrap()
+        .args(["scene", "show", "two-discs"])
+        .output()
+        .unwrap()
+        .stdout;
+    for nasty in NASTY {
+        let (file, run, plots) = (format!("a{nasty}b.toml"), format!("run{nasty}"), format!("plots{nasty}"));
+        std::fs::write(folder.path().join(&file), &scene).unwrap();
+        let short = ["--set", "run.steps=20", "--set", "run.thermo_every=5"];
+        let with = |arguments: &[&str]| -> Vec<String> {
+            arguments.iter().chain(&short).map(|it| (*it).to_owned()).collect()
+        };
+        let words = |arguments: &[&str]| arguments.iter().map(|it| (*it).to_owned()).collect::<Vec<_>>();
+        for (arguments, names) in [
+            (with(&["run", &file, "--out", &run]), true),
+            (with(&["scene", "check", &file]), true),
+            (with(&["scene", "check", &file, "--json"]), true),
+            (with(&["compare", &file, "--against", "machine.engine=programs"]), true),
+            (words(&["plot", &run, "--out", &plots]), true),
+            (words(&["plot", &run, "--out", &plots, "--json"]), true),
+            (with(&["run", &file, "--out", &run, "--overwrite", "--json"]), false),
+        ] {
+            let mut command = Command::cargo_bin("stripmine").unwrap();
+            let output = command.args(&arguments).current_dir(folder.path()).output().unwrap();
+            let text = String::from_utf8(output.stdout).unwrap();
+            assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+            assert!(is_clean(&text), "{arguments:?}: {text:?}");
+            let is_data = arguments.iter().any(|it| it == "--json");
+            // Spelled out, not left out.
+            let spelled = if is_data { "\\u" } else { "\\u{" };
+            assert!(!names || text.contains(spelled), "{arguments:?}: {text}");
+            if is_data && names {
+                assert!(
+                    format!("{:?}", serde_json::from_str::<serde_json::Value>(&text).unwrap()).contains("b"),
+                    "{text}"
+                );
+                let data: serde_json::Value = serde_json::from_str(&text).unwrap();
+                assert!(data.to_string().contains(nasty.trim_matches(char::is_control)), "{text}");
+            }
+        }
+        let table = folder.path().join(&run).join("thermo.csv");
+        let text = std::fs::read_to_string(&table).unwrap();
+        std::fs::write(&table, text.replacen("kinetic", nasty, 1)).unwrap();
+        let mut command = Command::cargo_bin("stripmine").unwrap();
+        command.args(["plot", &run, "--out", "other", "--overwrite"]).current_dir(folder.path());
+        let output = command.output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(is_clean(&String::from_utf8(output.stdout).unwrap()));
+        let names = std::fs::read_dir(folder.path().join("other")).unwrap();
+        assert!(
+            names.into_iter().all(|name| name
+                .unwrap()
+                .file_name()
+                .to_str()
+                .is_some_and(|name| name.is_ascii()))
+        );
+    }
+}
+
 /// A checkpoint whose names are no names, and a folder that is called so.
 #[test]
 fn no_message_of_a_checkpoint_does_either() {
@@ -146,6 +211,79 @@ fn what_is_no_ordinary_file_is_refused() {
         }
         let checkpoint = stripmine::io::checkpoint::Checkpoint::read(folder.path().join(name)).unwrap_err();
         assert!(checkpoint.to_string().contains(words), "{checkpoint}");
+    }
+}
+
+/// No verb waits at a pipe that lies where it looks for a file of its own: it refuses, or goes on without.
+#[cfg(unix)]
+#[test]
+fn no_verb_waits_at_a_pipe() {
+    const LONGEST: std::time::Duration = std::time::Duration::from_secs(120);
+    let folder = tempfile::tempdir().unwrap();
+    let ended = |arguments: &[&str]| {
+        let mut command = Command::cargo_bin("stripmine").unwrap();
+        let output = command.args(arguments).current_dir(folder.path()).timeout(LONGEST).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    let begin = |name: &str| {
+        let (code, text) = ended(&[
+            "run",
+            "two-discs",
+            "--out",
+            name,
+            "--quiet",
+            "--set",
+            "run.steps=20",
+            "--set",
+            "run.thermo_every=5",
+        ]);
+        assert_eq!(code, Some(0), "{text}");
+    };
+    let pipe = |path: &str| {
+        let path = folder.path().join(path);
+        let _ = std::fs::remove_file(&path);
+        assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
+    };
+    for (name, code) in [("thermo.csv", 5), ("scene.toml", 0), ("trajectory.xyz", 0)] {
+        let run = format!("plot-{name}");
+        begin(&run);
+        pipe(&format!("{run}/{name}"));
+        let (found, text) = ended(&["plot", &run, "--out", &format!("{run}.plots")]);
+        assert_eq!(found, Some(code), "{name}: {text}");
+    }
+    for (name, code) in
+        [("run.files", 2), ("run.checkpoint", 5), ("scene.toml", 0), ("thermo.csv", 6), ("trajectory.xyz", 6)]
+    {
+        let run = format!("resumed-{name}");
+        begin(&run);
+        pipe(&format!("{run}/{name}"));
+        let (found, text) = ended(&[
+            "run",
+            "two-discs",
+            "--out",
+            &run,
+            "--resume",
+            "--set",
+            "run.steps=40",
+            "--set",
+            "run.thermo_every=5",
+        ]);
+        assert_eq!(found, Some(code), "{name}: {text}");
+    }
+    let chart = |out: &str| ended(&["chart", "stability", "two-discs", "--out", out]);
+    for name in ["journal.jsonl", ".stripmine.lock"] {
+        let out = format!("chart-{name}");
+        assert_eq!(ended(&["reproduce", "--only", "mask", "--out", &out]).0, Some(0));
+        pipe(&format!("{out}/{name}"));
+        let (found, text) = chart(&out);
+        assert!(found == Some(5) && text.contains("pipe") || found == Some(2), "{name}: {found:?} {text}");
+    }
+    for name in ["section.json", "provenance.json"] {
+        let out = format!("reproduced-{name}");
+        assert_eq!(ended(&["reproduce", "--only", "mask", "--out", &out]).0, Some(0));
+        pipe(&format!("{out}/mask/{name}"));
+        let (found, text) = ended(&["reproduce", "--only", "listing", "--out", &out]);
+        assert!(found == Some(5) || found == Some(0), "{name}: {found:?} {text}");
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
 use crate::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
 use crate::method::{Bench, Entry, Methods};
+use crate::number::counted;
 use crate::report::terminal;
 use crate::scene::{SceneErrors, Values};
 use clap::Args;
@@ -199,15 +200,16 @@ fn text(result: &Throughput) -> String {
     let at_end = result.at_end.iter().map(|(name, value)| format!("{name} {value}"));
     let observed: Vec<String> = compared.chain(at_end).collect();
     format!(
-        "{what}: {particles} particles, {}, {} threads\n{:.2} million {} a second (median {:.2}) over {} repeats of {} steps\n\
+        "{what}: {}, {}, {}\n{:.2} million {} a second (median {:.2}) over {} of {}\n\
          nanoseconds a particle and step: {:.1} in all; {}\n{}\nchecksum {}\n",
+        counted(particles, "particle", "particles"),
         settings.join(", "),
-        result.threads,
+        counted(result.threads, "thread", "threads"),
         result.rate * 1e-6,
         result.rate_name.trim_end_matches("_per_second").replace('_', "-"),
         result.median_rate * 1e-6,
-        result.repeats,
-        result.steps,
+        counted(result.repeats, "repeat", "repeats"),
+        counted(result.steps, "step", "steps"),
         each(result.seconds),
         phases.join(", "),
         observed.join(", "),

@@ -1,10 +1,12 @@
 //! `stripmine chart`: studies as data and charts. Methods add studies of their own.
 
-use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say};
+use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
 use crate::method::Methods;
 use crate::method::Progress;
 use crate::model::machines;
+use crate::number::counted;
 use crate::origin::Provenance;
+use crate::quoted;
 use crate::results::Made;
 use crate::results::{Folder, Journal};
 use crate::signals;
@@ -183,8 +185,10 @@ impl Place<'_> {
         // Before anything takes its time.
         let folder = Folder::open(&out, &[self.name], true)?;
         let journal = Journal::open(&out, &subject.identity(self.name, options))?;
+        journal.notes().iter().for_each(warn);
         if !common.quiet && !journal.is_empty() {
-            say(format_args!("going on with {} finished runs in {}", journal.len(), out.display()));
+            let finished = counted(journal.len(), "finished run", "finished runs");
+            say(format_args!("going on with {finished} in {}", quoted::path(&out)));
         }
         let bar = progress(common, self.name);
         bar.enable_steady_tick(TICK);
@@ -199,7 +203,7 @@ impl Place<'_> {
         })?;
         clear_progress();
         if !common.quiet {
-            say(format_args!("written: {}", path.display()));
+            say(format_args!("written: {}", quoted::path(&path)));
         }
         if common.json {
             return print_json(&made.data);

@@ -7,6 +7,7 @@ use crate::number::significant;
 use crate::particles::Particles;
 use crate::report::table::{Cell, Table};
 use crate::report::terminal;
+use crate::scene::SceneErrors;
 use clap::Args;
 use serde::Serialize;
 use std::collections::HashMap;
@@ -63,7 +64,8 @@ impl CompareVerb {
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
         let begin = |more: &[String]| -> Result<Begun, Failure> {
             let overrides: Vec<String> = self.overrides.iter().chain(more).cloned().collect();
-            let (prepared, _) = load(&self.scene, &overrides, methods)?;
+            let (prepared, _) =
+                load(&self.scene, &overrides, methods).map_err(|mistakes| of_against(mistakes, more))?;
             let simulation = prepared.start(Purpose::Run)?;
             Ok((prepared, simulation))
         };
@@ -87,6 +89,18 @@ impl CompareVerb {
             false => print(&text(&self.scene, &comparison)),
         }
     }
+}
+
+/// Mistakes of the scene, those in what only the second way has under the name of its option.
+fn of_against(SceneErrors(mut mistakes): SceneErrors, against: &[String]) -> SceneErrors {
+    for mistake in &mut mistakes {
+        if let Some(text) =
+            mistake.file.strip_prefix("--set ").filter(|text| against.iter().any(|it| it == text))
+        {
+            mistake.file = format!("--against {text}");
+        }
+    }
+    SceneErrors(mistakes)
 }
 
 /// The moment at a 2^part-th of the way.

@@ -6,6 +6,7 @@ mod compare;
 mod completions;
 mod man;
 mod manual;
+mod meant;
 mod plot;
 mod reproduce;
 mod run;
@@ -138,9 +139,12 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
 
 /// What the arguments ask for; nothing where the answer, help or version, is given.
 fn understood(arguments: &[OsString], methods: Methods) -> Result<Option<ArgMatches>, Failure> {
-    match command(methods).try_get_matches_from(arguments) {
+    let mut command = command(methods);
+    match command.try_get_matches_from_mut(arguments) {
         Ok(matches) => Ok(Some(matches)),
-        Err(mistake) if mistake.use_stderr() => Err(Failure::Arguments(mistake)),
+        Err(mistake) if mistake.use_stderr() => {
+            Err(Failure::Arguments(meant::advised(mistake, arguments, &command, methods)))
+        }
         Err(answer) => print_answer(&answer).map(|()| None),
     }
 }

@@ -4,6 +4,7 @@ use super::items_of;
 use crate::console::{Common, Failure, SHARES, bar, clear_progress, print_json, say};
 use crate::method::{Item, Methods};
 use crate::origin::Provenance;
+use crate::quoted;
 use crate::results::{Effort, Folder};
 use crate::signals;
 use clap::Args;
@@ -66,7 +67,7 @@ impl Reproduce {
             })?;
             if !common.quiet {
                 let word = made.section.verdict.word();
-                say(format_args!("{:<12} {word:<18} {seconds:>6.1} s  {}", item.name, path.display()));
+                say(format_args!("{:<12} {word:<18} {seconds:>6.1} s  {}", item.name, quoted::path(&path)));
             }
             outcomes.push(Outcome {
                 item: item.name,

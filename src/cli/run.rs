@@ -3,6 +3,7 @@
 use crate::console::{Common, Failure, STEPS, bar, clear_progress, print, print_json, say, warn};
 use crate::method::{Clock, Methods, Prepared, prepare, vocabularies};
 use crate::number::significant;
+use crate::quoted;
 use crate::run::{Ending, Existing, Summary, begins, chosen_otherwise, forecast, run};
 use crate::scene::Values;
 use crate::signals;
@@ -105,6 +106,6 @@ fn text(summary: &Summary, folder: &Path) -> String {
     for reason in &summary.left_out {
         text.push_str(&format!("left out: {reason}\n"));
     }
-    text.push_str(&format!("results in {}\n", folder.display()));
+    text.push_str(&format!("results in {}\n", quoted::path(folder)));
     text
 }

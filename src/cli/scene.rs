@@ -5,6 +5,7 @@ use crate::method::programs::Programs;
 use crate::method::{Fact, Methods, Prepared, VectorProgram, load, method};
 use crate::model::machine::MachineModel;
 use crate::model::machines;
+use crate::quoted;
 use crate::report::table::{Cell, Table};
 use crate::report::terminal;
 use crate::run::forecast;
@@ -123,7 +124,7 @@ fn table(name: &str, facts: &[Fact], prepared: &dyn Prepared) -> Table {
     let limits = prepared.step_limits().into_iter().map(|limit| format!("{}: {}", limit.name, limit.why));
     Table {
         name: "scene".into(),
-        title: format!("{name}: nothing forbids it"),
+        title: format!("{}: scene is valid", quoted::path(name.as_ref())),
         columns: ["of the scene", "value"].map(str::to_owned).to_vec(),
         rows: rows.map(|(label, words)| vec![Cell::from(*label), Cell::Text(words.clone())]).collect(),
         notes: chosen.chain(left_out).chain(limits).collect(),

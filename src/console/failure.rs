@@ -52,7 +52,10 @@ pub enum Failure {
     #[error("{0}")]
     Reported(Box<dyn Reported>),
     /// Interrupted or terminated: exit code 130.
-    #[error("interrupted at {moment}; a checkpoint is written, go on with --resume --out {}", folder.display())]
+    #[error(
+        "interrupted at {moment}; a checkpoint is written, go on with --resume --out {}",
+        quoted::path(folder)
+    )]
     Interrupted {
         /// How far the run has come.
         moment: String,
@@ -224,7 +227,7 @@ impl Failure {
             Failure::Reported(error) => return error.remedy(),
             Failure::Threads(_) => "ask for fewer with --threads",
             Failure::Interrupted { folder, .. } => {
-                return Some(format!("go on with --resume --out {}", folder.display()));
+                return Some(format!("go on with --resume --out {}", quoted::path(folder)));
             }
             Failure::Stopped(_) => "repeat the command; a run goes on with --resume",
             Failure::InputOutput { .. } | Failure::StandardOutput(_) => {

@@ -95,12 +95,12 @@ pub fn is_untouched() -> bool {
     !BEGUN.load(Ordering::SeqCst)
 }
 
-/// Writes data to standard output.
+/// Writes data to standard output; what a terminal would obey in the names that it repeats is spelled out.
 ///
 /// # Errors
 /// [`Failure::StandardOutput`], if it takes no more.
 pub fn print(text: &str) -> Result<(), Failure> {
-    write(|| io::stdout().write_all(text.as_bytes()))
+    write(|| io::stdout().write_all(quoted::shown(text).as_bytes()))
 }
 
 /// Writes what the reader of arguments answers, help or version, to standard output.
@@ -121,7 +121,8 @@ pub fn print_json(data: &impl serde::Serialize) -> Result<(), Failure> {
 /// # Errors
 /// If it is nothing that JSON can hold.
 pub fn to_json(data: &impl serde::Serialize) -> Result<String, Failure> {
-    serde_json::to_string_pretty(data).map_err(|cause| Failure::writing("JSON")(cause.into()))
+    let text = serde_json::to_string_pretty(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
+    Ok(quoted::in_json(&text))
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::FileError;
 use super::replace::is_name_of;
+use crate::quoted;
 use crc32fast::Hasher;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
@@ -34,7 +35,7 @@ pub enum GrowingFileError {
     #[error(
         "{} is missing: {expected} bytes of it were written up to the checkpoint; put it back, or begin again with \
          --overwrite",
-        file.display()
+        quoted::path(file)
     )]
     Missing {
         /// The file.
@@ -46,7 +47,7 @@ pub enum GrowingFileError {
     #[error(
         "{} has {found} bytes, but {expected} were written up to the checkpoint; put the missing ones back, or begin \
          again with --overwrite",
-        file.display()
+        quoted::path(file)
     )]
     Short {
         /// The file.
@@ -60,7 +61,7 @@ pub enum GrowingFileError {
     #[error(
         "{} has changed: the {bytes} bytes written up to the checkpoint have the checksum {found:08x}, not \
          {expected:08x}; put it back as it was, or begin again with --overwrite",
-        file.display()
+        quoted::path(file)
     )]
     Changed {
         /// The file.
@@ -73,7 +74,7 @@ pub enum GrowingFileError {
         expected: u32,
     },
     /// A link, or no file at all.
-    #[error("{} is a link or no file; the file itself is expected there", .0.display())]
+    #[error("{} is a link or no file; the file itself is expected there", quoted::path(.0))]
     NoFile(PathBuf),
 }
 

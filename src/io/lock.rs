@@ -2,6 +2,7 @@
 
 use super::FileError;
 use super::replace::{is_name_of, remove_if_there};
+use crate::quoted;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -27,7 +28,7 @@ pub enum LockError {
     /// Another process has it.
     #[error(
         "{} is being written by {holder}: wait until it has ended, or choose another --out",
-        folder.display()
+        quoted::path(folder)
     )]
     Held {
         /// The folder.
@@ -36,7 +37,7 @@ pub enum LockError {
         holder: String,
     },
     /// A file of its name that is none.
-    #[error("{} is no lock file of this program: move it away, or choose another --out", .0.display())]
+    #[error("{} is no lock file of this program: move it away, or choose another --out", quoted::path(.0))]
     Foreign(PathBuf),
     /// The system.
     #[error(transparent)]

@@ -2,6 +2,7 @@
 
 use super::FileError;
 use super::growing_file::{GrowingFile, GrowingFileError, Mark};
+use crate::quoted;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -22,7 +23,7 @@ pub enum TableFileError {
     #[error(transparent)]
     Content(#[from] GrowingFileError),
     /// What is there already has other columns.
-    #[error("{}:1: the columns are `{found}`; this run writes `{expected}`", file.display())]
+    #[error("{}:1: the columns are `{found}`; this run writes `{expected}`", quoted::path(file))]
     Columns {
         /// The file.
         file: PathBuf,
@@ -32,7 +33,7 @@ pub enum TableFileError {
         expected: String,
     },
     /// A row with more or fewer numbers than columns.
-    #[error("{}: a row of {found} numbers for {expected} columns after `step`", file.display())]
+    #[error("{}: a row of {found} numbers for {expected} columns after `step`", quoted::path(file))]
     Width {
         /// The file.
         file: PathBuf,

@@ -12,6 +12,7 @@ pub mod observed;
 mod pairwise;
 mod probe;
 pub mod programs;
+mod restored;
 mod snapshot;
 pub mod throughput;
 mod trials;

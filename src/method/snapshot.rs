@@ -1,5 +1,6 @@
 //! Everything that the future of a simulation depends on, as a checkpoint keeps it.
 
+use super::restored::{find_count, find_counts, find_sum};
 use crate::io::checkpoint::{Column, Counter};
 use std::collections::BTreeMap;
 
@@ -33,31 +34,62 @@ impl Snapshot {
     /// # Errors
     /// A sentence, if it is missing.
     pub fn count(&self, name: &str) -> Result<u64, String> {
-        match self.counters.get(name) {
-            Some(Counter::Count(count)) => Ok(*count),
-            _ => Err(format!("the counter {name} is missing")),
-        }
+        self.count_at_most(name, u64::MAX)
+    }
+
+    /// The count of a name, at most `most`.
+    ///
+    /// # Errors
+    /// A sentence, if it is missing or larger.
+    pub fn count_at_most(&self, name: &str, most: u64) -> Result<u64, String> {
+        find_count(&self.counters, name, most)
     }
 
     /// The sum of a name.
     ///
     /// # Errors
-    /// A sentence, if it is missing.
+    /// A sentence, if it is missing or no finite number.
     pub fn sum(&self, name: &str) -> Result<f64, String> {
+        find_sum(&self.counters, name)
+    }
+
+    /// A time of a name, which may be without end.
+    ///
+    /// # Errors
+    /// A sentence, if it is missing or no number.
+    pub fn time(&self, name: &str) -> Result<f64, String> {
         match self.counters.get(name) {
-            Some(Counter::Sum(sum)) => Ok(*sum),
-            _ => Err(format!("the sum {name} is missing")),
+            Some(Counter::Sum(time)) if !time.is_nan() => Ok(*time),
+            _ => Err(format!("the time {name} is missing, or no number")),
         }
     }
 
-    /// The column of a name, of numbers in double precision, if it has so many.
+    /// A column of times, which may be without end, if it has so many.
     ///
     /// # Errors
-    /// A sentence, if it is missing.
+    /// A sentence, if it is missing or one is no number.
+    pub fn times(&self, name: &str, length: usize) -> Result<&[f64], String> {
+        match self.column(name) {
+            Some(Column::F64(times)) if times.len() == length && !times.iter().any(|time| time.is_nan()) => {
+                Ok(times)
+            }
+            _ => Err(format!("the column {name} is missing, or not of {length} times")),
+        }
+    }
+
+    /// The column of a name, of finite numbers in double precision, if it has so many.
+    ///
+    /// # Errors
+    /// A sentence, if it is missing or one is not finite.
     pub fn numbers(&self, name: &str, length: usize) -> Result<&[f64], String> {
         match self.column(name) {
-            Some(Column::F64(values)) if values.len() == length => Ok(values),
-            _ => Err(format!("the column {name} is missing")),
+            Some(Column::F64(values)) if values.len() == length => {
+                match values.iter().position(|value| !value.is_finite()) {
+                    None => Ok(values),
+                    Some(at) => Err(format!("entry {at} of the column {name} is no finite number")),
+                }
+            }
+            _ => Err(format!("the column {name} is missing, or not of {length} numbers")),
         }
     }
 
@@ -66,10 +98,15 @@ impl Snapshot {
     /// # Errors
     /// A sentence, if it is missing.
     pub fn counts(&self, name: &str, length: usize) -> Result<&[u64], String> {
-        match self.column(name) {
-            Some(Column::U64(values)) if values.len() == length => Ok(values),
-            _ => Err(format!("the column {name} is missing")),
-        }
+        self.counts_at_most(name, length, u64::MAX)
+    }
+
+    /// The same, with none of them above `most`.
+    ///
+    /// # Errors
+    /// A sentence, if it is missing or one is larger.
+    pub fn counts_at_most(&self, name: &str, length: usize, most: u64) -> Result<&[u64], String> {
+        find_counts(&self.columns, name, length, most)
     }
 
     /// The column of a name, of whole numbers of 32 bits, if it has so many.

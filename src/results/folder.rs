@@ -6,10 +6,11 @@
 use super::Made;
 use super::journal::is_journal;
 use crate::console::{Failure, to_json};
-use crate::io::FileError;
 use crate::io::lock::{Lock, LockError, is_lock};
 use crate::io::replace::{is_temporary, listing, remove_if_there, replace, temporary};
+use crate::io::{FileError, regular_file};
 use crate::origin::{Origin, Provenance};
+use crate::quoted;
 use crate::report::figure::{self, Figure, png, svg};
 use crate::report::{Section, csv, html, page};
 use crate::reported::{Class, Reported};
@@ -32,13 +33,16 @@ const HOST: &str = "host";
 const PAGES: [(&str, &str); 2] = [("README.md", page::MARK), ("index.html", html::MARK)];
 /// Where in a page its mark is looked for (bytes from the beginning).
 const START: u64 = 1000;
+/// Longer than any file of an item that is read again (bytes).
+const LONGEST: u64 = 1 << 30;
+
 /// Why results are not written.
 #[derive(Debug, thiserror::Error)]
 pub enum FolderError {
     /// Something else stands there.
     #[error(
         "{} was not written by this command, or not by it alone: it holds {names}; move this away, or choose another --out",
-        folder.display()
+        quoted::path(folder)
     )]
     NotOurs {
         /// The folder.
@@ -47,13 +51,13 @@ pub enum FolderError {
         names: String,
     },
     /// A page of that name that is another's.
-    #[error("{} was not written by this command: move it away, or choose another --out", .0.display())]
+    #[error("{} was not written by this command: move it away, or choose another --out", quoted::path(.0))]
     InTheWay(PathBuf),
     /// Results that are committed would be written over by those of a source that is not.
     #[error(
         "the results in {} are committed, but this program was built from changes that are in no commit\n  help: \
          commit them and build again, or choose another --out",
-        .0.display()
+        quoted::path(.0)
     )]
     Uncommitted(PathBuf),
     /// Another process writes there.
@@ -195,7 +199,7 @@ impl Folder {
         // A picture that is gone leaves a gap in the page, and is there again with the item's next making.
         let drawn = |section: &Section, figure: &Figure| {
             let file = self.path.join(section.folder()).join(format!("{}.svg", figure.name));
-            fs::read_to_string(file).unwrap_or_default()
+            String::from_utf8(regular_file::read(&file, LONGEST).unwrap_or_default()).unwrap_or_default()
         };
         let texts = [page::render(&sections, &left_out), html::render(&sections, &left_out, &drawn)];
         for ((name, mark), text) in PAGES.into_iter().zip(texts) {
@@ -215,13 +219,15 @@ impl Folder {
         else {
             return Ok(Known::Absent);
         };
-        let read = |file: &str| -> Result<String, Failure> {
+        let read = |file: &str| {
             let path = folder.join(file);
-            fs::read_to_string(&path).map_err(Failure::writing(path.display().to_string()))
+            regular_file::read(&path, LONGEST)
+                .map_err(FileError::at(&path, "reading"))
+                .map_err(FolderError::from)
         };
         let (section, provenance) = (read(SECTION)?, read(PROVENANCE)?);
-        let section = serde_json::from_str::<Section>(&section);
-        Ok(match (section, serde_json::from_str::<Provenance>(&provenance)) {
+        let section = serde_json::from_slice::<Section>(&section);
+        Ok(match (section, serde_json::from_slice::<Provenance>(&provenance)) {
             (Ok(section), Ok(provenance)) => {
                 Known::There(Box::new(Section { provenance: Some(provenance), ..section }))
             }
@@ -322,7 +328,7 @@ fn own_files(folder: &Path) -> Result<Option<Vec<String>>, FolderError> {
     let Some(names) = entries(folder)? else { return Ok(None) };
     let list = folder.join(PROVENANCE);
     let listed = match is_file(&list) {
-        true => fs::read(&list).map_err(FileError::at(&list, "reading"))?,
+        true => regular_file::read(&list, LONGEST).map_err(FileError::at(&list, "reading"))?,
         false => vec![],
     };
     let listed = serde_json::from_slice::<Names>(&listed).map_or(vec![], |names| names.files);

@@ -1,32 +1,39 @@
 //! Finished runs of a study, a line each, so that a study that was interrupted goes on where it stopped.
 //!
-//! The first line says whose runs they are: the study, and a digest of its scene and of the program's version. A last line
-//! that was cut off is dropped.
+//! The first line says whose runs they are: the study, and a digest of its scene and of the program's version. Each line after
+//! it has a checksum of the digest, its key and its value. What does not fit is left out, so that it is measured again; a last
+//! line that was cut off too, without a word.
 
-use crate::io::FileError;
+use crate::io::replace::replace;
+use crate::io::{FileError, regular_file};
+use crate::quoted;
 use crate::reported::{Class, FilePlace, Reported};
+use crc32fast::Hasher;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::fs::{self, File, OpenOptions};
-use std::io::{ErrorKind, Write};
+use std::fs::{File, OpenOptions};
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The name of the file.
 pub(super) const NAME: &str = "journal.jsonl";
 /// How the first line begins.
-const MARK: &str = "{\"stripmine journal\":1,";
+const MARK: &str = "{\"stripmine journal\":2,";
+/// Longer than any journal (bytes).
+const LONGEST: u64 = 1 << 30;
 
 /// Why there is no journal.
 #[derive(Debug, thiserror::Error)]
 pub enum JournalError {
     /// The folder holds the runs of something else.
     #[error(
-        "{} holds the runs of {theirs}, not of {ours}: a study goes on only with the scene, the options and the version \
+        "{} holds the runs of {}, not of {ours}: a study goes on only with the scene, the options and the version \
          of the program that it was begun with; choose another --out",
-        file.display()
+        quoted::path(file),
+        quoted::one_line(theirs)
     )]
     Other {
         /// The journal.
@@ -37,7 +44,10 @@ pub enum JournalError {
         ours: String,
     },
     /// A file of that name that is none of ours.
-    #[error("{} is no journal of this program: move it away, or choose another --out", .0.display())]
+    #[error(
+        "{} is no journal of this version of the program: move it away, or choose another --out",
+        quoted::path(.0)
+    )]
     Foreign(PathBuf),
     /// The system.
     #[error(transparent)]
@@ -69,10 +79,51 @@ pub struct Identity {
     pub digest: String,
 }
 
+impl Identity {
+    /// The first line of its journal.
+    fn heading(&self) -> Result<String, serde_json::Error> {
+        Ok(format!(
+            "{MARK}\"of\":{},\"digest\":{}}}\n",
+            serde_json::to_string(&self.of)?,
+            serde_json::to_string(&self.digest)?
+        ))
+    }
+}
+
+/// A finished run.
 #[derive(Serialize, Deserialize)]
 struct Line {
     key: String,
     value: Value,
+}
+
+/// How a line begins; then its checksum in eight hexadecimal digits, and [`BEHIND`].
+const BEFORE: &str = "{\"checksum\":\"";
+/// What stands between the checksum and the text that it is of.
+const BEHIND: &str = "\",";
+
+impl Line {
+    /// As it stands in the journal with this digest.
+    fn text(&self, digest: &str) -> Result<String, serde_json::Error> {
+        let text = serde_json::to_string(self)?;
+        let rest = text.trim_start_matches('{');
+        Ok(format!("{BEFORE}{:08x}{BEHIND}{rest}\n", checksum(digest, rest)))
+    }
+
+    /// A line of the journal with this digest; none if it is not as it was written.
+    fn read(text: &str, digest: &str) -> Option<Line> {
+        let (stated, rest) = text.strip_prefix(BEFORE)?.split_once(BEHIND)?;
+        let is_whole = stated == format!("{:08x}", checksum(digest, rest.strip_suffix('\n')?));
+        serde_json::from_str(text).ok().filter(|_| is_whole)
+    }
+}
+
+/// CRC-32 of a journal's digest and the text of a line behind its checksum.
+fn checksum(digest: &str, text: &str) -> u32 {
+    let mut sum = Hasher::new();
+    sum.update(digest.as_bytes());
+    sum.update(text.as_bytes());
+    sum.finalize()
 }
 
 /// The runs that are finished.
@@ -82,17 +133,23 @@ pub struct Journal {
     /// None where nothing is kept.
     file: Option<Mutex<File>>,
     path: PathBuf,
+    digest: String,
+    changed: Vec<usize>,
 }
 
 /// Whether a folder holds a journal of this program.
 pub(super) fn is_journal(folder: &Path) -> bool {
-    fs::read_to_string(folder.join(NAME)).is_ok_and(|text| text.starts_with(MARK))
+    let mut start = vec![];
+    let read = regular_file::open(&folder.join(NAME))
+        .and_then(|file| file.take(MARK.len() as u64).read_to_end(&mut start));
+    read.is_ok() && start == MARK.as_bytes()
 }
 
 impl Journal {
     /// One that forgets: for studies that are made in one go.
     pub fn none() -> Journal {
-        Journal { known: BTreeMap::new(), file: None, path: PathBuf::new() }
+        let (path, digest) = (PathBuf::new(), String::new());
+        Journal { known: BTreeMap::new(), file: None, path, digest, changed: vec![] }
     }
 
     /// Opens the journal of a folder that is there, or begins one.
@@ -102,44 +159,35 @@ impl Journal {
     pub fn open(folder: &Path, identity: &Identity) -> Result<Journal, JournalError> {
         let path = folder.join(NAME);
         let at = |action| FileError::at(&path, action);
-        let (mut known, mut whole) = (BTreeMap::new(), 0);
-        match fs::read_to_string(&path) {
-            Err(cause) if cause.kind() == ErrorKind::NotFound => {}
-            Err(cause) if cause.kind() == ErrorKind::InvalidData => return Err(JournalError::Foreign(path)),
-            Err(cause) => return Err(at("reading")(cause).into()),
-            Ok(text) if text.is_empty() => {}
-            Ok(text) => {
-                let mut lines = text.split_inclusive('\n');
-                let first = lines.next().unwrap_or_default();
-                if !first.starts_with(MARK) {
-                    return Err(JournalError::Foreign(path));
-                }
-                let theirs: Identity =
-                    serde_json::from_str(first).map_err(|_| JournalError::Foreign(path.clone()))?;
-                if theirs != *identity {
-                    let said = |it: &Identity| format!("{} ({})", it.of, &it.digest.get(..8).unwrap_or("?"));
-                    return Err(JournalError::Other {
-                        theirs: said(&theirs),
-                        ours: said(identity),
-                        file: path,
-                    });
-                }
-                whole = first.len();
-                for line in lines {
-                    let read = serde_json::from_str::<Line>(line).ok().filter(|_| line.ends_with('\n'));
-                    let Some(Line { key, value }) = read else { break };
+        let text = match regular_file::read(&path, LONGEST) {
+            Err(cause) if cause.kind() == ErrorKind::NotFound => String::new(),
+            bytes => String::from_utf8(bytes.map_err(at("reading"))?)
+                .map_err(|_| JournalError::Foreign(path.clone()))?,
+        };
+        let heading = identity.heading().map_err(|cause| at("writing")(cause.into()))?;
+        let mut lines = text.split_inclusive('\n');
+        let first = lines.next().unwrap_or(&heading);
+        if first != heading {
+            return Err(refused(path, first, identity));
+        }
+        let (mut known, mut kept, mut changed) = (BTreeMap::new(), heading, vec![]);
+        for (number, line) in (2..).zip(lines) {
+            match Line::read(line, &identity.digest) {
+                Some(Line { key, value }) => {
                     known.insert(key, value);
-                    whole += line.len();
+                    kept.push_str(line);
                 }
+                // Of the last line a writer that was killed leaves a part.
+                None if line.ends_with('\n') => changed.push(number),
+                None => {}
             }
         }
-        let mut file = OpenOptions::new().append(true).create(true).open(&path).map_err(at("opening"))?;
-        file.set_len(whole as u64).map_err(at("cutting"))?;
-        if whole == 0 {
-            let rest = serde_json::to_string(identity).unwrap_or_default();
-            writeln!(file, "{MARK}{}", &rest[1..]).map_err(at("writing"))?;
+        if kept != text {
+            replace(&path, |out| out.write_all(kept.as_bytes()))?;
         }
-        Ok(Journal { known, file: Some(Mutex::new(file)), path })
+        let file = OpenOptions::new().append(true).open(&path).map_err(at("opening"))?;
+        let digest = identity.digest.clone();
+        Ok(Journal { known, file: Some(Mutex::new(file)), path, digest, changed })
     }
 
     /// How many runs were finished before.
@@ -150,6 +198,22 @@ impl Journal {
     /// Whether none was.
     pub fn is_empty(&self) -> bool {
         self.known.is_empty()
+    }
+
+    /// What was found in lines that are not as they were written: a sentence for each, and for many one for the rest.
+    pub fn notes(&self) -> Vec<String> {
+        const NAMED: usize = 5;
+        let file = quoted::path(&self.path);
+        let one = |line: &usize| {
+            format!(
+                "{file}:{line}: the line is not as it was written; it is left out, and its run is measured again"
+            )
+        };
+        let mut notes: Vec<String> = self.changed.iter().take(NAMED).map(one).collect();
+        if let Some(more) = self.changed.len().checked_sub(NAMED).filter(|&more| more > 0) {
+            notes.push(format!("{file}: {more} more such lines; their runs are measured again"));
+        }
+        notes
     }
 
     /// Whether a run was finished before.
@@ -179,16 +243,26 @@ impl Journal {
     fn keep(&self, key: &str, value: &impl Serialize) -> Result<(), FileError> {
         let Some(file) = &self.file else { return Ok(()) };
         let line = serde_json::to_value(value).map(|value| Line { key: key.to_owned(), value });
-        let text = line.and_then(|line| serde_json::to_string(&line)).map_err(std::io::Error::from);
+        let text = line.and_then(|line| line.text(&self.digest)).map_err(std::io::Error::from);
         let mut file: MutexGuard<'_, File> = file.lock().unwrap_or_else(PoisonError::into_inner);
-        text.and_then(|text| file.write_all((text + "\n").as_bytes()))
-            .map_err(FileError::at(&self.path, "writing"))
+        text.and_then(|text| file.write_all(text.as_bytes())).map_err(FileError::at(&self.path, "writing"))
+    }
+}
+
+/// Why a journal whose first line is another than ours is not gone on with.
+fn refused(file: PathBuf, first: &str, ours: &Identity) -> JournalError {
+    let theirs = serde_json::from_str::<Identity>(first).ok().filter(|_| first.starts_with(MARK));
+    let said = |it: &Identity| format!("{} ({})", it.of, it.digest.chars().take(8).collect::<String>());
+    match theirs {
+        Some(theirs) => JournalError::Other { theirs: said(&theirs), ours: said(ours), file },
+        None => JournalError::Foreign(file),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn identity(digest: &str) -> Identity {
         Identity { of: "a study of a scene".to_owned(), digest: digest.to_owned() }
@@ -221,12 +295,54 @@ mod tests {
         Journal::open(folder.path(), &identity("12345678")).unwrap();
         let other = Journal::open(folder.path(), &identity("87654321")).unwrap_err();
         assert!(matches!(other, JournalError::Other { .. }) && other.class() == Class::Usage, "{other}");
-        for mine in ["mine\n", "{\"stripmine journal\":2}\n"] {
+        for mine in ["mine\n", "{\"stripmine journal\":1}\n"] {
             fs::write(folder.path().join(NAME), mine).unwrap();
             let foreign = Journal::open(folder.path(), &identity("12345678")).unwrap_err();
             assert!(matches!(foreign, JournalError::Foreign(_)), "{foreign}");
             assert!(!is_journal(folder.path()));
             assert_eq!(fs::read_to_string(folder.path().join(NAME)).unwrap(), mine);
         }
+    }
+
+    /// Every part of a line is held by its checksum, and a line of another journal is none of this one.
+    #[test]
+    fn lines_that_were_changed_are_measured_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(NAME);
+        let first = Journal::open(folder.path(), &identity("12345678")).unwrap();
+        (run(&first, "a", 1), run(&first, "b", 2));
+        drop(first);
+        let text = fs::read_to_string(&path).unwrap();
+        let changes = [("\"a\"", "\"c\""), (":1}", ":7}"), (":1}", ":\"x\"}")];
+        for (old, new) in changes {
+            let at = text.find("\"key\"").unwrap();
+            assert!(text[at..].contains(old), "{text}");
+            fs::write(&path, format!("{}{}", &text[..at], text[at..].replacen(old, new, 1))).unwrap();
+            let second = Journal::open(folder.path(), &identity("12345678")).unwrap();
+            let notes = second.notes();
+            assert!(notes.len() == 1 && notes[0].contains("journal.jsonl:2: "), "{notes:?}");
+            assert!(notes[0].contains("measured again"), "{notes:?}");
+            assert_eq!((run(&second, "a", 5), run(&second, "b", 6), second.len()), (5, 2, 1));
+            drop(second);
+            let third = Journal::open(folder.path(), &identity("12345678")).unwrap();
+            assert_eq!((run(&third, "a", 8), third.notes().len()), (5, 0));
+        }
+        let other = tempfile::tempdir().unwrap();
+        drop(Journal::open(other.path(), &identity("87654321")).unwrap());
+        let heading = fs::read_to_string(other.path().join(NAME)).unwrap();
+        let line = text.lines().nth(1).unwrap();
+        fs::write(other.path().join(NAME), format!("{heading}{line}\n")).unwrap();
+        assert_eq!(run(&Journal::open(other.path(), &identity("87654321")).unwrap(), "a", 5), 5);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_pipe_is_no_journal() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join(NAME);
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        assert!(!is_journal(folder.path()));
+        let refused = Journal::open(folder.path(), &identity("12345678")).unwrap_err();
+        assert!(refused.to_string().contains("it is a pipe"), "{refused}");
     }
 }

@@ -2,9 +2,11 @@
 
 mod folder;
 mod journal;
+mod own_files;
 
 pub use folder::{Folder, FolderError};
 pub use journal::{Identity, Journal, JournalError};
+pub(crate) use own_files::OwnFiles;
 
 use crate::console::Failure;
 use crate::report::Section;

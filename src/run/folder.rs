@@ -9,6 +9,7 @@ use crate::io::FileError;
 use crate::io::checkpoint::NAME as CHECKPOINT;
 use crate::io::lock::{Lock, LockError, is_lock};
 use crate::io::replace::{is_temporary, listing, remove_if_there, replace};
+use crate::quoted;
 use crate::reported::Class;
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -58,7 +59,7 @@ pub enum FolderError {
         "{} is no folder of a run (it has no {LIST}), and not empty: it holds {names}; a run writes only into a folder \
          that is new, empty or its own: choose another --out (a run of an earlier version, which left no {LIST}, goes on \
          only with that version)",
-        folder.display()
+        quoted::path(folder)
     )]
     NotOurs {
         /// The folder.
@@ -67,10 +68,10 @@ pub enum FolderError {
         names: String,
     },
     /// It holds the run, but also a file that the run did not write and now would.
-    #[error("{} was not written by this run: move it away, or choose another --out", .0.display())]
+    #[error("{} was not written by this run: move it away, or choose another --out", quoted::path(.0))]
     InTheWay(PathBuf),
     /// The list of the run's files says what it cannot say.
-    #[error("{}:{line}: expected {expected}, found `{found}`", file.display())]
+    #[error("{}:{line}: expected {expected}, found `{found}`", quoted::path(file))]
     List {
         /// The list.
         file: PathBuf,

@@ -19,6 +19,7 @@ use crate::io::checkpoint::{CheckpointError, WriteError};
 use crate::io::growing_file::GrowingFileError;
 use crate::io::table_file::TableFileError;
 use crate::method::{Clock, Failure, Prepared, Purpose, Quantity, Until};
+use crate::quoted;
 use crate::reported::{Class, FilePlace, Reported};
 use crate::scene::SceneErrors;
 use crate::signals;
@@ -48,7 +49,7 @@ pub enum RunError {
     /// The folder holds a run.
     #[error(
         "{} holds a run already: add --resume to go on with it, --overwrite to lose it, or choose another --out",
-        .0.display()
+        quoted::path(.0)
     )]
     Exists(PathBuf),
     /// The folder is another's, or another process writes there.
@@ -57,7 +58,7 @@ pub enum RunError {
     /// More is done than asked for.
     #[error(
         "the run in {} has come to {done} already, and {asked} is asked for: ask for {done} or more",
-        folder.display()
+        quoted::path(folder)
     )]
     FewerSteps {
         /// The folder.
@@ -70,7 +71,7 @@ pub enum RunError {
     /// The discs at the start are not those of the run.
     #[error(
         "{} was begun with other discs than the scene now has at its start ({file}): digest {theirs} then, {ours} now; give the start back its contents, or begin again in another folder",
-        folder.display()
+        quoted::path(folder)
     )]
     OtherDiscs {
         /// The folder.
@@ -85,7 +86,7 @@ pub enum RunError {
     /// The program is not the one of the run.
     #[error(
         "{} was last written by {theirs}; this is {ours}, which does not promise the same bits: go on with that one, or with this one nevertheless by --other-version",
-        folder.display()
+        quoted::path(folder)
     )]
     OtherVersion {
         /// The folder.
@@ -99,7 +100,7 @@ pub enum RunError {
     #[error(
         "{} was run with another scene; its scene.toml says `{theirs}`, the scene given `{ours}` (only [run] and [output] may \
          change on resumption)",
-        folder.display()
+        quoted::path(folder)
     )]
     OtherScene {
         /// The folder.
@@ -116,7 +117,7 @@ pub enum RunError {
     #[error(
         "{}\nthe state of that step is the last frame of {}\n  help: {}",
         failure.what(),
-        snapshot.display(),
+        quoted::path(snapshot),
         failure.remedy
     )]
     Physics {
@@ -132,7 +133,7 @@ pub enum RunError {
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
     /// A checkpoint of another program or scene.
-    #[error("the checkpoint {}: {reason}", file.display())]
+    #[error("the checkpoint {}: {reason}", quoted::path(file))]
     Foreign {
         /// The checkpoint.
         file: PathBuf,

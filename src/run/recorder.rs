@@ -8,15 +8,18 @@ use crate::domain::Domain;
 use crate::io::checkpoint::{Checkpoint, Counter, Latest, NAME, read_latest};
 use crate::io::dcd::Positions;
 use crate::io::extxyz::Frame;
-use crate::io::{FileError, lammps};
+use crate::io::{FileError, lammps, regular_file};
 use crate::method::{
     Clock, Every, Failure, FailureKind, Prepared, Quantity, Schedule, Simulation, Snapshot, Until,
 };
+use crate::quoted;
 use crate::scene::Output;
-use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+
+/// Longer than any scene (bytes).
+const LONGEST_SCENE: u64 = 64 << 20;
 
 /// The counter of events in a checkpoint.
 const EVENT_COUNT: &str = "events";
@@ -60,7 +63,7 @@ impl Recorder {
         if !folder.is_locked() {
             notes.push(format!(
                 "{}: this file system has no locks; see that no second process writes there",
-                path.display()
+                quoted::path(path)
             ));
         }
         match existing {
@@ -150,7 +153,7 @@ impl Recorder {
         if latest.file != newest {
             notes.push(format!(
                 "{} was missing: gone on from the older checkpoint, of {clock}",
-                newest.display()
+                quoted::path(&newest)
             ));
         }
         let asked = prepared.schedule().until;
@@ -369,8 +372,8 @@ fn on_request(prepared: &dyn Prepared) -> Vec<&'static str> {
 /// Refuses another scene than that of a run which has no checkpoint yet.
 fn begun_with(folder: &RunFolder, scene: &str) -> Result<(), RunError> {
     let path = folder.file(SCENE);
-    match fs::read_to_string(&path) {
-        Ok(theirs) => same_scene(folder.path(), &theirs, scene),
+    match regular_file::read(&path, LONGEST_SCENE) {
+        Ok(theirs) => same_scene(folder.path(), &String::from_utf8_lossy(&theirs), scene),
         Err(cause) if cause.kind() == ErrorKind::NotFound => Ok(()),
         Err(cause) => Err(FileError::at(&path, "reading")(cause).into()),
     }

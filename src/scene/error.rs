@@ -1,5 +1,6 @@
 //! What can be wrong with a scene, and where.
 
+use crate::number::counted;
 use crate::quoted;
 use serde::Serialize;
 
@@ -138,7 +139,10 @@ impl Mistakes {
         let Err(SceneErrors(mut errors)) = SceneErrors::none_of(self.named) else { return Ok(()) };
         if self.more > 0 {
             let spot = Spot { file: file.to_owned(), place: None };
-            errors.push(spot.error(Reason::More, format!("{} more mistakes, not named", self.more)));
+            errors.push(spot.error(
+                Reason::More,
+                format!("{}, not named", counted(self.more, "more mistake", "more mistakes")),
+            ));
         }
         Err(SceneErrors(errors))
     }

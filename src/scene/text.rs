@@ -273,13 +273,20 @@ impl Source<'_> {
         let in_section = || self.keys.section(section).map(|key| key.name);
         let place =
             if section.is_empty() { "at the top of the file".to_owned() } else { format!("in [{section}]") };
+        let place =
+            if section.is_empty() && self.lines.is_none() { "without a section".to_owned() } else { place };
         let mut error = self
             .spot(name.span().start)
             .error(Reason::Unknown, format!("unknown key `{}` {place}", quoted(name.get_ref())));
         let elsewhere = self.keys.keys().find(|key| key.name == name.get_ref());
         let other_method =
             self.methods.iter().find(|method| method.keys.key(section, name.get_ref()).is_some());
-        if let Some(key) = elsewhere {
+        let by_name = self.full_names(name.get_ref());
+        if self.lines.is_none() && !by_name.is_empty() {
+            let paths: Vec<String> = by_name.iter().map(|key| format!("`{}`", key.path())).collect();
+            error = error.advising(format!("did you mean {}?", paths.join(" or ")));
+            values.faulty.extend(by_name.iter().map(|key| key.id()));
+        } else if let Some(key) = elsewhere {
             let home = match key.section {
                 "" => "at the top of the file".to_owned(),
                 section => format!("in [{section}]"),
@@ -296,6 +303,15 @@ impl Source<'_> {
             error = error.expecting(in_section().collect::<Vec<_>>().join(", "));
         }
         values.errors.push(error);
+    }
+
+    /// The keys of the method that are called so, in whichever section, or, where there are none, as nearly so as any.
+    fn full_names(&self, name: &str) -> Vec<&'static Key> {
+        let called = |name: &str| self.keys.keys().filter(|key| key.name == name).collect::<Vec<_>>();
+        match called(name) {
+            exact if !exact.is_empty() => exact,
+            _ => nearest(name, self.keys.keys().map(|key| key.name)).map_or(vec![], called),
+        }
     }
 
     fn fault(&self, key: &Key, fault: &Fault) -> SceneError {

@@ -80,11 +80,11 @@ def read_frames(path):
         while count := file.readline():
             comment = file.readline()
             keys = {key: quoted or bare for key, quoted, bare in re.findall(r'(\w+)=(?:"([^"]*)"|(\S+))', comment)}
-            properties = "species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3"
+            properties = "species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3:masses:R:1:momenta:R:3"
             if keys["Properties"] != properties:
                 raise Wrong(f"{path.name}: Properties={keys['Properties']}")
             rows = sorted((file.readline().split() for _ in range(int(count))), key=lambda row: int(row[4]))
-            if len({row[4] for row in rows}) != int(count) or any(len(row) != 13 for row in rows):
+            if len({row[4] for row in rows}) != int(count) or any(len(row) != 17 for row in rows):
                 raise Wrong(f"{path.name}: ids that are not unique, or rows that are not whole")
             numbers = [[float(field) for field in row[1:]] for row in rows]
             lattice = [float(number) for number in keys["Lattice"].split()]
@@ -199,7 +199,9 @@ def with_ase(run):
             for name in ("id", "radius", "mass", "omega"):
                 same(name, atoms.arrays[name], columns[name])
             same("position", atoms.positions, columns["position"])
-            same("velocity", atoms.arrays["velo"], columns["velocity"])
+            same("masses", atoms.get_masses(), columns["mass"])
+            # It has velocities from momenta, which round once.
+            same("velocity", atoms.get_velocities(), columns["velocity"], CONVERTED)
             same("box", atoms.cell.diagonal(), frame.sides)
             same("pbc", atoms.pbc, frame.periodic)
             same("Origin", atoms.info["Origin"], frame.origin)
@@ -293,7 +295,15 @@ def with_mdanalysis(run):
             same("box", now.dimensions[:3], frame.sides, SINGLE)
         return frames_are(run, len(universe.trajectory))
 
-    found = [("trajectory.xyz", trajectory), ("trajectory.dcd", positions)]
+    def with_box(path):
+        # Its reader of XYZ knows no box: names come from there, places and the box from the DCD file beside it.
+        universe = MDAnalysis.Universe(str(run.path("trajectory.xyz")), str(path), format="DCD", convert_units=False)
+        same("species", sorted(universe.atoms.names), sorted(run.frames[0].columns["species"]))
+        for now, frame in zip(universe.trajectory, run.frames):
+            same("box", now.dimensions[:3], frame.sides, SINGLE)
+        return positions(path)
+
+    found = [("trajectory.xyz", trajectory), ("trajectory.dcd", with_box)]
     return [(run.path(name), check) for name, check in found] + [(run.dump(), dump), (run.data(), data)]
 
 

@@ -8,6 +8,7 @@ mod allocations;
 mod mutation;
 mod readers;
 mod runs;
+mod snapshots;
 
 use mutation::Mutation;
 use proptest::strategy::Strategy;

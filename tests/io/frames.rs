@@ -31,11 +31,42 @@ fn bits(frame: &Frame) -> Vec<u64> {
 fn a_frame_is_written_as_promised() {
     let expected = "2
 Lattice=\"3.3333333333333335 0.0 0.0 0.0 8.0 0.0 0.0 0.0 1.0\" Origin=\"-1.5 0.1 -0.5\" pbc=\"T F F\" \
-Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3 Time=0.4 step=4 seed=18446744073709551615
-Si 0.30000000000000004 -0.0 0.0 7 5e-324 -1.7976931348623157e+308 0.0 0.5 1e-7 0.0 0.0 -0.3333333333333333
-W 1e+300 2.0 0.0 4294967295 5e-324 -1.7976931348623157e+308 0.0 0.5 1e+16 0.0 0.0 -0.3333333333333333
+Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3:masses:R:1:momenta:R:3 Time=0.4 step=4 seed=18446744073709551615
+Si 0.30000000000000004 -0.0 0.0 7 5e-324 -1.7976931348623157e+308 0.0 0.5 1e-7 0.0 0.0 -0.3333333333333333 1e-7 0.0 -1.7976931348623156e+301 0.0
+W 1e+300 2.0 0.0 4294967295 5e-324 -1.7976931348623157e+308 0.0 0.5 1e+16 0.0 0.0 -0.3333333333333333 1e+16 4.940656458412465e-308 -inf 0.0
 ";
     assert_eq!(text(&frame(4)), expected);
+}
+
+/// Each of the columns under the name that a program looks for: `pos` second for MDAnalysis, `velo` and `mass` for OVITO, `masses`
+/// and `momenta`, their product, for ASE. What was written before there were the latter is still read.
+#[test]
+fn every_program_finds_its_columns() {
+    let written = text(&frame(3));
+    let head = written.lines().nth(1).unwrap();
+    let properties = head.split("Properties=").nth(1).unwrap().split(' ').next().unwrap();
+    let parts: Vec<&str> = properties.split(':').collect();
+    let names: Vec<&str> = parts.chunks(3).map(|column| column[0]).collect();
+    assert_eq!(names, ["species", "pos", "id", "velo", "radius", "mass", "omega", "masses", "momenta"]);
+    let fields: usize = parts.chunks(3).map(|column| column[2].parse::<usize>().unwrap()).sum();
+    for row in written.lines().skip(2) {
+        let row: Vec<&str> = row.split(' ').collect();
+        assert_eq!(row.len(), fields);
+        let number = |at: usize| row[at].parse::<f64>().unwrap();
+        assert_eq!(row[9], row[13], "masses are the mass");
+        (0..3).for_each(|axis| assert_eq!(number(14 + axis), number(9) * number(5 + axis)));
+    }
+    let cut = |row: &str| row.split(' ').take(13).collect::<Vec<_>>().join(" ");
+    let before: Vec<String> = written
+        .lines()
+        .enumerate()
+        .map(|(at, line)| match at {
+            0 => line.to_owned(),
+            1 => line.replace(":masses:R:1:momenta:R:3", ""),
+            _ => cut(line),
+        })
+        .collect();
+    assert_eq!(frames(&before.join("\n")).unwrap(), frames(&written).unwrap());
 }
 
 #[test]

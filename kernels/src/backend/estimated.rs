@@ -136,12 +136,12 @@ impl<S: Simd, T: Estimates, const RAW: bool> Registers for Estimating<S, T, RAW>
     }
     #[inline(always)]
     unsafe fn load(self, from: *const T) -> Self::V {
-        // SAFETY: the caller promises LANES elements.
+        // SAFETY: the caller promises LANES numbers, and the register inside has as many lanes.
         Estimated(self.1, unsafe { self.0.load(from) })
     }
     #[inline(always)]
     unsafe fn store(self, to: *mut T, value: Self::V) {
-        // SAFETY: the caller promises LANES elements that may be written.
+        // SAFETY: the caller promises room for LANES numbers, and the register inside has as many lanes.
         unsafe { self.0.store(to, value.1) };
     }
     #[inline(always)]

@@ -310,12 +310,14 @@ impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
     }
     #[inline(always)]
     unsafe fn load(self, from: *const T) -> Self::V {
-        // SAFETY: the caller promises LANES elements; a register is plain data of that size.
+        // SAFETY: the caller promises LANES initialised numbers; a register is those and no more, of any bits, and is
+        // read without its own alignment.
         Register(self.simd, unsafe { from.cast::<T::Register<S>>().read_unaligned() })
     }
     #[inline(always)]
     unsafe fn store(self, to: *mut T, value: Self::V) {
-        // SAFETY: the caller promises LANES writable elements; a register is plain data of that size.
+        // SAFETY: the caller promises room for LANES numbers; a register is those and no more, and is written without its
+        // own alignment.
         unsafe { to.cast::<T::Register<S>>().write_unaligned(value.1) };
     }
     #[inline(always)]

@@ -48,12 +48,14 @@ pub trait Registers: Copy + 'static {
     /// Loads `LANES` consecutive numbers.
     ///
     /// # Safety
-    /// They exist.
+    /// `from` points to as many initialised numbers of one allocation, is aligned for one of them, and nothing writes them
+    /// meanwhile.
     unsafe fn load(self, from: *const Self::Lane) -> Self::V;
     /// Stores `LANES` consecutive numbers.
     ///
     /// # Safety
-    /// They exist and may be written.
+    /// `to` points to room for as many numbers in one allocation, is aligned for one of them, and nothing else reads or
+    /// writes there meanwhile.
     unsafe fn store(self, to: *mut Self::Lane, value: Self::V);
     /// Whether no lane holds.
     fn none(self, predicate: <Self::V as Vector>::Predicate) -> bool;

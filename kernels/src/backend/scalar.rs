@@ -20,12 +20,12 @@ impl<T: Element> Registers for Scalar<T> {
     }
     #[inline(always)]
     unsafe fn load(self, from: *const T) -> T {
-        // SAFETY: the caller promises LANES = 1 number there.
+        // SAFETY: the caller promises LANES = 1 initialised number, aligned; a copy of it is read.
         unsafe { *from }
     }
     #[inline(always)]
     unsafe fn store(self, to: *mut T, value: T) {
-        // SAFETY: the caller promises LANES = 1 number there that may be written.
+        // SAFETY: the caller promises aligned room for LANES = 1 number, which has no destructor.
         unsafe { *to = value }
     }
     #[inline(always)]

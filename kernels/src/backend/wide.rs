@@ -149,12 +149,14 @@ impl<T: WideElement> Registers for Wide<T> {
     }
     #[inline(always)]
     unsafe fn load(self, from: *const T) -> Self::V {
-        // SAFETY: the caller promises LANES elements; a register is plain data of that size.
+        // SAFETY: the caller promises LANES initialised numbers; a register is those and no more, of any bits, and is
+        // read without its own alignment.
         unsafe { from.cast::<T::Register>().read_unaligned() }
     }
     #[inline(always)]
     unsafe fn store(self, to: *mut T, value: Self::V) {
-        // SAFETY: the caller promises LANES writable elements; a register is plain data of that size.
+        // SAFETY: the caller promises room for LANES numbers; a register is those and no more, and is written without its
+        // own alignment.
         unsafe { to.cast::<T::Register>().write_unaligned(value) };
     }
     #[inline(always)]

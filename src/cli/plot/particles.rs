@@ -1,6 +1,7 @@
 //! Pictures of the particles of a run: its last state, and, where the box is long, the density along it over time.
 
 use crate::io::extxyz::{Frame, Frames, ReadError};
+use crate::io::regular_file;
 use crate::particles::Kind;
 use crate::report::figure::{Axis, Drawing, Figure, Guide, Map, Picture, Shape, Tint};
 use std::path::Path;
@@ -32,7 +33,8 @@ pub fn pictures(run: &Path) -> Result<Vec<Figure>, ReadError> {
 
 /// Which way gravity pulls in a run.
 fn gravity(run: &Path) -> Option<[f64; 2]> {
-    let scene: toml::Table = std::fs::read_to_string(run.join("scene.toml")).ok()?.parse().ok()?;
+    let scene: toml::Table =
+        String::from_utf8(regular_file::read(&run.join("scene.toml"), 1 << 24).ok()?).ok()?.parse().ok()?;
     let pair = scene.get("domain")?.get("gravity")?.as_array()?;
     let number = |value: &toml::Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
     let [x, y] = [pair.first().and_then(number)?, pair.get(1).and_then(number)?];

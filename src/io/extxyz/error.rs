@@ -1,5 +1,6 @@
 //! What can be wrong with an extended XYZ file, and where.
 
+use crate::number::counted;
 use crate::quoted::{self, quoted};
 use std::fmt;
 use std::io;
@@ -261,7 +262,7 @@ fn listing(error: &ReadError) -> String {
     let file = quoted::path(error.file.as_ref());
     let mut lines: Vec<String> = error.mistakes.iter().map(|mistake| format!("{file}:{mistake}")).collect();
     if error.more > 0 {
-        lines.push(format!("{file}: {} more mistakes", error.more));
+        lines.push(format!("{file}: {}", counted(error.more, "more mistake", "more mistakes")));
     }
     lines.join("\n")
 }

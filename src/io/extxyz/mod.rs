@@ -5,7 +5,7 @@
 //! ```text
 //! 1
 //! Lattice="9.0 0.0 0.0 0.0 8.0 0.0 0.0 0.0 1.0" Origin="0.0 0.0 -0.5" pbc="T F F" Properties=… Time=0.5 step=9
-//! Si 0.5 0.5 0.0 1 0.0 -0.1 0.0 0.5 1.0 0.0 0.0 0.25
+//! Si 0.5 0.5 0.0 1 0.0 -0.1 0.0 0.5 2.0 0.0 0.0 0.25 2.0 0.0 -0.2 0.0
 //! ```
 //!
 //! Species `Si` is a grain, `W` a wall disc. z is 0; the angular velocity stands in the z component of `omega`.
@@ -23,8 +23,11 @@ pub use writer::write;
 
 use crate::particles::Particles;
 
-/// The columns of a frame as written.
+/// The columns of a frame that are read again.
 pub const PROPERTIES: &str = "species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
+
+/// The columns behind them: what ASE knows of masses and velocities, which it has from momenta. OVITO knows `mass` and `velo`.
+pub const OF_ASE: &str = "masses:R:1:momenta:R:3";
 
 /// Extent of the box in z (length), of no meaning in the plane: from −1/2 to 1/2, as LAMMPS wants it for two
 /// dimensions.

@@ -1,6 +1,6 @@
 //! Writing a frame.
 
-use super::{DEPTH, Frame, PROPERTIES};
+use super::{DEPTH, Frame, OF_ASE, PROPERTIES};
 use crate::particles::Kind;
 use std::io::{self, Write};
 
@@ -25,7 +25,7 @@ pub fn write(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
     {
         write!(out, "pbc=\"{px} {py} F\" ")?;
     }
-    write!(out, "Properties={PROPERTIES} Time={time:?} step={step}")?;
+    write!(out, "Properties={PROPERTIES}:{OF_ASE} Time={time:?} step={step}")?;
     if let Some(seed) = seed {
         write!(out, " seed={seed}")?;
     }
@@ -41,6 +41,8 @@ pub fn write(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
         row.word(&disc.id);
         row.numbers(disc.velocity);
         row.numbers([disc.radius, disc.mass, 0.0, 0.0, disc.omega]);
+        row.numbers([disc.mass]);
+        row.numbers(disc.velocity.map(|v| disc.mass * v));
         row.text.push('\n');
         out.write_all(row.text.as_bytes())?;
     }

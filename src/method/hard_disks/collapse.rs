@@ -74,8 +74,8 @@ impl Watch {
     /// A sentence, if it was not kept.
     pub fn restore(&mut self, kept: &Snapshot) -> Result<(), String> {
         self.events = kept.count("watch.events")?;
-        self.begun = kept.sum("watch.begun")?;
-        self.crossing = kept.sum("watch.crossing")?;
+        self.begun = kept.time("watch.begun")?;
+        self.crossing = kept.time("watch.crossing")?;
         self.renewed_after = kept.count("watch.renewed_after")?;
         self.thick = kept.count("watch.thick")?;
         self.involved = kept.codes(INVOLVED, kept.count("watch.involved_count")? as usize)?.to_vec();

@@ -18,6 +18,7 @@ mod oracle;
 mod prepared;
 mod presets;
 mod reference;
+mod restored;
 mod scene;
 mod sections;
 mod simulation;

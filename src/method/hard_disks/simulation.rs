@@ -9,6 +9,7 @@ use super::fast::Fast;
 use super::idle::never;
 use super::prepared::Checked;
 use super::reference;
+use super::restored::sound;
 use crate::io::checkpoint::Column;
 use crate::method::observed::place;
 use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
@@ -347,16 +348,19 @@ impl Simulation for Running {
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
+        clock.of_events()?;
         let mut discs: Vec<Disc> = self.discs().copied().collect();
         for (name, of) in FIELDS {
             let values = snapshot.numbers(name, discs.len())?;
             discs.iter_mut().zip(values).for_each(|(disc, &value)| *of(disc) = value);
         }
-        let events = snapshot.counts("events", discs.len())?;
+        let events = snapshot.counts_at_most("events", discs.len(), clock.events)?;
         discs.iter_mut().zip(events).for_each(|(disc, &count)| disc.events = count);
+        sound(&self.arena, &self.particles, &discs, &clock)?;
+        let collisions = snapshot.count_at_most("collisions", clock.events)?;
         self.totals = Totals {
-            collisions: snapshot.count("collisions")?,
-            made_elastic: snapshot.count("made_elastic")?,
+            collisions,
+            made_elastic: snapshot.count_at_most("made_elastic", collisions)?,
             virial: snapshot.sum("virial")?,
         };
         self.watch.restore(&snapshot)?;

@@ -1,6 +1,8 @@
 //! Particles that were thrown out of the box: who, when, where.
 
 use crate::io::checkpoint::Column;
+use crate::method::restored::find_counts;
+use std::collections::BTreeSet;
 
 /// The columns of `events.csv`.
 pub(super) const COLUMNS: &str = "loss,time,particle,step,x,y";
@@ -52,20 +54,25 @@ impl Losses {
         [(NAMES[0].to_owned(), Column::U64(ids)), (NAMES[1].to_owned(), Column::U64(steps))]
     }
 
-    /// Takes up what [`columns`](Self::columns) gave.
+    /// Takes up what [`columns`](Self::columns) gave after so many steps of particles of these ids.
     ///
     /// # Errors
-    /// A sentence, if it is not there.
-    pub(super) fn take_up(&mut self, columns: &[(String, Column)]) -> Result<(), String> {
-        let find = |name: &str| match columns.iter().find(|(there, _)| there == name) {
-            Some((_, Column::U64(values))) => Ok(values.clone()),
-            _ => Err(format!("the column {name} is missing")),
-        };
-        let (ids, steps) = (find(NAMES[0])?, find(NAMES[1])?);
-        if ids.len() != steps.len() || ids.iter().any(|&id| id > u32::MAX.into()) {
-            return Err(format!("the columns {} and {} do not belong together", NAMES[0], NAMES[1]));
+    /// A sentence, if it is not there, or of other particles or later steps.
+    pub(super) fn take_up(
+        &mut self,
+        steps: u64,
+        there: &BTreeSet<u32>,
+        columns: &[(String, Column)],
+    ) -> Result<(), String> {
+        let count = columns.iter().find(|(name, _)| name == NAMES[0]).map_or(0, |(_, column)| column.len());
+        let ids = find_counts(columns, NAMES[0], count, u32::MAX.into())?;
+        let steps = find_counts(columns, NAMES[1], count, steps)?;
+        let ids: Vec<u32> = ids.iter().map(|&id| id as u32).collect();
+        let lost: BTreeSet<u32> = ids.iter().copied().collect();
+        if lost.len() < count || !lost.is_subset(there) || count > 0 && lost.len() == there.len() {
+            return Err(format!("the column {} holds what are no particles, or one twice, or all", NAMES[0]));
         }
-        self.all = ids.into_iter().map(|id| id as u32).zip(steps).collect();
+        self.all = ids.into_iter().zip(steps.iter().copied()).collect();
         Ok(())
     }
 }

@@ -237,12 +237,14 @@ impl Simulation for Running {
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
+        clock.of_steps(self.checked.scene.dt)?;
         for (name, sum) in OF_PAIRS.into_iter().zip(&mut self.of_pairs) {
             *sum = snapshot.sum(name)?;
         }
         let made = if self.stepper.lists().is_some() { snapshot.count(LISTS_MADE)? } else { 0 };
         let columns = snapshot.columns;
-        self.losses.take_up(&columns)?;
+        let ids: BTreeSet<u32> = self.start.all().iter().map(|particle| particle.id).collect();
+        self.losses.take_up(clock.steps, &ids, &columns)?;
         let lost: BTreeSet<u32> = self.losses.ids().collect();
         if !lost.is_empty() {
             self.without(&|_, particle| lost.contains(&particle.id))?;

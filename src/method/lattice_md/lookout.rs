@@ -68,10 +68,12 @@ impl Lookout {
     /// A sentence, if it is not there.
     pub(super) fn restore(&mut self, counters: &BTreeMap<String, Counter>) -> Result<(), String> {
         for (name, speed) in COUNTERS.into_iter().zip(&mut self.typical) {
-            let Some(Counter::Sum(value)) = counters.get(name) else {
-                return Err(format!("the counter {name} is missing"));
-            };
-            *speed = *value;
+            match counters.get(name) {
+                // Infinite is the slowest where nothing has moved.
+                Some(Counter::Sum(value)) if *value >= 0.0 => *speed = *value,
+                Some(Counter::Sum(value)) => return Err(format!("the sum {name} is {value}, no speed")),
+                _ => return Err(format!("the sum {name} is missing")),
+            }
         }
         Ok(())
     }

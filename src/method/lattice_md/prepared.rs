@@ -316,11 +316,14 @@ impl Simulation for Running {
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
+        clock.of_steps(self.model.dt)?;
         let totals = Totals::from_entries(|name| match snapshot.counters.get(name)? {
             Counter::Count(count) => Some(Total::Count(*count)),
             Counter::Sum(sum) => Some(Total::Sum(*sum)),
         });
+        let discs = self.discs[0] + self.discs[1];
         let totals = totals.map_err(|name| format!("the total {name} is missing"))?;
+        totals.are_of(clock.steps, discs as u64)?;
         if let Some(lookout) = &mut self.lookout {
             lookout.restore(&snapshot.counters)?;
         }

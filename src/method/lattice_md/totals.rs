@@ -71,6 +71,25 @@ define_entries! {
 }
 
 impl Totals {
+    /// That so many steps of so many discs can have come to them.
+    ///
+    /// # Errors
+    /// A sentence that names the first that cannot be.
+    pub(super) fn are_of(&self, steps: u64, discs: u64) -> Result<(), String> {
+        // The start is looked at too.
+        let most = (steps + 1).saturating_mul(discs);
+        let is_right = |total: Total| match total {
+            Total::Count(count) => count <= most,
+            Total::Sum(sum) => sum.is_finite(),
+        };
+        match self.entries().into_iter().find(|(_, total)| !is_right(*total)) {
+            None => Ok(()),
+            Some((name, total)) => Err(format!(
+                "the total {name} is {total:?}, which {steps} steps of {discs} discs do not come to"
+            )),
+        }
+    }
+
     /// At the start, where contacts and walls have these powers (energy/time).
     pub(super) fn starting_with(power: f64, wall_power: f64) -> Totals {
         Totals { power, wall_power, ..Totals::default() }

@@ -185,6 +185,7 @@ impl Simulation for Running {
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
+        clock.of_steps(self.dt)?;
         let count = self.bodies.len();
         let find = |name: &str| snapshot.numbers(name, count);
         let (energy, evaluations) = (snapshot.sum("energy")?, snapshot.count(EVALUATIONS)?);
@@ -192,11 +193,13 @@ impl Simulation for Running {
         for (name, column) in COLUMNS.into_iter().zip(state) {
             column[..count].copy_from_slice(find(name)?);
         }
+        // Before the first step nothing is carried.
+        let orders = if clock.steps == 0 { 0 } else { self.scheme.carries() };
         let mut carried = vec![];
-        for order in 0.. {
-            let along = |axis: u8| find(&format!("carried.{order}.{axis}")).map(<[f64]>::to_vec);
-            let Ok(x) = along(0) else { break };
-            carried.push([x, along(1)?, along(2)?]);
+        for order in 0..orders {
+            let [x, y, z] =
+                [0, 1, 2].map(|axis| find(&format!("carried.{order}.{axis}")).map(<[f64]>::to_vec));
+            carried.push([x?, y?, z?]);
         }
         self.scheme.take_up(&self.bodies, carried);
         self.field.get_mut().evaluations = evaluations;

@@ -1,7 +1,8 @@
 //! Periods that discs have crossed: what is lost when a position is wrapped into the box.
 
-use super::{find_column, real_column};
+use super::real_column;
 use crate::io::checkpoint::Column;
+use crate::method::restored::find_column;
 
 /// How many periods each disc has moved along x and y since the start, by its number in the scene. Counts are whole; they
 /// are kept as the numbers that a checkpoint holds.
@@ -49,11 +50,16 @@ impl Crossings {
     /// Takes up what [`columns`](Self::columns) gave.
     ///
     /// # Errors
-    /// A sentence, if a column is missing or has not an entry for every disc.
+    /// A sentence, if a column is missing, has not an entry for every disc, or one that is no count.
     pub fn take_up(&mut self, columns: &[(String, Column)]) -> Result<(), String> {
         let axes = if self.is_followed() { 0..2 } else { 0..0 };
         for axis in axes {
             let column = find_column::<f64>(columns, CROSSINGS[axis], self.counts.len())?;
+            // Above this bound numbers are whole whether they count or not.
+            let is_count = |count: &f64| count.fract() == 0.0 && count.abs() <= 2f64.powi(53);
+            if let Some(count) = column.iter().find(|count| !is_count(count)) {
+                return Err(format!("the column {} holds {count:?}, no count", CROSSINGS[axis]));
+            }
             self.counts.iter_mut().zip(column).for_each(|(count, value)| count[axis] = value);
         }
         Ok(())

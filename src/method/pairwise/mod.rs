@@ -28,7 +28,7 @@ mod state;
 mod timings;
 
 pub use carried::{Carried, CarriedBy};
-pub use columns::{find_column, real_column};
+pub use columns::real_column;
 pub use crossings::Crossings;
 pub use elapsed::Elapsed;
 pub use engine::Engine;

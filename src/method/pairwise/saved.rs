@@ -2,8 +2,9 @@
 
 use super::search::{Cells, Search};
 use super::state::Move;
-use super::{Dynamics, Engine, find_column, real_column};
+use super::{Dynamics, Engine, real_column};
 use crate::io::checkpoint::Column;
+use crate::method::restored::find_column;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::STATE;
 use stripmine_kernels::isa::Element;
@@ -68,7 +69,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         let cells =
             [in_order::<f64>(columns, CELL[0], &numbers)?, in_order::<f64>(columns, CELL[1], &numbers)?];
         let counts = self.search.cells().grid().counts;
-        let inside = |axis: usize, &cell: &f64| (0.0..counts[axis] as f64).contains(&cell);
+        let inside =
+            |axis: usize, &cell: &f64| (0.0..counts[axis] as f64).contains(&cell) && cell.fract() == 0.0;
         if (0..2).any(|axis| !cells[axis].iter().all(|cell| inside(axis, cell))) {
             return Err("a cell lies outside the lattice".to_owned());
         }
@@ -85,6 +87,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             _ if made_at.is_some() => return Err(format!("the column {LISTS_MADE} is missing, or no count")),
             _ => 0,
         };
+        // Places are seen from the centres of cells.
+        let here = (0..numbers.len()).map(|disc| self.state.place(disc));
+        let made = made_at.iter().flat_map(|[x, y]| x.iter().zip(y)).map(|(x, y)| [x.to_f64(), y.to_f64()]);
+        let side = |axis: usize| self.system.domain.length(axis);
+        if here.chain(made).any(|place| (0..2).any(|axis| place[axis].abs() > side(axis))) {
+            return Err("a disc lies farther from its cell than the box is long".to_owned());
+        }
         self.elapsed.crossings.take_up(columns)?;
         (0..numbers.len()).for_each(|disc| self.search.cells_mut().leave(disc));
         for (disc, (&column, &row)) in cells[0].iter().zip(&cells[1]).enumerate() {

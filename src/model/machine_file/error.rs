@@ -2,6 +2,7 @@
 
 use super::limits::FORMAT;
 use super::position::Position;
+use crate::number::counted;
 use crate::quoted::{message, one_line, quoted};
 use crate::reported::{Class, FilePlace, Reported};
 use crate::words::suggestion;
@@ -47,7 +48,7 @@ fn lines(file: &str, defects: &[(Option<Position>, Defect)], more: usize) -> Str
     };
     let mut lines: Vec<String> = defects.iter().map(line).collect();
     if more > 0 {
-        lines.push(format!("machine file `{file}`: {more} more defects"));
+        lines.push(format!("machine file `{file}`: {}", counted(more, "more defect", "more defects")));
     }
     lines.join("\n")
 }

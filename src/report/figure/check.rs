@@ -77,9 +77,20 @@ fn check_drawing(drawing: &Drawing) -> Result<(), Fault> {
     if drawing.shapes.is_empty() {
         return Err(Fault::Empty);
     }
+    let scale = drawing.width / (right - left);
     for (i, shape) in drawing.shapes.iter().enumerate() {
-        for value in numbers(shape) {
-            finite(value, || format!("a number of shape {i}"))?;
+        let place = || format!("a number of shape {i}");
+        if let Shape::Disc { tint: Tint::Shade(shade), .. }
+        | Shape::Rectangle { tint: Tint::Shade(shade), .. } = shape
+        {
+            finite(*shade, place)?;
+        }
+        for value in lengths(shape) {
+            finite(value, place)?;
+            let pixels = scale * value.abs().min((value - left).abs()).min((value - low).abs());
+            if !(pixels <= FARTHEST) {
+                return Err(Fault::TooFar { place: place(), value, pixels });
+            }
         }
     }
     Ok(())
@@ -87,17 +98,19 @@ fn check_drawing(drawing: &Drawing) -> Result<(), Fault> {
 
 /// The least width of a drawing (pixels): a word must find its place.
 const LEAST_WIDTH: f64 = 100.0;
+/// The farthest that a shape may lie from the corner of its window, and the longest that it may be (pixels): the
+/// libraries that draw count in small whole numbers.
+const FARTHEST: f64 = 1e6;
 /// The largest side of a drawing (pixels).
 const LARGEST_SIDE: f64 = 50_000.0;
 
-fn numbers(shape: &Shape) -> Vec<f64> {
-    let tint = |tint: &Tint| if let Tint::Shade(place) = tint { *place } else { 0.0 };
+/// Coordinates and sizes.
+fn lengths(shape: &Shape) -> Vec<f64> {
     match shape {
-        Shape::Disc { centre: [x, y], radius, tint: filling } => vec![*x, *y, *radius, tint(filling)],
-        Shape::Rectangle { corners: [[a, b], [c, d]], tint: filling, .. } => {
-            vec![*a, *b, *c, *d, tint(filling)]
+        Shape::Disc { centre: [x, y], radius, .. } => vec![*x, *y, *radius],
+        Shape::Rectangle { corners: [[a, b], [c, d]], .. } | Shape::Line { ends: [[a, b], [c, d]] } => {
+            vec![*a, *b, *c, *d]
         }
-        Shape::Line { ends: [[a, b], [c, d]] } => vec![*a, *b, *c, *d],
         Shape::Text { centre: [x, y], height, .. } => vec![*x, *y, *height],
     }
 }

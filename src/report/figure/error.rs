@@ -1,5 +1,6 @@
 //! What can be wrong with a figure.
 
+use crate::number::significant;
 use crate::reported::{Class, Reported};
 
 /// A figure that cannot be drawn.
@@ -24,12 +25,22 @@ pub enum Fault {
         value: f64,
     },
     /// A number that a logarithmic axis cannot show.
-    #[error("{place} is {value}, but its axis is logarithmic")]
+    #[error("{place} is {}, but its axis is logarithmic", significant(*value, 6))]
     NotPositive {
         /// Where it stands.
         place: String,
         /// The number.
         value: f64,
+    },
+    /// A place or size far beyond the picture.
+    #[error("{place} is {}, which is {} pixels on the picture", significant(*value, 6), significant(*pixels, 2))]
+    TooFar {
+        /// Where it stands.
+        place: String,
+        /// The number.
+        value: f64,
+        /// How long it is on the picture.
+        pixels: f64,
     },
     /// Nothing to draw.
     #[error("there is nothing in it")]
@@ -51,7 +62,7 @@ pub enum Fault {
         axis: String,
     },
     /// Ends that are no interval.
-    #[error("{place} goes from {} to {}, which is not upwards or too far", ends[0], ends[1])]
+    #[error("{place} goes from {} to {}, which is not upwards or too far", significant(ends[0], 6), significant(ends[1], 6))]
     NotAnInterval {
         /// Where they stand.
         place: String,
@@ -59,7 +70,7 @@ pub enum Fault {
         ends: [f64; 2],
     },
     /// A picture whose size makes no sense.
-    #[error("a picture of {width:.0} by {height:.0} pixels cannot be drawn")]
+    #[error("a picture of {} by {} pixels cannot be drawn", significant(*width, 6), significant(*height, 6))]
     Size {
         /// Its width.
         width: f64,

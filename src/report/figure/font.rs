@@ -1,20 +1,24 @@
 //! How wide words are in the pictures' font.
 
+use skrifa::prelude::{FontRef, LocationRef, Size};
+use skrifa::{GlyphId, MetadataProvider};
 use std::sync::LazyLock;
-use ttf_parser::Face;
 
 /// Height of a capital letter, in sizes of the letters.
 pub const CAPITAL: f64 = 0.729;
 /// How far letters reach below their line, in sizes of the letters.
 pub const DESCENT: f64 = 0.24;
 
-static FACE: LazyLock<Face<'static>> =
-    LazyLock::new(|| Face::parse(dejavu::sans::regular(), 0).expect("the font in the program is whole"));
+static FACE: LazyLock<FontRef<'static>> =
+    LazyLock::new(|| FontRef::new(dejavu::sans::regular()).expect("the font in the program is whole"));
+/// Units of the font in the size of its letters.
+static UNITS: LazyLock<f64> =
+    LazyLock::new(|| FACE.metrics(Size::unscaled(), LocationRef::default()).units_per_em.into());
 
 /// Width of words in one line.
 pub fn width(words: &str, size: f64) -> f64 {
     let units: f64 = words.chars().map(advance).sum();
-    units * size / f64::from(FACE.units_per_em())
+    units * size / *UNITS
 }
 
 /// Width of the widest of some lines.
@@ -38,8 +42,9 @@ pub fn wrap(words: &str, size: f64, most: f64) -> Vec<String> {
 }
 
 fn advance(letter: char) -> f64 {
-    let glyph = FACE.glyph_index(letter).unwrap_or_default();
-    FACE.glyph_hor_advance(glyph).map_or(0.0, f64::from)
+    let glyph = FACE.charmap().map(letter).unwrap_or(GlyphId::NOTDEF);
+    let metrics = FACE.glyph_metrics(Size::unscaled(), LocationRef::default());
+    metrics.advance_width(glyph).map_or(0.0, f64::from)
 }
 
 #[cfg(test)]
@@ -49,10 +54,11 @@ mod tests {
     #[test]
     fn the_font_has_the_letters_of_physics() {
         for letter in "⁰¹²³⁴⁵⁶⁷⁸⁹⁻−×·νρωπμφτ°±≤≥√∞".chars() {
-            assert!(FACE.glyph_index(letter).is_some(), "{letter}");
+            assert!(FACE.charmap().map(letter).is_some(), "{letter}");
         }
-        let capital = FACE.glyph_bounding_box(FACE.glyph_index('H').unwrap()).unwrap().y_max;
-        assert!((f64::from(capital) / f64::from(FACE.units_per_em()) - CAPITAL).abs() < 1e-3);
+        let metrics = FACE.glyph_metrics(Size::unscaled(), LocationRef::default());
+        let capital = metrics.bounds(FACE.charmap().map('H').unwrap()).unwrap().y_max;
+        assert!((f64::from(capital) / *UNITS - CAPITAL).abs() < 1e-3);
     }
 
     #[test]

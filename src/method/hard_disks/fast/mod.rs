@@ -384,7 +384,7 @@ impl Engine for Fast {
     fn restore(&mut self, discs: Vec<Disc>, kept: &Snapshot) -> Result<(), String> {
         let count = discs.len();
         let registered = [kept.numbers(REGISTERED[0], count)?, kept.numbers(REGISTERED[1], count)?];
-        let times = kept.numbers("expected.time", count)?;
+        let times = kept.times("expected.time", count)?;
         let [with, events] = [kept.codes("expected.with", count)?, kept.codes("expected.events", count)?];
         if with.iter().any(|&with| with < WALL[0] && with as usize >= count) {
             return Err("a disc expects one that is not there".to_owned());

@@ -1,6 +1,7 @@
 //! Discs above a hot floor, without a ceiling.
 
 use crate::method::hard_disks::study::atmosphere::{Atmosphere, Profile};
+use crate::number::counted;
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use crate::report::{Cell, Part, Section, Table, Verdict};
 
@@ -20,12 +21,12 @@ pub fn section(data: &Atmosphere) -> Section {
                    density falls with the height as exp(−m g y/kT)."
             .into(),
         answer: format!(
-            "{} discs in {} layers have a mean height of {:.3} kT/(m g), where the law has 1, and a temperature of {:.3} of the floor's.",
-            dilute.discs, dilute.layers, dilute.mean_height, dilute.temperature,
+            "{} discs in {} have a mean height of {:.3} kT/(m g), where the law has 1, and a temperature of {:.3} of the floor's.",
+            dilute.discs, layers(dilute.layers), dilute.mean_height, dilute.temperature,
         ),
         details: vec![format!(
-            "With {} layers the room that the discs take lifts the mean height to {:.2}. With restitution {} the gas above cools to {:.3}.",
-            data.profiles[2].layers, data.profiles[2].mean_height, data.restitution, data.granular.temperature
+            "With {} the room that the discs take lifts the mean height to {:.2}. With restitution {} the gas above cools to {:.3}.",
+            layers(data.profiles[2].layers), data.profiles[2].mean_height, data.restitution, data.granular.temperature
         )],
         verdict: Verdict::reproduced(agrees),
         again: "stripmine reproduce --only hard-disks-atmosphere".into(),
@@ -39,9 +40,13 @@ pub fn section(data: &Atmosphere) -> Section {
     }
 }
 
+fn layers(count: f64) -> String {
+    counted(count, "layer", "layers")
+}
+
 fn named(data: &Atmosphere) -> impl Iterator<Item = (String, &Profile)> {
-    let elastic = data.profiles.iter().map(|profile| (format!("{} layers", profile.layers), profile));
-    elastic.chain([(format!("{} layers, e = {}", data.granular.layers, data.restitution), &data.granular)])
+    let elastic = data.profiles.iter().map(|profile| (layers(profile.layers), profile));
+    elastic.chain([(format!("{}, e = {}", layers(data.granular.layers), data.restitution), &data.granular)])
 }
 
 fn figure(data: &Atmosphere) -> Figure {

@@ -5,6 +5,7 @@ use crate::method::lattice_md::study::efficiency_table::conventions::{Counted, P
 use crate::method::lattice_md::study::efficiency_table::{
     EfficiencyTable, SOURCES_PARTS, SectionRow, TextCount,
 };
+use crate::number::significant;
 use crate::report;
 use crate::report::{Cell, Section, Table, Verdict};
 use stripmine_kernels::printed::EQUATIONS;
@@ -186,7 +187,7 @@ fn parts(data: &EfficiencyTable) -> Table {
             each(data.ours.clocks),
             each(data.printed.scalar_clocks),
             data.printed.scalar_clocks / data.printed.clocks,
-            data.clock_period_ns,
+            significant(data.clock_period_ns, 4),
             data.source_clocks * data.clock_period_ns * 1e-9,
             data.printed.clocks * data.clock_period_ns * 1e-9,
             data.ours.clocks * data.clock_period_ns * 1e-9

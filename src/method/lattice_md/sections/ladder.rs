@@ -3,6 +3,7 @@
 use crate::method::lattice_md::Phase;
 use crate::method::lattice_md::study::host_ladder::HostLadder;
 use crate::method::lattice_md::study::ladder::Ladder;
+use crate::number::significant;
 use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// Clock periods of the last two clocks, chained and with memory ports, over those of the source's.
@@ -86,7 +87,7 @@ fn rungs(data: &Ladder) -> Table {
         "NP = {} discs on LMAX = {} cells; {} ns a clock period. Of the last rung {:.1} % depend on assumed start-ups.",
         data.particles,
         data.cells,
-        data.clock_period_ns,
+        significant(data.clock_period_ns, 4),
         100.0 * data.assumed_share
     ));
     if !data.assumed.is_empty() {

@@ -2,7 +2,8 @@
 
 use super::LatticeMd;
 use crate::io::checkpoint::Column;
-use crate::method::pairwise::{find_column, real_column};
+use crate::method::pairwise::real_column;
+use crate::method::restored::find_column;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::Array;
 
@@ -48,39 +49,23 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         }
         if self.keeps_cells() {
             let label = Array::DiscCell.label();
-            let cells = columns.iter().find(|(name, _)| name == label).map(|(_, column)| column);
+            let cells = find_column::<f64>(columns, label, self.arrays.cell().len())?;
             let most = self.model.shape.padded() as f64;
-            match cells {
-                Some(Column::F64(cells))
-                    if cells.len() == self.arrays.cell().len()
-                        && cells.iter().all(|cell| (1.0..=most).contains(cell)) =>
-                {
-                    let to = self.arrays.cell_mut().iter_mut();
-                    to.zip(cells).for_each(|(to, &cell)| *to = cell as u32);
-                }
-                _ => {
-                    return Err(format!(
-                        "the column {label} is missing, or its cells are none of the lattice"
-                    ));
-                }
+            if let Some(cell) =
+                cells.iter().find(|&&cell| !(1.0..=most).contains(&cell) || cell.fract() != 0.0)
+            {
+                return Err(format!("the column {label} holds {cell}, which is no cell of the lattice"));
             }
+            self.arrays.cell_mut().iter_mut().zip(cells).for_each(|(to, cell)| *to = cell as u32);
         }
         self.elapsed.crossings.take_up(columns)?;
         if let Some(rival) = &mut self.rival {
-            let find = |name: &str, length: usize| -> Result<Vec<f64>, String> {
-                match columns.iter().find(|(there, _)| there == name) {
-                    Some((_, Column::F64(values)))
-                        if values.len() == length && values.iter().all(|x| x.is_finite()) =>
-                    {
-                        Ok(values.clone())
-                    }
-                    _ => {
-                        Err(format!("there is no column {name} of {length} finite double-precision entries"))
-                    }
-                }
-            };
-            let made_at = [find(MADE_AT[0], self.ids.len())?, find(MADE_AT[1], self.ids.len())?];
-            let counts = find(LIST_COUNTS, 2)?;
+            let discs = self.ids.len();
+            let of = |axis: usize| find_column(columns, MADE_AT[axis], discs);
+            let (made_at, counts) = ([of(0)?, of(1)?], find_column::<f64>(columns, LIST_COUNTS, 2)?);
+            if counts.iter().any(|&count| count.fract() != 0.0 || !(0.0..=2f64.powi(53)).contains(&count)) {
+                return Err(format!("the column {LIST_COUNTS} holds what is no count"));
+            }
             rival.take_up(&self.model, made_at, counts[0] as u64, counts[1] as u64);
         }
         Ok(())

@@ -31,7 +31,7 @@ pub(super) struct CalibrateVerb {
 #[derive(Debug, thiserror::Error)]
 enum Refusal {
     /// There is one.
-    #[error("{} is there already: --force writes over it, --out elsewhere", .0.display())]
+    #[error("{} is there already: --force writes over it, --out elsewhere", crate::quoted::path(.0))]
     Exists(PathBuf),
 }
 

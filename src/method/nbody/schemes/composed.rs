@@ -80,6 +80,10 @@ impl Scheme for Composed {
         if self.is_known { vec![&self.acceleration] } else { vec![] }
     }
 
+    fn carries(&self) -> usize {
+        1
+    }
+
     fn take_up(&mut self, bodies: &Bodies, carried: Vec<Columns>) {
         self.is_known = !carried.is_empty();
         if let Some(acceleration) = carried.into_iter().next() {

@@ -76,6 +76,10 @@ impl Scheme for Gear {
         self.higher.iter().collect()
     }
 
+    fn carries(&self) -> usize {
+        VALUES - 2
+    }
+
     fn take_up(&mut self, bodies: &Bodies, carried: Vec<Columns>) {
         self.is_known = !carried.is_empty();
         self.higher = carried.into_iter().map(|columns| padded(columns, bodies)).collect();

@@ -55,6 +55,10 @@ impl Scheme for Hermite {
         if self.is_known { self.begin.iter().collect() } else { vec![] }
     }
 
+    fn carries(&self) -> usize {
+        self.begin.len()
+    }
+
     fn take_up(&mut self, bodies: &Bodies, carried: Vec<Columns>) {
         self.is_known = !carried.is_empty();
         for (begin, columns) in self.begin.iter_mut().zip(carried) {

@@ -52,6 +52,11 @@ pub trait Scheme: Send {
         vec![]
     }
 
+    /// How many columns [`carried`](Self::carried) gives after a step.
+    fn carries(&self) -> usize {
+        0
+    }
+
     /// Takes up what [`carried`](Self::carried) gave, without the padding; the bodies are those of that moment already.
     fn take_up(&mut self, bodies: &Bodies, carried: Vec<Columns>);
 

@@ -1,0 +1,70 @@
+//! What a mistaken argument may have meant: the nearest verb, or the key of scenes that an option is called like.
+
+use crate::method::Methods;
+use crate::words::nearest;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use std::collections::BTreeSet;
+use std::ffi::OsString;
+
+/// Keys that are named for one option, at most.
+const MOST: usize = 3;
+
+/// A mistake of the arguments with what may have been meant, where the parser does not know it.
+pub(super) fn advised(
+    mut mistake: clap::Error,
+    arguments: &[OsString],
+    command: &clap::Command,
+    methods: Methods,
+) -> clap::Error {
+    let words: Vec<&str> = arguments.iter().skip(1).filter_map(|word| word.to_str()).collect();
+    let verb = verb(command, &words);
+    match mistake.kind() {
+        ErrorKind::InvalidSubcommand if mistake.get(ContextKind::SuggestedSubcommand).is_none() => {
+            let Some(ContextValue::String(found)) = mistake.get(ContextKind::InvalidSubcommand) else {
+                return mistake;
+            };
+            let known = verb.get_subcommands().map(clap::Command::get_name);
+            if let Some(near) = nearest(found, known) {
+                let near = ContextValue::Strings(vec![near.to_owned()]);
+                mistake.insert(ContextKind::SuggestedSubcommand, near);
+            }
+        }
+        ErrorKind::UnknownArgument if verb.get_arguments().any(|known| known.get_long() == Some("set")) => {
+            let Some(ContextValue::String(found)) = mistake.get(ContextKind::InvalidArg) else {
+                return mistake;
+            };
+            if let Some(tip) = of_key(found, &words, methods) {
+                mistake.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+                // An option that only looks alike is not meant.
+                mistake.remove(ContextKind::SuggestedArg);
+            }
+        }
+        _ => {}
+    }
+    mistake
+}
+
+/// The verb that the words name, as far as they do.
+fn verb<'c>(command: &'c clap::Command, words: &[&str]) -> &'c clap::Command {
+    words.iter().fold(command, |verb, word| verb.find_subcommand(word).unwrap_or(verb))
+}
+
+/// The keys that an option is called like, as they would be set.
+fn of_key(found: &str, words: &[&str], methods: Methods) -> Option<String> {
+    let name = found.trim_start_matches('-').split('=').next().unwrap_or_default().replace('-', "_");
+    let keys = methods.iter().flat_map(|method| method.vocabulary.keys.keys());
+    let paths: BTreeSet<String> = keys
+        .filter(|key| key.name == name && !key.section.is_empty())
+        .map(|key| key.path())
+        .take(MOST)
+        .collect();
+    let after = |word: &str| match word.split_once('=') {
+        Some((option, value)) if option == found => Some(value.to_owned()),
+        _ => None,
+    };
+    let at = words.iter().position(|word| *word == found);
+    let next = at.and_then(|at| words.get(at + 1)).map(|word| (*word).to_owned());
+    let value = words.iter().find_map(|word| after(word)).or(next).unwrap_or_else(|| "VALUE".to_owned());
+    let said: Vec<String> = paths.iter().map(|path| format!("--set {path}={value}")).collect();
+    (!said.is_empty()).then(|| format!("it is a key of scenes: {}", said.join(" or ")))
+}

@@ -1,0 +1,273 @@
+//! The observables of a run: `thermo.csv` as charts, and a line for each in the terminal.
+
+use crate::io::{FileError, regular_file};
+use crate::method::{Methods, Quantity};
+use crate::number::significant;
+use crate::quoted::{self, quoted};
+use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::table::{Cell, Table};
+use crate::reported::{Class, FilePlace, Reported};
+use crate::words::suggestion;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Curves of a picture: more cannot be told apart.
+const CURVES: usize = 5;
+/// A curve whose own range is a smaller part of its chart's than this is a line.
+const FLAT: f64 = 0.1;
+/// Points of a curve: more cannot be seen.
+const POINTS: usize = 2000;
+/// Characters of a curve in the terminal.
+const SMALL: usize = 40;
+/// Digits of a value in the terminal.
+const DIGITS: usize = 5;
+/// Longer than any table of a run (bytes).
+const LONGEST: u64 = 1 << 33;
+
+/// Why there are no curves.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum ObservedError {
+    /// No table of a run.
+    #[error("{}:{line}: {expected}", quoted::path(file))]
+    NoTable {
+        /// The file.
+        file: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// What should stand there.
+        expected: &'static str,
+    },
+    /// No column of that name.
+    #[error("there is no column {}; these are: {}{}", quoted(name), known.join(", "), suggestion(name, known.iter().map(String::as_str)))]
+    NoColumn {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: Vec<String>,
+    },
+    /// The system.
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+impl Reported for ObservedError {
+    fn class(&self) -> Class {
+        match self {
+            ObservedError::NoTable { .. } => Class::Input,
+            ObservedError::NoColumn { .. } => Class::Usage,
+            ObservedError::File(_) => Class::InputOutput,
+        }
+    }
+
+    fn place(&self) -> Option<FilePlace> {
+        match self {
+            ObservedError::NoTable { file, line, .. } => {
+                Some(FilePlace { line: Some(*line), ..FilePlace::at(file) })
+            }
+            ObservedError::NoColumn { .. } => None,
+            ObservedError::File(error) => Some(FilePlace::at(&error.file)),
+        }
+    }
+}
+
+/// `thermo.csv`.
+pub(super) struct Observed {
+    columns: Vec<String>,
+    rows: Vec<Vec<f64>>,
+}
+
+/// Curves that share a chart: each column with its smallest and largest value.
+struct Group {
+    curves: Vec<(usize, [f64; 2])>,
+}
+
+impl Group {
+    /// Whether one more curve is none too many, and neither it nor one of the others becomes a line.
+    fn has_room_for(&self, ends: [f64; 2]) -> bool {
+        let all = || self.curves.iter().map(|(_, ends)| *ends).chain([ends]);
+        let low = all().map(|[low, _]| low).fold(f64::INFINITY, f64::min);
+        let high = all().map(|[_, high]| high).fold(f64::NEG_INFINITY, f64::max);
+        self.curves.len() < CURVES && all().all(|[from, to]| to - from >= FLAT * (high - low))
+    }
+
+    fn columns(&self) -> Vec<usize> {
+        self.curves.iter().map(|(column, _)| *column).collect()
+    }
+}
+
+/// A column that is asked for, with what is known of it.
+pub(super) struct Wanted {
+    column: usize,
+    unit: &'static str,
+}
+
+impl Observed {
+    pub(super) fn read(path: &Path) -> Result<Observed, ObservedError> {
+        let bytes = regular_file::read(path, LONGEST).map_err(FileError::at(path, "reading"))?;
+        let wrong = |line: usize, expected| ObservedError::NoTable { file: path.to_owned(), line, expected };
+        let text = String::from_utf8(bytes).map_err(|cause| {
+            let line = regular_file::line_that_is_not_text(cause.as_bytes());
+            wrong(line.unwrap_or(1), "not UTF-8 text")
+        })?;
+        let mut lines = text.lines();
+        let columns: Vec<String> = lines.next().unwrap_or_default().split(',').map(str::to_owned).collect();
+        if !columns.iter().any(|column| column == "time") {
+            return Err(wrong(1, "expected the heading of a run's table, with a column `time`"));
+        }
+        let mut rows = vec![];
+        for (number, line) in (2..).zip(lines) {
+            let row: Result<Vec<f64>, _> = line.split(',').map(str::parse).collect();
+            let row = row.ok().filter(|row: &Vec<f64>| row.len() == columns.len());
+            let row = row.filter(|row| row.iter().all(|value| value.is_finite()));
+            rows.push(row.ok_or_else(|| wrong(number, "expected a finite number for each column"))?);
+        }
+        if rows.is_empty() {
+            return Err(wrong(2, "expected a row of numbers; the run has written none yet"));
+        }
+        Ok(Observed { columns, rows })
+    }
+
+    fn column(&self, column: usize) -> impl Iterator<Item = f64> {
+        self.rows.iter().map(move |row| row[column])
+    }
+
+    fn time(&self) -> usize {
+        self.columns.iter().position(|column| column == "time").unwrap_or_default()
+    }
+
+    pub(super) fn wanted(&self, names: &[String], methods: Methods) -> Result<Vec<Wanted>, ObservedError> {
+        // The method of the run is the one that observes all its columns.
+        let is_its = |quantities: &&'static [Quantity]| {
+            let known = |name: &String| quantities.iter().any(|quantity| quantity.name == name);
+            self.columns.iter().skip(1).all(known)
+        };
+        let quantities = methods.iter().map(|method| method.quantities).find(is_its).unwrap_or_default();
+        let of = |column: usize| {
+            let name = &self.columns[column];
+            let unit = quantities.iter().find(|quantity| quantity.name == name).map_or("", |it| it.unit);
+            Wanted { column, unit }
+        };
+        if names.is_empty() {
+            let changes = |column: &usize| {
+                let first = self.rows[0][*column];
+                self.column(*column).any(|value| value != first)
+            };
+            let all = 0..self.columns.len();
+            let shown = all.filter(|&column| !["step", "time"].contains(&self.columns[column].as_str()));
+            return Ok(shown.filter(changes).map(of).collect());
+        }
+        let find = |name: &String| match self.columns.iter().position(|column| column == name) {
+            Some(column) => Ok(of(column)),
+            None => Err(ObservedError::NoColumn {
+                name: name.clone(),
+                known: self.columns.iter().map(|column| quoted(column)).collect(),
+            }),
+        };
+        names.iter().map(find).collect()
+    }
+
+    /// Pictures of a few curves at most, all of one unit, none of which is a line on the scale of the others.
+    pub(super) fn figures(&self, wanted: &[Wanted]) -> Vec<Figure> {
+        let mut units: BTreeMap<&str, Vec<Group>> = BTreeMap::new();
+        for it in wanted {
+            let ends = self.ends(it.column);
+            let groups = units.entry(it.unit).or_default();
+            match groups.iter_mut().find(|group| group.has_room_for(ends)) {
+                Some(group) => group.curves.push((it.column, ends)),
+                None => groups.push(Group { curves: vec![(it.column, ends)] }),
+            }
+        }
+        let of = |(unit, groups): (&str, Vec<Group>)| -> Vec<Figure> {
+            groups.iter().map(|group| self.figure(unit, &group.columns())).collect()
+        };
+        units.into_iter().flat_map(of).collect()
+    }
+
+    /// The smallest and the largest value of a column.
+    fn ends(&self, column: usize) -> [f64; 2] {
+        let none = [f64::INFINITY, f64::NEG_INFINITY];
+        self.column(column).fold(none, |[low, high], value| [low.min(value), high.max(value)])
+    }
+
+    fn figure(&self, unit: &str, columns: &[usize]) -> Figure {
+        let names: Vec<String> = columns.iter().map(|&column| quoted(&self.columns[column])).collect();
+        let every = self.rows.len().div_ceil(POINTS);
+        let time = self.time();
+        let series = columns.iter().zip(&names).enumerate().map(|(hue, (&column, name))| Series {
+            name: name.replace('_', " "),
+            style: Style::Line,
+            hue,
+            points: self.rows.iter().step_by(every).map(|row| Point::at(row[time], row[column])).collect(),
+        });
+        let label = if names.len() == 1 { names[0].replace('_', " ") } else { "value".to_owned() };
+        Figure {
+            name: names.join("-").replace('_', "-"),
+            title: names.iter().map(|name| name.replace('_', " ")).collect::<Vec<_>>().join(", "),
+            caption: "Of thermo.csv.".into(),
+            picture: Picture::Chart(Chart {
+                x: Axis::linear("time", Some("the scene's unit")),
+                y: Axis::linear(&label, (!unit.is_empty()).then_some(unit)),
+                series: series.collect(),
+                bands: vec![],
+            }),
+        }
+    }
+
+    /// Every column in a line: first, last, and its course.
+    pub(super) fn small(&self, wanted: &[Wanted], out: &Path) -> Table {
+        let rows = wanted.iter().map(|it| {
+            let values: Vec<f64> = self.column(it.column).collect();
+            let text = |value: Option<&f64>| {
+                Cell::Text(value.map_or(String::new(), |value| significant(*value, DIGITS)))
+            };
+            vec![
+                Cell::Text(quoted(&self.columns[it.column])),
+                text(values.first()),
+                text(values.last()),
+                Cell::Text(course(&values)),
+            ]
+        });
+        let columns = ["quantity", "first", "last", "course"].map(str::to_owned).to_vec();
+        let notes = vec![format!("pictures in {}", quoted::path(out))];
+        Table { name: "plot".into(), title: "The run".into(), columns, rows: rows.collect(), notes }
+    }
+}
+
+/// A curve of a few characters, from the smallest to the largest value.
+fn course(values: &[f64]) -> String {
+    const STEPS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let count = values.len().min(SMALL);
+    let of = |at: usize| {
+        let value = values[at * (values.len() - 1) / (count - 1).max(1)];
+        let share = if high > low { (value - low) / (high - low) } else { 0.0 };
+        STEPS[((share * 8.0) as usize).min(7)]
+    };
+    (0..count).map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_course_goes_from_the_smallest_to_the_largest() {
+        assert_eq!(course(&[0.0, 1.0, 2.0, 4.0]), "▁▃▅█");
+        assert_eq!(course(&[3.0]), "▁");
+        assert_eq!(course(&[1.0; 100]).chars().count(), 40);
+    }
+
+    #[test]
+    fn no_curve_is_a_line_on_the_scale_of_others() {
+        let columns = ["time", "kinetic", "temperature", "elastic", "px", "py", "far"].map(str::to_owned);
+        let row = |t: f64| vec![t, 680.0 * t, 0.7 * t, 200.0 * t, 1e-15 * t, 2e-15 * t, 1e9 + 300.0 * t];
+        let observed = Observed { columns: columns.to_vec(), rows: vec![row(0.0), row(1.0)] };
+        let wanted: Vec<Wanted> = (1..7).map(|column| Wanted { column, unit: "energy" }).collect();
+        let names: Vec<String> = observed.figures(&wanted).into_iter().map(|figure| figure.name).collect();
+        assert_eq!(names, ["kinetic-elastic", "temperature", "px-py", "far"]);
+        // Small numbers have digits in the terminal.
+        let small = observed.small(&wanted, Path::new("out"));
+        assert_eq!(small.rows[3][2], Cell::Text("1e-15".to_owned()));
+    }
+}

@@ -1,0 +1,82 @@
+//! Whether the discs of a checkpoint can be those of a run: what cannot would make events without end.
+
+use super::event::Arena;
+use crate::domain::Side;
+use crate::method::Clock;
+use crate::near::Near;
+use crate::particles::{Particle, Particles};
+use stripmine_kernels::flight::Disc;
+
+/// Discs overlap, and stand out of the box, by less than this part of a radius in any run: rounding, many times over.
+const ROUNDING: f64 = 1e-6;
+/// Energy is no more than this many times what a scene begins with or gives in one event.
+const MOST_ENERGY: f64 = 1e4;
+
+/// That discs are inside the box, apart from each other, not ahead of the clock, and no faster than the scene can make them.
+///
+/// # Errors
+/// A sentence that names the first that is not.
+pub(super) fn sound(arena: &Arena, start: &Particles, discs: &[Disc], clock: &Clock) -> Result<(), String> {
+    let now = clock.time;
+    if let Some(disc) = discs.iter().find(|disc| !(0.0..=now).contains(&disc.time)) {
+        return Err(format!("the local time of a disc is {:?}, and the clock shows {now:?}", disc.time));
+    }
+    let places: Vec<[f64; 2]> = discs.iter().map(|disc| arena.place(disc, now)).collect();
+    for (disc, place) in discs.iter().zip(&places) {
+        if !is_inside(arena, disc, disc.position) || !is_inside(arena, disc, *place) {
+            return Err(format!("a disc at {place:?} is outside the box"));
+        }
+    }
+    let kinetic: f64 = discs.iter().map(|disc| 0.5 * disc.mass * disc.speed().powi(2)).sum();
+    // Only a floor gives more with every event; a thermal side gives its own temperature again.
+    let given = if arena.law.floor.is_some() { 1.0 + clock.events as f64 } else { 1.0 };
+    let most = MOST_ENERGY * given * offered(arena, start);
+    if !(kinetic <= most) {
+        return Err(format!(
+            "the discs have the kinetic energy {kinetic:?}, of which the scene offers {most:?} at most"
+        ));
+    }
+    let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
+    let near = Near::among(arena.domain, places.iter().copied(), 2.0 * largest);
+    for (number, (disc, place)) in (0u32..).zip(discs.iter().zip(&places)) {
+        let overlaps = |(other, there): (u32, [f64; 2])| {
+            let apart = disc.radius + discs[other as usize].radius;
+            other > number && arena.domain.distance(*place, there) < (1.0 - ROUNDING) * apart
+        };
+        if near.of(*place).any(overlaps) {
+            return Err(format!("a disc at {place:?} overlaps another one"));
+        }
+    }
+    Ok(())
+}
+
+fn is_inside(arena: &Arena, disc: &Disc, place: [f64; 2]) -> bool {
+    let least = (1.0 - ROUNDING) * disc.radius;
+    (0..2).all(|axis| {
+        let above = place[axis] - arena.domain.origin[axis];
+        match arena.domain.sides[axis] {
+            Side::Periodic(side) => (0.0..side).contains(&above),
+            Side::Closed(side) => (least..=side - least).contains(&above),
+            Side::Open => above >= least,
+            Side::Flat => true,
+        }
+    })
+}
+
+/// What discs begin with, can fall through, and are given by a side in an event (energy).
+fn offered(arena: &Arena, start: &Particles) -> f64 {
+    let gravity = arena.space.gravity().unwrap_or_default();
+    let thermal = arena.law.thermal.map_or(0.0, |thermal| thermal.temperature);
+    let floor =
+        arena.law.floor.map_or(0.0, |floor| floor.amplitude * floor.frequency * std::f64::consts::TAU);
+    let of = |disc: &Particle| {
+        let square: f64 = disc.planar_velocity().iter().map(|v| v * v).sum();
+        let fall = |axis: usize| {
+            let above = disc.position[axis] - arena.domain.origin[axis];
+            let side = arena.domain.length(axis);
+            gravity[axis].abs() * if side.is_finite() { side } else { above.abs() }
+        };
+        disc.mass * (0.5 * square + fall(0) + fall(1) + floor * floor) + thermal
+    };
+    start.all().iter().map(of).sum()
+}

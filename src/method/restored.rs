@@ -1,0 +1,121 @@
+//! What a checkpoint says, before a simulation takes it up: a forged or foreign one is refused here, with the name of what is
+//! wrong, and never computed with.
+
+use super::Clock;
+use crate::io::checkpoint::{Column, Counter};
+use std::collections::BTreeMap;
+use stripmine_kernels::isa::{Element, Storage};
+
+/// Above it not every whole number is a double; nothing is counted that far.
+const MOST: u64 = 1 << 53;
+
+/// The finite entries of the column of a name, if it has the precision `T` and that length.
+///
+/// # Errors
+/// A sentence that says what is missing or wrong.
+pub fn find_column<T: Element>(
+    columns: &[(String, Column)],
+    name: &str,
+    length: usize,
+) -> Result<Vec<T>, String> {
+    let values: Vec<T> = match find(columns, name, length)? {
+        Column::F64(values) if T::NAME == f64::NAME => values.iter().map(|&x| T::from_f64(x)).collect(),
+        Column::F32(values) if T::NAME == f32::NAME => {
+            values.iter().map(|&x| T::from_f64(x.into())).collect()
+        }
+        _ => return Err(format!("the column {name} has another precision")),
+    };
+    match values.iter().position(|value| !value.to_f64().is_finite()) {
+        None => Ok(values),
+        Some(at) => Err(format!("entry {at} of the column {name} is no finite number")),
+    }
+}
+
+/// The counts of the column of a name, as many as `length` and none above `most`.
+///
+/// # Errors
+/// As [`find_column`].
+pub fn find_counts<'c>(
+    columns: &'c [(String, Column)],
+    name: &str,
+    length: usize,
+    most: u64,
+) -> Result<&'c [u64], String> {
+    let Column::U64(values) = find(columns, name, length)? else {
+        return Err(format!("the column {name} has another type"));
+    };
+    match values.iter().find(|&&value| value > most) {
+        None => Ok(values),
+        Some(value) => Err(format!("the column {name} holds {value}, more than {most}")),
+    }
+}
+
+fn find<'c>(columns: &'c [(String, Column)], name: &str, length: usize) -> Result<&'c Column, String> {
+    let (_, column) = columns
+        .iter()
+        .find(|(there, _)| there == name)
+        .ok_or_else(|| format!("the column {name} is missing"))?;
+    match column.len() {
+        found if found == length => Ok(column),
+        found => Err(format!("the column {name} has {found} entries, not {length}")),
+    }
+}
+
+/// The finite sum of a name.
+///
+/// # Errors
+/// A sentence that says what is missing or wrong.
+pub fn find_sum(counters: &BTreeMap<String, Counter>, name: &str) -> Result<f64, String> {
+    match counters.get(name) {
+        Some(Counter::Sum(sum)) if sum.is_finite() => Ok(*sum),
+        Some(Counter::Sum(sum)) => Err(format!("the sum {name} is {sum}, no finite number")),
+        _ => Err(format!("the sum {name} is missing")),
+    }
+}
+
+/// The count of a name, at most `most`.
+///
+/// # Errors
+/// As [`find_sum`].
+pub fn find_count(counters: &BTreeMap<String, Counter>, name: &str, most: u64) -> Result<u64, String> {
+    match counters.get(name) {
+        Some(Counter::Count(count)) if *count <= most => Ok(*count),
+        Some(Counter::Count(count)) => Err(format!("the count {name} is {count}, more than {most}")),
+        _ => Err(format!("the count {name} is missing")),
+    }
+}
+
+impl Clock {
+    /// That it is the clock of a method of steps of `dt` (time).
+    ///
+    /// # Errors
+    /// A sentence, if it is not.
+    pub fn of_steps(&self, dt: f64) -> Result<(), String> {
+        let Clock { steps, time, events } = *self;
+        let expected = steps as f64 * dt;
+        if steps > MOST || time != expected {
+            return Err(format!(
+                "it says that {steps} steps of {dt:?} came to time {time:?}, not {expected:?}"
+            ));
+        }
+        if events > 0 {
+            return Err(format!("it counts {events} events, of which this method has none"));
+        }
+        Ok(())
+    }
+
+    /// That it is the clock of a method of events.
+    ///
+    /// # Errors
+    /// A sentence, if it is not.
+    pub fn of_events(&self) -> Result<(), String> {
+        let Clock { steps, time, events } = *self;
+        if steps > 0 {
+            return Err(format!("it counts {steps} steps, of which this method has none"));
+        }
+        if events > MOST || !(time.is_finite() && time >= 0.0) {
+            return Err(format!("it says that {events} events came to time {time:?}"));
+        }
+        Ok(())
+    }
+}

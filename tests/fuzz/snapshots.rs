@@ -1,0 +1,142 @@
+//! Snapshots of every method with one column or counter put in place of another: refused, or gone on with as a run that ends.
+//!
+//! A checkpoint whose checksums are right may still say anything; what it says is all that a simulation takes up.
+
+use std::sync::atomic::AtomicBool;
+use stripmine::io::checkpoint::{Column, Counter};
+use stripmine::method::{Clock, METHODS, Prepared, Purpose, Simulation, Snapshot, Until, load};
+
+/// Scenes that are small, of every method and every way to run it: preset, overrides, and how far they go.
+const SCENES: &[(&str, &[&str])] = &[
+    ("pipe-small", &["machine.engine=fast", "search.by=lattice", "particles.count=20"]),
+    (
+        "dense-gas",
+        &["machine.engine=fast", "search.by=sectors", "particles.count=20", "machine.precision=f32"],
+    ),
+    ("dense-gas", &["machine.engine=fast", "search.by=neighbor-list", "particles.count=20"]),
+    ("dense-gas", &["machine.execution=chained", "particles.count=20", "machine.precision=mixed"]),
+    ("dense-gas", &["machine.execution=chained", "particles.count=20"]),
+    ("dense-gas", &["search.by=neighbor-list", "search.rebuild=all-pairs", "particles.count=20"]),
+    ("hard-disks", &["particles.count=24"]),
+    ("hard-disks", &["particles.count=24", "machine.engine=reference"]),
+    ("langevin-dense", &["particles.count=24", "search.by=sectors"]),
+    ("langevin-dense", &["particles.count=24", "search.by=neighbor-list"]),
+    ("langevin-free", &["particles.count=24"]),
+    ("kepler", &["integrator.kind=gear-6"]),
+    ("kepler", &["integrator.kind=hermite-4"]),
+    ("kepler", &["integrator.kind=leapfrog"]),
+    ("kepler", &["integrator.kind=damped-euler"]),
+];
+
+/// Steps before the snapshot, and after it.
+const STEPS: u64 = 12;
+/// Events before it, and after it.
+const EVENTS: u64 = 300;
+
+/// Advances by some steps or events, whatever the method has.
+fn advance(simulation: &mut dyn Simulation) -> bool {
+    let clock = simulation.clock();
+    let until = [Until::Steps(clock.steps + STEPS), Until::Events(clock.events + EVENTS)];
+    // A method of steps has no events and the other way round.
+    simulation.advance(&until, &AtomicBool::new(false)).is_ok()
+}
+
+fn started(prepared: &dyn Prepared) -> Box<dyn Simulation> {
+    prepared.start(Purpose::Run).unwrap()
+}
+
+const REALS: [f64; 9] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300, 5e-324, 1e9, -1.0, 0.5];
+const WHOLES: [u64; 5] = [u64::MAX, u64::MAX / 2, 1 << 53, u32::MAX as u64, 0];
+
+/// What may stand in the place of a column: one value or all of them another, fewer, more, none, of another type.
+fn columns(column: &Column) -> Vec<Column> {
+    fn of<T: Copy>(values: &[T], hostile: &[T], made: impl Fn(Vec<T>) -> Column) -> Vec<Column> {
+        let mut all = vec![made(vec![]), made(values[..values.len() / 2].to_vec())];
+        all.push(made(values.iter().chain(values).copied().collect()));
+        for &value in hostile {
+            all.push(made(vec![value; values.len()]));
+            let mut one = values.to_vec();
+            one.iter_mut().take(1).for_each(|it| *it = value);
+            all.push(made(one));
+        }
+        all
+    }
+    let mut all = match column {
+        Column::F64(values) => of(values, &REALS, Column::F64),
+        Column::F32(values) => of(values, &REALS.map(|x| x as f32), Column::F32),
+        Column::U32(values) => of(values, &WHOLES.map(|x| x as u32), Column::U32),
+        Column::U64(values) => of(values, &WHOLES, Column::U64),
+    };
+    all.push(match column {
+        Column::U64(values) => Column::U32(vec![7; values.len()]),
+        other => Column::U64(vec![7; other.len()]),
+    });
+    all
+}
+
+fn counters() -> Vec<Counter> {
+    REALS.map(Counter::Sum).into_iter().chain(WHOLES.map(Counter::Count)).collect()
+}
+
+fn clocks(clock: Clock) -> Vec<Clock> {
+    let times = REALS.map(|time| Clock { time, ..clock });
+    let steps = WHOLES.map(|steps| Clock { steps, ..clock });
+    let events = WHOLES.map(|events| Clock { events, ..clock });
+    times.into_iter().chain(steps).chain(events).filter(|it| *it != clock).collect()
+}
+
+/// Takes up a snapshot and goes on; whether it was taken up.
+fn taken_up(prepared: &dyn Prepared, clock: Clock, snapshot: Snapshot) -> bool {
+    let mut simulation = started(prepared);
+    if let Err(why) = simulation.restore(clock, snapshot) {
+        assert!(!why.is_empty());
+        return false;
+    }
+    advance(simulation.as_mut());
+    simulation.observe();
+    true
+}
+
+#[test]
+fn forged_snapshots_are_refused_or_gone_on_with() {
+    for &(preset, overrides) in SCENES {
+        let sets: Vec<String> = overrides.iter().map(|set| (*set).to_owned()).collect();
+        let what = format!("{preset} {}", overrides.join(" "));
+        let (prepared, _) = load(preset, &sets, METHODS).unwrap_or_else(|why| panic!("{what}: {why}"));
+        let prepared = prepared.as_ref();
+        let mut simulation = started(prepared);
+        assert!(advance(simulation.as_mut()), "{what}");
+        let (clock, whole) = (simulation.clock(), || simulation.snapshot());
+        assert!(taken_up(prepared, clock, whole()), "{what}");
+        let mut refused = 0;
+        let mut count = |taken: bool| refused += u32::from(!taken);
+        for at in 0..whole().columns.len() {
+            let name = whole().columns[at].0.clone();
+            println!("{what}: {name}");
+            for column in columns(&whole().columns[at].1) {
+                let mut forged = whole();
+                forged.columns[at].1 = column;
+                count(taken_up(prepared, clock, forged));
+            }
+            let mut without = whole();
+            without.columns.remove(at);
+            assert!(!taken_up(prepared, clock, without), "{what}: without {name} it is taken up");
+        }
+        for name in whole().counters.into_keys() {
+            println!("{what}: {name}");
+            for counter in counters() {
+                let mut forged = whole();
+                forged.counters.insert(name.clone(), counter);
+                count(taken_up(prepared, clock, forged));
+            }
+            let mut without = whole();
+            without.counters.remove(&name);
+            assert!(!taken_up(prepared, clock, without), "{what}: without {name} it is taken up");
+        }
+        for forged in clocks(clock) {
+            println!("{what}: {forged:?}");
+            count(taken_up(prepared, forged, whole()));
+        }
+        assert!(refused > 20, "{what}: {refused}");
+    }
+}
