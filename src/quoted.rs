@@ -40,7 +40,7 @@ pub fn message(text: &str) -> String {
 pub fn shown(text: &str) -> String {
     // Numbers have narrow blanks between their digits.
     let is_plain = |c: char| matches!(c, ' '..='~' | '\n' | '\t' | '\u{202f}');
-    let pieces = text.split_inclusive(|c| matches!(c, '\n' | '\t' | '\u{202f}'));
+    let pieces = text.split_inclusive(['\n', '\t', '\u{202f}']);
     let one = |piece: &str| match piece.strip_suffix(['\n', '\t', '\u{202f}']) {
         _ if piece.chars().all(is_plain) => piece.to_owned(),
         Some(rest) => spelled(rest.chars()) + &piece[rest.len()..],

@@ -310,7 +310,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(NAME);
         let first = Journal::open(folder.path(), &identity("12345678")).unwrap();
-        (run(&first, "a", 1), run(&first, "b", 2));
+        assert_eq!([run(&first, "a", 1), run(&first, "b", 2)], [1, 2]);
         drop(first);
         let text = fs::read_to_string(&path).unwrap();
         let changes = [("\"a\"", "\"c\""), (":1}", ":7}"), (":1}", ":\"x\"}")];

@@ -31,7 +31,7 @@ pub(super) fn sound(arena: &Arena, start: &Particles, discs: &[Disc], clock: &Cl
     // Only a floor gives more with every event; a thermal side gives its own temperature again.
     let given = if arena.law.floor.is_some() { 1.0 + clock.events as f64 } else { 1.0 };
     let most = MOST_ENERGY * given * offered(arena, start);
-    if !(kinetic <= most) {
+    if kinetic > most || kinetic.is_nan() {
         return Err(format!(
             "the discs have the kinetic energy {kinetic:?}, of which the scene offers {most:?} at most"
         ));

@@ -88,7 +88,7 @@ fn check_drawing(drawing: &Drawing) -> Result<(), Fault> {
         for value in lengths(shape) {
             finite(value, place)?;
             let pixels = scale * value.abs().min((value - left).abs()).min((value - low).abs());
-            if !(pixels <= FARTHEST) {
+            if pixels > FARTHEST || pixels.is_nan() {
                 return Err(Fault::TooFar { place: place(), value, pixels });
             }
         }
