@@ -137,6 +137,14 @@ pub(super) fn listed(folder: &Path) -> Result<Option<BTreeSet<&'static str>>, Fo
     Err(FolderError::NotOurs { folder: folder.to_owned(), names: said })
 }
 
+/// Refuses a folder of a run in which another process writes.
+///
+/// # Errors
+/// Who that is.
+pub(super) fn is_free(folder: &Path) -> Result<(), FolderError> {
+    Ok(Lock::take(&folder.join(LOCK)).map(drop)?)
+}
+
 fn read_list(path: &Path) -> Result<BTreeSet<&'static str>, FolderError> {
     let at = || FileError::at(path, "reading");
     if !fs::symlink_metadata(path).map_err(at())?.is_file() {

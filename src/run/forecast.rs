@@ -53,7 +53,7 @@ pub fn of_the_memory(prepared: &dyn Prepared) -> Fact {
 pub fn of_the_files(prepared: &dyn Prepared) -> Vec<Fact> {
     let schedule = prepared.schedule();
     let counts = [
-        ("rows", "rows of thermo.csv", schedule.row_count()),
+        ("thermo_rows", "rows of thermo.csv", schedule.row_count()),
         ("frames", "frames of a trajectory", schedule.snapshot_count()),
     ];
     let known = counts.into_iter().filter_map(|(name, label, count)| Some((name, label, count?)));

@@ -230,6 +230,9 @@ const LONGEST_STRIDE: Duration = Duration::from_secs(1);
 /// If the folder is another's, or holds a run that is to stay.
 pub fn begins(folder: &Path, existing: Existing) -> Result<bool, RunError> {
     let holds = folder::listed(folder)?.is_some_and(|names| !names.is_empty());
+    if holds {
+        folder::is_free(folder)?;
+    }
     match existing {
         Existing::Refuse if holds => Err(RunError::Exists(folder.to_owned())),
         Existing::Resume { .. } => Ok(!holds),

@@ -428,7 +428,7 @@ impl Case {
         let summary = summary(folder);
         let (_, table) = table(&folder.join("thermo.csv"));
         let frames = dcd(&folder.join("trajectory.dcd"));
-        for (name, count) in [("rows", table.len()), ("frames", frames.len())] {
+        for (name, count) in [("thermo_rows", table.len()), ("frames", frames.len())] {
             let foreseen = found[name].as_u64();
             assert!(
                 foreseen.is_none_or(|foreseen| foreseen == count as u64),
