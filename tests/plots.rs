@@ -16,7 +16,9 @@ fn runs_become_pictures() {
         ("two-discs", ["run.steps=4000", "run.thermo_every=100"], true),
         ("hard-disks", ["run.events=2000", "run.thermo_every=0.05"], true),
         ("langevin-free", ["run.steps=200", "run.thermo_every=10"], true),
-        ("kepler", ["run.steps=256", "run.thermo_every=16"], false),
+        ("kepler", ["run.steps=256", "run.thermo_every=16"], true),
+        ("plummer", ["run.steps=32", "run.thermo_every=8"], true),
+        ("vibrating-floor", ["run.events=4000", "run.thermo_every=0.5"], true),
     ] {
         let run = folder.path().join(scene);
         let (run, plots) = (run.to_str().unwrap(), folder.path().join(format!("{scene}.pictures")));

@@ -1,6 +1,7 @@
 //! `stripmine plot`: a run to look at, without another program.
 
 mod particles;
+mod window;
 
 use crate::console::{Common, Failure, print, print_json, say};
 use crate::io::replace::replace;

@@ -59,7 +59,10 @@ pub(super) fn parse(text: &str, line: usize) -> Result<Header, Mistakes> {
 
     let mut missing = Vec::new();
     let mut cell = [0.0; 2];
+    // Space without end has no box, and says that nothing comes back in.
+    let is_open = find("pbc").and_then(boundaries) == Some([false; 2]);
     match find("lattice") {
+        None if is_open => cell = [f64::INFINITY; 2],
         None => missing.push(Reason::MissingKey { key: "Lattice", expected: LATTICE }),
         Some(entry) => match lattice(entry) {
             Ok(sides) => cell = sides,

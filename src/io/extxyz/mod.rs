@@ -35,7 +35,7 @@ pub(super) const DEPTH: [f64; 2] = [-0.5, 0.5];
 pub struct Frame {
     /// The discs.
     pub particles: Particles,
-    /// Sides of the box (length).
+    /// Sides of the box (length); without end where there is none.
     pub cell: [f64; 2],
     /// Lower left corner of the box (length).
     pub origin: [f64; 2],
