@@ -23,9 +23,11 @@ const TRACES: usize = 5000;
 /// Width of a picture, and of one that is much wider than high (pixels).
 const WIDTH: f64 = 720.0;
 const WIDE: f64 = 1800.0;
-/// Least radius of a particle, and radius of a body, which has none (pixels).
+/// Least radius of a particle; radius of a body, which has none, of one of a few, and of where it was (pixels).
 const LEAST: f64 = 1.0;
 const POINT: f64 = 2.5;
+const LARGE_POINT: f64 = 9.0;
+const TRACE: f64 = 2.0;
 
 /// The pictures of a trajectory. Gravity is that of the run's scene, if the scene can be read.
 ///
@@ -102,15 +104,16 @@ fn state(frame: &Frame, scene: Option<&toml::Table>, traces: &[[f64; 3]], view: 
     let pixel = (window[1][0] - window[0][0]) / pixels;
     let is_point =
         window::is_endless(frame) && bounds.iter().all(|[low, high]| low.is_infinite() && high.is_infinite());
-    let radius = |of: f64| if is_point { POINT * pixel } else { of.max(LEAST * pixel) };
+    let point = if all.len() <= TRACED { LARGE_POINT } else { POINT };
+    let radius = |of: f64| if is_point { point * pixel } else { of.max(LEAST * pixel) };
     let walls = bounds[0].into_iter().map(|at| [[at, y], [at, y_end]]);
     let walls = walls.chain(bounds[1].into_iter().map(|at| [[x, at], [x_end, at]]));
     let walls = walls.filter(|ends| ends.iter().flatten().all(|at| at.is_finite()));
     let walls = walls.map(|ends| Shape::Line { ends: ends.map(place) });
     let earlier = traces.iter().map(|&trace| Shape::Disc {
         centre: place(flat(trace)),
-        radius: 0.4 * POINT * pixel,
-        tint: Tint::Still,
+        radius: TRACE * pixel,
+        tint: Tint::Hue(0),
     });
     let shapes = all.iter().step_by(every).map(|particle| Shape::Disc {
         centre: place(flat(particle.position)),
@@ -134,6 +137,9 @@ fn state(frame: &Frame, scene: Option<&toml::Table>, traces: &[[f64; 3]], view: 
     if all.is_empty() {
         title.push_str("; there are none");
     }
+    if !traces.is_empty() {
+        title.push_str("; small dots: where they were");
+    }
     if outside > 0 {
         title.push_str(&format!("; {outside} of {} are farther out", all.len()));
     }
@@ -146,7 +152,7 @@ fn state(frame: &Frame, scene: Option<&toml::Table>, traces: &[[f64; 3]], view: 
     if every > 1 {
         title.push_str(&format!("; one of {every} is shown"));
     }
-    let traced = if traces.is_empty() { "" } else { " Grey: where they were in earlier frames." };
+    let traced = if traces.is_empty() { "" } else { " Small: where they were in earlier frames." };
     Figure {
         name: if view == View::AlongY { "last-state-side" } else { "last-state" }.into(),
         title,

@@ -207,9 +207,11 @@ fn parse(raw: &RawFrame) -> Result<Frame, Mistakes> {
     let mut discs = Vec::new();
     let mut lines_of_ids = HashMap::new();
     let mut fields = Vec::new();
+    // What has no box is in space.
+    let in_space = header.cell.iter().any(|side| side.is_infinite());
     let rows = raw.text.split(|&byte| byte == b'\n').skip(1).take(raw.count);
     for (line, row) in (raw.line + 2..).zip(rows) {
-        match utf8(row, line).and_then(|row| header.layout.disc(row, line, &mut fields)) {
+        match utf8(row, line).and_then(|row| header.layout.disc(row, line, in_space, &mut fields)) {
             Err(mistake) => mistakes.add(mistake),
             Ok(disc) => {
                 let first = *lines_of_ids.entry(disc.id).or_insert(line);

@@ -69,11 +69,12 @@ impl Layout {
         if reasons.is_empty() { Ok(layout) } else { Err(reasons) }
     }
 
-    /// A disc from a row; `fields` is there to be used again.
+    /// A disc, or a body where it is in space, from a row; `fields` is there to be used again.
     pub(super) fn disc<'a>(
         &self,
         text: &'a str,
         line: usize,
+        in_space: bool,
         fields: &mut Vec<&'a str>,
     ) -> Result<Particle, Mistake> {
         fields.clear();
@@ -89,10 +90,14 @@ impl Layout {
             [other, ..] => return Err(row.wrong(other, Reason::Species((*other).to_owned()))),
         };
         let [x, y, z] = row.vector(POS)?;
-        row.zeros(POS, &[(2, z)])?;
+        if !in_space {
+            row.zeros(POS, &[(2, z)])?;
+        }
         let id = row.id()?;
         let [u, v, w] = row.vector(VELO)?;
-        row.zeros(VELO, &[(2, w)])?;
+        if !in_space {
+            row.zeros(VELO, &[(2, w)])?;
+        }
         let radius = row.positive(RADIUS)?;
         let mass = row.positive(MASS)?;
         let [about_x, about_y, omega] = row.vector(OMEGA)?;
