@@ -24,7 +24,6 @@ fn peak(arguments: &[String]) -> u64 {
 /// depends on the moment, and what is foreseen counts both. A frame of a hundred thousand particles is 10 MB, 7 % of the largest.
 #[test]
 fn a_run_takes_the_memory_that_was_foreseen() {
-    let folder = tempfile::tempdir().unwrap();
     let mut said = Vec::new();
     for sets in [
         &["machine.engine=fast", "search.by=lattice", "particles.packing_fraction=0.7"][..],
@@ -36,30 +35,50 @@ fn a_run_takes_the_memory_that_was_foreseen() {
         &["search.by=neighbor-list", "machine.execution=chained"],
         &["search.by=sectors", "machine.engine=fast"],
     ] {
-        let sets: Vec<String> =
-            sets.iter().chain(&["particles.count=100000"]).map(|&set| set.into()).collect();
-        let with_sets = |words: &[&str], steps: &str| {
-            let sets = sets.iter().cloned().chain([steps.to_owned()]);
-            let words = words.iter().map(|&word| word.to_owned());
-            words.chain(sets.flat_map(|set| ["--set".to_owned(), set])).collect::<Vec<String>>()
-        };
-        // Not asked in this process: what it holds counts in the memory of its children while they begin.
-        let check = with_sets(&["scene", "check", "bench", "--json"], "run.steps=1");
-        let checked = Command::new(env!("CARGO_BIN_EXE_stripmine")).args(check).output().unwrap();
-        let checked: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
-        let needed = checked["memory"]["needed"].as_u64().unwrap();
-        let out = folder.path().join("run").display().to_string();
-        for (how, steps) in [("--overwrite", "run.steps=1"), ("--resume", "run.steps=2")] {
-            let taken = peak(&with_sets(&["run", "bench", how, "--threads", "2", "--out", &out], steps));
-            said.push((
-                needed as f64 / taken as f64 - 1.0,
-                format!("{sets:?} {how}: {needed} foreseen, {taken} taken"),
-            ));
-        }
+        said.extend(foreseen_and_taken("bench", &[sets, &["particles.count=100000"]].concat()));
     }
+    judged(&said);
+}
+
+/// The same for the ways of twelve thousand bodies.
+#[test]
+fn bodies_take_the_memory_that_was_foreseen() {
+    let mut said = Vec::new();
+    for sets in [
+        &["machine.engine=fast"][..],
+        &["machine.engine=fast", "machine.precision=mixed", "integrator.kind=hermite-4"],
+        &["machine.engine=programs"],
+    ] {
+        said.extend(foreseen_and_taken("plummer", &[sets, &["particles.count=12000"]].concat()));
+    }
+    judged(&said);
+}
+
+fn judged(said: &[(f64, String)]) {
     let off: Vec<&String> =
         said.iter().filter(|(off, _)| !(-0.05..=0.10).contains(off)).map(|(_, said)| said).collect();
     assert!(off.is_empty(), "{off:#?} of {said:#?}");
+}
+
+/// How much more was foreseen than a run took, begun and gone on with, relative to that, and in words.
+fn foreseen_and_taken(preset: &str, sets: &[&str]) -> Vec<(f64, String)> {
+    let folder = tempfile::tempdir().unwrap();
+    let with_sets = |words: &[&str], steps: &str| {
+        let sets = sets.iter().chain([&steps]).flat_map(|&set| ["--set".to_owned(), set.to_owned()]);
+        words.iter().map(|&word| word.to_owned()).chain(sets).collect::<Vec<String>>()
+    };
+    // Not asked in this process: what it holds counts in the memory of its children while they begin.
+    let check = with_sets(&["scene", "check", preset, "--json"], "run.steps=1");
+    let checked = Command::new(env!("CARGO_BIN_EXE_stripmine")).args(check).output().unwrap();
+    let checked: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
+    let needed = checked["memory"]["needed"].as_u64().unwrap();
+    let out = folder.path().join("run").display().to_string();
+    let ways = [("--overwrite", "run.steps=1"), ("--resume", "run.steps=2")];
+    let taken = ways.map(|(how, steps)| {
+        let taken = peak(&with_sets(&["run", preset, how, "--threads", "2", "--out", &out], steps));
+        (needed as f64 / taken as f64 - 1.0, format!("{sets:?} {how}: {needed} foreseen, {taken} taken"))
+    });
+    taken.into()
 }
 
 /// Bytes of the process while it refuses: a tenth of a gigabyte is far below what it was asked for.

@@ -119,11 +119,13 @@ fn threads_sets_and_resumption_change_no_bit() {
         let out = folder.path().join(name);
         for (number, steps) in parts.iter().enumerate() {
             let steps = format!("run.steps={steps}");
-            let all = [&["particles.count=200", &steps][..], sets].concat();
+            let all = [&["particles.count=200", "run.thermo_every=5", &steps][..], sets].concat();
             let resumed: &[&str] = if number > 0 { &["--resume"] } else { &[] };
             run("plummer", &out, &all, &[more, resumed].concat());
         }
-        last_frame(&out)
+        // Of the observables too, which are sums over all bodies.
+        let seen = ["kinetic", "potential", "energy_error"].map(|name| column(&out, name));
+        [last_frame(&out), seen.to_vec()].concat()
     };
     for kind in ["leapfrog", "yoshida-4", "hermite-4", "gear-6", "runge-kutta-4", "damped-euler"] {
         let set = format!("integrator.kind={kind}");
@@ -133,8 +135,22 @@ fn threads_sets_and_resumption_change_no_bit() {
             whole,
             "{kind}"
         );
-        let scalar = [set.as_str(), "machine.instruction_set=scalar"];
-        assert_eq!(frame(&format!("{kind}-scalar"), &scalar, &["30"], &[]), whole, "{kind}");
+        for instructions in ["scalar", "wide", "avx2", "avx512"] {
+            let instructions = format!("machine.instruction_set={instructions}");
+            let sets = [set.as_str(), &instructions];
+            let out = folder.path().join("asked");
+            let checked = begin(
+                "plummer",
+                &out,
+                &[&sets[..], &["particles.count=2", "run.steps=1"]].concat(),
+                &["--overwrite"],
+            );
+            if said(&checked).contains("this processor has no") {
+                continue;
+            }
+            let name = format!("{kind}-{}", instructions.replace('=', "-"));
+            assert_eq!(frame(&name, &sets, &["30"], &[]), whole, "{kind} by {instructions}");
+        }
         let reference =
             frame(&format!("{kind}-reference"), &[&set, "machine.engine=reference"], &["30"], &[]);
         for (a, b) in reference.iter().flatten().zip(whole.iter().flatten()) {
@@ -154,7 +170,8 @@ fn what_cannot_be_is_refused_and_what_breaks_is_said() {
     ];
     let short = list("[1.0, 0, 0]");
     let endless = list("[1.0, 0, 0, 0, 0, 0, 0], [1.0, nan, 0, 0, 0, 0, 0]");
-    let cases: [(&[&str], &[&str]); 8] = [
+    let light = list("[1.0, 0, 0, 0, 0, 0, 0], [1e-19, 1, 0, 0, 0, 0, 0]");
+    let cases: [(&[&str], &[&str]); 12] = [
         (&["particles.generate=list", &one], &["one body alone"]),
         (&["particles.generate=list", &heavy], &["body 2 has the mass -1.0"]),
         (&["particles.generate=list", &twice], &["bodies 1 and 2 are both at (0, 1, 0)", "law.softening"]),
@@ -163,6 +180,17 @@ fn what_cannot_be_is_refused_and_what_breaks_is_said() {
         (&["particles.generate=plummer", "particles.count=1"], &["particles.count"]),
         (&["machine.precision=f32"], &["mixed"]),
         (&["output.lammps_dump=true"], &["needs a box"]),
+        // What would be left out without a word.
+        (
+            &["machine.engine=reference", "machine.precision=mixed"],
+            &["machine.precision", "double precision only"],
+        ),
+        (&["machine.engine=reference", "machine.arithmetic=raw"], &["machine.arithmetic"]),
+        (&["machine.engine=programs", "machine.arithmetic=estimated"], &["machine.arithmetic"]),
+        (
+            &["particles.generate=list", &light, "machine.precision=mixed"],
+            &["body 2 has the mass", "single precision"],
+        ),
     ];
     for (sets, words) in cases {
         let output = begin("figure-eight", &folder.path().join("refused"), sets, &[]);
@@ -199,4 +227,39 @@ fn ways_are_compared() {
     assert_eq!(last["steps"], 128);
     let apart = last["position"].as_f64().unwrap();
     assert!(apart > 0.0 && apart < 1e-12, "{apart}");
+}
+
+/// Few bodies are summed pair by pair, many swept; the choice is said and kept, and a run goes on with it.
+#[test]
+fn the_engine_is_chosen_by_the_number_of_bodies() {
+    let folder = tempfile::tempdir().unwrap();
+    for (preset, engine) in [("kepler", "reference"), ("figure-eight", "reference"), ("plummer", "fast")] {
+        let out = folder.path().join(preset);
+        let summary = run(preset, &out, &["run.steps=3"], &[]);
+        let choices = summary["choices"].to_string();
+        assert!(choices.contains(&format!("machine.engine = \\\"{engine}\\\"")), "{choices}");
+        let scene = fs::read_to_string(out.join("scene.toml")).unwrap();
+        assert!(scene.contains(&format!("engine = \"{engine}\"")), "{scene}");
+        run(preset, &out, &["run.steps=5"], &["--resume"]);
+    }
+}
+
+/// A run in parts has the counts and the largest error of one in one piece.
+#[test]
+fn a_run_in_parts_counts_as_one_in_one_piece() {
+    let folder = tempfile::tempdir().unwrap();
+    let ended = |name: &str, parts: &[&str]| {
+        let mut last = Value::Null;
+        for (number, steps) in parts.iter().enumerate() {
+            let resumed: &[&str] = if number > 0 { &["--resume"] } else { &[] };
+            let sets = ["particles.count=100", "run.thermo_every=16", &format!("run.steps={steps}")];
+            last = run("plummer", &folder.path().join(name), &sets, resumed);
+        }
+        ["evaluations", "energy", "largest_energy_error", "largest_energy_error_step", "nearest_encounter"]
+            .map(|name| last[name].clone())
+    };
+    let whole = ended("whole", &["130"]);
+    assert_eq!(whole[0], 131);
+    assert!(whole.iter().all(|entry| !entry.is_null()), "{whole:?}");
+    assert_eq!(ended("parts", &["5", "64", "99", "130"]), whole);
 }

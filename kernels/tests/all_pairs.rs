@@ -1,17 +1,29 @@
 //! Every pair once, against the sum that is written down.
 
 use rand::RngExt;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::gravity::Gravity;
 use stripmine_kernels::noise::{Purpose, Stream};
-use stripmine_kernels::sweep::all_pairs::{AllPairs, Arithmetic, Bodies, padded};
+use stripmine_kernels::sweep::all_pairs::{AllPairs, Arithmetic, BANDS, Bodies, Manner, padded};
+
+fn never() -> bool {
+    false
+}
+
+/// Everything summed up, to the end.
+fn manner(arithmetic: Arithmetic, set: InstructionSet) -> Manner<'static> {
+    Manner { observed: true, arithmetic, set, interrupted: &never }
+}
 
 /// Positions and velocities of bodies at random in a cube, and their masses; padding behind them.
 struct System<P> {
     count: usize,
     position: [Vec<P>; 3],
+    /// What rounding to single precision has left of them.
+    rest: [Vec<P>; 3],
     velocity: [Vec<P>; 3],
     mass: Vec<P>,
 }
@@ -27,6 +39,7 @@ impl<P: Precision> System<P> {
         System {
             count,
             position: [0, 1, 2].map(|_| column(-1.0, 1.0, 7.0)),
+            rest: std::array::from_fn(|_| vec![P::default(); entries]),
             velocity: [0, 1, 2].map(|_| column(-1.0, 1.0, 0.0)),
             mass: column(0.5 / count as f64, 1.5 / count as f64, 0.0),
         }
@@ -41,6 +54,7 @@ impl<P: Precision> System<P> {
     ) -> ([Vec<P>; SUMS], [f64; 2]) {
         let bodies = Bodies {
             position: self.position.each_ref().map(Vec::as_slice),
+            rest: self.rest.each_ref().map(Vec::as_slice),
             velocity: self.velocity.each_ref().map(Vec::as_slice),
             mass: &self.mass,
         };
@@ -48,7 +62,7 @@ impl<P: Precision> System<P> {
         let law = Gravity::<RATE> { softening };
         let into = sums.each_mut().map(Vec::as_mut_slice);
         let energy = AllPairs::<P, SUMS>::new(self.count)
-            .sweep(&law, &bodies, into, true, arithmetic, set)
+            .sweep(&law, &bodies, into, &manner(arithmetic, set))
             .expect("the processor has the set");
         (sums, energy)
     }
@@ -57,17 +71,29 @@ impl<P: Precision> System<P> {
         column.each_ref().map(|axis| axis[body].to_f64())
     }
 
+    /// The same bodies elsewhere, their positions rounded to single precision and what that leaves.
+    fn moved(mut self, by: f64) -> Self {
+        for (column, rest) in self.position.iter_mut().zip(&mut self.rest) {
+            for (x, rest) in column.iter_mut().zip(rest).take(self.count) {
+                let exact = x.to_f64() + by;
+                *x = P::from_f64(exact);
+                *rest = P::from_f64(exact - x.to_f64());
+            }
+        }
+        self
+    }
+
+    fn place(&self, body: usize) -> [f64; 3] {
+        let [place, rest] = [&self.position, &self.rest].map(|columns| Self::vector(columns, body));
+        [0, 1, 2].map(|axis| place[axis] + rest[axis])
+    }
+
     /// The sums of a body, its partners one after the other in double precision, and half its pairs' energy.
     fn written_down(&self, body: usize, softening: f64) -> ([f64; 6], f64) {
-        let (r, v, m) = (
-            Self::vector(&self.position, body),
-            Self::vector(&self.velocity, body),
-            self.mass[body].to_f64(),
-        );
+        let (r, v, m) = (self.place(body), Self::vector(&self.velocity, body), self.mass[body].to_f64());
         let (mut sums, mut energy) = ([0.0; 6], 0.0);
         for other in (0..self.count).filter(|&other| other != body) {
-            let (there, velocity) =
-                (Self::vector(&self.position, other), Self::vector(&self.velocity, other));
+            let (there, velocity) = (self.place(other), Self::vector(&self.velocity, other));
             let d = [0, 1, 2].map(|axis| r[axis] - there[axis]);
             let change = [0, 1, 2].map(|axis| v[axis] - velocity[axis]);
             let square = d.iter().map(|d| d * d).sum::<f64>() + softening * softening;
@@ -91,7 +117,16 @@ fn error<P: Precision, const RATE: bool, const SUMS: usize>(
     arithmetic: Arithmetic,
     set: InstructionSet,
 ) -> f64 {
-    let system = System::<P>::random(count, 5);
+    error_of::<P, RATE, SUMS>(&System::random(count, 5), softening, arithmetic, set)
+}
+
+fn error_of<P: Precision, const RATE: bool, const SUMS: usize>(
+    system: &System<P>,
+    softening: f64,
+    arithmetic: Arithmetic,
+    set: InstructionSet,
+) -> f64 {
+    let count = system.count;
     let (sums, [energy, virial]) = system.swept::<RATE, SUMS>(softening, arithmetic, set);
     let (mut largest, mut worst, mut potential) = ([0.0_f64; 2], [0.0_f64; 2], 0.0);
     for body in 0..count {
@@ -151,12 +186,25 @@ fn raw_estimates_are_coarse() {
     }
 }
 
-/// Energies are summed lane by lane and may differ by rounding; sums may not.
-fn bits<P: Precision, const SUMS: usize>((sums, _): ([Vec<P>; SUMS], [f64; 2])) -> Vec<u64> {
-    sums.iter().flatten().map(|sum| sum.to_f64().to_bits()).collect()
+/// Single precision knows how far bodies are apart as well a thousand lengths from the origin as about it.
+#[test]
+fn forces_in_single_precision_do_not_depend_on_the_origin() {
+    for arithmetic in [Arithmetic::Exact, Arithmetic::Estimated] {
+        for set in InstructionSet::available() {
+            let of = |by| System::<f32>::random(65, 9).moved(by);
+            let far = error_of::<f32, false, 3>(&of(1000.0), 0.0, arithmetic, set);
+            let rates = error_of::<f32, true, 6>(&of(1000.0), 0.0, arithmetic, set);
+            assert!(far < 3e-6 && rates < 3e-5, "{far} {rates} by {}", set.name());
+        }
+    }
 }
 
-/// The bits of exact sums depend neither on the instruction set nor on the number of threads; those of estimates not on the
+/// Of sums, energy and virial.
+fn bits<P: Precision, const SUMS: usize>((sums, observed): ([Vec<P>; SUMS], [f64; 2])) -> Vec<u64> {
+    sums.iter().flatten().map(|sum| sum.to_f64()).chain(observed).map(f64::to_bits).collect()
+}
+
+/// The bits of exact sums, energy and virial depend neither on the instruction set nor on the number of threads; those of estimates not on the
 /// latter.
 #[test]
 fn bits_depend_on_the_bodies_alone() {
@@ -198,30 +246,58 @@ fn columns_that_are_too_short_are_refused() {
     let law = Gravity::<true> { softening: 0.1 };
     let mut sums: [Vec<f64>; 6] = std::array::from_fn(|_| zeros.clone());
     let mut sweep = |position: &[f64], velocity: &[f64]| {
-        let bodies = Bodies { position: [position; 3], velocity: [velocity; 3], mass: &zeros };
+        let bodies =
+            Bodies { position: [position; 3], rest: [&[]; 3], velocity: [velocity; 3], mass: &zeros };
         let into = sums.each_mut().map(Vec::as_mut_slice);
         AllPairs::<f64, 6>::new(20).sweep(
             &law,
             &bodies,
             into,
-            false,
-            Arithmetic::Exact,
-            InstructionSet::Scalar,
+            &manner(Arithmetic::Exact, InstructionSet::Scalar),
         )
     };
     assert!(matches!(sweep(&short, &zeros), Err(ProgramError::TooShort { .. })));
     assert!(matches!(sweep(&zeros, &[]), Err(ProgramError::TooShort { .. })));
     assert!(sweep(&zeros, &zeros).is_ok());
     let mut three: [Vec<f64>; 3] = std::array::from_fn(|_| zeros.clone());
-    let bodies = Bodies { position: [&zeros; 3], velocity: [&zeros; 3], mass: &zeros };
+    let bodies = Bodies { position: [&zeros; 3], rest: [&[]; 3], velocity: [&zeros; 3], mass: &zeros };
     let into = three.each_mut().map(Vec::as_mut_slice);
-    let rates = AllPairs::<f64, 3>::new(20).sweep(
-        &law,
-        &bodies,
-        into,
-        false,
-        Arithmetic::Exact,
-        InstructionSet::Scalar,
-    );
+    let manner = manner(Arithmetic::Exact, InstructionSet::Scalar);
+    let rates = AllPairs::<f64, 3>::new(20).sweep(&law, &bodies, into, &manner);
     assert!(matches!(rates, Err(ProgramError::Unstated(_))), "there is no room for the rates");
+}
+
+/// A sweep looks between its groups of bodies whether it should stop, and says that it did; the next one has the same bits as
+/// if none had been stopped.
+#[test]
+fn a_sweep_stops_between_groups() {
+    let system = System::<f64>::random(1000, 4);
+    let whole = bits(system.swept::<false, 3>(0.01, Arithmetic::Exact, InstructionSet::best()));
+    let groups = padded(1000) / 16;
+    let mut sweep = AllPairs::<f64, 3>::new(1000);
+    for threads in [1, 4] {
+        for (most, stops) in [(0, true), (1, true), (groups - 1, true), (groups, false)] {
+            let asked = AtomicUsize::new(0);
+            let interrupted = || asked.fetch_add(1, Ordering::Relaxed) >= most;
+            let manner =
+                Manner { interrupted: &interrupted, ..manner(Arithmetic::Exact, InstructionSet::best()) };
+            let mut sums: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; system.mass.len()]);
+            let bodies = Bodies {
+                position: system.position.each_ref().map(Vec::as_slice),
+                rest: [&[]; 3],
+                velocity: [&[]; 3],
+                mass: &system.mass,
+            };
+            let law = Gravity::<false> { softening: 0.01 };
+            let into = sums.each_mut().map(Vec::as_mut_slice);
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            let done = pool.install(|| sweep.sweep(&law, &bodies, into, &manner));
+            // No band goes on after it was told to stop.
+            assert!(asked.into_inner() <= most + BANDS);
+            match (stops, done) {
+                (true, done) => assert_eq!(done, Err(ProgramError::Interrupted), "{most}"),
+                (false, done) => assert_eq!(bits((sums, done.expect("not stopped"))), whole),
+            }
+        }
+    }
 }

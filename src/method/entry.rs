@@ -337,6 +337,14 @@ pub trait Simulation: Send {
         self.particles().all().iter().map(|particle| particle.position.map(|x| x as f32)).collect()
     }
 
+    /// Holds the state against what only sums over all particles show; asked before every row, and at the end.
+    ///
+    /// # Errors
+    /// [`Failure`] as of [`advance`](Self::advance), where such a sum is wrong, or cannot be had.
+    fn check(&self) -> Result<(), Failure> {
+        Ok(())
+    }
+
     /// A value for each of the method's quantities.
     fn observe(&self) -> Vec<f64>;
 

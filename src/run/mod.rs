@@ -280,7 +280,8 @@ pub fn run(
             strides = strides.saturating_mul(2);
         }
         recorder.log(&simulation.take_events())?;
-        let failed = match advanced {
+        let is_over = until.has_come(&simulation.clock());
+        let failed = match advanced.and_then(|()| if is_over { simulation.check() } else { Ok(()) }) {
             Ok(()) => recorder.write_what_is_due(simulation.as_ref())?,
             Err(failure) => Some(failure),
         };

@@ -239,6 +239,9 @@ impl Recorder {
 
     /// A row of observables, unless one of them is no finite number.
     fn thermo(&mut self, simulation: &dyn Simulation) -> Result<Option<Failure>, RunError> {
+        if let Err(failure) = simulation.check() {
+            return Ok(Some(failure));
+        }
         let (clock, row) = (simulation.clock(), simulation.observe());
         let named = self.quantities.iter().zip(&row);
         if let Some((quantity, &value)) = named.into_iter().find(|(_, value)| !value.is_finite()) {

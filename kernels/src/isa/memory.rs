@@ -53,6 +53,9 @@ pub enum ProgramError {
     /// The processor lacks the instruction set asked for.
     #[error("this processor has no {0}")]
     NoSuchInstructionSet(&'static str),
+    /// It was asked to stop on the way: what it writes is incomplete.
+    #[error("interrupted")]
+    Interrupted,
 }
 
 /// One slice as the machine sees it.

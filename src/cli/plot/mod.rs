@@ -2,6 +2,7 @@
 
 mod observed;
 mod particles;
+mod window;
 
 use crate::console::{Common, Failure, print, print_json, say};
 use crate::method::Methods;

@@ -1,7 +1,9 @@
 //! Pictures of the particles of a run: its last state, and, where the box is long, the density along it over time.
 
+use super::window;
 use crate::io::extxyz::{Frame, Frames, ReadError};
 use crate::io::regular_file;
+use crate::number::significant;
 use crate::particles::Kind;
 use crate::report::figure::{Axis, Drawing, Figure, Guide, Map, Picture, Shape, Tint};
 use std::path::Path;
@@ -15,83 +17,162 @@ const LONG: f64 = 4.0;
 /// Bins along it: a slice of each has about this many mean diameters, as in the pictures of BP93's pipe.
 const BIN: f64 = 2.5;
 
+/// Bodies up to which the places of earlier frames are shown too.
+const TRACED: usize = 12;
+/// Places of earlier frames, at most.
+const TRACES: usize = 5000;
+/// Width of a picture, and of one that is much wider than high (pixels).
+const WIDTH: f64 = 720.0;
+const WIDE: f64 = 1800.0;
+/// Least radius of a particle; radius of a body, which has none, of one of a few, and of where it was (pixels).
+const LEAST: f64 = 1.0;
+const POINT: f64 = 2.5;
+const LARGE_POINT: f64 = 9.0;
+const TRACE: f64 = 2.0;
+
 /// The pictures of a trajectory. Gravity is that of the run's scene, if the scene can be read.
 ///
 /// # Errors
 /// [`ReadError`] if the trajectory cannot be read.
 pub fn pictures(run: &Path) -> Result<Vec<Figure>, ReadError> {
-    let (mut last, mut slices) = (None, vec![]);
+    let (mut last, mut slices, mut traces) = (None, vec![], vec![]);
     for frame in Frames::open(run.join("trajectory.xyz"))?.in_space() {
         let frame: Frame = frame?;
         slices.extend(slice(&frame).map(|counts| (frame.time, counts)));
+        if frame.particles.len() <= TRACED && window::is_endless(&frame) {
+            traces.extend(frame.particles.all().iter().map(|particle| particle.position));
+        }
         last = Some(frame);
     }
     let Some(last) = last else { return Ok(vec![]) };
-    let density = density(&last, &slices);
-    Ok(std::iter::once(state(&last, gravity(run))).chain(density).collect())
+    let scene = scene(run);
+    let traces: Vec<[f64; 3]> =
+        traces.iter().step_by(traces.len().div_ceil(TRACES).max(1)).copied().collect();
+    let has_depth = last.particles.all().iter().any(|particle| particle.position[2] != 0.0);
+    let views: &[View] = if has_depth { &[View::AlongZ, View::AlongY] } else { &[View::Plane] };
+    let states = views.iter().map(|&view| state(&last, scene.as_ref(), &traces, view));
+    Ok(states.chain(density(&last, &slices)).collect())
+}
+
+/// From where particles are seen.
+#[derive(Clone, Copy, PartialEq)]
+enum View {
+    /// They lie in it.
+    Plane,
+    /// Bodies in space.
+    AlongZ,
+    /// The same from the side.
+    AlongY,
+}
+
+impl View {
+    /// The coordinates to the right and upwards.
+    fn axes(self) -> [usize; 2] {
+        if self == View::AlongY { [0, 2] } else { [0, 1] }
+    }
+}
+
+/// Longer than any scene (bytes).
+const LONGEST_SCENE: u64 = 1 << 24;
+
+/// The scene of a run.
+fn scene(run: &Path) -> Option<toml::Table> {
+    let text = regular_file::read(&run.join("scene.toml"), LONGEST_SCENE).ok()?;
+    String::from_utf8(text).ok()?.parse().ok()
 }
 
 /// Which way gravity pulls in a run.
-fn gravity(run: &Path) -> Option<[f64; 2]> {
-    let scene: toml::Table =
-        String::from_utf8(regular_file::read(&run.join("scene.toml"), 1 << 24).ok()?).ok()?.parse().ok()?;
-    let pair = scene.get("domain")?.get("gravity")?.as_array()?;
-    let number = |value: &toml::Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
-    let [x, y] = [pair.first().and_then(number)?, pair.get(1).and_then(number)?];
+fn gravity(scene: &toml::Table) -> Option<[f64; 2]> {
+    let [x, y] = window::pair(scene, "gravity")?;
     ([x, y] != [0.0, 0.0]).then_some([x, y])
 }
 
-/// The lower left corner of what is shown of the plane, and its sides (length): the box, or where there is none all particles.
-fn window(frame: &Frame) -> ([f64; 2], [f64; 2]) {
-    if frame.cell.iter().all(|side| side.is_finite()) {
-        return (frame.origin, frame.cell);
-    }
-    let all = frame.particles.all().iter();
-    let ends = all.fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], particle| {
-        let (place, radius) = (particle.place(), particle.radius);
-        let low = [0, 1].map(|axis| low[axis].min(place[axis] - radius));
-        [low, [0, 1].map(|axis| high[axis].max(place[axis] + radius))]
-    });
-    (ends[0], [0, 1].map(|axis| ends[1][axis] - ends[0][axis]))
-}
-
 /// The particles of a frame, their speed as shade.
-fn state(frame: &Frame, gravity: Option<[f64; 2]>) -> Figure {
+fn state(frame: &Frame, scene: Option<&toml::Table>, traces: &[[f64; 3]], view: View) -> Figure {
     let speed = |v: [f64; 3]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
     let all = frame.particles.all();
     let mut speeds: Vec<f64> = all.iter().map(|particle| speed(particle.velocity)).collect();
     speeds.sort_by(f64::total_cmp);
     // Few are much faster than the others: they look like the fastest of a hundred.
     let fastest = crate::statistics::quantile(&speeds, 0.99).filter(|fastest| *fastest > 0.0).unwrap_or(1.0);
-    let every = all.len().div_ceil(SHOWN);
-    let ([x, y], [width, height]) = window(frame);
+    let every = all.len().div_ceil(SHOWN).max(1);
+    let axes = view.axes();
+    let flat = |position: [f64; 3]| axes.map(|axis| position[axis]);
+    let bounds = window::bounds(frame, scene, axes);
+    let [[x, x_end], [y, y_end]] = window::shown(frame, traces, axes, bounds);
+    let (width, height) = (x_end - x, y_end - y);
     // A tall box lies down, its upper end to the left.
     let lies = height > LONG * width;
-    let place = |[a, b]: [f64; 2]| if lies { [y + height - b, a - x] } else { [a, b] };
+    let place = |[a, b]: [f64; 2]| if lies { [y_end - b, a - x] } else { [a, b] };
+    let window = if lies { [[0.0, 0.0], [height, width]] } else { [[x, y], [x_end, y_end]] };
+    let pixels = if lies || width > LONG * height { WIDE } else { WIDTH };
+    let pixel = (window[1][0] - window[0][0]) / pixels;
+    let is_point =
+        window::is_endless(frame) && bounds.iter().all(|[low, high]| low.is_infinite() && high.is_infinite());
+    let point = if all.len() <= TRACED { LARGE_POINT } else { POINT };
+    let radius = |of: f64| if is_point { point * pixel } else { of.max(LEAST * pixel) };
+    let walls = bounds[0].into_iter().map(|at| [[at, y], [at, y_end]]);
+    let walls = walls.chain(bounds[1].into_iter().map(|at| [[x, at], [x_end, at]]));
+    let walls = walls.filter(|ends| ends.iter().flatten().all(|at| at.is_finite()));
+    let walls = walls.map(|ends| Shape::Line { ends: ends.map(place) });
+    let earlier = traces.iter().map(|&trace| Shape::Disc {
+        centre: place(flat(trace)),
+        radius: TRACE * pixel,
+        tint: Tint::Hue(0),
+    });
     let shapes = all.iter().step_by(every).map(|particle| Shape::Disc {
-        centre: place(particle.place()),
-        radius: particle.radius,
+        centre: place(flat(particle.position)),
+        radius: radius(particle.radius),
         tint: match particle.kind {
             Kind::Wall => Tint::Still,
             Kind::Grain => Tint::Shade((speed(particle.velocity) / fastest).min(1.0)),
         },
     });
-    let left_out = match every {
-        1 => String::new(),
-        every => format!(" One of {every} particles is shown."),
+    let is_outside = |position: [f64; 3]| {
+        let [a, b] = flat(position);
+        !(x..=x_end).contains(&a) || !(y..=y_end).contains(&b)
     };
+    let outside = all.iter().filter(|particle| is_outside(particle.position)).count();
+    let mut title = format!("The particles at time {}", significant(frame.time, 6));
+    match view {
+        View::Plane => {}
+        View::AlongZ => title.push_str(", seen along z: x to the right, y upwards"),
+        View::AlongY => title.push_str(", seen along y: x to the right, z upwards"),
+    }
+    if all.is_empty() {
+        title.push_str("; there are none");
+    }
+    if !traces.is_empty() {
+        title.push_str("; small dots: where they were");
+    }
+    if outside > 0 {
+        title.push_str(&format!("; {outside} of {} are farther out", all.len()));
+    }
+    let is_cut = |[low, high]: [f64; 2], [from, to]: [f64; 2]| {
+        low.is_finite() && high.is_finite() && (from > low || to < high)
+    };
+    if is_cut(bounds[0], [x, x_end]) || is_cut(bounds[1], [y, y_end]) {
+        title.push_str("; the rest of the box is empty, or almost");
+    }
+    if every > 1 {
+        title.push_str(&format!("; one of {every} is shown"));
+    }
+    let traced = if traces.is_empty() { "" } else { " Small: where they were in earlier frames." };
     Figure {
-        name: "last-state".into(),
-        title: format!("The particles at time {:.6}", frame.time),
-        caption: format!("Shade: speed.{left_out}"),
+        name: if view == View::AlongY { "last-state-side" } else { "last-state" }.into(),
+        title,
+        caption: format!("Shade: speed.{traced}"),
         picture: Picture::Drawing(Drawing {
-            window: if lies { [[0.0, 0.0], [height, width]] } else { [[x, y], [x + width, y + height]] },
-            width: if lies || width > LONG * height { 1800.0 } else { 720.0 },
-            shapes: shapes.collect(),
+            window,
+            width: pixels,
+            shapes: walls.chain(earlier).chain(shapes).collect(),
             shades: Some((0.0, fastest, "speed (the scene's unit)".into())),
             guide: Some(Guide {
                 unit: String::new(),
-                gravity: gravity.map(|[a, b]| if lies { [-b, a] } else { [a, b] }),
+                gravity: scene
+                    .and_then(gravity)
+                    .filter(|_| view == View::Plane)
+                    .map(|[a, b]| if lies { [-b, a] } else { [a, b] }),
             }),
         }),
     }

@@ -17,6 +17,11 @@ pub fn add(to: &mut Columns, factor: f64, of: &Columns) {
     }
 }
 
+/// The place along an axis of padding `n`, beyond the farthest body and at no other's place however far that is.
+pub fn elsewhere(farthest: f64, n: usize) -> f64 {
+    (2.0 * farthest + 1.0) * (1.0 + n as f64 / 16.0)
+}
+
 /// Point masses in space. Behind the last there are entries without mass, far from the others, up to whole groups.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bodies {
@@ -51,10 +56,7 @@ impl Bodies {
     fn move_padding(&mut self) {
         let farthest = self.position[0][..self.count].iter().fold(0.0f64, |far, x| far.max(x.abs()));
         // However the bodies move, the padding has no mass: it only must not be at a body's place to begin with.
-        self.position[0][self.count..]
-            .iter_mut()
-            .enumerate()
-            .for_each(|(n, x)| *x = 2.0 * farthest + 1.0 + n as f64);
+        self.position[0][self.count..].iter_mut().enumerate().for_each(|(n, x)| *x = elsewhere(farthest, n));
     }
 
     /// How many there are, without the padding.

@@ -38,6 +38,12 @@ impl Conserved {
         sums
     }
 
+    /// Whether all sums are finite numbers.
+    pub fn is_finite(&self) -> bool {
+        let vectors = [self.momentum, self.angular_momentum, self.centre];
+        vectors.iter().flatten().chain([&self.kinetic, &self.potential]).all(|sum| sum.is_finite())
+    }
+
     /// Kinetic and potential energy.
     pub fn energy(&self) -> f64 {
         self.kinetic + self.potential

@@ -3,15 +3,24 @@
 use super::bodies::{Bodies, Columns};
 use super::options::{ArithmeticKind, Engine};
 use super::scene::Scene;
-use super::schemes::Field;
+use super::schemes::{Field, SchemeName};
 use super::shifted::Shifted;
 use super::swept::Swept;
 use crate::scene::Precision;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::sweep::all_pairs::Arithmetic;
 
 /// Derivatives of the acceleration that a start may ask for, itself first.
 const ORDERS: usize = 4;
+
+/// Asked now and then whether to stop.
+pub(super) type Stop<'a> = &'a (dyn Fn() -> bool + Sync);
+
+/// Never stops.
+pub(super) fn never() -> bool {
+    false
+}
 
 /// The attraction of some masses.
 pub(super) struct Attraction {
@@ -20,13 +29,13 @@ pub(super) struct Attraction {
     /// 0 where there is no mass.
     inverse_mass: Vec<f64>,
     bodies: usize,
-    pairs: Pairs,
-    /// How often all pairs were met.
+    pub(super) pairs: Pairs,
+    /// How often accelerations were asked for.
     pub(super) evaluations: u64,
 }
 
 /// The ways.
-enum Pairs {
+pub(super) enum Pairs {
     /// As the sum is written.
     Reference,
     /// By sums of forces, in the scene's precision.
@@ -34,17 +43,31 @@ enum Pairs {
 }
 
 /// A way to sum up forces and, where velocities are given, their rates.
-pub(super) trait Sums: Send {
-    /// Sums up; gives the energy and the virial of the pairs if they are observed.
+pub(super) trait Sums: Send + Sync {
+    /// Sums up; gives the energy of the pairs if it is observed, else 0.
+    ///
+    /// # Errors
+    /// [`ProgramError`] if the processor lacks what is asked for, or `stop` says so.
     fn sum(
         &mut self,
         position: &Columns,
         velocity: Option<&Columns>,
         observed: bool,
-    ) -> Result<[f64; 2], ProgramError>;
+        stop: Stop<'_>,
+    ) -> Result<f64, ProgramError>;
 
-    /// Three of the sums, from the first on, over the masses.
-    fn over(&self, inverse_mass: &[f64], first: usize, into: &mut Columns);
+    /// The forces, and their rates, over the masses.
+    fn over(&self, inverse_mass: &[f64], into: [Option<&mut Columns>; 2]);
+}
+
+/// An attraction as a scheme asks for it.
+pub(super) struct Asking<'a> {
+    attraction: &'a mut Attraction,
+    /// Whether the energy is wanted of the positions that a step ends with.
+    observed: bool,
+    /// That energy, where the forces were summed up there.
+    energy: Option<f64>,
+    stop: Stop<'a>,
 }
 
 impl Attraction {
@@ -59,10 +82,11 @@ impl Attraction {
         let (softening, execution) = (scene.softening, (scene.execution, set));
         let pairs = match (scene.engine, scene.precision) {
             (Engine::Reference, _) => Pairs::Reference,
-            (Engine::Fast, Precision::F64) => {
+            // The check has decided what `auto` is.
+            (Engine::Fast | Engine::Auto, Precision::F64) => {
                 Pairs::Summed(Box::new(Swept::<f64>::new(softening, bodies, arithmetic, set)))
             }
-            (Engine::Fast, _) => {
+            (Engine::Fast | Engine::Auto, _) => {
                 Pairs::Summed(Box::new(Swept::<f32>::new(softening, bodies, arithmetic, set)))
             }
             (Engine::Programs, Precision::F64) => {
@@ -83,14 +107,32 @@ impl Attraction {
         }
     }
 
+    /// Bytes that a scene's takes for a number of bodies.
+    pub(super) fn bytes(scene: &Scene, count: usize) -> usize {
+        let has_rates = scene.scheme == SchemeName::Hermite4;
+        let pairs = match (scene.engine, scene.precision) {
+            (Engine::Reference, _) => 0,
+            (Engine::Fast | Engine::Auto, Precision::F64) => Swept::<f64>::bytes(count, has_rates),
+            (Engine::Fast | Engine::Auto, _) => Swept::<f32>::bytes(count, has_rates),
+            (Engine::Programs, Precision::F64) => Shifted::<f64>::bytes(count, has_rates),
+            (Engine::Programs, _) => Shifted::<f32>::bytes(count, has_rates),
+        };
+        pairs + 2 * size_of::<f64>() * count
+    }
+
+    /// For a step: whether the energy at its end is wanted, and what may stop it.
+    pub(super) fn asking<'a>(&'a mut self, observed: bool, stop: Stop<'a>) -> Asking<'a> {
+        Asking { attraction: self, observed, energy: None, stop }
+    }
+
     /// The energy of all pairs.
     ///
     /// # Errors
-    /// [`ProgramError`] if the processor lacks what is asked for.
-    pub(super) fn potential(&mut self, position: &Columns) -> Result<f64, ProgramError> {
+    /// [`ProgramError`] if the processor lacks what is asked for, or `stop` says so.
+    pub(super) fn potential(&mut self, position: &Columns, stop: Stop<'_>) -> Result<f64, ProgramError> {
         match &mut self.pairs {
-            Pairs::Reference => Ok(potential(&self.mass[..self.bodies], position, self.softening)),
-            Pairs::Summed(sums) => sums.sum(position, None, true).map(|[energy, _]| energy),
+            Pairs::Reference => potential(&self.mass[..self.bodies], position, self.softening, stop),
+            Pairs::Summed(sums) => sums.sum(position, None, true, stop),
         }
     }
 
@@ -100,8 +142,9 @@ impl Attraction {
     }
 
     /// The sum as it is written, in the order of the bodies.
-    fn written(&self, position: &Columns, into: &mut Columns) {
+    fn written(&self, position: &Columns, into: &mut Columns, stop: Stop<'_>) -> Result<(), ProgramError> {
         for body in 0..self.bodies {
+            go_on(stop)?;
             let mut sum = [0.0; 3];
             for other in (0..self.bodies).filter(|&other| other != body) {
                 let square = self.square(position, body, other);
@@ -110,10 +153,18 @@ impl Attraction {
             }
             (0..3).for_each(|axis| into[axis][body] = sum[axis]);
         }
+        Ok(())
     }
 
-    /// Derivatives of the acceleration by Taylor series of positions and pairs, an order after the other: for a start.
-    fn series(&self, position: &Columns, velocity: &Columns, orders: &mut [Columns]) {
+    /// Derivatives of the acceleration by Taylor series of positions and pairs, an order after the other: for a start. Every body's
+    /// is a sum of its own, on threads.
+    fn series(
+        &self,
+        position: &Columns,
+        velocity: &Columns,
+        orders: &mut [Columns],
+        stop: Stop<'_>,
+    ) -> Result<(), ProgramError> {
         let count = self.bodies;
         // Taylor coefficients of every position.
         let mut path = vec![[[0.0; ORDERS + 2]; 3]; count];
@@ -126,28 +177,8 @@ impl Attraction {
         let mut factorial = 1.0;
         for (order, into) in orders.iter_mut().enumerate().take(ORDERS) {
             factorial *= if order > 0 { order as f64 } else { 1.0 };
-            let mut found = vec![[0.0; 3]; count];
-            for body in 0..count {
-                for other in (0..count).filter(|&other| other != body) {
-                    let way: [[f64; ORDERS]; 3] = std::array::from_fn(|axis| {
-                        std::array::from_fn(|k| {
-                            if k <= order { path[other][axis][k] - path[body][axis][k] } else { 0.0 }
-                        })
-                    });
-                    let mut square = [0.0; ORDERS];
-                    square[0] = self.softening * self.softening;
-                    for way in &way {
-                        for k in 0..=order {
-                            square[k] += (0..=k).map(|i| way[i] * way[k - i]).sum::<f64>();
-                        }
-                    }
-                    let cube = power(&square, -1.5, order);
-                    for axis in 0..3 {
-                        let term: f64 = (0..=order).map(|i| way[axis][i] * cube[order - i]).sum();
-                        found[body][axis] += self.mass[other] * term;
-                    }
-                }
-            }
+            let of = |body: usize| go_on(stop).map(|()| self.coefficient(&path, body, order));
+            let found: Vec<[f64; 3]> = (0..count).into_par_iter().map(of).collect::<Result<_, _>>()?;
             for (body, found) in found.iter().enumerate() {
                 for axis in 0..3 {
                     into[axis][body] = factorial * found[axis];
@@ -155,19 +186,60 @@ impl Attraction {
                 }
             }
         }
+        Ok(())
+    }
+
+    /// The coefficient of an order of a body's acceleration.
+    fn coefficient(&self, path: &[[[f64; ORDERS + 2]; 3]], body: usize, order: usize) -> [f64; 3] {
+        let mut found = [0.0; 3];
+        for other in (0..path.len()).filter(|&other| other != body) {
+            let way: [[f64; ORDERS]; 3] =
+                std::array::from_fn(|axis| {
+                    std::array::from_fn(|k| {
+                        if k <= order { path[other][axis][k] - path[body][axis][k] } else { 0.0 }
+                    })
+                });
+            let mut square = [0.0; ORDERS];
+            square[0] = self.softening * self.softening;
+            for way in &way {
+                for k in 0..=order {
+                    square[k] += (0..=k).map(|i| way[i] * way[k - i]).sum::<f64>();
+                }
+            }
+            let cube = power(&square, -1.5, order);
+            for axis in 0..3 {
+                let term: f64 = (0..=order).map(|i| way[axis][i] * cube[order - i]).sum();
+                found[axis] += self.mass[other] * term;
+            }
+        }
+        found
     }
 }
 
+/// Stops where it should.
+fn go_on(stop: Stop<'_>) -> Result<(), ProgramError> {
+    if stop() { Err(ProgramError::Interrupted) } else { Ok(()) }
+}
+
 /// The energy of all pairs, as it is written.
-pub(super) fn potential(mass: &[f64], position: &Columns, softening: f64) -> f64 {
+///
+/// # Errors
+/// [`ProgramError::Interrupted`] if `stop` says so.
+pub(super) fn potential(
+    mass: &[f64],
+    position: &Columns,
+    softening: f64,
+    stop: Stop<'_>,
+) -> Result<f64, ProgramError> {
     let mut energy = 0.0;
     for body in 0..mass.len() {
+        go_on(stop)?;
         for other in 0..body {
             let squares = position.iter().map(|column| (column[body] - column[other]).powi(2));
             energy -= mass[body] * mass[other] / (squares.sum::<f64>() + softening * softening).sqrt();
         }
     }
-    energy
+    Ok(energy)
 }
 
 /// The series of a power of a series, up to an order.
@@ -181,16 +253,39 @@ fn power(of: &[f64; ORDERS], exponent: f64, order: usize) -> [f64; ORDERS] {
     result
 }
 
-impl Field for Attraction {
+impl Asking<'_> {
+    /// The energy of all pairs at the positions that the step ended with.
+    ///
+    /// # Errors
+    /// As [`Attraction::potential`].
+    pub(super) fn energy(&mut self, position: &Columns) -> Result<f64, ProgramError> {
+        self.energy.take().map_or_else(|| self.attraction.potential(position, self.stop), Ok)
+    }
+
+    fn acceleration_and(
+        &mut self,
+        position: &Columns,
+        into: &mut Columns,
+        observed: bool,
+    ) -> Result<Option<f64>, ProgramError> {
+        let Asking { attraction, stop, .. } = self;
+        attraction.evaluations += 1;
+        let Attraction { pairs: Pairs::Summed(sums), inverse_mass, .. } = &mut **attraction else {
+            return attraction.written(position, into, stop).map(|()| None);
+        };
+        let energy = sums.sum(position, None, observed, stop)?;
+        sums.over(inverse_mass, [Some(into), None]);
+        Ok(observed.then_some(energy))
+    }
+}
+
+impl Field for Asking<'_> {
     fn acceleration(&mut self, position: &Columns, into: &mut Columns) -> Result<(), ProgramError> {
-        self.evaluations += 1;
-        match &mut self.pairs {
-            Pairs::Reference => self.written(position, into),
-            Pairs::Summed(sums) => {
-                sums.sum(position, None, false)?;
-                sums.over(&self.inverse_mass, 0, into);
-            }
-        }
+        self.acceleration_and(position, into, false).map(drop)
+    }
+
+    fn last_acceleration(&mut self, position: &Columns, into: &mut Columns) -> Result<(), ProgramError> {
+        self.energy = self.acceleration_and(position, into, self.observed)?;
         Ok(())
     }
 
@@ -200,16 +295,16 @@ impl Field for Attraction {
         velocity: &Columns,
         orders: &mut [Columns],
     ) -> Result<(), ProgramError> {
-        self.evaluations += 1;
-        match (&mut self.pairs, orders) {
-            (Pairs::Summed(sums), [acceleration, jerk]) => {
-                sums.sum(position, Some(velocity), false)?;
-                sums.over(&self.inverse_mass, 0, acceleration);
-                sums.over(&self.inverse_mass, 3, jerk);
+        let Asking { attraction, stop, .. } = self;
+        attraction.evaluations += 1;
+        match (&mut **attraction, orders) {
+            (Attraction { pairs: Pairs::Summed(sums), inverse_mass, .. }, [acceleration, jerk]) => {
+                sums.sum(position, Some(velocity), false, stop)?;
+                sums.over(inverse_mass, [Some(acceleration), Some(jerk)]);
+                Ok(())
             }
-            (_, orders) => self.series(position, velocity, orders),
+            (attraction, orders) => attraction.series(position, velocity, orders, stop),
         }
-        Ok(())
     }
 }
 
@@ -231,7 +326,7 @@ mod tests {
         let all = Bodies::new(of.iter().map(|&(m, r, v)| (r, v, m)));
         let mut field = Attraction::new(&scene, &all);
         let mut orders: Vec<Columns> = (0..ORDERS).map(|_| zeros(all.entries())).collect();
-        field.derivatives(&all.position, &all.velocity, &mut orders).unwrap();
+        field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut orders).unwrap();
         // Along the path by its series the acceleration has these derivatives.
         let h = 0.004;
         let at = |time: f64| {
@@ -250,15 +345,15 @@ mod tests {
         };
         let mut acceleration = |time: f64| {
             let mut into = zeros(all.entries());
-            field.acceleration(&at(time), &mut into).unwrap();
+            field.asking(false, &never).acceleration(&at(time), &mut into).unwrap();
             into
         };
         let seen: Vec<Columns> = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| acceleration(k * h)).to_vec();
         let mut fast = [zeros(all.entries()), zeros(all.entries())];
-        field.derivatives(&all.position, &all.velocity, &mut fast).unwrap();
+        field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut fast).unwrap();
         let mut programs = [zeros(all.entries()), zeros(all.entries())];
         let mut field = Attraction::new(&Scene { engine: Engine::Programs, ..scene.clone() }, &all);
-        field.derivatives(&all.position, &all.velocity, &mut programs).unwrap();
+        field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut programs).unwrap();
         for axis in 0..3 {
             for body in 0..all.len() {
                 let a: Vec<f64> = seen.iter().map(|column| column[axis][body]).collect();
@@ -294,8 +389,8 @@ mod tests {
             let scene = Scene { engine, execution, precision, arithmetic, ..scene.clone() };
             let mut field = Attraction::new(&scene, &all);
             let mut into = zeros(all.entries());
-            field.acceleration(&all.position, &mut into).unwrap();
-            (into, field.potential(&all.position).unwrap())
+            field.asking(false, &never).acceleration(&all.position, &mut into).unwrap();
+            (into, field.potential(&all.position, &never).unwrap())
         };
         let (expected, potential) =
             found(Engine::Reference, Execution::Chained, Precision::F64, ArithmeticKind::Exact);

@@ -21,6 +21,7 @@ const LISTED: Use = Some((&GENERATE, &["list"]));
 const DAMPED: Use = Some((&INTEGRATOR, &["damped-euler"]));
 
 const PROGRAMS: Use = Some((&ENGINE, &["programs"]));
+const SWEPT: Use = Some((&ENGINE, &["auto", "fast"]));
 
 define_keys! {
     /// Bodies, softening, integrator and machine.
@@ -54,11 +55,11 @@ define_keys! {
     DAMPING = "integrator" "damping", Number(AtMost(1.0)), "", Is("1.0"), DAMPED,
         "What velocities are multiplied by at every step: a friction −ln(damping)/dt.";
 
-    ENGINE = "machine" "engine", Choice(Engine::WORDS), "", Is("\"fast\""), ALWAYS,
-        "What finds the forces: fast, each pair once; whole-array operations at every cyclic shift (programs); or pair by pair as the sum is written (reference), in double precision.";
+    ENGINE = "machine" "engine", Choice(Engine::WORDS), "", Is("\"auto\""), ALWAYS,
+        "What finds the forces: fast, each pair once; whole-array operations at every cyclic shift (programs); or pair by pair as the sum is written (reference), in double precision. auto takes the reference for up to a dozen bodies, and fast for more, or where it is asked for single precision or estimated roots.";
     EXECUTION = "machine" "execution", Choice(&["chained", "eager", "strip:N"]), "", Is("\"chained\""), PROGRAMS,
         "How programs are executed: instructions register by register, one pass over all bodies each, or by strips of N, all to the same bits.";
-    ROOTS = "machine" "arithmetic", Choice(ArithmeticKind::WORDS), "", Is("\"exact\""), ALWAYS,
+    ROOTS = "machine" "arithmetic", Choice(ArithmeticKind::WORDS), "", Is("\"exact\""), SWEPT,
         "exact rounds every operation, to the same bits on every instruction set; estimated fuses products and sums and corrects the processor's estimate of inverse roots; raw leaves the correction out, to show what it is worth.";
 }
 

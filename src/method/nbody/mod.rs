@@ -2,7 +2,9 @@
 
 mod benches;
 mod bodies;
+mod choice;
 mod conserved;
+mod encounter;
 mod entry;
 mod field;
 mod items;
@@ -10,6 +12,7 @@ mod keys;
 mod options;
 mod prepared;
 mod presets;
+mod rounded;
 mod scene;
 mod schemes;
 mod sections;
@@ -18,6 +21,9 @@ mod simulation;
 mod starts;
 mod study;
 mod swept;
+#[cfg(test)]
+mod tests;
 mod trials;
+mod watch;
 
 pub use entry::ENTRY;

@@ -25,6 +25,8 @@ define_words! {
 define_words! {
     /// What finds the forces.
     pub enum Engine {
+        /// What is the cheapest for the number of bodies.
+        Auto = "auto",
         /// Each pair once, in registers, on threads.
         Fast = "fast",
         /// Whole-array operations between bodies and those a shift behind them, for every shift: the source's vector machine.

@@ -1,7 +1,9 @@
 //! A scene of bodies, held against what the method demands.
 
-use super::keys::{BODIES, GENERATE, SOFTENING};
-use super::options::StartKind;
+use super::choice;
+use super::field::Attraction;
+use super::keys::{BODIES, ENGINE, GENERATE, SOFTENING};
+use super::options::{Engine, StartKind};
 use super::scene::Scene;
 use super::shifted::counted;
 use super::simulation::Running;
@@ -18,11 +20,15 @@ use serde_json::{Map, Value, json};
 use std::collections::HashMap;
 use std::path::Path;
 
+/// The lightest body over the heaviest in single precision: products of two such masses are still normal numbers.
+const LIGHTEST: f64 = 1e-18;
+
 /// A checked scene.
 #[derive(Clone)]
 pub(super) struct Checked {
     pub(super) scene: Scene,
     pub(super) particles: Particles,
+    choices: Vec<String>,
 }
 
 /// Makes the bodies of a scene and holds it against every precondition.
@@ -30,6 +36,11 @@ pub(super) struct Checked {
 /// # Errors
 /// [`SceneErrors`]: every precondition that does not hold.
 pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> {
+    Ok(Box::new(checked(values)?))
+}
+
+/// The same, as this method knows it.
+pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
     let (mut scene, mut read) = (Scene::default(), Read::new(&values));
     scene.bind(&mut read);
     read.done()?;
@@ -40,6 +51,14 @@ pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> 
             "`machine.precision` is \"f32\", but the state of bodies is in double precision",
         );
         errors.push(error.expecting("\"f64\", or \"mixed\" for forces in single precision"));
+    }
+    if scene.engine == Engine::Reference && scene.precision == Precision::Mixed {
+        let message = format!(
+            "`machine.precision` is \"mixed\", but `{}` = \"reference\" sums in double precision only",
+            ENGINE.path()
+        );
+        let error = values.spot(&PRECISION).error(Reason::Contradiction, message);
+        errors.push(error.expecting("\"f64\", or another engine"));
     }
     if scene.start.kind == StartKind::List {
         errors.extend(wrong_rows(&values, &scene));
@@ -61,8 +80,12 @@ pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> 
     if scene.softening == 0.0 {
         errors.extend(coincident(&values, &particles));
     }
+    if scene.precision == Precision::Mixed {
+        errors.extend(too_light(&values, &particles));
+    }
     SceneErrors::none_of(errors)?;
-    Ok(Box::new(Checked { scene, particles }))
+    let choices = choice::choose(&mut scene, particles.len());
+    Ok(Checked { scene, particles, choices })
 }
 
 /// Fewer than two bodies, or masses that are not positive.
@@ -81,6 +104,21 @@ fn wrong_rows(values: &Values, scene: &Scene) -> Vec<SceneError> {
         );
     }
     errors
+}
+
+/// A body so light beside the heaviest that forces in single precision vanish.
+fn too_light(values: &Values, particles: &Particles) -> Option<SceneError> {
+    let heaviest = particles.all().iter().max_by(|a, b| a.mass.total_cmp(&b.mass))?;
+    let lightest = particles.all().iter().min_by(|a, b| a.mass.total_cmp(&b.mass))?;
+    if lightest.mass >= LIGHTEST * heaviest.mass {
+        return None;
+    }
+    let message = format!(
+        "body {} has the mass {:?}, less than {LIGHTEST:e} of the {:?} of body {}: its forces vanish in single precision",
+        lightest.id, lightest.mass, heaviest.mass, heaviest.id
+    );
+    let error = values.spot(&PRECISION).error(Reason::Contradiction, message);
+    Some(error.expecting("machine.precision = \"f64\", or a heavier body"))
 }
 
 /// Two bodies at one place, whose attraction is without bound where it is not softened.
@@ -159,7 +197,7 @@ impl Prepared for Checked {
     }
 
     fn choices(&self) -> &[String] {
-        &[]
+        &self.choices
     }
 
     fn left_out(&self) -> &[String] {
@@ -202,9 +240,13 @@ impl Prepared for Checked {
     }
 
     fn memory(&self) -> Foreseen {
-        let count = self.particles.len() as f64;
-        // Particles three times; state, sums and what a scheme carries; sums of 32 bands over half the bodies on the average.
-        let needed = PROGRAM + count * (3.0 * size_of::<Particle>() as f64 + 24.0 * 30.0 + 24.0 * 16.0);
+        let count = self.particles.len();
+        let [held, carried] = self.scene.scheme.held();
+        // Positions, velocities and masses, and the state before a step; what a scheme holds; what half of the mass and the nearest
+        // two are sorted for. Particles of the scene, of the run, and of two frames.
+        let columns = 24 * (2 + 2 + held + carried) + 8 + 3 * 16 + 4;
+        let particles = 4 * size_of::<Particle>();
+        let needed = PROGRAM + (count * (columns + particles) + Attraction::bytes(&self.scene, count)) as f64;
         Foreseen {
             needed: needed as u64,
             available: available(),
@@ -229,8 +271,8 @@ impl Prepared for Checked {
         counted(self.scene.softening, self.particles.len())
     }
 
-    fn start(&self, _: Purpose) -> Result<Box<dyn Simulation>, Failure> {
-        Ok(Box::new(Running::new(self)?))
+    fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
+        Ok(Box::new(Running::new(self, purpose)?))
     }
 
     fn started_from(&self, particles: Particles) -> Box<dyn Prepared> {

@@ -139,7 +139,9 @@ impl Scene {
         if self.engine == Engine::Programs {
             bind_execution(binding, &EXECUTION, &mut self.execution);
         }
-        binding.choice(&ROOTS, &mut self.arithmetic);
+        if matches!(self.engine, Engine::Auto | Engine::Fast) {
+            binding.choice(&ROOTS, &mut self.arithmetic);
+        }
         bind_arithmetic(binding, &mut self.precision, &mut self.instruction_set);
         self.run.bind(binding, self.dt);
         self.output.bind(binding);

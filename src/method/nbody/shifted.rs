@@ -1,13 +1,18 @@
 //! The source's vector machine: whole-array operations between all bodies and those that are a shift behind them, for every shift.
 
 use super::bodies::{Bodies, Columns};
-use super::field::{Sums, potential};
+use super::field::{Stop, Sums, potential};
+use super::rounded::Rounded;
+use super::swept::over;
 use crate::method::VectorProgram;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::{Memory, ProgramError, Slot};
 use stripmine_kernels::law::gravity::Gravity;
 use stripmine_kernels::law::{Axis, Field, Law, Sum};
-use stripmine_kernels::sweep::all_pairs::shifts::{BODY_POSITION, Shifts, body_array, body_sum_array};
+use stripmine_kernels::sweep::all_pairs::is_split;
+use stripmine_kernels::sweep::all_pairs::shifts::{
+    BODY_POSITION, BODY_REST, Shifts, body_array, body_sum_array,
+};
 use stripmine_kernels::{Execution, InstructionSet, Program};
 
 /// Shifts of a program: sums and own bodies are loaded once for them.
@@ -22,10 +27,8 @@ pub(super) struct Shifted<P: backend::Precision> {
     set: InstructionSet,
     forces: Vec<Program<Shifts<P, Gravity<false>>>>,
     with_rates: Vec<Program<Shifts<P, Gravity<true>>>>,
-    /// Of every body twice over.
-    position: [Vec<P>; 3],
-    velocity: [Vec<P>; 3],
-    mass: Vec<P>,
+    /// Every body twice over.
+    bodies: Rounded<P>,
     /// Forces and their rates.
     sums: [Vec<P>; 6],
     /// In double precision, for the energy.
@@ -68,30 +71,28 @@ impl<P: backend::Precision> Shifted<P> {
         (execution, set): (Execution, InstructionSet),
     ) -> Self {
         let count = bodies.len();
-        let twice = || vec![P::default(); 2 * count];
-        let mut mass = twice();
-        doubled(&mut mass, &bodies.mass[..count]);
+        let masses = bodies.mass[..count].to_vec();
+        let bodies = Rounded::new(bodies, count, 2);
+        let held = bodies.units.length(softening);
         Shifted {
             softening,
             count,
             execution,
             set,
-            forces: programs(softening, count),
+            forces: programs(held, count),
             with_rates: vec![],
-            position: [twice(), twice(), twice()],
-            velocity: [twice(), twice(), twice()],
-            mass,
+            bodies,
             sums: std::array::from_fn(|_| vec![P::default(); count]),
-            masses: bodies.mass[..count].to_vec(),
+            masses,
         }
     }
 }
 
-/// Writes the entries of a column twice over.
-fn doubled<P: backend::Precision>(to: &mut [P], from: &[f64]) {
-    for half in to.chunks_exact_mut(from.len().max(1)) {
-        half.iter_mut().zip(from).for_each(|(to, &from)| *to = P::from_f64(from));
-    }
+/// Bytes that the programs of all shifts take.
+fn program_bytes<P: backend::Precision, const RATE: bool>(count: usize) -> usize {
+    let law = Gravity::<RATE> { softening: 0.0 };
+    let block = Program::new(Shifts::<P, _>::new(law, 1..1 + BLOCK)).tape().bytes();
+    (count - 1).div_ceil(BLOCK) * (block + size_of::<Program<Shifts<P, Gravity<RATE>>>>())
 }
 
 /// Runs programs over all bodies, one after the other.
@@ -100,8 +101,23 @@ fn run<P: backend::Precision, L: Law<3> + Send + Sync>(
     memory: &Memory<'_>,
     count: usize,
     (execution, set): (Execution, InstructionSet),
+    stop: Stop<'_>,
 ) -> Result<(), ProgramError> {
-    programs.iter().try_for_each(|program| program.run_on_threads(memory, 0..count, execution, set))
+    programs.iter().try_for_each(|program| {
+        if stop() {
+            return Err(ProgramError::Interrupted);
+        }
+        program.run_on_threads(memory, 0..count, execution, set)
+    })
+}
+
+impl<P: backend::Precision> Shifted<P> {
+    /// Bytes that it takes, with or without rates of the forces.
+    pub(super) fn bytes(count: usize, has_rates: bool) -> usize {
+        let rates = if has_rates { program_bytes::<P, true>(count) } else { 0 };
+        let columns = 2 * Rounded::<P>::BYTES + 6 * P::BYTES + size_of::<f64>();
+        count * columns + program_bytes::<P, false>(count) + rates
+    }
 }
 
 impl<P: backend::Precision> Sums for Shifted<P> {
@@ -110,25 +126,24 @@ impl<P: backend::Precision> Sums for Shifted<P> {
         position: &Columns,
         velocity: Option<&Columns>,
         observed: bool,
-    ) -> Result<[f64; 2], ProgramError> {
+        stop: Stop<'_>,
+    ) -> Result<f64, ProgramError> {
         let count = self.count;
-        for (to, from) in self.position.iter_mut().zip(position) {
-            doubled(to, &from[..count]);
-        }
-        for (to, from) in self.velocity.iter_mut().zip(velocity.into_iter().flatten()) {
-            doubled(to, &from[..count]);
-        }
+        self.bodies.take(position, velocity);
         if velocity.is_some() && self.with_rates.is_empty() {
-            self.with_rates = programs(self.softening, count);
+            self.with_rates = programs(self.bodies.units.length(self.softening), count);
         }
         self.sums.iter_mut().for_each(|sums| sums.fill(P::default()));
-        let Shifted { forces, with_rates, position: at, velocity: with, mass, sums, .. } = self;
+        let Shifted { forces, with_rates, bodies, sums, .. } = self;
         let mut memory = Memory::new();
-        memory.bind_read(Slot::new(body_array(Field::Mass)), mass);
+        memory.bind_read(Slot::new(body_array(Field::Mass)), &bodies.mass);
         for axis in AXES {
-            memory.bind_read(Slot::new(BODY_POSITION[axis as usize]), &at[axis as usize]);
+            memory.bind_read(Slot::new(BODY_POSITION[axis as usize]), &bodies.position[axis as usize]);
+            if is_split::<P>() {
+                memory.bind_read(Slot::new(BODY_REST[axis as usize]), &bodies.rest[axis as usize]);
+            }
             let of_velocity = body_array(Field::Velocity(axis));
-            memory.bind_read(Slot::new(of_velocity), &with[axis as usize]);
+            memory.bind_read(Slot::new(of_velocity), &bodies.velocity[axis as usize]);
         }
         let [fx, fy, fz, rate_x, rate_y, rate_z] = sums;
         for (axis, (force, rate)) in AXES.into_iter().zip([(fx, rate_x), (fy, rate_y), (fz, rate_z)]) {
@@ -137,19 +152,16 @@ impl<P: backend::Precision> Sums for Shifted<P> {
         }
         let way = (self.execution, self.set);
         match velocity {
-            None => run(forces, &memory, count, way)?,
-            Some(_) => run(with_rates, &memory, count, way)?,
+            None => run(forces, &memory, count, way, stop)?,
+            Some(_) => run(with_rates, &memory, count, way, stop)?,
         }
         // The programs have forces alone, as the source's.
-        let energy = if observed { potential(&self.masses, position, self.softening) } else { 0.0 };
-        Ok([energy, 0.0])
+        if observed { potential(&self.masses, position, self.softening, stop) } else { Ok(0.0) }
     }
 
-    fn over(&self, inverse_mass: &[f64], first: usize, into: &mut Columns) {
-        for (into, sum) in into.iter_mut().zip(&self.sums[first..]) {
-            for ((into, sum), inverse) in into.iter_mut().zip(sum).zip(inverse_mass) {
-                *into = sum.to_f64() * inverse;
-            }
-        }
+    fn over(&self, inverse_mass: &[f64], [acceleration, jerk]: [Option<&mut Columns>; 2]) {
+        let units = self.bodies.units;
+        over(&self.sums[..3], units.force(), inverse_mass, acceleration);
+        over(&self.sums[3..], units.force_rate(), inverse_mass, jerk);
     }
 }

@@ -1,44 +1,47 @@
 //! Each pair once, in registers and on threads.
 
 use super::bodies::{Bodies, Columns};
-use super::field::Sums;
+use super::field::{Stop, Sums};
+use super::rounded::Rounded;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::gravity::Gravity;
-use stripmine_kernels::sweep::all_pairs::{self, AllPairs, Arithmetic};
+use stripmine_kernels::sweep::all_pairs::{AllPairs, Arithmetic, Manner, padded};
 
 /// Each pair once, in a precision.
 pub(super) struct Swept<P> {
     softening: f64,
-    bodies: usize,
+    count: usize,
     set: InstructionSet,
     arithmetic: Arithmetic,
     forces: AllPairs<P, 3>,
     rates: Option<AllPairs<P, 6>>,
-    position: [Vec<P>; 3],
-    velocity: [Vec<P>; 3],
-    mass: Vec<P>,
+    bodies: Rounded<P>,
     sums: [Vec<P>; 6],
 }
 
 impl<P: backend::Precision> Swept<P> {
     /// Of bodies.
     pub(super) fn new(softening: f64, bodies: &Bodies, arithmetic: Arithmetic, set: InstructionSet) -> Self {
-        let entries = bodies.entries();
-        let zeros = || vec![P::default(); entries];
+        let (count, entries) = (bodies.len(), bodies.entries());
+        let bodies = Rounded::new(bodies, entries, 1);
         Swept {
-            softening,
-            bodies: bodies.len(),
+            softening: bodies.units.length(softening),
+            count,
             set,
             arithmetic,
-            forces: AllPairs::new(bodies.len()),
+            forces: AllPairs::new(count),
             rates: None,
-            position: [zeros(), zeros(), zeros()],
-            velocity: [zeros(), zeros(), zeros()],
-            mass: bodies.mass.iter().map(|&m| P::from_f64(m)).collect(),
-            sums: std::array::from_fn(|_| zeros()),
+            bodies,
+            sums: std::array::from_fn(|_| vec![P::default(); entries]),
         }
+    }
+
+    /// Bytes that it takes, with or without rates of the forces.
+    pub(super) fn bytes(count: usize, has_rates: bool) -> usize {
+        let rates = if has_rates { AllPairs::<P, 6>::bytes(count) } else { 0 };
+        padded(count) * (Rounded::<P>::BYTES + 6 * P::BYTES) + AllPairs::<P, 3>::bytes(count) + rates
     }
 }
 
@@ -48,49 +51,44 @@ impl<P: backend::Precision> Sums for Swept<P> {
         position: &Columns,
         velocity: Option<&Columns>,
         observed: bool,
-    ) -> Result<[f64; 2], ProgramError> {
-        let (softening, count) = (self.softening, self.bodies);
-        let take = |to: &mut [Vec<P>; 3], from: &Columns| {
-            for (to, from) in to.iter_mut().zip(from) {
-                to.iter_mut().zip(from).for_each(|(to, &from)| *to = P::from_f64(from));
-            }
-        };
-        take(&mut self.position, position);
-        if let Some(velocity) = velocity {
-            take(&mut self.velocity, velocity);
-        }
-        let Swept { set, arithmetic, forces, rates, position, velocity: at_velocity, mass, sums, .. } = self;
-        let bodies = all_pairs::Bodies {
-            position: position.each_ref().map(Vec::as_slice),
-            velocity: at_velocity.each_ref().map(Vec::as_slice),
-            mass,
-        };
-        let [fx, fy, fz, rates_x, rates_y, rates_z] = sums.each_mut().map(Vec::as_mut_slice);
-        match velocity {
+        stop: Stop<'_>,
+    ) -> Result<f64, ProgramError> {
+        self.bodies.take(position, velocity);
+        let Swept { softening, count, set, arithmetic, forces, rates, bodies, sums } = self;
+        let (softening, energy) = (*softening, bodies.units.energy());
+        let bodies = bodies.bodies();
+        let manner = Manner { observed, arithmetic: *arithmetic, set: *set, interrupted: stop };
+        let sums = sums.each_mut().map(Vec::as_mut_slice);
+        let [potential, _] = match velocity {
             None => {
-                let law = Gravity::<false> { softening };
-                forces.sweep(&law, &bodies, [fx, fy, fz], observed, *arithmetic, *set)
+                let [x, y, z, ..] = sums;
+                forces.sweep(&Gravity::<false> { softening }, &bodies, [x, y, z], &manner)?
             }
             Some(_) => {
-                let law = Gravity::<true> { softening };
-                let rates = rates.get_or_insert_with(|| AllPairs::new(count));
-                rates.sweep(
-                    &law,
-                    &bodies,
-                    [fx, fy, fz, rates_x, rates_y, rates_z],
-                    observed,
-                    *arithmetic,
-                    *set,
-                )
+                let rates = rates.get_or_insert_with(|| AllPairs::new(*count));
+                rates.sweep(&Gravity::<true> { softening }, &bodies, sums, &manner)?
             }
-        }
+        };
+        Ok(energy * potential)
     }
 
-    fn over(&self, inverse_mass: &[f64], first: usize, into: &mut Columns) {
-        for (into, sum) in into.iter_mut().zip(&self.sums[first..]) {
-            for ((into, sum), inverse) in into.iter_mut().zip(sum).zip(inverse_mass) {
-                *into = sum.to_f64() * inverse;
-            }
+    fn over(&self, inverse_mass: &[f64], [acceleration, jerk]: [Option<&mut Columns>; 2]) {
+        let units = self.bodies.units;
+        over(&self.sums[..3], units.force(), inverse_mass, acceleration);
+        over(&self.sums[3..], units.force_rate(), inverse_mass, jerk);
+    }
+}
+
+/// Three sums in their unit over the masses.
+pub(super) fn over<P: backend::Precision>(
+    sums: &[Vec<P>],
+    unit: f64,
+    inverse_mass: &[f64],
+    into: Option<&mut Columns>,
+) {
+    for (into, sum) in into.into_iter().flatten().zip(sums) {
+        for ((into, sum), inverse) in into.iter_mut().zip(sum).zip(inverse_mass) {
+            *into = unit * sum.to_f64() * inverse;
         }
     }
 }

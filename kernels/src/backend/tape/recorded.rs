@@ -25,7 +25,14 @@ impl<L: Element> Tape<L> {
         let mut passes = fold_loads(&instructions);
         let sizes = allocate(&mut instructions);
         let pass_sizes = allocate(&mut passes);
+        instructions.shrink_to_fit();
+        passes.shrink_to_fit();
         Tape { instructions, sections: recorder.sections.into_inner(), sizes, passes, pass_sizes }
+    }
+
+    /// Bytes that its instructions take.
+    pub fn bytes(&self) -> usize {
+        (self.instructions.len() + self.passes.len()) * size_of::<Instruction<L>>()
     }
 
     /// The instructions, in order.

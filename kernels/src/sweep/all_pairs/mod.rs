@@ -12,25 +12,38 @@
 //! Rows of groups are cut into [`BANDS`] bands of about equal work. Each has sums of its own, and they are added up in the order
 //! of the bands: what comes out is the same on any number of threads.
 //!
-//! By [`Arithmetic::Exact`] it is the same on every instruction set too, for own sums are kept by 16 lanes, however many a
-//! register has.
+//! By [`Arithmetic::Exact`] it is the same on every instruction set too, energy and virial included, for own sums are kept by 16
+//! lanes, however many a register has.
+//!
+//! In single precision a position is a number and what rounding has left of it: two bodies that are near each other and far from
+//! the origin are as exactly apart as two near the origin. A pair takes 6 more additions for it, 29 operations instead of 23.
 
 pub mod shifts;
 mod tile;
 
 use crate::backend::{GROUP, InstructionSet, Precision, dispatch, dispatch_estimating};
 use crate::isa::ProgramError;
+use crate::isa::Storage;
 use crate::law::{self, Field, Law};
-use crate::threads::{on_threads, pieces};
+use crate::threads::{alone_if, on_threads, pieces};
 use std::array::from_fn;
 use std::ops::Range;
-use tile::{Tile, asks_for_velocity};
+use tile::{Rows, Tile, asks_for_velocity};
 
 /// Parts that rows are cut into where there are enough of them: a constant, for the order of summation depends on it.
 pub const BANDS: usize = 32;
 
 /// Groups of a band are at least as many.
 const SMALLEST_BAND: usize = 4;
+
+/// Bodies up to which one thread meets all pairs: to wake others takes some ten microseconds, and so do these pairs.
+const ALONE: usize = 512;
+
+/// Whether positions of a precision come in two parts.
+#[inline]
+pub const fn is_split<P: Storage>() -> bool {
+    P::BYTES < size_of::<f64>()
+}
 
 /// How products, sums and roots are formed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,10 +63,25 @@ pub enum Arithmetic {
 pub struct Bodies<'a, P> {
     /// Positions (length).
     pub position: [&'a [P]; 3],
+    /// What rounding to single precision has left of them (length); in double precision empty and not read.
+    pub rest: [&'a [P]; 3],
     /// Velocities (length/time); empty where the law does not ask for them.
     pub velocity: [&'a [P]; 3],
     /// Masses.
     pub mass: &'a [P],
+}
+
+/// How pairs are met.
+#[derive(Clone, Copy)]
+pub struct Manner<'a> {
+    /// Whether energy and virial are summed up.
+    pub observed: bool,
+    /// How products, sums and roots are formed.
+    pub arithmetic: Arithmetic,
+    /// The instructions.
+    pub set: InstructionSet,
+    /// Asked before every group of own bodies: whether to stop there, the sums unfinished.
+    pub interrupted: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// How many entries columns have for `bodies` bodies: whole groups.
@@ -70,6 +98,8 @@ struct Band<P, const SUMS: usize> {
     sums: [Vec<P>; SUMS],
     /// Energy and virial.
     energy: [f64; 2],
+    /// Whether it was stopped on the way.
+    is_stopped: bool,
 }
 
 /// All pairs of a number of bodies, with room for the sums of a law: 3, or 6 with the rates of the forces.
@@ -86,24 +116,34 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
         let bands = rows_of_equal_work(groups, (groups / SMALLEST_BAND).clamp(1, BANDS));
         let band = |rows: Range<usize>| {
             let behind = (groups - rows.start) * GROUP;
-            Band { groups: rows, sums: from_fn(|_| vec![P::default(); behind]), energy: [0.0; 2] }
+            Band {
+                groups: rows,
+                sums: from_fn(|_| vec![P::default(); behind]),
+                energy: [0.0; 2],
+                is_stopped: false,
+            }
         };
         AllPairs { groups, bands: bands.into_iter().map(band).collect() }
     }
 
-    /// The sums of all pairs (forces; and their rates), and, if they are `observed`, their energy and virial (energy), else zeros.
+    /// Bytes that the sums take for a number of bodies.
+    pub fn bytes(bodies: usize) -> usize {
+        let groups = padded(bodies) / GROUP;
+        let bands = rows_of_equal_work(groups, (groups / SMALLEST_BAND).clamp(1, BANDS));
+        bands.iter().map(|rows| (groups - rows.start) * GROUP * SUMS * P::BYTES).sum()
+    }
+
+    /// The sums of all pairs (forces; and their rates), and, if they are observed, their energy and virial (energy), else zeros.
     ///
     /// # Errors
-    /// [`ProgramError`] if a column has not as many entries as [`padded`] says, the law asks for what it does not state, or the
-    /// processor lacks the instruction set.
+    /// [`ProgramError`] if a column has not as many entries as [`padded`] says, the law asks for what it does not state, the
+    /// processor lacks the instruction set, or it is interrupted.
     pub fn sweep<L: Law<3> + Sync>(
         &mut self,
         law: &L,
         bodies: &Bodies<'_, P>,
         sums: [&mut [P]; SUMS],
-        observed: bool,
-        arithmetic: Arithmetic,
-        set: InstructionSet,
+        manner: &Manner<'_>,
     ) -> Result<[f64; 2], ProgramError> {
         law::check::<3, L>(law)?;
         let served = |field: &&Field| matches!(field, Field::Mass | Field::Velocity(_));
@@ -115,35 +155,55 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
         }
         let entries = self.groups * GROUP;
         let velocity = bodies.velocity.into_iter().filter(|_| asks_for_velocity(L::FIELDS));
-        let columns = bodies.position.into_iter().chain([bodies.mass]).chain(velocity).map(<[P]>::len);
-        for length in columns.chain(sums.iter().map(|sums| sums.len())) {
+        let rest = bodies.rest.into_iter().filter(|_| is_split::<P>());
+        let columns = bodies.position.into_iter().chain([bodies.mass]).chain(rest).chain(velocity);
+        for length in columns.map(<[P]>::len).chain(sums.iter().map(|sums| sums.len())) {
             if length != entries {
                 let last = entries as isize - 1;
                 return Err(ProgramError::TooShort { array: "the bodies", first: 0, last, length });
             }
         }
+        alone_if(entries <= ALONE, || self.sweep_checked(law, bodies, sums, manner))
+    }
+
+    fn sweep_checked<L: Law<3> + Sync>(
+        &mut self,
+        law: &L,
+        bodies: &Bodies<'_, P>,
+        sums: [&mut [P]; SUMS],
+        manner: &Manner<'_>,
+    ) -> Result<[f64; 2], ProgramError> {
+        let &Manner { observed, arithmetic, set, interrupted } = manner;
         let done = on_threads(&mut self.bands, |band| {
             band.sums.iter_mut().for_each(|sums| sums.fill(P::default()));
-            band.energy = [0.0; 2];
+            (band.energy, band.is_stopped) = ([0.0; 2], false);
             let sums = band.sums.each_mut().map(Vec::as_mut_slice);
-            let energy = &mut band.energy;
-            let groups = band.groups.clone();
+            let (energy, is_stopped) = (&mut band.energy, &mut band.is_stopped);
+            let work = Rows {
+                law,
+                bodies,
+                groups: band.groups.clone(),
+                sums,
+                observed,
+                energy,
+                interrupted,
+                is_stopped,
+            };
             match arithmetic {
-                Arithmetic::Exact => {
-                    dispatch(set, Tile::<P, L, SUMS, true> { law, bodies, groups, sums, observed, energy })
-                }
+                Arithmetic::Exact => dispatch(set, Tile::<P, L, SUMS, true>(work)),
                 // Nothing asks for rates of raw forces.
-                Arithmetic::Raw if SUMS == 3 => dispatch_estimating::<_, _, true>(
-                    set,
-                    Tile::<P, L, SUMS, false> { law, bodies, groups, sums, observed, energy },
-                ),
-                Arithmetic::Estimated | Arithmetic::Raw => dispatch_estimating::<_, _, false>(
-                    set,
-                    Tile::<P, L, SUMS, false> { law, bodies, groups, sums, observed, energy },
-                ),
+                Arithmetic::Raw if SUMS == 3 => {
+                    dispatch_estimating::<_, _, true>(set, Tile::<P, L, SUMS, false>(work))
+                }
+                Arithmetic::Estimated | Arithmetic::Raw => {
+                    dispatch_estimating::<_, _, false>(set, Tile::<P, L, SUMS, false>(work))
+                }
             }
         });
         done.into_iter().collect::<Result<(), _>>()?;
+        if self.bands.iter().any(|band| band.is_stopped) {
+            return Err(ProgramError::Interrupted);
+        }
         for (number, to) in sums.into_iter().enumerate() {
             self.add_up(number, to);
         }

@@ -1,5 +1,6 @@
 //! All pairs as whole-array operations: every body meets the one that is a number of places behind it, for every number. PWP.
 
+use super::is_split;
 use crate::isa::{Array, Element, Machine, Slot, Text};
 use crate::law::{Env, Field, Law, Stated, Sum};
 use std::cell::Cell;
@@ -57,9 +58,14 @@ pub const fn body_sum_array(sum: Sum) -> Array {
 /// The arrays of positions.
 pub const BODY_POSITION: [Array; 3] = [Array::BodyX, Array::BodyY, Array::BodyZ];
 
+/// The arrays of what rounding has left of the positions; read in single precision only.
+pub const BODY_REST: [Array; 3] = [Array::BodyRestX, Array::BodyRestY, Array::BodyRestZ];
+
 /// What the law sees: one strip of bodies.
 struct Behind<M: Machine> {
     machine: M,
+    /// What rounding has left of the own positions; zero in double precision.
+    own_rest: [M::V; 3],
     sums: [Cell<M::V>; 6],
 }
 
@@ -80,8 +86,14 @@ impl<M: Machine> Env<3> for &Behind<M> {
 
     #[inline(always)]
     fn displacement(self, own: [M::V; 3], shift: isize) -> [M::V; 3] {
-        let there = BODY_POSITION.map(|axis| self.machine.load_shifted(Slot::<M::Lane>::new(axis), shift));
-        std::array::from_fn(|axis| own[axis] - there[axis])
+        let there = |axis| self.machine.load_shifted(Slot::<M::Lane>::new(axis), shift);
+        std::array::from_fn(|axis| {
+            let far = own[axis] - there(BODY_POSITION[axis]);
+            if !const { is_split::<M::Lane>() } {
+                return far;
+            }
+            far + (self.own_rest[axis] - there(BODY_REST[axis]))
+        })
     }
 
     #[inline(always)]
@@ -151,7 +163,11 @@ unsafe impl<P: Element, L: Law<3>> Text for Shifts<P, L> {
     fn body<M: Machine<Lane = P>>(&self, m: M) {
         m.section("own body");
         let zero = m.uniform(0.0);
-        let behind = Behind::<M> { machine: m, sums: std::array::from_fn(|_| Cell::new(zero)) };
+        let own_rest = match const { is_split::<P>() } {
+            true => BODY_REST.map(|axis| m.load(Slot::<P>::new(axis))),
+            false => [zero; 3],
+        };
+        let behind = Behind::<M> { machine: m, own_rest, sums: std::array::from_fn(|_| Cell::new(zero)) };
         let env = Stated::new(&behind, &self.law);
         let own = self.law.own(env);
         for shift in self.shifts.clone() {

@@ -1,6 +1,6 @@
 //! A band of rows on registers.
 
-use super::Bodies;
+use super::{Bodies, is_split};
 use crate::backend::{GROUP, Precision, Registers, Task};
 use crate::isa::{Element, Vector};
 use crate::law::{Env, Field, Law, Stated, Sum};
@@ -15,8 +15,8 @@ const OWN: usize = 4;
 /// digits are lost.
 const SPELL: usize = 64;
 
-/// A band of rows. Where it is `EXACT`, own sums are kept by 16 lanes.
-pub(super) struct Tile<'a, P, L, const SUMS: usize, const EXACT: bool> {
+/// A band of rows.
+pub(super) struct Rows<'a, P, L, const SUMS: usize> {
     pub(super) law: &'a L,
     pub(super) bodies: &'a Bodies<'a, P>,
     /// Rows.
@@ -26,7 +26,14 @@ pub(super) struct Tile<'a, P, L, const SUMS: usize, const EXACT: bool> {
     pub(super) observed: bool,
     /// Energy and virial.
     pub(super) energy: &'a mut [f64; 2],
+    /// Whether to stop before the next group.
+    pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
+    /// Whether it was stopped on the way.
+    pub(super) is_stopped: &'a mut bool,
 }
+
+/// A band of rows on registers. Where it is `EXACT`, own sums are kept by 16 lanes.
+pub(super) struct Tile<'a, P, L, const SUMS: usize, const EXACT: bool>(pub(super) Rows<'a, P, L, SUMS>);
 
 /// The sums of a body.
 type Sums<V, const SUMS: usize> = [Cell<V>; SUMS];
@@ -35,6 +42,8 @@ type Sums<V, const SUMS: usize> = [Cell<V>; SUMS];
 #[derive(Clone, Copy)]
 struct Partner<V> {
     position: [V; 3],
+    /// What rounding has left of it; zero in double precision.
+    rest: [V; 3],
     /// Where the law asks for it, else zero.
     velocity: [V; 3],
     mass: V,
@@ -84,7 +93,10 @@ impl<R: Registers, const SUMS: usize, const BOTH: bool> Env<3> for &Meeting<'_, 
     }
     #[inline(always)]
     fn displacement(self, own: [R::V; 3], place: Partner<R::V>) -> [R::V; 3] {
-        from_fn(|axis| own[axis] - place.position[axis])
+        from_fn(|axis| {
+            let far = own[axis] - place.position[axis];
+            if const { is_split::<R::Lane>() } { far + (self.own.rest[axis] - place.rest[axis]) } else { far }
+        })
     }
     #[inline(always)]
     fn partner(self, field: Field, place: Partner<R::V>) -> R::V {
@@ -147,7 +159,11 @@ impl<R: Registers, const SUMS: usize, const BOTH: bool> Env<3> for &Meeting<'_, 
 impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Task<P> for Tile<'_, P, L, SUMS, EXACT> {
     #[inline(always)]
     fn on<R: Registers<Lane = P>>(mut self, registers: R) {
-        for group in self.groups.clone() {
+        for group in self.0.groups.clone() {
+            if (self.0.interrupted)() {
+                *self.0.is_stopped = true;
+                return;
+            }
             for first in (0..GROUP).step_by(OWN) {
                 self.row(registers, group, first);
             }
@@ -159,21 +175,22 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
     /// `OWN` bodies of a group, from its `first` on, with those of the group and all behind it.
     #[inline(always)]
     fn row<R: Registers<Lane = P>>(&mut self, registers: R, group: usize, first: usize) {
-        let (start, behind) = (group * GROUP, self.bodies.mass.len());
+        let Rows { law, bodies, groups, sums, observed, energy: total, .. } = &mut self.0;
+        let (law, bodies, observed) = (*law, *bodies, *observed);
+        let (start, behind) = (group * GROUP, bodies.mass.len());
         // Sums of lane l of part p are those of logical lane p · LANES + l; parts share theirs where bits may depend on the
         // registers.
         let kept = const { if EXACT { GROUP / R::LANES } else { 1 } };
         let zero = registers.splat(P::default());
         let own_sums: [[Sums<R::V, SUMS>; GROUP]; OWN] =
             from_fn(|_| from_fn(|_| from_fn(|_| Cell::new(zero))));
-        let energy = [Cell::new(zero), Cell::new(zero)];
+        let energies: [[Sums<R::V, 2>; GROUP]; 1] = [from_fn(|_| from_fn(|_| Cell::new(zero)))];
         let nothing: Sums<R::V, SUMS> = from_fn(|_| Cell::new(zero));
-        let own: [Partner<R::V>; OWN] = from_fn(|n| self.own(registers, start + first + n));
-        let observed = self.observed;
+        let own: [Partner<R::V>; OWN] = from_fn(|n| Self::own(registers, bodies, start + first + n));
         for part in 0..GROUP / R::LANES {
             let at = start + part * R::LANES;
             // SAFETY: the group's entries exist, and a part is one register of them.
-            let partner = unsafe { self.partner(registers, at) };
+            let partner = unsafe { Self::partner(registers, bodies, at) };
             for (n, own) in own.into_iter().enumerate() {
                 let partner = apart(registers, own, partner, (start + first + n).wrapping_sub(at));
                 let own_sums = &own_sums[n][part % kept];
@@ -183,27 +200,30 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
                     own_sums,
                     partner_sums: &nothing,
                     observed,
-                    energy: &energy,
+                    energy: &energies[0][part % kept],
                 };
-                meet(self.law, &meeting, partner);
+                meet(law, &meeting, partner);
             }
         }
-        let base = self.groups.start * GROUP;
+        let base = groups.start * GROUP;
         let mut at = start + GROUP;
-        let mut spelled = [[0.0; SUMS]; OWN];
+        let (mut spelled, mut spelled_energies) = ([[0.0; SUMS]; OWN], [[0.0; 2]]);
         let mut left = SPELL;
         while at < behind {
             if left == 0 {
                 take(registers, &own_sums, kept, &mut spelled);
+                if observed {
+                    take(registers, &energies, kept, &mut spelled_energies);
+                }
                 left = SPELL;
             }
             left -= 1;
             for part in 0..GROUP / R::LANES {
                 let at = at + part * R::LANES;
                 // SAFETY: whole groups exist (checked by AllPairs::sweep), and a part is one register of one.
-                let partner = unsafe { self.partner(registers, at) };
+                let partner = unsafe { Self::partner(registers, bodies, at) };
                 // SAFETY: sums have an entry for every body from `base` on.
-                let to: [*mut P; SUMS] = from_fn(|sum| unsafe { self.sums[sum].as_mut_ptr().add(at - base) });
+                let to: [*mut P; SUMS] = from_fn(|sum| unsafe { sums[sum].as_mut_ptr().add(at - base) });
                 let partner_sums: Sums<R::V, SUMS> = from_fn(|_| Cell::new(zero));
                 for (n, own) in own.into_iter().enumerate() {
                     let own_sums = &own_sums[n][part % kept];
@@ -214,9 +234,9 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
                         own_sums,
                         partner_sums,
                         observed,
-                        energy: &energy,
+                        energy: &energies[0][part % kept],
                     };
-                    meet(self.law, &meeting, partner);
+                    meet(law, &meeting, partner);
                 }
                 for sum in 0..SUMS {
                     // SAFETY: `to` points at sums of whole groups, of which a part is one register.
@@ -227,25 +247,21 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
         }
         take(registers, &own_sums, kept, &mut spelled);
         for (n, spelled) in spelled.iter().enumerate() {
-            for (sums, spelled) in self.sums.iter_mut().zip(spelled) {
+            for (sums, spelled) in sums.iter_mut().zip(spelled) {
                 let to = &mut sums[start + first + n - base];
                 *to = P::from_f64(to.to_f64() + spelled);
             }
         }
         if observed {
-            for (to, sum) in self.energy.iter_mut().zip(energy) {
-                let mut lanes = [P::default(); GROUP];
-                // SAFETY: LANES <= GROUP.
-                unsafe { registers.store(lanes.as_mut_ptr(), sum.get()) };
-                *to += lanes.iter().map(|lane| lane.to_f64()).sum::<f64>();
-            }
+            take(registers, &energies, kept, &mut spelled_energies);
+            total.iter_mut().zip(spelled_energies[0]).for_each(|(to, spelled)| *to += spelled);
         }
     }
 
     /// A body in every lane.
     #[inline(always)]
-    fn own<R: Registers<Lane = P>>(&self, registers: R, body: usize) -> Partner<R::V> {
-        Self::body(registers, self.bodies, |column| registers.splat(column[body]))
+    fn own<R: Registers<Lane = P>>(registers: R, bodies: &Bodies<'_, P>, body: usize) -> Partner<R::V> {
+        Self::body(registers, bodies, |column| registers.splat(column[body]))
     }
 
     /// A register of bodies from `at` on.
@@ -253,10 +269,14 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
     /// # Safety
     /// They exist.
     #[inline(always)]
-    unsafe fn partner<R: Registers<Lane = P>>(&self, registers: R, at: usize) -> Partner<R::V> {
+    unsafe fn partner<R: Registers<Lane = P>>(
+        registers: R,
+        bodies: &Bodies<'_, P>,
+        at: usize,
+    ) -> Partner<R::V> {
         // SAFETY: the caller promises the bodies, and all columns that the law asks for have as many entries (checked by
         // AllPairs::sweep).
-        Self::body(registers, self.bodies, |column| unsafe { registers.load(column.as_ptr().add(at)) })
+        Self::body(registers, bodies, |column| unsafe { registers.load(column.as_ptr().add(at)) })
     }
 
     /// What the law asks for, `of` a column each.
@@ -270,7 +290,11 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
             true => bodies.velocity.map(&of),
             false => [registers.splat(P::default()); 3],
         };
-        Partner { position: bodies.position.map(&of), velocity, mass: of(bodies.mass) }
+        let rest = match const { is_split::<P>() } {
+            true => bodies.rest.map(&of),
+            false => [registers.splat(P::default()); 3],
+        };
+        Partner { position: bodies.position.map(&of), rest, velocity, mass: of(bodies.mass) }
     }
 }
 
@@ -321,18 +345,19 @@ fn apart<R: Registers>(
     let elsewhere = R::V::select(is_own, elsewhere, x);
     Partner {
         position: [elsewhere, y, z],
+        rest: partner.rest,
         velocity: partner.velocity,
         mass: R::V::select(is_own, zero, partner.mass),
     }
 }
 
-/// Takes own sums out of the registers, and leaves zeros there.
+/// Takes sums out of the registers, and leaves zeros there.
 #[inline(always)]
-fn take<R: Registers, const SUMS: usize>(
+fn take<R: Registers, const SUMS: usize, const BODIES: usize>(
     registers: R,
-    own_sums: &[[Sums<R::V, SUMS>; GROUP]; OWN],
+    own_sums: &[[Sums<R::V, SUMS>; GROUP]; BODIES],
     kept: usize,
-    into: &mut [[f64; SUMS]; OWN],
+    into: &mut [[f64; SUMS]; BODIES],
 ) {
     let zero = registers.splat(R::Lane::default());
     for (sums, into) in own_sums.iter().zip(into) {

@@ -61,11 +61,15 @@ impl Scheme for Composed {
             field.acceleration(position, &mut self.acceleration)?;
             self.is_known = true;
         }
-        for part in &self.parts {
+        for (number, part) in self.parts.iter().enumerate() {
             let h = part * dt;
             add(velocity, 0.5 * h, &self.acceleration);
             add(position, h, velocity);
-            field.acceleration(position, &mut self.acceleration)?;
+            if number + 1 < self.parts.len() {
+                field.acceleration(position, &mut self.acceleration)?;
+            } else {
+                field.last_acceleration(position, &mut self.acceleration)?;
+            }
             add(velocity, 0.5 * h, &self.acceleration);
         }
         Ok(())

@@ -21,8 +21,16 @@ pub trait Field {
     /// Accelerations of bodies at these positions (length/time²).
     ///
     /// # Errors
-    /// [`ProgramError`] if the processor lacks what is asked for.
+    /// [`ProgramError`] if the processor lacks what is asked for, or it was interrupted.
     fn acceleration(&mut self, position: &Columns, into: &mut Columns) -> Result<(), ProgramError>;
+
+    /// The same at the positions that a step ends with, whose energy may be wanted next.
+    ///
+    /// # Errors
+    /// As [`Field::acceleration`].
+    fn last_acceleration(&mut self, position: &Columns, into: &mut Columns) -> Result<(), ProgramError> {
+        self.acceleration(position, into)
+    }
 
     /// Accelerations and their time derivatives, as many as `orders` has room for, the acceleration first.
     ///
@@ -41,7 +49,7 @@ pub trait Scheme: Send {
     /// Advances the bodies by `dt` (time).
     ///
     /// # Errors
-    /// [`ProgramError`] of the field.
+    /// [`ProgramError`] of the field; bodies and scheme are then somewhere in the step.
     fn step(&mut self, bodies: &mut Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError>;
 
     /// The order of convergence: with n times as many steps the error at a fixed time is about n^order smaller.
@@ -106,6 +114,22 @@ impl SchemeName {
             SchemeName::RungeKutta4 => Box::new(RungeKutta::default()),
             SchemeName::Hermite4 => Box::new(Hermite::default()),
             SchemeName::Gear6 => Box::new(Gear::default()),
+        }
+    }
+}
+
+impl SchemeName {
+    /// Quantities along three axes that a scheme holds for every body, and those of them that it carries from step to step.
+    pub fn held(self) -> [usize; 2] {
+        match self {
+            SchemeName::DampedEuler | SchemeName::Euler | SchemeName::EulerWithHalf => [1, 0],
+            SchemeName::Leapfrog | SchemeName::Yoshida4 | SchemeName::Yoshida6 | SchemeName::Yoshida8 => {
+                [1, 1]
+            }
+            SchemeName::RungeKutta4 => [5, 0],
+            SchemeName::Hermite4 => [6, 2],
+            // Its start takes paths and what is found of them besides.
+            SchemeName::Gear6 => [12, 4],
         }
     }
 }

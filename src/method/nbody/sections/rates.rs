@@ -106,7 +106,7 @@ fn table(data: &Rates) -> Table {
         "2 threads (10⁹/s)",
         "ratio",
         "force error",
-        "with rounded positions",
+        "with rounded masses",
     ];
     Table {
         name: "rates".into(),

@@ -4,7 +4,7 @@ use super::Running;
 use crate::console::Failure;
 use crate::method::Progress;
 use crate::method::nbody::bodies::{Bodies, zeros};
-use crate::method::nbody::field::{Attraction, potential};
+use crate::method::nbody::field::{Attraction, never, potential};
 use crate::method::nbody::options::{ArithmeticKind, StartKind};
 use crate::method::nbody::scene::Scene;
 use crate::method::nbody::schemes::Field;
@@ -54,8 +54,8 @@ pub struct Rate {
     pub bodies: usize,
     /// Directed interactions a second, N² counted, in 10⁹, by threads: medians.
     pub rates: [f64; 2],
-    /// The largest error of an acceleration over the largest acceleration: of the kernel, for positions as it sees them; and with what
-    /// rounding of the positions adds where forces are in single precision.
+    /// The largest error of an acceleration over the largest acceleration: of the kernel, for masses as it sees them; and with what
+    /// rounding of the masses adds where forces are in single precision.
     pub error: [f64; 2],
 }
 
@@ -133,10 +133,16 @@ fn rate(
             let (rate, accelerations) = pool.install(|| -> Result<_, Failure> {
                 let mut field = Attraction::new(&scene, &all);
                 let mut into = zeros(all.entries());
-                field.acceleration(&all.position, &mut into).map_err(crate::method::Failure::from)?;
+                field
+                    .asking(false, &never)
+                    .acceleration(&all.position, &mut into)
+                    .map_err(crate::method::Failure::from)?;
                 let (begun, mut sweeps) = (Instant::now(), 0);
                 while begun.elapsed().as_secs_f64() < effort.seconds {
-                    field.acceleration(&all.position, &mut into).map_err(crate::method::Failure::from)?;
+                    field
+                        .asking(false, &never)
+                        .acceleration(&all.position, &mut into)
+                        .map_err(crate::method::Failure::from)?;
                     sweeps += 1;
                 }
                 let seconds = begun.elapsed().as_secs_f64() / f64::from(sweeps);
@@ -167,13 +173,13 @@ fn rate(
     ))
 }
 
-/// The acceleration of a body, its partners one after the other and summed with the digits that additions lose (Neumaier); positions and
+/// The acceleration of a body, its partners one after the other and summed with the digits that additions lose (Neumaier);
 /// masses rounded to single precision first, where a kernel sees them so.
 fn written_down(all: &Bodies, body: usize, softening: f64, is_rounded: bool) -> [f64; 3] {
     let seen = |value: f64| if is_rounded { f64::from(value as f32) } else { value };
     let mut sums = [[0.0_f64; 2]; 3];
     for other in (0..all.len()).filter(|&other| other != body) {
-        let way = [0, 1, 2].map(|axis| seen(all.position[axis][other]) - seen(all.position[axis][body]));
+        let way = [0, 1, 2].map(|axis| all.position[axis][other] - all.position[axis][body]);
         let square = way.iter().map(|part| part * part).sum::<f64>() + seen(softening).powi(2);
         let pull = seen(all.mass[other]) / (square * square.sqrt());
         for (sum, part) in sums.iter_mut().zip(way) {
@@ -189,13 +195,14 @@ fn written_down(all: &Bodies, body: usize, softening: f64, is_rounded: bool) -> 
 }
 
 /// Kinetic energy and that of the pairs, in double precision.
-fn energy(particles: &Particles, softening: f64) -> f64 {
+fn energy(particles: &Particles, softening: f64) -> Result<f64, Failure> {
     let all = particles.all();
     let mass: Vec<f64> = all.iter().map(|body| body.mass).collect();
     let position = [0, 1, 2].map(|axis| all.iter().map(|body| body.position[axis]).collect());
     let square = |body: &Particle| body.velocity.iter().map(|v| v * v).sum::<f64>();
     let kinetic: f64 = all.iter().map(|body| 0.5 * body.mass * square(body)).sum();
-    kinetic + potential(&mass, &position, softening)
+    let potential = potential(&mass, &position, softening, &never).map_err(crate::method::Failure::from)?;
+    Ok(kinetic + potential)
 }
 
 fn conserving_run(
@@ -210,8 +217,8 @@ fn conserving_run(
         format!("law.softening={SOFTENING}"),
     ];
     let mut running = Running::begin("plummer", &overrides)?;
-    let begin = energy(&running.0.particles(), SOFTENING);
+    let begin = energy(&running.0.particles(), SOFTENING)?;
     running.steps(2 * steps)?;
-    let error = energy(&running.0.particles(), SOFTENING) / begin - 1.0;
+    let error = energy(&running.0.particles(), SOFTENING)? / begin - 1.0;
     Ok(Conserving { arithmetic: arithmetic.word(), precision: precision.word(), steps, error: error.abs() })
 }

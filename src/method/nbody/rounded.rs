@@ -1,0 +1,144 @@
+//! Bodies as a sweep sees them: in its precision, and, where that is single, about their middle and in units of their own.
+
+use super::bodies::{Bodies, Columns, elsewhere};
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::sweep::all_pairs::{self, is_split};
+
+/// Units of a sweep: powers of two, with which no bit is lost; 1 in double precision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Units {
+    length: f64,
+    mass: f64,
+}
+
+impl Units {
+    /// In single precision the heaviest body has a mass of 1 to 2, and the bodies a root mean square distance of 1 to 2 from their
+    /// middle: products of masses and cubes of distances then neither underflow nor overflow.
+    fn of<P: Precision>(bodies: &Bodies) -> Units {
+        if P::BYTES == size_of::<f64>() {
+            return Units { length: 1.0, mass: 1.0 };
+        }
+        let count = bodies.len();
+        let heaviest = bodies.mass[..count].iter().copied().fold(0.0, f64::max);
+        let middle = middle(&bodies.position, count);
+        let axes = bodies.position.iter().zip(middle);
+        let squares =
+            axes.map(|(column, middle)| column[..count].iter().map(|x| (x - middle).powi(2)).sum::<f64>());
+        Units {
+            length: power_of_two((squares.sum::<f64>() / count as f64).sqrt()),
+            mass: power_of_two(heaviest),
+        }
+    }
+
+    /// A length in these units.
+    pub(super) fn length(self, length: f64) -> f64 {
+        length / self.length
+    }
+
+    /// The unit of force, and of its rate.
+    pub(super) fn force(self) -> f64 {
+        (self.mass / self.length).powi(2)
+    }
+
+    /// The unit of the rate of a force; velocities keep theirs.
+    pub(super) fn force_rate(self) -> f64 {
+        self.force() / self.length
+    }
+
+    /// The unit of energy.
+    pub(super) fn energy(self) -> f64 {
+        self.mass * self.mass / self.length
+    }
+}
+
+/// The largest power of two that is not above a number; 1 for what has none.
+fn power_of_two(number: f64) -> f64 {
+    if number.is_normal() { libm::scalbn(1.0, libm::ilogb(number)) } else { 1.0 }
+}
+
+/// The mean of the first entries.
+fn middle(columns: &Columns, count: usize) -> [f64; 3] {
+    columns.each_ref().map(|column| column[..count].iter().sum::<f64>() / count as f64)
+}
+
+/// Columns of bodies, one behind the other as often as a sweep wants them.
+pub(super) struct Rounded<P> {
+    pub(super) units: Units,
+    /// Bodies, and entries with the padding.
+    sizes: [usize; 2],
+    pub(super) position: [Vec<P>; 3],
+    /// What rounding to single precision leaves of the positions; empty in double precision.
+    pub(super) rest: [Vec<P>; 3],
+    pub(super) velocity: [Vec<P>; 3],
+    pub(super) mass: Vec<P>,
+}
+
+impl<P: Precision> Rounded<P> {
+    /// Of bodies, `entries` of them (padding included) `times` over.
+    pub(super) fn new(bodies: &Bodies, entries: usize, times: usize) -> Self {
+        let units = Units::of::<P>(bodies);
+        let all = || vec![P::default(); times * entries];
+        let rest = || if is_split::<P>() { all() } else { vec![] };
+        let mass: Vec<P> = bodies.mass[..entries].iter().map(|m| P::from_f64(m / units.mass)).collect();
+        Rounded {
+            units,
+            sizes: [bodies.len(), entries],
+            position: [all(), all(), all()],
+            rest: [rest(), rest(), rest()],
+            velocity: [all(), all(), all()],
+            mass: mass.repeat(times),
+        }
+    }
+
+    /// Bytes that an entry takes.
+    pub(super) const BYTES: usize = (if is_split::<P>() { 10 } else { 7 }) * P::BYTES;
+
+    /// Takes positions and, where they are given, velocities.
+    pub(super) fn take(&mut self, position: &Columns, velocity: Option<&Columns>) {
+        let [count, entries] = self.sizes;
+        if !is_split::<P>() {
+            let velocity = velocity.into_iter().flatten();
+            let columns =
+                self.position.iter_mut().zip(position).chain(self.velocity.iter_mut().zip(velocity));
+            columns.for_each(|(to, from)| fill(to, &from[..entries], P::from_f64));
+            return;
+        }
+        let (units, about) = (self.units, middle(position, count));
+        for (axis, from) in position.iter().enumerate() {
+            let place = |x: f64| units.length(x - about[axis]);
+            let rest = |x: f64| P::from_f64(place(x) - P::from_f64(place(x)).to_f64());
+            fill(&mut self.position[axis], &from[..entries], |x| P::from_f64(place(x)));
+            fill(&mut self.rest[axis], &from[..entries], rest);
+        }
+        // The padding is where no body is.
+        let far = self.position[0][..count].iter().fold(0.0f64, |far, x| far.max(x.to_f64().abs()));
+        for (n, padding) in (count..entries).enumerate() {
+            self.position[0][padding] = P::from_f64(elsewhere(far, n));
+            self.rest[0][padding] = P::default();
+        }
+        // What all bodies have in common changes nothing between them.
+        if let Some(velocity) = velocity {
+            let drift = middle(velocity, count);
+            for ((to, from), drift) in self.velocity.iter_mut().zip(velocity).zip(drift) {
+                fill(to, &from[..entries], |v| P::from_f64(v - drift));
+            }
+        }
+    }
+
+    /// As a sweep over all pairs takes them.
+    pub(super) fn bodies(&self) -> all_pairs::Bodies<'_, P> {
+        all_pairs::Bodies {
+            position: self.position.each_ref().map(Vec::as_slice),
+            rest: self.rest.each_ref().map(Vec::as_slice),
+            velocity: self.velocity.each_ref().map(Vec::as_slice),
+            mass: &self.mass,
+        }
+    }
+}
+
+/// Every copy of a column, from one.
+fn fill<P>(to: &mut [P], from: &[f64], of: impl Fn(f64) -> P) {
+    for copy in to.chunks_exact_mut(from.len().max(1)) {
+        copy.iter_mut().zip(from).for_each(|(to, &from)| *to = of(from));
+    }
+}

@@ -1,0 +1,159 @@
+//! What a run is watched for: the largest error of its energy, and the nearest encounter of two bodies.
+
+use super::conserved::Conserved;
+use super::encounter::Encounter;
+use crate::io::checkpoint::Column;
+use crate::method::RunWarning;
+use crate::number::significant;
+use serde_json::{Value, json};
+
+/// Columns of a checkpoint: energy and step of the largest error; both bodies, distance, place and step of the nearest encounter.
+const WORST: &str = "largest_error";
+const NEAREST: &str = "nearest_encounter";
+
+/// The largest error that is no reason for a warning.
+const MOST: f64 = 0.01;
+/// Energies below so much of the kinetic and potential energy are held against these: they are what is left of a difference.
+const SMALL: f64 = 0.01;
+/// A part of the kinetic and potential energy that may be rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// What was seen so far.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Watch {
+    /// The energy at the start.
+    pub(super) start: f64,
+    /// Kinetic and magnitude of the potential energy at the start.
+    size: f64,
+    /// The energy that was the farthest from that of the start, and after how many steps.
+    worst: (f64, u64),
+    /// The nearest encounter, and after how many steps.
+    nearest: Option<(Encounter, u64)>,
+}
+
+impl Watch {
+    /// From the start on.
+    pub(super) fn new(start: &Conserved) -> Watch {
+        let energy = start.energy();
+        let size = start.kinetic + start.potential.abs();
+        Watch { start: energy, size, worst: (energy, 0), nearest: None }
+    }
+
+    /// Takes note of a state after some steps.
+    pub(super) fn look(&mut self, energy: f64, encounter: Option<Encounter>, steps: u64) {
+        if (energy - self.start).abs() > (self.worst.0 - self.start).abs() {
+            self.worst = (energy, steps);
+        }
+        let known = self.nearest.map_or(f64::INFINITY, |(known, _)| known.distance);
+        self.nearest = encounter.filter(|it| it.distance < known).map(|it| (it, steps)).or(self.nearest);
+    }
+
+    /// The energy less that of the start, over that of the start; over kinetic and potential energy where that is 0.
+    pub(super) fn relative(&self, energy: f64) -> f64 {
+        match (self.start, self.size) {
+            (0.0, 0.0) => energy,
+            (0.0, size) => energy / size,
+            (start, _) => energy / start - 1.0,
+        }
+    }
+
+    /// Whether bodies that were bound are not any more.
+    pub(super) fn is_unbound(&self, energy: f64) -> bool {
+        self.start < 0.0 && energy >= 0.0 && energy - self.start > ROUNDING * self.size
+    }
+
+    /// The nearest encounter in words, bodies by their ids.
+    pub(super) fn nearest_in_words(&self, id: impl Fn(usize) -> u32) -> Option<String> {
+        let (Encounter { bodies, distance, .. }, steps) = self.nearest?;
+        let [first, second] = bodies.map(id);
+        let distance = significant(distance, 3);
+        Some(format!("bodies {first} and {second} were the nearest, {distance} apart at step {steps}"))
+    }
+
+    /// What is to be said at the end, when the energy is `now`.
+    pub(super) fn warning(&self, now: (f64, u64), dt: f64, id: impl Fn(usize) -> u32) -> Option<RunWarning> {
+        let (energy, steps) = self.worst_with(now);
+        let is_small = self.start.abs() < SMALL * self.size;
+        let (scale, of) = if is_small {
+            (self.size, "of the kinetic and potential energy at the start")
+        } else {
+            (self.start.abs(), "of itself")
+        };
+        let error = (energy - self.start).abs() / scale;
+        if error <= MOST {
+            return None;
+        }
+        let off = if error < 1.0 {
+            format!("was off by {} % {of}", significant(100.0 * error, 3))
+        } else {
+            format!("was {} at the start and {}", significant(self.start, 5), significant(energy, 5))
+        };
+        let nearest = self.nearest_in_words(id).map_or(String::new(), |words| format!("; {words}"));
+        let message = format!(
+            "the energy {off} at step {steps}, time {}, more than at any other look{nearest}: take a smaller dt, an integrator \
+             of higher order, or a softening",
+            significant(steps as f64 * dt, 6)
+        );
+        Some(RunWarning { check: "energy-balance", value: error, limit: MOST, message })
+    }
+
+    /// The same as entries of `summary.json`.
+    pub(super) fn entries(&self, now: (f64, u64), id: impl Fn(usize) -> u32) -> [(&'static str, Value); 3] {
+        let (energy, steps) = self.worst_with(now);
+        let nearest = self.nearest.map(|(Encounter { bodies, distance, place }, steps)| {
+            json!({ "bodies": bodies.map(&id), "distance": distance, "place": place, "step": steps })
+        });
+        [
+            ("largest_energy_error", json!(self.relative(energy))),
+            ("largest_energy_error_step", json!(steps)),
+            ("nearest_encounter", json!(nearest)),
+        ]
+    }
+
+    fn worst_with(&self, now: (f64, u64)) -> (f64, u64) {
+        let farther = (now.0 - self.start).abs() > (self.worst.0 - self.start).abs();
+        if farther { now } else { self.worst }
+    }
+
+    /// For a checkpoint.
+    pub(super) fn columns(&self) -> [(String, Column); 2] {
+        let worst = vec![self.worst.0, self.worst.1 as f64];
+        let nearest =
+            self.nearest.map(|(Encounter { bodies: [a, b], distance, place: [x, y, z] }, steps)| {
+                vec![a as f64, b as f64, distance, x, y, z, steps as f64]
+            });
+        [
+            (WORST.to_owned(), Column::F64(worst)),
+            (NEAREST.to_owned(), Column::F64(nearest.unwrap_or_default())),
+        ]
+    }
+
+    /// Takes up what a checkpoint has of `count` bodies.
+    ///
+    /// # Errors
+    /// A sentence, if that is not of a watch.
+    pub(super) fn take_up(
+        &mut self,
+        start: f64,
+        columns: &[(String, Column)],
+        count: usize,
+    ) -> Result<(), String> {
+        let find = |name: &str| match columns.iter().find(|(there, _)| there == name) {
+            Some((_, Column::F64(values))) => Ok(values.as_slice()),
+            _ => Err(format!("the column {name} is missing")),
+        };
+        let &[energy, steps] = find(WORST)? else {
+            return Err(format!("the column {WORST} has not two numbers"));
+        };
+        let nearest = match *find(NEAREST)? {
+            [] => None,
+            [a, b, distance, x, y, z, steps] if a.max(b) < count as f64 => {
+                let bodies = [a as usize, b as usize];
+                Some((Encounter { bodies, distance, place: [x, y, z] }, steps as u64))
+            }
+            _ => return Err(format!("the column {NEAREST} is of no two bodies")),
+        };
+        (self.start, self.worst, self.nearest) = (start, (energy, steps as u64), nearest);
+        Ok(())
+    }
+}
