@@ -19,9 +19,13 @@ fn peak(arguments: &[String]) -> u64 {
     usage.ru_maxrss as u64 * 1024
 }
 
-/// For the ways of a hundred thousand discs, begun and gone on with: at most 5 % more than foreseen, and at most 10 % less.
-/// Less is room for the thread that writes frames: whether it still holds one frame when the next is made
-/// depends on the moment, and what is foreseen counts both. A frame of a hundred thousand particles is 10 MB, 7 % of the largest.
+/// Bytes of a frame of a hundred thousand particles.
+const FRAME: f64 = 8.8e6;
+
+/// For the ways of a hundred thousand discs, begun and gone on with: either takes at most 5 % more than foreseen, and the one that
+/// takes more at most 5 % and a frame less.
+/// A frame is room for the thread that writes frames: whether it still holds one frame when the next is made
+/// depends on the moment, and what is foreseen counts both.
 #[test]
 fn a_run_takes_the_memory_that_was_foreseen() {
     let folder = tempfile::tempdir().unwrap();
@@ -49,16 +53,14 @@ fn a_run_takes_the_memory_that_was_foreseen() {
         let checked: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
         let needed = checked["memory"]["needed"].as_u64().unwrap();
         let out = folder.path().join("run").display().to_string();
-        for (how, steps) in [("--overwrite", "run.steps=1"), ("--resume", "run.steps=2")] {
-            let taken = peak(&with_sets(&["run", "bench", how, "--threads", "2", "--out", &out], steps));
-            said.push((
-                needed as f64 / taken as f64 - 1.0,
-                format!("{sets:?} {how}: {needed} foreseen, {taken} taken"),
-            ));
-        }
+        let taken = [("--overwrite", "run.steps=1"), ("--resume", "run.steps=2")].map(|(how, steps)| {
+            peak(&with_sets(&["run", "bench", how, "--threads", "2", "--out", &out], steps))
+        });
+        let most = taken[0].max(taken[1]) as f64;
+        let fits = (0.95 * most..=1.05 * most + FRAME).contains(&(needed as f64));
+        said.push((fits, format!("{sets:?}: {needed} foreseen, {taken:?} taken")));
     }
-    let off: Vec<&String> =
-        said.iter().filter(|(off, _)| !(-0.05..=0.10).contains(off)).map(|(_, said)| said).collect();
+    let off: Vec<&String> = said.iter().filter(|(fits, _)| !fits).map(|(_, said)| said).collect();
     assert!(off.is_empty(), "{off:#?} of {said:#?}");
 }
 
