@@ -47,9 +47,9 @@ impl GrainSums {
         let inertia = inertia_factor * mass * radius * radius;
         self.rotational += 0.5 * inertia * omega * omega;
         self.square += square;
-        for axis in 0..2 {
-            self.momentum[axis] += mass * velocity[axis];
-            self.velocity[axis] += velocity[axis];
+        for (axis, along) in velocity.into_iter().enumerate() {
+            self.momentum[axis] += mass * along;
+            self.velocity[axis] += along;
         }
         if *gravity != [0.0; 2] {
             let place = place();

@@ -41,10 +41,12 @@ pub fn foreseen(checked: &Checked) -> Foreseen {
         }
     };
     let columns = columns + of.followed();
-    // One of them is gone before the next comes. While discs are observed or their columns written, a frame of them is written;
-    // a run that is gone on with has read one column more than it has taken up, and its cells are looked up.
+    // One of them is gone before the next comes. While discs are observed or their columns written, a frame of them is written.
+    // A run that is gone on with has read one column more than it has taken up, and its cells are looked up; of what it gives back
+    // the system does not have a frame's size at once.
     let frame = DISC * of.discs;
-    let moments = [2.0 * frame, frame + observed, frame + columns, columns + (8.0 + 40.0) * of.discs];
+    let resumed = columns + frame + (8.0 + 40.0) * of.discs + of.lists_resumed(contacts(checked));
+    let moments = [2.0 * frame, frame + observed, frame + columns, resumed];
     Foreseen {
         needed: (kept + engine + moments.into_iter().fold(0.0, f64::max)) as u64,
         available: available(),
@@ -120,6 +122,13 @@ impl Sizes {
     fn observed(&self) -> f64 {
         let corrected = 2.0 * self.freedoms();
         (8.0 * (corrected + 3.0 + 2.0 * self.varying()) + 4.0) * self.discs
+    }
+
+    /// Bytes beside the lists that the fast engine makes once more where a run goes on: their parts before these are joined.
+    fn lists_resumed(&self, contacts: Contacts) -> f64 {
+        let Contacts::Fast(FastSearch::Lists { skin }) = contacts else { return 0.0 };
+        let pairs = 0.5 * self.neighbours(self.reach + skin);
+        8.0 * pairs * self.discs
     }
 
     /// Bytes that a fast method keeps, and of the columns of its checkpoints.

@@ -104,10 +104,12 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         }
         self.search.cells_mut().arrange(&self.state);
         // Lists are made of the places at which they were made before, so that they are the same.
-        let now: Vec<[f64; 2]> = (0..numbers.len()).map(|disc| self.state.place(disc)).collect();
-        if let Some(made_at) = &made_at {
-            for (axis, places) in made_at.iter().enumerate() {
-                self.state.columns[axis][0][..places.len()].copy_from_slice(places);
+        let now: Vec<[f64; 2]> = (0..self.start.len()).map(|disc| self.state.place(disc)).collect();
+        // What is taken up is not kept beside the lists.
+        drop((cells, numbers));
+        if let Some(made_at) = made_at {
+            for (axis, places) in made_at.into_iter().enumerate() {
+                self.state.columns[axis][0][..places.len()].copy_from_slice(&places);
             }
         }
         let order = self.put_in_order();
