@@ -84,6 +84,71 @@ fn foreseen_and_taken(preset: &str, sets: &[&str], frame: f64) -> (bool, String)
     (fits, format!("{sets:?}: {needed} foreseen, {taken:?} taken"))
 }
 
+/// Particles in a bath by every search.
+#[test]
+fn particles_in_a_bath_take_the_memory_that_was_foreseen() {
+    let mut said = Vec::new();
+    for by in ["search.by=neighbor-list", "search.by=sectors", "search.by=lattice"] {
+        let sets = ["particles.count=100000", "domain.sides=[160, 160]", by];
+        said.push(foreseen_and_taken("langevin-report", &sets, FRAME));
+    }
+    judged(&said);
+}
+
+/// A start takes memory for its particles, not for the box: of two milliard places of a mesh a thousand are drawn.
+#[test]
+fn an_empty_box_takes_no_memory() {
+    let check = ["scene", "check", "langevin-free", "--set", "domain.sides=[4600, 4600]"].map(str::to_owned);
+    let taken = peak(&check);
+    assert!(taken < 64_000_000, "{taken} bytes");
+}
+
+/// Under a limit of the address space or of the data a run is refused, with the limit in words, or comes to its end: it is not
+/// aborted in its midst, whatever the limit.
+#[test]
+fn limits_of_the_process_are_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let under = |limit: &str, scene: &str, sets: &[&str]| {
+        let mut command = Command::new("sh");
+        let out = folder.path().join("run");
+        let script = format!("ulimit {limit} && exec \"$0\" \"$@\"");
+        command.args([
+            "-c",
+            &script,
+            env!("CARGO_BIN_EXE_stripmine"),
+            "run",
+            scene,
+            "--overwrite",
+            "--threads",
+            "2",
+        ]);
+        command.args(["--out", out.to_str().unwrap(), "--set", "run.snapshot_every=0"]);
+        sets.iter().for_each(|set| _ = command.args(["--set", set]));
+        let output = command.stdin(Stdio::null()).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    let langevin = ["particles.count=300000", "domain.sides=[300, 300]", "run.steps=1"];
+    let scenes: [(&str, &[&str]); 3] = [
+        ("langevin-report", &langevin),
+        ("bench", &["particles.count=200000", "run.steps=1"]),
+        ("hard-disks", &["particles.count=200000", "run.events=10", "run.snapshot_every=0"]),
+    ];
+    for (scene, sets) in scenes {
+        for (limit, name) in [("-v", "the address space (ulimit -v)"), ("-d", "of a process (ulimit -d)")] {
+            let mut codes = vec![];
+            for mebibytes in [250, 350, 500, 4000] {
+                let (code, said) = under(&format!("{limit} {}", mebibytes * 1024), scene, sets);
+                assert!(matches!(code, Some(0 | 3)), "{scene} {limit} {mebibytes}: {code:?} {said}");
+                assert!(code == Some(0) || said.contains(name), "{scene} {limit} {mebibytes}: {said}");
+                codes.push(code);
+            }
+            assert_eq!(codes.last(), Some(&Some(0)), "{scene} {limit}");
+        }
+        let (code, said) = under("-v 204800", scene, sets);
+        assert!(code == Some(3) && said.contains(" left"), "{scene}: {code:?} {said}");
+    }
+}
+
 /// Bytes of the process while it refuses: a tenth of a gigabyte is far below what it was asked for.
 #[test]
 fn what_does_not_fit_is_refused_before_it_is_made() {
@@ -98,7 +163,7 @@ fn what_does_not_fit_is_refused_before_it_is_made() {
         let path = folder.path().join("scene.toml");
         std::fs::write(&path, gas.replace("SIDE", side).replace("COUNT", count)).unwrap();
         let said = refused(&["scene", "check"], &path);
-        assert!(said.contains(words) && said.contains("this machine has"), "{said}");
+        assert!(said.contains(words) && said.contains(" left"), "{said}");
         let said = refused(&["run"], &path);
         assert!(said.contains(words), "{said}");
     }

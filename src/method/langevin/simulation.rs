@@ -6,7 +6,9 @@ use super::losses::Losses;
 use super::prepared::Checked;
 use crate::io::checkpoint::{Column, Counter};
 use crate::method::observed::place;
-use crate::method::{Clock, Failure, FailureKind, Purpose, RunWarning, Simulation, Snapshot, Until};
+use crate::method::{
+    Clock, Failure, FailureKind, Prepared, Purpose, RunWarning, Simulation, Snapshot, Until,
+};
 use crate::number::significant;
 use crate::particles::{Particle, Particles};
 use serde_json::{Map, Value, json};
@@ -129,6 +131,11 @@ impl Running {
         Ok(())
     }
 
+    /// Particles that are not lost; where a run ends by too many losses, the last ones still are in its state.
+    fn left(&self) -> u64 {
+        self.checked.particles.len() as u64 - self.losses.count()
+    }
+
     /// How often lists were made since the start; none where there are none.
     fn lists_made(&self) -> Option<u64> {
         self.stepper.lists().map(|(_, made)| self.made_before.wrapping_add(made))
@@ -207,7 +214,11 @@ impl Simulation for Running {
         let (particles, mass) = (self.stepper.standing(), self.checked.mass);
         let count = particles.len() as f64;
         let velocities = || particles.all().iter().map(Particle::planar_velocity);
-        let kinetic = 0.5 * mass * velocities().map(|[u, v]| u * u + v * v).sum::<f64>();
+        let thermal: Vec<[f64; 2]> = match self.checked.scene.scheme.is_observed_after_bath() {
+            true => self.stepper.predicted_velocities(),
+            false => velocities().collect(),
+        };
+        let kinetic = 0.5 * mass * thermal.iter().map(|[u, v]| u * u + v * v).sum::<f64>();
         let momentum = [0, 1].map(|axis| mass * velocities().map(|velocity| velocity[axis]).sum::<f64>());
         let temperature = kinetic / count;
         let [potential, virial] = self.of_pairs;
@@ -267,13 +278,14 @@ impl Simulation for Running {
     }
 
     fn summary(&self) -> Map<String, Value> {
-        let lists = self.stepper.lists();
         let entries = [
-            ("particles", json!(self.start.len())),
+            ("particles", json!(self.left())),
             ("lost", json!(self.losses.count())),
-            ("listed_pairs", json!(lists.map(|(entries, _)| entries))),
+            ("losses", self.losses.listed()),
+            ("listed_pairs", json!(self.stepper.lists().map(|(entries, _)| entries))),
             (LISTS_MADE, json!(self.lists_made())),
             ("potential", json!(self.of_pairs[0])),
+            ("noise_seed", json!(self.checked.seed)),
         ];
         entries.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
     }
@@ -284,9 +296,11 @@ impl Simulation for Running {
 
     fn warnings(&self) -> Vec<RunWarning> {
         let (lost, all) = (self.losses.count(), self.checked.particles.len());
+        let first = self.losses.first_in_words().unwrap_or_default();
+        let listed = if self.checked.event_columns().is_some() { "events.csv" } else { "summary.json" };
         let message = format!(
-            "{lost} of {all} particles were thrown out of the box and lost: the time step is too long for the pairs; events.csv \
-             lists them"
+            "{lost} of {all} particles were thrown out of the box and lost, {first}: the time step is too long for the pairs; \
+             {listed} lists them"
         );
         let warning = RunWarning { check: "lost", value: lost as f64, limit: 0.0, message };
         if lost > 0 { vec![warning] } else { vec![] }
@@ -298,9 +312,10 @@ impl Simulation for Running {
         let seen = self.observe();
         let [temperature, pressure, square] = SAID.map(|at| seen[at]);
         format!(
-            "{} particles, {} lost; temperature {:.4}, pressure {}, mean square displacement {}",
-            self.start.len(),
+            "{} particles, {} lost{}; temperature {:.4}, pressure {}, mean square displacement {}",
+            self.left(),
             self.losses.count(),
+            self.losses.first_in_words().map(|first| format!(", {first}")).unwrap_or_default(),
             temperature,
             significant(pressure, 5),
             significant(square, 5)

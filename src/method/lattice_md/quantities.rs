@@ -38,7 +38,7 @@ pub(super) const OBSERVABLES: [Observable<Seen>; 18] = observables! {
     "momentum_x", "mass·length/time", |seen| seen.now.momentum_x, "Momentum of the grains along x.";
     "momentum_y", "mass·length/time", |seen| seen.now.momentum_y, "Momentum of the grains along y.";
     "temperature", "energy", |seen| seen.now.temperature,
-        "Kinetic energy a grain and dimension, about the mean motion.";
+        "Kinetic energy a grain and dimension, about the mean motion: over N, also where momentum is conserved and 2 N − 2 degrees of freedom move; the temperature of these is N/(N − 1) times it.";
     "pressure", "force/length", |seen| seen.now.pressure,
         "Pressure of the grains, of their motion and of the contacts between them, over the area of the whole box.";
     "flow", "length/time", |seen| seen.now.flow,
