@@ -1,5 +1,6 @@
 //! The comment line: `key=value` pairs, and the columns that `Properties` names.
 
+use super::Room;
 use super::error::{Mistake, Mistakes, Reason};
 use super::rows::Layout;
 
@@ -39,7 +40,7 @@ impl Entry {
 }
 
 /// Reads a comment line; reports every key that is wrong.
-pub(super) fn parse(text: &str, line: usize) -> Result<Header, Mistakes> {
+pub(super) fn parse(text: &str, line: usize, room: Room) -> Result<Header, Mistakes> {
     let mut mistakes = Mistakes::default();
     let entries = entries(text).map_err(|(byte, reason)| Mistake::at(line, text, byte, reason))?;
     // Finding a column takes as long as the line: only for what is said.
@@ -59,10 +60,8 @@ pub(super) fn parse(text: &str, line: usize) -> Result<Header, Mistakes> {
 
     let mut missing = Vec::new();
     let mut cell = [0.0; 2];
-    // Space without end has no box, and says that nothing comes back in.
-    let is_open = find("pbc").and_then(boundaries) == Some([false; 2]);
     match find("lattice") {
-        None if is_open => cell = [f64::INFINITY; 2],
+        None if room == Room::Space => cell = [f64::INFINITY; 2],
         None => missing.push(Reason::MissingKey { key: "Lattice", expected: LATTICE }),
         Some(entry) => match lattice(entry) {
             Ok(sides) => cell = sides,

@@ -30,12 +30,21 @@ pub const PROPERTIES: &str = "species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mas
 /// dimensions.
 pub(super) const DEPTH: [f64; 2] = [-0.5, 0.5];
 
+/// What a frame may be of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Room {
+    /// Discs in the plane, in a box: what scenes start from.
+    Plane,
+    /// Whatever runs write: bodies in space too, and frames without a box, whose sides are then infinite.
+    Space,
+}
+
 /// Discs in their box at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// The discs.
     pub particles: Particles,
-    /// Sides of the box (length); without end where there is none.
+    /// Sides of the box (length).
     pub cell: [f64; 2],
     /// Lower left corner of the box (length).
     pub origin: [f64; 2],

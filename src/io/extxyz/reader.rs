@@ -1,7 +1,7 @@
 //! Reading frames, one after the other.
 
 use super::error::{Mistake, Mistakes, ReadError, Reason};
-use super::{Frame, header};
+use super::{Frame, Room, header};
 use crate::io::regular_file;
 use crate::particles::Particles;
 use std::collections::HashMap;
@@ -43,6 +43,7 @@ pub fn read(path: impl AsRef<Path>, which: Which) -> Result<Frame, ReadError> {
 pub struct Frames<R> {
     name: String,
     raw: RawFrames<R>,
+    room: Room,
     failed: bool,
 }
 
@@ -63,11 +64,16 @@ impl Frames<BufReader<File>> {
 impl<R: BufRead> Frames<R> {
     /// Reads from anything; errors call it by the name.
     pub fn new(reader: R, name: impl Into<String>) -> Self {
-        Frames { name: name.into(), raw: RawFrames::new(reader), failed: false }
+        Frames { name: name.into(), raw: RawFrames::new(reader), room: Room::Plane, failed: false }
+    }
+
+    /// The same, of whatever runs write.
+    pub fn in_space(self) -> Self {
+        Frames { room: Room::Space, ..self }
     }
 
     fn parsed_next(&mut self) -> Result<Option<Frame>, Mistakes> {
-        self.raw.next_frame()?.map(|raw| parse(&raw)).transpose()
+        self.raw.next_frame()?.map(|raw| parse(&raw, self.room)).transpose()
     }
 
     fn last_frame(&mut self) -> Result<Option<Frame>, Mistakes> {
@@ -75,7 +81,7 @@ impl<R: BufRead> Frames<R> {
         while let Some(raw) = self.raw.next_frame()? {
             last = Some(raw);
         }
-        last.map(|raw| parse(&raw)).transpose()
+        last.map(|raw| parse(&raw, self.room)).transpose()
     }
 }
 
@@ -103,9 +109,9 @@ pub(super) struct RawFrame {
 
 impl RawFrame {
     /// What the comment line says.
-    pub(super) fn header(&self) -> Result<header::Header, Mistakes> {
+    pub(super) fn header(&self, room: Room) -> Result<header::Header, Mistakes> {
         let comment = self.text.split(|&byte| byte == b'\n').next().unwrap_or_default();
-        header::parse(utf8(comment, self.line + 1)?, self.line + 1)
+        header::parse(utf8(comment, self.line + 1)?, self.line + 1, room)
     }
 }
 
@@ -201,17 +207,15 @@ fn utf8(bytes: &[u8], line: usize) -> Result<&str, Mistake> {
     })
 }
 
-fn parse(raw: &RawFrame) -> Result<Frame, Mistakes> {
-    let header = raw.header()?;
+fn parse(raw: &RawFrame, room: Room) -> Result<Frame, Mistakes> {
+    let header = raw.header(room)?;
     let mut mistakes = Mistakes::default();
     let mut discs = Vec::new();
     let mut lines_of_ids = HashMap::new();
     let mut fields = Vec::new();
-    // What has no box is in space.
-    let in_space = header.cell.iter().any(|side| side.is_infinite());
     let rows = raw.text.split(|&byte| byte == b'\n').skip(1).take(raw.count);
     for (line, row) in (raw.line + 2..).zip(rows) {
-        match utf8(row, line).and_then(|row| header.layout.disc(row, line, in_space, &mut fields)) {
+        match utf8(row, line).and_then(|row| header.layout.disc(row, (line, room), &mut fields)) {
             Err(mistake) => mistakes.add(mistake),
             Ok(disc) => {
                 let first = *lines_of_ids.entry(disc.id).or_insert(line);

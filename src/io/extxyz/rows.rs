@@ -1,5 +1,6 @@
 //! The rows of a frame: where `Properties` puts each column, and a disc from its fields.
 
+use super::Room;
 use super::error::{Mistake, Reason};
 use crate::particles::{Kind, Particle};
 
@@ -69,12 +70,11 @@ impl Layout {
         if reasons.is_empty() { Ok(layout) } else { Err(reasons) }
     }
 
-    /// A disc, or a body where it is in space, from a row; `fields` is there to be used again.
+    /// A disc from a row; `fields` is there to be used again.
     pub(super) fn disc<'a>(
         &self,
         text: &'a str,
-        line: usize,
-        in_space: bool,
+        (line, room): (usize, Room),
         fields: &mut Vec<&'a str>,
     ) -> Result<Particle, Mistake> {
         fields.clear();
@@ -90,12 +90,10 @@ impl Layout {
             [other, ..] => return Err(row.wrong(other, Reason::Species((*other).to_owned()))),
         };
         let [x, y, z] = row.vector(POS)?;
-        if !in_space {
-            row.zeros(POS, &[(2, z)])?;
-        }
         let id = row.id()?;
         let [u, v, w] = row.vector(VELO)?;
-        if !in_space {
+        if room == Room::Plane {
+            row.zeros(POS, &[(2, z)])?;
             row.zeros(VELO, &[(2, w)])?;
         }
         let radius = row.positive(RADIUS)?;
