@@ -111,16 +111,22 @@ fn state(frame: &Frame, scene: Option<&toml::Table>, traces: &[[f64; 3]], view: 
         window::is_endless(frame) && bounds.iter().all(|[low, high]| low.is_infinite() && high.is_infinite());
     let point = if all.len() <= TRACED { LARGE_POINT } else { POINT };
     let radius = |of: f64| if is_point { point * pixel } else { of.max(LEAST * pixel) };
-    let walls = bounds[0].into_iter().map(|at| [[at, y], [at, y_end]]);
-    let walls = walls.chain(bounds[1].into_iter().map(|at| [[x, at], [x_end, at]]));
-    let walls = walls.filter(|ends| ends.iter().flatten().all(|at| at.is_finite()));
-    let walls = walls.map(|ends| Shape::Line { ends: ends.map(place) });
-    let earlier = traces.iter().map(|&trace| Shape::Disc {
+    let (across, up) = (x..=x_end, y..=y_end);
+    // What is beyond the window would be drawn over the words around it.
+    let upright = bounds[0].into_iter().filter(|at| across.contains(at)).map(|at| [[at, y], [at, y_end]]);
+    let level = bounds[1].into_iter().filter(|at| up.contains(at)).map(|at| [[x, at], [x_end, at]]);
+    let walls = upright.chain(level).map(|ends| Shape::Line { ends: ends.map(place) });
+    let is_inside = |position: [f64; 3]| {
+        let [a, b] = flat(position);
+        across.contains(&a) && up.contains(&b)
+    };
+    let earlier = traces.iter().filter(|trace| is_inside(**trace)).map(|&trace| Shape::Disc {
         centre: place(flat(trace)),
         radius: TRACE * pixel,
         tint: Tint::Hue(0),
     });
-    let shapes = all.iter().step_by(every).map(|particle| Shape::Disc {
+    let seen = all.iter().step_by(every).filter(|particle| is_inside(particle.position));
+    let shapes = seen.map(|particle| Shape::Disc {
         centre: place(flat(particle.position)),
         radius: radius(particle.radius),
         tint: match particle.kind {
@@ -128,11 +134,7 @@ fn state(frame: &Frame, scene: Option<&toml::Table>, traces: &[[f64; 3]], view: 
             Kind::Grain => Tint::Shade((speed(particle.velocity) / fastest).min(1.0)),
         },
     });
-    let is_outside = |position: [f64; 3]| {
-        let [a, b] = flat(position);
-        !(x..=x_end).contains(&a) || !(y..=y_end).contains(&b)
-    };
-    let outside = all.iter().filter(|particle| is_outside(particle.position)).count();
+    let outside = all.iter().filter(|particle| !is_inside(particle.position)).count();
     let mut title = format!("The particles at time {}", significant(frame.time, 6));
     match view {
         View::Plane => {}

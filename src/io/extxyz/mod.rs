@@ -47,7 +47,7 @@ pub enum Room {
 pub struct Frame {
     /// The discs.
     pub particles: Particles,
-    /// Sides of the box (length); without end where there is none.
+    /// Sides of the box (length).
     pub cell: [f64; 2],
     /// Lower left corner of the box (length).
     pub origin: [f64; 2],

@@ -70,7 +70,7 @@ impl Layout {
         if reasons.is_empty() { Ok(layout) } else { Err(reasons) }
     }
 
-    /// A disc, or a body where it is in space, from a row; `fields` is there to be used again.
+    /// A disc from a row; `fields` is there to be used again.
     pub(super) fn disc<'a>(
         &self,
         text: &'a str,

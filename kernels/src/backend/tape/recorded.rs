@@ -25,8 +25,8 @@ impl<L: Element> Tape<L> {
         let mut passes = fold_loads(&instructions);
         let sizes = allocate(&mut instructions);
         let pass_sizes = allocate(&mut passes);
-        instructions.shrink_to_fit();
-        passes.shrink_to_fit();
+        // Copies without room to grow: what was recorded into is free for the next program, and no holes are left.
+        let (instructions, passes) = (instructions.as_slice().to_vec(), passes.as_slice().to_vec());
         Tape { instructions, sections: recorder.sections.into_inner(), sizes, passes, pass_sizes }
     }
 
