@@ -207,7 +207,7 @@ fn a_disc_that_comes_to_rest_is_named() {
         assert_eq!(summary["failure"]["kind"], "resting");
         // The frame that the message speaks of is there.
         let frames = fs::read_to_string(out.join("trajectory.xyz")).unwrap();
-        let last = frames.lines().filter(|line| line.starts_with("Lattice")).next_back().unwrap();
+        let last = frames.lines().rfind(|line| line.starts_with("Lattice")).unwrap();
         let time = summary["failure"]["when"]["time"].as_f64().unwrap();
         assert!(time > 1.0 && last.contains(&format!("Time={time:?} ")), "{last}, {time}");
         let words = said(&failed);
