@@ -1,18 +1,19 @@
-//! How much memory this machine has left, and whether a run fits into it.
+//! How much memory there is left for this program, who sets the limit, and whether a run fits into it.
 
 use crate::scene::{Reason, SceneErrors, Spot};
+use serde::{Serialize, Serializer};
 use std::fs;
 
 /// Bytes of the program itself: its text, its threads, its files.
 pub const PROGRAM: f64 = 17.0e6;
 
 /// What a run needs and what there is (bytes).
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Foreseen {
     /// The most that the run takes at one time.
     pub needed: u64,
-    /// What the machine has left; none where it does not say.
-    pub available: Option<u64>,
+    /// What there is left; none where the system does not say.
+    pub available: Option<Available>,
     /// What the run is of, in words.
     #[serde(skip)]
     pub what: String,
@@ -29,12 +30,13 @@ impl Foreseen {
     pub fn fits(&self, scene: &str) -> Result<(), SceneErrors> {
         let Foreseen { needed, available, what, remedy } = self;
         match *available {
-            Some(available) if *needed > available => {
+            Some(Available { bytes, by }) if *needed > bytes => {
                 let spot = Spot { file: scene.to_owned(), place: None };
                 let message = format!(
-                    "a run of {what} takes {needed} bytes of memory ({}); this machine has {available} left ({})",
+                    "a run of {what} takes {needed} bytes of memory ({}); {} has {bytes} left ({})",
                     in_words(*needed),
-                    in_words(available)
+                    by.in_words(),
+                    in_words(bytes)
                 );
                 Err(spot.error(Reason::Memory, message).advising(*remedy).into())
             }
@@ -51,12 +53,76 @@ pub fn in_words(bytes: u64) -> String {
     }
 }
 
-/// Bytes that a program may still take without pushing others out: what the system calls available, or what is left of a
-/// control group's share if that is less. None where the system does not say.
-pub fn available() -> Option<u64> {
+/// Bytes that this program may still take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Available {
+    /// How many.
+    pub bytes: u64,
+    /// What sets the limit.
+    pub by: Limit,
+}
+
+impl Serialize for Available {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_u64(self.bytes)
+    }
+}
+
+/// What limits the memory of a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limit {
+    /// The machine's memory.
+    Machine,
+    /// The share of a control group.
+    ControlGroup,
+    /// The address space of a process (RLIMIT_AS).
+    AddressSpace,
+    /// The data of a process (RLIMIT_DATA).
+    Data,
+}
+
+impl Limit {
+    /// As the subject of a sentence.
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Limit::Machine => "this machine",
+            Limit::ControlGroup => "the control group of this process",
+            Limit::AddressSpace => "the limit of the address space (ulimit -v)",
+            Limit::Data => "the limit of the data of a process (ulimit -d)",
+        }
+    }
+}
+
+/// What a program may still take without pushing others out or being refused: what the system calls available, or what the
+/// shares of its control groups or its own limits leave, if that is less. None where the system does not say.
+pub fn available() -> Option<Available> {
     let meminfo = fs::read_to_string("/proc/meminfo").ok()?;
-    let free = kibibytes(&meminfo, "MemAvailable:")?;
-    Some(left_of_groups().into_iter().fold(free, u64::min))
+    let of_machine = Available { bytes: kibibytes(&meminfo, "MemAvailable:")?, by: Limit::Machine };
+    let of_groups = left_of_groups().into_iter().map(|bytes| Available { bytes, by: Limit::ControlGroup });
+    let all = of_groups.chain(left_of_process()).chain([of_machine]);
+    all.min_by_key(|available| available.bytes)
+}
+
+/// Bytes of address space that the allocator reserves for a thread when it first asks for memory: one may do so at any time.
+const RESERVED: u64 = 1 << 26;
+
+/// What the limits of this process leave.
+fn left_of_process() -> impl Iterator<Item = Available> {
+    let [limits, status] =
+        ["/proc/self/limits", "/proc/self/status"].map(|file| fs::read_to_string(file).unwrap_or_default());
+    let of = [
+        (Limit::AddressSpace, "Max address space", "VmSize:", RESERVED),
+        (Limit::Data, "Max data size", "VmData:", 0),
+    ];
+    of.into_iter().filter_map(move |(by, limit, used, reserved)| {
+        let (limit, used) = (soft_limit(&limits, limit)?, kibibytes(&status, used)?);
+        Some(Available { bytes: limit.saturating_sub(used).saturating_sub(reserved), by })
+    })
+}
+
+/// The soft limit of a name (bytes); none where there is no limit.
+fn soft_limit(limits: &str, name: &str) -> Option<u64> {
+    limits.lines().find_map(|line| line.strip_prefix(name))?.split_whitespace().next()?.parse().ok()
 }
 
 /// What the shares of the control groups of this process leave, from its own up to the root.
@@ -106,5 +172,15 @@ mod tests {
         assert_eq!(kibibytes(text, "MemAvailable:"), Some(23_000_000 * 1024));
         assert_eq!(kibibytes(text, "MemNone:"), None);
         assert_eq!(kibibytes("MemAvailable: many", "MemAvailable:"), None);
+    }
+
+    #[test]
+    fn limits_are_read_by_their_name() {
+        let text = "Limit                     Soft Limit           Hard Limit           Units     \n\
+                    Max data size             unlimited            unlimited            bytes     \n\
+                    Max address space         409600000            unlimited            bytes     \n";
+        assert_eq!(soft_limit(text, "Max address space"), Some(409_600_000));
+        assert_eq!(soft_limit(text, "Max data size"), None);
+        assert_eq!(soft_limit(text, "Max of nothing"), None);
     }
 }

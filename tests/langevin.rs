@@ -73,6 +73,119 @@ fn free_particles_diffuse_as_the_exact_result_has_it() {
     }
 }
 
+/// The fluid of the preset at a step that is long for it: by either scheme the temperature is that of the bath. By baoab it is that
+/// of the velocities after the bath: those at the end of the step, in the trajectory, are colder by dt²⟨F²⟩/(4 m), here 1.07 % as
+/// measured over ten times as long.
+#[test]
+fn the_temperature_of_a_dense_fluid_is_that_of_the_bath() {
+    let folder = tempfile::tempdir().unwrap();
+    for (kind, dt, expected) in [("baoab", 0.015, 0.0107), ("stochastic", 0.01, 0.0)] {
+        let out = folder.path().join(kind);
+        let (kind, step) = (format!("integrator.kind={kind}"), format!("integrator.dt={dt}"));
+        let sets = [&kind, &step, "run.time=120", "run.thermo_every=20", "run.snapshot_every=100"];
+        run("langevin-dense", &out, &sets, &[]);
+        let rows = column(&out, "temperature");
+        let mean = |rows: &[f64]| rows.iter().sum::<f64>() / rows.len() as f64;
+        let late = mean(&rows[rows.len() / 6..]);
+        assert!((late - 1.0).abs() < 0.006, "{kind}: {late}");
+        // m⟨v²⟩/2 of the frames, of which there is one at every fifth row.
+        let text = fs::read_to_string(out.join("trajectory.xyz")).unwrap();
+        let squares: Vec<f64> = text
+            .lines()
+            .filter(|line| line.starts_with("Si "))
+            .map(|line| {
+                let velocity = line.split_whitespace().skip(5).take(2);
+                velocity.map(|v| 0.5 * v.parse::<f64>().unwrap().powi(2)).sum()
+            })
+            .collect();
+        let rows: Vec<f64> = rows.into_iter().step_by(5).collect();
+        assert_eq!(squares.len(), 1120 * rows.len());
+        let colder = mean(&rows) - mean(&squares);
+        assert!((colder - expected).abs() < 0.001, "{kind}: frames are colder by {colder}");
+    }
+}
+
+/// The noise has a seed of its own: other seeds are other trajectories of one start, equal ones the same bits, also of listed
+/// particles and those of a file, and through the scene that a run writes down. Without it the noise follows the start's seed.
+#[test]
+fn the_noise_has_a_seed_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let short = ["run.steps=30", "run.snapshot_every=0"];
+    let began = |name: &str, scene: &str, sets: &[&str]| {
+        let out = folder.path().join(name);
+        let summary = run(scene, &out, &[&short[..], sets].concat(), &[]);
+        let first = fs::read_to_string(out.join("trajectory.xyz")).unwrap();
+        let first = first[..1 + first[1..].find("Lattice").unwrap()].to_owned();
+        (last_frame(&out), first, summary["noise_seed"].as_u64().unwrap())
+    };
+    let start = folder.path().join("source/trajectory.xyz");
+    let (plain, _, seed) = began("source", "langevin-free", &["particles.count=50"]);
+    assert_eq!(seed, 1);
+    assert_eq!(began("same", "langevin-free", &["particles.count=50", "law.noise_seed=1"]).0, plain);
+    let (five, _, _) = began("five", "langevin-free", &["particles.count=50", "law.noise_seed=5"]);
+    assert_ne!(five, plain);
+    let (_, _, seed) = began("follows", "langevin-free", &["particles.count=50", "particles.seed=9"]);
+    assert_eq!(seed, 9);
+    // A resolved scene that is run with another seed of the start has other noise as well.
+    let resolved = folder.path().join("source/scene.toml").display().to_string();
+    assert_eq!(began("again", &resolved, &["particles.seed=9"]).2, 9);
+    let bath = "format = 2\nunits = \"reduced\"\n[method]\nkind = \"langevin\"\n[domain]\nsides = [50.0, 50.0]\n[law]\nkind = \"none\"\n\
+                [integrator]\ndt = 0.01\n[run]\nsteps = 1\n[particles]\n";
+    let listed = "generate = \"list\"\nradius = 0.1\nmass = 1.0\npositions = [[1.0, 2.0], [10.0, 5.0], [20.0, 20.0]]\n";
+    for (kind, particles) in
+        [("list", listed.to_owned()), ("file", format!("file = {:?}\n", start.display().to_string()))]
+    {
+        let path = folder.path().join(format!("{kind}.toml"));
+        fs::write(&path, bath.to_owned() + &particles).unwrap();
+        let scene = path.to_str().unwrap();
+        let named = |number: u32| format!("{kind}-{number}");
+        let (unset, first, seed) = began(&named(0), scene, &[]);
+        assert_eq!(seed, 1);
+        let of = |number: u32, seed: &str| began(&named(number), scene, &[&format!("law.noise_seed={seed}")]);
+        let (three, again, other) = (of(1, "3"), of(2, "3"), of(3, "18446744073709551615"));
+        assert_eq!(of(4, "1").0, unset, "{kind}");
+        assert_eq!(three, again, "{kind}");
+        assert!(three.1 == first && other.1 == first, "{kind}: one start");
+        assert!(three.0 != unset && three.0 != other.0, "{kind}: one noise");
+        let written = folder.path().join(named(1)).join("scene.toml");
+        assert!(fs::read_to_string(&written).unwrap().contains("noise_seed = 3"), "{kind}");
+        assert_eq!(began(&named(5), written.to_str().unwrap(), &[]), three, "{kind}");
+    }
+}
+
+/// In an empty box there are hardly more sectors than particles: a step costs what the particles cost, by every search and in every
+/// precision, and the pairs are the same.
+#[test]
+fn empty_boxes_cost_what_their_particles_cost() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, side, spacing) in
+        [("dense", "5.0", "0.13"), ("thin", "60.0", "0.2"), ("empty", "1000.0", "0.2")]
+    {
+        let [sides, spacing] =
+            [format!("domain.sides=[{side}, {side}]"), format!("particles.spacing={spacing}")];
+        let ran = |by: &str, precision: &str| -> Vec<f64> {
+            let out = folder.path().join(format!("{name}-{by}-{precision}"));
+            let [by, precision] = [format!("search.by={by}"), format!("machine.precision={precision}")];
+            let sets = [&*sides, &spacing, &by, &precision, "particles.count=400", "run.steps=100"];
+            let rows = ["run.thermo_every=100", "run.snapshot_every=0"];
+            run("langevin-report", &out, &[&sets[..], &rows].concat(), &[]);
+            ["potential", "temperature", "msd"].map(|name| *column(&out, name).last().unwrap()).to_vec()
+        };
+        let expected = ran("neighbor-list", "f64");
+        for (by, precision, bound) in [
+            ("sectors", "f64", 1e-9),
+            ("sectors", "mixed", 1e-2),
+            ("sectors", "f32", 1e-2),
+            ("auto", "f32", 1e-2),
+        ] {
+            for (found, expected) in ran(by, precision).into_iter().zip(&expected) {
+                let off = (found - expected).abs() / expected.abs().max(0.1);
+                assert!(off < bound, "{name} by {by} in {precision}: {found}, {expected}");
+            }
+        }
+    }
+}
+
 /// Friction by the velocity of the step before heats to kT/(1 − γ dt/2m), by that after half a kick not.
 #[test]
 fn the_scheme_as_printed_heats() {
@@ -126,6 +239,22 @@ fn searches_agree_and_threads_sets_and_resumption_change_no_bit() {
     }
     let lists = ["search.by=neighbor-list"];
     assert_eq!(frame("parts", &lists, &["7", "29", "40"], &[]), whole);
+    // What a run says of itself is that of a run in one piece as well, also where lists were made in every part.
+    let said = |name: &str, parts: &[&str]| {
+        let out = folder.path().join(name);
+        let mut summary = Value::Null;
+        for (number, steps) in parts.iter().enumerate() {
+            let steps = format!("run.steps={steps}");
+            let resumed: &[&str] = if number > 0 { &["--resume"] } else { &[] };
+            summary =
+                run("langevin-dense", &out, &[&dense[..], &["search.skin=0.2"], &[&steps]].concat(), resumed);
+        }
+        ["lists_made", "listed_pairs", "particles", "lost", "potential", "noise_seed"]
+            .map(|name| summary[name].clone())
+    };
+    let in_one_piece = said("counted", &["60"]);
+    assert!(in_one_piece[0].as_u64().unwrap() > 3, "{in_one_piece:?}");
+    assert_eq!(said("counted-parts", &["7", "29", "60"]), in_one_piece);
     assert_eq!(frame("one-thread", &lists, &["40"], &["--threads", "1"]), whole);
     assert_eq!(
         frame("scalar", &[&lists[..], &["machine.instruction_set=scalar"]].concat(), &["40"], &[]),
@@ -156,14 +285,36 @@ fn losses_are_counted_listed_and_survived() {
     let allowed = [&thin[..], &["run.most_lost=4000"]].concat();
     let events = |name: &str, parts: &[&str]| {
         let out = folder.path().join(name);
-        let mut lost = 0;
+        let (mut lost, mut counted) = (0, vec![]);
         for (number, steps) in parts.iter().enumerate() {
             let steps = format!("run.steps={steps}");
             let resumed: &[&str] = if number > 0 { &["--resume"] } else { &[] };
             let summary = run("langevin-report", &out, &[&allowed[..], &[&steps]].concat(), resumed);
             lost = summary["lost"].as_u64().unwrap();
             assert_eq!(summary["particles"].as_u64().unwrap() + lost, 4000);
-            assert!(summary["warnings"].to_string().contains("lost"));
+            let listed = summary["losses"].as_array().unwrap();
+            assert_eq!(listed.len() as u64, lost.min(100));
+            let rows = fs::read_to_string(out.join("events.csv")).unwrap();
+            for (loss, row) in listed.iter().zip(rows.lines().skip(1)) {
+                let row: Vec<f64> = row.split(',').map(|number| number.parse().unwrap()).collect();
+                let named = ["particle", "step", "x", "y"].map(|name| loss[name].as_f64().unwrap());
+                assert_eq!(named[..2], row[2..4]);
+                // Numbers of JSON are read to the last place or two.
+                (2..4).for_each(|along| {
+                    assert!((named[along] - row[2 + along]).abs() <= 1e-15 * row[2 + along].abs(), "{loss}");
+                });
+            }
+            let first =
+                format!("first particle {} in step {} at (", listed[0]["particle"], listed[0]["step"]);
+            for said in [&summary["warnings"], &summary["checks"]] {
+                assert!(
+                    said.to_string().contains(&first) && said.to_string().contains("events.csv"),
+                    "{said}"
+                );
+            }
+            counted = ["losses", "lists_made", "listed_pairs", "particles", "lost", "potential"]
+                .map(|name| summary[name].clone())
+                .to_vec();
         }
         assert!(lost > 100, "{lost}");
         let rows = fs::read_to_string(out.join("events.csv")).unwrap();
@@ -177,15 +328,21 @@ fn losses_are_counted_listed_and_survived() {
         let last = &dcd[dcd.len() - 3 * (8 + 4 * 4000) + 4..][..4 * 4000];
         let absent = last.chunks(4).filter(|x| f32::from_le_bytes((*x).try_into().unwrap()).is_nan());
         assert_eq!(absent.count() as u64, lost);
-        (rows, last_frame(&out), dcd)
+        (rows, last_frame(&out), dcd, counted)
     };
     assert_eq!(events("parts", &["33", "71", "100"]), events("whole", &["100"]));
+    // Without rows the summary alone lists them, and is what the words point to.
+    let silent = [&allowed[..], &["output.losses=false", "run.steps=71"]].concat();
+    let summary = run("langevin-report", &folder.path().join("silent"), &silent, &[]);
+    let said = summary["warnings"].to_string();
+    assert!(said.contains("summary.json lists them") && !said.contains("events.csv"), "{said}");
+    assert!(!summary["losses"].as_array().unwrap().is_empty());
 }
 
 #[test]
 fn what_cannot_be_is_refused_with_what_may_be() {
     let folder = tempfile::tempdir().unwrap();
-    let cases: [(&str, &[&str], &[&str]); 9] = [
+    let cases: [(&str, &[&str], &[&str]); 11] = [
         (
             "langevin-report",
             &["search.by=sectors", "search.sectors=900"],
@@ -199,6 +356,18 @@ fn what_cannot_be_is_refused_with_what_may_be() {
         ("langevin-dense", &["integrator.dt=-1"], &["integrator.dt"]),
         ("langevin-dense", &["search.skin=20"], &["no room", "search.skin"]),
         ("langevin-dense", &["law.strenght=2"], &["strength"]),
+        ("langevin-dense", &["law.noise_seed=-1"], &["law.noise_seed"]),
+        (
+            "langevin-free",
+            &[
+                "law.kind=wca",
+                "domain.sides=[9e4, 9e4]",
+                "particles.spacing=90",
+                "search.by=sectors",
+                "search.sectors=70000",
+            ],
+            &["more than the 2^32"],
+        ),
     ];
     for (scene, sets, words) in cases {
         let output = begin(scene, &folder.path().join("refused"), sets, &[]);

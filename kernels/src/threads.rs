@@ -18,7 +18,7 @@ thread_local! {
 
 /// How many threads share parts.
 #[inline]
-fn threads() -> usize {
+pub(crate) fn threads() -> usize {
     if ALONE.get() { 1 } else { rayon::current_num_threads() }
 }
 

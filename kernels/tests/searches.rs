@@ -3,12 +3,19 @@
 use proptest::prelude::*;
 use rand::RngExt;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use stripmine_kernels::InstructionSet;
+use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::law::Asked;
+use stripmine_kernels::law::lennard_jones::LennardJones;
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::sweep::fast::lattice::{Candidates, Codes, Lattice, Occupancy};
-use stripmine_kernels::sweep::fast::{Cursor, Finder, Grid, Pairs, SENTINELS, Sectors, VerletList};
+use stripmine_kernels::sweep::fast::{
+    Cursor, Discs, Finder, Grid, Pairs, Rows, SENTINELS, Sectors, Sweep, Touches, VerletList,
+};
 use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
 
 /// Discs in a box: where they are, the sectors they are in, and their places there.
@@ -198,4 +205,114 @@ fn lists_are_the_same_on_any_number_of_threads() {
     };
     let alone = made(1);
     assert!([2, 3].map(made).iter().all(|made| *made == alone));
+}
+
+/// Sectors that count the parts in which they are searched.
+struct Counted<'a>(&'a Sectors, AtomicUsize);
+
+// SAFETY: all pairs are those of the sectors.
+unsafe impl Finder<f64, f64> for Counted<'_> {
+    type Found = Touches<f64>;
+
+    fn discs(&self) -> usize {
+        Finder::<f64, f64>::discs(self.0)
+    }
+
+    fn rows(&self) -> Rows {
+        Finder::<f64, f64>::rows(self.0)
+    }
+
+    fn find(
+        &self,
+        places: [&[f64]; 2],
+        rows: Range<usize>,
+        cursor: &mut Cursor,
+        found: &mut Touches<f64>,
+        set: InstructionSet,
+    ) -> Result<(), ProgramError> {
+        self.0.find(places, rows, cursor, found, set)
+    }
+
+    fn tried(&self) -> f64 {
+        Finder::<f64, f64>::tried(self.0)
+    }
+
+    fn searched(&self, rows: Range<usize>) -> Range<usize> {
+        Finder::<f64, f64>::searched(self.0, rows)
+    }
+
+    fn find_part(&self, places: [&[f64]; 2], part: Range<usize>, found: &mut Touches<f64>) {
+        self.1.fetch_add(1, Ordering::Relaxed);
+        self.0.find_part(places, part, found);
+    }
+
+    fn pairs<'a>(&'a self, found: &'a Touches<f64>) -> impl Pairs<f64> + 'a {
+        Finder::<f64, f64>::pairs(self.0, found)
+    }
+}
+
+/// Sectors that are too few for as many bands as threads are searched in parts, by all of these; forces, energy and pairs are
+/// the same to the bit as on one thread. Where there are bands for all, each is one thread's.
+#[test]
+fn few_sectors_are_searched_by_all_threads_to_the_same_bits() {
+    let law = LennardJones::new(1.0, 0.9, 1.0);
+    for (sides, periodic, discs, is_coarse) in [
+        ([9.0, 9.0], [true, true], 6000, true),
+        ([40.0, 3.0], [true, true], 5000, true),
+        ([30.0, 50.0], [false, true], 8000, true),
+        ([3.0, 3.0], [false, false], 300, true),
+        ([200.0, 200.0], [true, true], 3000, false),
+    ] {
+        // Some hundred discs to a sector, but for the last.
+        let wide = if is_coarse { sides.map(|side| (side / 3.0_f64).max(1.0)) } else { [1.0; 2] };
+        let reach = wide[0].min(wide[1]);
+        let grid = Grid::new(ORIGIN, sides, periodic, reach, f64::INFINITY, discs).unwrap();
+        let Scattered { positions, .. } = scattered(sides, periodic, 1.0, 0.0, discs, 5);
+        let mut sectors = Sectors::new(grid, discs, 1.0);
+        let mut places = [vec![], vec![]];
+        for (disc, position) in positions.iter().enumerate() {
+            let along = [0, 1].map(|axis| position[axis] - ORIGIN[axis]);
+            let cell = [0, 1].map(|axis| (along[axis] / grid.frame.edge[axis]) as usize);
+            sectors.enter(disc, cell);
+            for axis in 0..2 {
+                places[axis].push(along[axis] - (cell[axis] as f64 + 0.5) * grid.frame.edge[axis]);
+            }
+        }
+        sectors.arrange(|disc| disc);
+        for (place, sentinels) in places.iter_mut().zip([[0.0, 1e3], [0.0; SENTINELS]]) {
+            place.extend(sentinels);
+        }
+        let swept = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let counted = Counted(&sectors, AtomicUsize::new(0));
+                let mut sweep = Sweep::new(counted.rows());
+                let discs_of = Discs {
+                    place: [&places[0], &places[1]],
+                    velocity: [&[], &[]],
+                    omega: &[],
+                    per_time: 1.0,
+                    radius: &[],
+                    inverse_mass: &[],
+                };
+                let mut sums = [0, 1, 2].map(|_| vec![0.0; discs]);
+                let asked = Asked { energy: true, ..Asked::default() };
+                let columns = sums.each_mut().map(Vec::as_mut_slice);
+                let met =
+                    sweep.run(&law, &counted, &discs_of, columns, asked, InstructionSet::best()).unwrap();
+                let bits = sums.map(|sum| sum.into_iter().map(f64::to_bits).collect::<Vec<_>>());
+                (bits, met.pairs, met.energy.map(f64::to_bits), counted.1.into_inner())
+            })
+        };
+        let alone = swept(1);
+        assert!(alone.1 > 100 && alone.3 == 0, "{} pairs, {} parts", alone.1, alone.3);
+        for threads in [2, 3, 8] {
+            let shared = swept(threads);
+            assert_eq!(shared.3 > threads, is_coarse, "{sides:?}: {} parts on {threads} threads", shared.3);
+            assert!(
+                (shared.0, shared.1, shared.2) == (alone.0.clone(), alone.1, alone.2),
+                "{sides:?} {threads}"
+            );
+        }
+    }
 }

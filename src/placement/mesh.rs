@@ -1,9 +1,11 @@
 //! Places of a mesh, drawn at random.
 
 use rand::RngExt;
+use std::collections::HashMap;
 use stripmine_kernels::noise::{Purpose, Stream};
 
-/// `count` different places of a mesh of some columns and rows, every choice and order equally likely (Fisher and Yates).
+/// `count` different places of a mesh of some columns and rows, every choice and order equally likely (Fisher and Yates). Takes
+/// memory for the places drawn, not for the mesh: of the shuffled list only the entries that were exchanged are kept.
 ///
 /// # Panics
 /// If there are fewer places.
@@ -11,17 +13,37 @@ pub fn mesh([columns, rows]: [usize; 2], count: usize, seed: u64) -> Vec<[usize;
     let places = columns * rows;
     assert!(count <= places, "{count} of {places} places");
     let mut random = Stream::new(seed, Purpose::Placement, 0);
-    let mut left: Vec<u32> = (0..places as u32).collect();
-    for drawn in 0..count {
-        left.swap(drawn, random.random_range(drawn..places));
-    }
-    left.truncate(count);
-    left.into_iter().map(|place| [place as usize % columns, place as usize / columns]).collect()
+    let mut exchanged = HashMap::new();
+    let mut draw = |drawn: usize| {
+        let first = exchanged.remove(&drawn).unwrap_or(drawn);
+        match random.random_range(drawn..places) {
+            at if at == drawn => first,
+            at => exchanged.insert(at, first).unwrap_or(at),
+        }
+    };
+    (0..count).map(&mut draw).map(|place| [place % columns, place / columns]).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The same places as by a list of all that is shuffled, for meshes of one place to many, a few of them drawn or all.
+    #[test]
+    fn places_are_those_of_the_shuffled_list() {
+        for (columns, rows, count) in [(1, 1, 1), (7, 5, 35), (7, 5, 1), (30, 40, 600), (500, 300, 90)] {
+            for seed in 0..20 {
+                let mut random = Stream::new(seed, Purpose::Placement, 0);
+                let mut list: Vec<usize> = (0..columns * rows).collect();
+                for drawn in 0..count {
+                    list.swap(drawn, random.random_range(drawn..columns * rows));
+                }
+                let expected: Vec<[usize; 2]> =
+                    list[..count].iter().map(|place| [place % columns, place / columns]).collect();
+                assert_eq!(mesh([columns, rows], count, seed), expected);
+            }
+        }
+    }
 
     /// No place twice, all of them if all are asked for, and each as often as any other in each turn: χ² of 9999 draws of 3 of 6.
     #[test]

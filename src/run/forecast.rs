@@ -37,7 +37,7 @@ pub fn of_the_step(prepared: &dyn Prepared) -> Vec<Fact> {
 /// The memory that it takes, and what this host has left.
 pub fn of_the_memory(prepared: &dyn Prepared) -> Fact {
     let memory = prepared.memory();
-    let left = memory.available.map(|bytes| format!(" of {} left", in_words(bytes)));
+    let left = memory.available.map(|available| format!(" of {} left", in_words(available.bytes)));
     let words = in_words(memory.needed) + &left.unwrap_or_default();
     Fact::new("memory", json!(memory), "memory of a run", words)
 }

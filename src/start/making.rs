@@ -5,7 +5,7 @@ use super::meshing::on_mesh;
 use super::{Stated, readable};
 use crate::domain::Domain;
 use crate::io::extxyz;
-use crate::memory;
+use crate::memory::{self, Available};
 use crate::number::significant;
 use crate::particles::{Kind, Particle, Particles, in_space};
 use crate::placement::{Filling, Row, hexagonal, random, row, stir};
@@ -27,12 +27,13 @@ pub(super) fn placeable(stated: &Stated<'_>, count: f64, key: &Key) -> Result<()
     let squares = (count * 8.0 / 7.0).log2().ceil().exp2();
     let needed = count * (size_of::<Particle>() as f64 + SQUARE[1]) + squares * SQUARE[0];
     match memory::available() {
-        Some(available) if needed > available as f64 => {
+        Some(Available { bytes, by }) if needed > bytes as f64 => {
             let message = format!(
-                "to place {} discs takes {:.1} GB of memory; this machine has {:.1} left",
+                "to place {} discs takes {:.1} GB of memory; {} has {:.1} left",
                 significant(count, 5),
                 1e-9 * needed,
-                1e-9 * available as f64
+                by.in_words(),
+                1e-9 * bytes as f64
             );
             Err(stated.spot(key).error(Reason::Memory, message).advising("take fewer discs"))
         }

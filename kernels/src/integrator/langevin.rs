@@ -64,7 +64,8 @@ impl<const OLD: bool> Scheme for Stochastic<OLD> {
 }
 
 /// Half a kick, half a drift, friction and noise exactly, half a drift, the forces, half a kick (BAOAB; Leimkuhler & Matthews 2013).
-/// Positions have errors of order dt², and none in a harmonic trap.
+/// Positions have errors of order dt², and none in a harmonic trap, where velocities after the bath have none either; those of the
+/// end of the step have m⟨v²⟩ = kT − dt²⟨F²⟩/(4 m), in a trap of frequency ω kT (1 − ω²dt²/4).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Baoab {
     kept: f64,

@@ -15,7 +15,7 @@ pub(super) const QUANTITIES: &[Quantity] = quantities! {
     "collisions", "", "Collisions of pairs since the start.";
     "kinetic", "energy", "Kinetic energy.";
     "energy_error", "", "The kinetic energy less that of the start, over that of the start: rounding where all collisions are elastic.";
-    "temperature", "energy", "Kinetic energy a disc and dimension, about the mean motion.";
+    "temperature", "energy", "Kinetic energy a disc and dimension, about the mean motion: over N, also where momentum is conserved and 2 N − 2 degrees of freedom move; the temperature of these is N/(N − 1) times it.";
     "momentum_x", "mass·length/time", "Momentum along x.";
     "momentum_y", "mass·length/time", "Momentum along y.";
     "virial", "mass·length²/time", "Impulse times distance of the centres, summed over the collisions since the start.";

@@ -11,9 +11,9 @@ macro_rules! quantities {
 /// What is observed, in the order of the columns.
 pub(super) const QUANTITIES: &[Quantity] = quantities! {
     "time", "time", "The time.";
-    "kinetic", "energy", "Kinetic energy.";
+    "kinetic", "energy", "Kinetic energy; by baoab of the velocities after the bath, which have m⟨v²⟩ = kT but for higher orders than dt², where those of the end of the step, in trajectory.xyz, are low by dt²⟨F²⟩/(4 m).";
     "potential", "energy", "Energy of the pairs.";
-    "temperature", "energy", "Kinetic energy a particle and dimension.";
+    "temperature", "energy", "Kinetic energy a particle and dimension: over N, for a bath does not conserve momentum, and all 2 N degrees of freedom have its temperature.";
     "pressure", "force/length", "Pressure of the motion and of the pairs, over the area of the box.";
     "msd", "length²", "Mean square displacement since the start, by the positions as if there were no sides.";
     "rms", "length", "Its root.";

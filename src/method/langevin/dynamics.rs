@@ -100,6 +100,8 @@ pub(super) trait Stepper: Send {
     fn positions(&self) -> Vec<[f32; 3]>;
     /// The particles where the periods counted as crossed are to be added.
     fn standing(&self) -> Particles;
+    /// Their velocities as the last predictor left them (length/time).
+    fn predicted_velocities(&self) -> Vec<[f64; 2]>;
     /// Everything that the next step depends on.
     fn columns(&self) -> Vec<(String, Column)>;
     /// Takes columns up.
@@ -154,6 +156,10 @@ impl<S: backend::Precision, P: backend::Precision, Q: Search<S, P>> Stepper for 
 
     fn standing(&self) -> Particles {
         self.engine.standing()
+    }
+
+    fn predicted_velocities(&self) -> Vec<[f64; 2]> {
+        self.engine.predicted_velocities()
     }
 
     fn columns(&self) -> Vec<(String, Column)> {

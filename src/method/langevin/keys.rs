@@ -28,6 +28,8 @@ define_keys! {
         "Friction γ of the bath.";
     BATH_TEMPERATURE = "law" "bath_temperature", Number(NonNegative), "energy", Is("1.0"), ALWAYS,
         "Temperature kT of the bath.";
+    NOISE_SEED = "law" "noise_seed", Whole(0, u64::MAX), "", Otherwise("`particles.seed`; 1 where the start has none"), ALWAYS,
+        "Seed of the bath's noise: runs of one start with different seeds are independent replicas.";
 
     SEARCH = "search" "by", Choice(By::WORDS), "", Is("\"auto\""), ALWAYS,
         "How pairs are found: on a lattice of cells that are one particle's each (wca only), in sectors, or by lists of neighbours; auto takes the fastest that the scene allows.";

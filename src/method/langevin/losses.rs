@@ -1,17 +1,35 @@
 //! Particles that were thrown out of the box: who, when, where.
 
 use crate::io::checkpoint::Column;
+use crate::method::pairwise::find_column;
+use crate::number::significant;
+use serde::Serialize;
 
 /// The columns of `events.csv`.
 pub(super) const COLUMNS: &str = "loss,time,particle,step,x,y";
+/// How many are listed in `summary.json`, the first ones.
+const LISTED: usize = 100;
 
 const NAMES: [&str; 2] = ["lost.id", "lost.step"];
+const PLACE: [&str; 2] = ["lost.x", "lost.y"];
+
+/// A particle that was lost.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct Loss {
+    /// Its id.
+    particle: u32,
+    /// The step in which it was lost.
+    step: u64,
+    /// Where it was last seen (length).
+    x: f64,
+    y: f64,
+}
 
 /// Particles lost so far.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Losses {
-    /// Id and step of each, in the order in which they were lost.
-    all: Vec<(u32, u64)>,
+    /// In the order in which they were lost.
+    all: Vec<Loss>,
     /// Rows not yet taken, where they are asked for.
     rows: Option<String>,
 }
@@ -27,16 +45,28 @@ impl Losses {
         self.all.len() as u64
     }
 
-    /// Whether a particle is lost.
+    /// Which particles are lost.
     pub(super) fn ids(&self) -> impl Iterator<Item = u32> {
-        self.all.iter().map(|&(id, _)| id)
+        self.all.iter().map(|loss| loss.particle)
+    }
+
+    /// The first ones, for `summary.json`.
+    pub(super) fn listed(&self) -> serde_json::Value {
+        serde_json::json!(self.all[..self.all.len().min(LISTED)])
+    }
+
+    /// The first one, in words.
+    pub(super) fn first_in_words(&self) -> Option<String> {
+        let Loss { particle, step, x, y } = self.all.first()?;
+        let [x, y] = [x, y].map(|along| significant(*along, 5));
+        Some(format!("first particle {particle} in step {step} at ({x}, {y})"))
     }
 
     /// One more, last seen at a place (length).
-    pub(super) fn add(&mut self, id: u32, step: u64, time: f64, [x, y]: [f64; 2]) {
-        self.all.push((id, step));
+    pub(super) fn add(&mut self, particle: u32, step: u64, time: f64, [x, y]: [f64; 2]) {
+        self.all.push(Loss { particle, step, x, y });
         if let Some(rows) = &mut self.rows {
-            rows.push_str(&format!("{},{time:?},{id},{step},{x:?},{y:?}\n", self.all.len()));
+            rows.push_str(&format!("{},{time:?},{particle},{step},{x:?},{y:?}\n", self.all.len()));
         }
     }
 
@@ -46,13 +76,18 @@ impl Losses {
     }
 
     /// For a checkpoint.
-    pub(super) fn columns(&self) -> [(String, Column); 2] {
-        let ids = self.all.iter().map(|&(id, _)| id.into()).collect();
-        let steps = self.all.iter().map(|&(_, step)| step).collect();
-        [(NAMES[0].to_owned(), Column::U64(ids)), (NAMES[1].to_owned(), Column::U64(steps))]
+    pub(super) fn columns(&self) -> [(String, Column); 4] {
+        let whole = |of: fn(&Loss) -> u64| Column::U64(self.all.iter().map(of).collect());
+        let real = |of: fn(&Loss) -> f64| Column::F64(self.all.iter().map(of).collect());
+        [
+            (NAMES[0].to_owned(), whole(|loss| loss.particle.into())),
+            (NAMES[1].to_owned(), whole(|loss| loss.step)),
+            (PLACE[0].to_owned(), real(|loss| loss.x)),
+            (PLACE[1].to_owned(), real(|loss| loss.y)),
+        ]
     }
 
-    /// Takes up what [`columns`](Self::columns) gave.
+    /// Takes up what [`columns`](Self::columns) gave. Checkpoints of before places were kept have none: these are no numbers.
     ///
     /// # Errors
     /// A sentence, if it is not there.
@@ -65,7 +100,13 @@ impl Losses {
         if ids.len() != steps.len() || ids.iter().any(|&id| id > u32::MAX.into()) {
             return Err(format!("the columns {} and {} do not belong together", NAMES[0], NAMES[1]));
         }
-        self.all = ids.into_iter().map(|id| id as u32).zip(steps).collect();
+        let along = |name: &str| match columns.iter().any(|(there, _)| there == name) {
+            true => find_column::<f64>(columns, name, ids.len()),
+            false => Ok(vec![f64::NAN; ids.len()]),
+        };
+        let places = along(PLACE[0])?.into_iter().zip(along(PLACE[1])?);
+        let losses = ids.iter().zip(steps).zip(places);
+        self.all = losses.map(|((&id, step), (x, y))| Loss { particle: id as u32, step, x, y }).collect();
         Ok(())
     }
 }

@@ -52,6 +52,15 @@ define_words! {
     }
 }
 
+impl SchemeKind {
+    /// Whether the kinetic energy is that of the velocities after the bath, which the predictor leaves. By baoab these have
+    /// m⟨v²⟩ = kT but for higher orders than dt², exactly in a harmonic trap; those of the end of the step, half a kick later, have
+    /// kT − dt²⟨F²⟩/(4 m), with ⟨F²⟩ = kT⟨U″⟩. By the source's scheme those of the end of the step have kT exactly in a trap.
+    pub(super) fn is_observed_after_bath(self) -> bool {
+        self == SchemeKind::Baoab
+    }
+}
+
 impl PairLaw {
     /// The cut-off over the diameter; none without pairs.
     pub fn cutoff(self) -> Option<f64> {

@@ -24,7 +24,8 @@ use crate::start::{Stated, make, outside, overlaps};
 use crate::words::Words;
 use serde_json::{Map, Value, json};
 use std::path::Path;
-use stripmine_kernels::sweep::fast::Grid;
+use stripmine_kernels::sweep::fast::lattice::SPARSE;
+use stripmine_kernels::sweep::fast::{Grid, GridError};
 use stripmine_kernels::sweep::lattice::Frame;
 
 /// Particles may be nearer than a diameter by this part of it at the start: the potential is then 100 ε.
@@ -46,6 +47,7 @@ pub(super) struct Checked {
     /// The cut-off (length); a diameter where there are no pairs.
     pub(super) reach: f64,
     pub(super) found: Found,
+    /// Seed of the noise.
     pub(super) seed: u64,
     warnings: Vec<Warning>,
     choices: Vec<String>,
@@ -99,8 +101,12 @@ pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
     SceneErrors::none_of(errors)?;
     let mut warnings = made.warnings;
     warnings.extend(too_long(&scene, diameter, mass));
-    // Listed particles have no seed of their own.
-    let seed = scene.start.seed().unwrap_or(1);
+    // Written down where the start has no seed. Where it has one, the noise follows that of the start, also where a
+    // resolved scene is run again with another one.
+    if scene.start.seed().is_none() {
+        scene.noise_seed.get_or_insert(1);
+    }
+    let seed = scene.noise_seed.or(scene.start.seed()).unwrap_or(1);
     Ok(Checked { scene, domain, particles, diameter, mass, reach, found, seed, warnings, choices })
 }
 
@@ -226,6 +232,11 @@ fn grid(values: &Values, domain: &Domain, per_side: u64, reach: f64) -> Result<G
             false => error.advising("make the box larger: a side takes at least three sectors"),
         });
     }
+    let along = per_side as f64;
+    if along * along >= f64::from(u32::MAX) {
+        let cause = GridError::TooMany { columns: along, rows: along };
+        return Err(values.spot(&PER_SIDE).error(Reason::Geometry, cause.to_string()));
+    }
     Ok(Grid { frame: Frame { origin: domain.corner(), edge }, counts, periodic: domain.periodic() })
 }
 
@@ -306,6 +317,7 @@ impl Prepared for Checked {
             facts.push(Fact::new("cutoff", *reach, "cut-off", format!("{reach:.6}")));
         }
         facts.push(Fact::new("search", scene.by.word(), "search", by));
+        facts.push(Fact::new("noise_seed", self.seed, "seed of the noise", self.seed.to_string()));
         facts.push(Fact::words("steps", format!("{} of dt = {}", scene.run.steps, scene.dt)));
         facts
     }
@@ -330,9 +342,13 @@ impl Prepared for Checked {
         let count = self.particles.len() as f64;
         // State, sums, ids and numbers; sectors; lists with the places at which they were made.
         let engine = match &self.found {
-            Found::Sectors(grid) => 110.0 * count + 8.0 * grid.counts.iter().product::<usize>() as f64,
-            Found::Lists(grid, _) => 170.0 * count + 8.0 * grid.counts.iter().product::<usize>() as f64,
-            Found::Lattice(shape, _) => 110.0 * count + 20.0 * shape.padded() as f64,
+            Found::Sectors(grid) => 125.0 * count + 8.0 * grid.counts.iter().product::<usize>() as f64,
+            Found::Lists(grid, _) => 200.0 * count + 8.0 * grid.counts.iter().product::<usize>() as f64,
+            Found::Lattice(shape, _) => {
+                // A number and a bit a cell; copies of the places where the lattice is not sparse.
+                let copies = if count < SPARSE * shape.cells() as f64 { 0.0 } else { 8.0 };
+                150.0 * count + (4.0 + copies + 0.125) * shape.padded() as f64
+            }
         };
         // The scene's particles in three places, once more while they are observed, and the frame that is being written.
         let particles = 6.0 * size_of::<Particle>() as f64 * count;

@@ -23,6 +23,8 @@ pub struct Scene {
     pub strength: f64,
     /// Friction and temperature.
     pub bath: Bath,
+    /// Seed of the noise, where it is not that of the start.
+    pub noise_seed: Option<u64>,
     /// How pairs are found.
     pub by: By,
     /// Sectors along each side, where the scene says.
@@ -58,6 +60,7 @@ impl Default for Scene {
             law: PairLaw::Wca,
             strength: 1.0,
             bath: Bath { friction: 1.0, temperature: 1.0 },
+            noise_seed: None,
             by: By::Auto,
             per_side: None,
             sort: SortKind::default(),
@@ -87,6 +90,7 @@ impl Scene {
         }
         binding.number(&DRAG, &mut self.bath.friction);
         binding.number(&BATH_TEMPERATURE, &mut self.bath.temperature);
+        binding.whole_if_any(&NOISE_SEED, &mut self.noise_seed);
         binding.choice(&SEARCH, &mut self.by);
         if matches!(self.by, By::Auto | By::Sectors) {
             binding.whole_if_any(&PER_SIDE, &mut self.per_side);

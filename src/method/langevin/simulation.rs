@@ -4,7 +4,9 @@ use super::dynamics::{Stepper, is_loss, stepper};
 use super::losses::Losses;
 use super::prepared::Checked;
 use crate::io::checkpoint::{Column, Counter};
-use crate::method::{Clock, Failure, FailureKind, Purpose, RunWarning, Simulation, Snapshot, Until};
+use crate::method::{
+    Clock, Failure, FailureKind, Prepared, Purpose, RunWarning, Simulation, Snapshot, Until,
+};
 use crate::number::significant;
 use crate::particles::{Particle, Particles};
 use serde_json::{Map, Value, json};
@@ -14,6 +16,8 @@ use stripmine_kernels::law::Asked;
 
 /// Columns that are sums of forces; those of a step that is made again begin with none.
 const SUMS: [&str; 3] = ["Fx", "Fy", "torque"];
+/// How often lists were made, in a checkpoint.
+const LISTS_MADE: &str = "lists_made";
 /// Energy and virial of the pairs in a checkpoint.
 const OF_PAIRS: [&str; 2] = ["potential", "virial"];
 
@@ -29,6 +33,8 @@ pub(super) struct Running {
     of_pairs: [f64; 2],
     /// Particles moved so far: particles times steps.
     work: u64,
+    /// How often lists were made since the start when the stepper had made them so often.
+    lists_made: [u64; 2],
 }
 
 impl Running {
@@ -42,7 +48,16 @@ impl Running {
         let stepper = stepper(checked, start.clone(), follows)?;
         let losses = Losses::new(follows && checked.scene.losses);
         let checked = checked.clone();
-        let mut running = Running { checked, purpose, stepper, start, losses, of_pairs: [0.0; 2], work: 0 };
+        let mut running = Running {
+            checked,
+            purpose,
+            stepper,
+            start,
+            losses,
+            of_pairs: [0.0; 2],
+            work: 0,
+            lists_made: [0; 2],
+        };
         running.meet()?;
         Ok(running)
     }
@@ -112,12 +127,24 @@ impl Running {
             self.stepper.columns().into_iter().map(|(name, column)| kept(name, column, &stays)).collect();
         let elapsed = self.stepper.elapsed();
         let (steps, timings) = (elapsed.steps, elapsed.timings);
+        self.lists_made = [self.lists_made().unwrap_or_default(), 0];
         let follows = self.purpose == Purpose::Run;
         self.stepper = stepper(&self.checked, start.clone(), follows).map_err(|failure| failure.what())?;
         self.stepper.restore(steps, &columns)?;
         self.stepper.elapsed_mut().timings = timings;
         self.start = start;
         Ok(())
+    }
+
+    /// Particles that are not lost; where a run ends by too many losses, the last ones still are in its state.
+    fn left(&self) -> u64 {
+        self.checked.particles.len() as u64 - self.losses.count()
+    }
+
+    /// How often lists were made since the start; none where there are none.
+    fn lists_made(&self) -> Option<u64> {
+        let [total, at] = self.lists_made;
+        self.stepper.lists().map(|(_, made)| total + (made - at))
     }
 
     /// Displacements since the start, as if there were no sides (length).
@@ -184,7 +211,11 @@ impl Simulation for Running {
         let (particles, mass) = (self.stepper.standing(), self.checked.mass);
         let count = particles.len() as f64;
         let velocities = || particles.all().iter().map(Particle::planar_velocity);
-        let kinetic = 0.5 * mass * velocities().map(|[u, v]| u * u + v * v).sum::<f64>();
+        let thermal: Vec<[f64; 2]> = match self.checked.scene.scheme.is_observed_after_bath() {
+            true => self.stepper.predicted_velocities(),
+            false => velocities().collect(),
+        };
+        let kinetic = 0.5 * mass * thermal.iter().map(|[u, v]| u * u + v * v).sum::<f64>();
         let momentum = [0, 1].map(|axis| mass * velocities().map(|velocity| velocity[axis]).sum::<f64>());
         let temperature = kinetic / count;
         let [potential, virial] = self.of_pairs;
@@ -207,6 +238,8 @@ impl Simulation for Running {
     fn snapshot(&self) -> Snapshot {
         let counters = OF_PAIRS.into_iter().zip(self.of_pairs);
         let counters = counters.map(|(name, sum)| (name.to_owned(), Counter::Sum(sum)));
+        let counters =
+            counters.chain(self.lists_made().map(|made| (LISTS_MADE.to_owned(), Counter::Count(made))));
         let columns = self.stepper.columns().into_iter().chain(self.losses.columns());
         Snapshot { counters: counters.collect(), columns: columns.collect() }
     }
@@ -224,7 +257,14 @@ impl Simulation for Running {
         if !lost.is_empty() {
             self.without(&|_, particle| lost.contains(&particle.id))?;
         }
-        self.stepper.restore(clock.steps, &columns)
+        self.stepper.restore(clock.steps, &columns)?;
+        // They were made again to go on with, which counts in no run of one piece.
+        if let (Some(Counter::Count(total)), Some((_, made))) =
+            (counters.get(LISTS_MADE), self.stepper.lists())
+        {
+            self.lists_made = [*total, made];
+        }
+        Ok(())
     }
 
     fn phases(&self) -> BTreeMap<&'static str, f64> {
@@ -240,13 +280,14 @@ impl Simulation for Running {
     }
 
     fn summary(&self) -> Map<String, Value> {
-        let lists = self.stepper.lists();
         let entries = [
-            ("particles", json!(self.start.len())),
+            ("particles", json!(self.left())),
             ("lost", json!(self.losses.count())),
-            ("listed_pairs", json!(lists.map(|(entries, _)| entries))),
-            ("lists_made", json!(lists.map(|(_, made)| made))),
+            ("losses", self.losses.listed()),
+            ("listed_pairs", json!(self.stepper.lists().map(|(entries, _)| entries))),
+            ("lists_made", json!(self.lists_made())),
             ("potential", json!(self.of_pairs[0])),
+            ("noise_seed", json!(self.checked.seed)),
         ];
         entries.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
     }
@@ -257,9 +298,11 @@ impl Simulation for Running {
 
     fn warnings(&self) -> Vec<RunWarning> {
         let (lost, all) = (self.losses.count(), self.checked.particles.len());
+        let first = self.losses.first_in_words().unwrap_or_default();
+        let listed = if self.checked.event_columns().is_some() { "events.csv" } else { "summary.json" };
         let message = format!(
-            "{lost} of {all} particles were thrown out of the box and lost: the time step is too long for the pairs; events.csv \
-             lists them"
+            "{lost} of {all} particles were thrown out of the box and lost, {first}: the time step is too long for the pairs; \
+             {listed} lists them"
         );
         let warning = RunWarning { check: "lost", value: lost as f64, limit: 0.0, message };
         if lost > 0 { vec![warning] } else { vec![] }
@@ -268,9 +311,10 @@ impl Simulation for Running {
     fn in_words(&self) -> String {
         let seen = self.observe();
         format!(
-            "{} particles, {} lost; temperature {:.4}, pressure {}, mean square displacement {}",
-            self.start.len(),
+            "{} particles, {} lost{}; temperature {:.4}, pressure {}, mean square displacement {}",
+            self.left(),
             self.losses.count(),
+            self.losses.first_in_words().map(|first| format!(", {first}")).unwrap_or_default(),
             seen[3],
             significant(seen[4], 5),
             significant(seen[5], 5)

@@ -89,7 +89,7 @@ pub(super) const QUANTITIES: &[Quantity] = quantities! {
     "balance_error", "energy", "The energy that there is, less what there should be.";
     "momentum_x", "mass·length/time", "Momentum of the grains along x.";
     "momentum_y", "mass·length/time", "Momentum of the grains along y.";
-    "temperature", "energy", "Kinetic energy a grain and dimension, about the mean motion.";
+    "temperature", "energy", "Kinetic energy a grain and dimension, about the mean motion: over N, also where momentum is conserved and 2 N − 2 degrees of freedom move; the temperature of these is N/(N − 1) times it.";
     "pressure", "force/length", "Pressure of the grains, of their motion and of the contacts between them, over the area of the whole box.";
     "flow", "length/time", "Mean velocity of the grains along gravity, or along x without gravity.";
     "deepest_penetration", "", "The deepest contact, as a fraction of the sum of the radii.";

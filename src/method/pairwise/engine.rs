@@ -259,6 +259,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         standing(&self.start, walls, (0..self.start.len()).map(of))
     }
 
+    /// Velocities as the last predictor left them (length/time), in the scene's order; at the start those of the start.
+    pub fn predicted_velocities(&self) -> Vec<[f64; 2]> {
+        let mut velocities = vec![[0.0; 2]; self.start.len()];
+        (0..velocities.len()).for_each(|disc| velocities[self.state.number(disc)] = self.velocity(disc));
+        velocities
+    }
+
     /// Force along x and y and torque on every particle, in the scene's order.
     pub fn forces(&self) -> Vec<[f64; 3]> {
         let mut forces = vec![[0.0; 3]; self.start.len()];

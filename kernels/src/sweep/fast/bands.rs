@@ -16,6 +16,9 @@
 //!   row  0 ┘               stage 0   ─┘
 //! ```
 //!
+//! Where there are fewer bands than threads and most of the work is finding pairs (coarse [`Sectors`](super::Sectors)), all threads
+//! find the pairs of a band together, and one adds them up, in the same order.
+//!
 //! Within a stage no two bands add to the same row. So threads need no copies of the sums and no atomic additions, and as the
 //! bands are a function of the scene, the order of every sum is the same on any number of threads. The last band's partners
 //! beyond the last row are, on a periodic side, those of the first rows, which band A leaves alone in stage 1.
@@ -28,7 +31,7 @@ use crate::backend::Precision;
 use crate::backend::dispatch;
 use crate::isa::{Element, ProgramError};
 use crate::law::{self, Asked, Law};
-use crate::threads::in_stages;
+use crate::threads::{in_stages, on_threads, pieces, threads};
 use std::ops::Range;
 
 /// Rows that one thread sweeps, and what it keeps for that.
@@ -65,6 +68,19 @@ pub struct Met {
 pub struct Sweep<F> {
     rows: Rows,
     bands: Vec<Band<F>>,
+    /// What threads find of one band, in its order.
+    parts: Vec<F>,
+}
+
+/// What a pair that is found takes, over one that is tried; about one is found for each disc.
+const EVALUATION: f64 = 16.0;
+/// Parts of a band for each thread that searches them: some take longer than others.
+const PARTS: usize = 8;
+
+/// Whether it is cheaper that all threads find the pairs of one band after the other and one evaluates them, than that each
+/// thread does all for a band; with `tried` pairs for each disc. No bit depends on it.
+fn is_cheaper_apart(tried: f64, bands: usize, threads: usize) -> bool {
+    tried / (threads as f64) + EVALUATION < (tried + EVALUATION) / bands.min(threads) as f64
 }
 
 impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
@@ -78,7 +94,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
             notes: Notes::default(),
             pairs: 0,
         });
-        Sweep { rows, bands: bands.collect() }
+        Sweep { rows, bands: bands.collect(), parts: vec![] }
     }
 
     /// Adds what `law` gives to the sums (force along x, along y, torque), an entry a disc and sentinel.
@@ -118,13 +134,35 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
             Ok(())
         };
         let overlap = self.rows.ahead;
-        let inner = |rows: &Range<usize>| rows.start..rows.end.saturating_sub(overlap).max(rows.start);
         // First all inner rows, then all last ones.
-        in_stages(&mut self.bands, 2, |band, stage| {
-            let inner = inner(&band.rows);
-            let rows = if stage == 0 { inner } else { inner.end..band.rows.end };
-            sweep(band, rows)
-        })?;
+        let rows_of = |band: &Band<F>, stage: usize| {
+            let Range { start, end } = band.rows;
+            let inner = end.saturating_sub(overlap).max(start);
+            if stage == 0 { start..inner } else { inner..end }
+        };
+        let threads = threads();
+        if is_cheaper_apart(finder.tried(), self.bands.len(), threads) {
+            self.parts.resize_with(PARTS * threads, F::default);
+            for stage in 0..2 {
+                for band in &mut self.bands {
+                    let all = finder.searched(rows_of(band, stage));
+                    let length = all.len().div_ceil(PARTS * threads).max(1);
+                    let cut = pieces(all, length).zip(&mut self.parts);
+                    let searched = on_threads(cut, |(part, found)| {
+                        finder.find_part(discs.place, part, found);
+                        found
+                    });
+                    for found in searched {
+                        let pairs = finder.pairs(found);
+                        band.pairs += pairs.count() as u64;
+                        let (sentinel, notes) = (count as u32, &mut band.notes);
+                        dispatch(set, Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes })?;
+                    }
+                }
+            }
+        } else {
+            in_stages(&mut self.bands, 2, |band, stage| sweep(band, rows_of(band, stage)))?;
+        }
         let mut beside = Touches::default();
         finder.find_beside_rows(&mut beside);
         let pairs = &beside;

@@ -47,6 +47,24 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
         set: InstructionSet,
     ) -> Result<(), ProgramError>;
 
+    /// Pairs tried for each disc, on the average, where the search of a row may be cut into [parts](Self::find_part); 0 where it
+    /// may not.
+    #[inline]
+    fn tried(&self) -> f64 {
+        0.0
+    }
+
+    /// Numbers, in the order of the search, of what is searched in some rows: any cut of them is one into parts.
+    #[inline]
+    fn searched(&self, _rows: Range<usize>) -> Range<usize> {
+        0..0
+    }
+
+    /// Replaces what was found by all pairs of a part. Those of all parts of some rows, one part after the other, are those of
+    /// [`find`](Self::find) in the same order.
+    #[inline]
+    fn find_part(&self, _places: [&[S]; 2], _part: Range<usize>, _found: &mut Self::Found) {}
+
     /// Appends the pairs that are found in no row.
     #[inline]
     fn find_beside_rows(&self, _: &mut Touches<P>) {}

@@ -18,6 +18,9 @@
 //! They are sorted by counting, on all threads: first how many discs each sector has, then where each begins, then the discs
 //! are put there as they come, and at last each sector's few are sorted. So the result does not depend on the threads.
 //!
+//! Few sectors have many members, and nearly all of the work is comparing them: then all threads compare, each the partners of
+//! some members, and the pairs are added up as on one.
+//!
 //! Inside the box a disc is compared with two stretches, each in one loop; at the rim, where a stretch ends or goes on at the
 //! other side of the box, sector by sector.
 
@@ -28,7 +31,7 @@ use super::pairs::{Pairs, Touches};
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};
-use crate::threads::{PIECE, in_pieces, is_alone, on_threads, over_pieces, pieces, reordered, shared};
+use crate::threads::{PIECE, in_pieces, is_alone, on_threads, over_pieces, reordered, shared};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -44,6 +47,9 @@ pub struct Sectors {
     starts: Vec<u32>,
     members: Vec<u32>,
 }
+
+/// Members that one thread sorts at a time, about.
+const MEMBERS: u32 = 4096;
 
 /// The sector of a disc that is in none.
 const NOWHERE: u32 = u32::MAX;
@@ -141,7 +147,7 @@ impl Sectors {
             });
         });
         let (starts, mut rest) = (&*starts, members.as_mut_slice());
-        let parts = pieces(0..starts.len() - 1, PIECE).map(|sectors| {
+        let parts = cut(starts).map(|sectors| {
             let length = (starts[sectors.end] - starts[sectors.start]) as usize;
             let (here, behind) = std::mem::take(&mut rest).split_at_mut(length);
             rest = behind;
@@ -183,6 +189,12 @@ impl Sectors {
         });
     }
 
+    /// The members of the sectors of some rows.
+    fn members_of_rows(&self, rows: Range<usize>) -> Range<usize> {
+        let [columns, _] = self.grid.counts;
+        self.starts[rows.start * columns] as usize..self.starts[rows.end * columns] as usize
+    }
+
     /// The members of a sector and those that follow in the row, up to `more` sectors on.
     #[inline(always)]
     fn members(&self, sector: usize, more: usize) -> Range<usize> {
@@ -198,41 +210,78 @@ impl Sectors {
         columns: Range<usize>,
         mut meet: impl FnMut(u32, u32, usize),
     ) {
-        let [all, rows] = self.grid.counts;
         for column in columns {
-            let sector = row * all + column;
-            let here = self.members(sector, 0);
-            if here.is_empty() {
-                continue;
-            }
-            let rest_of = |at: usize| at + 1..here.end;
-            if column > 0 && column + 1 < all && row + 1 < rows {
-                // Sectors that follow each other in a row are one stretch of members.
-                let (beside, above) = (self.members(sector, 1).end, self.members(sector + all - 1, 2));
-                for at in here.clone() {
-                    let first = self.members[at];
-                    for &second in &self.members[at + 1..beside] {
-                        meet(first, second, self.sector[second as usize] as usize - sector);
-                    }
-                    for &second in &self.members[above.clone()] {
-                        meet(first, second, self.sector[second as usize] as usize + 3 - (sector + all));
-                    }
-                }
-                continue;
-            }
-            let ahead = AHEAD.map(|ahead| match self.grid.beside([column, row], ahead) {
-                Some([column, row]) => self.members(row * all + column, 0),
-                None => 0..0,
-            });
-            for at in here.clone() {
+            self.pairs_of_sector([column, row], 0..usize::MAX, &mut meet);
+        }
+    }
+
+    /// The same for those discs that are some of the members, in the same order.
+    fn pairs_of_members(&self, some: Range<usize>, mut meet: impl FnMut(u32, u32, usize)) {
+        let columns = self.grid.counts[0];
+        // The last one that begins there: those before it are empty.
+        let first = self.starts.partition_point(|&start| start as usize <= some.start).saturating_sub(1);
+        let begin = self.starts[first..].iter().take_while(|&&start| (start as usize) < some.end);
+        for (sector, _) in (first..).zip(begin) {
+            self.pairs_of_sector([sector % columns, sector / columns], some.clone(), &mut meet);
+        }
+    }
+
+    /// The same for those of the members of a sector that are among `some`.
+    #[inline(always)]
+    fn pairs_of_sector(
+        &self,
+        [column, row]: [usize; 2],
+        some: Range<usize>,
+        meet: &mut impl FnMut(u32, u32, usize),
+    ) {
+        let [all, rows] = self.grid.counts;
+        let sector = row * all + column;
+        let Range { start, end } = self.members(sector, 0);
+        let here = start.max(some.start)..end.min(some.end);
+        if here.is_empty() {
+            return;
+        }
+        if column > 0 && column + 1 < all && row + 1 < rows {
+            // Sectors that follow each other in a row are one stretch of members.
+            let (beside, above) = (self.members(sector, 1).end, self.members(sector + all - 1, 2));
+            for at in here {
                 let first = self.members[at];
-                self.members[rest_of(at)].iter().for_each(|&second| meet(first, second, 0));
-                for (cell_offset, there) in ahead.iter().enumerate().skip(1) {
-                    self.members[there.clone()].iter().for_each(|&second| meet(first, second, cell_offset));
+                for &second in &self.members[at + 1..beside] {
+                    meet(first, second, self.sector[second as usize] as usize - sector);
                 }
+                for &second in &self.members[above.clone()] {
+                    meet(first, second, self.sector[second as usize] as usize + 3 - (sector + all));
+                }
+            }
+            return;
+        }
+        let ahead = AHEAD.map(|ahead| match self.grid.beside([column, row], ahead) {
+            Some([column, row]) => self.members(row * all + column, 0),
+            None => 0..0,
+        });
+        for at in here {
+            let first = self.members[at];
+            self.members[at + 1..end].iter().for_each(|&second| meet(first, second, 0));
+            for (cell_offset, there) in ahead.iter().enumerate().skip(1) {
+                self.members[there.clone()].iter().for_each(|&second| meet(first, second, cell_offset));
             }
         }
     }
+}
+
+/// Sectors in pieces of [`PIECE`] of them, or of about as many members if that is fewer, by where in the members each begins.
+fn cut(starts: &[u32]) -> impl Iterator<Item = Range<usize>> {
+    let mut begin = 0;
+    std::iter::from_fn(move || {
+        let sectors = starts.len() - 1;
+        if begin == sectors {
+            return None;
+        }
+        let filled = starts[begin].saturating_add(MEMBERS);
+        let most = sectors.min(begin + PIECE);
+        let end = begin + 1 + starts[begin + 1..most].partition_point(|&start| start < filled);
+        Some(std::mem::replace(&mut begin, end)..end)
+    })
 }
 
 // SAFETY: members are numbers of discs below the length of `sector`; a pair is of sectors in the row and in it or the next.
@@ -276,6 +325,31 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
             },
         );
         Ok(())
+    }
+
+    #[inline]
+    fn tried(&self) -> f64 {
+        // The rest of a sector of its own, and four others.
+        4.5 * self.members.len() as f64 / (self.starts.len() - 1) as f64
+    }
+
+    #[inline]
+    fn searched(&self, rows: Range<usize>) -> Range<usize> {
+        self.members_of_rows(rows)
+    }
+
+    fn find_part(&self, places: [&[S]; 2], part: Range<usize>, found: &mut Touches<P>) {
+        let mut near = Near::new(places, self.sector.len(), &self.grid, self.reach, found);
+        let (mut last, mut at) = (NOWHERE, [0.0; 2]);
+        self.pairs_of_members(part, |first, second, cell_offset| {
+            // SAFETY: `pairs_of_members` gives members of sectors, which are discs, and numbers of cell offsets below 5.
+            unsafe {
+                if first != last {
+                    (last, at) = (first, near.at(first));
+                }
+                near.meet(first, at, second, cell_offset);
+            }
+        });
     }
 
     #[inline]
