@@ -21,7 +21,7 @@ pub fn mesh([columns, rows]: [usize; 2], count: usize, seed: u64) -> Vec<[usize;
             at => exchanged.insert(at, first).unwrap_or(at),
         }
     };
-    (0..count).map(|drawn| draw(drawn)).map(|place| [place % columns, place / columns]).collect()
+    (0..count).map(&mut draw).map(|place| [place % columns, place / columns]).collect()
 }
 
 #[cfg(test)]

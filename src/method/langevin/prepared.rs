@@ -272,7 +272,7 @@ impl Prepared for Checked {
             until: Until::Steps(run.steps),
             rows: Every::steps(run.thermo_every),
             snapshots: Every::steps(run.snapshot_every),
-            checkpoints: Every::checkpoints(run.checkpoint_every.map(Every::steps)),
+            checkpoints: Every::steps(run.checkpoint_every),
         }
     }
 
@@ -347,7 +347,7 @@ impl Prepared for Checked {
             Found::Lattice(shape, _) => {
                 // A number and a bit a cell; copies of the places where the lattice is not sparse.
                 let copies = if count < SPARSE * shape.cells() as f64 { 0.0 } else { 8.0 };
-                110.0 * count + (4.0 + copies + 0.125) * shape.padded() as f64
+                150.0 * count + (4.0 + copies + 0.125) * shape.padded() as f64
             }
         };
         // The scene's particles in three places, once more while they are observed, and the frame that is being written.
