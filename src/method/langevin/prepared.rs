@@ -272,7 +272,7 @@ impl Prepared for Checked {
             until: Until::Steps(run.steps),
             rows: Every::steps(run.thermo_every),
             snapshots: Every::steps(run.snapshot_every),
-            checkpoints: Every::steps(run.checkpoint_every),
+            checkpoints: Every::checkpoints(run.checkpoint_every.map(Every::steps)),
         }
     }
 
