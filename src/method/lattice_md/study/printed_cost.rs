@@ -177,7 +177,9 @@ pub fn printed_cost(effort: &Effort, progress: impl Fn(f64) + Sync) -> Result<Pr
 }
 
 fn measured(effort: &Effort, progress: &dyn Fn(f64)) -> Result<PrintedCost, MeasurementError> {
-    let over_n = effort.cells.iter().map(|&cells| (cells, OCCUPANCY));
+    let mut cells = effort.cells.clone();
+    cells.sort_unstable();
+    let over_n = cells.iter().map(|&cells| (cells, OCCUPANCY));
     let over_density = effort.occupancies.iter().map(|&occupancy| (CELLS, occupancy));
     let places: Vec<(usize, f64)> = over_n.chain(over_density).collect();
     let all: f64 = places.iter().map(|&(cells, _)| weight(cells)).sum();
