@@ -54,7 +54,8 @@ fn bodies_take_the_memory_that_was_foreseen() {
         &["machine.engine=programs"],
     ] {
         let sets = [sets, &["particles.count=12000"]].concat();
-        said.push(foreseen_and_taken("plummer", &sets, 0.12 * FRAME));
+        // A frame, and what the program itself takes more or less, which counts where so little is taken.
+        said.push(foreseen_and_taken("plummer", &sets, 0.25 * FRAME));
     }
     judged(&said);
 }

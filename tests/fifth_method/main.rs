@@ -58,7 +58,7 @@ fn scenes_are_listed_checked_and_refused() {
     assert_eq!((found["method"].as_str(), found["discs"].as_u64()), (Some("free-flight"), Some(20)));
     for (set, words) in [
         ("law.stiffness=1", "it is a key of scenes with method.kind = \"lattice-md\""),
-        ("particles.cuont=3", "did you mean `count`?"),
+        ("particles.cuont=3", "did you mean `particles.count`?"),
         ("method.kind=free-fligth", "did you mean \"free-flight\"?"),
         ("particles.count=4000", "random placement jams"),
     ] {

@@ -400,6 +400,8 @@ impl Case {
         let names: Vec<String> = fs::read_dir(&plots)
             .expect("there are pictures")
             .map(|file| file.expect("a file").file_name().into_string().expect("a name"))
+            // Which of them are the program's own.
+            .filter(|name| name != "plot.files")
             .collect();
         for kind in ["svg", "png"] {
             for name in ["last-state", &curve.replace('_', "-")] {

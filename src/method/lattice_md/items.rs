@@ -302,12 +302,20 @@ fn pipes(
     made(sections::pipe_flow::section(showing, &flows), &flows)
 }
 
+/// The source's own text first, as a reader wants it; then ours.
 fn listings() -> Result<Made, Failure> {
+    let ours = Question::default();
+    let printed = Question { choice: ours.choice.printed(), ..ours.clone() };
     let mut parts = vec![];
-    for &part in Part::ALL {
-        let listings = listing::listings(part, &Question::default())?;
-        let (text, instructions) = (listing::text(&listings), listing::instructions(&listings));
-        parts.push(sections::listing::PartListing { part: part.name(), text, instructions });
+    for (name, question) in [("printed_", &printed), ("", &ours)] {
+        for &part in Part::ALL {
+            let listings = listing::listings(part, question)?;
+            let (text, instructions) = (listing::text(&listings), listing::instructions(&listings));
+            if instructions > 0 {
+                let part = format!("{name}{}", part.name());
+                parts.push(sections::listing::PartListing { part, text, instructions });
+            }
+        }
     }
     let mut made = made(sections::listing::section(&parts), &())?;
     made.files = parts.into_iter().map(|part| (format!("{}.txt", part.part), part.text)).collect();

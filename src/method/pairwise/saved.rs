@@ -87,13 +87,6 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             _ if made_at.is_some() => return Err(format!("the column {LISTS_MADE} is missing, or no count")),
             _ => 0,
         };
-        // Places are seen from the centres of cells.
-        let here = (0..numbers.len()).map(|disc| self.state.place(disc));
-        let made = made_at.iter().flat_map(|[x, y]| x.iter().zip(y)).map(|(x, y)| [x.to_f64(), y.to_f64()]);
-        let side = |axis: usize| self.system.domain.length(axis);
-        if here.chain(made).any(|place| (0..2).any(|axis| place[axis].abs() > side(axis))) {
-            return Err("a disc lies farther from its cell than the box is long".to_owned());
-        }
         self.elapsed.crossings.take_up(columns)?;
         (0..numbers.len()).for_each(|disc| self.search.cells_mut().leave(disc));
         for (disc, (&column, &row)) in cells[0].iter().zip(&cells[1]).enumerate() {

@@ -384,6 +384,10 @@ impl Engine for Fast {
     fn restore(&mut self, discs: Vec<Disc>, kept: &Snapshot) -> Result<(), String> {
         let count = discs.len();
         let registered = [kept.numbers(REGISTERED[0], count)?, kept.numbers(REGISTERED[1], count)?];
+        let origin = self.arena.domain.origin;
+        if (0..2).any(|axis| registered[axis].iter().any(|&at| at < origin[axis])) {
+            return Err("a disc was listed at a place below the origin of the box".to_owned());
+        }
         let times = kept.times("expected.time", count)?;
         let [with, events] = [kept.codes("expected.with", count)?, kept.codes("expected.events", count)?];
         if with.iter().any(|&with| with < WALL[0] && with as usize >= count) {
