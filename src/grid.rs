@@ -42,8 +42,9 @@ mod tests {
                     for sides in [[side; 2], [side * side / 3.0, 3.0]] {
                         let domain = Domain::planar([0.0; 2], sides, [true; 2]);
                         let Ok(grid) = sectors_of(&domain, 1.0, single, discs as usize) else {
-                            // A strip so long that sectors as wide as places bear are more than can be numbered.
-                            assert!(single && 3.0 * sides[0] / WIDEST >= f64::from(u32::MAX), "{sides:?}");
+                            // A box so large that sectors as wide as places bear are more than can be numbered.
+                            let least = (domain.area() / (WIDEST * WIDEST)).max(3.0 * sides[0] / WIDEST);
+                            assert!(single && least >= f64::from(u32::MAX), "{sides:?}");
                             continue;
                         };
                         let [width, height] = grid.frame.edge;

@@ -33,6 +33,8 @@ const AHEAD: [usize; 3] = [40, 24, 12];
 
 /// What a disc expects beside other discs, which are known by their places in memory.
 const WALL: [u32; 2] = [u32::MAX - 2, u32::MAX - 1];
+/// Lists of a checkpoint reach at least this part of the largest radius beyond contact.
+const NARROWEST: f64 = 1e-6;
 /// Its list has to be renewed.
 const RENEWAL: u32 = u32::MAX;
 
@@ -394,11 +396,19 @@ impl Engine for Fast {
             return Err("a disc expects one that is not there".to_owned());
         }
         let (stride, leash) = (kept.count("engine.stride")?, kept.sum("engine.leash")?);
-        if stride > MOST_PARTNERS as u64 + 1 || !(0.0..f64::INFINITY).contains(&leash) {
+        // Narrower ones would be renewed without end.
+        let narrowest = NARROWEST * self.largest;
+        if stride > MOST_PARTNERS as u64 + 1 || !(narrowest..f64::INFINITY).contains(&leash) {
             return Err(format!("lists of {stride} entries within {leash}"));
         }
+        let time = kept.sum("engine.time")?;
+        if discs.iter().any(|disc| disc.time > time) || times.iter().any(|&expected| expected < time) {
+            return Err(format!(
+                "a disc is ahead of the engine's time {time:?}, or expects something before it"
+            ));
+        }
         self.leash = leash;
-        self.time = kept.sum("engine.time")?;
+        self.time = time;
         self.renewals = kept.count("engine.renewals")?;
         self.events = kept.count("engine.events")?;
         self.sorted_until = kept.count("engine.sorted_until")?;
