@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use stripmine_kernels::isa::{Element, Storage};
 
 /// Above it not every whole number is a double; nothing is counted that far.
-const MOST: u64 = 1 << 53;
+pub(super) const MOST: u64 = 1 << 53;
 
 /// The finite entries of the column of a name, if it has the precision `T` and that length.
 ///

@@ -1,6 +1,6 @@
 //! Everything that the future of a simulation depends on, as a checkpoint keeps it.
 
-use super::restored::{find_count, find_counts, find_sum};
+use super::restored::{MOST, find_count, find_counts, find_sum};
 use crate::io::checkpoint::{Column, Counter};
 use std::collections::BTreeMap;
 
@@ -34,7 +34,7 @@ impl Snapshot {
     /// # Errors
     /// A sentence, if it is missing.
     pub fn count(&self, name: &str) -> Result<u64, String> {
-        self.count_at_most(name, u64::MAX)
+        self.count_at_most(name, MOST)
     }
 
     /// The count of a name, at most `most`.

@@ -88,8 +88,7 @@ impl Losses {
         ]
     }
 
-    /// Takes up what [`columns`](Self::columns) gave after so many steps of particles of these ids. Checkpoints of before places were
-    /// kept have none: these are no numbers.
+    /// Takes up what [`columns`](Self::columns) gave after so many steps of particles of these ids.
     ///
     /// # Errors
     /// A sentence, if it is not there, or of other particles or later steps.
@@ -107,10 +106,7 @@ impl Losses {
         if lost.len() < count || !lost.is_subset(there) || count > 0 && lost.len() == there.len() {
             return Err(format!("the column {} holds what are no particles, or one twice, or all", NAMES[0]));
         }
-        let along = |name: &str| match columns.iter().any(|(there, _)| there == name) {
-            true => find_column::<f64>(columns, name, ids.len()),
-            false => Ok(vec![f64::NAN; ids.len()]),
-        };
+        let along = |name: &str| find_column::<f64>(columns, name, ids.len());
         let places = along(PLACE[0])?.into_iter().zip(along(PLACE[1])?);
         let losses = ids.into_iter().zip(steps).zip(places);
         self.all = losses.map(|((particle, &step), (x, y))| Loss { particle, step, x, y }).collect();

@@ -83,7 +83,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         };
         let lists_made = columns.iter().find(|(name, _)| name == LISTS_MADE).map(|(_, column)| column);
         let lists_made = match lists_made {
-            Some(Column::U64(made)) if made.len() == 1 => made[0],
+            Some(Column::U64(made)) if made.len() == 1 && made[0] < 1 << 53 => made[0],
             _ if made_at.is_some() => return Err(format!("the column {LISTS_MADE} is missing, or no count")),
             _ => 0,
         };

@@ -392,8 +392,10 @@ impl Engine for Fast {
         }
         let times = kept.times("expected.time", count)?;
         let [with, events] = [kept.codes("expected.with", count)?, kept.codes("expected.events", count)?];
-        if with.iter().any(|&with| with < WALL[0] && with as usize >= count) {
-            return Err("a disc expects one that is not there".to_owned());
+        let none =
+            |(own, &with): (usize, &u32)| with < WALL[0] && (with as usize >= count || with as usize == own);
+        if with.iter().enumerate().any(none) {
+            return Err("a disc expects itself or one that is not there".to_owned());
         }
         let (stride, leash) = (kept.count("engine.stride")?, kept.sum("engine.leash")?);
         // Narrower ones would be renewed without end.
@@ -425,6 +427,21 @@ impl Engine for Fast {
         let full = lists.begin(&places, |disc| discs[disc as usize].radius);
         full.map_err(|disc| format!("the list of disc number {} is full", self.numbers[disc as usize]))?;
         self.lists = lists;
+        let now = self.time;
+        for (place, &number) in self.numbers.iter().enumerate() {
+            // Its list is renewed at the latest when it leaves the surroundings for which it was made; where discs fall, when one
+            // from rest would have left them.
+            let within = match self.arena.space.gravity() {
+                Some([gx, gy]) => (2.0 * self.leash / gx.hypot(gy)).sqrt(),
+                None => {
+                    let listed_at = self.lists.place(place as u32);
+                    leaving(&self.arena, &self.discs[place], listed_at, self.lists.leash(), now) - now
+                }
+            };
+            if times[number as usize] - now > within * (1.0 + 1e-6) + 1e-9 * now.abs() {
+                return Err(format!("disc number {number} expects nothing before it leaves its list"));
+            }
+        }
         self.queue = Queue::new(count);
         for (place, &number) in self.numbers.iter().enumerate() {
             let expects = with[number as usize];
