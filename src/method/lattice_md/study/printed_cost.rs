@@ -273,7 +273,7 @@ fn eager(cells: usize, occupancy: f64, choice: Choice, samples: usize) -> Vec<Ti
             let nop = |program: &StepProgram| -> u64 {
                 program.program.tally().iter().map(|(_, counts)| counts.total()).sum()
             };
-            let length = step.iter().filter(of_part).next_back().map(|program| program.length);
+            let length = step.iter().rfind(of_part).map(|program| program.length);
             Timed {
                 part: part.name(),
                 occupancy,
