@@ -80,29 +80,22 @@ fn answer(data: &EfficiencyTable) -> String {
     };
     format!(
         "The source's own program, written as it is printed and counted with every load and store, has {} operations where 59, 12, \
-         1656 and 54 are printed. Of {} ways of counting it {all}, {} gives at most{nearest}.",
+         1656 and 54 are printed. Of {} ways of counting it {all}, and none more than {}{nearest}.",
         counted.join(", "),
         data.conventions.tried,
-        match data.conventions.most_exact {
-            1 => "one of the numbers is what any way".to_owned(),
-            most => format!("{most} of the numbers are what any way"),
-        }
+        data.conventions.most_exact
     )
 }
 
 /// What the source's numbers need.
 fn details(data: &EfficiencyTable) -> Vec<String> {
     let exact = data.conventions.exact;
-    let ways = |ways: usize| match ways {
-        0 => "no way".to_owned(),
-        1 => "one way".to_owned(),
-        ways => format!("{ways} ways"),
-    };
+    let ways = |ways: usize| if ways == 0 { "none".to_owned() } else { ways.to_string() };
     let place: u64 = data.printed_sections.iter().map(|row| row.in_a_place).sum();
     vec![
         format!(
-            "One by one: {} of counting give 59 for the predictor, {} 12 for the index, {} 69 for a place of the mask, {} 54 for the \
-             corrector. 1656 is 24·69, so the source counts nothing outside the loop over the places. A place as printed has {place} \
+            "One by one, ways of counting that give the printed number: {} for the predictor's 59, {} for the index's 12, {} for the 69 of a \
+             place of the mask, {} for the corrector's 54. 1656 is 24·69, so the source counts nothing outside the loop over the places. A place as printed has {place} \
              operations with its shifted copies; with its three sums stored it has 69.",
             ways(exact[0]),
             ways(exact[1]),

@@ -256,9 +256,9 @@ fn eager(cells: usize, occupancy: f64, choice: Choice, samples: usize) -> Vec<Ti
         Part::ALL.iter().copied().filter(|part| step.iter().any(|step| step.part == *part)).collect();
     let mut all = vec![Samples::default(); parts.len()];
     let set = InstructionSet::best();
-    // About 20 ms a sample on short lattices, and three passes of the longest.
+    // About 20 ms a sample on short lattices; of the longest, far beyond where the line holds, one.
     let times = (3_000_000 / (cells * 40)).clamp(1, 200);
-    let samples = if cells > 3_000_000 { PARTS } else { samples.max(PARTS) };
+    let samples = (4_000_000 / cells).clamp(1, samples);
     for _ in 0..samples {
         Samples::take_in_turns(&mut all, times, |at| {
             let (memory, lengths) = arrays.memory();
