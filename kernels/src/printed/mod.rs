@@ -16,7 +16,7 @@
 //!   a signed number, (16) gives the spins opposite signs, appendix A multiplies the coefficients by the acceleration and not
 //!   by its difference from the predicted one: the misprints of [`granular`](crate::law::granular), mended as there.
 //! - (14) raises R_i + R_j − |r_i − r_j| to the power 3/2, which has no value where discs do not touch: it is taken of
-//!   contact_i times that ([`forces`]).
+//!   contact_i times that ([`Printed`]).
 //! - (2) gives an empty cell the particle number 0. The print does not say what stands at x(0): see below.
 //!
 //! What the print has no equation for runs beside it ([`beside`]): positions brought back into a periodic box, images in
@@ -33,7 +33,7 @@
 //! | where its last disc was (nothing clears x) | as particle 0 until discs have come and gone | right by chance | as above at the start |
 //! | at a place of its own, x(0) + (1 − Test)·far | finite | right | right: nothing out of range is met |
 //!
-//! The last is what [`lattice`] does: three more operations on the lattice, exact, and the only reading that a CRAY runs as it is.
+//! The last is what [`Map`] does: three more operations on the lattice, exact, and the only reading that a CRAY runs as it is.
 //! `kernels/tests/printed.rs` shows what the others do.
 
 pub mod beside;
