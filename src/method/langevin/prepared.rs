@@ -342,12 +342,12 @@ impl Prepared for Checked {
         let count = self.particles.len() as f64;
         // State, sums, ids and numbers; sectors; lists with the places at which they were made.
         let engine = match &self.found {
-            Found::Sectors(grid) => 125.0 * count + 8.0 * grid.counts.iter().product::<usize>() as f64,
+            Found::Sectors(grid) => 155.0 * count + 8.0 * grid.counts.iter().product::<usize>() as f64,
             Found::Lists(grid, _) => 200.0 * count + 8.0 * grid.counts.iter().product::<usize>() as f64,
             Found::Lattice(shape, _) => {
                 // A number and a bit a cell; copies of the places where the lattice is not sparse.
                 let copies = if count < SPARSE * shape.cells() as f64 { 0.0 } else { 8.0 };
-                150.0 * count + (4.0 + copies + 0.125) * shape.padded() as f64
+                195.0 * count + (4.0 + copies + 0.125) * shape.padded() as f64
             }
         };
         // The scene's particles in three places, once more while they are observed, and the frame that is being written.
