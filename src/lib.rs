@@ -1,23 +1,8 @@
 //! Stripmine: a SIMD vector machine for 2D particle dynamics.
 //!
-//! The equations of a method are written once, as operations on whole vectors (the crate `stripmine_kernels`). This
-//! crate is the laboratory around that machine: methods that step particles, the model that predicts what a step
-//! costs, studies that answer a user's question, and reports that show the answer.
-//!
-//! Run a scene and look at it:
-//!
-//! ```
-//! use std::sync::atomic::AtomicBool;
-//! use stripmine::method::observed::observed;
-//! use stripmine::method::{METHODS, Purpose, load};
-//!
-//! let (prepared, method) = load("two-discs", &["run.steps=100".to_owned()], METHODS)?;
-//! let mut simulation = prepared.start(Purpose::Run)?;
-//! simulation.advance(&[prepared.schedule().until], &AtomicBool::new(false))?;
-//! let [momentum] = observed(method.quantities, &simulation.observe(), ["momentum_x"])?;
-//! assert!((momentum - 1.0).abs() < 1e-12);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+//! The equations of a method are written once, as operations on whole vectors (the crate `stripmine_kernels`), and everything that a
+//! run needs is a library (the crate `stripmine_physics`). This crate is the laboratory around them, and the command: the model
+//! that predicts what a step costs, studies that answer a user's question, and reports that show the answer.
 //!
 //! Draw what came out:
 //!
@@ -38,26 +23,10 @@
 
 pub mod cli;
 pub mod console;
-pub mod domain;
-pub mod grid;
-pub mod io;
-pub mod memory;
-pub mod method;
+pub mod laboratory;
 pub mod model;
-pub mod near;
-pub mod number;
-pub mod observe;
-pub mod origin;
-pub mod particles;
-pub mod placement;
-pub mod quoted;
+pub mod provenance;
 pub mod report;
-pub mod reported;
 pub mod results;
-pub mod run;
-pub mod scene;
-pub mod signals;
-pub mod start;
 pub mod statistics;
 pub mod study;
-pub mod words;

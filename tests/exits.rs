@@ -224,7 +224,7 @@ fn the_limit_of_file_sizes_ends_in_an_exit_code() {
 /// A checkpoint that is whole but says what cannot be, of every method: exit code 6, and the file.
 #[test]
 fn forged_checkpoints_end_with_6() {
-    use stripmine::io::checkpoint::{Checkpoint, Column};
+    use stripmine_physics::io::checkpoint::{Checkpoint, Column};
     let folder = tempfile::tempdir().unwrap();
     for (preset, short, column) in [
         ("two-discs", "run.steps=20", "x1"),

@@ -3,19 +3,19 @@
 
 mod support;
 
-use stripmine::io::checkpoint::Column;
-use stripmine::method::lattice_md::Document;
-use stripmine::method::lattice_md::Engine;
-use stripmine::method::lattice_md::{
-    Contacts, FastSearch, GearValues, Machine, Model, OnConflict, Scheme, Watch,
-};
-use stripmine::method::{Failure, FailureKind};
-use stripmine::observe::{Observation, Scenery};
-use stripmine::particles::{Kind, Particles};
-use stripmine::scene::{Precision, WallMotion};
 use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::sweep::lattice::LatticeShape;
 use stripmine_kernels::{Execution, InstructionSet};
+use stripmine_physics::io::checkpoint::Column;
+use stripmine_physics::method::lattice_md::Document;
+use stripmine_physics::method::lattice_md::Engine;
+use stripmine_physics::method::lattice_md::{
+    Contacts, FastSearch, GearValues, Machine, Model, OnConflict, Scheme, Watch,
+};
+use stripmine_physics::method::{Failure, FailureKind};
+use stripmine_physics::observe::{Observation, Scenery};
+use stripmine_physics::particles::{Kind, Particles};
+use stripmine_physics::scene::{Precision, WallMotion};
 use support::{CONTACT, advance, arena, fast, gas, grain, simulate};
 
 const LATTICE: FastSearch = FastSearch::Lattice(OnConflict::Stop);
@@ -95,7 +95,7 @@ fn walls_gravity_and_a_shaken_floor_are_the_faithful_ones() {
         model.scheme = scheme;
         let run = |contacts| {
             let (model, particles) = (model.clone(), particles.clone());
-            let start = stripmine::method::lattice_md::start;
+            let start = stripmine_physics::method::lattice_md::start;
             let mut method = start(Precision::F64, model, contacts, fast(), walls, particles).unwrap();
             advance(method.as_mut(), 400);
             (method.particles(), method.totals())
@@ -211,7 +211,7 @@ fn conflicts_are_resolved_beside_the_lattice() {
         advance(second.as_mut(), 189);
         assert!(bits(second.as_ref()) == bits(resolved.as_ref()), "a run that goes on differs");
         assert_eq!(second.totals(), resolved.totals());
-        let begin = stripmine::method::lattice_md::start;
+        let begin = stripmine_physics::method::lattice_md::start;
         let (model, particles) = start.clone();
         let stopped =
             begin(Precision::F64, model, Contacts::Fast(LATTICE), fast(), WallMotion::Fixed, particles);
@@ -248,7 +248,7 @@ fn wide_sizes_are_for_sectors_and_lists() {
     };
     let few = ["domain.sides=[20, 18]", "particles.packing_fraction=0.3"];
     let checked = load(&few).unwrap_or_else(|errors| panic!("{errors}"));
-    let (model, dt) = (stripmine::method::lattice_md::model(&checked), 0.002);
+    let (model, dt) = (stripmine_physics::method::lattice_md::model(&checked), 0.002);
     let mut expected = checked.particles.clone();
     let radii = expected.radii().unwrap();
     assert!(radii[1] / radii[0] > 5.0, "{radii:?}");
@@ -270,7 +270,7 @@ fn wide_sizes_are_for_sectors_and_lists() {
     assert!(moved[0] > 0.5 && moved[1] > 0.1, "the discs must have moved and met: {moved:?}");
     for kind in ["sectors", "neighbor-list"] {
         let checked = load(&[&few[..], &[&format!("search.by={kind}")]].concat()).unwrap();
-        let mut method = stripmine::method::lattice_md::assemble(&checked).unwrap();
+        let mut method = stripmine_physics::method::lattice_md::assemble(&checked).unwrap();
         advance(method.as_mut(), STEPS);
         let off = differences(&model, &expected, &method.particles());
         assert!(off[0] < 1e-9 && off[1] < 1e-8, "{kind}: {off:?}");
@@ -352,7 +352,7 @@ fn failures_are_found_in_their_step() {
         let failure = |contacts| -> Failure {
             let start = start.clone();
             let (model, particles) = start;
-            let begin = stripmine::method::lattice_md::start;
+            let begin = stripmine_physics::method::lattice_md::start;
             let mut method =
                 match begin(Precision::F64, model, contacts, fast(), WallMotion::Fixed, particles) {
                     Ok(method) => method,

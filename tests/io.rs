@@ -13,8 +13,8 @@ mod growing_files;
 #[path = "io/lammps.rs"]
 mod lammps;
 
-use stripmine::io::extxyz::{Frame, write};
-use stripmine::particles::{Kind, Particle, Particles};
+use stripmine_physics::io::extxyz::{Frame, write};
+use stripmine_physics::particles::{Kind, Particle, Particles};
 
 /// A grain and a wall disc, of numbers that are hard to print.
 fn frame(step: u64) -> Frame {

@@ -3,11 +3,13 @@
 
 mod support;
 
-use stripmine::method::lattice_md::{Contacts, Engine, ListOptions, Machine, Model, ProgramText, Rebuild};
-use stripmine::particles::Particles;
-use stripmine::scene::Precision;
 use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::{Execution, InstructionSet};
+use stripmine_physics::method::lattice_md::{
+    Contacts, Engine, ListOptions, Machine, Model, ProgramText, Rebuild,
+};
+use stripmine_physics::particles::Particles;
+use stripmine_physics::scene::Precision;
 use support::{advance, fast, gas, printed_gas, simulate};
 
 fn trajectories_agree(precision: Precision, coordinates: Coordinates, rebuild: Rebuild, steps: u64) {
@@ -89,7 +91,7 @@ fn the_printed_text_runs_the_same_by_every_execution_and_beside_ours() {
 /// Fixed and moving walls, a closed side, gravity: the small pipe by both texts.
 #[test]
 fn the_pipe_of_the_printed_text_is_ours_but_for_rounding() {
-    use stripmine::method::lattice_md::{Document, assemble};
+    use stripmine_physics::method::lattice_md::{Document, assemble};
     let run = |preset: &str, overrides: &[&str]| {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
         let mut engine = assemble(&Document::load(preset, &overrides).unwrap().check().unwrap()).unwrap();

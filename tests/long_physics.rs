@@ -7,11 +7,11 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::f64::consts::SQRT_2;
 use std::fmt::Write;
 use std::sync::LazyLock;
-use stripmine::method::lattice_md::Document;
-use stripmine::method::lattice_md::{assemble, model};
-use stripmine::observe::{Observation, Scenery, contacts, waves};
-use stripmine::particles::Particles;
 use stripmine::statistics::Spread;
+use stripmine_physics::method::lattice_md::Document;
+use stripmine_physics::method::lattice_md::{assemble, model};
+use stripmine_physics::observe::{Observation, Scenery, contacts, waves};
+use stripmine_physics::particles::Particles;
 
 const SEEDS: u64 = 6;
 /// Mean radius (m).
@@ -242,7 +242,7 @@ fn the_figures_are_reported() {
     assert!((late(&long.fano)) > 1.0);
     if std::env::var_os("STRIPMINE_REPORTS").is_some() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("reports/physics");
-        let origin = stripmine::origin::Origin::here();
+        let origin = stripmine::provenance::built();
         assert!(origin.is_committed(), "committed results come from a committed source: {origin:?}");
         std::fs::create_dir_all(&folder).unwrap();
         std::fs::write(folder.join("pipe_small.md"), text).unwrap();

@@ -3,14 +3,14 @@
 use rand::RngExt;
 use serde_json::{Map, Value};
 use std::sync::atomic::AtomicBool;
-use stripmine::domain::Domain;
-use stripmine::method::lattice_md::{Document, model};
-use stripmine::method::{METHODS, Purpose, Simulation, Until, load};
-use stripmine::observe::{Observation, Scenery};
-use stripmine::particles::{Kind, Particle, Particles, in_space};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
 use stripmine_kernels::noise::{Purpose as Draw, Stream};
+use stripmine_physics::domain::Domain;
+use stripmine_physics::method::lattice_md::{Document, model};
+use stripmine_physics::method::{METHODS, Purpose, Simulation, Until, load};
+use stripmine_physics::observe::{Observation, Scenery};
+use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
 
 /// Overrides.
 type Sets<'a> = &'a [&'a str];
@@ -34,7 +34,7 @@ fn scenery(scene: &str, sets: &[Sets<'_>]) -> Scenery {
 
 /// The place of a quantity in a row.
 fn column(name: &str) -> usize {
-    let quantities = stripmine::method::lattice_md::ENTRY.quantities;
+    let quantities = stripmine_physics::method::lattice_md::ENTRY.quantities;
     quantities.iter().position(|quantity| quantity.name == name).unwrap()
 }
 

@@ -168,7 +168,7 @@ fn standard_output_carries_none_either() {
 /// A checkpoint whose names are no names, and a folder that is called so.
 #[test]
 fn no_message_of_a_checkpoint_does_either() {
-    use stripmine::io::checkpoint::{CheckpointError, Fault, Kept};
+    use stripmine_physics::io::checkpoint::{CheckpointError, Fault, Kept};
     for nasty in NASTY {
         let error = CheckpointError {
             file: nasty.into(),
@@ -209,7 +209,8 @@ fn what_is_no_ordinary_file_is_refused() {
             assert_eq!(found, Some(code), "{arguments:?}: {text}");
             assert!(text.contains(words), "{arguments:?}: {text}");
         }
-        let checkpoint = stripmine::io::checkpoint::Checkpoint::read(folder.path().join(name)).unwrap_err();
+        let checkpoint =
+            stripmine_physics::io::checkpoint::Checkpoint::read(folder.path().join(name)).unwrap_err();
         assert!(checkpoint.to_string().contains(words), "{checkpoint}");
     }
 }
@@ -290,8 +291,8 @@ fn no_verb_waits_at_a_pipe() {
 /// Files of other kinds and broken ones may hold mistakes without end: the first are named, the rest counted.
 #[test]
 fn many_mistakes_are_counted() {
-    use stripmine::method::lattice_md::Scene;
-    use stripmine::scene::Reason;
+    use stripmine_physics::method::lattice_md::Scene;
+    use stripmine_physics::scene::Reason;
     let keys: String = (0..100_000).map(|i| format!("key{i} = 1\n")).collect();
     let positions = format!("[particles]\npositions = [{}]", "[1.0, 2.0, 3.0], ".repeat(40_000));
     for (text, more) in [
@@ -314,7 +315,7 @@ fn many_mistakes_are_counted() {
 /// The column of an item is found without counting from the beginning of its line.
 #[test]
 fn a_long_line_is_read_in_time_that_grows_with_its_length() {
-    use stripmine::method::lattice_md::Document;
+    use stripmine_physics::method::lattice_md::Document;
     let text = Document::load("two-discs", &[]).unwrap().scene.to_toml();
     let list =
         |count: usize| (0..count).map(|i| format!("[{}.0, 1.0]", i % 9)).collect::<Vec<_>>().join(", ");

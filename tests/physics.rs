@@ -3,15 +3,15 @@
 
 mod support;
 
-use stripmine::io::checkpoint::Column;
-use stripmine::method::lattice_md::Engine;
-use stripmine::method::lattice_md::{Contacts, GearValues, Machine, Model, Scheme, Watch};
-use stripmine::method::{Failure, FailureKind};
-use stripmine::observe::{Observation, Scenery};
-use stripmine::particles::{Particle, Particles};
-use stripmine::scene::Precision;
 use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::{Execution, InstructionSet};
+use stripmine_physics::io::checkpoint::Column;
+use stripmine_physics::method::lattice_md::Engine;
+use stripmine_physics::method::lattice_md::{Contacts, GearValues, Machine, Model, Scheme, Watch};
+use stripmine_physics::method::{Failure, FailureKind};
+use stripmine_physics::observe::{Observation, Scenery};
+use stripmine_physics::particles::{Particle, Particles};
+use stripmine_physics::scene::Precision;
 use support::{CONTACT, advance, arena, fast, gas, grain, simulate};
 
 fn lattice(start: &(Model, Particles)) -> Box<dyn Engine> {

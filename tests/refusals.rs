@@ -2,11 +2,11 @@
 //! of the motion.
 
 use std::sync::atomic::AtomicBool;
-use stripmine::method::lattice_md::{Checked, Document};
-use stripmine::method::lattice_md::{Engine, Totals};
-use stripmine::method::lattice_md::{assemble, assemble_following_energy, model};
-use stripmine::method::{Culprit, Failure, FailureKind, METHODS, Purpose, Until, load};
-use stripmine::observe::{Observation, Scenery};
+use stripmine_physics::method::lattice_md::{Checked, Document};
+use stripmine_physics::method::lattice_md::{Engine, Totals};
+use stripmine_physics::method::lattice_md::{assemble, assemble_following_energy, model};
+use stripmine_physics::method::{Culprit, Failure, FailureKind, METHODS, Purpose, Until, load};
+use stripmine_physics::observe::{Observation, Scenery};
 
 /// Every engine by the overrides that choose it.
 const ENGINES: [(&str, &[&str]); 6] = [

@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use stripmine::io::checkpoint::{Checkpoint, Counter};
+use stripmine_physics::io::checkpoint::{Checkpoint, Counter};
 
 fn stripmine(scene: &str, folder: &Path, more: &[&str]) -> Command {
     let mut command = Command::cargo_bin("stripmine").unwrap();

@@ -4,7 +4,7 @@ use assert_cmd::cargo::CommandCargoExt;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use stripmine::method::{Every, METHODS, load};
+use stripmine_physics::method::{Every, METHODS, load};
 
 fn stripmine(arguments: &[&str]) -> Command {
     let mut command = Command::cargo_bin("stripmine").unwrap();

@@ -2,10 +2,10 @@
 
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};
-use stripmine::method::METHODS;
-use stripmine::method::lattice_md::{Document, ENTRY, GearValues, Scene, Scheme};
-use stripmine::particles;
-use stripmine::scene::{Kind, Reason, Start};
+use stripmine_physics::method::METHODS;
+use stripmine_physics::method::lattice_md::{Document, ENTRY, GearValues, Scene, Scheme};
+use stripmine_physics::particles;
+use stripmine_physics::scene::{Kind, Reason, Start};
 
 fn stripmine(arguments: &[&str]) -> std::process::Output {
     Command::cargo_bin("stripmine").unwrap().args(arguments).output().unwrap()
@@ -179,7 +179,7 @@ fn overrides_take_the_place_of_rivals() {
     };
     let scene = load("pipe", &["run.steps=50", "law.friction=0", "particles.count=7"]).unwrap();
     assert_eq!((scene.run.steps, scene.law.contact.friction), (50, 0.0));
-    assert!(matches!(scene.start, Start::Pipe { amount: stripmine::scene::Amount::Count(7), .. }));
+    assert!(matches!(scene.start, Start::Pipe { amount: stripmine_physics::scene::Amount::Count(7), .. }));
     assert_eq!(load("pipe", &["run.time=0.01"]).unwrap().run.steps, 100);
     // The later of two rivals is not guessed.
     assert!(load("pipe", &["run.time=0.01", "run.steps=3"]).is_err());
@@ -189,7 +189,7 @@ fn overrides_take_the_place_of_rivals() {
     assert_eq!((count, packing_fraction, bench.integrator.scheme), (500, 0.6, Scheme::Gear(GearValues::Six)));
     // Numbers, words with and without quotes.
     let scene = load("pipe", &["machine.precision=f32", "machine.coordinates=\"absolute\""]).unwrap();
-    assert_eq!(scene.machine.precision, stripmine::scene::Precision::F32);
+    assert_eq!(scene.machine.precision, stripmine_physics::scene::Precision::F32);
     // An override mends a mistake of the file.
     let preset = ENTRY.vocabulary.presets.iter().find(|preset| preset.name == "two-discs").unwrap();
     let broken = preset.text.replace("dt = 1e-3", "dt = -1");

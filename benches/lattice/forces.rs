@@ -9,10 +9,10 @@ use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput};
 use std::hint::black_box;
 use std::time::Duration;
-use stripmine::method::lattice_md::{Arrays, Model, Part, Watch, execute, programs as programs_of};
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Array;
 use stripmine_kernels::{Execution, InstructionSet};
+use stripmine_physics::method::lattice_md::{Arrays, Model, Part, Watch, execute, programs as programs_of};
 
 fn places<T: Precision>(model: &Model) -> Vec<Place<T>> {
     let place = |offset: &stripmine_kernels::mask::Offset| {

@@ -6,9 +6,9 @@
 
 use criterion::{Criterion, SamplingMode, Throughput};
 use std::time::Duration;
-use stripmine::method::lattice_md::assemble;
-use stripmine::method::lattice_md::{Checked, Document};
-use stripmine::method::lattice_md::{Engine, Phase};
+use stripmine_physics::method::lattice_md::assemble;
+use stripmine_physics::method::lattice_md::{Checked, Document};
+use stripmine_physics::method::lattice_md::{Engine, Phase};
 
 /// Steps before anything is timed: the start on a lattice has no contacts.
 pub const EQUILIBRATION: u64 = 400;

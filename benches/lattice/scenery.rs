@@ -1,15 +1,15 @@
 //! The scene of the benches: a dense packing of discs with all contacts at work.
 
-use stripmine::method::lattice_md::{
-    Arrays, Discs, GearValues, Model, Part, ProgramText, Scheme, StepProgram, execute, programs,
-};
-use stripmine::particles::Particles;
-use stripmine::placement::hexagonal;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
 use stripmine_kernels::{Execution, InstructionSet};
+use stripmine_physics::method::lattice_md::{
+    Arrays, Discs, GearValues, Model, Part, ProgramText, Scheme, StepProgram, execute, programs,
+};
+use stripmine_physics::particles::Particles;
+use stripmine_physics::placement::hexagonal;
 
 pub const CONTACT: Contact = Contact {
     stiffness: 187.0,

@@ -7,11 +7,11 @@ use crate::phases::{EQUILIBRATION, advance, scene};
 use criterion::{Criterion, Throughput};
 use std::hint::black_box;
 use std::time::Duration;
-use stripmine::method::lattice_md::{assemble, model};
-use stripmine::particles::Particles;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::sweep::fast::lattice::{Codes, Lattice, Occupancy};
 use stripmine_kernels::sweep::fast::{Cursor, Finder, Grid, SENTINELS, Sectors};
+use stripmine_physics::method::lattice_md::{assemble, model};
+use stripmine_physics::particles::Particles;
 
 /// Cells and places in them, in the order of the cells, sentinels behind.
 fn settled(particles: &Particles, grid: &Grid) -> (Vec<[usize; 2]>, [Vec<f64>; 2]) {

@@ -5,9 +5,9 @@
 use crate::scenery::dense;
 use criterion::{Criterion, Throughput};
 use std::time::Duration;
-use stripmine::method::lattice_md::{Arrays, Model, Part, StepProgram, Watch, execute, programs};
 use stripmine_kernels::ledger::Length;
 use stripmine_kernels::{Execution, InstructionSet};
+use stripmine_physics::method::lattice_md::{Arrays, Model, Part, StepProgram, Watch, execute, programs};
 
 /// The programs without the one that looks for lost discs: the last of the Index that runs over discs.
 fn without_check(mut programs: Vec<StepProgram>) -> Vec<StepProgram> {

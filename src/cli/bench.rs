@@ -1,13 +1,13 @@
 //! `stripmine bench`: one throughput measurement of moving particles.
 
 use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
-use crate::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
-use crate::method::{Bench, Entry, Methods};
-use crate::number::counted;
 use crate::report::terminal;
-use crate::scene::{SceneErrors, Values};
 use clap::Args;
 use serde_json::Value;
+use stripmine_physics::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
+use stripmine_physics::method::{Bench, Entry, Methods};
+use stripmine_physics::number::counted;
+use stripmine_physics::scene::{SceneErrors, Values};
 
 /// One throughput measurement of moving particles
 #[derive(Args)]

@@ -1,21 +1,21 @@
 //! `stripmine chart`: studies as data and charts. Methods add studies of their own.
 
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
-use crate::method::Methods;
-use crate::method::Progress;
 use crate::model::machines;
-use crate::number::counted;
-use crate::origin::Provenance;
-use crate::quoted;
+use crate::provenance::Provenance;
 use crate::results::Made;
+use crate::results::Progress;
 use crate::results::{Folder, Journal};
-use crate::signals;
 use crate::study::stability::{self, Over, stability};
 use crate::study::work_precision::{self, work_precision};
 use crate::study::{Subject, stability::section as map_section, work_precision::section as diagram_section};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use stripmine_physics::method::Methods;
+use stripmine_physics::number::counted;
+use stripmine_physics::quoted;
+use stripmine_physics::signals;
 
 /// Seconds that a study may take.
 const BUDGET: std::ops::RangeInclusive<i64> = 1..=86_400;

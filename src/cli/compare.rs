@@ -1,17 +1,17 @@
 //! `stripmine compare`: two ways to run one scene, beside each other.
 
 use crate::console::{Common, Failure, print, print_json};
-use crate::domain::Domain;
-use crate::method::{Methods, Prepared, Purpose, Simulation, Until, load};
-use crate::number::significant;
-use crate::particles::Particles;
 use crate::report::table::{Cell, Table};
 use crate::report::terminal;
-use crate::scene::SceneErrors;
 use clap::Args;
 use serde::Serialize;
 use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
+use stripmine_physics::domain::Domain;
+use stripmine_physics::method::{Methods, Prepared, Purpose, Simulation, Until, load};
+use stripmine_physics::number::significant;
+use stripmine_physics::particles::Particles;
+use stripmine_physics::scene::SceneErrors;
 
 /// Two ways to run one scene, beside each other: whether they give the same bits, the first difference, and how it grows
 #[derive(Args)]
@@ -137,7 +137,7 @@ fn look(first: &dyn Simulation, second: &dyn Simulation, domain: &Domain) -> Loo
             (seen.position, seen.particle) = (apart, Some(particle.id));
         }
         seen.velocity = seen.velocity.max(faster);
-        let bits = |of: &crate::particles::Particle| {
+        let bits = |of: &stripmine_physics::particles::Particle| {
             (of.position.map(f64::to_bits), of.velocity.map(f64::to_bits), of.omega.to_bits())
         };
         seen.same_bits &= bits(particle) == bits(twin);

@@ -2,11 +2,11 @@
 
 use super::{command, scene};
 use crate::console::{Failure, print};
-use crate::method::Methods;
 use crate::model::machines;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Command};
 use clap_complete::{Shell, generate};
+use stripmine_physics::method::Methods;
 
 /// Shell completion, to standard output
 #[derive(Args)]
@@ -56,7 +56,7 @@ fn with_values(command: Command, values: &[(&str, &Vec<String>)]) -> Command {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::METHODS;
+    use stripmine_physics::method::METHODS;
 
     #[test]
     fn shells_know_presets_machines_and_keys() {

@@ -2,10 +2,10 @@
 
 use super::{command, manual};
 use crate::console::{Failure, print};
-use crate::method::Methods;
 use clap::Args;
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, bold, roman};
+use stripmine_physics::method::Methods;
 
 /// The manual page, in roff, to standard output: stripmine man | man -l -
 #[derive(Args)]

@@ -140,7 +140,7 @@ pub(super) fn text(verb: &str) -> String {
 mod tests {
     use super::*;
     use crate::cli::command;
-    use crate::method::METHODS;
+    use stripmine_physics::method::METHODS;
 
     #[test]
     fn every_example_is_a_command_and_every_verb_has_one() {

@@ -1,10 +1,10 @@
 //! What a mistaken argument may have meant: the nearest verb, or the key of scenes that an option is called like.
 
-use crate::method::Methods;
-use crate::words::nearest;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::collections::BTreeSet;
 use std::ffi::OsString;
+use stripmine_physics::method::Methods;
+use stripmine_physics::words::nearest;
 
 /// Keys that are named for one option, at most.
 const MOST: usize = 3;

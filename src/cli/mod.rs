@@ -12,15 +12,18 @@ mod reproduce;
 mod run;
 mod scene;
 
+use crate::console::Verb;
 use crate::console::{Common, Failure, clear_progress, print_answer, tell};
-use crate::method::{Item, METHODS, Methods, Verb};
-use crate::origin::command_line;
-use crate::signals;
+use crate::laboratory::laboratories;
+use crate::provenance::command_line;
+use crate::results::Item;
 use crate::study;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
+use stripmine_physics::method::{METHODS, Methods};
+use stripmine_physics::signals;
 
 /// A SIMD vector machine for 2D particle dynamics.
 #[derive(Parser)]
@@ -48,17 +51,17 @@ enum GeneralVerb {
 
 /// The verbs of methods.
 fn verbs_of(methods: Methods) -> impl Iterator<Item = &'static Verb> {
-    methods.iter().flat_map(|method| method.verbs)
+    laboratories(methods).flat_map(|laboratory| laboratory.verbs)
 }
 
 /// The studies of methods, below `chart`.
 fn charts_of(methods: Methods) -> impl Iterator<Item = &'static Verb> {
-    methods.iter().flat_map(|method| method.charts)
+    laboratories(methods).flat_map(|laboratory| laboratory.charts)
 }
 
 /// What `reproduce` makes, in the order of the page: of methods, and of studies that all of them share.
 fn items_of(methods: Methods) -> impl Iterator<Item = &'static Item> {
-    methods.iter().flat_map(|method| method.items).chain(study::ITEMS)
+    laboratories(methods).flat_map(|laboratory| laboratory.items).chain(study::ITEMS)
 }
 
 /// A verb of a method as a command.

@@ -2,15 +2,16 @@
 
 use super::items_of;
 use crate::console::{Common, Failure, SHARES, bar, clear_progress, print_json, say};
-use crate::method::{Item, Methods};
-use crate::origin::Provenance;
-use crate::quoted;
+use crate::provenance::Provenance;
+use crate::results::Item;
 use crate::results::{Effort, Folder};
-use crate::signals;
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
+use stripmine_physics::method::Methods;
+use stripmine_physics::quoted;
+use stripmine_physics::signals;
 
 /// Every table and figure of the sources, with data and a page that says what came out
 #[derive(Args)]

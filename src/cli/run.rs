@@ -1,14 +1,15 @@
 //! `stripmine run`: one simulation into a folder.
 
 use crate::console::{Common, Failure, STEPS, bar, clear_progress, print, print_json, say, warn};
-use crate::method::{Clock, Methods, Prepared, prepare, vocabularies};
-use crate::number::significant;
-use crate::quoted;
-use crate::run::{Ending, Existing, Summary, begins, chosen_otherwise, forecast, run};
-use crate::scene::Values;
-use crate::signals;
+use crate::provenance::built;
 use clap::Args;
 use std::path::{Path, PathBuf};
+use stripmine_physics::method::{Clock, Methods, Prepared, prepare, vocabularies};
+use stripmine_physics::number::significant;
+use stripmine_physics::quoted;
+use stripmine_physics::run::{Ending, Existing, Job, Summary, begins, chosen_otherwise, forecast, run};
+use stripmine_physics::scene::Values;
+use stripmine_physics::signals;
 
 /// One simulation: observables, trajectory, summary and checkpoints in a folder
 #[derive(Args)]
@@ -68,8 +69,8 @@ impl RunVerb {
                 warn(note);
             }
         };
-        let ending =
-            run(prepared.as_ref(), entry.quantities, &folder, existing, signals::asked(), progress, notice);
+        let job = Job { prepared: prepared.as_ref(), quantities: entry.quantities, program: &built() };
+        let ending = run(job, &folder, existing, signals::asked(), progress, notice);
         clear_progress();
         match ending? {
             Ending::Done(summary) if common.json => print_json(&summary),

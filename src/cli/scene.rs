@@ -1,20 +1,20 @@
 //! `stripmine scene`: presets, keys, and the check of a scene.
 
 use crate::console::{Common, Failure, print, print_json, warn};
-use crate::method::programs::Programs;
-use crate::method::{Fact, Methods, Prepared, VectorProgram, load, method};
+use crate::laboratory::programs::Programs;
 use crate::model::machine::MachineModel;
 use crate::model::machines;
-use crate::quoted;
 use crate::report::table::{Cell, Table};
 use crate::report::terminal;
-use crate::run::forecast;
-use crate::scene::{Fallback, Key, Preset, SECTIONS};
 use crate::study::StudyError;
 use clap::{Args, Subcommand};
 use serde::Serialize;
 use serde_json::{Map, json};
 use stripmine_kernels::backend::Line;
+use stripmine_physics::method::{Fact, Methods, Prepared, VectorProgram, load, method};
+use stripmine_physics::quoted;
+use stripmine_physics::run::forecast;
+use stripmine_physics::scene::{Fallback, Key, Preset, SECTIONS};
 
 /// Presets, a preset's text to start from, the check of a scene, and every key of a scene file
 #[derive(Args)]

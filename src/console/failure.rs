@@ -1,14 +1,14 @@
 //! Why a verb did not come to its end, in words and as data: what `--json` prints in the place of a result.
 
 use super::output::{is_untouched, print_json, say};
-use crate::quoted;
-use crate::reported::{Class, FilePlace, Reported};
-use crate::scene::SceneErrors;
-use crate::signals::{self, End};
-use crate::words::suggestion;
 use serde::Serialize;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use stripmine_physics::quoted;
+use stripmine_physics::reported::{Class, FilePlace, Reported};
+use stripmine_physics::scene::SceneErrors;
+use stripmine_physics::signals::{self, End};
+use stripmine_physics::words::suggestion;
 
 /// Why a verb did not come to its end; each kind has its exit code.
 #[derive(Debug, thiserror::Error)]

@@ -2,10 +2,12 @@
 
 mod failure;
 mod output;
+mod verb;
 
 pub use failure::{Failure, tell};
 pub(crate) use output::print_answer;
 pub use output::{SHARES, STEPS, bar, clear_progress, print, print_json, progress, say, to_json, warn};
+pub use verb::Verb;
 
 use clap::Args;
 

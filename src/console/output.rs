@@ -2,7 +2,6 @@
 //! the command does.
 
 use super::{Common, Failure};
-use crate::quoted;
 use crate::report::terminal;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::fmt::Display;
@@ -10,6 +9,7 @@ use std::io::{self, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
+use stripmine_physics::quoted;
 
 /// Whether anything was written to standard output.
 static BEGUN: AtomicBool = AtomicBool::new(false);

@@ -2,7 +2,7 @@
 
 use super::Table;
 use super::figure::Figure;
-use crate::origin::Provenance;
+use crate::provenance::Provenance;
 use serde::{Deserialize, Serialize};
 
 /// One item of the page.

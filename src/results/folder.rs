@@ -6,19 +6,20 @@
 use super::Made;
 use super::journal::is_journal;
 use crate::console::{Failure, to_json};
-use crate::io::lock::{Lock, LockError, is_lock};
-use crate::io::replace::{is_temporary, listing, remove_if_there, replace, temporary};
-use crate::io::{FileError, regular_file};
-use crate::origin::{Origin, Provenance};
-use crate::quoted;
+use crate::provenance::{Provenance, built};
 use crate::report::figure::{self, Figure, png, svg};
 use crate::report::{Section, csv, html, page};
-use crate::reported::{Class, Reported};
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use stripmine_physics::io::lock::{Lock, LockError, is_lock};
+use stripmine_physics::io::replace::{is_temporary, listing, remove_if_there, replace, temporary};
+use stripmine_physics::io::{FileError, regular_file};
+use stripmine_physics::origin::Origin;
+use stripmine_physics::quoted;
+use stripmine_physics::reported::{Class, Reported};
 use tempfile::TempDir;
 
 /// What a page needs of an item that is not its data.
@@ -109,7 +110,7 @@ impl Folder {
     /// If what stands there is not ours, is committed while the source of this program is not, or another process writes
     /// there.
     pub fn open(path: &Path, items: &[&str], pages: bool) -> Result<Folder, FolderError> {
-        traceable(path, &Origin::here())?;
+        traceable(path, &built())?;
         let admits = || {
             judge(path)?;
             for name in items {
@@ -416,7 +417,7 @@ mod tests {
         }
         git(&["init", "--quiet"]);
         git(&["add", "reports"]);
-        let of = |dirty| Origin { commit: "1234567890ab".to_owned(), dirty, ..Origin::here() };
+        let of = |dirty| Origin { commit: "1234567890ab".to_owned(), dirty, ..built() };
         let refused = traceable(&kept, &of(true)).unwrap_err();
         assert!(matches!(&refused, FolderError::Uncommitted(folder) if *folder == kept));
         assert!(refused.to_string().contains("another --out"), "{refused}");

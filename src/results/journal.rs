@@ -4,10 +4,6 @@
 //! it has a checksum of the digest, its key and its value. What does not fit is left out, so that it is measured again; a last
 //! line that was cut off too, without a word.
 
-use crate::io::replace::replace;
-use crate::io::{FileError, regular_file};
-use crate::quoted;
-use crate::reported::{Class, FilePlace, Reported};
 use crc32fast::Hasher;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -17,6 +13,10 @@ use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use stripmine_physics::io::replace::replace;
+use stripmine_physics::io::{FileError, regular_file};
+use stripmine_physics::quoted;
+use stripmine_physics::reported::{Class, FilePlace, Reported};
 
 /// The name of the file.
 pub(super) const NAME: &str = "journal.jsonl";

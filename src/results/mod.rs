@@ -1,10 +1,12 @@
 //! Results: what a finished item holds, the folder that items are written to, and the runs that a study has finished.
 
 mod folder;
+mod item;
 mod journal;
 mod own_files;
 
 pub use folder::{Folder, FolderError};
+pub use item::{Item, Progress};
 pub use journal::{Identity, Journal, JournalError};
 pub(crate) use own_files::OwnFiles;
 

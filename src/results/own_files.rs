@@ -2,15 +2,15 @@
 //!
 //! A list beside the files, written before them, says which are its own: a heading, then a name a line.
 
-use crate::io::lock::{Lock, LockError};
-use crate::io::replace::replace;
-use crate::io::{FileError, regular_file};
-use crate::quoted;
-use crate::reported::{Class, FilePlace, Reported};
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use stripmine_physics::io::lock::{Lock, LockError};
+use stripmine_physics::io::replace::replace;
+use stripmine_physics::io::{FileError, regular_file};
+use stripmine_physics::quoted;
+use stripmine_physics::reported::{Class, FilePlace, Reported};
 
 /// Keeps other processes out.
 const LOCK: &str = ".stripmine.lock";

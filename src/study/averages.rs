@@ -2,9 +2,9 @@
 
 use super::state::State;
 use super::subject::Subject;
-use crate::domain::Domain;
-use crate::method::Simulation;
 use std::collections::BTreeMap;
+use stripmine_physics::domain::Domain;
+use stripmine_physics::method::Simulation;
 
 /// Looks of a run; means are over the second half.
 pub const LOOKS: u64 = 64;

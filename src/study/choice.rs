@@ -1,6 +1,6 @@
 //! A way to run a scene: a setting for each axis that its method states.
 
-use crate::method::{Axis, Decides, Prepared, Setting, Trials};
+use stripmine_physics::method::{Axis, Decides, Prepared, Setting, Trials};
 
 /// A setting for each axis.
 #[derive(Clone, Debug)]

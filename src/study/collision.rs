@@ -11,10 +11,10 @@ use super::orders::{Fitted, fit};
 use super::state::{State, displaced};
 use super::subject::Subject;
 use super::trial::{Course, follow};
-use crate::method::{Decides, Purpose};
 use crate::results::{Journal, JournalError};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
+use stripmine_physics::method::{Decides, Purpose};
 
 /// Outcomes of a collision.
 pub const OUTCOMES: [&str; 2] = ["restitution", "deflection"];

@@ -5,13 +5,13 @@ use super::choice::Choice;
 use super::meter::Meter;
 use super::subject::Subject;
 use super::trial::{Course, follow};
-use crate::domain::Domain;
-use crate::method::{Purpose, Simulation};
-use crate::near::Near;
-use crate::particles::Particles;
 use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::{PI, TAU};
+use stripmine_physics::domain::Domain;
+use stripmine_physics::method::{Purpose, Simulation};
+use stripmine_physics::near::Near;
+use stripmine_physics::particles::Particles;
 
 /// Looks at a run at most: contacts that begin and end between two looks are not seen.
 const LOOKS: u64 = 1024;
@@ -121,7 +121,7 @@ impl Turns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::particles::{Kind, Particle, in_space};
+    use stripmine_physics::particles::{Kind, Particle, in_space};
 
     fn disc(id: u32, kind: Kind, x: f64, velocity: [f64; 2]) -> Particle {
         Particle {

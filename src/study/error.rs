@@ -1,11 +1,11 @@
 //! Why a study has no result.
 
-use crate::method::Failure;
-use crate::method::observed::UnknownName;
-use crate::number::significant;
-use crate::reported::{Class, Reported};
 use crate::results::JournalError;
-use crate::scene::SceneErrors;
+use stripmine_physics::method::Failure;
+use stripmine_physics::method::observed::UnknownName;
+use stripmine_physics::number::significant;
+use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::scene::SceneErrors;
 
 /// Why a study has no result.
 #[derive(Debug, thiserror::Error)]

@@ -5,10 +5,10 @@ use super::meter::Meter;
 use super::state::{State, displaced};
 use super::subject::Subject;
 use super::trial::advance;
-use crate::method::{Decides, Failure, Prepared, Purpose, Simulation};
-use crate::number::significant;
 use crate::statistics::slope;
 use serde::{Deserialize, Serialize};
+use stripmine_physics::method::{Decides, Failure, Prepared, Purpose, Simulation};
+use stripmine_physics::number::significant;
 
 /// How far particles of the second run are moved at the start (the method's length).
 pub const DISTURBANCE: f64 = 1e-9;

@@ -5,8 +5,9 @@ use super::stability::{self, Over, stability};
 use super::work_precision::{self, work_precision};
 use super::{Subject, stability::section as map_section, work_precision::section as diagram_section};
 use crate::console::Failure;
-use crate::method::{Item, METHODS, Progress};
 use crate::results::{Effort, Journal, Made};
+use crate::results::{Item, Progress};
+use stripmine_physics::method::METHODS;
 
 /// Every item, in the order of the page.
 pub const ITEMS: &[Item] = &[

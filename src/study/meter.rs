@@ -1,6 +1,6 @@
 //! How much of a study is done, while its runs go on side by side.
 
-use crate::method::Progress;
+use crate::results::Progress;
 use std::sync::Mutex;
 
 /// Hears of expected seconds of work that are done.

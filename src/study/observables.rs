@@ -5,11 +5,11 @@ use super::choice::Choice;
 use super::meter::Meter;
 use super::subject::Subject;
 use super::trial::{Course, follow};
-use crate::method::{Purpose, Simulation};
 use crate::results::{Journal, JournalError};
 use crate::statistics::Spread;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
+use stripmine_physics::method::{Purpose, Simulation};
 
 /// Seeds, each an independent start.
 pub const SEEDS: [u64; 4] = [1, 2, 3, 4];

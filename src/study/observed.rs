@@ -1,7 +1,7 @@
 //! What studies observe of a scene: places of the quantities that its method names in its trials, looked up once.
 
-use crate::method::observed::{UnknownName, find};
-use crate::method::{Quantity, Trials};
+use stripmine_physics::method::observed::{UnknownName, find};
+use stripmine_physics::method::{Quantity, Trials};
 
 /// A quantity that has a mean in a run.
 #[derive(Debug)]
@@ -82,7 +82,7 @@ impl Observed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::{Balance, METHODS};
+    use stripmine_physics::method::{Balance, METHODS};
 
     #[test]
     fn trials_that_name_what_is_not_observed_are_refused() {

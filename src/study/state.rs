@@ -1,8 +1,8 @@
 //! A state of a run as studies compare it: particles by id, and what differs between two states of one scene.
 
-use crate::domain::Domain;
-use crate::particles::{Kind, Particle, Particles, in_space};
 use serde::{Deserialize, Serialize};
+use stripmine_physics::domain::Domain;
+use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
 
 /// A particle that moves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

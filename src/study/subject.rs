@@ -2,10 +2,10 @@
 
 use super::observed::Observed;
 use super::{Choice, StudyError};
-use crate::method::{Every, Methods, Prepared, Setting, Trials, Until, prepare, vocabularies};
 use crate::results::Identity;
-use crate::scene::{SceneErrors, Values};
 use sha2::{Digest, Sha256};
+use stripmine_physics::method::{Every, Methods, Prepared, Setting, Trials, Until, prepare, vocabularies};
+use stripmine_physics::scene::{SceneErrors, Values};
 
 /// The form in which studies keep finished runs; another one whenever these hold other things.
 const JOURNALED: &str = "2";
@@ -113,7 +113,7 @@ impl Subject {
     }
 
     /// The setting of the axis that decides the order, of a way to run it.
-    pub fn theory(&self, setting: &Setting) -> Option<crate::method::Theory> {
+    pub fn theory(&self, setting: &Setting) -> Option<stripmine_physics::method::Theory> {
         (self.trials.theory)(&self.values, self.prepared.as_ref(), setting)
     }
 

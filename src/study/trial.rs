@@ -2,10 +2,11 @@
 
 use super::meter::Meter;
 use super::state::State;
-use crate::method::{Failure, Prepared, Purpose, Simulation, Until};
+use crate::model::clock::{Clock, Work};
 use crate::model::machine::MachineModel;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
+use stripmine_physics::method::{Failure, Prepared, Purpose, Simulation, Until};
 
 /// Repeats are timed over at least this long.
 const LONG_ENOUGH: Duration = Duration::from_millis(1);
@@ -46,7 +47,7 @@ pub fn follow(
     for at in 0..=course.looks {
         advance(simulation.as_mut(), course.steps * at / course.looks.max(1), course.each, meter)?;
         look(simulation.as_ref());
-        clocks.extend(machine.and_then(|machine| simulation.clock_periods(machine)));
+        clocks.extend(machine.and_then(|machine| clock_periods(machine, simulation.as_ref())));
     }
     let mean = clocks.iter().sum::<f64>() / clocks.len() as f64;
     Ok(End { state: State::of(&simulation.particles()), clocks: (!clocks.is_empty()).then_some(mean) })
@@ -87,4 +88,13 @@ pub fn timed(prepared: &dyn Prepared, course: Course, meter: &Meter<'_>) -> Resu
         runs += 1;
     }
     Ok(spent.as_secs_f64() / f64::from(runs))
+}
+
+/// Clock periods of the last step by the source's clock; none where operations are not counted.
+fn clock_periods(machine: &MachineModel, simulation: &dyn Simulation) -> Option<f64> {
+    let operations = simulation.operations();
+    let is_counted = !operations.is_empty();
+    let clocks =
+        operations.into_iter().map(|(counts, n)| Clock::Paper.clocks(machine, &Work::from(counts), n));
+    is_counted.then(|| clocks.sum())
 }

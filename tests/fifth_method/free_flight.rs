@@ -4,20 +4,20 @@ use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use stripmine::domain::Domain;
-use stripmine::io::checkpoint::Column;
-use stripmine::memory::Foreseen;
-use stripmine::method::{
+use stripmine_physics::domain::Domain;
+use stripmine_physics::io::checkpoint::Column;
+use stripmine_physics::memory::Foreseen;
+use stripmine_physics::method::{
     Axis, Bench, BenchOption, Clock, Decides, Entry, Every, Fact, Failure, Prepared, Purpose, Quantity,
     RunWarning, SMALLEST_RADIUS, Schedule, Setting, Simulation, Snapshot, Trials, Until, compress,
 };
-use stripmine::particles::Particles;
-use stripmine::scene::{
+use stripmine_physics::particles::Particles;
+use stripmine_physics::scene::{
     self, Binding, DISC_RIVALS, DISCS, DT, DURATION, HEADING, KeySet, OUTPUT, Output, PLANAR_DOMAIN, Preset,
     Read, Run, STEP, STEPPED_RUN, SceneErrors, Start, Values, Vocabulary, WallMotion, Warning, Write,
     bind_heading, disagreements, too_many_steps,
 };
-use stripmine::start::{Stated, make, outside};
+use stripmine_physics::start::{Stated, make, outside};
 
 pub static ENTRY: Entry = Entry {
     vocabulary: &VOCABULARY,
@@ -43,9 +43,6 @@ pub static ENTRY: Entry = Entry {
         compared: &["kinetic"],
         at_end: &[],
     }],
-    items: &[],
-    verbs: &[],
-    charts: &[],
     trials: Some(&TRIALS),
 };
 

@@ -11,7 +11,7 @@ mod table;
 
 use std::path::Path;
 use std::process::{Command, ExitCode, Output};
-use stripmine::method::{Methods, lattice_md};
+use stripmine_physics::method::{Methods, lattice_md};
 
 static METHODS: Methods = &[&lattice_md::ENTRY, &free_flight::ENTRY];
 

@@ -3,12 +3,12 @@
 use crate::{cases, corpus, fuzz};
 use crc32fast::Hasher;
 use std::io::Cursor;
-use stripmine::io::checkpoint::{Checkpoint, Column, Counter};
-use stripmine::io::extxyz::{self, Frames};
-use stripmine::method::lattice_md::{Document, ENTRY};
 use stripmine::model::host::{HostModel, default_model};
 use stripmine::model::machine::MachineModel;
 use stripmine::model::machines::names;
+use stripmine_physics::io::checkpoint::{Checkpoint, Column, Counter};
+use stripmine_physics::io::extxyz::{self, Frames};
+use stripmine_physics::method::lattice_md::{Document, ENTRY};
 
 const MEGABYTE: u64 = 1 << 20;
 

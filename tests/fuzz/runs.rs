@@ -4,8 +4,8 @@ use crate::mutation::gentle;
 use crate::readers::scenes;
 use crate::{cases, fuzz_with};
 use std::cell::Cell;
-use stripmine::method::lattice_md::{Document, Scene, assemble, memory};
-use stripmine::scene::{Amount, Grains, Lining, Start};
+use stripmine_physics::method::lattice_md::{Document, Scene, assemble, memory};
+use stripmine_physics::scene::{Amount, Grains, Lining, Start};
 
 /// Whether a scene has few discs and few cells, so that a case takes no time.
 fn is_small(scene: &Scene) -> bool {

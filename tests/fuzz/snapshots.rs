@@ -3,8 +3,8 @@
 //! A checkpoint whose checksums are right may still say anything; what it says is all that a simulation takes up.
 
 use std::sync::atomic::AtomicBool;
-use stripmine::io::checkpoint::{Column, Counter};
-use stripmine::method::{Clock, METHODS, Prepared, Purpose, Simulation, Snapshot, Until, load};
+use stripmine_physics::io::checkpoint::{Column, Counter};
+use stripmine_physics::method::{Clock, METHODS, Prepared, Purpose, Simulation, Snapshot, Until, load};
 
 /// Scenes that are small, of every method and every way to run it: preset, overrides, and how far they go.
 const SCENES: &[(&str, &[&str])] = &[

@@ -2,7 +2,7 @@
 
 use crate::{frame, text};
 use std::fs;
-use stripmine::io::extxyz::{Frames, ReadError, Which, read};
+use stripmine_physics::io::extxyz::{Frames, ReadError, Which, read};
 
 const LATTICE: &str = r#"Lattice="4 0 0 0 5 0 0 0 1""#;
 const PROPERTIES: &str = "Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use stripmine::io::checkpoint::{
+use stripmine_physics::io::checkpoint::{
     Checkpoint, Column, Counter, Kept, Latest, NAME, WriteError, previous, read_latest,
 };
 

@@ -3,7 +3,7 @@
 use crate::Random;
 use crate::checkpoint::{bytes, checkpoint};
 use std::fs;
-use stripmine::io::checkpoint::{Checkpoint, CheckpointError, Fault};
+use stripmine_physics::io::checkpoint::{Checkpoint, CheckpointError, Fault};
 
 /// Reads bytes as the file of a checkpoint.
 struct Reader(tempfile::TempDir);

@@ -2,8 +2,8 @@
 
 use crate::{Random, frame, text};
 use std::fs;
-use stripmine::io::extxyz::{Frame, Frames, ReadError, Which, read};
-use stripmine::particles::{Kind, Particle, Particles};
+use stripmine_physics::io::extxyz::{Frame, Frames, ReadError, Which, read};
+use stripmine_physics::particles::{Kind, Particle, Particles};
 
 fn frames(text: &str) -> Result<Vec<Frame>, ReadError> {
     Frames::new(text.as_bytes(), "text").collect()

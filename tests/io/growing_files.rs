@@ -4,9 +4,9 @@ use crate::{frame, text};
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use stripmine::io::extxyz::write;
-use stripmine::io::growing_file::{GrowingFile, GrowingFileError, Mark};
-use stripmine::io::table_file::{TableFile, TableFileError};
+use stripmine_physics::io::extxyz::write;
+use stripmine_physics::io::growing_file::{GrowingFile, GrowingFileError, Mark};
+use stripmine_physics::io::table_file::{TableFile, TableFileError};
 use tempfile::TempDir;
 
 const COLUMNS: [&str; 2] = ["time", "energy"];

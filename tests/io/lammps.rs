@@ -1,7 +1,7 @@
 //! LAMMPS files, word for word.
 
 use crate::frame;
-use stripmine::io::lammps::{write_data, write_dump};
+use stripmine_physics::io::lammps::{write_data, write_dump};
 
 #[test]
 fn a_dump_is_written_word_for_word() {

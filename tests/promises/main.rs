@@ -4,7 +4,7 @@ mod files;
 mod table;
 
 use std::process::Command;
-use stripmine::method::METHODS;
+use stripmine_physics::method::METHODS;
 use table::{Extent, hold};
 
 fn command() -> Command {

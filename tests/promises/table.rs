@@ -13,11 +13,12 @@ use std::process::{Command, Stdio};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
-use stripmine::method::{Clock, Entry, Every, Methods, Prepared, Purpose, Schedule, Until, load};
-use stripmine::particles::Particles;
-use stripmine::run::{Ending, Existing, run};
-use stripmine::scene::Kind;
+use stripmine::provenance::built;
 use stripmine_kernels::noise::{Purpose as Of, Stream};
+use stripmine_physics::method::{Clock, Entry, Every, Methods, Prepared, Purpose, Schedule, Until, load};
+use stripmine_physics::particles::Particles;
+use stripmine_physics::run::{Ending, Existing, Job, run};
+use stripmine_physics::scene::Kind;
 
 /// How much of the table is held.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -248,8 +249,8 @@ impl Case {
             is_interrupted.store(Some(words) == stop, Ordering::Relaxed);
         };
         let existing = Existing::Resume { other_version: false };
-        let ending =
-            run(prepared, self.entry.quantities, folder, existing, &is_interrupted, progress, |_| {});
+        let job = Job { prepared, quantities: self.entry.quantities, program: &built() };
+        let ending = run(job, folder, existing, &is_interrupted, progress, |_| {});
         let ending = ending.unwrap_or_else(|error| panic!("{}: {error}", self.label()));
         (matches!(ending, Ending::Done(_)), words)
     }

@@ -2,18 +2,18 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use rand::RngExt;
-use stripmine::method::lattice_md::Engine;
-use stripmine::method::lattice_md::{
-    Contacts, Discs, GearValues, Machine, Model, ProgramText, Scheme, Watch, start,
-};
-use stripmine::particles::{Kind, Particle, Particles, in_space};
-use stripmine::placement::hexagonal;
-use stripmine::scene::{Precision, WallMotion};
 use stripmine_kernels::law::granular::{Contact, ContactArm};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
 use stripmine_kernels::{Execution, InstructionSet};
+use stripmine_physics::method::lattice_md::Engine;
+use stripmine_physics::method::lattice_md::{
+    Contacts, Discs, GearValues, Machine, Model, ProgramText, Scheme, Watch, start,
+};
+use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
+use stripmine_physics::placement::hexagonal;
+use stripmine_physics::scene::{Precision, WallMotion};
 
 pub const CONTACT: Contact = Contact {
     stiffness: 187.0,

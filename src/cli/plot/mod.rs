@@ -5,8 +5,6 @@ mod particles;
 mod window;
 
 use crate::console::{Common, Failure, print, print_json, say};
-use crate::method::Methods;
-use crate::quoted;
 use crate::report::figure::{Figure, png, svg};
 use crate::report::terminal;
 use crate::results::OwnFiles;
@@ -15,6 +13,8 @@ use observed::Observed;
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
+use stripmine_physics::method::Methods;
+use stripmine_physics::quoted;
 
 /// A run to look at: its observables over time, its last state and the density along a long box as pictures, and small in the terminal
 #[derive(Args)]

@@ -1,15 +1,15 @@
 //! The observables of a run: `thermo.csv` as charts, and a line for each in the terminal.
 
-use crate::io::{FileError, regular_file};
-use crate::method::{Methods, Quantity};
-use crate::number::significant;
-use crate::quoted::{self, quoted};
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use crate::report::table::{Cell, Table};
-use crate::reported::{Class, FilePlace, Reported};
-use crate::words::suggestion;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use stripmine_physics::io::{FileError, regular_file};
+use stripmine_physics::method::{Methods, Quantity};
+use stripmine_physics::number::significant;
+use stripmine_physics::quoted::{self, quoted};
+use stripmine_physics::reported::{Class, FilePlace, Reported};
+use stripmine_physics::words::suggestion;
 
 /// Curves of a picture: more cannot be told apart.
 const CURVES: usize = 5;

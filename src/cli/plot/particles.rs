@@ -1,12 +1,12 @@
 //! Pictures of the particles of a run: its last state, and, where the box is long, the density along it over time.
 
 use super::window;
-use crate::io::extxyz::{Frame, Frames, ReadError};
-use crate::io::regular_file;
-use crate::number::significant;
-use crate::particles::Kind;
 use crate::report::figure::{Axis, Drawing, Figure, Guide, Map, Picture, Shape, Tint};
 use std::path::Path;
+use stripmine_physics::io::extxyz::{Frame, Frames, ReadError};
+use stripmine_physics::io::regular_file;
+use stripmine_physics::number::significant;
+use stripmine_physics::particles::Kind;
 
 /// Particles of a picture: more cannot be seen, and files would be large.
 const SHOWN: usize = 20_000;

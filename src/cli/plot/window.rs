@@ -1,7 +1,7 @@
 //! What of a box, or of space, a picture of particles shows: little of it is empty.
 
-use crate::io::extxyz::Frame;
 use crate::statistics::quantile;
+use stripmine_physics::io::extxyz::Frame;
 
 /// Of many particles a few far away do not decide what is seen: so many (parts of all) may lie beyond each end, in a box and in space.
 const BEYOND: [f64; 2] = [0.01, 0.025];
@@ -90,7 +90,7 @@ pub(super) fn shown(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::particles::{Kind, Particle, Particles};
+    use stripmine_physics::particles::{Kind, Particle, Particles};
 
     fn frame(places: &[[f64; 3]], cell: [f64; 2]) -> Frame {
         let particle = |(position, id): (&[f64; 3], u32)| Particle {

@@ -3,11 +3,11 @@
 use super::levels::Transfer;
 use super::model::HostModel;
 use super::rates::PhaseRate;
-use crate::io::{FileError, regular_file};
 use crate::model::machine_file::{LONGEST, NAMED, Position};
-use crate::quoted::{message, one_line, quoted};
-use crate::reported::{Class, FilePlace, Reported};
 use std::path::Path;
+use stripmine_physics::io::{FileError, regular_file};
+use stripmine_physics::quoted::{message, one_line, quoted};
+use stripmine_physics::reported::{Class, FilePlace, Reported};
 
 /// The version of the file format that this program reads.
 pub const FORMAT: u32 = 13;

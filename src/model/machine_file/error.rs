@@ -2,12 +2,12 @@
 
 use super::limits::FORMAT;
 use super::position::Position;
-use crate::number::counted;
-use crate::quoted::{message, one_line, quoted};
-use crate::reported::{Class, FilePlace, Reported};
-use crate::words::suggestion;
 use std::io::ErrorKind;
 use stripmine_kernels::isa::op::OpClass;
+use stripmine_physics::number::counted;
+use stripmine_physics::quoted::{message, one_line, quoted};
+use stripmine_physics::reported::{Class, FilePlace, Reported};
+use stripmine_physics::words::suggestion;
 
 /// Why a machine file cannot be used.
 #[derive(Debug, thiserror::Error)]

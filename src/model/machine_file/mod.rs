@@ -49,9 +49,9 @@ pub use position::Position;
 use super::machine::{Expansion, MachineModel, VectorRegisters};
 use super::quantity::{Fact, Provenance, Quantity};
 use super::units::{MemoryPorts, Unit, Units};
-use crate::io::regular_file;
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use stripmine_physics::io::regular_file;
 
 /// The file as it is written, names of classes still unchecked.
 #[derive(Deserialize)]

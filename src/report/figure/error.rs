@@ -1,7 +1,7 @@
 //! What can be wrong with a figure.
 
-use crate::number::significant;
-use crate::reported::{Class, Reported};
+use stripmine_physics::number::significant;
+use stripmine_physics::reported::{Class, Reported};
 
 /// A figure that cannot be drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,10 +1,11 @@
 //! The page as a whole.
 
 use super::*;
-use crate::origin::{Origin, Provenance};
+use crate::provenance::Provenance;
 use crate::report::figure::{Axis, Chart, Drawing, Picture, Point, Series, Style};
 use crate::report::section::{Film, Frame};
 use crate::report::{Cell, Table};
+use stripmine_physics::origin::Origin;
 
 const HOSTILE: &str = "<script>alert(\"&\")</script>";
 

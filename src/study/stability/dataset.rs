@@ -2,9 +2,9 @@
 
 use super::boundary::Edge;
 use super::outcome::{Cell, Class, Foreseen};
-use crate::method::{Beyond, Parameter};
 use crate::statistics::median;
 use serde::Serialize;
+use stripmine_physics::method::{Beyond, Parameter};
 
 /// The dataset.
 #[derive(Clone, Debug, Serialize)]

@@ -20,11 +20,12 @@ pub use outcome::{Cell, Class, Foreseen};
 use super::choice::Choice;
 use super::meter::Meter;
 use super::{StudyError, Subject};
-use crate::method::{Decides, Parameter, Progress, probed};
-use crate::number::significant;
+use crate::results::Progress;
 use crate::results::{Journal, JournalError};
 use crate::statistics::median;
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use stripmine_physics::method::{Decides, Parameter, probed};
+use stripmine_physics::number::significant;
 use survey::{Case, Known, Survey};
 
 /// Steps go from this part of the scene's own to this multiple.

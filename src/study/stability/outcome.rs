@@ -1,9 +1,9 @@
 //! What becomes of a run, and which kind of failure that is.
 
 use super::reference::Expected;
-use crate::method::FailureKind;
 use crate::study::averages::Means;
 use serde::{Deserialize, Serialize};
+use stripmine_physics::method::FailureKind;
 
 /// The energy is wrong where its balance is off by more than this part of the energy that passed through.
 pub const DRIFT: f64 = 0.1;

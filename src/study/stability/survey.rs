@@ -4,9 +4,7 @@ use super::boundary::{Edge, edge};
 use super::dataset::{Boundary, SchemeLimit};
 use super::outcome::{Cell, Class, End, Foreseen, Ran};
 use super::reference::{Expected, SEEDS};
-use crate::method::{Beyond, Decides, Parameter, Prepared, Purpose, Simulation, StepLimit};
 use crate::results::{Journal, JournalError};
-use crate::scene::SceneErrors;
 use crate::statistics::Spread;
 use crate::study::averages::{Averages, LOOKS, Means};
 use crate::study::choice::Choice;
@@ -15,6 +13,8 @@ use crate::study::state::displaced;
 use crate::study::subject::Subject;
 use crate::study::trial::{Course, follow};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use stripmine_physics::method::{Beyond, Decides, Parameter, Prepared, Purpose, Simulation, StepLimit};
+use stripmine_physics::scene::SceneErrors;
 
 /// From a seed to the one that confirms what it shows.
 const ANOTHER: u64 = 1000;

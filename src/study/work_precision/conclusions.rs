@@ -2,8 +2,8 @@
 
 use super::dataset::{Run, WorkPrecision};
 use super::measures::Measure;
-use crate::number::in_tens;
 use crate::study::observables::CHANCE;
+use stripmine_physics::number::in_tens;
 
 /// Wishes: errors of positions (the method's length).
 pub const WISHES: [f64; 5] = [3e-2, 1e-2, 1e-3, 1e-4, 1e-6];

@@ -5,10 +5,7 @@ use super::front::front;
 use super::measures::{Errors, Measure, errors};
 use super::plan::{BELOW, COARSEST, Plan};
 use super::{Effort, MEANS_SHARE};
-use crate::method::{Decides, Prepared, Purpose, Simulation, probed};
-use crate::number::significant;
 use crate::results::{Journal, JournalError};
-use crate::scene::SceneErrors;
 use crate::study::choice::Choice;
 use crate::study::collision::{Collision, collision, is_collision};
 use crate::study::meter::Meter;
@@ -20,6 +17,9 @@ use crate::study::{StudyError, Subject};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
+use stripmine_physics::method::{Decides, Prepared, Purpose, Simulation, probed};
+use stripmine_physics::number::significant;
+use stripmine_physics::scene::SceneErrors;
 
 /// Looks at the energy in a run.
 const LOOKS: u64 = 16;

@@ -1,8 +1,8 @@
 //! How wrong a run is.
 
-use crate::domain::Domain;
 use crate::study::state::State;
 use serde::{Deserialize, Serialize};
+use stripmine_physics::domain::Domain;
 
 /// An error of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

@@ -22,14 +22,14 @@ use super::growth::{EndedBy, Growth, HALVINGS, growth, own_in_full_digits};
 use super::meter::Meter;
 use super::observables::SEEDS;
 use super::{StudyError, Subject};
-use crate::method::Progress;
 use crate::model::machine::MachineModel;
-use crate::number::significant;
+use crate::results::Progress;
 use crate::results::{Journal, JournalError};
 use crate::statistics::median;
 use engine::{Work, probes, way};
 use plan::{COARSEST, plan};
 use std::time::Instant;
+use stripmine_physics::number::significant;
 
 /// The share of the time that the growth takes at most.
 const GROWTH_SHARE: f64 = 0.1;

@@ -1,8 +1,8 @@
 //! Which runs a diagram is made of: as many as fit into the time that is given.
 
-use crate::method::Decides;
 use crate::study::choice::Choice;
 use serde::{Deserialize, Serialize};
+use stripmine_physics::method::Decides;
 
 /// Steps go up to this power of two times the scene's own.
 pub const COARSEST: i32 = 4;
@@ -114,7 +114,7 @@ fn is_run(choice: &Choice, own: &Choice, scope: Scope) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::METHODS;
+    use stripmine_physics::method::METHODS;
 
     #[test]
     fn less_time_leaves_out_more_and_says_so() {

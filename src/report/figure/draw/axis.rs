@@ -1,9 +1,9 @@
 //! Where numbers lie on an axis, and how they are written there.
 
 use super::super::{Axis, Fault, Scale};
-use crate::number::ten_to;
 use kuva::prelude::TickFormat;
 use std::sync::Arc;
+use stripmine_physics::number::ten_to;
 
 /// Part of an axis' length that is left free at each of its ends when they are taken from the data.
 const FREE: f64 = 0.04;

@@ -5,11 +5,11 @@ use super::super::{Drawing, Shape, Tint, font};
 use super::frame::{colour as paint, theme};
 use super::guide;
 use super::words::{self, Title};
-use crate::number::significant;
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, Scene, TextAnchor};
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use stripmine_physics::number::significant;
 
 /// Most width of a colour bar, its thickness, and what is free above it.
 const BAR: f64 = 440.0;

@@ -3,8 +3,8 @@
 use super::super::{Guide, style};
 use super::frame::colour;
 use super::words;
-use crate::number::significant;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
+use stripmine_physics::number::significant;
 
 /// Height of the row, length of the arrow, of the wings of its head and of the ends of the bar (pixels).
 const ROW: f64 = 44.0;

@@ -2,9 +2,9 @@
 
 use super::super::dataset::{Stability, over_seeds};
 use super::super::outcome::Class;
-use crate::method::Beyond;
 use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
 use crate::study::work_precision::conclusions::short;
+use stripmine_physics::method::Beyond;
 
 /// The hue of what was measured, and of theory.
 const INK: usize = 6;

@@ -7,9 +7,9 @@ use super::conclusions::{of_theory, sentences};
 use super::dataset::Stability;
 use super::outcome::Class;
 use crate::console::Failure;
-use crate::number::{counted, range};
 use crate::report::{Part, Section, Verdict, csv};
 use crate::results::Made;
+use stripmine_physics::number::{counted, range};
 
 /// What an item of it is called.
 pub const NAME: &str = "stability";

@@ -1,0 +1,33 @@
+//! Files in and out: extended XYZ, LAMMPS data and dump, checkpoints, tables that grow with a run; how they are put in
+//! their place, and one writer a folder.
+
+pub mod checkpoint;
+pub mod dcd;
+pub mod extxyz;
+pub mod growing_file;
+pub mod lammps;
+pub mod lock;
+pub mod regular_file;
+pub mod replace;
+pub mod table_file;
+
+use std::path::{Path, PathBuf};
+
+/// A file that the system would not let be read or written.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {action}: {cause}", crate::quoted::path(file))]
+pub struct FileError {
+    /// The file.
+    pub file: PathBuf,
+    /// What was being done with it.
+    pub action: &'static str,
+    /// What the system said.
+    pub cause: std::io::Error,
+}
+
+impl FileError {
+    /// Names the file and the action that failed.
+    pub fn at(file: &Path, action: &'static str) -> impl FnOnce(std::io::Error) -> FileError {
+        move |cause| FileError { file: file.to_owned(), action, cause }
+    }
+}

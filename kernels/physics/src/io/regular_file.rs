@@ -1,0 +1,71 @@
+//! Ordinary files, read whole up to a bound: what never ends, or waits for a writer, is refused before it is opened.
+
+use std::fs::{self, File, FileType};
+use std::io::{self, ErrorKind, Read};
+use std::path::Path;
+
+/// Why a file is not read though the system would let it be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Unfit {
+    /// A folder, a device, a pipe or a socket.
+    #[error("it is {0}; expected an ordinary file")]
+    Kind(&'static str),
+    /// Longer than anything of its kind.
+    #[error("it is longer than {most} bytes, the most that is read of such a file")]
+    TooLong {
+        /// The bound (bytes).
+        most: u64,
+    },
+}
+
+/// Opens an ordinary file for reading.
+///
+/// # Errors
+/// What the system says, or [`Unfit`] inside an error of kind `InvalidInput`.
+pub fn open(path: &Path) -> io::Result<File> {
+    // Opening a pipe would wait for its writer: what it is must be known before.
+    match kind(fs::metadata(path)?.file_type()) {
+        None => File::open(path),
+        Some(kind) => Err(io::Error::new(ErrorKind::InvalidInput, Unfit::Kind(kind))),
+    }
+}
+
+/// The bytes of an ordinary file of at most `most` bytes.
+///
+/// # Errors
+/// As [`open`], and where the file is longer.
+pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        return Err(io::Error::new(ErrorKind::InvalidInput, Unfit::TooLong { most }));
+    }
+    Ok(bytes)
+}
+
+/// The first line of some bytes that is not UTF-8, from 1; none if they are text.
+pub fn line_that_is_not_text(bytes: &[u8]) -> Option<usize> {
+    let good = std::str::from_utf8(bytes).err()?.valid_up_to();
+    Some(1 + bytes[..good].iter().filter(|byte| **byte == b'\n').count())
+}
+
+/// The kind of what is no ordinary file.
+fn kind(of: FileType) -> Option<&'static str> {
+    if of.is_file() {
+        return None;
+    }
+    if of.is_dir() {
+        return Some("a folder");
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        if of.is_fifo() {
+            return Some("a pipe");
+        }
+        if of.is_socket() {
+            return Some("a socket");
+        }
+    }
+    Some("a device")
+}

@@ -1,0 +1,107 @@
+//! Whole files put in their place in one step, by way of temporary files whose names cannot be foreseen.
+
+use super::FileError;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::Path;
+use tempfile::{Builder, NamedTempFile};
+
+/// How the names of temporary files and folders begin and end; what is between is random.
+const TEMPORARY: [&str; 2] = [".stripmine-", ".part"];
+
+/// Whether a temporary file or folder of this program is called so.
+pub fn is_temporary(name: &str) -> bool {
+    name.starts_with(TEMPORARY[0]) && name.ends_with(TEMPORARY[1])
+}
+
+/// Names for temporary files and folders.
+pub fn temporary<'a>() -> Builder<'a, 'a> {
+    let mut builder = Builder::new();
+    builder.prefix(TEMPORARY[0]).suffix(TEMPORARY[1]).rand_bytes(16);
+    builder
+}
+
+/// The folder that a path lies in.
+pub fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Puts what `write` writes in the place of the file at `path`: at every moment the old or the new one is there, whole,
+/// and when this returns the new one is on the disk. A link at `path` is replaced, not followed.
+///
+/// # Errors
+/// If the system does not let it be written; then what was at `path` stays.
+pub fn replace(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
+) -> Result<(), FileError> {
+    let written = written_beside(path, write).map_err(FileError::at(path, "writing"))?;
+    written.persist(path).map_err(|error| FileError::at(path, "replacing")(error.error))?;
+    sync_folder(folder_of(path)).map_err(FileError::at(path, "replacing"))
+}
+
+/// A temporary file in the folder of `path` that holds what `write` writes, on the disk.
+pub fn written_beside(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
+) -> io::Result<NamedTempFile> {
+    let mut names = temporary();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As for any other file: what the user's mask leaves of it.
+        names.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let file = names.tempfile_in(folder_of(path))?;
+    let mut out = BufWriter::new(file.as_file());
+    write(&mut out)?;
+    out.flush()?;
+    drop(out);
+    file.as_file().sync_all()?;
+    Ok(file)
+}
+
+/// Makes the renamings in a folder last.
+pub fn sync_folder(folder: &Path) -> io::Result<()> {
+    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
+}
+
+/// What stands in a folder, for a message: the first few names, with nothing in them that a terminal would obey.
+pub fn listing(names: &[String]) -> String {
+    const NAMED: usize = 5;
+    let plain = |name: &String| name.chars().flat_map(char::escape_debug).collect::<String>();
+    let said = names.iter().take(NAMED).map(plain).collect::<Vec<_>>().join(", ");
+    match names.len().saturating_sub(NAMED) {
+        0 => said,
+        more => format!("{said} and {more} more"),
+    }
+}
+
+/// Removes a file or a link, never what the link points to; one that is not there is no error.
+pub fn remove_if_there(path: &Path) -> Result<(), FileError> {
+    match fs::remove_file(path) {
+        Err(cause) if cause.kind() != ErrorKind::NotFound => Err(FileError::at(path, "removing")(cause)),
+        _ => Ok(()),
+    }
+}
+
+/// Whether `path` is still a name of the open file, and no link. Where the system has no numbers for its files, whether
+/// there is a file of that name.
+pub fn is_name_of(path: &Path, file: &File) -> io::Result<bool> {
+    let there = match fs::symlink_metadata(path) {
+        Ok(there) => there,
+        Err(cause) if cause.kind() == ErrorKind::NotFound => return Ok(false),
+        Err(cause) => return Err(cause),
+    };
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let open = file.metadata()?;
+        Ok(there.is_file() && (there.dev(), there.ino()) == (open.dev(), open.ino()))
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = file;
+        Ok(there.is_file())
+    }
+}

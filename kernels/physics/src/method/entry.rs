@@ -1,0 +1,343 @@
+//! What a method states of itself: its entry in the list of methods, and what its scenes become.
+
+use super::clock::{Clock, Schedule, Until};
+use super::failure::Failure;
+use super::snapshot::Snapshot;
+use super::trials::Trials;
+use crate::domain::Domain;
+use crate::memory::Foreseen;
+use crate::particles::Particles;
+use crate::scene::{Output, SceneErrors, Values, Vocabulary, Warning};
+use serde::Serialize;
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use stripmine_kernels::Runnable;
+use stripmine_kernels::isa::OpCounts;
+
+/// A method, as everything else knows it.
+#[derive(Debug)]
+pub struct Entry {
+    /// Name, keys and presets of its scenes.
+    pub vocabulary: &'static Vocabulary,
+    /// Where it comes from.
+    pub source: &'static str,
+    /// What it simulates, in a line.
+    pub doc: &'static str,
+    /// What it observes: the columns of thermo.csv after the step.
+    pub quantities: &'static [Quantity],
+    /// Holds a scene against every precondition and makes its particles; every mistake at once.
+    pub prepare: fn(Values) -> Result<Box<dyn Prepared>, SceneErrors>,
+    /// What `bench` can measure of it.
+    pub benches: &'static [Bench],
+    /// How its scenes may be tried; none where nothing of them may be varied.
+    pub trials: Option<&'static Trials>,
+}
+
+/// Something observed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quantity {
+    /// The name of its column.
+    pub name: &'static str,
+    /// The unit, empty for pure numbers.
+    pub unit: &'static str,
+    /// What it is.
+    pub doc: &'static str,
+}
+
+/// A quantity, and how it is read off what a method has seen of a moment.
+#[derive(Clone, Copy)]
+pub struct Observable<S: 'static> {
+    /// Name, unit and meaning.
+    pub quantity: Quantity,
+    /// Its value.
+    pub of: fn(&S) -> f64,
+}
+
+/// What is observed, without the values: the columns of a table of them.
+pub const fn quantities<S: 'static, const COUNT: usize>(
+    observables: &[Observable<S>; COUNT],
+) -> [Quantity; COUNT] {
+    let mut quantities = [observables[0].quantity; COUNT];
+    let mut place = 1;
+    while place < COUNT {
+        quantities[place] = observables[place].quantity;
+        place += 1;
+    }
+    quantities
+}
+
+/// A measurement of throughput.
+#[derive(Debug)]
+pub struct Bench {
+    /// The name after `bench`.
+    pub name: &'static str,
+    /// What is measured.
+    pub doc: &'static str,
+    /// The scene.
+    pub preset: &'static str,
+    /// The name of the rate, such as `particle_steps_per_second`.
+    pub rate: &'static str,
+    /// Moments of a repeat, of a number of steps or events.
+    pub until: fn(u64) -> Until,
+    /// How many steps or events make about a second, for a number of particles.
+    pub amount: fn(u64) -> u64,
+    /// What options stand for that are not given.
+    pub defaults: &'static [(&'static str, &'static str)],
+    /// The options that it takes, each with the overrides that a value makes.
+    pub options: &'static [BenchOption],
+    /// Overrides that make the bench.
+    pub overrides: &'static [&'static str],
+    /// What the method observes.
+    pub quantities: &'static [Quantity],
+    /// Quantities that are said as they were at the start and at the end of the measurement.
+    pub compared: &'static [&'static str],
+    /// Quantities that are said as they were at the end.
+    pub at_end: &'static [&'static str],
+}
+
+/// An option of `bench`.
+#[derive(Debug)]
+pub struct BenchOption {
+    /// The name.
+    pub name: &'static str,
+    /// The values that it may have; none where the scene judges them.
+    pub values: &'static [&'static str],
+    /// The overrides that a value makes.
+    pub overrides: fn(&str) -> Vec<String>,
+}
+
+/// Something to be said of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fact {
+    /// Name and value, as data.
+    pub data: Option<(&'static str, Value)>,
+    /// Label and value in words, where a person is to read it.
+    pub words: Option<(&'static str, String)>,
+}
+
+impl Fact {
+    /// For programs only.
+    pub fn data(name: &'static str, value: impl Into<Value>) -> Fact {
+        Fact { data: Some((name, value.into())), words: None }
+    }
+
+    /// For people only.
+    pub fn words(label: &'static str, words: impl Into<String>) -> Fact {
+        Fact { data: None, words: Some((label, words.into())) }
+    }
+
+    /// For programs and, in words, for people.
+    pub fn new(
+        name: &'static str,
+        value: impl Into<Value>,
+        label: &'static str,
+        words: impl Into<String>,
+    ) -> Fact {
+        Fact { data: Some((name, value.into())), words: Some((label, words.into())) }
+    }
+}
+
+/// A step that theory says not to pass.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepLimit {
+    /// What it is called.
+    pub name: &'static str,
+    /// The step (time).
+    pub step: f64,
+    /// The scene's own step in parts of it.
+    pub share: f64,
+    /// What becomes of longer ones.
+    pub beyond: Beyond,
+    /// Where it comes from, with its numbers.
+    pub why: String,
+}
+
+/// What becomes of a step beyond a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Beyond {
+    /// Errors grow from step to step.
+    Unstable,
+    /// Motion is followed badly.
+    Inaccurate,
+    /// Particles pass each other unseen.
+    Unseen,
+}
+
+/// What a check has found along a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunWarning {
+    /// The name of the check.
+    pub check: &'static str,
+    /// What was found.
+    pub value: f64,
+    /// What it is held against.
+    pub limit: f64,
+    /// What was found, in a sentence with what to do.
+    pub message: String,
+}
+
+/// What a simulation is started for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// A run, which is observed: whatever observation needs is followed.
+    Run,
+    /// A measurement of speed: nothing is followed that the motion does not need.
+    Measurement,
+}
+
+/// A program of whole-array operations, as often as a step executes it.
+pub struct VectorProgram {
+    /// The part of the step.
+    pub part: &'static str,
+    /// What its vectors are as long as, in a symbol.
+    pub length: &'static str,
+    /// The number that stands for.
+    pub n: usize,
+    /// How often a step executes it.
+    pub times: u64,
+    /// The program.
+    pub program: Box<dyn Runnable>,
+}
+
+/// A scene that may run: its particles are made, and every precondition holds.
+pub trait Prepared: Send + Sync {
+    /// The scene as TOML, every value spelled out and every choice made.
+    fn scene(&self) -> String;
+
+    /// How long it runs, and how often something is written.
+    fn schedule(&self) -> Schedule;
+
+    /// Which files are written.
+    fn output(&self) -> Output;
+
+    /// The box.
+    fn domain(&self) -> Domain;
+
+    /// The particles at the start.
+    fn particles(&self) -> &Particles;
+
+    /// Seed of the random numbers that made the start; none where it was read or listed.
+    fn seed(&self) -> Option<u64>;
+
+    /// The file that the start was read from.
+    fn start_file(&self) -> Option<&Path>;
+
+    /// What there is to be said of the scene.
+    fn facts(&self) -> Vec<Fact>;
+
+    /// What seldom ends well.
+    fn warnings(&self) -> &[Warning];
+
+    /// What the scene left open and has been chosen, with the reason.
+    fn choices(&self) -> &[String];
+
+    /// What the scene has no need of, with the reason.
+    fn left_out(&self) -> &[String];
+
+    /// What bounds the step, by theory; none where there is no step, or theory says nothing.
+    fn step_limits(&self) -> Vec<StepLimit> {
+        vec![]
+    }
+
+    /// How wrong a run is expected to be, and by what measure; none where nothing is known of it.
+    fn expected_error(&self) -> Option<Fact> {
+        None
+    }
+
+    /// The memory that a run takes.
+    fn memory(&self) -> Foreseen;
+
+    /// How it is run: precision, integrator and the like, by the names that `bench --json` gives them.
+    fn settings(&self) -> Map<String, Value>;
+
+    /// The names of the columns of `events.csv`, where the scene asks for a row for each event.
+    fn event_columns(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// The vector programs that a step of the scene, or its forces, consists of: what is counted, listed and charged by clocks; none
+    /// where a method has no such.
+    fn programs(&self) -> Vec<VectorProgram> {
+        vec![]
+    }
+
+    /// Begins.
+    ///
+    /// # Errors
+    /// [`Failure`] if the start breaks a precondition, or the processor lacks what is asked for.
+    fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure>;
+
+    /// The same scene with other positions and velocities at the start: of the same particles in the same order.
+    fn started_from(&self, particles: Particles) -> Box<dyn Prepared>;
+}
+
+/// A simulation under way. It never prints and never writes a file.
+pub trait Simulation: Send {
+    /// Goes on until the first of some moments has come, or `interrupted` is set; soon after that in either case.
+    ///
+    /// # Errors
+    /// [`Failure`] says what broke, which particles, where, and what to do; the state is that of the failing step.
+    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure>;
+
+    /// How far it has come.
+    fn clock(&self) -> Clock;
+
+    /// The particles as they stand, positions inside the box.
+    fn particles(&self) -> Particles;
+
+    /// Positions alone, in single precision, one for each particle of the start in its order; no numbers where one is lost.
+    fn positions(&self) -> Vec<[f32; 3]> {
+        self.particles().all().iter().map(|particle| particle.position.map(|x| x as f32)).collect()
+    }
+
+    /// Holds the state against what only sums over all particles show; asked before every row, and at the end.
+    ///
+    /// # Errors
+    /// [`Failure`] as of [`advance`](Self::advance), where such a sum is wrong, or cannot be had.
+    fn check(&self) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// A value for each of the method's quantities.
+    fn observe(&self) -> Vec<f64>;
+
+    /// Everything that the future depends on, and what has been counted: a summary is the same in however many sessions.
+    fn snapshot(&self) -> Snapshot;
+
+    /// Takes up a snapshot that was made when the clock showed `clock`.
+    ///
+    /// # Errors
+    /// A sentence, if the snapshot is not one of this method and scene.
+    fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String>;
+
+    /// Seconds spent in each phase since the start or the last reset, by name.
+    fn phases(&self) -> BTreeMap<&'static str, f64>;
+
+    /// Forgets the seconds spent so far.
+    fn reset_phases(&mut self);
+
+    /// How much has been done, in the unit of the rates that `bench` gives.
+    fn work(&self) -> f64;
+
+    /// Operations of the last step on whole vectors, with the elements of each vector; none where they are not counted.
+    fn operations(&self) -> Vec<(OpCounts, u64)> {
+        vec![]
+    }
+
+    /// What there is to be said at the end: the method's own entries of `summary.json`.
+    fn summary(&self) -> Map<String, Value>;
+
+    /// The rows of `events.csv` since this was last asked, each with its end of line.
+    fn take_events(&mut self) -> String {
+        String::new()
+    }
+
+    /// What happened on the way that seldom means well.
+    fn warnings(&self) -> Vec<RunWarning>;
+
+    /// The last state, in a line.
+    fn in_words(&self) -> String;
+}

@@ -1,0 +1,17 @@
+//! The entry of hard discs in the list of methods.
+
+use super::benches::{BENCHES, QUANTITIES};
+use super::keys::VOCABULARY;
+use super::prepared::prepare;
+use crate::method::Entry;
+
+/// Event-driven hard discs.
+pub static ENTRY: Entry = Entry {
+    vocabulary: &VOCABULARY,
+    source: "Isobe 1999 (ISO99)",
+    doc: "hard discs that fly straight between instantaneous collisions: no time step",
+    quantities: QUANTITIES,
+    prepare,
+    benches: BENCHES,
+    trials: None,
+};

@@ -1,0 +1,25 @@
+//! ISO99: event-driven hard discs, exact between collisions.
+
+pub mod benches;
+mod collapse;
+mod collision_log;
+mod compress;
+mod engine;
+mod entry;
+mod event;
+mod fast;
+mod floor;
+mod idle;
+pub mod keys;
+mod options;
+#[cfg(test)]
+mod oracle;
+mod prepared;
+mod presets;
+pub mod reference;
+mod restored;
+mod scene;
+mod simulation;
+
+pub use compress::compress;
+pub use entry::ENTRY;

@@ -1,0 +1,18 @@
+//! The entry of Langevin dynamics in the list of methods.
+
+use super::benches::{BENCHES, QUANTITIES};
+use super::keys::VOCABULARY;
+use super::prepared::prepare;
+use super::trials::TRIALS;
+use crate::method::Entry;
+
+/// Langevin dynamics.
+pub static ENTRY: Entry = Entry {
+    vocabulary: &VOCABULARY,
+    source: "Langevin dynamics of 2017 (LAN17)",
+    doc: "particles in a bath of friction and noise, with Lennard-Jones pairs",
+    quantities: QUANTITIES,
+    prepare,
+    benches: BENCHES,
+    trials: Some(&TRIALS),
+};

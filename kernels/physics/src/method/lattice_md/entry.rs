@@ -1,0 +1,19 @@
+//! The entry of lattice molecular dynamics in the list of methods.
+
+use super::benches::BENCHES;
+use super::document::Document;
+use super::keys::VOCABULARY;
+use super::quantities::QUANTITIES;
+use super::trials::TRIALS;
+use crate::method::Entry;
+
+/// Lattice molecular dynamics of granular discs.
+pub static ENTRY: Entry = Entry {
+    vocabulary: &VOCABULARY,
+    source: "Buchholtz and Pöschel 1993 (BP93)",
+    doc: "granular discs with soft contacts, on a lattice with at most one disc a cell, in sectors, or by lists",
+    quantities: QUANTITIES,
+    prepare: |values| Document::read(values)?.prepare(),
+    benches: BENCHES,
+    trials: Some(&TRIALS),
+};

@@ -1,0 +1,64 @@
+//! Lattice molecular dynamics of granular discs, BP93: every step is a sequence of vector programs over the discs and
+//! over a lattice with at most one disc a cell. Beside it, on the same state and with the same law, the rival that the
+//! source compares with: scalar neighbour lists.
+//!
+//! Step discs one by one:
+//!
+//! ```
+//! use stripmine_physics::method::lattice_md::{Document, assemble};
+//!
+//! let checked = Document::load("two-discs", &["machine.engine=programs".to_owned()])?.check()?;
+//! let mut engine = assemble(&checked)?;
+//! engine.step()?;
+//! assert_eq!(engine.particles().len(), 2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod arrays;
+mod assemble;
+mod balance;
+mod benches;
+mod check;
+mod checks;
+mod choice;
+mod document;
+mod engine;
+mod entry;
+mod facts;
+mod fast;
+mod judge;
+mod keys;
+mod lookout;
+pub mod memory;
+mod model;
+mod neighbor_list;
+mod options;
+mod prepared;
+mod presets;
+mod programs;
+mod quantities;
+pub mod scene;
+mod simulation;
+mod theory;
+mod totals;
+mod trials;
+mod walls;
+mod watch;
+
+pub use crate::method::pairwise::search::OnConflict;
+pub use crate::method::pairwise::{Elapsed, Phase, Timings};
+pub use arrays::{Arrays, Lengths};
+pub use assemble::{assemble, assemble_following_energy, model};
+pub use balance::Balance;
+pub use check::{Checked, Estimates, Geometry};
+pub use document::Document;
+pub use engine::Engine;
+pub use entry::ENTRY;
+pub use fast::FastSearch;
+pub use model::{Discs, GearValues, Model, OnLongStep, Scheme, Watch};
+pub use neighbor_list::{ListOptions, Rebuild};
+pub use options::ProgramText;
+pub use programs::{Part, StepProgram, execute, ledger, programs, rival_ledger};
+pub use scene::{Inertia, Scene};
+pub use simulation::{Contacts, LatticeMd, Machine, start};
+pub use totals::{Total, Totals};

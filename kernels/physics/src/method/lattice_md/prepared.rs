@@ -1,0 +1,405 @@
+//! A checked scene and its simulation, as every method offers them.
+
+use super::balance::{Way, Work};
+use super::check::{Checked, Estimates};
+use super::checks;
+use super::document::Document;
+use super::engine::Engine;
+use super::facts::{expected_error, facts};
+use super::lookout::Lookout;
+use super::quantities::{OBSERVABLES, Seen};
+use super::theory::limits::step_limits;
+use super::{
+    Lengths, Model, StepProgram, Total, Totals, assemble, assemble_following_energy, ledger, memory, model,
+    programs,
+};
+use crate::domain::Domain;
+use crate::io::checkpoint::Counter;
+use crate::memory::Foreseen;
+use crate::method::{
+    Clock, Every, Fact, Failure, Prepared, Purpose, RunWarning, Schedule, Simulation, Snapshot, StepLimit,
+    Until, VectorProgram,
+};
+use crate::number::significant;
+use crate::observe::{Observation, Scenery, Sums};
+use crate::particles::Particles;
+use crate::scene::{Output, SceneErrors, Warning};
+use crate::words::Words;
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use std::cell::{Cell, OnceCell};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+use stripmine_kernels::isa::OpCounts;
+
+/// A checked scene of granular discs.
+struct Discs(Checked);
+
+impl Document {
+    /// Makes the discs and holds the scene against what the method demands, as every method does.
+    ///
+    /// # Errors
+    /// As [`check`](Self::check).
+    pub fn prepare(self) -> Result<Box<dyn Prepared>, SceneErrors> {
+        Ok(Box::new(Discs(self.check()?)))
+    }
+
+    /// The same, but whatever the step is: what is foreseen of it refuses nothing.
+    ///
+    /// # Errors
+    /// As [`check`](Self::check).
+    pub fn prepare_at_any_step(self) -> Result<Box<dyn Prepared>, SceneErrors> {
+        Ok(Box::new(Discs(self.check_at_any_step()?)))
+    }
+}
+
+impl Prepared for Discs {
+    fn scene(&self) -> String {
+        self.0.scene.to_toml()
+    }
+
+    fn schedule(&self) -> Schedule {
+        let run = self.0.scene.run;
+        Schedule {
+            until: Until::Steps(run.steps),
+            rows: Every::steps(run.thermo_every),
+            snapshots: Every::steps(run.snapshot_every),
+            checkpoints: Every::checkpoints(run.checkpoint_every.map(Every::steps)),
+        }
+    }
+
+    fn output(&self) -> Output {
+        self.0.scene.output
+    }
+
+    fn domain(&self) -> Domain {
+        self.0.domain
+    }
+
+    fn particles(&self) -> &Particles {
+        &self.0.particles
+    }
+
+    fn seed(&self) -> Option<u64> {
+        self.0.scene.start.seed()
+    }
+
+    fn start_file(&self) -> Option<&Path> {
+        self.0.scene.start.file()
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        facts(&self.0)
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.0.warnings
+    }
+
+    fn choices(&self) -> &[String] {
+        &self.0.choices
+    }
+
+    fn left_out(&self) -> &[String] {
+        &self.0.left_out
+    }
+
+    fn step_limits(&self) -> Vec<StepLimit> {
+        step_limits(&self.0)
+    }
+
+    fn expected_error(&self) -> Option<Fact> {
+        expected_error(&self.0)
+    }
+
+    fn memory(&self) -> Foreseen {
+        memory::foreseen(&self.0)
+    }
+
+    fn settings(&self) -> Map<String, Value> {
+        let Checked { scene, domain, particles, geometry, .. } = &self.0;
+        let discs: f64 = particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius.powi(2)).sum();
+        let cell_edge = scene.needs_lattice().then_some(geometry.frame.edge);
+        let settings = [
+            ("packing_fraction", json!(discs / (domain.area()))),
+            ("precision", json!(scene.machine.precision.word())),
+            ("integrator", json!(scene.integrator.scheme.name())),
+            ("execution", json!(scene.machine.execution_name())),
+            ("text", json!((!scene.machine.is_fast()).then(|| scene.machine.text.word()))),
+            ("friction", json!(scene.law.has_friction())),
+            ("cell_edge", json!(cell_edge)),
+            ("instruction_set", json!(scene.machine.instructions().name())),
+        ];
+        settings.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
+    }
+
+    fn programs(&self) -> Vec<VectorProgram> {
+        let Checked { scene, particles, .. } = &self.0;
+        if !scene.needs_lattice() {
+            return vec![];
+        }
+        let model = model(&self.0);
+        let lengths = Lengths::new(&model, particles.grain_count(), particles.len());
+        let as_any = |step: StepProgram| VectorProgram {
+            part: step.part.name(),
+            length: step.length.symbol(),
+            n: lengths.range(step.length).len(),
+            times: 1,
+            program: step.program,
+        };
+        programs::<f64, f64>(&model).into_iter().map(as_any).collect()
+    }
+
+    fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
+        let engine = match purpose {
+            Purpose::Run => assemble_following_energy(&self.0)?,
+            Purpose::Measurement => assemble(&self.0)?,
+        };
+        let lookout = (purpose == Purpose::Run).then(|| Lookout::of(&self.0));
+        Ok(Box::new(Running::new(&self.0, engine, lookout)))
+    }
+
+    fn started_from(&self, particles: Particles) -> Box<dyn Prepared> {
+        let estimates = Estimates::of(&self.0.scene, &particles);
+        Box::new(Discs(Checked { particles, estimates, ..self.0.clone() }))
+    }
+}
+
+/// The phase in which discs are observed.
+const OBSERVING: &str = "observe";
+
+/// A simulation of granular discs, observed.
+struct Running {
+    engine: Box<dyn Engine>,
+    model: Model,
+    scenery: Scenery,
+    max_penetration: f64,
+    /// The balance of energy since the start.
+    work: Work,
+    /// What is seen of this moment, once somebody has asked.
+    seen: OnceCell<Seen>,
+    /// Seconds that this has taken: a phase that belongs to no step.
+    observing: Cell<f64>,
+    /// Columns and rows of the lattice, where the scene needs one, and discs for each cell.
+    lattice: Option<([usize; 2], f64)>,
+    discs: [usize; 2],
+    /// What is looked at now and then, in a run.
+    lookout: Option<Lookout>,
+}
+
+impl Running {
+    fn new(checked: &Checked, engine: Box<dyn Engine>, lookout: Option<Lookout>) -> Running {
+        let Checked { scene, particles, geometry, .. } = checked;
+        let model = model(checked);
+        let scenery = Scenery::of(&model);
+        let way = Way::begin(engine.as_ref(), &scenery);
+        let sums = engine.sums(&scenery, &way);
+        let work = Work::begin(way, &Observation::new(engine.steps(), engine.time(), &sums, &scenery));
+        let lookout = lookout.map(|mut lookout| {
+            lookout.look(&sums.grains);
+            lookout
+        });
+        let grains = particles.grain_count();
+        let cells = [geometry.shape.columns(), geometry.shape.rows()];
+        Running {
+            engine,
+            model,
+            scenery,
+            max_penetration: scene.law.max_penetration,
+            work,
+            seen: OnceCell::new(),
+            observing: Cell::default(),
+            lattice: scene.needs_lattice().then_some((cells, geometry.occupancy)),
+            discs: [grains, particles.len() - grains],
+            lookout,
+        }
+    }
+
+    /// What is to be seen of this moment: looked at once, however many ask.
+    fn seen(&self) -> &Seen {
+        self.seen.get_or_init(|| {
+            let (engine, sums) = (self.engine.as_ref(), self.sums());
+            let now = Observation::new(engine.steps(), engine.time(), &sums, &self.scenery);
+            let totals = engine.totals();
+            Seen { now, balance: self.work.balance(&now, &sums, &totals), totals }
+        })
+    }
+
+    /// Sums over the discs and their contacts as they stand, with the time that they take.
+    fn sums(&self) -> Sums {
+        let start = Instant::now();
+        let sums = self.engine.sums(&self.scenery, self.work.way());
+        self.observing.set(self.observing.get() + start.elapsed().as_secs_f64());
+        sums
+    }
+
+    /// What leaving out saves: the programs as they are against those of the fullest model, on the same lattice; none where
+    /// a step is no fixed program.
+    fn relative_work(&self) -> Option<f64> {
+        if self.engine.ledger().parts().is_empty() {
+            return None;
+        }
+        let [grains, walls] = self.discs;
+        let lengths = Lengths::new(&self.model, grains, grains + walls);
+        let work = |model: &Model| -> u64 {
+            let parts = ledger(&programs::<f64, f64>(model)).parts();
+            let cost = parts.iter();
+            cost.map(|(_, length, counts)| counts.total() * lengths.range(*length).len() as u64).sum()
+        };
+        let everything = Model { friction: true, discs: super::Discs::Varying, ..self.model.clone() };
+        Some(work(&self.model) as f64 / work(&everything) as f64)
+    }
+}
+
+/// Part of a step.
+#[derive(Serialize)]
+struct LedgerRow {
+    /// The part.
+    part: &'static str,
+    /// Vector length, as a symbol.
+    length: &'static str,
+    /// Vector length in the last step.
+    n: u64,
+    /// Operations on each element.
+    operations: u64,
+}
+
+fn ledger_rows(engine: &dyn Engine) -> Vec<LedgerRow> {
+    let parts = engine.ledger().parts();
+    let rows = parts.iter().map(|(part, length, counts)| LedgerRow {
+        part,
+        length: length.symbol(),
+        n: engine.length(*length),
+        operations: counts.total(),
+    });
+    rows.collect()
+}
+
+impl Simulation for Running {
+    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure> {
+        while !until.iter().any(|moment| moment.has_come(&self.clock())) {
+            if interrupted.load(Ordering::Relaxed) {
+                break;
+            }
+            self.seen.take();
+            self.engine.step()?;
+            if self.lookout.is_some() && Lookout::is_due(self.engine.steps()) {
+                let sums = self.sums();
+                self.lookout.iter_mut().for_each(|lookout| lookout.look(&sums.grains));
+            }
+        }
+        Ok(())
+    }
+
+    fn clock(&self) -> Clock {
+        self.engine.elapsed().clock()
+    }
+
+    fn particles(&self) -> Particles {
+        self.engine.particles()
+    }
+
+    fn observe(&self) -> Vec<f64> {
+        OBSERVABLES.iter().map(|observable| (observable.of)(self.seen())).collect()
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        let counters = self.engine.totals().entries().into_iter().map(|(name, total)| match total {
+            Total::Count(count) => (name.to_owned(), Counter::Count(count)),
+            Total::Sum(sum) => (name.to_owned(), Counter::Sum(sum)),
+        });
+        let looked = self.lookout.iter().flat_map(Lookout::counters);
+        Snapshot { counters: counters.chain(looked).collect(), columns: self.engine.state() }
+    }
+
+    fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
+        clock.of_steps(self.model.dt)?;
+        let totals = Totals::from_entries(|name| match snapshot.counters.get(name)? {
+            Counter::Count(count) => Some(Total::Count(*count)),
+            Counter::Sum(sum) => Some(Total::Sum(*sum)),
+        });
+        let discs = self.discs[0] + self.discs[1];
+        let totals = totals.map_err(|name| format!("the total {name} is missing"))?;
+        totals.are_of(clock.steps, discs as u64)?;
+        if let Some(lookout) = &mut self.lookout {
+            lookout.restore(&snapshot.counters)?;
+        }
+        self.seen.take();
+        self.engine.restore(clock.steps, totals, snapshot.columns)
+    }
+
+    fn phases(&self) -> BTreeMap<&'static str, f64> {
+        let observing = Some((OBSERVING, self.observing.get())).filter(|(_, seconds)| *seconds > 0.0);
+        self.engine.timings().named().into_iter().chain(observing).collect()
+    }
+
+    fn reset_phases(&mut self) {
+        self.engine.reset_timings();
+        self.observing.take();
+    }
+
+    fn work(&self) -> f64 {
+        self.discs[0] as f64 * self.engine.steps() as f64
+    }
+
+    fn operations(&self) -> Vec<(OpCounts, u64)> {
+        let parts = self.engine.ledger().parts();
+        parts.into_iter().map(|(_, length, counts)| (counts, self.engine.length(length))).collect()
+    }
+
+    fn summary(&self) -> Map<String, Value> {
+        let Seen { now, balance, totals, .. } = self.seen();
+        let lists = self.engine.lists();
+        let entries = [
+            ("discs", json!({ "grains": self.discs[0], "walls": self.discs[1] })),
+            (
+                "lattice",
+                json!(self.lattice.map(|([columns, rows], _)| json!({ "columns": columns, "rows": rows }))),
+            ),
+            ("occupancy", json!(self.lattice.map(|(_, occupancy)| occupancy))),
+            ("energy", json!(balance)),
+            ("long_steps", json!(totals.long_steps)),
+            ("deep_disc_steps", json!(totals.deep_disc_steps)),
+            ("resolved_conflicts", json!(totals.shared_cells)),
+            ("deepest_watched", json!(totals.deepest)),
+            ("listed_pairs", json!(lists.map(|(entries, _)| entries))),
+            ("lists_made", json!(lists.map(|(_, made)| made))),
+            ("ledger", json!(ledger_rows(self.engine.as_ref()))),
+            ("work_relative_to_everything", json!(self.relative_work())),
+            ("last", json!(now)),
+        ];
+        entries.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
+    }
+
+    fn warnings(&self) -> Vec<RunWarning> {
+        let Seen { balance, totals, .. } = self.seen();
+        let energy = self.lookout.as_ref().and_then(|_| checks::energy(balance, self.work.passed(balance)));
+        let looked = self.lookout.iter().flat_map(Lookout::warnings);
+        checks::counted(totals, self.max_penetration).into_iter().chain(looked).chain(energy).collect()
+    }
+
+    fn in_words(&self) -> String {
+        let ([grains, walls], Seen { now, .. }) = (self.discs, self.seen());
+        let mut text = format!("{grains} grains and {walls} wall discs");
+        if let Some(([columns, rows], occupancy)) = self.lattice {
+            let occupancy = significant(occupancy, 4);
+            text.push_str(&format!(" on {columns}×{rows} cells, occupancy {occupancy}"));
+        }
+        text.push_str(&format!(
+            "; temperature {}, flow {}, contacts {}, deepest penetration {}",
+            significant(now.temperature, 5),
+            significant(now.flow, 5),
+            now.contacts,
+            significant(now.deepest_penetration, 4)
+        ));
+        if let Some(share) = self.relative_work().filter(|&share| share < 1.0) {
+            let saved = 100.0 * (1.0 - share);
+            text.push_str(&format!(
+                "\nsaved: {saved:.1} % of a step's operations with friction and different discs"
+            ));
+        }
+        text
+    }
+}

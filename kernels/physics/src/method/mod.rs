@@ -1,0 +1,31 @@
+//! The methods: one folder a source, and one line in the [list](METHODS).
+
+mod clock;
+mod entry;
+pub mod failure;
+pub mod hard_disks;
+pub mod langevin;
+pub mod lattice_md;
+mod list;
+pub mod nbody;
+pub mod observed;
+mod pairwise;
+mod probe;
+mod restored;
+mod snapshot;
+pub mod throughput;
+mod trials;
+
+pub use clock::{Clock, Every, Schedule, Until};
+pub use entry::{
+    Bench, BenchOption, Beyond, Entry, Fact, Observable, Prepared, Purpose, Quantity, RunWarning, Simulation,
+    StepLimit, VectorProgram, quantities,
+};
+pub use failure::{Culprit, Failure, FailureKind};
+pub use hard_disks::compress;
+pub use list::{METHODS, Methods, load, method, prepare, vocabularies};
+pub use probe::probed;
+pub use snapshot::Snapshot;
+pub use trials::{
+    Axis, Balance, Decides, Length, Mapped, Parameter, SMALLEST_RADIUS, Setting, Theory, Trials,
+};

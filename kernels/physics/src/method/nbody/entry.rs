@@ -1,0 +1,18 @@
+//! The entry of bodies in the list of methods.
+
+use super::benches::{BENCHES, QUANTITIES};
+use super::keys::VOCABULARY;
+use super::prepared::prepare;
+use super::trials::TRIALS;
+use crate::method::Entry;
+
+/// All-pairs gravity.
+pub static ENTRY: Entry = Entry {
+    vocabulary: &VOCABULARY,
+    source: "all-pairs gravity (PWP)",
+    doc: "bodies in space that all attract each other, softened, by nine integrators",
+    quantities: QUANTITIES,
+    prepare,
+    benches: BENCHES,
+    trials: Some(&TRIALS),
+};

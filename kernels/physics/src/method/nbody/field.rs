@@ -1,0 +1,419 @@
+//! Accelerations of bodies: interchangeable ways to the same sums.
+
+use super::bodies::{Bodies, Columns};
+use super::options::{ArithmeticKind, Engine};
+use super::scene::Scene;
+use super::schemes::{Field, SchemeName};
+use super::shifted::Shifted;
+use super::swept::Swept;
+use crate::scene::Precision;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::sweep::all_pairs::Arithmetic;
+
+/// Derivatives of the acceleration that a start may ask for, itself first.
+const ORDERS: usize = 4;
+
+/// Asked now and then whether to stop.
+pub type Stop<'a> = &'a (dyn Fn() -> bool + Sync);
+
+/// Never stops.
+pub fn never() -> bool {
+    false
+}
+
+/// The attraction of some masses.
+pub struct Attraction {
+    softening: f64,
+    mass: Vec<f64>,
+    /// 0 where there is no mass.
+    inverse_mass: Vec<f64>,
+    bodies: usize,
+    pub(super) pairs: Pairs,
+    /// How often accelerations were asked for.
+    pub evaluations: u64,
+}
+
+/// The ways.
+pub enum Pairs {
+    /// As the sum is written.
+    Reference,
+    /// By sums of forces, in the scene's precision.
+    Summed(Box<dyn Sums>),
+}
+
+/// A way to sum up forces and, where velocities are given, their rates.
+pub trait Sums: Send + Sync {
+    /// Sums up; gives the energy of the pairs if it is observed, else 0.
+    ///
+    /// # Errors
+    /// [`ProgramError`] if the processor lacks what is asked for, or `stop` says so.
+    fn sum(
+        &mut self,
+        position: &Columns,
+        velocity: Option<&Columns>,
+        observed: bool,
+        stop: Stop<'_>,
+    ) -> Result<f64, ProgramError>;
+
+    /// The forces, and their rates, over the masses.
+    fn over(&self, inverse_mass: &[f64], into: [Option<&mut Columns>; 2]);
+}
+
+/// An attraction as a scheme asks for it.
+pub struct Asking<'a> {
+    attraction: &'a mut Attraction,
+    /// Whether the energy is wanted of the positions that a step ends with.
+    observed: bool,
+    /// That energy, where the forces were summed up there.
+    energy: Option<f64>,
+    stop: Stop<'a>,
+}
+
+impl Attraction {
+    /// Of a scene's bodies.
+    pub fn new(scene: &Scene, bodies: &Bodies) -> Self {
+        let arithmetic = match scene.arithmetic {
+            ArithmeticKind::Exact => Arithmetic::Exact,
+            ArithmeticKind::Estimated => Arithmetic::Estimated,
+            ArithmeticKind::Raw => Arithmetic::Raw,
+        };
+        let set = scene.instructions();
+        let (softening, execution) = (scene.softening, (scene.execution, set));
+        let pairs = match (scene.engine, scene.precision) {
+            (Engine::Reference, _) => Pairs::Reference,
+            // The check has decided what `auto` is.
+            (Engine::Fast | Engine::Auto, Precision::F64) => {
+                Pairs::Summed(Box::new(Swept::<f64>::new(softening, bodies, arithmetic, set)))
+            }
+            (Engine::Fast | Engine::Auto, _) => {
+                Pairs::Summed(Box::new(Swept::<f32>::new(softening, bodies, arithmetic, set)))
+            }
+            (Engine::Programs, Precision::F64) => {
+                Pairs::Summed(Box::new(Shifted::<f64>::new(softening, bodies, execution)))
+            }
+            (Engine::Programs, _) => {
+                Pairs::Summed(Box::new(Shifted::<f32>::new(softening, bodies, execution)))
+            }
+        };
+        let inverse_mass = bodies.mass.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 0.0 }).collect();
+        Attraction {
+            softening: scene.softening,
+            mass: bodies.mass.clone(),
+            inverse_mass,
+            bodies: bodies.len(),
+            pairs,
+            evaluations: 0,
+        }
+    }
+
+    /// Bytes that a scene's takes for a number of bodies.
+    pub fn bytes(scene: &Scene, count: usize) -> usize {
+        let has_rates = scene.scheme == SchemeName::Hermite4;
+        let pairs = match (scene.engine, scene.precision) {
+            (Engine::Reference, _) => 0,
+            (Engine::Fast | Engine::Auto, Precision::F64) => Swept::<f64>::bytes(count, has_rates),
+            (Engine::Fast | Engine::Auto, _) => Swept::<f32>::bytes(count, has_rates),
+            (Engine::Programs, Precision::F64) => Shifted::<f64>::bytes(count, has_rates),
+            (Engine::Programs, _) => Shifted::<f32>::bytes(count, has_rates),
+        };
+        pairs + 2 * size_of::<f64>() * count
+    }
+
+    /// For a step: whether the energy at its end is wanted, and what may stop it.
+    pub fn asking<'a>(&'a mut self, observed: bool, stop: Stop<'a>) -> Asking<'a> {
+        Asking { attraction: self, observed, energy: None, stop }
+    }
+
+    /// The energy of all pairs.
+    ///
+    /// # Errors
+    /// [`ProgramError`] if the processor lacks what is asked for, or `stop` says so.
+    pub fn potential(&mut self, position: &Columns, stop: Stop<'_>) -> Result<f64, ProgramError> {
+        match &mut self.pairs {
+            Pairs::Reference => potential(&self.mass[..self.bodies], position, self.softening, stop),
+            Pairs::Summed(sums) => sums.sum(position, None, true, stop),
+        }
+    }
+
+    fn square(&self, position: &Columns, body: usize, other: usize) -> f64 {
+        let squares = position.iter().map(|column| (column[body] - column[other]).powi(2));
+        squares.sum::<f64>() + self.softening * self.softening
+    }
+
+    /// The sum as it is written, in the order of the bodies.
+    fn written(&self, position: &Columns, into: &mut Columns, stop: Stop<'_>) -> Result<(), ProgramError> {
+        for body in 0..self.bodies {
+            go_on(stop)?;
+            let mut sum = [0.0; 3];
+            for other in (0..self.bodies).filter(|&other| other != body) {
+                let square = self.square(position, body, other);
+                let pull = self.mass[other] / (square * square.sqrt());
+                (0..3).for_each(|axis| sum[axis] += pull * (position[axis][other] - position[axis][body]));
+            }
+            (0..3).for_each(|axis| into[axis][body] = sum[axis]);
+        }
+        Ok(())
+    }
+
+    /// Derivatives of the acceleration by Taylor series of positions and pairs, an order after the other: for a start. Every body's
+    /// is a sum of its own, on threads.
+    fn series(
+        &self,
+        position: &Columns,
+        velocity: &Columns,
+        orders: &mut [Columns],
+        stop: Stop<'_>,
+    ) -> Result<(), ProgramError> {
+        let count = self.bodies;
+        // Taylor coefficients of every position.
+        let mut path = vec![[[0.0; ORDERS + 2]; 3]; count];
+        for (body, path) in path.iter_mut().enumerate() {
+            for axis in 0..3 {
+                path[axis][0] = position[axis][body];
+                path[axis][1] = velocity[axis][body];
+            }
+        }
+        let mut factorial = 1.0;
+        for (order, into) in orders.iter_mut().enumerate().take(ORDERS) {
+            factorial *= if order > 0 { order as f64 } else { 1.0 };
+            let of = |body: usize| go_on(stop).map(|()| self.coefficient(&path, body, order));
+            let found: Vec<[f64; 3]> = (0..count).into_par_iter().map(of).collect::<Result<_, _>>()?;
+            for (body, found) in found.iter().enumerate() {
+                for axis in 0..3 {
+                    into[axis][body] = factorial * found[axis];
+                    path[body][axis][order + 2] = found[axis] / ((order + 1) * (order + 2)) as f64;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The coefficient of an order of a body's acceleration.
+    fn coefficient(&self, path: &[[[f64; ORDERS + 2]; 3]], body: usize, order: usize) -> [f64; 3] {
+        let mut found = [0.0; 3];
+        for other in (0..path.len()).filter(|&other| other != body) {
+            let way: [[f64; ORDERS]; 3] =
+                std::array::from_fn(|axis| {
+                    std::array::from_fn(|k| {
+                        if k <= order { path[other][axis][k] - path[body][axis][k] } else { 0.0 }
+                    })
+                });
+            let mut square = [0.0; ORDERS];
+            square[0] = self.softening * self.softening;
+            for way in &way {
+                for k in 0..=order {
+                    square[k] += (0..=k).map(|i| way[i] * way[k - i]).sum::<f64>();
+                }
+            }
+            let cube = power(&square, -1.5, order);
+            for axis in 0..3 {
+                let term: f64 = (0..=order).map(|i| way[axis][i] * cube[order - i]).sum();
+                found[axis] += self.mass[other] * term;
+            }
+        }
+        found
+    }
+}
+
+/// Stops where it should.
+fn go_on(stop: Stop<'_>) -> Result<(), ProgramError> {
+    if stop() { Err(ProgramError::Interrupted) } else { Ok(()) }
+}
+
+/// The energy of all pairs, as it is written.
+///
+/// # Errors
+/// [`ProgramError::Interrupted`] if `stop` says so.
+pub fn potential(
+    mass: &[f64],
+    position: &Columns,
+    softening: f64,
+    stop: Stop<'_>,
+) -> Result<f64, ProgramError> {
+    let mut energy = 0.0;
+    for body in 0..mass.len() {
+        go_on(stop)?;
+        for other in 0..body {
+            let squares = position.iter().map(|column| (column[body] - column[other]).powi(2));
+            energy -= mass[body] * mass[other] / (squares.sum::<f64>() + softening * softening).sqrt();
+        }
+    }
+    Ok(energy)
+}
+
+/// The series of a power of a series, up to an order.
+fn power(of: &[f64; ORDERS], exponent: f64, order: usize) -> [f64; ORDERS] {
+    let mut result = [0.0; ORDERS];
+    result[0] = of[0].powf(exponent);
+    for k in 1..=order {
+        let terms = (1..=k).map(|i| ((exponent + 1.0) * i as f64 / k as f64 - 1.0) * of[i] * result[k - i]);
+        result[k] = terms.sum::<f64>() / of[0];
+    }
+    result
+}
+
+impl Asking<'_> {
+    /// The energy of all pairs at the positions that the step ended with.
+    ///
+    /// # Errors
+    /// As [`Attraction::potential`].
+    pub fn energy(&mut self, position: &Columns) -> Result<f64, ProgramError> {
+        self.energy.take().map_or_else(|| self.attraction.potential(position, self.stop), Ok)
+    }
+
+    fn acceleration_and(
+        &mut self,
+        position: &Columns,
+        into: &mut Columns,
+        observed: bool,
+    ) -> Result<Option<f64>, ProgramError> {
+        let Asking { attraction, stop, .. } = self;
+        attraction.evaluations += 1;
+        let Attraction { pairs: Pairs::Summed(sums), inverse_mass, .. } = &mut **attraction else {
+            return attraction.written(position, into, stop).map(|()| None);
+        };
+        let energy = sums.sum(position, None, observed, stop)?;
+        sums.over(inverse_mass, [Some(into), None]);
+        Ok(observed.then_some(energy))
+    }
+}
+
+impl Field for Asking<'_> {
+    fn acceleration(&mut self, position: &Columns, into: &mut Columns) -> Result<(), ProgramError> {
+        self.acceleration_and(position, into, false).map(drop)
+    }
+
+    fn last_acceleration(&mut self, position: &Columns, into: &mut Columns) -> Result<(), ProgramError> {
+        self.energy = self.acceleration_and(position, into, self.observed)?;
+        Ok(())
+    }
+
+    fn derivatives(
+        &mut self,
+        position: &Columns,
+        velocity: &Columns,
+        orders: &mut [Columns],
+    ) -> Result<(), ProgramError> {
+        let Asking { attraction, stop, .. } = self;
+        attraction.evaluations += 1;
+        match (&mut **attraction, orders) {
+            (Attraction { pairs: Pairs::Summed(sums), inverse_mass, .. }, [acceleration, jerk]) => {
+                sums.sum(position, Some(velocity), false, stop)?;
+                sums.over(inverse_mass, [Some(acceleration), Some(jerk)]);
+                Ok(())
+            }
+            (attraction, orders) => attraction.series(position, velocity, orders, stop),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::options::StartKind;
+    use super::super::schemes::Field as _;
+    use super::super::starts::bodies;
+    use super::*;
+    use crate::method::nbody::bodies::zeros;
+    use stripmine_kernels::Execution;
+
+    /// The derivatives by series against differences of the accelerations along a path of theirs, and the fast sweep's jerk.
+    #[test]
+    fn derivatives_are_those_of_the_motion() {
+        let mut scene = Scene { softening: 0.2, ..Scene::default() };
+        (scene.start.kind, scene.start.count) = (StartKind::Plummer, 12);
+        let of = bodies(&scene.start, 0.2);
+        let all = Bodies::new(of.iter().map(|&(m, r, v)| (r, v, m)));
+        let mut field = Attraction::new(&scene, &all);
+        let mut orders: Vec<Columns> = (0..ORDERS).map(|_| zeros(all.entries())).collect();
+        field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut orders).unwrap();
+        // Along the path by its series the acceleration has these derivatives.
+        let h = 0.004;
+        let at = |time: f64| {
+            let mut position = all.position.clone();
+            for axis in 0..3 {
+                for body in 0..all.len() {
+                    let mut term = time * time / 2.0;
+                    position[axis][body] += time * all.velocity[axis][body];
+                    for (order, column) in orders.iter().enumerate() {
+                        position[axis][body] += term * column[axis][body];
+                        term *= time / (order + 3) as f64;
+                    }
+                }
+            }
+            position
+        };
+        let mut acceleration = |time: f64| {
+            let mut into = zeros(all.entries());
+            field.asking(false, &never).acceleration(&at(time), &mut into).unwrap();
+            into
+        };
+        let seen: Vec<Columns> = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| acceleration(k * h)).to_vec();
+        let mut fast = [zeros(all.entries()), zeros(all.entries())];
+        field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut fast).unwrap();
+        let mut programs = [zeros(all.entries()), zeros(all.entries())];
+        let mut field = Attraction::new(&Scene { engine: Engine::Programs, ..scene.clone() }, &all);
+        field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut programs).unwrap();
+        for axis in 0..3 {
+            for body in 0..all.len() {
+                let a: Vec<f64> = seen.iter().map(|column| column[axis][body]).collect();
+                let found = [0, 1, 2, 3].map(|order| orders[order][axis][body]);
+                let expected = [
+                    a[2],
+                    (a[0] - 8.0 * a[1] + 8.0 * a[3] - a[4]) / (12.0 * h),
+                    (-a[0] + 16.0 * a[1] - 30.0 * a[2] + 16.0 * a[3] - a[4]) / (12.0 * h * h),
+                    (-a[0] + 2.0 * a[1] - 2.0 * a[3] + a[4]) / (2.0 * h * h * h),
+                ];
+                for (order, tolerance) in [1e-12, 1e-6, 1e-5, 2e-3].into_iter().enumerate() {
+                    let scale = orders[order][axis].iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+                    assert!(
+                        (found[order] - expected[order]).abs() < tolerance * scale,
+                        "{order}: {found:?} {expected:?}"
+                    );
+                }
+                for jerk in [&fast[1], &programs[1]] {
+                    assert!((jerk[axis][body] - found[1]).abs() < 1e-12 * (1.0 + found[1].abs()));
+                }
+            }
+        }
+    }
+
+    /// The reference and every fast way agree to what their precision has.
+    #[test]
+    fn ways_agree() {
+        let mut scene = Scene { softening: 0.05, ..Scene::default() };
+        (scene.start.kind, scene.start.count) = (StartKind::Plummer, 301);
+        let of = bodies(&scene.start, 0.05);
+        let all = Bodies::new(of.iter().map(|&(m, r, v)| (r, v, m)));
+        let found = |engine, execution, precision, arithmetic| {
+            let scene = Scene { engine, execution, precision, arithmetic, ..scene.clone() };
+            let mut field = Attraction::new(&scene, &all);
+            let mut into = zeros(all.entries());
+            field.asking(false, &never).acceleration(&all.position, &mut into).unwrap();
+            (into, field.potential(&all.position, &never).unwrap())
+        };
+        let (expected, potential) =
+            found(Engine::Reference, Execution::Chained, Precision::F64, ArithmeticKind::Exact);
+        let largest = expected.iter().flatten().fold(0.0, |most: f64, a| most.max(a.abs()));
+        for (precision, arithmetic, tolerance) in [
+            (Precision::F64, ArithmeticKind::Exact, 1e-14),
+            (Precision::F64, ArithmeticKind::Estimated, 1e-14),
+            (Precision::Mixed, ArithmeticKind::Exact, 3e-6),
+            (Precision::Mixed, ArithmeticKind::Estimated, 3e-6),
+        ] {
+            for engine in [Engine::Fast, Engine::Programs] {
+                let (into, energy) = found(engine, Execution::Chained, precision, arithmetic);
+                for (a, b) in into.iter().zip(&expected) {
+                    assert!(
+                        a.iter().zip(b).take(all.len()).all(|(a, b)| (a - b).abs() < tolerance * largest)
+                    );
+                }
+                assert!((energy / potential - 1.0).abs() < tolerance, "{energy} {potential}");
+            }
+        }
+        // The programs do the same however they are executed.
+        let by = |execution| found(Engine::Programs, execution, Precision::F64, ArithmeticKind::Exact);
+        let chained = by(Execution::Chained);
+        assert!([Execution::Eager, Execution::Strip(64)].into_iter().all(|other| by(other) == chained));
+    }
+}

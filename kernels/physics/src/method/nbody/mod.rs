@@ -1,0 +1,26 @@
+//! PWP: bodies in space that all attract each other, by softened gravity with G = 1.
+
+mod benches;
+pub mod bodies;
+mod choice;
+mod conserved;
+mod encounter;
+mod entry;
+pub mod field;
+mod keys;
+pub mod options;
+mod prepared;
+mod presets;
+mod rounded;
+pub mod scene;
+pub mod schemes;
+mod shifted;
+mod simulation;
+pub mod starts;
+mod swept;
+#[cfg(test)]
+mod tests;
+mod trials;
+mod watch;
+
+pub use entry::ENTRY;

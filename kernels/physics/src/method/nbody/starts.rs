@@ -1,0 +1,225 @@
+//! Where bodies start. All are about the origin, with no momentum and, unless they are listed, a total mass of 1.
+
+use super::options::StartKind;
+use super::scene::Start;
+use rand::RngExt;
+use std::f64::consts::{PI, TAU};
+use stripmine_kernels::noise::{Purpose, Stream};
+
+/// A body: mass, position (length) and velocity (length/time).
+pub type Body = (f64, [f64; 3], [f64; 3]);
+
+/// The bodies of a start, softened by ε (length).
+pub fn bodies(start: &Start, softening: f64) -> Vec<Body> {
+    match start.kind {
+        StartKind::Kepler => kepler(start.eccentricity, start.mass_ratio),
+        StartKind::FigureEight => figure_eight(),
+        StartKind::List => {
+            let body = |row: &Vec<f64>| (row[0], [row[1], row[2], row[3]], [row[4], row[5], row[6]]);
+            start.bodies.iter().map(body).collect()
+        }
+        StartKind::Plummer => centred(plummer(start.count, start.seed)),
+        StartKind::Sphere | StartKind::Shell => {
+            let mut bodies = centred(sphere(start));
+            stir(&mut bodies, start, softening);
+            bodies
+        }
+        StartKind::TwoClusters => two_clusters(start),
+    }
+}
+
+/// Two bodies about their centre of mass, at their nearest: half axis, total mass and G are 1.
+fn kepler(eccentricity: f64, mass_ratio: f64) -> Vec<Body> {
+    let share = mass_ratio / (1.0 + mass_ratio);
+    let distance = 1.0 - eccentricity;
+    let speed = ((1.0 + eccentricity) / distance).sqrt();
+    vec![
+        (1.0 - share, [-share * distance, 0.0, 0.0], [0.0, -share * speed, 0.0]),
+        (share, [(1.0 - share) * distance, 0.0, 0.0], [0.0, (1.0 - share) * speed, 0.0]),
+    ]
+}
+
+/// Three equal bodies on the figure of eight (Chenciner and Montgomery 2000); masses of 1 in their units are thirds here.
+fn figure_eight() -> Vec<Body> {
+    // With the mass m of a body times, velocities are √m times.
+    let slow = (1.0f64 / 3.0).sqrt();
+    let [x, y] = [0.970_004_36, -0.243_087_53];
+    let [u, v] = [0.932_407_37 * slow, 0.864_731_46 * slow];
+    let m = 1.0 / 3.0;
+    vec![
+        (m, [x, y, 0.0], [0.5 * u, 0.5 * v, 0.0]),
+        (m, [-x, -y, 0.0], [0.5 * u, 0.5 * v, 0.0]),
+        (m, [0.0; 3], [-u, -v, 0.0]),
+    ]
+}
+
+/// A direction, all alike.
+fn direction(random: &mut Stream) -> [f64; 3] {
+    let z = random.random_range(-1.0..1.0);
+    let angle = random.random_range(0.0..TAU);
+    let across = f64::sqrt(1.0 - z * z);
+    [across * libm::cos(angle), across * libm::sin(angle), z]
+}
+
+/// Plummer's sphere of scale 1 in equilibrium (Aarseth, Hénon and Wielen 1974), cut off where it holds 0.999 of its mass.
+fn plummer(count: usize, seed: u64) -> Vec<Body> {
+    let mass = 1.0 / count as f64;
+    let body = |number: usize| {
+        let mut random = Stream::new(seed, Purpose::Placement, number as u32 + 1);
+        let inside = random.random_range(0.0..0.999);
+        let radius = 1.0 / (libm::pow(inside, -2.0 / 3.0) - 1.0).sqrt();
+        let place = direction(&mut random).map(|x| radius * x);
+        // Velocities over that of escape have the density q² (1 − q²)^{7/2}, below 0.1.
+        let q = loop {
+            let (q, height) = (random.random_range(0.0..1.0f64), random.random_range(0.0..0.1));
+            if height < q * q * libm::pow(1.0 - q * q, 3.5) {
+                break q;
+            }
+        };
+        let speed = q * f64::sqrt(2.0) * libm::pow(1.0 + radius * radius, -0.25);
+        (mass, place, direction(&mut random).map(|v| speed * v))
+    };
+    (0..count).map(body).collect()
+}
+
+/// A uniform sphere of radius 1, or its surface, expanding.
+fn sphere(start: &Start) -> Vec<Body> {
+    let mass = 1.0 / start.count as f64;
+    let body = |number: usize| {
+        let mut random = Stream::new(start.seed, Purpose::Placement, number as u32 + 1);
+        let radius = match start.kind {
+            StartKind::Shell => 1.0,
+            _ => libm::cbrt(random.random_range(0.0..1.0)),
+        };
+        let place = direction(&mut random).map(|x| radius * x);
+        (mass, place, place.map(|x| start.expansion * x))
+    };
+    (0..start.count).map(body).collect()
+}
+
+/// Adds random velocities of a kinetic energy that is a part of the potential one.
+fn stir(bodies: &mut [Body], start: &Start, softening: f64) {
+    if start.virial == 0.0 {
+        return;
+    }
+    let potential = potential(bodies, softening);
+    let drawn: Vec<[f64; 3]> = (0..bodies.len())
+        .map(|number| {
+            let [a, b] = [1, 2].map(|step| {
+                stripmine_kernels::noise::normals(
+                    start.seed,
+                    Purpose::Placement,
+                    number as u32 + 1,
+                    1 << 32 | step,
+                )
+            });
+            [a[0], a[1], b[0]]
+        })
+        .collect();
+    let kinetic: f64 =
+        bodies.iter().zip(&drawn).map(|((m, ..), v)| 0.5 * m * v.iter().map(|v| v * v).sum::<f64>()).sum();
+    let scale = (start.virial * -potential / kinetic).sqrt();
+    for ((.., velocity), drawn) in bodies.iter_mut().zip(drawn) {
+        (0..3).for_each(|axis| velocity[axis] += scale * drawn[axis]);
+    }
+    without_drift(bodies);
+}
+
+/// The energy of all pairs.
+fn potential(bodies: &[Body], softening: f64) -> f64 {
+    let of = |number: usize| -> f64 {
+        let (m, r, _) = bodies[number];
+        let pairs = bodies[..number].iter().map(|(other, there, _)| {
+            let square: f64 = (0..3).map(|axis| (r[axis] - there[axis]).powi(2)).sum();
+            -m * other / (square + softening * softening).sqrt()
+        });
+        pairs.sum()
+    };
+    (0..bodies.len()).map(of).sum()
+}
+
+/// Two Plummer spheres of half the bodies each and half the mass, that approach each other.
+fn two_clusters(start: &Start) -> Vec<Body> {
+    let first = start.count - start.count / 2;
+    let mut bodies = vec![];
+    for (number, count) in [first, start.count / 2].into_iter().enumerate() {
+        let side = if number == 0 { -0.5 } else { 0.5 };
+        let share = count as f64 / start.count as f64;
+        // Half the mass in equilibrium at the same scale moves √½ as fast.
+        let slow = share.sqrt();
+        for (mass, place, velocity) in centred(plummer(count, start.seed.wrapping_add(number as u64))) {
+            let place = [place[0] + side * start.separation, place[1], place[2]];
+            let [u, v, w] = velocity.map(|v| slow * v);
+            let velocity = [u - 2.0 * side * 0.5 * start.approach, v - side * 0.5 * start.approach, w];
+            bodies.push((share * mass, place, velocity));
+        }
+    }
+    centred(bodies)
+}
+
+/// The same bodies about their centre of mass, without momentum.
+fn centred(mut bodies: Vec<Body>) -> Vec<Body> {
+    let mass: f64 = bodies.iter().map(|(m, ..)| m).sum();
+    for axis in 0..3 {
+        let centre = bodies.iter().map(|(m, r, _)| m * r[axis]).sum::<f64>() / mass;
+        bodies.iter_mut().for_each(|(_, r, _)| r[axis] -= centre);
+    }
+    without_drift(&mut bodies);
+    bodies
+}
+
+fn without_drift(bodies: &mut [Body]) {
+    let mass: f64 = bodies.iter().map(|(m, ..)| m).sum();
+    for axis in 0..3 {
+        let drift = bodies.iter().map(|(m, _, v)| m * v[axis]).sum::<f64>() / mass;
+        bodies.iter_mut().for_each(|(.., v)| v[axis] -= drift);
+    }
+}
+
+/// The time of an orbit of two bodies on an ellipse.
+pub const ORBIT: f64 = 2.0 * PI;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn start(kind: StartKind, count: usize) -> Start {
+        Start { kind, count, ..super::super::scene::Scene::default().start }
+    }
+
+    fn kinetic(bodies: &[Body]) -> f64 {
+        bodies.iter().map(|(m, _, v)| 0.5 * m * v.iter().map(|v| v * v).sum::<f64>()).sum()
+    }
+
+    /// Plummer's sphere: energy −3π/32 · ½, in virial equilibrium, half of the mass within 1.305.
+    #[test]
+    fn a_plummer_sphere_is_in_equilibrium() {
+        let bodies = bodies(&start(StartKind::Plummer, 4000), 0.0);
+        let (kinetic, potential) = (kinetic(&bodies), potential(&bodies, 0.0));
+        assert!((potential / (-3.0 * PI / 32.0) - 1.0).abs() < 0.04, "{potential}");
+        assert!((kinetic / -potential - 0.5).abs() < 0.02, "{kinetic} {potential}");
+        let inside =
+            bodies.iter().filter(|(_, r, _)| r.iter().map(|x| x * x).sum::<f64>() < 1.305 * 1.305).count();
+        assert!((inside as f64 / 4000.0 - 0.5).abs() < 0.03, "{inside}");
+    }
+
+    /// Energy −½ m₁ m₂ on an ellipse of half axis 1; a uniform sphere has −3/5; a virial ratio is what was asked for.
+    #[test]
+    fn energies_are_those_of_the_books() {
+        for (eccentricity, ratio) in [(0.0, 1.0), (0.5, 1.0), (0.9, 0.1)] {
+            let bodies = kepler(eccentricity, ratio);
+            let energy = kinetic(&bodies) + potential(&bodies, 0.0);
+            assert!((energy / (-0.5 * bodies[0].0 * bodies[1].0) - 1.0).abs() < 1e-13);
+        }
+        let sphere = bodies(&Start { virial: 0.5, ..start(StartKind::Sphere, 3000) }, 0.0);
+        let potential = potential(&sphere, 0.0);
+        assert!((potential / -0.6 - 1.0).abs() < 0.03, "{potential}");
+        assert!((kinetic(&sphere) / -potential - 0.5).abs() < 1e-3);
+        for kind in [StartKind::Plummer, StartKind::Shell, StartKind::TwoClusters, StartKind::FigureEight] {
+            let bodies = bodies(&start(kind, 500), 0.0);
+            let momentum = [0, 1, 2].map(|axis| bodies.iter().map(|(m, _, v)| m * v[axis]).sum::<f64>());
+            assert!(momentum.iter().all(|p| p.abs() < 1e-15), "{kind:?} {momentum:?}");
+            assert!((bodies.iter().map(|(m, ..)| m).sum::<f64>() - 1.0).abs() < 1e-12);
+        }
+    }
+}

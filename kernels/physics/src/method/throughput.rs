@@ -1,0 +1,246 @@
+//! How fast is a method? Moving particles, timed.
+
+use crate::method::observed::{UnknownName, find};
+use crate::method::{Bench, Failure, Prepared, Purpose, Simulation};
+use crate::reported::{Class, Reported};
+use crate::scene::SceneErrors;
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
+
+/// What is measured.
+pub struct Measurement {
+    /// The bench: what a repeat and the rate are.
+    pub bench: &'static Bench,
+    /// The scene.
+    pub prepared: Box<dyn Prepared>,
+    /// Steps or events before the clock starts; a start on a lattice is kinder than a gas.
+    pub equilibration: u64,
+    /// Steps or events of each repeat.
+    pub steps: u64,
+    /// Repeats.
+    pub repeats: usize,
+}
+
+/// Why there is no measurement.
+#[derive(Debug, thiserror::Error)]
+pub enum MeasurementError {
+    /// The scene.
+    #[error(transparent)]
+    Scene(#[from] SceneErrors),
+    /// The physics.
+    #[error(transparent)]
+    Physics(#[from] Failure),
+    /// A quantity that the bench is to say and the method does not observe.
+    #[error(transparent)]
+    Unknown(#[from] UnknownName),
+    /// No thread to measure on.
+    #[error("no thread to measure on: {0}")]
+    Threads(rayon::ThreadPoolBuildError),
+}
+
+/// The result.
+#[derive(Clone, Debug)]
+pub struct Throughput {
+    /// What was measured.
+    pub what: &'static str,
+    /// Particles that move.
+    pub particles: usize,
+    /// How: precision, integrator and the like.
+    pub settings: Map<String, Value>,
+    /// Threads.
+    pub threads: usize,
+    /// Repeats.
+    pub repeats: usize,
+    /// Steps or events of each repeat.
+    pub steps: u64,
+    /// Wall seconds of the best repeat.
+    pub seconds: f64,
+    /// Processor seconds of the best repeat, over all threads.
+    pub cpu_seconds: f64,
+    /// Most memory the process ever held; none where the platform does not say.
+    pub peak_memory_bytes: Option<u64>,
+    /// CRC-32 of the bits of the final state, by id.
+    pub checksum: String,
+    /// The name of the rate.
+    pub rate_name: &'static str,
+    /// The rate: the best repeat.
+    pub rate: f64,
+    /// The rate: the median repeat.
+    pub median_rate: f64,
+    /// Seconds of the best repeat in each phase.
+    pub phases: BTreeMap<&'static str, f64>,
+    /// Quantities at the start and at the end of the measurement, where the bench compares them.
+    pub compared: Vec<(&'static str, [f64; 2])>,
+    /// Quantities at the end.
+    pub at_end: Vec<(&'static str, f64)>,
+}
+
+/// With the names that outside programs rely on.
+impl Serialize for Throughput {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut data = Map::new();
+        let mut say = |name: &str, value: Value| data.insert(name.to_owned(), value);
+        say("what", json!(self.what));
+        say("particles", json!(self.particles));
+        self.settings.iter().for_each(|(name, value)| drop(say(name, value.clone())));
+        say("threads", json!(self.threads));
+        say("repeats", json!(self.repeats));
+        say("steps", json!(self.steps));
+        say("seconds", json!(self.seconds));
+        say("cpu_seconds", json!(self.cpu_seconds));
+        say("peak_memory_bytes", json!(self.peak_memory_bytes));
+        say("checksum", json!(self.checksum));
+        say(self.rate_name, json!(self.rate));
+        say(&format!("{}_median", self.rate_name), json!(self.median_rate));
+        say("phases", json!(self.phases));
+        self.compared.iter().for_each(|(name, values)| drop(say(name, json!(values))));
+        self.at_end.iter().for_each(|(name, value)| drop(say(name, json!(value))));
+        data.serialize(serializer)
+    }
+}
+
+/// Measures; `progress` gets the share that is done, between repeats.
+///
+/// # Errors
+/// [`MeasurementError`] if the scene is bad or breaks while running.
+pub fn throughput(measurement: Measurement, progress: impl Fn(f64)) -> Result<Throughput, MeasurementError> {
+    let Measurement { bench, prepared, equilibration, steps, repeats } = measurement;
+    let mut running = TimedRun::begin(bench, prepared, equilibration, steps)?;
+    for repeat in 0..repeats {
+        // What comes before takes as long as a tenth of a repeat.
+        progress((0.1 + repeat as f64) / (0.1 + repeats as f64));
+        running.repeat()?;
+    }
+    Ok(running.measured())
+}
+
+/// Wall seconds, processor seconds, work, and seconds in each phase of a repeat.
+struct Repeat {
+    wall: f64,
+    cpu: f64,
+    work: f64,
+    phases: BTreeMap<&'static str, f64>,
+}
+
+/// A scene that runs, and is timed again and again.
+pub struct TimedRun {
+    bench: &'static Bench,
+    prepared: Box<dyn Prepared>,
+    simulation: Box<dyn Simulation>,
+    steps: u64,
+    before: Vec<f64>,
+    /// Names and places of what is said at the start and at the end, and at the end alone.
+    compared: Vec<(&'static str, usize)>,
+    at_end: Vec<(&'static str, usize)>,
+    repeats: Vec<Repeat>,
+}
+
+impl TimedRun {
+    /// Lets the scene run for `equilibration` steps or events. Repeats have `steps`.
+    ///
+    /// # Errors
+    /// [`MeasurementError`] if the scene is bad or breaks while running.
+    pub fn begin(
+        bench: &'static Bench,
+        prepared: Box<dyn Prepared>,
+        equilibration: u64,
+        steps: u64,
+    ) -> Result<Self, MeasurementError> {
+        let simulation = prepared.start(Purpose::Measurement)?;
+        let places = |names: &'static [&'static str]| {
+            names
+                .iter()
+                .map(|&name| Ok((name, find(bench.quantities, name)?)))
+                .collect::<Result<_, UnknownName>>()
+        };
+        let [compared, at_end] = [places(bench.compared)?, places(bench.at_end)?];
+        let (before, repeats) = (vec![], vec![]);
+        let mut running = TimedRun { bench, prepared, simulation, steps, before, compared, at_end, repeats };
+        running.advance(equilibration)?;
+        running.before = running.simulation.observe();
+        Ok(running)
+    }
+
+    /// Times the steps of a repeat.
+    ///
+    /// # Errors
+    /// [`MeasurementError::Physics`] if the scene breaks.
+    pub fn repeat(&mut self) -> Result<(), MeasurementError> {
+        self.simulation.reset_phases();
+        let done = self.simulation.work();
+        let (wall, cpu) = (std::time::Instant::now(), cpu_time::ProcessTime::now());
+        self.advance(self.steps)?;
+        let (wall, cpu) = (wall.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64());
+        let work = self.simulation.work() - done;
+        self.repeats.push(Repeat { wall, cpu, work, phases: self.simulation.phases() });
+        Ok(())
+    }
+
+    /// Work in a second of processor time of the last repeat; not a number before the first.
+    pub fn last_rate(&self) -> f64 {
+        self.repeats.last().map_or(f64::NAN, |repeat| repeat.work / repeat.cpu)
+    }
+
+    fn advance(&mut self, steps: u64) -> Result<(), Failure> {
+        let moment = (self.bench.until)(steps).after(&self.simulation.clock());
+        self.simulation.advance(&[moment], &AtomicBool::new(false))
+    }
+
+    /// What came out.
+    ///
+    /// # Panics
+    /// If there was no repeat.
+    pub fn measured(mut self) -> Throughput {
+        self.repeats.sort_by(|a, b| a.wall.total_cmp(&b.wall));
+        let after = self.simulation.observe();
+        let TimedRun { bench, prepared, simulation, steps, before, compared, at_end, repeats } = self;
+        let (best, median) = (&repeats[0], &repeats[repeats.len() / 2]);
+        Throughput {
+            what: bench.name,
+            particles: prepared.particles().grain_count(),
+            settings: prepared.settings(),
+            threads: rayon::current_num_threads(),
+            repeats: repeats.len(),
+            steps,
+            seconds: best.wall,
+            cpu_seconds: best.cpu,
+            peak_memory_bytes: peak_memory(),
+            checksum: simulation.particles().checksum(),
+            rate_name: bench.rate,
+            rate: best.work / best.wall,
+            median_rate: median.work / median.wall,
+            phases: best.phases.clone(),
+            compared: compared.into_iter().map(|(name, at)| (name, [before[at], after[at]])).collect(),
+            at_end: at_end.into_iter().map(|(name, at)| (name, after[at])).collect(),
+        }
+    }
+}
+
+/// The peak memory of this process, where the system gives it (Linux: `VmHWM`).
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    Some(line.split_whitespace().nth(1)?.parse::<u64>().ok()? * 1024)
+}
+
+impl Reported for MeasurementError {
+    fn class(&self) -> Class {
+        match self {
+            MeasurementError::Scene(errors) => errors.class(),
+            MeasurementError::Physics(failure) => failure.class(),
+            MeasurementError::Unknown(error) => error.class(),
+            MeasurementError::Threads(_) => Class::InputOutput,
+        }
+    }
+
+    fn passed_on(&self) -> Option<&dyn Reported> {
+        match self {
+            MeasurementError::Scene(errors) => Some(errors),
+            MeasurementError::Physics(failure) => Some(failure),
+            MeasurementError::Unknown(error) => Some(error),
+            MeasurementError::Threads(_) => None,
+        }
+    }
+}

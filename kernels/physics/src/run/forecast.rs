@@ -1,0 +1,190 @@
+//! What is to be expected of a run, before it begins: the step against its limits, its error, how long it takes.
+
+use crate::memory::in_words;
+use crate::method::{Beyond, Clock, Fact, Failure, Prepared, Purpose, Until};
+use crate::number::{counted, significant};
+use serde_json::{Map, Value, json};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// So many stretches of the beginning are timed, after the first.
+const STRETCHES: usize = 9;
+/// A stretch is timed if it takes as long.
+const LONG_ENOUGH: Duration = Duration::from_millis(3);
+/// No stretch is begun after so long, nor waited for.
+const PATIENCE: Duration = Duration::from_millis(400);
+/// The part of a run for a time that is the first stretch.
+const FIRST_STRETCH: f64 = 1e-9;
+/// What a run may be faster or slower than its beginning: what moves thickens or thins, and other programs come and go.
+const MARGIN: f64 = 1.5;
+
+/// What is to be expected of the step of a scene, the same on every host.
+pub fn of_the_step(prepared: &dyn Prepared) -> Vec<Fact> {
+    let limits = prepared.step_limits();
+    let mut facts = vec![];
+    if !limits.is_empty() {
+        facts.push(Fact::data("step_limits", json!(limits)));
+    }
+    let said = limits.into_iter().map(|limit| {
+        let beyond = match limit.beyond {
+            Beyond::Unstable => "errors grow beyond",
+            Beyond::Inaccurate => "inaccurate beyond",
+            Beyond::Unseen => "contacts pass unseen beyond",
+        };
+        let words = format!("dt is {:.3} of {}; {beyond}", limit.share, significant(limit.step, 5));
+        Fact { data: None, words: Some((limit.name, words)) }
+    });
+    facts.extend(said);
+    facts.extend(prepared.expected_error());
+    facts
+}
+
+/// The memory that it takes, and what this host has left.
+pub fn of_the_memory(prepared: &dyn Prepared) -> Fact {
+    let memory = prepared.memory();
+    let left = memory.available.map(|available| format!(" of {} left", in_words(available.bytes)));
+    let words = in_words(memory.needed) + &left.unwrap_or_default();
+    Fact::new("memory", json!(memory), "memory of a run", words)
+}
+
+/// How often rows and frames are written, where that is known beforehand.
+pub fn of_the_files(prepared: &dyn Prepared) -> Vec<Fact> {
+    let schedule = prepared.schedule();
+    let counts = [
+        ("thermo_rows", "rows of thermo.csv", schedule.row_count()),
+        ("frames", "frames of a trajectory", schedule.snapshot_count()),
+    ];
+    let known = counts.into_iter().filter_map(|(name, label, count)| Some((name, label, count?)));
+    known.map(|(name, label, count)| Fact::new(name, count, label, count.to_string())).collect()
+}
+
+/// How long it takes on this host, as a range, by its first stretches once it is warm and one row of observables; none where it does
+/// not come so far.
+pub fn of_the_time(prepared: &dyn Prepared) -> Option<Fact> {
+    let schedule = prepared.schedule();
+    let Probed { each, row } = probed(prepared).ok()??;
+    let length = length(schedule.until);
+    let rows = schedule.row_count().unwrap_or(0) as f64;
+    let seconds = each.map(|each| each * length + row * rows);
+    let (unit, name) = match schedule.until {
+        Until::Steps(_) => ("steps", "seconds_per_step"),
+        Until::Events(_) => ("events", "seconds_per_event"),
+        Until::Time(_) => ("units of time", "seconds_per_time"),
+    };
+    let [low, typical, high] = seconds;
+    let words = format!(
+        "{} to {}: {} {unit} of about {} µs, as the first ones take here once warm, and what is written every so often",
+        about(low),
+        about(high),
+        significant(length, 6),
+        significant(1e6 * each[1], 2),
+    );
+    let data = json!({ "seconds": typical, "at_least": low, "at_most": high, name: each[1], "seconds_per_row": row });
+    Some(Fact::new("expected_time", data, "time of a run", words))
+}
+
+fn about(seconds: f64) -> String {
+    if seconds < 1.0 {
+        return format!("{} seconds", significant(seconds, 2));
+    }
+    let units = [
+        ("day", "days", 86_400.0),
+        ("hour", "hours", 3600.0),
+        ("minute", "minutes", 60.0),
+        ("second", "seconds", 1.0),
+    ];
+    // A unit of which there are fewer than one and a half says too little.
+    let (one, many, unit) = units.into_iter().find(|unit| seconds >= 1.5 * unit.2).unwrap_or(units[3]);
+    counted((seconds / unit).round(), one, many)
+}
+
+/// How far a run goes, in the unit of its end.
+fn length(until: Until) -> f64 {
+    match until {
+        Until::Steps(steps) => steps as f64,
+        Until::Events(events) => events as f64,
+        Until::Time(time) => time,
+    }
+}
+
+/// How far it has come, in that unit.
+fn gone(until: Until, clock: &Clock) -> f64 {
+    match until {
+        Until::Steps(_) => clock.steps as f64,
+        Until::Events(_) => clock.events as f64,
+        Until::Time(_) => clock.time,
+    }
+}
+
+/// What the beginning of a run has taken.
+struct Probed {
+    /// Wall seconds of a unit of its end: the fewest and the most to be expected, and in between the median.
+    each: [f64; 3],
+    /// Wall seconds of a row of observables.
+    row: f64,
+}
+
+/// Runs the beginning of a scene. Stretches that are over too soon to be timed are doubled; the first that is not has met cold
+/// memory and threads that had not begun, and does not count where others follow. None where there is nothing to do.
+fn probed(prepared: &dyn Prepared) -> Result<Option<Probed>, Failure> {
+    let until = prepared.schedule().until;
+    let mut simulation = prepared.start(Purpose::Run)?;
+    let mut stretch = match until {
+        Until::Steps(_) => Until::Steps(1),
+        Until::Events(_) => Until::Events(1),
+        Until::Time(time) => Until::Time(time * FIRST_STRETCH),
+    };
+    let (begun, mut each) = (Instant::now(), vec![]);
+    let is_late = AtomicBool::new(false);
+    thread::scope(|scope| -> Result<(), Failure> {
+        let timer = scope.spawn(|| {
+            thread::park_timeout(PATIENCE);
+            is_late.store(true, Ordering::Relaxed);
+        });
+        let mut probe = || {
+            while !until.has_come(&simulation.clock()) && each.len() <= STRETCHES {
+                let (from, start) = (simulation.clock(), Instant::now());
+                simulation.advance(&[until, stretch.after(&from)], &is_late)?;
+                let seconds = start.elapsed();
+                let gone = gone(until, &simulation.clock()) - gone(until, &from);
+                match seconds < LONG_ENOUGH {
+                    true => stretch = stretch.doubled(),
+                    false => each.push(seconds.as_secs_f64() / gone),
+                }
+                if is_late.load(Ordering::Relaxed) {
+                    break;
+                }
+            }
+            Ok(())
+        };
+        let done = probe();
+        timer.thread().unpark();
+        done
+    })?;
+    let all = gone(until, &simulation.clock());
+    if each.len() > 1 {
+        each.remove(0);
+    }
+    if all > 0.0 && each.is_empty() {
+        each.push(begun.elapsed().as_secs_f64() / all);
+    }
+    // A stretch that was cut off before anything happened says nothing.
+    each.retain(|seconds| seconds.is_finite());
+    each.sort_by(f64::total_cmp);
+    let mut rows: Vec<f64> = (0..3).map(|_| timed(|| simulation.observe())).collect();
+    rows.sort_by(f64::total_cmp);
+    let [Some(first), Some(last)] = [each.first(), each.last()] else { return Ok(None) };
+    Ok(Some(Probed { each: [first / MARGIN, each[each.len() / 2], last * MARGIN], row: rows[1] }))
+}
+
+fn timed<R>(work: impl FnOnce() -> R) -> f64 {
+    let begun = Instant::now();
+    let _done = work();
+    begun.elapsed().as_secs_f64()
+}
+
+/// Facts as data, by name.
+pub fn as_data(facts: Vec<Fact>) -> Map<String, Value> {
+    facts.into_iter().filter_map(|fact| fact.data).map(|(name, value)| (name.to_owned(), value)).collect()
+}

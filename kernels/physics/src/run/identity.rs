@@ -1,0 +1,180 @@
+//! What a run was begun with: its scene, its discs, and the program, as far as that decides the bits.
+
+use super::folder::SCENE;
+use super::{Job, RunError};
+use crate::io::checkpoint::{Checkpoint, Counter};
+use crate::method::Clock;
+use crate::origin::Origin;
+use crate::particles::{Kind, Particle, Particles};
+use crate::scene::{Values, Vocabulary};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Which bits this program promises: raised whenever the same scene gives other bits, or a column of the state or a file of
+/// a run means something else. Programs of one number may go on with each other's runs.
+pub(super) const BITS: u64 = 3;
+
+/// What a run was begun with.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Identity {
+    /// The scene with every value spelled out (TOML).
+    pub(super) scene: String,
+    /// Digest of all discs at the start.
+    discs: String,
+    /// The start file, where there is one.
+    file: Option<String>,
+    /// The program that runs it.
+    program: Origin,
+}
+
+impl Identity {
+    pub(super) fn of(Job { prepared, program, .. }: Job<'_>) -> Identity {
+        let file = prepared.start_file().map(|file| file.display().to_string());
+        Identity {
+            scene: prepared.scene(),
+            discs: digest(prepared.particles()),
+            file,
+            program: program.clone(),
+        }
+    }
+
+    /// What a checkpoint keeps of it.
+    pub(super) fn origin(&self, notes: &[String]) -> BTreeMap<String, String> {
+        let Origin { version, commit, dirty, target } = self.program.clone();
+        let origin = [
+            ("version", version),
+            ("commit", commit),
+            ("dirty", dirty.to_string()),
+            ("target", target),
+            ("discs", self.discs.clone()),
+            ("notes", notes.join("\n")),
+        ];
+        origin.map(|(name, value)| (name.to_owned(), value)).into()
+    }
+
+    /// Holds it against what the run in `folder` was begun with; gives what has been said of that run so far.
+    ///
+    /// # Errors
+    /// If scene or discs are others, or this program does not promise the same bits and is not asked to go on nevertheless.
+    pub(super) fn check(
+        &self,
+        folder: &Path,
+        checkpoint: &Checkpoint,
+        moment: Clock,
+        other_version: bool,
+    ) -> Result<Vec<String>, RunError> {
+        same_scene(folder, &checkpoint.scene, &self.scene)?;
+        let said = |name: &str| checkpoint.origin.get(name).cloned().unwrap_or_default();
+        if said("discs") != self.discs {
+            return Err(RunError::OtherDiscs {
+                folder: folder.to_owned(),
+                file: self.file.clone().unwrap_or_else(|| "as this version makes them".to_owned()),
+                theirs: short(&said("discs")),
+                ours: short(&self.discs),
+            });
+        }
+        let mut notes: Vec<String> = said("notes").lines().map(str::to_owned).collect();
+        let here = &self.program;
+        let theirs = Origin {
+            version: said("version"),
+            commit: said("commit"),
+            dirty: said("dirty") == "true",
+            target: said("target"),
+        };
+        let same_bits = checkpoint.counters.get("bits") == Some(&Counter::Count(BITS));
+        if !same_bits && !other_version {
+            let (theirs, ours) = (program(&theirs), program(here));
+            return Err(RunError::OtherVersion { folder: folder.to_owned(), theirs, ours });
+        }
+        if !same_bits || theirs != *here {
+            let promise = if same_bits {
+                "which promises the same bits"
+            } else {
+                "which does not promise the same bits"
+            };
+            notes.push(format!(
+                "gone on at {moment} with {}, {promise}; before, with {}",
+                program(here),
+                program(&theirs)
+            ));
+        }
+        Ok(notes)
+    }
+}
+
+fn program(origin: &Origin) -> String {
+    let Origin { version, commit, dirty, target } = origin;
+    let changed = if *dirty { " with changes" } else { "" };
+    format!("stripmine {version} of commit {commit}{changed} for {target}")
+}
+
+/// Enough of a digest to tell two apart by eye.
+fn short(digest: &str) -> String {
+    digest.chars().take(12).collect()
+}
+
+/// SHA-256 of all bits of all discs, hexadecimal.
+fn digest(particles: &Particles) -> String {
+    let mut sum = Sha256::new();
+    for &Particle { id, kind, position: [x, y, z], velocity: [u, v, w], angle, omega, radius, mass } in
+        particles.all()
+    {
+        sum.update(id.to_le_bytes());
+        sum.update([u8::from(kind == Kind::Wall)]);
+        [x, y, z, u, v, w, angle, omega, radius, mass]
+            .iter()
+            .for_each(|value| sum.update(value.to_bits().to_le_bytes()));
+    }
+    sum.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// What the run in `folder` chose otherwise than `ours`, the resolved scene, where a scene says `auto`; as overrides, for going
+/// on the choice stays.
+pub fn chosen_otherwise(
+    values: &Values,
+    vocabulary: &'static Vocabulary,
+    ours: &str,
+    folder: &Path,
+) -> Vec<String> {
+    let file = folder.join(SCENE).display().to_string();
+    let known = [vocabulary];
+    // A scene that cannot be read is refused when it is held against this one.
+    let (Ok(theirs), Ok(ours)) =
+        (Values::load(&file, &[], &known), Values::parse("scene", ours, &[], &known))
+    else {
+        return vec![];
+    };
+    let open = vocabulary.keys.keys().filter(|key| values.choice(key).as_deref() == Some("auto"));
+    let otherwise = open.filter(|key| theirs.choice(key) != ours.choice(key));
+    otherwise.filter_map(|key| theirs.choice(key).map(|word| format!("{}={word}", key.path()))).collect()
+}
+
+/// Refuses a scene that differs from the run's in more than how long and what is written.
+///
+/// # Errors
+/// [`RunError::OtherScene`] with the first difference.
+pub(super) fn same_scene(folder: &Path, theirs: &str, ours: &str) -> Result<(), RunError> {
+    let physics = |text: &str| -> Vec<String> {
+        let mut lines = Vec::new();
+        let mut of_run = false;
+        for line in text.lines().filter(|line| !line.trim().is_empty()) {
+            if line.starts_with('[') {
+                of_run = matches!(line.trim(), "[run]" | "[output]");
+            }
+            if !of_run {
+                lines.push(line.to_owned());
+            }
+        }
+        lines
+    };
+    let (theirs, ours) = (physics(theirs), physics(ours));
+    let differs = (0..theirs.len().max(ours.len())).find(|&line| theirs.get(line) != ours.get(line));
+    match differs {
+        None => Ok(()),
+        Some(line) => {
+            let text = |lines: &[String]| lines.get(line).cloned().unwrap_or_else(|| "nothing".to_owned());
+            Err(RunError::OtherScene { folder: folder.to_owned(), theirs: text(&theirs), ours: text(&ours) })
+        }
+    }
+}

@@ -1,0 +1,380 @@
+//! The folder of a run: what is written when.
+
+use super::folder::{DATA, DCD, DUMP, EVENTS, RunFolder, SCENE, SUMMARY, TRAJECTORY};
+use super::growing::{Growing, Kept};
+use super::identity::{BITS, Identity, same_scene};
+use super::{Existing, Job, RunError, Summary};
+use crate::domain::Domain;
+use crate::io::checkpoint::{Checkpoint, Counter, Latest, NAME, read_latest};
+use crate::io::dcd::Positions;
+use crate::io::extxyz::Frame;
+use crate::io::{FileError, lammps, regular_file};
+use crate::method::{
+    Clock, Every, Failure, FailureKind, Prepared, Quantity, Schedule, Simulation, Snapshot, Until,
+};
+use crate::quoted;
+use crate::scene::Output;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Longer than any scene (bytes).
+const LONGEST_SCENE: u64 = 64 << 20;
+
+/// The counter of events in a checkpoint.
+const EVENT_COUNT: &str = "events";
+
+/// Writes the files of a run.
+pub(super) struct Recorder {
+    folder: RunFolder,
+    identity: Identity,
+    schedule: Schedule,
+    output: Output,
+    seed: Option<u64>,
+    domain: Domain,
+    quantities: &'static [Quantity],
+    /// When the next row, the next snapshot and the next checkpoint are due.
+    due: [Option<Until>; 3],
+    growing: Growing,
+    /// What was out of the ordinary, in the order of the run's sessions.
+    notes: Vec<String>,
+    /// Which of them are of this session.
+    new_notes: usize,
+    /// When the newest checkpoint was written, if it says all that there is to say.
+    checkpointed: Option<Clock>,
+    /// Since when none has been written, on the wall clock.
+    unsaved_since: Instant,
+}
+
+impl Recorder {
+    /// Begins a run in a folder, or goes on with the one that is there.
+    ///
+    /// # Errors
+    /// [`RunError`]: the folder is another's, or what is there cannot be gone on with.
+    pub(super) fn open(
+        path: &Path,
+        existing: Existing,
+        job: Job<'_>,
+        simulation: &mut dyn Simulation,
+    ) -> Result<Recorder, RunError> {
+        let folder = RunFolder::open(path)?;
+        let mut notes = Vec::new();
+        if !folder.is_locked() {
+            notes.push(format!(
+                "{}: this file system has no locks; see that no second process writes there",
+                quoted::path(path)
+            ));
+        }
+        match existing {
+            Existing::Refuse if folder.is_run() => Err(RunError::Exists(path.to_owned())),
+            Existing::Resume { other_version } if folder.is_run() => match read_latest(path)? {
+                Some(latest) => Recorder::resume(folder, latest, job, simulation, other_version, notes),
+                None => {
+                    begun_with(&folder, &job.prepared.scene())?;
+                    notes.push("begun again: there was no checkpoint yet".to_owned());
+                    Recorder::begin(folder, job, simulation, notes)
+                }
+            },
+            _ => Recorder::begin(folder, job, simulation, notes),
+        }
+    }
+
+    /// Begins the files with the state at the start.
+    fn begin(
+        mut folder: RunFolder,
+        job: Job<'_>,
+        simulation: &dyn Simulation,
+        notes: Vec<String>,
+    ) -> Result<Recorder, RunError> {
+        folder.clear()?;
+        folder.claim(&on_request(job.prepared))?;
+        let growing = Growing::begin(&folder, job.prepared, job.quantities)?;
+        let mut recorder = Recorder::with(folder, job, growing, &simulation.clock(), notes);
+        recorder.new_notes = recorder.notes.len();
+        recorder.write_scene()?;
+        if let Some(failure) = recorder.thermo(simulation)? {
+            return Err(RunError::Start(failure));
+        }
+        recorder.snapshot(simulation)?;
+        Ok(recorder)
+    }
+
+    fn with(
+        folder: RunFolder,
+        job: Job<'_>,
+        growing: Growing,
+        clock: &Clock,
+        notes: Vec<String>,
+    ) -> Recorder {
+        let Job { prepared, quantities, .. } = job;
+        let schedule = prepared.schedule();
+        let due = [schedule.rows, schedule.snapshots, schedule.checkpoints].map(|every| every.next(clock));
+        Recorder {
+            folder,
+            identity: Identity::of(job),
+            schedule,
+            output: prepared.output(),
+            seed: prepared.seed(),
+            domain: prepared.domain(),
+            quantities,
+            due,
+            growing,
+            notes,
+            new_notes: 0,
+            checkpointed: None,
+            unsaved_since: Instant::now(),
+        }
+    }
+
+    /// Takes up a checkpoint: the files are cut where it was written. Nothing is changed before everything is verified.
+    fn resume(
+        mut folder: RunFolder,
+        latest: Latest,
+        job: Job<'_>,
+        simulation: &mut dyn Simulation,
+        other_version: bool,
+        session: Vec<String>,
+    ) -> Result<Recorder, RunError> {
+        let Job { prepared, quantities, .. } = job;
+        let newest = folder.file(NAME);
+        let foreign = |reason: String| RunError::Foreign { file: latest.file.clone(), reason };
+        let mut checkpoint = latest.checkpoint;
+        let events = match checkpoint.counters.remove(EVENT_COUNT) {
+            Some(Counter::Count(events)) => events,
+            _ => 0,
+        };
+        let clock = Clock { steps: checkpoint.step, time: checkpoint.time, events };
+        let said = checkpoint.origin.get("notes").map_or(0, |notes| notes.lines().count());
+        let mut notes = Identity::of(job).check(folder.path(), &checkpoint, clock, other_version)?;
+        notes.extend(session);
+        if latest.file != newest {
+            notes.push(format!(
+                "{} was missing: gone on from the older checkpoint, of {clock}",
+                quoted::path(&newest)
+            ));
+        }
+        let asked = prepared.schedule().until;
+        if asked.has_passed(&clock) {
+            let done = match asked {
+                Until::Steps(_) => Until::Steps(clock.steps),
+                Until::Time(_) => Until::Time(clock.time),
+                Until::Events(_) => Until::Events(clock.events),
+            };
+            return Err(RunError::FewerSteps { folder: folder.path().to_owned(), done, asked });
+        }
+        let kept = Kept::new(&checkpoint.counters);
+        let mut growing = Growing::resume(&folder, quantities, &kept, foreign)?;
+        let snapshot = Snapshot {
+            counters: std::mem::take(&mut checkpoint.counters),
+            columns: std::mem::take(&mut checkpoint.columns),
+        };
+        simulation.restore(clock, snapshot).map_err(foreign)?;
+
+        folder.claim(&on_request(job.prepared))?;
+        growing.cut(&mut folder, prepared)?;
+        // They speak of an end that is not reached yet.
+        folder.remove_own(SUMMARY)?;
+        folder.remove_own(DATA)?;
+        let mut recorder = Recorder::with(folder, job, growing, &clock, notes);
+        recorder.new_notes = recorder.notes.len() - said;
+        recorder.checkpointed = (recorder.new_notes == 0).then_some(clock);
+        recorder.write_scene()?;
+        Ok(recorder)
+    }
+
+    /// What this session found out of the ordinary when it began.
+    pub(super) fn new_notes(&self) -> &[String] {
+        &self.notes[self.notes.len() - self.new_notes..]
+    }
+
+    fn write_scene(&self) -> Result<(), RunError> {
+        Ok(self.folder.write(SCENE, |out| out.write_all(self.identity.scene.as_bytes()))?)
+    }
+
+    /// The moments at which something is to be written.
+    pub(super) fn due(&self) -> impl Iterator<Item = Until> {
+        self.due.into_iter().flatten()
+    }
+
+    /// Writes what is due; gives the failure that only sums over all particles show.
+    pub(super) fn write_what_is_due(
+        &mut self,
+        simulation: &dyn Simulation,
+    ) -> Result<Option<Failure>, RunError> {
+        let clock = simulation.clock();
+        let [rows, snapshots, mut checkpoints] =
+            self.due.map(|due| due.is_some_and(|moment| moment.has_come(&clock)));
+        let Schedule { rows: row, snapshots: snapshot, checkpoints: checkpoint, .. } = self.schedule;
+        if let Every::Seconds(seconds) = checkpoint {
+            checkpoints = self.unsaved_since.elapsed().as_secs_f64() >= seconds;
+        }
+        if rows {
+            self.due[0] = row.next(&clock);
+            if let Some(failure) = self.thermo(simulation)? {
+                return Ok(Some(failure));
+            }
+        }
+        if snapshots {
+            self.due[1] = snapshot.next(&clock);
+            self.snapshot(simulation)?;
+        }
+        if checkpoints {
+            self.due[2] = checkpoint.next(&clock);
+            self.checkpoint(simulation)?;
+        }
+        Ok(None)
+    }
+
+    /// Adds rows of events, where the scene asks for them.
+    pub(super) fn log(&mut self, rows: &str) -> Result<(), RunError> {
+        if let Some(events) = self.growing.events.as_mut() {
+            let written = events.write_all(rows.as_bytes());
+            written.map_err(FileError::at(events.path(), "writing events"))?;
+        }
+        Ok(())
+    }
+
+    /// A row of observables, unless one of them is no finite number.
+    fn thermo(&mut self, simulation: &dyn Simulation) -> Result<Option<Failure>, RunError> {
+        if let Err(failure) = simulation.check() {
+            return Ok(Some(failure));
+        }
+        let (clock, row) = (simulation.clock(), simulation.observe());
+        let named = self.quantities.iter().zip(&row);
+        if let Some((quantity, &value)) = named.into_iter().find(|(_, value)| !value.is_finite()) {
+            return Ok(Some(overflow(clock, quantity.name, value)));
+        }
+        self.growing.thermo.append(clock.number(), &row)?;
+        Ok(None)
+    }
+
+    fn frame(&self, simulation: &dyn Simulation) -> Frame {
+        let (domain, clock) = (self.domain, simulation.clock());
+        Frame {
+            particles: simulation.particles(),
+            cell: domain.lengths(),
+            origin: domain.corner(),
+            periodic: Some(domain.periodic()),
+            time: clock.time,
+            step: clock.number(),
+            seed: self.seed,
+        }
+    }
+
+    /// A frame in each of the files that are asked for and do not have it yet.
+    fn snapshot(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
+        let moment = simulation.clock();
+        if let Some(dcd) = self.growing.dcd.as_mut().filter(|_| self.output.dcd) {
+            let cell = self.domain.lengths();
+            dcd.add(moment, || Positions { step: moment.number(), cell, places: simulation.positions() })?;
+        }
+        if !(self.output.trajectory || self.output.lammps_dump) {
+            return Ok(());
+        }
+        let frame = self.frame(simulation);
+        if let Some(dump) = self.growing.dump.as_mut().filter(|_| self.output.lammps_dump) {
+            dump.add(moment, || frame.clone())?;
+        }
+        if self.output.trajectory {
+            self.growing.trajectory.add(moment, || frame)?;
+        }
+        Ok(())
+    }
+
+    /// The state of a failed step, whether snapshots are due or not, and what there is to say of it.
+    pub(super) fn fail(&mut self, simulation: &dyn Simulation, summary: Summary) -> Result<(), RunError> {
+        let frame = self.frame(simulation);
+        self.growing.trajectory.add(simulation.clock(), || frame)?;
+        self.growing.sync()?;
+        self.summary(summary).map(drop)
+    }
+
+    /// Where the frames are.
+    pub(super) fn trajectory_path(&self) -> PathBuf {
+        self.folder.file(TRAJECTORY)
+    }
+
+    /// The complete state, after everything before it is on the disk.
+    pub(super) fn checkpoint(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
+        let clock = simulation.clock();
+        if self.checkpointed == Some(clock) {
+            return Ok(());
+        }
+        let mut counters = self.growing.sync()?;
+        counters.insert("bits".to_owned(), Counter::Count(BITS));
+        counters.insert(EVENT_COUNT.to_owned(), Counter::Count(clock.events));
+        let snapshot = simulation.snapshot();
+        counters.extend(snapshot.counters);
+        let checkpoint = Checkpoint {
+            step: clock.steps,
+            time: clock.time,
+            scene: self.identity.scene.clone(),
+            origin: self.identity.origin(&self.notes),
+            counters,
+            columns: snapshot.columns,
+        };
+        checkpoint.write_atomically(self.folder.file(NAME))?;
+        self.checkpointed = Some(clock);
+        self.unsaved_since = Instant::now();
+        // Later than the checkpoint, so that what is still there can be gone on with.
+        Ok(self.folder.check(true)?)
+    }
+
+    /// The end: a last checkpoint, the last state in every file that is asked for, and what there is to say. The frame comes
+    /// after the checkpoint, so that it is cut off again where a run goes on to more steps.
+    pub(super) fn finish(
+        &mut self,
+        simulation: &dyn Simulation,
+        summary: Summary,
+    ) -> Result<Summary, RunError> {
+        self.checkpoint(simulation)?;
+        self.snapshot(simulation)?;
+        self.growing.sync()?;
+        if self.output.lammps_data {
+            let frame = self.frame(simulation);
+            self.folder.write(DATA, |out| lammps::write_data(&frame, out))?;
+        }
+        self.summary(summary)
+    }
+
+    /// `summary.json`.
+    fn summary(&self, mut summary: Summary) -> Result<Summary, RunError> {
+        summary.notes.clone_from(&self.notes);
+        self.folder.write(SUMMARY, |out| {
+            serde_json::to_writer_pretty(&mut *out, &summary)?;
+            writeln!(out)
+        })?;
+        self.folder.check(self.checkpointed.is_some())?;
+        Ok(summary)
+    }
+}
+
+/// The failure of a sum over all particles that no number holds.
+fn overflow(at: Clock, quantity: &'static str, value: f64) -> Failure {
+    let what = format!("{quantity} is {value}, which is no finite number");
+    let remedy = "the units make masses, speeds or stiffness too large for double precision; choose units in which they are \
+                  nearer to 1";
+    Failure::new(FailureKind::Overflow, what, remedy).at(at).with([(quantity, value)])
+}
+
+/// The files that a scene asks for beyond what every run writes.
+fn on_request(prepared: &dyn Prepared) -> Vec<&'static str> {
+    let output = prepared.output();
+    let asked = [
+        (output.lammps_dump, DUMP),
+        (output.dcd, DCD),
+        (output.lammps_data, DATA),
+        (prepared.event_columns().is_some(), EVENTS),
+    ];
+    asked.into_iter().filter_map(|(asked, name)| asked.then_some(name)).collect()
+}
+
+/// Refuses another scene than that of a run which has no checkpoint yet.
+fn begun_with(folder: &RunFolder, scene: &str) -> Result<(), RunError> {
+    let path = folder.file(SCENE);
+    match regular_file::read(&path, LONGEST_SCENE) {
+        Ok(theirs) => same_scene(folder.path(), &String::from_utf8_lossy(&theirs), scene),
+        Err(cause) if cause.kind() == ErrorKind::NotFound => Ok(()),
+        Err(cause) => Err(FileError::at(&path, "reading")(cause).into()),
+    }
+}

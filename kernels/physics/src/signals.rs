@@ -1,0 +1,208 @@
+//! What signals do to the command.
+//!
+//! Interruption (Ctrl-C) and termination end the process with exit code 130, from the thread of their handler: at once, whatever
+//! is being computed. Nothing computed has to ask whether it should stop, so that no loop can forget to. What must not be cut in
+//! half says so instead: files that belong together are written in `whole`, after which the process ends; a run is in
+//! `hold` from its first file on, looks at `asked` after every step, and leaves a checkpoint. A second signal ends the
+//! process at once, whatever is held.
+//!
+//! A file that reaches the limit of its size is an error of writing, not a signal. A program that uses the library
+//! installs no handler here, and nothing in this module does anything then.
+
+use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError, mpsc};
+use std::time::Duration;
+
+/// The exit code of a process that was interrupted or terminated.
+pub const INTERRUPTED: u8 = 130;
+
+/// How long the last words may take: a terminal that is stopped does not take them at all.
+const PATIENCE: Duration = Duration::from_millis(300);
+
+/// How the process ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Nothing is half written.
+    Whole,
+    /// At a second signal: what was being written may be incomplete.
+    Forced,
+}
+
+type LastWords = Box<dyn Fn(End) + Send + Sync>;
+
+static LAST_WORDS: OnceLock<LastWords> = OnceLock::new();
+static ASKED: AtomicBool = AtomicBool::new(false);
+/// How many hold the process. What ends it keeps the lock, so that nothing begins to hold it then.
+static HOLDERS: Mutex<usize> = Mutex::new(0);
+
+/// Installs the handlers, once in a process. `last_words` are said before the process ends.
+///
+/// # Errors
+/// What the system says.
+pub fn install(last_words: impl Fn(End) + Send + Sync + 'static) -> io::Result<()> {
+    LAST_WORDS.get_or_init(|| Box::new(last_words));
+    ignoring(|| ctrlc::set_handler(arrived).map_err(io::Error::other))
+}
+
+/// Installs handlers, and ignores what is to be ignored: the limit of file sizes, and the end of the terminal where the
+/// process was started with it ignored (`nohup`), which the handlers would undo.
+#[cfg(unix)]
+fn ignoring(handlers: impl FnOnce() -> io::Result<()>) -> io::Result<()> {
+    use nix::sys::signal::{SigHandler, Signal, signal};
+    // SAFETY: a signal that is ignored runs no code.
+    let ignore = |which| unsafe { signal(which, SigHandler::SigIgn) };
+    ignore(Signal::SIGXFSZ)?;
+    let before = ignore(Signal::SIGHUP)?;
+    handlers()?;
+    if matches!(before, SigHandler::SigIgn) {
+        ignore(Signal::SIGHUP)?;
+    }
+    Ok(())
+}
+
+#[cfg(not(unix))]
+fn ignoring(handlers: impl FnOnce() -> io::Result<()>) -> io::Result<()> {
+    handlers()
+}
+
+/// Set once a signal has come while something was held.
+pub fn asked() -> &'static AtomicBool {
+    &ASKED
+}
+
+/// While one of these lives, a first signal does not end the process; its holder answers it.
+#[derive(Debug)]
+pub struct Held(());
+
+/// Holds the process.
+pub fn hold() -> Held {
+    *holders() += 1;
+    Held(())
+}
+
+impl Drop for Held {
+    fn drop(&mut self) {
+        *holders() -= 1;
+    }
+}
+
+/// Does work that must not be cut in half, and ends the process after it if a signal has come meanwhile. Work that failed is not
+/// ended so: its error is what the user has to know.
+///
+/// # Errors
+/// Those of the work.
+pub fn whole<R, E>(work: impl FnOnce() -> Result<R, E>) -> Result<R, E> {
+    let held = hold();
+    let done = work()?;
+    drop(held);
+    let holders = holders();
+    if *holders == 0 && ASKED.load(Ordering::SeqCst) {
+        end(End::Whole);
+    }
+    Ok(done)
+}
+
+fn holders() -> MutexGuard<'static, usize> {
+    HOLDERS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What the handler's thread does at a signal.
+fn arrived() {
+    let holders = holders();
+    let first = !ASKED.swap(true, Ordering::SeqCst);
+    match (*holders, first) {
+        (0, _) => end(End::Whole),
+        (_, false) => end(End::Forced),
+        (_, true) => {}
+    }
+}
+
+/// Ends the process; the caller keeps the lock of the holders.
+fn end(how: End) -> ! {
+    let (done, waiting) = mpsc::channel();
+    let words = move || {
+        LAST_WORDS.get().inspect(|say| say(how));
+        done.send(())
+    };
+    // Without another thread there are no last words.
+    if std::thread::Builder::new().spawn(words).is_ok() {
+        let _ = waiting.recv_timeout(PATIENCE);
+    }
+    std::process::exit(INTERRUPTED.into())
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use nix::sys::signal::{Signal, raise};
+    use std::process::Command;
+
+    fn say(words: &str) {
+        eprintln!("{words}");
+    }
+
+    fn interrupted_once() {
+        raise(Signal::SIGINT).unwrap();
+        while !asked().load(Ordering::SeqCst) {
+            std::thread::yield_now();
+        }
+    }
+
+    /// Ends the process, or hangs.
+    fn interrupted_for_good() -> ! {
+        raise(Signal::SIGTERM).unwrap();
+        loop {
+            std::thread::yield_now();
+        }
+    }
+
+    fn whole_work() {
+        let _ = whole::<_, ()>(|| {
+            interrupted_once();
+            say("written");
+            Ok(())
+        });
+        say("went on");
+    }
+
+    fn failing_work() {
+        let failed = whole::<(), _>(|| {
+            interrupted_once();
+            Err("full")
+        });
+        assert_eq!(failed, Err("full"));
+        say("went on");
+        interrupted_for_good();
+    }
+
+    fn two_signals() {
+        let _held = hold();
+        interrupted_once();
+        say("held");
+        interrupted_for_good();
+    }
+
+    /// In processes of their own, which this test is itself: a process has one set of handlers and ends once.
+    #[test]
+    fn what_is_held_is_finished_unless_a_second_signal_comes() {
+        const ROLE: &str = "STRIPMINE_TEST_OF_SIGNALS";
+        let roles: [(&str, fn(), &str); 3] = [
+            ("whole work", whole_work, "written\nended Whole\n"),
+            ("failing work", failing_work, "went on\nended Whole\n"),
+            ("two signals", two_signals, "held\nended Forced\n"),
+        ];
+        if let Ok(role) = std::env::var(ROLE) {
+            install(|end| say(&format!("ended {end:?}"))).unwrap();
+            return roles.iter().filter(|(name, ..)| *name == role).for_each(|(_, work, _)| work());
+        }
+        let name = "signals::tests::what_is_held_is_finished_unless_a_second_signal_comes";
+        for (role, _, words) in roles {
+            let mut child = Command::new(std::env::current_exe().unwrap());
+            let output = child.args(["--exact", name, "--nocapture"]).env(ROLE, role).output().unwrap();
+            assert_eq!(output.status.code(), Some(INTERRUPTED.into()), "{role}");
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(said.ends_with(words), "{role}: {said}");
+        }
+    }
+}

@@ -1,0 +1,14 @@
+//! Event-driven hard discs, ISO99: what is measured and shown beside a run.
+
+mod items;
+mod sections;
+mod study;
+mod verbs;
+
+use super::Laboratory;
+use items::ITEMS;
+use verbs::CHARTS;
+
+/// Items, verbs and charts.
+pub(super) static LABORATORY: Laboratory =
+    Laboratory { method: "hard-disks", items: ITEMS, verbs: &[], charts: CHARTS };

@@ -1,0 +1,171 @@
+//! Inelastic collapse over restitution and number of discs.
+
+use crate::laboratory::hard_disks::study::collapse::{Collapses, PACKING, Row, of_a_row};
+use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::{Cell, Part, Section, Table, Verdict};
+
+/// The estimate for more than three discs holds where it is off by no more than this.
+const ESTIMATED: f64 = 0.02;
+
+/// What came out.
+pub fn section(data: &Collapses) -> Section {
+    let off = |row: &Row| (0.5 * (row.edge[0] + row.edge[1]) - row.theory).abs();
+    let three = data.rows.iter().find(|row| row.discs == 3);
+    let worst = data.rows.iter().max_by(|a, b| off(a).total_cmp(&off(b)));
+    let rises = data.rows.windows(2).all(|pair| pair[0].edge[0] < pair[1].edge[0]);
+    let largest = data.gases.last();
+    let edge = |share: f64| {
+        let collapses = largest.map(|it| it.collapsed.iter().zip(&data.restitutions));
+        collapses.into_iter().flatten().filter(|(got, _)| **got >= share).map(|(_, e)| *e).fold(0.0, f64::max)
+    };
+    Section {
+        name: "hard-disks-collapse".into(),
+        title: "Hard discs: where the method fails, inelastic collapse".into(),
+        part: Part::Physics,
+        question: "At which restitution do collisions become infinitely many in a finite time?".into(),
+        expected: "Three discs in a row collapse where e < 7 − 4√3 = 0.0718; the more discs, the nearer to 1 (McNamara and Young 1992, Bernu \
+                   and Mazighi 1990)."
+            .into(),
+        answer: data.rows.first().zip(worst).map_or(String::new(), |(first, worst)| {
+            format!(
+                "{} discs in a row collapse up to e = {:.3}, where the estimate tan²(π/4 (1 − 2/N)) has {:.3}, the farthest off of {} rows; {} \
+                 discs up to {:.4}, where it is exact with {:.4}.",
+                worst.discs,
+                worst.edge[0],
+                worst.theory,
+                data.rows.len(),
+                first.discs,
+                first.edge[0],
+                first.theory,
+            )
+        }),
+        details: vec![format!(
+            "In the plane at ν = {PACKING}, {} discs collapse within {:.0} collisions of a disc up to e = {:.1}; no run hangs.",
+            largest.map_or(0, |it| it.discs),
+            data.collisions,
+            edge(0.5)
+        )],
+        verdict: Verdict::of_claims(&[
+            three.is_some_and(|row| off(row) < 2e-3),
+            rises,
+            worst.is_some_and(|row| off(row) < ESTIMATED),
+        ]),
+        again: "stripmine reproduce --only hard-disks-collapse".into(),
+        figures: vec![rows(data), plane(data)],
+        tables: vec![row_table(data), plane_table(data)],
+        excerpt: None,
+        film: None,
+        seeds: (1..=data.seeds).collect(),
+        depends_on_host: false,
+        provenance: None,
+    }
+}
+
+fn rows(data: &Collapses) -> Figure {
+    let most = data.rows.last().map_or(3, |row| row.discs);
+    let theory = (30..=10 * most).step_by(5).map(|tenths| f64::from(tenths) / 10.0);
+    let measured = data.rows.iter().map(|row| {
+        let [low, high] = row.edge;
+        Point { x: f64::from(row.discs), y: 0.5 * (low + high), spread: Some(row.edge) }
+    });
+    Figure {
+        name: "rows".into(),
+        title: "Discs in a row collapse below this restitution".into(),
+        caption: "The largest restitution at which one of 24 starts collapses. The line is tan²(π/4 (1 − 2/N)): exact for three, an \
+                  estimate for more."
+            .into(),
+        picture: Picture::Chart(Chart {
+            x: Axis::logarithmic("discs in the row", None),
+            y: Axis::linear("restitution", None),
+            series: vec![
+                Series {
+                    name: "theory".into(),
+                    style: Style::Line,
+                    hue: 6,
+                    points: theory.map(|discs| Point::at(discs, of_a_row(discs))).collect(),
+                },
+                Series { name: "measured".into(), style: Style::Points, hue: 0, points: measured.collect() },
+            ],
+            bands: vec![],
+        }),
+    }
+}
+
+/// Which share of the seeds collapses, as kinds of points.
+fn plane(data: &Collapses) -> Figure {
+    type Kind = (&'static str, usize, fn(f64) -> bool);
+    let kinds: [Kind; 3] = [
+        ("every seed collapses", 1, |share| share >= 1.0),
+        ("some do", 3, |share| share > 0.0 && share < 1.0),
+        ("none does", 2, |share| share <= 0.0),
+    ];
+    let mut series: Vec<Series> = kinds
+        .into_iter()
+        .map(|(name, hue, is_it)| {
+            let of_discs = data.gases.iter().flat_map(|gases| {
+                let places = gases.collapsed.iter().zip(&data.restitutions);
+                places
+                    .filter(move |(share, _)| is_it(**share))
+                    .map(|(_, &restitution)| Point::at(gases.discs as f64, restitution))
+            });
+            Series { name: name.into(), style: Style::Points, hue, points: of_discs.collect() }
+        })
+        .collect();
+    series.push(Series {
+        name: "a row of N d/L discs".into(),
+        style: Style::Line,
+        hue: 6,
+        points: data.gases.iter().map(|gases| Point::at(gases.discs as f64, gases.theory)).collect(),
+    });
+    Figure {
+        name: "plane".into(),
+        title: "Gases in the plane: the more discs, the less dissipation they bear".into(),
+        caption: format!(
+            "ν = {PACKING}, {} seeds each, {:.0} collisions of a disc. The line is the criterion of a row of as many discs as lie across the \
+             box; it holds in one dimension only.",
+            data.seeds, data.collisions
+        ),
+        picture: Picture::Chart(Chart {
+            x: Axis::logarithmic("discs", None),
+            y: Axis::linear("restitution", None),
+            series,
+            bands: vec![],
+        }),
+    }
+}
+
+fn row_table(data: &Collapses) -> Table {
+    let rows = data.rows.iter().map(|row| {
+        vec![
+            Cell::Count(row.discs.into()),
+            Cell::Number(row.edge[0], 4),
+            Cell::Number(row.edge[1], 4),
+            Cell::Number(row.theory, 4),
+        ]
+    });
+    let columns = ["discs in the row", "collapses at", "does not at", "theory"];
+    Table {
+        name: "rows".into(),
+        title: "Discs in a row".into(),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+        notes: vec![],
+    }
+}
+
+fn plane_table(data: &Collapses) -> Table {
+    let shares = data.restitutions.iter().map(|restitution| format!("e = {restitution}"));
+    let columns = ["discs", "N d/L", "theory of a row"].map(str::to_owned).into_iter().chain(shares);
+    let rows = data.gases.iter().map(|gases| {
+        let begin =
+            [Cell::Count(gases.discs as u64), Cell::Number(gases.across, 1), Cell::Number(gases.theory, 3)];
+        begin.into_iter().chain(gases.collapsed.iter().map(|&share| Cell::Number(share, 2))).collect()
+    });
+    Table {
+        name: "plane".into(),
+        title: "Share of the seeds that collapse".into(),
+        columns: columns.collect(),
+        rows: rows.collect(),
+        notes: vec![],
+    }
+}

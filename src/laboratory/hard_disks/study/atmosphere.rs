@@ -1,0 +1,159 @@
+//! Discs under gravity above a hot floor, without a ceiling: their density over the height, beside the barometric law.
+
+use crate::console::Failure;
+use crate::laboratory::running::Running;
+use crate::results::Progress;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use serde::Serialize;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use stripmine_physics::method::Until;
+use stripmine_physics::method::observed::summed_up;
+
+/// Bins of the profile, each of this part of the height kT/(m g).
+const BIN: f64 = 0.25;
+/// Heights kT/(m g) that the profile spans.
+const SPAN: f64 = 8.0;
+
+/// A profile.
+#[derive(Clone, Debug, Serialize)]
+pub struct Profile {
+    /// Discs times their diameter, over the width of the box: layers that they would fill.
+    pub layers: f64,
+    /// Discs.
+    pub discs: usize,
+    /// Heights of the middle of the bins above the lowest that a centre may have, in kT/(m g).
+    pub heights: Vec<f64>,
+    /// Discs of a unit of area, over what the barometric law has on the floor, with the error of the mean.
+    pub densities: Vec<[f64; 2]>,
+    /// The mean height of the centres over kT/(m g): 1 by the barometric law.
+    pub mean_height: f64,
+    /// The temperature over that of the floor, for elastic discs 1.
+    pub temperature: f64,
+    /// The highest that a disc was seen, in kT/(m g).
+    pub highest: f64,
+}
+
+/// What came out.
+#[derive(Clone, Debug, Serialize)]
+pub struct Atmosphere {
+    /// Profiles, from dilute to dense.
+    pub profiles: Vec<Profile>,
+    /// Looks at each.
+    pub looks: usize,
+    /// A gas of inelastic discs, where the floor's heat is lost on the way up.
+    pub granular: Profile,
+    /// Its restitution.
+    pub restitution: f64,
+    /// The cells of the source's look-up after a while.
+    pub look_ups: Vec<LookUp>,
+}
+
+/// What the source's look-up of occupied cells takes.
+#[derive(Clone, Debug, Serialize)]
+pub struct LookUp {
+    /// The preset.
+    pub scene: &'static str,
+    /// Discs, which are the entries of A, BX and BY.
+    pub discs: usize,
+    /// Entries of C and D.
+    pub entries: f64,
+    /// Events so far.
+    pub events: u64,
+    /// Whether every disc is where it is by the fast engine, to the bit.
+    pub agrees: bool,
+}
+
+/// Follows discs over `looks` looks, a time √(kT/m)/g apart.
+///
+/// # Errors
+/// [`Failure`] if a scene breaks.
+pub fn atmosphere(looks: usize, progress: Progress<'_>) -> Result<Atmosphere, Failure> {
+    let restitution = 0.95;
+    let gases = [(0.02, 1.0), (0.2, 1.0), (1.0, 1.0), (1.0, restitution)];
+    let done = AtomicUsize::new(0);
+    let followed = gases.into_par_iter().map(|(layers, restitution)| {
+        let profile = profile(layers, restitution, looks)?;
+        progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / gases.len() as f64);
+        Ok(profile)
+    });
+    let mut profiles = followed.collect::<Result<Vec<Profile>, Failure>>()?;
+    let granular = profiles.split_off(gases.len() - 1).remove(0);
+    let scenes = ["hot-floor", "vibrating-floor"];
+    let look_ups = scenes.into_par_iter().map(look_up).collect::<Result<_, Failure>>()?;
+    Ok(Atmosphere { profiles, looks, granular, restitution, look_ups })
+}
+
+/// A scene by the source's engine, and beside it by the fast one.
+fn look_up(scene: &'static str) -> Result<LookUp, Failure> {
+    let run = |engine: &str| {
+        let mut gas = Running::begin(scene, &[format!("machine.engine={engine}")])?;
+        gas.until(Until::Time(100.0))?;
+        Ok::<_, Failure>(gas)
+    };
+    let [source, fast] = [run("reference")?, run("fast")?];
+    Ok(LookUp {
+        scene,
+        discs: source.simulation.particles().len(),
+        entries: summed_up(&source.simulation.summary(), "blocks")?,
+        events: source.simulation.clock().events,
+        agrees: source.simulation.particles().all() == fast.simulation.particles().all(),
+    })
+}
+
+/// Discs of diameter, mass and kT 1, and kT/(m g) of 20.
+fn profile(layers: f64, restitution: f64, looks: usize) -> Result<Profile, Failure> {
+    let (height, discs) = (20.0, 200);
+    let width = discs as f64 / layers;
+    let mut gas = Running::begin(
+        "hot-floor",
+        &[
+            format!("domain.sides=[{width}, 120.0]"),
+            format!("domain.gravity=[0.0, {}]", -1.0 / height),
+            format!("particles.count={discs}"),
+            format!("law.restitution={restitution}"),
+            "run.time=1e9".to_owned(),
+        ],
+    )?;
+    // A disc falls through the height in a time of about √2 √(kT/m)/g.
+    let between = height;
+    let mut now = 40.0 * between;
+    gas.until(Until::Time(now))?;
+    let bins = (SPAN / BIN) as usize;
+    let (mut sums, mut squares) = (vec![0.0; bins], vec![0.0; bins]);
+    let (mut mean_height, mut temperature, mut highest) = (0.0, 0.0, 0.0_f64);
+    let share = 1.0 / looks as f64;
+    for _ in 0..looks {
+        now += between;
+        gas.until(Until::Time(now))?;
+        let mut counts = vec![0.0; bins];
+        for disc in gas.simulation.particles().grains() {
+            let above = (disc.position[1] - disc.radius) / height;
+            mean_height += share * above / discs as f64;
+            highest = highest.max(above);
+            if let Some(count) = counts.get_mut((above / BIN) as usize) {
+                *count += 1.0;
+            }
+        }
+        temperature += share * gas.observed(["kinetic"])?[0] / discs as f64;
+        for (bin, count) in counts.into_iter().enumerate() {
+            // The barometric law has N/h of them on a unit of height at the floor.
+            let density = count / (discs as f64 * BIN);
+            sums[bin] += density;
+            squares[bin] += density * density;
+        }
+    }
+    let mean = |bin: usize| {
+        let mean = sums[bin] * share;
+        let variance = (squares[bin] * share - mean * mean).max(0.0);
+        [mean, (variance * share).sqrt()]
+    };
+    Ok(Profile {
+        layers,
+        discs,
+        heights: (0..bins).map(|bin| (bin as f64 + 0.5) * BIN).collect(),
+        densities: (0..bins).map(mean).collect(),
+        mean_height,
+        temperature,
+        highest,
+    })
+}

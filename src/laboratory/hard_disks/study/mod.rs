@@ -1,0 +1,11 @@
+//! What is measured of hard discs beside a run: each study a file, its section of the report in `sections`.
+
+pub mod atmosphere;
+pub mod collapse;
+pub mod cooling;
+pub mod fluid;
+pub mod masks;
+pub mod precision;
+pub mod rates;
+pub mod soft_hard;
+pub mod structure;

@@ -1,0 +1,311 @@
+//! Soft against hard: one scene by lattice MD with stiffer and stiffer discs, and by hard ones.
+
+use super::fluid::luding;
+use crate::console::Failure;
+use crate::results::Progress;
+use crate::statistics::median;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use serde::Serialize;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use stripmine_physics::method::observed::{UnknownName, observed};
+use stripmine_physics::method::{Entry, METHODS, Prepared, Purpose, Quantity, Simulation, Until, method};
+use stripmine_physics::scene::Values;
+
+/// The scene, and how much is measured. Diameter, mass and kT are 1.
+#[derive(Clone, Debug, Serialize)]
+pub struct Question {
+    /// Discs, at least.
+    pub discs: u64,
+    /// Area of the discs over that of the box.
+    pub packing_fraction: f64,
+    /// Restitution of the gas that cools.
+    pub restitution: f64,
+    /// Stiffnesses k_N of the soft discs (kT/diameter^2.5).
+    pub stiffnesses: Vec<f64>,
+    /// Seeds, each an independent start.
+    pub seeds: u64,
+    /// Time over which the pressure is measured.
+    pub time: f64,
+}
+
+/// Steps of a typical contact.
+const STEPS_A_CONTACT: f64 = 40.0;
+/// Looks at the pressure of soft discs.
+const LOOKS: u64 = 400;
+/// Collisions of each disc in which the gas cools, about.
+const COOLING: f64 = 10.0;
+/// Γ(7/5), of Hertz discs' effective diameter.
+const GAMMA: f64 = 0.887_263_817_503_075;
+
+/// A mean over the seeds, and its standard error.
+pub type Mean = [f64; 2];
+
+/// What one way to model the scene gives.
+#[derive(Clone, Debug, Serialize)]
+pub struct Model {
+    /// Stiffness; none for hard discs.
+    pub stiffness: Option<f64>,
+    /// Normal damping γ_N that gives the restitution at the scene's speeds (1/time).
+    pub damping: Option<f64>,
+    /// Step (time).
+    pub step: Option<f64>,
+    /// How deep a head-on contact of kT goes (diameters).
+    pub depth: f64,
+    /// Compressibility of the elastic fluid.
+    pub compressibility: Mean,
+    /// What it would be for hard discs of the effective diameter.
+    pub effective: f64,
+    /// Temperature of the cooled gas over that at its start.
+    pub cooled: Mean,
+    /// Processor seconds for a unit of time of the elastic fluid.
+    pub cost: f64,
+}
+
+/// What came out.
+#[derive(Clone, Debug, Serialize)]
+pub struct SoftHard {
+    /// The scene.
+    pub question: Question,
+    /// Discs.
+    pub discs: usize,
+    /// The time in which the gas cools.
+    pub cooling_time: f64,
+    /// The typical normal speed of an impact, at which the damping gives the restitution.
+    pub impact_speed: f64,
+    /// Soft models from the softest on, then the hard one.
+    pub models: Vec<Model>,
+}
+
+impl SoftHard {
+    /// Hard discs.
+    pub fn hard(&self) -> Option<&Model> {
+        self.models.iter().find(|model| model.stiffness.is_none())
+    }
+}
+
+/// Runs every model with every seed.
+///
+/// # Errors
+/// [`Failure`] if a scene is refused or breaks.
+pub fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<SoftHard, Failure> {
+    let pressure = luding(question.packing_fraction);
+    // ω = 4 (Z − 1)/√π, of a gas that keeps its temperature.
+    let rate = 4.0 * (pressure - 1.0) / std::f64::consts::PI.sqrt();
+    let cooling_time = COOLING / rate;
+    // Mean normal speed of impacts at kT = m = 1: √π.
+    let impact_speed = std::f64::consts::PI.sqrt();
+    let done = AtomicUsize::new(0);
+    let kinds: Vec<Option<f64>> = question.stiffnesses.iter().copied().map(Some).chain([None]).collect();
+    let all = kinds.len() * question.seeds as usize;
+    let mut models = vec![];
+    let mut discs = 0;
+    for stiffness in kinds {
+        let way = match stiffness {
+            Some(stiffness) => Way::soft(stiffness, question.restitution, impact_speed)?,
+            None => Way::Hard,
+        };
+        let runs: Vec<One> = (1..=question.seeds)
+            .into_par_iter()
+            .map(|seed| {
+                let one = way.run(question, seed, cooling_time)?;
+                progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / all as f64);
+                Ok(one)
+            })
+            .collect::<Result<_, Failure>>()?;
+        discs = runs[0].discs;
+        let depth = stiffness.map_or(0.0, |stiffness| (2.5 / stiffness).powf(0.4));
+        let diameter = 1.0 - GAMMA * depth;
+        let effective = luding(question.packing_fraction * diameter * diameter);
+        models.push(Model {
+            stiffness,
+            damping: way.damping(),
+            step: way.step(),
+            depth,
+            compressibility: mean(&runs.iter().map(|one| one.compressibility).collect::<Vec<_>>()),
+            effective,
+            cooled: mean(&runs.iter().map(|one| one.cooled).collect::<Vec<_>>()),
+            cost: median(runs.iter().map(|one| one.cost)),
+        });
+    }
+    Ok(SoftHard { question: question.clone(), discs, cooling_time, impact_speed, models })
+}
+
+/// A way to model the scene.
+enum Way {
+    Soft { stiffness: f64, damping: f64, step: f64 },
+    Hard,
+}
+
+/// What comes out of one seed.
+struct One {
+    discs: usize,
+    compressibility: f64,
+    cooled: f64,
+    cost: f64,
+}
+
+impl Way {
+    /// Discs of a stiffness, with the damping that gives a restitution at a speed.
+    fn soft(stiffness: f64, restitution: f64, speed: f64) -> Result<Way, Failure> {
+        let (mut low, mut high) = (0.0, 1.0);
+        while impact(stiffness, high, speed).0 > restitution {
+            high *= 2.0;
+        }
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if impact(stiffness, middle, speed).0 > restitution { low = middle } else { high = middle }
+        }
+        let (_, duration) = impact(stiffness, 0.0, speed);
+        Ok(Way::Soft { stiffness, damping: 0.5 * (low + high), step: duration / STEPS_A_CONTACT })
+    }
+
+    fn damping(&self) -> Option<f64> {
+        if let Way::Soft { damping, .. } = self { Some(*damping) } else { None }
+    }
+
+    fn step(&self) -> Option<f64> {
+        if let Way::Soft { step, .. } = self { Some(*step) } else { None }
+    }
+
+    fn entry(&self) -> Result<&'static Entry, UnknownName> {
+        let name = if let Way::Hard = self { "hard-disks" } else { "lattice-md" };
+        let known = METHODS.iter().map(|entry| entry.vocabulary.keys.method);
+        method(METHODS, name).ok_or_else(|| UnknownName::new("method", name, known))
+    }
+
+    fn prepared(&self, question: &Question, seed: u64, elastic: bool) -> Result<Box<dyn Prepared>, Failure> {
+        let Question { discs, packing_fraction, restitution, .. } = question;
+        let mut overrides = vec![
+            format!("particles.count={discs}"),
+            format!("particles.packing_fraction={packing_fraction}"),
+            format!("particles.seed={seed}"),
+            "particles.temperature=1.0".to_owned(),
+        ];
+        let preset = match self {
+            Way::Hard => {
+                let restitution = if elastic { 1.0 } else { *restitution };
+                overrides.push(format!("law.restitution={restitution}"));
+                "hard-disks"
+            }
+            Way::Soft { stiffness, damping, step } => {
+                let damping = if elastic { 0.0 } else { *damping };
+                overrides.extend([
+                    format!("law.stiffness={stiffness}"),
+                    format!("law.normal_damping={damping}"),
+                    "law.shear_damping=0.0".to_owned(),
+                    "law.friction=0.0".to_owned(),
+                    format!("integrator.dt={step}"),
+                    "run.steps=1".to_owned(),
+                ]);
+                "bench"
+            }
+        };
+        let entry = self.entry()?;
+        Ok((entry.prepare)(Values::load(preset, &overrides, &[entry.vocabulary])?)?)
+    }
+
+    fn run(&self, question: &Question, seed: u64, cooling_time: f64) -> Result<One, Failure> {
+        let none = AtomicBool::new(false);
+        let prepared = self.prepared(question, seed, true)?;
+        let (discs, area) = (prepared.particles().grain_count(), prepared.domain().area());
+        let mut fluid = Observed::begin(prepared.as_ref(), self)?;
+        // The lattice of the start melts.
+        let melted = 0.5 * question.time;
+        fluid.until(melted, &none)?;
+        let begun = cpu_time::ThreadTime::now();
+        let mut pressure = 0.0;
+        let virial = || if let Way::Hard = self { fluid.value("virial") } else { Ok(0.0) };
+        let (virial, time) = (virial()?, fluid.simulation.clock().time);
+        for look in 1..=LOOKS {
+            fluid.until(melted + question.time * look as f64 / LOOKS as f64, &none)?;
+            if let Way::Soft { .. } = self {
+                pressure += fluid.value("pressure")? * area / (discs as f64 * fluid.value("temperature")?);
+            }
+        }
+        let flown = fluid.simulation.clock().time - time;
+        let cost = begun.elapsed().as_secs_f64() / flown;
+        let compressibility = match self {
+            Way::Soft { .. } => pressure / LOOKS as f64,
+            Way::Hard => {
+                1.0 + (fluid.value("virial")? - virial)
+                    / (2.0 * discs as f64 * fluid.value("temperature")? * flown)
+            }
+        };
+        let prepared = self.prepared(question, seed, false)?;
+        let mut gas = Observed::begin(prepared.as_ref(), self)?;
+        let start = gas.value("temperature")?;
+        gas.until(cooling_time, &none)?;
+        Ok(One { discs, compressibility, cooled: gas.value("temperature")? / start, cost })
+    }
+}
+
+/// A simulation, with what is observed of it.
+struct Observed {
+    simulation: Box<dyn Simulation>,
+    quantities: &'static [Quantity],
+    step: Option<f64>,
+}
+
+impl Observed {
+    fn begin(prepared: &dyn Prepared, way: &Way) -> Result<Observed, Failure> {
+        let quantities = way.entry()?.quantities;
+        Ok(Observed { simulation: prepared.start(Purpose::Run)?, quantities, step: way.step() })
+    }
+
+    /// Up to a time: the step that is nearest to it, where there are steps.
+    fn until(&mut self, time: f64, interrupted: &AtomicBool) -> Result<(), Failure> {
+        let moment = match self.step {
+            Some(step) => Until::Steps((time / step).round() as u64),
+            None => Until::Time(time),
+        };
+        Ok(self.simulation.advance(&[moment], interrupted)?)
+    }
+
+    fn value(&self, name: &str) -> Result<f64, UnknownName> {
+        let [value] = observed(self.quantities, &self.simulation.observe(), [name])?;
+        Ok(value)
+    }
+}
+
+/// Restitution and duration of a head-on impact of two discs of mass 1: Hertz with damping, no pull.
+fn impact(stiffness: f64, damping: f64, speed: f64) -> (f64, f64) {
+    // Effective mass ½; the force of damping is γ_N times it times the speed.
+    let acceleration = |depth: f64, speed: f64| {
+        let depth = depth.max(0.0);
+        (-2.0 * stiffness * depth * depth.sqrt() - damping * speed).min(0.0)
+    };
+    let scale = (0.25 / (stiffness * stiffness * speed)).powf(0.2);
+    let dt = scale / 2000.0;
+    let (mut depth, mut v, mut time) = (0.0, speed, 0.0);
+    while (depth > 0.0 || time == 0.0) && time < 100.0 * scale {
+        // Runge and Kutta, second order: far finer than what it is used for.
+        let half = v + 0.5 * dt * acceleration(depth, v);
+        let middle = depth + 0.5 * dt * v;
+        v += dt * acceleration(middle, half);
+        depth += dt * half;
+        time += dt;
+    }
+    ((-v / speed).max(0.0), time)
+}
+
+fn mean(values: &[f64]) -> Mean {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    [mean, (square / count).sqrt()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without damping everything comes back, after 2.94 δ/v with the depth δ = (5 μ v²/(4 k))^{2/5}; with damping less.
+    #[test]
+    fn impacts_are_those_of_hertz() {
+        let (restitution, duration) = impact(1e4, 0.0, 1.5);
+        let depth = (1.25 * 0.5 * 1.5 * 1.5 / 1e4_f64).powf(0.4);
+        assert!((restitution - 1.0).abs() < 1e-3 && (duration / (2.943 * depth / 1.5) - 1.0).abs() < 2e-3);
+        let Ok(Way::Soft { damping, .. }) = Way::soft(1e4, 0.8, 1.5) else { panic!("no way") };
+        assert!((impact(1e4, damping, 1.5).0 - 0.8).abs() < 1e-3);
+    }
+}

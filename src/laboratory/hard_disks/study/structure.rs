@@ -1,0 +1,294 @@
+//! Order, free times and speeds of hard discs on both sides of melting.
+
+use crate::console::Failure;
+use crate::laboratory::running::Running;
+use crate::results::Progress;
+use crate::statistics::kolmogorov_smirnov;
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use serde::Serialize;
+use std::f64::consts::{PI, TAU};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use stripmine_physics::domain::Domain;
+use stripmine_physics::method::observed::UnknownName;
+use stripmine_physics::method::{METHODS, Purpose, Until, load};
+use stripmine_physics::near::Near;
+
+/// Packing fractions: a gas, the fluid, between fluid and crystal, the crystal.
+const PACKING_FRACTIONS: [f64; 4] = [0.02, 0.65, 0.71, 0.74];
+/// Collisions a disc before anything is measured.
+const SETTLING: u64 = 1500;
+/// Looks at the order, and collisions a disc between them.
+const LOOKS: (usize, u64) = (20, 50);
+/// Collisions whose free times are kept.
+const LOGGED: u64 = 200_000;
+/// Width of the bins of distances over the diameter, and their number.
+const DISTANCES: (f64, usize) = (0.02, 200);
+/// Width of the bins of free times over their mean, and their number.
+const TIMES: (f64, usize) = (0.1, 80);
+
+/// A disc as it is drawn: centre, and how far its neighbours point as those of the whole system do, from −1 to 1.
+type Drawn = ([f64; 2], f64);
+
+/// What came out at a packing fraction.
+#[derive(Clone, Debug, Serialize)]
+pub struct Structure {
+    /// Area of the discs over that of the box.
+    pub packing_fraction: f64,
+    /// The global bond-orientational order |Σ ψ₆|/N, and the mean |ψ₆| of a disc.
+    pub order: [f64; 2],
+    /// The pair correlation at the middle of each bin of distances.
+    pub correlation: Vec<f64>,
+    /// Its value at contact by the virial, (Z − 1)/(2 ν).
+    pub contact: f64,
+    /// Probability density of free times over their mean, in units of it.
+    pub free_times: Vec<f64>,
+    /// The mean free time, and the mean free path over the diameter.
+    pub free: [f64; 2],
+    /// Probability by Kolmogorov and Smirnov that the velocities are Maxwell's: at the start, where all discs are equally fast, and
+    /// at the end.
+    pub maxwell: [f64; 2],
+    /// The box.
+    #[serde(skip)]
+    pub sides: [f64; 2],
+    /// The discs of the last look.
+    #[serde(skip)]
+    pub discs: Vec<Drawn>,
+}
+
+/// Every packing fraction.
+#[derive(Clone, Debug, Serialize)]
+pub struct Structures {
+    /// Discs.
+    pub discs: usize,
+    /// Looks at the order.
+    pub looks: usize,
+    /// Distances over the diameter.
+    pub distances: Vec<f64>,
+    /// Free times over their mean.
+    pub times: Vec<f64>,
+    /// Their density in a dilute gas, by the speeds of Maxwell and the collision rate of a disc of each speed.
+    pub dilute: Vec<f64>,
+    /// What came out, by packing fraction.
+    pub structures: Vec<Structure>,
+}
+
+/// Follows discs at every packing fraction, from a crystal in which all are equally fast.
+///
+/// # Errors
+/// [`Failure`] if a scene breaks.
+pub fn structures(discs: usize, progress: Progress<'_>) -> Result<Structures, Failure> {
+    let done = AtomicUsize::new(0);
+    let structures = PACKING_FRACTIONS.par_iter().map(|&packing_fraction| {
+        let structure = structure(packing_fraction, discs)?;
+        progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / PACKING_FRACTIONS.len() as f64);
+        Ok(structure)
+    });
+    let structures = structures.collect::<Result<Vec<_>, Failure>>()?;
+    let middles = |(width, count): (f64, usize)| (0..count).map(|bin| (bin as f64 + 0.5) * width).collect();
+    let times: Vec<f64> = middles(TIMES);
+    let dilute = times.iter().map(|&time| dilute(time)).collect();
+    let distances: Vec<f64> = middles(DISTANCES);
+    Ok(Structures {
+        discs,
+        looks: LOOKS.0,
+        distances: distances.into_iter().map(|over| 1.0 + over).collect(),
+        times,
+        dilute,
+        structures,
+    })
+}
+
+fn structure(packing_fraction: f64, discs: usize) -> Result<Structure, Failure> {
+    let overrides = [
+        format!("particles.packing_fraction={packing_fraction}"),
+        format!("particles.count={discs}"),
+        "output.collisions=true".to_owned(),
+    ];
+    let (scene, method) = load("melting", &overrides, METHODS)?;
+    let (domain, mut start) = (scene.domain(), scene.particles().clone());
+    for (disc, turn) in start.all_mut().iter_mut().zip(1..) {
+        // Multiples of the golden section: directions that are even and in no order.
+        let angle = TAU * (f64::from(turn) * 0.618_033_988_749_895).fract();
+        disc.velocity = [2f64.sqrt() * angle.cos(), 2f64.sqrt() * angle.sin(), 0.0];
+    }
+    let mut running = Running::of(method, scene.started_from(start).start(Purpose::Run)?);
+    let count = running.simulation.particles().grain_count();
+    let begin = maxwell(&running)?;
+    for _ in 0..SETTLING {
+        running.events(count as u64 / 2)?;
+        // Their free times are not asked for.
+        running.simulation.take_events();
+    }
+    let names = ["time", "virial", "collisions", "temperature"];
+    let before = running.observed(names)?;
+    let (mut order, mut pairs, mut drawn) = ([0.0; 2], vec![0.0; DISTANCES.1], vec![]);
+    let between = before[0] * LOOKS.1 as f64 / SETTLING as f64;
+    for look in 0..LOOKS.0 {
+        // At a time of its own: just after an event two discs would always touch.
+        running.until(Until::Time(before[0] + (look + 1) as f64 * between))?;
+        running.simulation.take_events();
+        let places: Vec<[f64; 2]> =
+            running.simulation.particles().grains().iter().map(|disc| disc.place()).collect();
+        let bonds = bonds(domain, &places);
+        let sum = bonds.iter().fold([0.0; 2], |sum, bond| [sum[0] + bond[0], sum[1] + bond[1]]);
+        let whole = sum[0].hypot(sum[1]);
+        order[0] += whole / count as f64;
+        order[1] += bonds.iter().map(|bond| bond[0].hypot(bond[1])).sum::<f64>() / count as f64;
+        count_pairs(domain, &places, &mut pairs);
+        let along = |bond: [f64; 2]| (bond[0] * sum[0] + bond[1] * sum[1]) / whole;
+        drawn = places.iter().copied().zip(bonds.into_iter().map(along)).collect();
+    }
+    let after = running.observed(names)?;
+    let [time, virial, collisions] = [0, 1, 2].map(|which| after[which] - before[which]);
+    let compressibility = 1.0 + virial / (2.0 * count as f64 * after[3] * time);
+    let free_time = count as f64 * time / (2.0 * collisions);
+    running.events(LOGGED)?;
+    let looks = LOOKS.0 as f64;
+    let ring = |bin: usize| {
+        let [inner, outer] = [bin, bin + 1].map(|edge| 1.0 + edge as f64 * DISTANCES.0);
+        PI * (outer * outer - inner * inner)
+    };
+    let ideal = |bin: usize| 0.5 * (count as f64).powi(2) / domain.area() * ring(bin) * looks;
+    Ok(Structure {
+        packing_fraction,
+        order: order.map(|sum| sum / looks),
+        correlation: (0..DISTANCES.1).map(|bin| pairs[bin] / ideal(bin)).collect(),
+        contact: (compressibility - 1.0) / (2.0 * packing_fraction),
+        free_times: free_times(&running.simulation.take_events(), free_time),
+        // The mean speed of discs of m = kT = 1 is √(π/2).
+        free: [free_time, free_time * (0.5 * PI * after[3]).sqrt()],
+        maxwell: [begin, maxwell(&running)?],
+        sides: domain.lengths(),
+        discs: drawn,
+    })
+}
+
+/// ψ₆ of every disc, over its six nearest.
+fn bonds(domain: Domain, places: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    // Six others are within reach even in a gas.
+    let reach = 3.0 * (domain.area() / places.len() as f64).sqrt();
+    let near = Near::among(domain, places.iter().copied(), reach);
+    let of = |own: &[f64; 2]| {
+        let mut around: Vec<[f64; 2]> = near
+            .of(*own)
+            .map(|(_, other)| domain.displacement(*own, other))
+            .filter(|way| *way != [0.0; 2])
+            .collect();
+        let square = |way: &[f64; 2]| way[0] * way[0] + way[1] * way[1];
+        around.sort_by(|a, b| square(a).total_cmp(&square(b)));
+        around.truncate(6);
+        let share = 1.0 / (around.len().max(1) as f64);
+        around.iter().fold([0.0; 2], |sum, way| {
+            let angle = 6.0 * way[1].atan2(way[0]);
+            [sum[0] + share * angle.cos(), sum[1] + share * angle.sin()]
+        })
+    };
+    places.iter().map(of).collect()
+}
+
+/// Adds every pair within reach to the bin of its distance.
+fn count_pairs(domain: Domain, places: &[[f64; 2]], bins: &mut [f64]) {
+    let reach = 1.0 + DISTANCES.0 * DISTANCES.1 as f64;
+    let near = Near::among(domain, places.iter().copied(), reach);
+    for (own, number) in places.iter().zip(0..) {
+        for (_, other) in near.of(*own).filter(|(other, _)| *other > number) {
+            let bin = ((domain.distance(*own, other) - 1.0) / DISTANCES.0).max(0.0) as usize;
+            if let Some(count) = bins.get_mut(bin) {
+                *count += 1.0;
+            }
+        }
+    }
+}
+
+/// The probability that the components of the velocities are Maxwell's.
+fn maxwell(running: &Running) -> Result<f64, UnknownName> {
+    let [temperature] = running.observed(["temperature"])?;
+    let particles = running.simulation.particles();
+    let components = particles.grains().iter().flat_map(|disc| disc.planar_velocity());
+    let scaled = components.map(|v| v / temperature.sqrt()).collect();
+    Ok(kolmogorov_smirnov(scaled, |x| 0.5 * libm::erfc(-x / 2f64.sqrt())))
+}
+
+/// The density of the free times in rows of collisions, over their mean.
+fn free_times(rows: &str, mean: f64) -> Vec<f64> {
+    let (width, count) = TIMES;
+    let (mut bins, mut all) = (vec![0.0; count], 0.0);
+    for time in
+        rows.lines().flat_map(|row| row.rsplit(',').take(2)).filter_map(|text| text.parse::<f64>().ok())
+    {
+        all += 1.0;
+        if let Some(bin) = bins.get_mut((time / mean / width) as usize) {
+            *bin += 1.0;
+        }
+    }
+    bins.into_iter().map(|bin| bin / (all * width)).collect()
+}
+
+/// The density of free times of a dilute gas at `time` over the mean: a disc of speed v collides at the rate r(v), so that free times
+/// have the density ∫ f r² e^(−r t) dv / ∫ f r dv, with f Maxwell's and r as the mean speed relative to all others.
+fn dilute(time: f64) -> f64 {
+    let speeds = || (0..400).map(|step| (f64::from(step) + 0.5) * 0.02);
+    let weight = |v: f64| v * (-0.5 * v * v).exp() * 0.02;
+    let mean: f64 = speeds().map(|v| weight(v) * relative_speed(v)).sum();
+    let density = |v: f64| {
+        let rate = relative_speed(v) / mean;
+        weight(v) * rate * rate * (-rate * time).exp()
+    };
+    speeds().map(density).sum()
+}
+
+/// The mean speed of discs of m = kT = 1 relative to one of speed v: the mean of Rice's distribution, by its integral over angles.
+fn relative_speed(v: f64) -> f64 {
+    // √(π/2) L(−v²/2) with L = e^(x/2) ((1 − x) I₀(−x/2) − x I₁(−x/2)); e^(−y) I(y) as means over a half turn.
+    let y = 0.25 * v * v;
+    let mean =
+        |of: &dyn Fn(f64) -> f64| (0..64).map(|at| of(PI * (f64::from(at) + 0.5) / 64.0)).sum::<f64>() / 64.0;
+    let zeroth = mean(&|angle| (y * (angle.cos() - 1.0)).exp());
+    let first = mean(&|angle| angle.cos() * (y * (angle.cos() - 1.0)).exp());
+    (0.5 * PI).sqrt() * ((1.0 + 2.0 * y) * zeroth + 2.0 * y * first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The speed relative to a disc at rest is the mean speed √(π/2), to a fast one its own; the mean over all is √2 of that at rest.
+    #[test]
+    fn relative_speeds_are_those_of_gas_theory() {
+        let rest = (0.5 * PI).sqrt();
+        assert!((relative_speed(0.0) / rest - 1.0).abs() < 1e-12);
+        assert!((relative_speed(12.0) / (12.0 + 0.5 / 12.0) - 1.0).abs() < 1e-4);
+        let mean: f64 = (0..400)
+            .map(|step| (f64::from(step) + 0.5) * 0.02)
+            .map(|v| v * (-0.5 * v * v).exp() * 0.02 * relative_speed(v))
+            .sum();
+        assert!((mean / (2f64.sqrt() * rest) - 1.0).abs() < 1e-4);
+    }
+
+    /// A density has the whole 1 and the mean 1.
+    #[test]
+    fn free_times_of_a_dilute_gas_are_a_density() {
+        let times = || (0..2000).map(|at| (f64::from(at) + 0.5) * 0.01);
+        let whole: f64 = times().map(|time| 0.01 * dilute(time)).sum();
+        let mean: f64 = times().map(|time| 0.01 * time * dilute(time)).sum();
+        assert!((whole - 1.0).abs() < 1e-3 && (mean - 1.0).abs() < 1e-3, "{whole} {mean}");
+    }
+
+    /// A hexagonal crystal is in perfect order, and has six neighbours in its first shell.
+    #[test]
+    fn a_crystal_is_in_order() {
+        let domain = Domain::planar([0.0; 2], [10.0, 10.0 * 3f64.sqrt()], [true; 2]);
+        let places: Vec<[f64; 2]> = (0..200)
+            .map(|at| {
+                let (row, column) = (at / 10, at % 10);
+                [f64::from(column) + 0.5 * f64::from(row % 2), f64::from(row) * 0.5 * 3f64.sqrt()]
+            })
+            .collect();
+        for bond in bonds(domain, &places) {
+            assert!((bond[0] - 1.0).abs() < 1e-9 && bond[1].abs() < 1e-9, "{bond:?}");
+        }
+        let mut bins = vec![0.0; 20];
+        count_pairs(domain, &places, &mut bins);
+        assert_eq!(bins[0], 600.0);
+    }
+}

@@ -1,0 +1,223 @@
+//! Particles lost over the step.
+
+use crate::laboratory::langevin::study::losses::{LossTable, Row, SCHEMES};
+use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::{Cell, Part, Section, Table, Verdict};
+use stripmine_physics::number::range;
+use stripmine_physics::words::Words;
+
+/// Counts within this factor of the source's are its.
+const ALIKE: f64 = 1.5;
+
+/// The row whose losses are farthest from the source's, and how many times as many or as few they are; none where the source has none.
+fn farthest(data: &LossTable) -> Option<(&Row, f64)> {
+    let ratios = data.rows.iter().filter_map(|row| {
+        let source = row.source.filter(|lost| *lost > 0)? as f64;
+        let ratio = row.lost[0].max(1) as f64 / source;
+        Some((row, ratio.max(1.0 / ratio)))
+    });
+    ratios.max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+fn none_where_the_source_has_none(data: &LossTable) -> bool {
+    data.rows.iter().filter(|row| row.source == Some(0)).all(|row| row.lost == [0, 0])
+}
+
+/// How the losses differ from the source's.
+fn beside_the_source(data: &LossTable) -> String {
+    let none = match none_where_the_source_has_none(data) {
+        true => "no particle is lost where the source loses none",
+        false => "particles are lost where the source loses none",
+    };
+    match farthest(data) {
+        Some((row, ratio)) if ratio > ALIKE => format!(
+            "At a step of {} {} particles are lost where the source loses {}, {ratio:.0} times as {}; {none}.",
+            row.dt,
+            row.lost[0],
+            row.source.unwrap_or_default(),
+            if Some(row.lost[0]) > row.source { "many" } else { "few" },
+        ),
+        _ => format!("At every step of the source the losses are within {ALIKE} times its own; {none}."),
+    }
+}
+
+/// What came out.
+pub fn section(data: &LossTable) -> Section {
+    let falls = data.rows.windows(2).all(|pair| pair[0].lost[0] >= pair[1].lost[0]);
+    let ratios = || data.boundaries.iter().map(|boundary| boundary.dt / boundary.bounds[0]);
+    let (least, most) = (ratios().fold(f64::INFINITY, f64::min), ratios().fold(0.0, f64::max));
+    let by_limit = || data.boundaries.iter().map(|boundary| boundary.dt / boundary.bounds[1]);
+    Section {
+        name: "langevin-losses".into(),
+        title: "Langevin: particles lost to a long step".into(),
+        part: Part::Physics,
+        question: "From which step on are particles lost, and does the source's bound on the step prevent it?".into(),
+        expected: "LAN17: of 40 000 particles 19 200 are lost in 100 steps of 1, 6393 of 0.1, 754 of 0.01 and none of 0.001; steps below \
+                   √(2 m r_c/F) should do."
+            .into(),
+        answer: format!(
+            "{} The losses {} with the step, and the bound {}: the longest step without a loss is {} of it.",
+            beside_the_source(data),
+            if falls { "grow" } else { "do not grow" },
+            if least >= 1.0 { "suffices" } else { "does not suffice" },
+            range([least, most], 2),
+        ),
+        details: vec![format!(
+            "The boundary was found by bisection over four strengths and three temperatures. Beside the limit by the spring that a pair \
+             is in its hardest collisions it lies at {:.2} to {:.2}.",
+            by_limit().fold(f64::INFINITY, f64::min),
+            by_limit().fold(0.0, f64::max)
+        )],
+        verdict: Verdict::of_claims(&[
+            falls,
+            none_where_the_source_has_none(data),
+            farthest(data).is_none_or(|(_, ratio)| ratio <= ALIKE),
+            least >= 1.0,
+        ]),
+        again: "stripmine reproduce --only langevin-losses".into(),
+        figures: vec![losses(data), boundaries(data)],
+        tables: vec![loss_table(data), boundary_table(data)],
+        excerpt: None,
+        film: None,
+        seeds: vec![1],
+        depends_on_host: false,
+        provenance: None,
+    }
+}
+
+fn losses(data: &LossTable) -> Figure {
+    let source = data.rows.iter().rev().filter_map(|row| Some((row.dt, row.source? as f64)));
+    let source = source.filter(|(_, lost)| *lost > 0.0).map(|(dt, lost)| Point::at(dt, lost));
+    let ours = SCHEMES.iter().enumerate().map(|(which, scheme)| Series {
+        name: scheme.word().into(),
+        style: Style::Joined,
+        hue: which,
+        points: data
+            .rows
+            .iter()
+            .rev()
+            .filter(|row| row.lost[which] > 0)
+            .map(|row| Point::at(row.dt, row.lost[which] as f64))
+            .collect(),
+    });
+    Figure {
+        name: "losses".into(),
+        title: "Particles lost in 100 steps".into(),
+        caption: format!(
+            "Of {}. Steps without a loss are not drawn. In the source's table fewer are lost at long steps: no strength and \
+             temperature gave its counts.",
+            data.particles
+        ),
+        picture: Picture::Chart(Chart {
+            x: Axis::logarithmic("time step", Some("reduced")),
+            y: Axis::logarithmic("particles lost", None),
+            series: ours
+                .chain([Series {
+                    name: "source".into(),
+                    style: Style::Points,
+                    hue: 6,
+                    points: source.collect(),
+                }])
+                .collect(),
+            bands: vec![],
+        }),
+    }
+}
+
+fn boundaries(data: &LossTable) -> Figure {
+    let points = |of: &dyn Fn(usize) -> f64| -> Vec<Point> {
+        let mut points: Vec<Point> =
+            (0..data.boundaries.len()).map(|at| Point::at(data.boundaries[at].bounds[0], of(at))).collect();
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        points
+    };
+    let series = |name: &str, style, hue, points| Series { name: name.into(), style, hue, points };
+    Figure {
+        name: "boundaries".into(),
+        title: "Longest step without a loss beside two bounds".into(),
+        caption: "For ε of 0.1 to 100 and kT of 0.1 to 10. The source's bound knows no temperature: where particles meet hard, the \
+                  spring between them is far stiffer than at the distance σ."
+            .into(),
+        picture: Picture::Chart(Chart {
+            x: Axis::logarithmic("the source's bound on the step", Some("reduced")),
+            y: Axis::logarithmic("time step", Some("reduced")),
+            series: vec![
+                series("the source's bound", Style::Line, 6, points(&|at| data.boundaries[at].bounds[0])),
+                series("by the hardest collisions", Style::Points, 1, points(&|at| data.boundaries[at].bounds[1])),
+                series("measured", Style::Points, 0, points(&|at| data.boundaries[at].dt)),
+            ],
+            bands: vec![],
+        }),
+    }
+}
+
+fn loss_table(data: &LossTable) -> Table {
+    let rows = data.rows.iter().map(|row| {
+        vec![
+            Cell::Number(row.dt, 3),
+            Cell::Count(row.lost[0]),
+            Cell::Count(row.lost[1]),
+            row.source.map_or(Cell::Text(String::new()), Cell::Count),
+        ]
+    });
+    Table {
+        name: "losses".into(),
+        title: format!("Particles lost in 100 steps, of {}", data.particles),
+        columns: ["dt", "stochastic", "baoab", "source"].map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+        notes: vec!["ε = kT = γ = m = 1, σ = 0.1, four particles in a unit of area.".into()],
+    }
+}
+
+fn boundary_table(data: &LossTable) -> Table {
+    let rows = data.boundaries.iter().map(|it| {
+        vec![
+            Cell::Number(it.strength, 1),
+            Cell::Number(it.temperature, 1),
+            Cell::Number(it.dt, 5),
+            Cell::Number(it.bounds[0], 5),
+            Cell::Number(it.dt / it.bounds[0], 3),
+            Cell::Number(it.bounds[1], 5),
+            Cell::Number(it.dt / it.bounds[1], 3),
+        ]
+    });
+    let columns = ["ε", "kT", "longest step", "source's bound", "of it", "by hardest collisions", "of it"];
+    Table {
+        name: "boundaries".into(),
+        title: "Longest step without a loss in 100 steps, BAOAB, to 5 %".into(),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+        notes: vec![],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laboratory::langevin::study::losses::Boundary;
+
+    /// The losses of the source's steps, the longest first, and a longest step beside a bound of 1.
+    fn section_of(lost: [u64; 4], dt: f64) -> Section {
+        let rows = [(1.0, 19_200), (0.1, 6393), (0.01, 754), (0.001, 0)].into_iter().zip(lost);
+        let rows = rows.map(|((dt, source), lost)| Row { dt, lost: [lost; 2], source: Some(source) });
+        let boundary = Boundary { strength: 1.0, temperature: 1.0, dt, bounds: [1.0, 1.0] };
+        section(&LossTable { particles: 40_000, rows: rows.collect(), boundaries: vec![boundary] })
+    }
+
+    #[test]
+    fn losses_that_are_not_the_sources_are_said_first_and_graded() {
+        let ours = section_of([37_111, 34_738, 26_331, 0], 0.1);
+        assert_eq!(ours.verdict, Verdict::Partly);
+        let begin = "At a step of 0.01 26331 particles are lost where the source loses 754, 35 times as many";
+        assert!(
+            ours.answer.starts_with(begin) && ours.answer.contains("does not suffice"),
+            "{}",
+            ours.answer
+        );
+        let theirs = section_of([19_000, 6400, 800, 0], 1.0);
+        assert_eq!(theirs.verdict, Verdict::Reproduced, "{}", theirs.answer);
+        assert_eq!(section_of([19_000, 6400, 800, 3], 1.0).verdict, Verdict::Partly);
+        let few = section_of([19_000, 6400, 20, 0], 1.0).answer;
+        assert!(few.contains("38 times as few"), "{few}");
+    }
+}

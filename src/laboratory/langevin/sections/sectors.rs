@@ -1,0 +1,252 @@
+//! Wall time over the number of sectors.
+
+use crate::laboratory::langevin::study::sectors::{Fluid, Row, SEARCHES, SOURCE, Sectors, THREADS};
+use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::{Cell, Part, Section, Table, Verdict};
+
+/// Two threads help where they are at least so many times as fast as one.
+const HELPS: f64 = 1.2;
+/// The floor is reached where a time is below so many times the shortest.
+const FLOOR: f64 = 1.25;
+
+/// How many times as fast two threads are as one, in ours and in the source.
+struct Gain {
+    ours: f64,
+    source: f64,
+}
+
+impl Gain {
+    fn of(row: &Row) -> Option<Gain> {
+        let gain = |[one, two]: [f64; 2]| one / two;
+        Some(Gain { ours: gain(row.seconds), source: gain(row.source?) })
+    }
+
+    /// Whether both help, or both do not.
+    fn agrees(&self) -> bool {
+        (self.ours > HELPS) == (self.source > HELPS)
+    }
+}
+
+/// What came out.
+pub fn section(data: &Sectors) -> Section {
+    let lists = data.rows.iter().find(|row| row.per_side.is_none());
+    let of_sectors = || data.rows.iter().filter(|row| row.per_side.is_some());
+    let at = |count: u64| data.rows.iter().find(|row| row.per_side == Some(count));
+    let best = of_sectors().min_by(|a, b| a.seconds[0].total_cmp(&b.seconds[0]));
+    let fewest = of_sectors().min_by_key(|row| row.per_side);
+    // Where every pair or most are tried, time falls with the area of a sector: 16 times from 5 to 20 along a side.
+    let fall = at(5).zip(at(20)).map(|(few, many)| few.seconds[0] / many.seconds[0]);
+    let floor = at(100).zip(best).map(|(row, best)| row.seconds[0] / best.seconds[0]);
+    let gains = [fewest, best].map(|row| row.and_then(Gain::of));
+    let faster = |row: Option<&Row>| {
+        let source = best?.source?[0];
+        Some(format!("{:.0}", source / row?.seconds[0]))
+    };
+    let opposite = match &gains {
+        [Some(few), Some(many)] => format!(
+            "Two threads {}: {:.2} times as fast as one at the fewest sectors (source {:.2}) and {:.2} at the best number (source {:.2}). ",
+            if few.agrees() && many.agrees() {
+                "do as in the source"
+            } else {
+                "do not do what they do in the source"
+            },
+            few.ours,
+            few.source,
+            many.ours,
+            many.source
+        ),
+        _ => String::new(),
+    };
+    let sought = faster(best).zip(faster(lists)).map_or(String::new(), |(sectors, lists)| {
+        format!("On one thread sectors are {sectors} times as fast as the source at its best, neighbour lists {lists} times.")
+    });
+    let is_as = |held: Option<bool>| held.unwrap_or(true);
+    let claims = [
+        is_as(fall.map(|fall| (8.0..32.0).contains(&fall))),
+        is_as(floor.map(|floor| floor < FLOOR)),
+        is_as(gains[0].as_ref().map(Gain::agrees)),
+        is_as(gains[1].as_ref().map(Gain::agrees)),
+    ];
+    let falling = fall.map_or(String::new(), |fall| {
+        format!("From 5 to 20 sectors along a side the time falls by {fall:.0} times (1/d²: 16). ")
+    });
+    let floored = floor.map_or(String::new(), |floor| {
+        format!(
+            "With 100 it is {floor:.2} times the shortest (source {:.2}). ",
+            SOURCE[4].1[0] / SOURCE[5].1[0]
+        )
+    });
+    let [one, two] = lists.map_or([f64::NAN; 2], |row| row.seconds);
+    Section {
+        name: "langevin-sectors".into(),
+        title: "Langevin: wall time over the number of sectors".into(),
+        part: Part::Host,
+        question: "How does the time of a step depend on the number of sectors, and do two threads help?".into(),
+        expected: "LAN17: 100 steps of 40 000 particles take 1008 s with 3 sectors along a side, as 1/d² up to 20, and 4 s from 100 on; two \
+                   threads are 1.92 times as fast as one with 3 sectors and do not help at the best d."
+            .into(),
+        answer: format!("{opposite}{sought}"),
+        details: vec![format!(
+            "{falling}{floored}Neighbour lists take {one:.3} s on one thread and {two:.3} s on two, which are {:.2} times as fast. Where the \
+             search is left open it takes at most {:.0} % longer than the best of all.",
+            one / two,
+            100.0 * data.fluids.iter().filter_map(loss).fold(0.0, f64::max)
+        )],
+        verdict: Verdict::of_claims(&claims),
+        again: "stripmine reproduce --only langevin-sectors".into(),
+        figures: vec![figure(data)],
+        tables: vec![table(data), searches(data), phases(data)],
+        excerpt: None,
+        film: None,
+        seeds: vec![1],
+        depends_on_host: true,
+        provenance: None,
+    }
+}
+
+/// By how much `auto` is slower than the best, relative to it.
+fn loss(fluid: &Fluid) -> Option<f64> {
+    let known = fluid.seconds.iter().flatten().copied();
+    let best = known.fold(f64::INFINITY, f64::min);
+    // Sorted when needed is what auto does in sectors.
+    let name = match fluid.auto.as_str() {
+        "neighbor-list" => "lists",
+        "sectors" => "sectors, sorted when needed",
+        other => other,
+    };
+    let own = SEARCHES.iter().position(|(known, _)| *known == name).and_then(|place| fluid.seconds[place]);
+    own.map(|own| own / best - 1.0)
+}
+
+fn searches(data: &Sectors) -> Table {
+    let rows = data.fluids.iter().map(|fluid| {
+        let begin = [Cell::Text(fluid.law.into()), Cell::Number(fluid.density, 2)];
+        let times = fluid.seconds.iter().map(|it| it.map_or(Cell::Nothing, |it| Cell::Number(1e6 * it, 1)));
+        let end = [
+            Cell::Text(fluid.auto.clone()),
+            loss(fluid).map_or(Cell::Nothing, |it| Cell::Number(100.0 * it, 0)),
+        ];
+        begin.into_iter().chain(times).chain(end).collect()
+    });
+    let names = SEARCHES.iter().map(|(name, _)| format!("{name} (µs)"));
+    let columns = ["pairs", "density N σ²/A"].map(str::to_owned).into_iter().chain(names);
+    Table {
+        name: "searches".into(),
+        title: "A step of 4000 particles by every search, on one thread".into(),
+        columns: columns.chain(["auto takes", "slower than the best (%)"].map(str::to_owned)).collect(),
+        rows: rows.collect(),
+        notes: vec![],
+    }
+}
+
+fn figure(data: &Sectors) -> Figure {
+    let mut series = vec![];
+    for (which, threads) in THREADS.into_iter().enumerate() {
+        let name = if threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") };
+        let of_sectors = || data.rows.iter().filter_map(|row| Some((row.per_side? as f64, row)));
+        let ours = of_sectors().map(|(count, row)| Point::at(count, row.seconds[which]));
+        let source = of_sectors().filter_map(|(count, row)| Some(Point::at(count, row.source?[which])));
+        series.push(Series { name: name.clone(), style: Style::Joined, hue: which, points: ours.collect() });
+        series.push(Series {
+            name: format!("source, {name}"),
+            style: Style::Points,
+            hue: which + 2,
+            points: source.collect(),
+        });
+    }
+    if let Some(lists) = data.rows.iter().find(|row| row.per_side.is_none()) {
+        let points = [3.0, 800.0].map(|count| Point::at(count, lists.seconds[0]));
+        series.push(Series {
+            name: "lists, 1 thread".into(),
+            style: Style::Dashed,
+            hue: 6,
+            points: points.to_vec(),
+        });
+    }
+    Figure {
+        name: "wall-time".into(),
+        title: "Wall time of 100 steps".into(),
+        caption: format!("{} particles. With 3 sectors along a side every pair is tried.", data.particles),
+        picture: Picture::Chart(Chart {
+            x: Axis::logarithmic("sectors along a side", None),
+            y: Axis::logarithmic("wall time of 100 steps", Some("s")),
+            series,
+            bands: vec![],
+        }),
+    }
+}
+
+fn table(data: &Sectors) -> Table {
+    let rows = data.rows.iter().map(|row| {
+        let source =
+            |which: usize| row.source.map_or(Cell::Text(String::new()), |it| Cell::Number(it[which], 1));
+        vec![
+            Cell::Text(row.per_side.map_or("lists".to_owned(), |count| count.to_string())),
+            Cell::Number(row.seconds[0], 4),
+            Cell::Number(row.seconds[1], 4),
+            Cell::Number(row.seconds[0] / row.seconds[1], 2),
+            source(0),
+            source(1),
+        ]
+    });
+    let columns = ["sectors", "1 thread (s)", "2 threads (s)", "ratio", "source, 1 (s)", "source, 2 (s)"];
+    Table {
+        name: "wall-time".into(),
+        title: "Wall time of 100 steps".into(),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+        notes: vec!["Medians of alternating repeats; fewer steps where they are long.".into()],
+    }
+}
+
+fn phases(data: &Sectors) -> Table {
+    let rows = data
+        .phases
+        .iter()
+        .map(|(name, seconds)| vec![Cell::Text(name.clone()), Cell::Number(1e3 * seconds, 2)]);
+    Table {
+        name: "phases".into(),
+        title: "Where the time goes: 100 steps by lists on one thread".into(),
+        columns: ["part", "time (ms)"].map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+        notes: vec![
+            "correct_predict holds velocities, positions, noise and wrapping; index the lists and their order. The source: writing \
+             3.8 s, ordering 0.41, velocities 0.08, boundary 0.03, noise 0.03."
+                .into(),
+        ],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    /// The source's rows with other times, and lists.
+    fn section_of(seconds: impl Fn(u64, [f64; 2]) -> [f64; 2], lists: [f64; 2]) -> Section {
+        let row = |&(count, source): &(u64, [f64; 2])| Row {
+            per_side: Some(count),
+            seconds: seconds(count, source),
+            source: Some(source),
+        };
+        let rows = SOURCE.iter().map(row).chain([Row { per_side: None, seconds: lists, source: None }]);
+        section(&Sectors { fluids: vec![], particles: 40_000, rows: rows.collect(), phases: BTreeMap::new() })
+    }
+
+    #[test]
+    fn threads_that_do_the_opposite_are_said_first_and_sectors_are_not_lists() {
+        let tenth = section_of(|_, source| source.map(|seconds| 0.1 * seconds), [0.04, 0.02]);
+        assert_eq!(tenth.verdict, Verdict::Reproduced, "{}", tenth.answer);
+        assert!(tenth.answer.contains("sectors are 10 times") && tenth.answer.contains("lists 100 times"));
+        let opposite = section_of(
+            |count, [one, _]| [0.1 * one, if count < 100 { 0.1 * one } else { 0.07 * one }],
+            [0.04, 0.02],
+        );
+        assert_eq!(opposite.verdict, Verdict::Partly);
+        assert!(
+            opposite.answer.starts_with("Two threads do not do what they do in the source: 1.00 times"),
+            "{}",
+            opposite.answer
+        );
+    }
+}

@@ -1,0 +1,132 @@
+//! Particles that a long step throws out of the box: how many over the step, and from which step on.
+
+use crate::console::Failure;
+use crate::laboratory::running::{Running, prepared};
+use crate::results::Progress;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use serde::Serialize;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use stripmine_physics::method::langevin::options::SchemeKind;
+use stripmine_physics::method::observed::UnknownName;
+use stripmine_physics::words::Words;
+
+/// The source's table: step, particles lost.
+pub const SOURCE: [(f64, u64); 4] = [(1.0, 19_200), (0.1, 6393), (0.01, 754), (0.001, 0)];
+/// Steps between the source's.
+const FINER: [f64; 5] = [0.03, 0.005, 0.004, 0.003, 0.002];
+/// The integrators compared.
+pub const SCHEMES: [SchemeKind; 2] = [SchemeKind::Stochastic, SchemeKind::Baoab];
+/// Steps of the source's runs.
+const STEPS: u64 = 100;
+/// The boundary is known to this part of itself.
+const TOLERANCE: f64 = 0.05;
+
+/// Losses at a step.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The step (time).
+    pub dt: f64,
+    /// Lost by the integrators.
+    pub lost: [u64; 2],
+    /// Lost in the source, where it says.
+    pub source: Option<u64>,
+}
+
+/// The longest step without a loss, for a pair potential and a temperature.
+#[derive(Clone, Debug, Serialize)]
+pub struct Boundary {
+    /// ε (energy).
+    pub strength: f64,
+    /// kT (energy).
+    pub temperature: f64,
+    /// The step (time).
+    pub dt: f64,
+    /// The source's bound, and the limit by the hardest collisions (time).
+    pub bounds: [f64; 2],
+}
+
+/// What came out.
+#[derive(Clone, Debug, Serialize)]
+pub struct LossTable {
+    /// Particles at the start.
+    pub particles: u64,
+    /// Losses over the step.
+    pub rows: Vec<Row>,
+    /// Boundaries.
+    pub boundaries: Vec<Boundary>,
+}
+
+fn overrides(particles: u64, dt: f64, more: &[String]) -> Vec<String> {
+    let side = (particles as f64 / 4.0).sqrt();
+    let own = [
+        format!("particles.count={particles}"),
+        format!("domain.sides=[{side:?}, {side:?}]"),
+        format!("integrator.dt={dt:?}"),
+        format!("run.most_lost={particles}"),
+    ];
+    own.into_iter().chain(more.iter().cloned()).collect()
+}
+
+/// Particles lost in the source's number of steps; all of them where none is left.
+fn lost(particles: u64, dt: f64, more: &[String]) -> Result<u64, Failure> {
+    let mut running = Running::timed("langevin-report", &overrides(particles, dt, more))?;
+    Ok(match running.steps(STEPS) {
+        Ok(()) => running.observed(["lost"])?[0] as u64,
+        Err(_) => particles,
+    })
+}
+
+/// Counts losses and looks for boundaries, of as many particles.
+///
+/// # Errors
+/// [`Failure`] if a scene is refused.
+pub fn losses(particles: u64, progress: Progress<'_>) -> Result<LossTable, Failure> {
+    let mut steps: Vec<f64> = SOURCE.iter().map(|(dt, _)| *dt).chain(FINER).collect();
+    steps.sort_by(|a, b| b.total_cmp(a));
+    let places: Vec<(f64, f64)> = [0.1, 1.0, 10.0, 100.0]
+        .into_iter()
+        .flat_map(|strength| [0.1, 1.0, 10.0].map(|kt| (strength, kt)))
+        .collect();
+    let (done, all) = (AtomicUsize::new(0), steps.len() + places.len());
+    let tick = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / all as f64);
+    let rows = steps.into_par_iter().map(|dt| {
+        let mut counts = [0; 2];
+        for (count, scheme) in counts.iter_mut().zip(SCHEMES) {
+            *count = lost(particles, dt, &[format!("integrator.kind={}", scheme.word())])?;
+        }
+        tick();
+        let source = SOURCE.iter().find(|(there, _)| *there == dt).map(|(_, lost)| *lost);
+        Ok(Row { dt, lost: counts, source })
+    });
+    let rows = rows.collect::<Result<Vec<Row>, Failure>>()?;
+    let boundaries = places.into_par_iter().map(|(strength, temperature)| {
+        let boundary = boundary(particles, strength, temperature)?;
+        tick();
+        Ok(boundary)
+    });
+    let boundaries = boundaries.collect::<Result<Vec<Boundary>, Failure>>()?;
+    Ok(LossTable { particles, rows, boundaries })
+}
+
+fn boundary(particles: u64, strength: f64, temperature: f64) -> Result<Boundary, Failure> {
+    let more = [
+        format!("law.strength={strength:?}"),
+        format!("law.bath_temperature={temperature:?}"),
+        format!("particles.temperature={temperature:?}"),
+    ];
+    let limits = prepared("langevin-report", &overrides(particles, 0.001, &more))?.step_limits();
+    let step = |name: &str| {
+        let unknown = || UnknownName::new("limit of the step", name, limits.iter().map(|limit| limit.name));
+        limits.iter().find(|limit| limit.name == name).map(|limit| limit.step).ok_or_else(unknown)
+    };
+    let bounds = [step("source-bound")?, step("hardest-collision")?];
+    let (mut low, mut high) = (0.05 * bounds[1], 4.0 * bounds[1]);
+    while high / low > 1.0 + TOLERANCE {
+        let middle = (low * high).sqrt();
+        match lost(particles, middle, &more)? {
+            0 => low = middle,
+            _ => high = middle,
+        }
+    }
+    Ok(Boundary { strength, temperature, dt: (low * high).sqrt(), bounds })
+}

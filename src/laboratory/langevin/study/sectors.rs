@@ -1,0 +1,203 @@
+//! Wall time over the number of sectors along a side, on one thread and on two; where the time goes.
+
+use crate::console::Failure;
+use crate::laboratory::running::{Running, prepared};
+use crate::results::Progress;
+use crate::statistics::median;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::time::Instant;
+use stripmine_physics::io::extxyz::{self, Frame};
+use stripmine_physics::method::{METHODS, Purpose, load};
+
+/// Wall seconds of the source, on one thread and on two, over the sectors along a side.
+pub const SOURCE: [(u64, [f64; 2]); 8] = [
+    (3, [1008.0, 526.0]),
+    (5, [205.0, 132.0]),
+    (10, [51.2, 34.4]),
+    (20, [13.2, 12.5]),
+    (100, [4.2, 6.8]),
+    (200, [4.0, 6.6]),
+    (400, [4.3, 6.8]),
+    (800, [5.7, 8.1]),
+];
+/// Threads compared.
+pub const THREADS: [usize; 2] = [1, 2];
+/// The source's number of steps, for which times are given.
+const STEPS: f64 = 100.0;
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Sectors along a side, at least.
+    pub fewest: u64,
+    /// Seconds of a measurement, about.
+    pub seconds: f64,
+    /// Alternating repeats.
+    pub rounds: usize,
+}
+
+/// Wall time of the source's run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// Sectors along a side; none for neighbour lists.
+    pub per_side: Option<u64>,
+    /// Seconds for 100 steps, on one thread and on two: medians.
+    pub seconds: [f64; 2],
+    /// What the source has.
+    pub source: Option<[f64; 2]>,
+}
+
+/// Ways to find pairs that are compared: names and overrides.
+pub const SEARCHES: [(&str, &[&str]); 4] = [
+    ("lattice", &["search.by=lattice"]),
+    ("sectors, sorted when needed", &["search.by=sectors", "search.sort=when-needed"]),
+    ("sectors, sorted at every step", &["search.by=sectors", "search.sort=every-step"]),
+    ("lists", &["search.by=neighbor-list"]),
+];
+/// Particles of the scenes in which they are compared, and their densities N σ²/A.
+const COMPARED: u32 = 4000;
+const DENSITIES: [f64; 5] = [0.05, 0.2, 0.4, 0.6, 0.7];
+
+/// A fluid by every search.
+#[derive(Clone, Debug, Serialize)]
+pub struct Fluid {
+    /// The pair law.
+    pub law: &'static str,
+    /// Density N σ²/A.
+    pub density: f64,
+    /// Seconds of a step on one thread, by the ways of [`SEARCHES`]; none where one does not serve.
+    pub seconds: Vec<Option<f64>>,
+    /// The way that `auto` takes.
+    pub auto: String,
+}
+
+/// What came out.
+#[derive(Clone, Debug, Serialize)]
+pub struct Sectors {
+    /// Fluids by every search.
+    pub fluids: Vec<Fluid>,
+    /// Particles.
+    pub particles: usize,
+    /// Wall times.
+    pub rows: Vec<Row>,
+    /// Seconds of 100 steps in each phase, on one thread and by lists, and of writing ten frames.
+    pub phases: BTreeMap<String, f64>,
+}
+
+/// Seconds of a step on some threads, measured for about so long.
+fn seconds_of_a_step(
+    preset: &str,
+    overrides: &[String],
+    threads: usize,
+    seconds: f64,
+) -> Result<f64, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(Failure::Threads)?;
+    pool.install(|| {
+        let mut running = Running::timed(preset, overrides)?;
+        running.steps(1)?;
+        let (mut steps, mut in_all) = (1, 0.0);
+        loop {
+            let begun = Instant::now();
+            running.steps(steps)?;
+            in_all += begun.elapsed().as_secs_f64();
+            if in_all > seconds {
+                let done = running.simulation.clock().steps - 1;
+                return Ok(in_all / done as f64);
+            }
+            steps = (2 * steps).min(200);
+        }
+    })
+}
+
+/// Measures every number of sectors, and neighbour lists.
+///
+/// # Errors
+/// [`Failure`] if a scene is refused.
+pub fn sectors(effort: &Effort, progress: Progress<'_>) -> Result<Sectors, Failure> {
+    let counts = SOURCE.iter().filter(|(count, _)| *count >= effort.fewest);
+    let ways: Vec<(Option<u64>, Option<[f64; 2]>)> =
+        counts.map(|&(count, seconds)| (Some(count), Some(seconds))).chain([(None, None)]).collect();
+    let mut rows = vec![];
+    for (number, &(per_side, source)) in ways.iter().enumerate() {
+        let overrides = match per_side {
+            Some(count) => vec!["search.by=sectors".to_owned(), format!("search.sectors={count}")],
+            None => vec!["search.by=neighbor-list".to_owned()],
+        };
+        let mut found = [vec![], vec![]];
+        for _ in 0..effort.rounds {
+            for (times, threads) in found.iter_mut().zip(THREADS) {
+                times
+                    .push(STEPS * seconds_of_a_step("langevin-report", &overrides, threads, effort.seconds)?);
+            }
+        }
+        rows.push(Row { per_side, seconds: found.map(|times| median(times.into_iter())), source });
+        progress((number + 1) as f64 / (ways.len() + 1) as f64);
+    }
+    let phases = phases()?;
+    let fluids = ["wca", "lennard-jones"].into_iter().flat_map(|law| DENSITIES.map(|density| (law, density)));
+    let fluids = fluids.map(|(law, density)| fluid(law, density, effort)).collect::<Result<_, _>>()?;
+    progress(1.0);
+    let particles = prepared("langevin-report", &[])?.particles().len();
+    Ok(Sectors { fluids, particles, rows, phases })
+}
+
+/// A fluid by every search that serves it, in turns.
+fn fluid(law: &'static str, density: f64, effort: &Effort) -> Result<Fluid, Failure> {
+    let side = (f64::from(COMPARED) / density).sqrt();
+    let scene = [
+        format!("law.kind={law}"),
+        format!("particles.count={COMPARED}"),
+        format!("domain.sides=[{side}, {side}]"),
+        "particles.spacing=1.13".to_owned(),
+    ];
+    let with = |more: &[&str]| -> Vec<String> {
+        scene.iter().cloned().chain(more.iter().map(|&text| text.to_owned())).collect()
+    };
+    let mut found: Vec<Vec<f64>> = vec![vec![]; SEARCHES.len()];
+    for _ in 0..effort.rounds {
+        for (times, (_, more)) in found.iter_mut().zip(SEARCHES) {
+            let overrides = with(more);
+            if prepared("langevin-dense", &overrides).is_ok() {
+                times.push(seconds_of_a_step("langevin-dense", &overrides, 1, 0.25 * effort.seconds)?);
+            }
+        }
+    }
+    let middle = |times: Vec<f64>| (!times.is_empty()).then(|| median(times.into_iter()));
+    let auto = prepared("langevin-dense", &with(&[]))?.settings()["search"].as_str().unwrap_or("").to_owned();
+    Ok(Fluid { law, density, seconds: found.into_iter().map(middle).collect(), auto })
+}
+
+/// Seconds of the source's run in each phase on one thread, and of the ten frames that it would write.
+fn phases() -> Result<BTreeMap<String, f64>, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let pool = pool.map_err(Failure::Threads)?;
+    pool.install(|| {
+        let (scene, method) = load("langevin-report", &[], METHODS)?;
+        let mut running = Running::of(method, scene.start(Purpose::Measurement)?);
+        running.steps(50)?;
+        running.simulation.reset_phases();
+        let steps = 500;
+        running.steps(steps)?;
+        let share = STEPS / steps as f64;
+        let named = running.simulation.phases().into_iter();
+        let mut phases: BTreeMap<String, f64> =
+            named.map(|(name, seconds)| (name.to_owned(), share * seconds)).collect();
+        let begun = Instant::now();
+        for step in 0..10 {
+            let frame = Frame {
+                particles: running.simulation.particles(),
+                cell: scene.domain().lengths(),
+                origin: scene.domain().corner(),
+                periodic: Some(scene.domain().periodic()),
+                time: 0.0,
+                step,
+                seed: None,
+            };
+            extxyz::write(&frame, &mut std::io::sink()).map_err(Failure::writing("a frame"))?;
+        }
+        phases.insert("ten frames as text".to_owned(), begun.elapsed().as_secs_f64());
+        Ok(phases)
+    })
+}

@@ -1,0 +1,322 @@
+//! What can be reproduced of this method: each item a study and its section of the report.
+
+use super::sections::{self, pipe_flow::Showing};
+use super::study::calibration;
+use super::study::efficiency_table::Question;
+use super::study::model_validation::{self, Calibrated, model_validation};
+use super::study::rounds::Bound;
+use super::study::{
+    break_even, crossover, damping, density_cost, efficiency_table, host_ladder, identity, ladder, listing,
+    measured_cost, misprints, pipe_flow, precision, printed_cost, threads, useful_work,
+};
+use crate::console::Failure;
+use crate::model::host::default_model;
+use crate::model::machines;
+use crate::report::Section;
+use crate::results::{Effort, Item, Made, Progress};
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use serde::Serialize;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+use stripmine_kernels::InstructionSet;
+use stripmine_physics::method::lattice_md::Part;
+use stripmine_physics::origin;
+
+macro_rules! items {
+    ($($name:literal, $seconds:expr, $is_quick:literal, $make:ident, $doc:literal;)*) => {
+        &[$(Item { name: $name, doc: $doc, seconds: $seconds, is_quick: $is_quick, make: $make }),*]
+    };
+}
+
+/// Every item, in the order of the page: name, seconds that it takes about (quick and in full), whether it is made where only
+/// little time is given, and what makes it.
+pub(super) const ITEMS: &[Item] = items! {
+    "table", [0.1, 0.1], true, table, "BP93's efficiency table";
+    "ladder", [0.1, 0.1], true, ladder, "What each refinement of the clock adds, machine by machine";
+    "listing", [0.1, 0.1], true, listing, "The vector instructions of every part";
+    "mask", [0.1, 0.1], true, mask, "BP93, figure 2: the mask";
+    "misprints", [0.5, 0.5], true, misprints, "What the misprints of the contact law do";
+    "cost", [1.0, 1.0], true, cost, "BP93, figures 3 and 4: cost over particles and density, by the model";
+    "useful-work", [1.0, 1.0], true, useful_work, "Operations that act on real contacts, over the density";
+    "printed", [6.0, 75.0], true, printed, "The printed text run the CRAY's way: NOP·(n + D) against wall time, and what thirty years made of it";
+    "measured", [8.0, 17.0], true, measured, "The same, measured on this host";
+    "validation", [4.0, 32.0], true, validation, "The timing model of a host against wall time here";
+    "atlas", [44.0, 44.0], false, atlas, "Who wins where: occupancy, number of particles, method and machine";
+    "crossover", [4.0, 30.0], true, crossover, "Lattice, neighbour lists and sectors: which is the fastest at which density, on this host";
+    "threads", [3.0, 18.0], true, threads, "What more threads give, and what the machine has to give";
+    "identity", [3.0, 3.0], true, identity, "Lattice and neighbour lists: the same to the bit";
+    "precision", [26.0, 26.0], false, precision, "What single and mixed precision cost: forces, energy, trajectories";
+    "pipe-small", [3.0, 3.0], true, pipe_small, "BP93, figures 5 and 6, in two fifths of the pipe";
+    "pipe", [15.0, 15.0], false, pipe, "BP93, figures 5 and 6, in the whole pipe";
+    "pipe-thin", [13.0, 13.0], false, pipe_thin, "The whole pipe with fewer grains: waves both ways";
+    "waves", [14.0, 14.0], false, waves, "Density waves over dissipation, and controls without";
+};
+
+fn table(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+    let data = efficiency_table::efficiency_table(&Question::default(), &machines::preset("paper")?)?;
+    made(sections::efficiency_table::section(&data), &data)
+}
+
+fn ladder(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+    let ladders: Vec<_> = ["cray-y-mp-el", "cray-1", "cray-c90", "sx-aurora"]
+        .into_iter()
+        .map(|name| Ok(ladder::ladder(&Question::default(), &machines::preset(name)?)?))
+        .collect::<Result<_, Failure>>()?;
+    let host = host_ladder::host_ladder(&Question::default(), &default_model()?, Calibrated::Shipped)?;
+    let mut section = sections::ladder::section(&ladders);
+    section.details.push(format!("The step of a host, term by term, is by {}.", host.model));
+    section.tables.push(sections::ladder::of_host(&host));
+    made(section, &serde_json::json!({ "machines": ladders, "host": host }))
+}
+
+fn listing(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+    listings()
+}
+
+fn mask(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+    made(sections::mask::section(), &())
+}
+
+fn misprints(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+    let data = misprints::misprints();
+    made(sections::misprints::section(&data), &data)
+}
+
+fn cost(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+    let data = density_cost::density_cost(&machines::preset("paper")?)?;
+    made(sections::density_cost::section(&data), &data)
+}
+
+fn useful_work(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+    let data = useful_work::useful_work()?;
+    made(sections::useful_work::section(&data), &data)
+}
+
+fn printed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    // Short vectors for the line, up to the first cache; long ones for where it breaks.
+    let short = [25, 49, 100, 170, 290, 500, 1000, 10_000, 100_000];
+    let long = [2000, 5000, 30_000, 300_000, 1_000_000, 3_000_000, 10_000_000];
+    let effort = match effort {
+        Effort::Quick => printed_cost::Effort {
+            cells: short.to_vec(),
+            occupancies: vec![1.0],
+            samples: 8,
+            particles: 1000,
+            rounds: Bound::of(3),
+        },
+        Effort::Full => printed_cost::Effort {
+            cells: [&short[..], &long].concat(),
+            occupancies: vec![0.05, 0.1, 0.5, 1.0],
+            samples: 24,
+            particles: 10_000,
+            rounds: bound(15, 20),
+        },
+    };
+    let data = printed_cost::printed_cost(&effort, progress)?;
+    made(sections::printed_cost::section(&data), &data)
+}
+
+fn measured(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let data = measured_cost::measured_cost(&measured_effort(effort), progress)?;
+    made(sections::measured_cost::section(&data), &data)
+}
+
+fn crossover(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let data = crossover::crossover(&crossover_effort(effort), progress)?;
+    made(sections::crossover::section(&data), &data)
+}
+
+fn threads(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let data = threads::threads(cores, &threads_effort(effort), progress)?;
+    made(sections::threads::section(&data), &data)
+}
+
+fn identity(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let data = identity::identity(progress)?;
+    made(sections::identity::section(&data), &data)
+}
+
+fn precision(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let data = precision::precision(progress)?;
+    made(sections::precision::section(&data), &data)
+}
+
+fn pipe_small(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let title = "Density waves in a short pipe (figures 5 and 6)";
+    let question = "Do grains that fall through two fifths of the pipe form density waves?";
+    let showing = Showing { name: "pipe-small", title, question, asks_ways: false, from: 0.0, snapshots: 11 };
+    pipes(showing, ("pipe-small", &[]), &[1], progress)
+}
+
+fn pipe(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let title = "Density waves in the whole pipe (figures 5 and 6)";
+    let question = "Do grains that fall through the source's whole pipe form density waves?";
+    let showing = Showing { name: "pipe", title, question, asks_ways: false, from: 10.0, snapshots: 14 };
+    pipes(showing, ("pipe", &[]), &[1, 2], progress)
+}
+
+fn pipe_thin(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let title = "Density waves both ways in a thinner filling";
+    let question = "Do the waves run both ways where the pipe is filled less?";
+    let showing = Showing { name: "pipe-thin", title, question, asks_ways: true, from: 0.0, snapshots: 0 };
+    pipes(showing, ("pipe", &["particles.packing_fraction=0.35"]), &[1, 2], progress)
+}
+
+fn waves(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let seeds = [1, 2, 3, 4, 5, 6];
+    let data = damping::damping(&seeds, progress)?;
+    made(sections::damping::section(&data), &data)
+}
+
+fn made(section: Section, data: &impl Serialize) -> Result<Made, Failure> {
+    Made::new(section, data)
+}
+
+/// The shipped host model on few cases, or, in full, a fresh calibration and more of them.
+fn validation(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let runs = |particles, occupancies, rounds| model_validation::Effort {
+        particles,
+        occupancies,
+        rounds,
+        particle_steps: 10_000,
+    };
+    match effort {
+        Effort::Quick => {
+            let (host, runs) = (default_model()?, runs(vec![300], vec![0.2], Bound::of(2)));
+            let data = model_validation(&host, Calibrated::Shipped, &runs, progress)?;
+            made(sections::model_validation::section(&data), &data)
+        }
+        Effort::Full => {
+            let (effort, best) = (calibration::Effort { seconds: 25.0 }, InstructionSet::best());
+            let host = calibration::calibrate(origin::host(), best, effort, |share| progress(0.5 * share))?;
+            let runs = runs(vec![150, 4000], vec![0.072, 0.24], bound(6, VALIDATION));
+            let data = model_validation(&host, Calibrated::Now, &runs, |share| progress(0.5 + 0.5 * share))?;
+            made(sections::model_validation::section(&data), &data)
+        }
+    }
+}
+
+/// Seconds that rounds of the validation and of the atlas may take in full, so that all that is said of this host's model takes
+/// a minute and a half: scenes are laid out before, and the model is fitted after.
+const VALIDATION: u64 = 15;
+const ATLAS: u64 = 12;
+
+fn bound(most: usize, seconds: u64) -> Bound {
+    Bound { most, within: Some(Duration::from_secs(seconds)) }
+}
+
+/// The machine of the source, the CRAY of the application, and the host whose model comes with the program, beside what is measured
+/// here.
+fn atlas(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let machines = [machines::preset("paper")?, machines::preset("cray-y-mp-el")?];
+    let host = default_model()?;
+    let (measured, rounds): (&[usize], Bound) = match effort {
+        Effort::Quick => (&[300], Bound::of(2)),
+        Effort::Full => (&[100, 300, 1000, 3000, 10_000], bound(6, ATLAS)),
+    };
+    let data = break_even::atlas(&machines, (&host, Calibrated::Shipped), measured, rounds, progress)?;
+    made(sections::break_even::section(&data, "stripmine reproduce --only atlas"), &data)
+}
+
+fn measured_effort(effort: Effort) -> measured_cost::Effort {
+    match effort {
+        Effort::Quick => measured_cost::Effort {
+            particles: vec![100, 1000],
+            occupancies: vec![0.1, 0.2],
+            equilibration: 50,
+            element_steps: 200_000,
+            repeats: 3,
+        },
+        Effort::Full => measured_cost::Effort {
+            particles: vec![100, 300, 1000, 3000, 10_000],
+            occupancies: vec![0.01, 0.03, 0.1, 0.2, 0.25],
+            equilibration: 100,
+            element_steps: 400_000,
+            repeats: 5,
+        },
+    }
+}
+
+fn crossover_effort(effort: Effort) -> crossover::Effort {
+    match effort {
+        Effort::Quick => crossover::Effort {
+            precisions: vec!["f64"],
+            particles: vec![4000],
+            packing_fractions: vec![0.84, 0.3, 0.1],
+            steps: 60,
+            repeats: 2,
+        },
+        Effort::Full => crossover::Effort {
+            precisions: vec!["f64", "mixed", "f32"],
+            particles: vec![10_000, 100_000],
+            packing_fractions: vec![0.84, 0.8, 0.6, 0.3, 0.1, 0.03],
+            steps: 40,
+            repeats: 2,
+        },
+    }
+}
+
+fn threads_effort(effort: Effort) -> threads::Effort {
+    match effort {
+        Effort::Quick => threads::Effort {
+            particles: vec![20_000],
+            packing_fractions: vec![0.84],
+            rounds: 3,
+            particle_steps: 1_000_000,
+        },
+        Effort::Full => threads::Effort {
+            particles: vec![10_000, 100_000, 300_000],
+            packing_fractions: vec![0.84, 0.3],
+            rounds: 5,
+            particle_steps: 4_000_000,
+        },
+    }
+}
+
+/// Runs of a scene with overrides, side by side; the first keeps its frames if snapshots are shown.
+fn pipes(
+    showing: Showing,
+    (scene, overrides): (&'static str, &[&str]),
+    seeds: &[u64],
+    progress: Progress<'_>,
+) -> Result<Made, Failure> {
+    const PARTS: f64 = 1000.0;
+    let done: Vec<AtomicUsize> = seeds.iter().map(|_| AtomicUsize::new(0)).collect();
+    let numbered: Vec<(usize, u64)> = seeds.iter().copied().enumerate().collect();
+    let flows = numbered.par_iter().map(|&(at, seed)| {
+        let question = pipe_flow::Question {
+            scene,
+            overrides: overrides.iter().map(|&text| text.to_owned()).collect(),
+            seed,
+            keep_frames: at == 0 && showing.snapshots > 0,
+        };
+        pipe_flow::pipe_flow(&question, |share| {
+            done[at].store((PARTS * share) as usize, Ordering::Relaxed);
+            let sum: usize = done.iter().map(|part| part.load(Ordering::Relaxed)).sum();
+            progress(sum as f64 / PARTS / seeds.len() as f64);
+        })
+    });
+    let flows: Vec<pipe_flow::PipeFlow> = flows.collect::<Result<_, _>>()?;
+    made(sections::pipe_flow::section(showing, &flows), &flows)
+}
+
+/// The source's own text first, as a reader wants it; then ours.
+fn listings() -> Result<Made, Failure> {
+    let ours = Question::default();
+    let printed = Question { choice: ours.choice.printed(), ..ours.clone() };
+    let mut parts = vec![];
+    for (name, question) in [("printed_", &printed), ("", &ours)] {
+        for &part in Part::ALL {
+            let listings = listing::listings(part, question)?;
+            let (text, instructions) = (listing::text(&listings), listing::instructions(&listings));
+            if instructions > 0 {
+                let part = format!("{name}{}", part.name());
+                parts.push(sections::listing::PartListing { part, text, instructions });
+            }
+        }
+    }
+    let mut made = made(sections::listing::section(&parts), &())?;
+    made.files = parts.into_iter().map(|part| (format!("{}.txt", part.part), part.text)).collect();
+    Ok(made)
+}

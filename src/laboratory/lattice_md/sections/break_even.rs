@@ -1,0 +1,195 @@
+//! The break-even atlas: who wins where.
+
+use crate::laboratory::lattice_md::study::break_even::{Atlas, Named, Sheet};
+use crate::laboratory::lattice_md::study::density_cost::CEILING;
+use crate::report::figure::{Axis, Band, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::statistics::median;
+
+/// A lead below this is a draw in the words.
+const DRAW: f64 = 1.1;
+
+/// What came out.
+pub fn section(data: &Atlas, again: &str) -> Section {
+    let named = data.named();
+    let wins = data.sheets.iter().map(|sheet| format!("Cheapest, {}: {}", sheet.title, wins(sheet)));
+    Section {
+        name: "atlas".into(),
+        title: "Who wins where: the break-even atlas".into(),
+        part: Part::Host,
+        question: "Which method is the cheapest for which number of particles and density, and does the model of a host know it?".into(),
+        expected: "BP93, section 3: on a vector machine the lattice wins for many particles and dense packings, scalar neighbour lists for \
+                   few. Our aim: what the model names as the cheapest costs at most a tenth more than what is."
+            .into(),
+        answer: model(data, &named),
+        details: wins.map(|wins| format!("{wins}.")).collect(),
+        verdict: Verdict::aim(named.iter().all(|it| it.dearer <= DRAW)),
+        again: again.into(),
+        figures: data.sheets.iter().map(figure).collect(),
+        tables: vec![wrong(&named), places(data)],
+        excerpt: None,
+        film: None,
+        seeds: vec![1],
+        depends_on_host: true,
+        provenance: None,
+    }
+}
+
+/// How often the model names the cheapest method beside one that always names the same, and what it costs where it is wrong.
+fn model(data: &Atlas, named: &[Named]) -> String {
+    let wrong: Vec<&Named> = named.iter().filter(|it| it.named != it.cheapest).collect();
+    let baseline = data.baseline().map_or(String::new(), |(method, right)| {
+        format!("; one that always names {method} is right at {right}")
+    });
+    let begin = format!(
+        "By {} the cheapest method is named at {} of {} places measured on this host{baseline}",
+        data.model,
+        named.len() - wrong.len(),
+        named.len()
+    );
+    let Some(worst) = wrong.iter().max_by(|a, b| a.dearer.total_cmp(&b.dearer)) else { return begin + "." };
+    format!(
+        "{begin}. Where the model is wrong its choice costs {:.0} % more in the median, and at most {:.0} % ({} for {} with {} discs at \
+         ρ = {}).",
+        100.0 * (median(wrong.iter().map(|it| it.dearer)) - 1.0),
+        100.0 * (worst.dearer - 1.0),
+        worst.named,
+        worst.cheapest,
+        worst.particles,
+        worst.occupancy
+    )
+}
+
+/// Where the model names another method than the cheapest.
+fn wrong(named: &[Named]) -> Table {
+    let rows = named.iter().filter(|it| it.named != it.cheapest).map(|it| {
+        vec![
+            Cell::Number(it.occupancy, 2),
+            Cell::Count(it.particles as u64),
+            Cell::Text(it.named.clone()),
+            Cell::Text(it.cheapest.clone()),
+            Cell::Number(100.0 * (it.dearer - 1.0), 0),
+        ]
+    });
+    Table {
+        name: "wrong_winners".into(),
+        title: "Where the model of a host names another method than the cheapest".into(),
+        columns: ["occupancy ρ", "NP", "named by the model", "cheapest as measured", "costs more (%)"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows: rows.collect(),
+        notes: vec![],
+    }
+}
+
+/// At how many places each method wins.
+fn wins(sheet: &Sheet) -> String {
+    let winners: Vec<(usize, f64)> = sheet.places.iter().filter_map(|place| place.winner()).collect();
+    let of_method = sheet.methods.iter().enumerate().filter_map(|(method, name)| {
+        let places = winners.iter().filter(|(winner, _)| *winner == method).count();
+        (places > 0).then(|| format!("{name} at {places} of {} places", winners.len()))
+    });
+    of_method.collect::<Vec<_>>().join(", ")
+}
+
+fn figure(sheet: &Sheet) -> Figure {
+    let series = sheet.methods.iter().enumerate().map(|(hue, name)| {
+        let won = sheet.places.iter().filter(|place| place.winner().is_some_and(|(winner, _)| winner == hue));
+        let points = won.map(|place| Point::at(place.occupancy, place.particles as f64)).collect();
+        Series { name: name.clone(), style: Style::Points, hue, points }
+    });
+    let narrow =
+        sheet.places.iter().filter(|place| place.winner().is_some_and(|(_, lead)| lead < DRAW)).count();
+    let estimated = if sheet.measured {
+        "Moving discs, one thread, double precision; the sum over all phases of what the lowest tenth of the samples take."
+    } else {
+        "Not measured. Candidates and contacts a disc as in a run of about a thousand discs of the same density."
+    };
+    Figure {
+        name: sheet.name.clone(),
+        title: format!("The cheapest method: {}", sheet.title),
+        caption: format!(
+            "{}: {estimated} At {narrow} of {} places the next method costs less than a tenth more. Hatched: occupancies that \
+             discs on cells as wide as their radius cannot reach.",
+            sheet.title,
+            sheet.places.len()
+        ),
+        picture: Picture::Chart(Chart {
+            x: Axis { limits: Some([0.0, 0.35]), ..Axis::linear("occupancy ρ = NP/LMAX", None) },
+            y: Axis { limits: Some([50.0, 100_000.0]), ..Axis::logarithmic("number of particles NP", None) },
+            series: series.filter(|series| !series.points.is_empty()).collect(),
+            bands: vec![Band::of_x("out of reach", [CEILING, 0.35])],
+        }),
+    }
+}
+
+fn places(data: &Atlas) -> Table {
+    let rows = data.sheets.iter().flat_map(|sheet| {
+        sheet.places.iter().filter_map(move |place| {
+            let (winner, lead) = place.winner()?;
+            Some(vec![
+                Cell::Text(sheet.title.clone()),
+                Cell::Number(place.occupancy, 2),
+                Cell::Count(place.particles as u64),
+                Cell::Text(sheet.methods.get(winner)?.clone()),
+                Cell::Number(lead, 2),
+                Cell::Number(place.costs[winner] / place.particles as f64, 1),
+                Cell::Text(sheet.unit.to_owned()),
+            ])
+        })
+    });
+    Table {
+        name: "atlas".into(),
+        title: "The cheapest method at each place".into(),
+        columns: [
+            "machine",
+            "occupancy ρ",
+            "NP",
+            "cheapest",
+            "the next costs (times)",
+            "a disc and step",
+            "unit",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
+        notes: vec![],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laboratory::lattice_md::study::break_even::Place;
+    use crate::laboratory::lattice_md::study::model_validation::Calibrated;
+
+    /// Three places; the model names the second method everywhere, and is wrong at the last.
+    #[test]
+    fn the_answer_says_whose_model_it_is_and_what_a_constant_is_worth() {
+        let sheet = |measured: bool, costs: [[f64; 2]; 3]| Sheet {
+            name: String::new(),
+            title: String::new(),
+            unit: "ns",
+            measured,
+            methods: ["chained", "lists"].map(str::to_owned).to_vec(),
+            places: costs
+                .iter()
+                .zip([100, 300, 1000])
+                .map(|(costs, particles)| Place { particles, occupancy: 0.1, costs: costs.to_vec() })
+                .collect(),
+        };
+        let sheets = vec![sheet(false, [[2.0, 1.0]; 3]), sheet(true, [[2.0, 1.0], [2.0, 1.0], [1.0, 1.5]])];
+        let answer = |calibrated: Calibrated| {
+            let model = calibrated.model_of("A CPU");
+            section(&Atlas { model, lists: vec![], fast_lists: vec![], sheets: sheets.clone() }, "").answer
+        };
+        let shipped = answer(Calibrated::Shipped);
+        let begin = "By the shipped model of A CPU the cheapest method is named at 2 of 3 places measured on this host; one that \
+                     always names lists is right at 2. Where the model is wrong";
+        assert!(shipped.starts_with(begin), "{shipped}");
+        assert!(answer(Calibrated::Before).starts_with("By the model of A CPU from a host file the"));
+        assert!(
+            answer(Calibrated::Now).starts_with("By the model of this host, A CPU, calibrated just before")
+        );
+    }
+}

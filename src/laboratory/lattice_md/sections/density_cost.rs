@@ -1,0 +1,286 @@
+//! Figures 3 and 4 of the source, by the model.
+
+use crate::laboratory::lattice_md::study::density_cost::{CEILING, Curve, DensityCost};
+use crate::report::figure::{Axis, Band, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::statistics;
+
+/// What came out.
+pub fn section(data: &DensityCost) -> Section {
+    let crossing = data.vector.iter().map(|curve| (curve, crossing(curve, &data.list)));
+    let crossings: Vec<_> = crossing
+        .filter_map(|(curve, particles)| {
+            Some(format!("{} for LMAX = {}", rounded(particles?), rounded(curve.cells? as f64)))
+        })
+        .collect();
+    // Figure 3's two claims: the one hardly rises with NP, the other goes over into NP².
+    let flat = data.vector.iter().all(|curve| rise(curve).is_some_and(|rise| rise < 1.5));
+    let steep = slope(&data.list).is_some_and(|slope| slope > 1.8);
+    let differ = by_density(data);
+    let power = break_even_power(data);
+    let claims = [
+        flat,
+        steep,
+        differ.is_some_and(|differ| differ < ALIKE),
+        power.is_some_and(|power| (power + 1.0).abs() < POWER_WITHIN),
+    ];
+    let differences = differ.zip(power).map_or(String::new(), |(differ, power)| {
+        format!(
+            " A particle's share by the lists {} on the density, up to {differ:.2} times at the same NP (by the source not at all), and \
+             the NP from which the lattice wins falls as ρ to the power {power:.1} (by the source −1).",
+            if differ < ALIKE { "hardly depends" } else { "depends" }
+        )
+    });
+    Section {
+        name: "cost".into(),
+        title: "Cost over particles and density (figures 3 and 4)".into(),
+        part: Part::Machine,
+        question: "From how many particles on is a vector step shorter than one by scalar neighbour lists?".into(),
+        expected: "BP93, figures 3 and 4: with D = 20 a vector step is nearly as long for few particles as for many, scalar neighbour lists \
+                   rise with the square of their number; a particle's share falls with the density for the lattice and does not depend on \
+                   it for the lists; the NP from which the lattice wins grows as 1/ρ."
+            .into(),
+        answer: format!("The vector step is the shorter one from NP = {} on.{differences}", crossings.join(", ")),
+        details: vec![format!(
+            "Counted operations in the source's formula: the vector step rises by at most {:.1} % from the emptiest to the fullest lattice, \
+             the lists at last with NP to the power {:.2}. The source prints no formula for its lists: theirs is counted from ours in the \
+             same way, every scalar operation at D periods.",
+            100.0 * (data.vector.iter().filter_map(rise).fold(1.0, f64::max) - 1.0),
+            slope(&data.list).unwrap_or(f64::NAN),
+        )],
+        verdict: Verdict::of_claims(&claims),
+        again: "stripmine reproduce --only cost".into(),
+        figures: vec![figure_3(data), figure_4(data), over_density(data)],
+        tables: vec![lists(data)],
+        excerpt: None,
+        film: None,
+        seeds: vec![1],
+        depends_on_host: false,
+        provenance: None,
+    }
+}
+
+/// Costs that differ by less than this factor are alike.
+const ALIKE: f64 = 1.1;
+/// By how much a power may be off.
+const POWER_WITHIN: f64 = 0.25;
+
+/// The largest ratio of the costs of lists of different densities at the same number of particles.
+fn by_density(data: &DensityCost) -> Option<f64> {
+    let first = data.list_densities.first()?;
+    let ratios = (0..first.costs.len()).filter_map(|at| {
+        let costs = || data.list_densities.iter().filter_map(move |curve| Some(curve.costs.get(at)?.counted));
+        Some(costs().reduce(f64::max)? / costs().reduce(f64::min)?)
+    });
+    ratios.reduce(f64::max)
+}
+
+/// The power of the density with which the number of particles falls from which on the lattice is the cheaper one: the slope of a
+/// line through the logarithms.
+fn break_even_power(data: &DensityCost) -> Option<f64> {
+    let of = |lists: &Curve| data.densities.iter().find(|curve| curve.occupancy == lists.occupancy);
+    let pairs = data.list_densities.iter().filter_map(|lists| {
+        let particles = crossing(of(lists)?, lists)?;
+        Some((lists.occupancy?.ln(), particles.ln()))
+    });
+    let (densities, particles): (Vec<f64>, Vec<f64>) = pairs.unzip();
+    (densities.len() > 1).then(|| statistics::slope(&densities, &particles))
+}
+
+fn rounded(value: f64) -> String {
+    Cell::Number(value, 0).for_reading()
+}
+
+/// The longest step over the shortest.
+fn rise(curve: &Curve) -> Option<f64> {
+    let costs = || curve.costs.iter().map(|cost| cost.counted);
+    Some(costs().reduce(f64::max)? / costs().reduce(f64::min)?)
+}
+
+/// The power of NP with which the last two points of a curve rise.
+fn slope(curve: &Curve) -> Option<f64> {
+    let [.., before, last] = curve.costs.as_slice() else { return None };
+    let particles = last.particles as f64 / before.particles as f64;
+    Some((last.counted / before.counted).ln() / particles.ln())
+}
+
+/// NP from which on the first curve is below the second, between two of its points.
+fn crossing(vector: &Curve, list: &Curve) -> Option<f64> {
+    let ratios: Vec<(f64, f64)> = vector
+        .costs
+        .iter()
+        .filter_map(|cost| {
+            let rival = list.costs.iter().find(|rival| rival.particles == cost.particles)?;
+            Some(((cost.particles as f64).ln(), (cost.counted / rival.counted).ln()))
+        })
+        .collect();
+    ratios.windows(2).find(|pair| pair[0].1 > 0.0 && pair[1].1 <= 0.0).map(|pair| {
+        let [(x0, y0), (x1, y1)] = [pair[0], pair[1]];
+        (x0 + (x1 - x0) * y0 / (y0 - y1)).exp()
+    })
+}
+
+fn points(curve: &Curve, each: bool, printed: bool) -> Vec<Point> {
+    let costs = curve.costs.iter().filter_map(|cost| {
+        let clocks = if printed { cost.printed? } else { cost.counted };
+        Some(Point::at(cost.particles as f64, if each { clocks / cost.particles as f64 } else { clocks }))
+    });
+    costs.collect()
+}
+
+fn figure_3(data: &DensityCost) -> Figure {
+    let mut series = vec![];
+    for (hue, curve) in data.vector.iter().enumerate() {
+        let cells = rounded(curve.cells.unwrap_or(0) as f64);
+        series.push(Series {
+            name: format!("vector, LMAX = {cells}"),
+            style: Style::Line,
+            hue,
+            points: points(curve, false, false),
+        });
+    }
+    series.push(Series {
+        name: "neighbour lists, scalar".into(),
+        style: Style::Dashed,
+        hue: data.vector.len(),
+        points: points(&data.list, false, false),
+    });
+    Figure {
+        name: "figure_3".into(),
+        title: "Clock periods of a step over the number of particles".into(),
+        caption: format!(
+            "Model: {}, counted operations. A vector curve ends where its lattice is full: ρ = {CEILING:.3}, touching discs \
+             in hexagonal order on cells as wide as the radius.",
+            data.machine
+        ),
+        picture: Picture::Chart(Chart {
+            x: Axis::logarithmic("number of particles NP", None),
+            y: Axis::logarithmic("time of a step", Some("clock periods")),
+            series,
+            bands: vec![],
+        }),
+    }
+}
+
+fn figure_4(data: &DensityCost) -> Figure {
+    let named = |curve: &Curve| format!("ρ = {:.2}", curve.occupancy.unwrap_or(f64::NAN));
+    let vector = data.densities.iter().enumerate().map(|(hue, curve)| Series {
+        name: if curve.reachable { named(curve) } else { format!("{}, out of reach", named(curve)) },
+        style: if curve.reachable { Style::Line } else { Style::Points },
+        hue,
+        points: points(curve, true, false),
+    });
+    // The lists of the thinnest and of the densest are the farthest apart.
+    let last = data.list_densities.len().saturating_sub(1);
+    let ends = data.list_densities.iter().enumerate().filter(|(i, _)| *i == 0 || *i == last);
+    let lists = ends.map(|(hue, curve)| Series {
+        name: format!("lists, {}", named(curve)),
+        style: Style::Dashed,
+        hue,
+        points: points(curve, true, false),
+    });
+    Figure {
+        name: "figure_4".into(),
+        title: "Clock periods of a particle and step over the number of particles".into(),
+        caption: format!(
+            "Model: {}, counted operations. Lines: vector algorithm; dashed: scalar neighbour lists; points: occupancies that \
+             discs on cells as wide as their radius cannot reach (above {CEILING:.3}).",
+            data.machine
+        ),
+        picture: Picture::Chart(Chart {
+            x: Axis::logarithmic("number of particles NP", None),
+            y: Axis::logarithmic("time of a particle and step", Some("clock periods")),
+            series: vector.chain(lists).collect(),
+            bands: vec![],
+        }),
+    }
+}
+
+fn over_density(data: &DensityCost) -> Figure {
+    let last = |curve: &Curve, printed: bool| {
+        let point = *points(curve, true, printed).last()?;
+        Some(Point::at(curve.occupancy?, point.y))
+    };
+    let curve = |curves: &[Curve], printed| curves.iter().filter_map(|curve| last(curve, printed)).collect();
+    let largest = data.densities.iter().flat_map(|curve| &curve.costs).map(|cost| cost.particles).max();
+    let series = |name: &str, style, hue, points| Series { name: name.into(), style, hue, points };
+    Figure {
+        name: "figure_4_density".into(),
+        title: "Clock periods of a particle and step over the density".into(),
+        caption: format!(
+            "NP = {}. Hatched: occupancies that discs on cells as wide as their radius cannot reach.",
+            rounded(largest.unwrap_or(0) as f64)
+        ),
+        picture: Picture::Chart(Chart {
+            x: Axis { limits: Some([0.0, 0.55]), ..Axis::linear("occupancy ρ = NP/LMAX", None) },
+            y: Axis::logarithmic("time of a particle and step", Some("clock periods")),
+            series: vec![
+                series("vector, counted", Style::Joined, 0, curve(&data.densities, false)),
+                series("vector, as printed", Style::Dashed, 1, curve(&data.densities, true)),
+                series("lists, scalar", Style::Joined, 2, curve(&data.list_densities, false)),
+            ],
+            bands: vec![Band::of_x("out of reach", [CEILING, 0.55])],
+        }),
+    }
+}
+
+fn lists(data: &DensityCost) -> Table {
+    let rows = data.lists.iter().map(|figures| {
+        [figures.occupancy, figures.candidates, figures.contacts, figures.steps_a_list]
+            .iter()
+            .zip([2, 2, 3, 1])
+            .map(|(&value, decimals)| Cell::Number(value, decimals))
+            .collect()
+    });
+    Table {
+        name: "lists".into(),
+        title: "What the lists hold".into(),
+        columns: ["occupancy ρ", "candidates a disc", "contacts a disc", "steps a list serves"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows: rows.collect(),
+        notes: vec![format!(
+            "Measured in the bench scene with 1024 discs over 1000 steps; each pair is in both lists. Making the lists tests \
+             NP(NP − 1)/2 pairs with the law's own {} operations for distance and contact.",
+            data.test_operations
+        )],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laboratory::lattice_md::study::density_cost::Cost;
+
+    fn curve(occupancy: f64, cost: impl Fn(f64) -> f64) -> Curve {
+        let particles = [10_usize, 100, 1000, 10_000, 100_000];
+        let costs = particles.map(|particles| {
+            let counted = cost(particles as f64);
+            Cost { particles, printed: None, counted }
+        });
+        Curve { cells: Some(1000), occupancy: Some(occupancy), reachable: true, costs: costs.to_vec() }
+    }
+
+    /// A lattice whose step takes NP/ρ, and lists that take NP² times what `at` makes of the density.
+    fn section_of(at: fn(f64) -> f64) -> Section {
+        let densities = [0.05, 0.1, 0.2];
+        section(&DensityCost {
+            machine: "a".into(),
+            vector: vec![curve(0.1, |_| 1e5)],
+            list: curve(0.1, |np| np * np),
+            densities: densities.map(|rho| curve(rho, move |np| 50.0 * np / rho)).to_vec(),
+            list_densities: densities.map(|rho| curve(rho, move |np| np * np * at(rho))).to_vec(),
+            lists: vec![],
+            test_operations: 1,
+        })
+    }
+
+    #[test]
+    fn every_claim_of_the_figures_counts() {
+        assert_eq!(section_of(|_| 1.0).verdict, Verdict::Reproduced);
+        let dense = section_of(|rho| 10.0 * rho);
+        assert_eq!(dense.verdict, Verdict::Partly);
+        assert!(dense.answer.contains("depends on the density, up to 4.00 times"), "{}", dense.answer);
+        assert!(dense.answer.contains("ρ to the power -2.0"), "{}", dense.answer);
+    }
+}

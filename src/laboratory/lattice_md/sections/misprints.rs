@@ -1,0 +1,227 @@
+//! The misprints of the contact law as a reader wants them.
+
+use crate::laboratory::lattice_md::study::misprints::{CoulombRatio, Energy, Finding, Misprints, Right};
+use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::{Cell, Part, Section, Table, Verdict};
+
+/// What came out.
+pub fn section(data: &Misprints) -> Section {
+    Section {
+        name: "misprints".into(),
+        title: "What the misprints of the contact law do".into(),
+        part: Part::Physics,
+        question: "Which equations of the contact law cannot be right as printed?".into(),
+        expected: expected(data),
+        answer: answer(data),
+        details: vec![details(data)],
+        verdict: verdict(data),
+        again: "stripmine reproduce --only misprints".into(),
+        figures: vec![energies(data), ratios(data)],
+        tables: vec![table(data)],
+        excerpt: None,
+        film: None,
+        seeds: vec![data.seed],
+        depends_on_host: false,
+        provenance: None,
+    }
+}
+
+/// Reproduced where every misprint is seen to fail and ours holds.
+fn verdict(data: &Misprints) -> Verdict {
+    let failing = data.findings.iter().filter(|finding| tells(finding)).count();
+    match failing {
+        0 => Verdict::NotReproduced,
+        all if all == data.findings.len() => Verdict::Reproduced,
+        _ => Verdict::Partly,
+    }
+}
+
+/// Whether the quantity tells the printed form from ours.
+fn tells(finding: &Finding) -> bool {
+    finding.printed_fails() && finding.ours_holds()
+}
+
+fn expected(data: &Misprints) -> String {
+    let mut forms: Vec<String> =
+        data.findings.iter().map(|finding| format!("{} `{}`", finding.equation, finding.printed)).collect();
+    forms.dedup();
+    format!(
+        "BP93 prints: {}. Conservation of energy and angular momentum says what is right.",
+        forms.join("; ")
+    )
+}
+
+fn answer(data: &Misprints) -> String {
+    let failing = data.findings.iter().filter(|finding| tells(finding)).count();
+    format!("In {failing} of {} comparisons the printed form fails where ours holds.", data.findings.len())
+}
+
+fn details(data: &Misprints) -> String {
+    let values: Vec<String> = data
+        .findings
+        .iter()
+        .map(|finding| {
+            format!(
+                "{} {} {} as printed, {} with ours (right: {})",
+                finding.equation,
+                finding.quantity,
+                number(finding.by_printed).for_reading(),
+                number(finding.by_ours).for_reading(),
+                right(finding.right)
+            )
+        })
+        .collect();
+    let kept = match (data.head_on.first(), data.head_on.last()) {
+        (Some(first), Some(last)) => format!(
+            " Without damping the head-on collision begins with energy {:.6} and ends with {:.6}.",
+            first.undamped, last.undamped
+        ),
+        _ => String::new(),
+    };
+    format!("{}.{kept}", values.join("; "))
+}
+
+fn number(value: f64) -> Cell {
+    Cell::Number(value, 3)
+}
+
+fn right(right: Right) -> String {
+    match right {
+        Right::Equal(value) => number(value).for_reading(),
+        Right::AtMost(value) => format!("≤ {}", number(value).for_reading()),
+    }
+}
+
+fn table(data: &Misprints) -> Table {
+    let rows = data.findings.iter().map(|finding| {
+        vec![
+            finding.equation.into(),
+            finding.printed.into(),
+            finding.ours.into(),
+            finding.quantity.into(),
+            finding.setting.as_str().into(),
+            Cell::Text(right(finding.right)),
+            number(finding.by_printed),
+            number(finding.by_ours),
+        ]
+    });
+    Table {
+        name: "misprints".into(),
+        title: "Equations that do not work as printed".into(),
+        columns: ["equation", "as printed", "as it runs", "what shows it", "with", "right", "printed gives", "ours gives"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows: rows.collect(),
+        notes: vec![
+            "Where a vector is printed beside a scalar, its component along n (14) or s (16) is taken: else there is \
+             nothing to compute. n points from disc j to disc i, s = (−n_y, n_x), ξ is the depth of the contact, Ω an \
+             angular velocity."
+                .into(),
+            "Units: radius and mass of the discs, those of random pairs being about so; and a time in which the law's \
+             parameters have the values given."
+                .into(),
+        ],
+    }
+}
+
+fn chart(x: Axis, y: Axis, series: Vec<Series>) -> Picture {
+    Picture::Chart(Chart { x, y, series, bands: vec![] })
+}
+
+fn series(name: &str, style: Style, hue: usize, points: impl Iterator<Item = Point>) -> Series {
+    Series { name: name.into(), style, hue, points: points.collect() }
+}
+
+fn energies(data: &Misprints) -> Figure {
+    let curve = |name, style, hue, energy: fn(&Energy) -> f64| {
+        series(name, style, hue, data.head_on.iter().map(|at| Point::at(at.time, energy(at))))
+    };
+    Figure {
+        name: "head_on_energy".into(),
+        title: "Energy through a frictionless head-on collision".into(),
+        caption: "Kinetic and elastic energy of two discs of radius and mass 1. With the sign of (14) as printed the \
+                  damping feeds energy in."
+            .into(),
+        picture: chart(
+            Axis::linear("time", Some("reduced")),
+            Axis::linear("energy", Some("reduced")),
+            vec![
+                curve("(14) as printed", Style::Dashed, 1, |at| at.printed),
+                curve("ours, undamped", Style::Line, 2, |at| at.undamped),
+                curve("ours", Style::Line, 0, |at| at.ours),
+            ],
+        ),
+    }
+}
+
+fn ratios(data: &Misprints) -> Figure {
+    let curve = |name, style, hue, ratio: fn(&CoulombRatio) -> f64| {
+        series(name, style, hue, data.sliding.iter().map(|at| Point::at(at.slip, ratio(at))))
+    };
+    Figure {
+        name: "coulomb_ratio".into(),
+        title: "Shear force over its Coulomb bound, by slip velocity".into(),
+        caption: "Two discs in contact, one sliding past the other. (15) as printed has a bound for one \
+                  direction only; for the other the two curves are one."
+            .into(),
+        picture: chart(
+            Axis::linear("slip velocity", Some("reduced")),
+            Axis::linear("shear force over its bound μ|F|", None),
+            vec![
+                curve("ours", Style::Line, 0, |at| at.ours),
+                curve("(15) as printed", Style::Dashed, 1, |at| at.printed),
+            ],
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laboratory::lattice_md::study::misprints::misprints;
+
+    #[test]
+    fn the_verdict_follows_from_the_values() {
+        let mut data = misprints();
+        assert_eq!(verdict(&data), Verdict::Reproduced);
+        let (printed, ours) = (data.findings[0].by_printed, data.findings[0].by_ours);
+        data.findings[0].by_printed = ours;
+        assert_eq!(verdict(&data), Verdict::Partly);
+        data.findings[0].by_printed = printed;
+        data.findings[0].by_ours = printed;
+        assert_eq!(verdict(&data), Verdict::Partly);
+        data.findings.iter_mut().for_each(|finding| finding.by_ours = f64::NAN);
+        assert_eq!(verdict(&data), Verdict::NotReproduced);
+    }
+
+    #[test]
+    fn the_words_say_each_equation_once_and_each_value() {
+        let mut data = misprints();
+        data.findings[1].by_printed = 12.25;
+        let section = section(&data);
+        let details = section.details.concat();
+        for finding in &data.findings {
+            assert_eq!(section.expected.matches(finding.printed).count(), 1, "{}", section.expected);
+            assert!(details.contains(finding.quantity), "{details}");
+        }
+        assert!(details.contains("12.250 as printed"), "{details}");
+        let table = &section.tables[0];
+        assert!(table.rows.iter().all(|row| row.len() == table.columns.len()));
+        assert_eq!(table.rows[1][6], Cell::Number(12.25, 3));
+    }
+
+    #[test]
+    fn every_point_of_the_curves_is_drawn() {
+        let data = misprints();
+        let section = section(&data);
+        let lengths: Vec<Vec<usize>> = section
+            .figures
+            .iter()
+            .map(|figure| match &figure.picture {
+                Picture::Chart(chart) => chart.series.iter().map(|series| series.points.len()).collect(),
+                _ => vec![],
+            })
+            .collect();
+        assert_eq!(lengths, [vec![data.head_on.len(); 3], vec![data.sliding.len(); 2]]);
+    }
+}

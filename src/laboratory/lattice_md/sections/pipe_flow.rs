@@ -1,0 +1,339 @@
+//! Figures 5 and 6 of the source: grains in a pipe.
+
+use crate::laboratory::lattice_md::study::pipe_flow::{FANO_BIN, MAP_BIN, PipeFlow};
+use crate::report;
+use crate::report::figure::{
+    Axis, Chart, Drawing, Figure, Guide, Map, Picture, Point, Series, Shape, Style, Tint,
+};
+use crate::report::section::{Film, Frame};
+use crate::report::{Cell, Section, Table, Verdict};
+use stripmine_physics::number::{counted, range};
+use stripmine_physics::observe::waves::Directions;
+use stripmine_physics::particles::{Kind, Particle, Particles};
+
+/// How a section of the report shows a pipe.
+#[derive(Clone, Copy, Debug)]
+pub struct Showing {
+    /// The item's name.
+    pub name: &'static str,
+    /// Its title.
+    pub title: &'static str,
+    /// What is asked of it.
+    pub question: &'static str,
+    /// Whether the question is which way the waves run.
+    pub asks_ways: bool,
+    /// The time from which snapshots are drawn (s), as the source does from 10 s on.
+    pub from: f64,
+    /// Snapshots that are drawn.
+    pub snapshots: usize,
+}
+
+/// Waves run both ways where each way has this share of the late spectral power at least (%).
+const BOTH_WAYS: f64 = 10.0;
+
+/// What came out of runs that differ by their seed, the first of which kept its frames.
+pub fn section(showing: Showing, flows: &[PipeFlow]) -> Section {
+    let first = &flows[0];
+    let late: Vec<f64> = flows.iter().map(|flow| flow.late(&flow.fano)).collect();
+    let waves = late.iter().filter(|&&fano| fano > 1.0).count();
+    let lasting = first.times.last().copied().unwrap_or(0.0);
+    let mean = |share: fn(&Directions) -> f64| {
+        100.0 * flows.iter().map(|flow| share(&flow.directions)).sum::<f64>() / flows.len() as f64
+    };
+    let mut figures = vec![map(first), over_time(flows)];
+    if !first.frames.is_empty() {
+        figures.splice(0..0, [piece(first), snapshots(showing, first)]);
+    }
+    let [back, forth, standing] = [
+        mean(|directions| directions.back),
+        mean(|directions| directions.forth),
+        mean(|directions| directions.standing),
+    ];
+    let ways = [back, forth].iter().all(|share| *share >= BOTH_WAYS);
+    let fano = format!(
+        "The Fano factor (above 1 means waves) rises from {:.2} to {} in {waves} of {} of {lasting:.0} s.",
+        first.fano[0],
+        range(late.iter().copied(), 3),
+        counted(flows.len(), "run", "runs"),
+    );
+    let both = format!(
+        "{}: {back:.0} % of the late spectral power runs against gravity, {forth:.0} % with it.",
+        if ways { "Waves run both ways" } else { "Hardly a wave runs both ways" },
+    );
+    Section {
+        name: showing.name.into(),
+        title: showing.title.into(),
+        part: report::Part::Physics,
+        question: showing.question.into(),
+        expected: "BP93, section 4, figures 5 and 6: grains fall through a rough vertical pipe; started evenly spread they form density \
+                   waves that move both ways."
+            .into(),
+        answer: if showing.asks_ways { format!("{both} {fano}") } else { format!("{fano} {both}") },
+        details: vec![format!(
+            "Of the late spectral power {standing:.0} % stands. The strongest Fourier mode grows from {:.3} to {:.2}; the mean velocity is \
+             {:.3} m/s.",
+            first.strongest_mode[0],
+            first.late(&first.strongest_mode),
+            first.late(&first.flow),
+        )],
+        verdict: Verdict::of_claims(&[waves == flows.len(), ways]),
+        again: format!("stripmine reproduce --only {}", showing.name),
+        figures,
+        tables: vec![table(flows)],
+        excerpt: None,
+        film: film(showing, first),
+        seeds: flows.iter().map(|flow| flow.seed).collect(),
+        depends_on_host: false,
+        provenance: None,
+    }
+}
+
+/// Surface speeds (m/s) between the shades' ends: spin times radius.
+const SPIN: f64 = 1.0;
+
+/// From −SPIN to SPIN as a shade.
+fn spin_shade(disc: &Particle) -> f64 {
+    (0.5 + 0.5 * disc.omega * disc.radius / SPIN).clamp(0.0, 1.0)
+}
+
+fn shape(disc: &Particle, offset: [f64; 2], tint: Tint) -> Shape {
+    let [x, y] = disc.place();
+    let tint = if disc.kind == Kind::Wall { Tint::Still } else { tint };
+    Shape::Disc { centre: [x + offset[0], y + offset[1]], radius: disc.radius, tint }
+}
+
+/// Half the height of the pipe with its walls.
+fn half_height(particles: &Particles) -> f64 {
+    particles.all().iter().map(|disc| disc.position[1].abs() + disc.radius).fold(0.0, f64::max)
+}
+
+/// Figure 5: the densest stretch of the pipe at the end, every disc with its spin.
+fn piece(flow: &PipeFlow) -> Figure {
+    let length = flow.length.min(1.2);
+    let (shapes, half) = flow.frames.last().map_or((vec![], 0.05), |particles| {
+        let counts = flow.density.last().map_or(&[][..], |counts| counts);
+        let width = flow.length / counts.len().max(1) as f64;
+        let bins = (length / width) as usize;
+        let filled = |start: usize| counts.iter().cycle().skip(start).take(bins).sum::<u32>();
+        let start =
+            (0..counts.len()).max_by_key(|&start| (filled(start), std::cmp::Reverse(start))).unwrap_or(0);
+        let left = start as f64 * width;
+        let shapes = particles.all().iter().flat_map(|disc| {
+            // The pipe is closed on itself: what has left on the right comes in on the left.
+            [0.0, flow.length].map(|turn| shape(disc, [turn - left, 0.0], Tint::Shade(spin_shade(disc))))
+        });
+        let inside = |shape: &Shape| match shape {
+            Shape::Disc { centre, radius, .. } => centre[0] > -radius && centre[0] < length + radius,
+            _ => true,
+        };
+        (shapes.filter(inside).collect(), half_height(particles))
+    });
+    Figure {
+        name: "figure_5".into(),
+        title: format!("A stretch of {length:.1} m of the pipe at the end"),
+        caption: "Grey discs make the walls; the shade of a grain is the speed of its rim, counter-clockwise positive. \
+                  Gravity pulls to the right."
+            .into(),
+        picture: Picture::Drawing(Drawing {
+            window: [[0.0, -1.1 * half], [length, 1.1 * half]],
+            width: 1200.0,
+            shapes,
+            shades: Some((-SPIN, SPIN, "rim speed ΩR (m/s)".into())),
+            guide: guide(),
+        }),
+    }
+}
+
+/// Figure 6: the whole pipe again and again, one snapshot below the other.
+fn snapshots(showing: Showing, flow: &PipeFlow) -> Figure {
+    let shown: Vec<usize> = stills(showing, flow);
+    let half = flow.frames.first().map_or(0.05, half_height);
+    let pitch = (2.6 * half).max(flow.length / 45.0);
+    let left = 0.12 * flow.length;
+    let mut shapes = vec![];
+    for (row, &at) in shown.iter().enumerate() {
+        let down = -(row as f64 * pitch);
+        let words = format!("{:.2} s", flow.times[at]);
+        shapes.push(Shape::Text { centre: [-0.5 * left, down], height: 0.45 * pitch, words });
+        for rim in [-half, half] {
+            shapes.push(Shape::Line { ends: [[0.0, down + rim], [flow.length, down + rim]] });
+        }
+        let grains = flow.frames[at].grains().iter();
+        shapes.extend(grains.map(|disc| shape(disc, [0.0, down], Tint::Hue(0))));
+    }
+    let below = -(shown.len() as f64 - 0.4) * pitch;
+    Figure {
+        name: "figure_6".into(),
+        title: "Snapshots of the pipe: crowds of grains drift and dissolve".into(),
+        caption: "One below the other, the earliest on top; gravity pulls to the right, what leaves on the right comes in on \
+                  the left. Every grain is a dot."
+            .into(),
+        picture: Picture::Drawing(Drawing {
+            window: [[-left, below], [1.01 * flow.length, 0.6 * pitch]],
+            width: 1200.0,
+            shapes,
+            shades: None,
+            guide: guide(),
+        }),
+    }
+}
+
+/// Metres, and gravity along the pipe, which lies.
+fn guide() -> Option<Guide> {
+    Some(Guide { unit: "m".into(), gravity: Some([1.0, 0.0]) })
+}
+
+/// The looks that are drawn: evenly spread from the time asked on.
+fn stills(showing: Showing, flow: &PipeFlow) -> Vec<usize> {
+    let first = flow.times.partition_point(|&time| time < showing.from - 1e-9).min(flow.frames.len());
+    let stride = (flow.frames.len() - first).div_ceil(showing.snapshots.max(1)).max(1);
+    (first..flow.frames.len()).step_by(stride).collect()
+}
+
+/// Rows of a map that a picture still resolves.
+const ROWS: usize = 120;
+
+/// The density over place and time.
+fn map(flow: &PipeFlow) -> Figure {
+    let stride = flow.density.len().div_ceil(ROWS);
+    let bins = flow.density[0].len() as f64;
+    let mean = flow.grains as f64 / bins;
+    let rows: Vec<Vec<f64>> = flow
+        .density
+        .chunks(stride)
+        .map(|looks| {
+            let sum = |bin: usize| looks.iter().map(|counts| f64::from(counts[bin])).sum::<f64>();
+            (0..bins as usize).map(|bin| rounded(sum(bin) / looks.len() as f64 / mean)).collect()
+        })
+        .collect();
+    let look = flow.times.get(1).copied().unwrap_or(1.0);
+    let axis = |label: &str, unit: Option<&str>, end: f64| Axis {
+        limits: Some([0.0, end]),
+        ..Axis::linear(label, unit)
+    };
+    Figure {
+        name: "density_map".into(),
+        title: "Density along the pipe over time".into(),
+        caption: format!(
+            "Grains in bins of {MAP_BIN:.0} mean radii, relative to their mean. Bands that lean to the left run against \
+             gravity."
+        ),
+        picture: Picture::Map(Map {
+            x: axis("place along the pipe, the way grains fall", Some("m"), flow.length),
+            y: axis("time", Some("s"), look * (rows.len() * stride) as f64),
+            value: Axis::linear("density, relative to the mean", None),
+            rows,
+        }),
+    }
+}
+
+/// The Fano factor of every run over time.
+fn over_time(flows: &[PipeFlow]) -> Figure {
+    let series = flows.iter().enumerate().map(|(hue, flow)| {
+        let stride = flow.times.len().div_ceil(2 * ROWS);
+        let looks = flow.times.iter().zip(&flow.fano).step_by(stride);
+        Series {
+            name: format!("seed {}", flow.seed),
+            style: Style::Line,
+            hue,
+            points: looks.map(|(&time, &fano)| Point::at(time, fano)).collect(),
+        }
+    });
+    let end = flows.iter().filter_map(|flow| flow.times.last()).copied().fold(0.0, f64::max);
+    let limit = Series {
+        name: "waves above this".into(),
+        style: Style::Dashed,
+        hue: flows.len(),
+        points: vec![Point::at(0.0, 1.0), Point::at(end, 1.0)],
+    };
+    Figure {
+        name: "fano".into(),
+        title: "Variance over mean of the grains in a bin, over time".into(),
+        caption: format!("Bins of {FANO_BIN:.0} mean radii."),
+        picture: Picture::Chart(Chart {
+            x: Axis::linear("time", Some("s")),
+            y: Axis::logarithmic("Fano factor", None),
+            series: series.chain([limit]).collect(),
+            bands: vec![],
+        }),
+    }
+}
+
+fn table(flows: &[PipeFlow]) -> Table {
+    let rows = flows.iter().map(|flow| {
+        vec![
+            Cell::Count(flow.seed),
+            Cell::Number(flow.fano[0], 2),
+            Cell::Number(flow.late(&flow.fano), 2),
+            Cell::Number(flow.strongest_mode[0], 3),
+            Cell::Number(flow.late(&flow.strongest_mode), 3),
+            Cell::Number(flow.late(&flow.flow), 3),
+            Cell::Number(100.0 * flow.directions.back, 0),
+            Cell::Number(100.0 * flow.directions.standing, 0),
+            Cell::Number(100.0 * flow.directions.forth, 0),
+            if flow.deepest > 0.0 { Cell::Number(flow.deepest, 3) } else { Cell::Nothing },
+            flow.checksum.as_str().into(),
+        ]
+    });
+    Table {
+        name: "runs".into(),
+        title: format!(
+            "Runs of {}{}",
+            flows[0].scene,
+            flows[0].overrides.iter().map(|text| format!(", {text}")).collect::<String>()
+        ),
+        columns: [
+            "seed",
+            "Fano at the start",
+            "Fano late",
+            "mode at the start",
+            "mode late",
+            "mean velocity late (m/s)",
+            "power against gravity (%)",
+            "standing (%)",
+            "with gravity (%)",
+            "deepest penetration, where beyond the warned",
+            "final state (CRC-32)",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
+        notes: vec![format!(
+            "{} grains; late is the mean over the second half of the run, whose spectral power at wavelengths from 80 mean \
+             radii on is divided by the way it runs.",
+            flows[0].grains
+        )],
+    }
+}
+
+/// A tenth of a millimetre, or of a millimetre a second: more digits are not visible.
+fn rounded(value: f64) -> f64 {
+    (1e4 * value).round() / 1e4
+}
+
+/// Frames of a film that a page can bear.
+const FRAMES: usize = 41;
+
+/// The snapshots as a film; none without frames.
+fn film(showing: Showing, flow: &PipeFlow) -> Option<Film> {
+    let start = flow.frames.first()?;
+    let half = half_height(start);
+    let shown = stills(Showing { snapshots: FRAMES, ..showing }, flow);
+    let frames = shown.iter().map(|&at| Frame {
+        time: flow.times[at],
+        discs: flow.frames[at]
+            .grains()
+            .iter()
+            .map(|disc| (disc.place().map(rounded), rounded(disc.omega * disc.radius)))
+            .collect(),
+    });
+    Some(Film {
+        title: format!("{} grains falling", flow.grains),
+        window: [[0.0, -half], [flow.length, half]],
+        radii: start.grains().iter().map(|disc| disc.radius).collect(),
+        fixed: start.all()[flow.grains..].iter().map(|disc| (disc.place(), disc.radius)).collect(),
+        frames: frames.collect(),
+        shade: "rim speed ΩR (m/s)".into(),
+        shades: [-SPIN, SPIN],
+    })
+}

@@ -1,0 +1,116 @@
+//! What more threads give.
+
+use crate::laboratory::lattice_md::study::threads::{Scaling, Threads};
+use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::{Cell, Part, Section, Table, Verdict};
+
+/// How threads are used, in the order of a row.
+const VARIANTS: [&str; 3] = ["one thread", "all threads on one scene", "a scene on each thread"];
+
+fn variants(scene: &Scaling) -> [&[f64]; 3] {
+    [&scene.alone, &scene.together, &scene.side_by_side]
+}
+
+/// What came out.
+pub fn section(data: &Threads) -> Section {
+    let named = data.scenes.iter().map(|scene| {
+        format!(
+            "{} discs at packing fraction {}: {:.2} times one thread, where scenes side by side reach {:.2}",
+            count(scene),
+            scene.packing_fraction,
+            scene.speedup(),
+            scene.ceiling()
+        )
+    });
+    Section {
+        name: "threads".into(),
+        title: "What threads give, and what the machine has to give".into(),
+        part: Part::Host,
+        question: "How much faster are several threads, and how much faster can they be on this machine?".into(),
+        expected: "No source says: BP93's machine had one processor. The ceiling is what scenes side by side reach, one a thread.".into(),
+        answer: format!("{}.", named.collect::<Vec<_>>().join("; ")),
+        details: vec![format!(
+            "Fast lattice, f64, whole steps with friction, {}, {} threads. Every scene has the same bits on any number of threads.",
+            data.instruction_set, data.threads
+        )],
+        verdict: Verdict::Measured,
+        again: "stripmine reproduce --only threads".into(),
+        figures: packing_fractions(data).into_iter().map(|phi| figure(data, phi)).collect(),
+        tables: vec![table(data)],
+        excerpt: None,
+        film: None,
+        seeds: vec![1],
+        depends_on_host: true,
+        provenance: None,
+    }
+}
+
+fn count(scene: &Scaling) -> String {
+    Cell::Number(scene.particles as f64, 0).for_reading()
+}
+
+fn packing_fractions(data: &Threads) -> Vec<f64> {
+    let mut fractions: Vec<f64> = data.scenes.iter().map(|scene| scene.packing_fraction).collect();
+    fractions.sort_by(|a, b| b.total_cmp(a));
+    fractions.dedup();
+    fractions
+}
+
+fn middle(rates: &[f64]) -> [f64; 3] {
+    let mut sorted: Vec<f64> = rates.iter().map(|rate| 1e-6 * rate).collect();
+    sorted.sort_by(f64::total_cmp);
+    let at = |place: usize| sorted.get(place).copied().unwrap_or(f64::NAN);
+    [at(0), at(sorted.len() / 2), at(sorted.len().saturating_sub(1))]
+}
+
+fn figure(data: &Threads, packing_fraction: f64) -> Figure {
+    let series = VARIANTS.into_iter().enumerate().map(|(hue, name)| Series {
+        name: name.into(),
+        style: Style::Joined,
+        hue,
+        points: data
+            .scenes
+            .iter()
+            .filter(|scene| scene.packing_fraction == packing_fraction)
+            .map(|scene| {
+                let [lowest, median, highest] = middle(variants(scene)[hue]);
+                Point { x: scene.particles as f64, y: median, spread: Some([lowest, highest]) }
+            })
+            .collect(),
+    });
+    Figure {
+        name: format!("threads_{packing_fraction}"),
+        title: format!("Rate over the number of discs at packing fraction {packing_fraction}"),
+        caption: "Medians of rounds in which the three take turns, in wall time; bars from the lowest to the highest."
+            .into(),
+        picture: Picture::Chart(Chart {
+            x: Axis::logarithmic("discs", None),
+            y: Axis::logarithmic("rate", Some("million particle-steps/s")),
+            series: series.collect(),
+            bands: vec![],
+        }),
+    }
+}
+
+fn table(data: &Threads) -> Table {
+    let rows = data.scenes.iter().map(|scene| {
+        let mut row = vec![Cell::Number(scene.particles as f64, 0), Cell::Number(scene.packing_fraction, 2)];
+        row.extend(variants(scene).map(|rates| Cell::Number(middle(rates)[1], 1)));
+        row.extend(
+            [scene.speedup(), scene.ceiling(), scene.efficiency()].map(|ratio| Cell::Number(ratio, 2)),
+        );
+        row
+    });
+    let columns = ["discs", "packing fraction"].into_iter().chain(VARIANTS).chain([
+        "speed-up",
+        "speed-up of scenes side by side",
+        "reached of that",
+    ]);
+    Table {
+        name: "threads".into(),
+        title: "Million particle-steps a second".into(),
+        columns: columns.map(str::to_owned).collect(),
+        rows: rows.collect(),
+        notes: vec!["Rates are medians over the rounds; a ratio is the median of the rounds' ratios.".into()],
+    }
+}

@@ -1,0 +1,208 @@
+//! Work whose amount depends on the data: the fast engine and the neighbour lists, on drill scenes of their own.
+
+use super::fit;
+use crate::laboratory::lattice_md::study::phase_times::{
+    FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampling, phase_times,
+};
+use crate::model::host::{Amounts, MAKING, PhaseRate, Rates};
+use crate::statistics::non_negative;
+use std::collections::BTreeMap;
+use std::time::Instant;
+use stripmine_physics::method::lattice_md::Checked;
+use stripmine_physics::method::lattice_md::Phase;
+use stripmine_physics::method::throughput::MeasurementError;
+
+/// NP of the drill scenes: close enough to each other that no level of memory ends unseen between two of them.
+pub(super) const PARTICLES: [usize; 6] = [60, 220, 900, 3300, 11_000, 32_000];
+/// ρ of the drill scenes, of every second NP these and of the others those; the first is sparse.
+const OCCUPANCIES: [[f64; 3]; 2] = [[0.05, 0.12, 0.26], [0.07, 0.17, 0.22]];
+const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
+
+/// Steps before the clock starts, and those that are timed: fewer of many discs, but enough for lists to be rebuilt.
+fn sampling(run: &Run) -> Sampling {
+    let discs = if run.has_lists() { 250_000 } else { 100_000 };
+    let equilibration = (discs / run.particles).clamp(3, 60);
+    Sampling { equilibration, repeats: 1, particle_steps: 10_000, least_steps: 2 }
+}
+
+/// A drill scene, and what was measured of it.
+type Scene = (Run, Checked, Option<PhaseTimes>);
+
+/// Every drill scene.
+pub(super) struct Scenes(Vec<Scene>);
+
+impl Scenes {
+    /// Nothing measured yet.
+    pub(super) fn new() -> Result<Scenes, MeasurementError> {
+        let mut scenes = vec![];
+        for (particles, occupancies) in PARTICLES.into_iter().zip(OCCUPANCIES.iter().cycle()) {
+            for &occupancy in occupancies {
+                for precision in PRECISIONS {
+                    for execution in [FAST, FAST_LISTS, LISTS] {
+                        let run = Run { particles, occupancy, precision, execution };
+                        scenes.push((run, run.scene(&["particles.seed=11"])?, None));
+                    }
+                }
+            }
+        }
+        Ok(Scenes(scenes))
+    }
+
+    /// Runs once more every scene of which there is nothing yet, and of the others those for which there is time until `end`.
+    pub(super) fn sweep(&mut self, end: Instant) -> Result<(), MeasurementError> {
+        for (run, checked, times) in &mut self.0 {
+            if times.is_none() || Instant::now() < end {
+                let more = phase_times(checked, &sampling(run))?;
+                *times = Some(PhaseTimes::with(times.take(), more));
+            }
+        }
+        Ok(())
+    }
+
+    /// The rates of the methods.
+    pub(super) fn rates(&self) -> BTreeMap<String, Rates> {
+        let measured: Vec<(Run, &PhaseTimes)> =
+            self.0.iter().filter_map(|(run, _, times)| Some((*run, times.as_ref()?))).collect();
+        let of = |method: &str| {
+            let phases = Phase::ALL.iter().flat_map(|&phase| {
+                let upkeep = rate(&measured, method, |times| {
+                    Some((charged(phase, &times.amounts), times.upkeep(phase)))
+                });
+                let making = (phase == Phase::Index).then(|| {
+                    rate(&measured, method, |times| {
+                        let Amounts { discs, candidates, .. } = times.amounts;
+                        let amounts = Amounts { remade: discs, relisted: candidates, ..Amounts::default() };
+                        Some((amounts, times.making()?))
+                    })
+                });
+                let named = [(phase.name(), Some(upkeep)), (MAKING, making)];
+                named.into_iter().filter_map(|(name, rate)| Some((name.to_owned(), rate??)))
+            });
+            let phases: BTreeMap<String, PhaseRate> = phases.collect();
+            (method.to_owned(), Rates { discs: PARTICLES.to_vec(), phases })
+        };
+        ["fast", "fast, sparse", "fast lists", "lists"].map(of).into_iter().collect()
+    }
+}
+
+/// What there was to do in a run, and the nanoseconds that it took.
+type Done = (Amounts, f64);
+
+/// What each unit takes in a phase of a method, and how much slower everything is with each number of discs; none where it has no such
+/// phase.
+fn rate(
+    measured: &[(Run, &PhaseTimes)],
+    method: &str,
+    done: impl Fn(&PhaseTimes) -> Option<Done>,
+) -> Option<PhaseRate> {
+    let of = |precision: &str, particles: usize| -> Vec<Done> {
+        let alike = measured.iter().filter(|(run, _)| {
+            (run.particles, run.precision) == (particles, precision) && run.rates() == Some(method)
+        });
+        alike.filter_map(|(_, times)| done(times)).filter(|done| done.1 > 0.0).collect()
+    };
+    let all: Vec<Vec<Vec<Done>>> = PRECISIONS
+        .iter()
+        .map(|precision| PARTICLES.iter().map(|&particles| of(precision, particles)).collect())
+        .collect();
+    all.iter().flatten().flatten().next()?;
+    let (units, slower) = fitted(&all);
+    let named = |units: Units| {
+        let each = Amounts::NAMES.into_iter().zip(units).filter(|(_, unit)| *unit > 0.0);
+        each.map(|(name, unit)| (name.to_owned(), unit)).collect()
+    };
+    let ns = PRECISIONS.iter().zip(units).map(|(precision, units)| ((*precision).to_owned(), named(units)));
+    Some(PhaseRate { slower, ns: ns.collect() })
+}
+
+/// The units of every precision, and how much slower everything is with each number of discs, from the work of runs by precision and
+/// number of discs.
+///
+/// How the units stand to each other is fitted to all of them together: of many discs alone there are too few steps with too few
+/// contacts to tell.
+fn fitted(all: &[Vec<Vec<Done>>]) -> (Vec<Units>, Vec<f64>) {
+    let sizes = all.first().map_or(0, Vec::len);
+    let mut slower = vec![1.0; sizes];
+    let mut units: Vec<Units> = vec![[0.0; Amounts::NAMES.len()]; all.len()];
+    for _ in 0..ROUNDS {
+        for (units, by_size) in units.iter_mut().zip(all) {
+            let before = *units;
+            let rows = by_size.iter().zip(&slower).flat_map(|(alike, slower)| {
+                alike.iter().map(move |(amounts, ns)| {
+                    let said = slower * sum(amounts, &before);
+                    let weight = if said > 0.0 { trust(said / ns) } else { 1.0 };
+                    (amounts.values().map(|amount| weight * slower * amount / ns), weight)
+                })
+            });
+            *units = non_negative(&rows.collect::<Vec<_>>());
+        }
+        let mut last = 1.0;
+        for (size, slower) in slower.iter_mut().enumerate() {
+            let ratios = all.iter().zip(&units).flat_map(|(by_size, units)| {
+                by_size[size].iter().map(|(amounts, ns)| ns / sum(amounts, units))
+            });
+            let ratios: Vec<f64> = ratios.filter(|ratio| ratio.is_finite()).collect();
+            if !ratios.is_empty() {
+                last = fit::median(ratios.into_iter());
+            }
+            *slower = last;
+        }
+    }
+    (units, slower)
+}
+
+type Units = [f64; Amounts::NAMES.len()];
+
+fn sum(amounts: &Amounts, units: &Units) -> f64 {
+    amounts.values().iter().zip(units).map(|(amount, unit)| amount * unit).sum()
+}
+
+/// The weight of a run by the ratio of its prediction to its time: what is far from the fit was disturbed, and a run that
+/// took too little time must not lower all others.
+fn trust(ratio: f64) -> f64 {
+    let far = ratio.max(f64::MIN_POSITIVE).ln().abs();
+    0.1 / (0.1 + far)
+}
+
+/// Rounds in which the units and how much slower each number of discs is are fitted, one given the other.
+const ROUNDS: usize = 40;
+
+/// The units that a phase can depend on: others would only fit the noise.
+fn charged(phase: Phase, amounts: &Amounts) -> Amounts {
+    let Amounts { steps, discs, cells, candidates, contacts, .. } = *amounts;
+    let none = Amounts { steps, discs, ..Amounts::default() };
+    match phase {
+        Phase::Forces => Amounts { cells, candidates, contacts, ..none },
+        Phase::Index => Amounts { cells, ..none },
+        Phase::Predict | Phase::CorrectPredict | Phase::Correct => none,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two precisions, of which the second takes twice as long; of a thousand discs there is one run alone, of ten thousand none.
+    #[test]
+    fn units_are_fitted_to_all_and_a_slowdown_to_each_number_of_discs() {
+        let done = |factor: f64, discs: f64, contacts: f64, slower: f64| {
+            let amounts = Amounts { discs, contacts, ..Amounts::default() };
+            (amounts, factor * slower * (2.0 * discs + 5.0 * contacts))
+        };
+        let of = |factor: f64| {
+            vec![
+                vec![done(factor, 100.0, 10.0, 1.0), done(factor, 100.0, 70.0, 1.0)],
+                vec![done(factor, 1000.0, 1.0, 1.2)],
+                vec![],
+            ]
+        };
+        let (units, slower) = fitted(&[of(1.0), of(2.0)]);
+        for (factor, units) in [1.0, 2.0].into_iter().zip(units) {
+            for (slower, expected) in slower.iter().zip([1.0, 1.2, 1.2]) {
+                let amounts = Amounts { discs: 1000.0, contacts: 700.0, ..Amounts::default() };
+                let known = factor * expected * (2.0 * 1000.0 + 5.0 * 700.0);
+                assert!((slower * sum(&amounts, &units) / known - 1.0).abs() < 0.02, "{units:?}");
+            }
+        }
+    }
+}

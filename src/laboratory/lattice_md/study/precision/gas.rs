@@ -1,0 +1,68 @@
+//! The bench scene as all of these comparisons run it.
+
+use crate::laboratory::lattice_md::study::StudyError;
+use stripmine_kernels::sweep::lattice::Coordinates;
+use stripmine_physics::method::lattice_md::Document;
+use stripmine_physics::method::lattice_md::Engine;
+use stripmine_physics::method::lattice_md::{assemble, model};
+use stripmine_physics::observe::Scenery;
+use stripmine_physics::particles::Particles;
+
+/// Packing fractions: nearly a solid, and a gas.
+pub const PACKING_FRACTIONS: [f64; 2] = [0.84, 0.3];
+/// Seeds of what is averaged.
+pub const SEEDS: [u64; 3] = [1, 2, 3];
+/// Steps in f64 before anything is compared: the start on a lattice has no contacts.
+pub const EQUILIBRATION: u64 = 1000;
+
+/// A running bench scene.
+pub(super) struct Gas {
+    pub(super) method: Box<dyn Engine>,
+    pub(super) scenery: Scenery,
+}
+
+impl Gas {
+    /// The bench scene with overrides, from `discs` where given.
+    pub(super) fn begin(overrides: &[String], discs: Option<&Particles>) -> Result<Gas, StudyError> {
+        Gas::seen_from(Coordinates::CellRelative, overrides, discs)
+    }
+
+    /// The same with positions seen from there, also where a run would be refused because single precision loses motion: what
+    /// that does is the question here.
+    pub(super) fn seen_from(
+        coordinates: Coordinates,
+        overrides: &[String],
+        discs: Option<&Particles>,
+    ) -> Result<Gas, StudyError> {
+        let mut checked = Document::load("bench", overrides)?.check()?;
+        checked.scene.machine.coordinates = coordinates;
+        if let Some(discs) = discs {
+            checked.particles = discs.clone();
+        }
+        Ok(Gas { method: assemble(&checked)?, scenery: Scenery::of(&model(&checked)) })
+    }
+
+    /// The same after [`EQUILIBRATION`] steps in f64 with velocity Verlet.
+    pub(super) fn equilibrated(overrides: &[String]) -> Result<Particles, StudyError> {
+        let mut overrides = overrides.to_vec();
+        overrides
+            .extend(["machine.engine=\"fast\"", "integrator.kind=\"velocity-verlet\""].map(str::to_owned));
+        let mut gas = Gas::begin(&overrides, None)?;
+        gas.advance(EQUILIBRATION)?;
+        Ok(gas.method.particles())
+    }
+
+    pub(super) fn advance(&mut self, steps: u64) -> Result<(), StudyError> {
+        Ok((0..steps).try_for_each(|_| self.method.step())?)
+    }
+}
+
+/// Number of discs, density and seed, as overrides.
+pub(super) fn place(count: usize, packing_fraction: f64, seed: u64) -> Vec<String> {
+    vec![
+        format!("particles.count={count}"),
+        format!("particles.packing_fraction={packing_fraction}"),
+        format!("particles.seed={seed}"),
+        "search.by=lattice".to_owned(),
+    ]
+}

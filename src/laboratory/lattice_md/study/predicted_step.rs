@@ -1,0 +1,71 @@
+//! A step of the lattice method as the host model sees it: its programs, and the arrays between them.
+
+use crate::model::host::{HostModel, OutOfRange, Surroundings};
+use stripmine_kernels::Execution;
+use stripmine_kernels::backend::tape::Outlines;
+use stripmine_physics::method::lattice_md::Phase;
+use stripmine_physics::method::lattice_md::{Lengths, Model, Part, StepProgram, programs};
+use stripmine_physics::scene::Precision;
+
+/// The programs of a model in its precision.
+pub fn of_precision(model: &Model, precision: Precision) -> Vec<StepProgram> {
+    match precision {
+        Precision::F64 => programs::<f64, f64>(model),
+        Precision::F32 => programs::<f32, f32>(model),
+        Precision::Mixed => programs::<f64, f32>(model),
+    }
+}
+
+/// The programs of a step as the model sees them.
+pub struct Step {
+    programs: Vec<(Part, Outlines, usize)>,
+    arrays: usize,
+}
+
+impl Step {
+    /// Of programs over vectors of these lengths.
+    pub fn new(step: &[StepProgram], lengths: &Lengths) -> Step {
+        let programs: Vec<(Part, Outlines, usize)> = step
+            .iter()
+            .map(|step| (step.part, step.program.outlines(), lengths.range(step.length).len()))
+            .collect();
+        let cycle: Vec<(&Outlines, usize)> = programs.iter().map(|(_, outlines, n)| (outlines, *n)).collect();
+        let around = Surroundings::of_cycle(&cycle, Execution::Eager, 0.0);
+        let arrays =
+            around.iter().flat_map(Surroundings::arrays).collect::<std::collections::BTreeSet<_>>().len();
+        Step { programs, arrays }
+    }
+
+    /// Nanoseconds of a phase, and the baseline's.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] where the model does not reach.
+    pub fn phase(
+        &self,
+        host: &HostModel,
+        phase: Phase,
+        execution: Execution,
+    ) -> Result<[f64; 2], OutOfRange> {
+        let parts: &[Part] = match phase {
+            Phase::Predict => &[Part::Predictor],
+            Phase::Index => &[Part::Index, Part::Lattice],
+            Phase::Forces => &[Part::Forces],
+            Phase::Correct => &[Part::Corrector],
+            // Only the fast engine has it, which has no programs.
+            Phase::CorrectPredict => &[],
+        };
+        // Every part binds all arrays of the step.
+        let mut sum = parts.len() as f64 * (host.clock + self.arrays as f64 * host.bind);
+        let mut baseline = 0.0;
+        let cycle: Vec<(&Outlines, usize)> =
+            self.programs.iter().map(|(_, outlines, n)| (outlines, *n)).collect();
+        let around = host.surroundings(&cycle, execution)?;
+        for ((part, outlines, n), around) in self.programs.iter().zip(&around) {
+            if parts.contains(part) {
+                sum += host.program(outlines, *n, execution, around)?;
+                baseline += host.baseline(outlines, *n, execution);
+            }
+        }
+        Ok([sum, baseline])
+    }
+}

@@ -1,0 +1,97 @@
+//! The classes of the errors of studies, for a user.
+
+use super::StudyError;
+use super::break_even::AtlasError;
+use super::calibration::CalibrationError;
+use super::efficiency_table::QuestionError;
+use super::host_ladder::LadderError;
+use super::model_validation::ValidationError;
+use stripmine_physics::method::throughput::MeasurementError;
+use stripmine_physics::reported::{Class, Reported};
+
+impl Reported for QuestionError {
+    fn class(&self) -> Class {
+        Class::Usage
+    }
+}
+
+impl Reported for StudyError {
+    fn class(&self) -> Class {
+        match self {
+            StudyError::Scene(errors) => errors.class(),
+            StudyError::Physics(failure) => failure.class(),
+            StudyError::Question(error) => error.class(),
+        }
+    }
+
+    fn passed_on(&self) -> Option<&dyn Reported> {
+        match self {
+            StudyError::Scene(errors) => Some(errors),
+            StudyError::Physics(failure) => Some(failure),
+            StudyError::Question(_) => None,
+        }
+    }
+}
+
+impl Reported for LadderError {
+    fn class(&self) -> Class {
+        match self {
+            LadderError::Question(error) => error.class(),
+            LadderError::OutOfRange(_) => Class::Precondition,
+        }
+    }
+}
+
+impl Reported for CalibrationError {
+    fn class(&self) -> Class {
+        match self {
+            CalibrationError::Program(_) => Class::InputOutput,
+            CalibrationError::Measurement(error) => error.class(),
+        }
+    }
+
+    fn passed_on(&self) -> Option<&dyn Reported> {
+        match self {
+            CalibrationError::Measurement(error) => Some(error),
+            CalibrationError::Program(_) => None,
+        }
+    }
+}
+
+impl Reported for ValidationError {
+    fn class(&self) -> Class {
+        match self {
+            ValidationError::OutOfRange { .. } => Class::Precondition,
+            // Its scenes are made of options.
+            ValidationError::Measurement(MeasurementError::Scene(_)) => Class::Usage,
+            ValidationError::Measurement(error) => error.class(),
+            ValidationError::Calibration(error) => error.class(),
+        }
+    }
+
+    fn passed_on(&self) -> Option<&dyn Reported> {
+        match self {
+            ValidationError::Measurement(error) => Some(error),
+            ValidationError::Calibration(error) => Some(error),
+            ValidationError::OutOfRange { .. } => None,
+        }
+    }
+}
+
+impl Reported for AtlasError {
+    fn class(&self) -> Class {
+        match self {
+            AtlasError::OutOfRange(_) => Class::Precondition,
+            AtlasError::Study(error) => error.class(),
+            AtlasError::Measurement(error) => error.class(),
+        }
+    }
+
+    fn passed_on(&self) -> Option<&dyn Reported> {
+        match self {
+            AtlasError::Study(error) => Some(error),
+            AtlasError::Measurement(error) => Some(error),
+            AtlasError::OutOfRange(_) => None,
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! `stripmine calibrate`: how long this host's operations take.
+
+use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
+use crate::laboratory::lattice_md::sections;
+use crate::laboratory::lattice_md::study::calibration::{Effort, calibrate};
+use crate::report::terminal;
+use clap::Args;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use stripmine_kernels::InstructionSet;
+use stripmine_physics::origin::host;
+use stripmine_physics::reported::{Class, FilePlace, Reported};
+use stripmine_physics::signals;
+use tempfile::NamedTempFile;
+
+/// Measures this host's operations and caches, in whatever state it is, and writes a host file that says which
+#[derive(Args)]
+pub(super) struct CalibrateVerb {
+    /// The host file
+    #[arg(long, default_value = "host.toml")]
+    out: PathBuf,
+    /// Write over a file that is there
+    #[arg(long)]
+    force: bool,
+    /// Seconds that it takes, about
+    #[arg(long, default_value_t = Effort::default().seconds as u16, value_parser = clap::value_parser!(u16).range(10..=3600))]
+    seconds: u16,
+}
+
+/// Why no host file is written.
+#[derive(Debug, thiserror::Error)]
+enum Refusal {
+    /// There is one.
+    #[error("{} is there already: --force writes over it, --out elsewhere", stripmine_physics::quoted::path(.0))]
+    Exists(PathBuf),
+}
+
+impl Reported for Refusal {
+    fn class(&self) -> Class {
+        Class::Usage
+    }
+
+    fn place(&self) -> Option<FilePlace> {
+        let Refusal::Exists(file) = self;
+        Some(FilePlace::at(file))
+    }
+
+    fn remedy(&self) -> Option<String> {
+        Some("--force writes over it, --out elsewhere".to_owned())
+    }
+}
+
+impl CalibrateVerb {
+    pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
+        if self.out.exists() && !self.force {
+            return Err(Refusal::Exists(self.out.clone()).into());
+        }
+        // A place that cannot be written is found before minutes of measuring.
+        drop(self.beginning()?);
+        let bar = progress(common, "calibrate");
+        let effort = Effort { seconds: self.seconds.into() };
+        let model = calibrate(host(), InstructionSet::best(), effort, |share| {
+            bar.set_position((1e3 * share) as u64)
+        })?;
+        clear_progress();
+        let drawn: Vec<String> = sections::calibration::tables(&model).iter().map(terminal::render).collect();
+        let drawn = drawn.join("\n");
+        if !model.measured.was_quiet() {
+            warn(format_args!("the machine was {}; the host file says so", model.measured.state));
+        }
+        // Before anything is printed: the reader of that may close the pipe.
+        signals::whole(|| self.write(&model.to_toml()))?;
+        if !common.quiet {
+            say(format_args!("written: {}", self.out.display()));
+        }
+        if common.json { print_json(&model) } else { print(&drawn) }
+    }
+
+    /// A file without a name of its own yet, beside the one that is to be written.
+    fn beginning(&self) -> Result<NamedTempFile, Failure> {
+        let folder = self.out.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let mut builder = tempfile::Builder::new();
+        #[cfg(unix)]
+        {
+            // As for any file: what the user's mask leaves of it.
+            use std::os::unix::fs::PermissionsExt;
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        builder.tempfile_in(folder.unwrap_or(Path::new("."))).map_err(self.failed())
+    }
+
+    /// Writes the whole file, or leaves what was there.
+    fn write(&self, text: &str) -> Result<(), Failure> {
+        let mut file = self.beginning()?;
+        file.write_all(text.as_bytes()).and_then(|()| file.as_file().sync_all()).map_err(self.failed())?;
+        let placed = if self.force { file.persist(&self.out) } else { file.persist_noclobber(&self.out) };
+        placed.map(drop).map_err(|refused| self.failed()(refused.error))
+    }
+
+    fn failed(&self) -> impl FnOnce(std::io::Error) -> Failure {
+        Failure::writing(self.out.display().to_string())
+    }
+}

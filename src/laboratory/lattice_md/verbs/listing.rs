@@ -1,0 +1,34 @@
+//! `stripmine listing`: the vector instructions of a part.
+
+use super::scene_choice::SceneChoice;
+use crate::console::{Common, Failure, print, print_json};
+use crate::laboratory::lattice_md::study::listing::{listings, text};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use stripmine_physics::method::lattice_md::Part;
+
+/// The vector instructions of a part of the step, as an assembly listing
+#[derive(Args)]
+pub(super) struct ListingVerb {
+    /// The part
+    #[arg(value_parser = part_parser())]
+    part: Part,
+    #[command(flatten)]
+    scene: SceneChoice,
+}
+
+/// Accepts the parts there are; clap lists them where another is asked for.
+fn part_parser() -> impl TypedValueParser<Value = Part> {
+    let values = Part::ALL.iter().map(|part| PossibleValue::new(part.name()).help(part.meaning()));
+    PossibleValuesParser::new(values).map(|name| {
+        // The parser admits names of the list only.
+        Part::ALL.iter().copied().find(|part| part.name() == name).unwrap_or(Part::Forces)
+    })
+}
+
+impl ListingVerb {
+    pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
+        let listings = listings(self.part, &self.scene.question())?;
+        if common.json { print_json(&listings) } else { print(&text(&listings)) }
+    }
+}

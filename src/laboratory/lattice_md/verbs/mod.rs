@@ -1,0 +1,48 @@
+//! The verbs that are this method's own: what its programs cost, by count, by clock and by measurement.
+
+mod calibrate;
+mod density_cost;
+mod listing;
+mod scene_choice;
+mod table;
+mod validate_model;
+
+use crate::console::Verb;
+use crate::console::{Common, Failure};
+use calibrate::CalibrateVerb;
+use clap::{Args, FromArgMatches};
+use density_cost::DensityCostVerb;
+use listing::ListingVerb;
+use table::TableVerb;
+use validate_model::ValidateModel;
+
+macro_rules! verbs {
+    ($($name:literal $arguments:ident,)*) => {
+        &[$(Verb {
+            name: $name,
+            command: |command| $arguments::augment_args(command),
+            run: |matches, common| carried_out::<$arguments>(matches, common, $arguments::run),
+        }),*]
+    };
+}
+
+/// Every verb, in the order of the help.
+pub(super) const VERBS: &[Verb] = verbs! {
+    "table" TableVerb,
+    "listing" ListingVerb,
+    "calibrate" CalibrateVerb,
+    "validate-model" ValidateModel,
+};
+
+/// Every study below `chart`, in the order of the help.
+pub(super) const CHARTS: &[Verb] = verbs! {
+    "density-cost" DensityCostVerb,
+};
+
+fn carried_out<A: Args + FromArgMatches>(
+    matches: &clap::ArgMatches,
+    common: &Common,
+    run: fn(&A, &Common) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    run(&A::from_arg_matches(matches).map_err(Failure::Arguments)?, common)
+}

@@ -1,0 +1,37 @@
+//! The laboratory: what is studied of each method beside a run, in a folder of the method's name: studies as functions from
+//! parameters to datasets, sections of the report, verbs. A method runs without a line here.
+
+pub mod hard_disks;
+pub mod langevin;
+pub mod lattice_md;
+pub mod nbody;
+pub mod programs;
+mod running;
+
+use crate::console::Verb;
+use crate::results::Item;
+use stripmine_physics::method::Methods;
+
+/// What the laboratory has of a method.
+#[derive(Debug)]
+pub struct Laboratory {
+    /// The method's name.
+    pub method: &'static str,
+    /// What `reproduce` makes of it, in the order of the page.
+    pub items: &'static [Item],
+    /// Verbs of its own.
+    pub verbs: &'static [Verb],
+    /// Studies of its own, as verbs below `chart`.
+    pub charts: &'static [Verb],
+}
+
+/// Of every method that is studied.
+static LABORATORIES: [&Laboratory; 4] =
+    [&lattice_md::LABORATORY, &hard_disks::LABORATORY, &langevin::LABORATORY, &nbody::LABORATORY];
+
+/// Those of some methods, in the order of these.
+pub fn laboratories(methods: Methods) -> impl Iterator<Item = &'static Laboratory> {
+    methods.iter().flat_map(|method| {
+        LABORATORIES.into_iter().filter(|laboratory| laboratory.method == method.vocabulary.keys.method)
+    })
+}

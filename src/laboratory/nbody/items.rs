@@ -1,0 +1,59 @@
+//! What can be reproduced of this method: each item a study and its section of the report.
+
+use super::sections;
+use super::study::{collapse, energy, rates};
+use crate::console::Failure;
+use crate::laboratory::programs;
+use crate::laboratory::running::prepared;
+use crate::results::{Effort, Item, Made, Progress};
+
+macro_rules! items {
+    ($($name:literal, $seconds:expr, $is_quick:literal, $make:ident, $doc:literal;)*) => {
+        &[$(Item { name: $name, doc: $doc, seconds: $seconds, is_quick: $is_quick, make: $make }),*]
+    };
+}
+
+/// Every item, in the order of the page: name, seconds that it takes about (quick and in full), whether it is made
+/// where only little time is given (what is the same everywhere is made in full or not at all), and what makes it.
+pub(super) const ITEMS: &[Item] = items! {
+    "nbody-energy", [40.0, 40.0], false, orbits, "Bodies: energy error of every integrator over cost, and where orbits are lost";
+    "nbody-rates", [3.0, 20.0], true, speed, "Bodies: interactions a second and how exact forces are";
+    "nbody-collapse", [5.0, 5.0], false, fall, "Bodies: a cold sphere collapses, with a film";
+    "nbody-programs", [1.0, 1.0], true, counted, "Bodies: all pairs by cyclic shifts, counted and charged by clocks";
+};
+
+fn orbits(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let data = energy::energies(progress)?;
+    Made::new(sections::energy::section(&data), &data)
+}
+
+fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let effort = match effort {
+        Effort::Quick => rates::Effort { bodies: vec![1024], seconds: 0.05, rounds: 1 },
+        Effort::Full => rates::Effort { bodies: vec![1024, 4096, 16_384], seconds: 0.1, rounds: 3 },
+    };
+    let data = rates::rates(&effort, progress)?;
+    Made::new(sections::rates::section(&data), &data)
+}
+
+fn fall(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let data = collapse::collapse(progress)?;
+    Made::new(sections::collapse::section(&data), &data)
+}
+
+fn counted(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let scene = |name: &'static str, count: u32| {
+        Ok::<_, Failure>((name, prepared("plummer", &[format!("particles.count={count}")])?))
+    };
+    let scenes = [scene("plummer, N = 1024", 1024)?, scene("plummer, N = 16", 16)?];
+    progress(1.0);
+    programs::made(
+        ("nbody-programs", "Bodies: all pairs by cyclic shifts on the vector machine"),
+        (
+            "What do the forces between all pairs cost as vector operations?",
+            "PWP: every body meets the one that is s places behind it, for s = 1 to N − 1: whole-array operations on shifted vectors. 16 shifts \
+         make a program.",
+        ),
+        &scenes,
+    )
+}

@@ -1,0 +1,178 @@
+//! The energy of an orbit.
+
+use crate::laboratory::nbody::study::energy::{Energies, KNOWN, STEPS};
+use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::{Cell, Part, Section, Table, Verdict};
+use stripmine_physics::method::nbody::schemes::SchemeName;
+use stripmine_physics::number::in_tens;
+use stripmine_physics::words::Words;
+
+/// Below this an error is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// What came out.
+pub fn section(data: &Energies) -> Section {
+    let ratios = || {
+        data.errors
+            .iter()
+            .filter(|it| it.error.is_some_and(|error| error > ROUNDING))
+            .filter_map(|it| it.off())
+    };
+    let (least, most) = (ratios().fold(f64::INFINITY, f64::min), ratios().fold(0.0, f64::max));
+    let momentum = data.errors.iter().map(|it| it.drift[0]).fold(0.0, f64::max);
+    let [long, short] = [&data.damped[0], &data.damped[2]];
+    let times = |energy: Option<f64>| energy.map_or("endless".to_owned(), |energy| format!("{energy:.2}"));
+    // From the longest to the shortest step.
+    let of = |scheme: SchemeName| {
+        let own = data.errors.iter().filter(|it| it.scheme == scheme.word());
+        let said = own.map(|it| it.error.map_or("lost".to_owned(), |error| in_tens(error, 2)));
+        said.collect::<Vec<_>>().join(", ")
+    };
+    Section {
+        name: "nbody-energy".into(),
+        title: "Bodies: what integrators do to an orbit".into(),
+        part: Part::Physics,
+        question: "How well does each integrator keep the energy of an orbit, and what do the source's missing ½ and its damping do?".into(),
+        expected: format!(
+            "The largest |ΔE/E| of {} schemes along 100 orbits of eccentricity 0.5, as other programs have it. PWP says that its scheme \
+             keeps the conservation laws and that damping makes orbits stable; the specification calls both wrong.",
+            KNOWN.len()
+        ),
+        answer: format!("Every error is {least:.2} to {most:.2} times the known one."),
+        details: vec![
+            format!(
+                "The source's scheme has errors of {} (from the longest step to the shortest); with the ½ that it lacks, {}. The largest \
+                 momentum on the way is {}.",
+                of(SchemeName::DampedEuler),
+                of(SchemeName::EulerWithHalf),
+                in_tens(momentum, 1),
+            ),
+            format!(
+                "Damping acts once a step, so what it does depends on the step: 0.9999 makes the orbit's energy {} times as large in ten \
+                 orbits of {} steps, and {} times in ten of {}.",
+                times(long.energy),
+                long.steps,
+                times(short.energy),
+                short.steps
+            ),
+        ],
+        verdict: Verdict::reproduced(least > 0.5 && most < 2.0),
+        again: "stripmine reproduce --only nbody-energy".into(),
+        figures: vec![cost(data), lost(data)],
+        tables: vec![table(data), damped(data)],
+        excerpt: None,
+        film: None,
+        seeds: vec![],
+        depends_on_host: false,
+        provenance: None,
+    }
+}
+
+fn schemes(data: &Energies) -> Vec<&'static str> {
+    let mut names = vec![];
+    for orbit in &data.errors {
+        if !names.contains(&orbit.scheme) {
+            names.push(orbit.scheme);
+        }
+    }
+    names
+}
+
+fn cost(data: &Energies) -> Figure {
+    let series = schemes(data).into_iter().enumerate().filter_map(|(hue, scheme)| {
+        let of = data.errors.iter().filter(|it| it.scheme == scheme);
+        let mut points: Vec<Point> = of
+            .filter_map(|it| Some(Point::at(it.evaluations, it.error.filter(|error| *error > 0.0)?)))
+            .collect();
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        (!points.is_empty()).then(|| Series { name: scheme.into(), style: Style::Joined, hue, points })
+    });
+    Figure {
+        name: "error-over-cost".into(),
+        title: "Energy error over cost: two bodies, e = 0.5, 100 orbits".into(),
+        caption: "Largest error on the way. Schemes that lost the orbit are not drawn at those steps.".into(),
+        picture: Picture::Chart(Chart {
+            x: Axis::logarithmic("evaluations of the forces an orbit", None),
+            y: Axis::logarithmic("largest |ΔE/E|", None),
+            series: series.collect(),
+            bands: vec![],
+        }),
+    }
+}
+
+fn lost(data: &Energies) -> Figure {
+    let series = schemes(data).into_iter().enumerate().filter_map(|(hue, scheme)| {
+        let of = data.edges.iter().filter(|it| it.scheme == scheme);
+        let points: Vec<Point> =
+            of.filter_map(|it| Some(Point::at(it.eccentricity, it.steps? as f64))).collect();
+        (!points.is_empty()).then(|| Series { name: scheme.into(), style: Style::Joined, hue, points })
+    });
+    Figure {
+        name: "orbits-lost".into(),
+        title: "Fewest steps that keep an orbit for 100 turns".into(),
+        caption: "Kept: the energy stays within half of itself. Both schemes of Euler are off by more at every step of the table.".into(),
+        picture: Picture::Chart(Chart {
+            x: Axis::linear("eccentricity", None),
+            y: Axis::logarithmic("steps of an orbit", None),
+            series: series.collect(),
+            bands: vec![],
+        }),
+    }
+}
+
+fn table(data: &Energies) -> Table {
+    let of =
+        |scheme: &str, steps: u64| data.errors.iter().find(|it| it.scheme == scheme && it.steps == steps);
+    let rows = schemes(data).into_iter().map(|scheme| {
+        let known = KNOWN.iter().find(|(name, _)| name.word() == scheme).map(|(_, errors)| *errors);
+        let mut row = vec![Cell::Text(scheme.into())];
+        for (column, steps) in STEPS.into_iter().enumerate() {
+            let error = of(scheme, steps).and_then(|it| it.error);
+            row.push(Cell::Text(error.map_or("lost".into(), |error| format!("{error:.1e}"))));
+            row.push(Cell::Text(known.map_or(String::new(), |known| match known[column] {
+                known if known.is_finite() => format!("{known:.1e}"),
+                _ => "rounding".into(),
+            })));
+        }
+        // Between the shortest steps whose errors are no rounding.
+        let errors = STEPS.iter().filter_map(|&steps| of(scheme, steps).and_then(|it| it.error));
+        let errors: Vec<f64> = errors.filter(|error| (ROUNDING..0.5).contains(error)).collect();
+        row.push(match errors.as_slice() {
+            [.., a, b] => Cell::Number((a / b).log2() / 2.0, 2),
+            _ => Cell::Text(String::new()),
+        });
+        row
+    });
+    let mut columns = vec!["scheme".to_owned()];
+    for steps in STEPS {
+        columns.extend([format!("{steps} steps"), "known".to_owned()]);
+    }
+    columns.push("order".to_owned());
+    Table {
+        name: "errors".into(),
+        title: "Largest |ΔE/E| along 100 orbits, by steps of an orbit".into(),
+        columns,
+        rows: rows.collect(),
+        notes: vec![],
+    }
+}
+
+fn damped(data: &Energies) -> Table {
+    let rows = data.damped.iter().map(|it| {
+        let friction = -it.damping.ln() * it.steps as f64 / stripmine_physics::method::nbody::starts::ORBIT;
+        vec![
+            Cell::Count(it.steps),
+            Cell::Number(friction, 4),
+            it.energy.map_or(Cell::Text("lost".into()), |energy| Cell::Number(energy, 3)),
+        ]
+    });
+    Table {
+        name: "damped".into(),
+        title: "The source's scheme with a damping of 0.9999, after ten orbits".into(),
+        columns: ["steps of an orbit", "friction −ln(damping)/dt", "energy over that of the start"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows: rows.collect(),
+        notes: vec!["A bound orbit that loses energy shrinks: its energy grows in magnitude.".into()],
+    }
+}

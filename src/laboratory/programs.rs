@@ -1,0 +1,232 @@
+//! What vector programs execute: operations section by section, and clock periods by every clock.
+
+use crate::console::Failure;
+use crate::model::clock::{Clock, Work};
+use crate::model::machine::MachineModel;
+use crate::model::machines;
+use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::results::Made;
+use serde::Serialize;
+use stripmine_kernels::isa::{OpClass, OpCounts};
+use stripmine_physics::method::Prepared;
+use stripmine_physics::method::VectorProgram;
+
+/// What a section of a program executes.
+#[derive(Clone, Debug, Serialize)]
+pub struct Counted {
+    /// The part of the step.
+    pub part: &'static str,
+    /// The section of the program.
+    pub section: &'static str,
+    /// What vectors are as long as.
+    pub length: &'static str,
+    /// How long that is.
+    pub n: usize,
+    /// Operations of a step: NOP.
+    pub operations: u64,
+    /// Of them those that compute.
+    pub computing: u64,
+    /// Of them divisions and square roots.
+    pub divisions_and_roots: u64,
+}
+
+/// Clock periods of a step.
+#[derive(Clone, Debug, Serialize)]
+pub struct Clocks {
+    /// The machine.
+    pub machine: String,
+    /// The clock.
+    pub clock: &'static str,
+    /// Clock periods.
+    pub clocks: f64,
+    /// Seconds.
+    pub seconds: f64,
+}
+
+/// The programs of a scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct Programs {
+    /// The scene.
+    pub scene: String,
+    /// What is executed.
+    pub counted: Vec<Counted>,
+    /// What it takes on machines.
+    pub clocks: Vec<Clocks>,
+}
+
+impl Programs {
+    /// Counts the programs of a scene, and charges them by every clock of some machines.
+    pub fn of(scene: &str, programs: &[VectorProgram], machines: &[MachineModel]) -> Programs {
+        let mut counted: Vec<Counted> = vec![];
+        for it in programs {
+            for (section, counts) in it.program.tally() {
+                let entry = of_section(it, section, &counts);
+                let is_same = |known: &&mut Counted| {
+                    (known.part, known.section, known.length, known.n) == (it.part, section, it.length, it.n)
+                };
+                match counted.iter_mut().find(is_same) {
+                    Some(known) => {
+                        known.operations += entry.operations;
+                        known.computing += entry.computing;
+                        known.divisions_and_roots += entry.divisions_and_roots;
+                    }
+                    None => counted.push(entry),
+                }
+            }
+        }
+        let works: Vec<(Work, &VectorProgram)> =
+            programs.iter().map(|it| (Work::of(it.program.as_ref()), it)).collect();
+        let charged = |machine: &MachineModel, clock: Clock| {
+            let each = |(work, it): &(Work, &VectorProgram)| {
+                it.times as f64 * clock.clocks(machine, work, it.n as u64)
+            };
+            let clocks: f64 = works.iter().map(each).sum();
+            Clocks {
+                machine: machine.title().to_owned(),
+                clock: clock.name(),
+                clocks,
+                seconds: clocks * machine.clock_period_ns().value * 1e-9,
+            }
+        };
+        let clocks =
+            machines.iter().flat_map(|machine| Clock::ALL.iter().map(|&clock| charged(machine, clock)));
+        let clocks = clocks.collect();
+        Programs { scene: scene.to_owned(), counted, clocks }
+    }
+
+    /// Operations of a step.
+    pub fn operations(&self) -> u64 {
+        self.counted.iter().map(|it| it.operations).sum()
+    }
+
+    /// The tables.
+    pub fn tables(&self) -> Vec<Table> {
+        vec![self.operations_table(), self.clocks_table()]
+    }
+
+    fn operations_table(&self) -> Table {
+        let rows = self.counted.iter().map(|it| {
+            vec![
+                Cell::Text(it.part.into()),
+                Cell::Text(it.section.into()),
+                Cell::Text(it.length.into()),
+                Cell::Count(it.n as u64),
+                Cell::Count(it.operations),
+                Cell::Count(it.computing),
+                Cell::Count(it.divisions_and_roots),
+            ]
+        });
+        let columns =
+            ["part", "section", "n is", "n", "operations (NOP)", "of them computing", "divisions and roots"];
+        Table {
+            name: "operations".into(),
+            title: format!("{}: whole-array operations of a step", self.scene),
+            columns: columns.map(str::to_owned).to_vec(),
+            rows: rows.collect(),
+            notes: vec![],
+        }
+    }
+
+    fn clocks_table(&self) -> Table {
+        let rows = self.clocks.iter().map(|it| {
+            vec![
+                Cell::Text(it.machine.clone()),
+                Cell::Text(it.clock.into()),
+                Cell::Number(it.clocks, 0),
+                Cell::Number(1e3 * it.seconds, 3),
+            ]
+        });
+        Table {
+            name: "clocks".into(),
+            title: format!("{}: what a step of them takes", self.scene),
+            columns: ["machine", "clock", "clock periods", "ms"].map(str::to_owned).to_vec(),
+            rows: rows.collect(),
+            notes: vec![],
+        }
+    }
+}
+
+/// Machines whose clock periods an item shows.
+const MACHINES: [&str; 3] = ["cray-y-mp-el", "cray-c90", "sx-aurora"];
+/// Lines of a listing that an item shows.
+const LINES: usize = 40;
+
+/// Milliseconds as a person reads them.
+fn milliseconds(clocks: Option<&Clocks>) -> String {
+    let ms = clocks.map_or(f64::NAN, |it| 1e3 * it.seconds);
+    if ms < 10.0 { format!("{ms:.2}") } else { format!("{ms:.0}") }
+}
+
+/// An item of the report: the programs of a method's scenes, by name.
+///
+/// # Errors
+/// [`Failure`] if there is no such machine.
+pub fn made(
+    (name, title): (&str, &str),
+    (question, expected): (&str, &str),
+    scenes: &[(&str, Box<dyn Prepared>)],
+) -> Result<Made, Failure> {
+    let machines: Vec<MachineModel> =
+        MACHINES.iter().map(|name| machines::preset(name)).collect::<Result<_, _>>()?;
+    let all: Vec<(Programs, Vec<VectorProgram>)> = scenes
+        .iter()
+        .map(|(scene, prepared)| {
+            let programs = prepared.programs();
+            (Programs::of(scene, &programs, &machines), programs)
+        })
+        .collect();
+    let mut said = all.iter().map(|(counted, _)| {
+        let of = |clock: Clock| counted.clocks.iter().find(|it| it.clock == clock.name());
+        let [paper, ports] = [of(Clock::Paper), of(Clock::Ports)];
+        format!(
+            "{}: the forces take {} whole-array operations, {} ms by the source's clock on a {} and {} ms chained with memory ports.",
+            counted.scene,
+            Cell::Count(counted.operations()).for_reading(),
+            milliseconds(paper),
+            paper.map_or("machine", |it| it.machine.as_str()),
+            milliseconds(ports),
+        )
+    });
+    let excerpt = all.first().and_then(|(_, programs)| programs.first()).map(|it| {
+        let listing = it.program.listing();
+        let lines: Vec<&str> = listing.lines().take(LINES).collect();
+        ("The first instructions of the forces".to_owned(), lines.join("\n"))
+    });
+    let tables = all.iter().enumerate().flat_map(|(at, (counted, _))| {
+        let numbered = move |table: Table| Table { name: format!("{}-{}", table.name, at + 1), ..table };
+        counted.tables().into_iter().map(numbered)
+    });
+    let section = Section {
+        name: name.to_owned(),
+        title: title.to_owned(),
+        part: Part::Machine,
+        question: question.to_owned(),
+        expected: expected.to_owned(),
+        answer: said.next().unwrap_or_default(),
+        details: said.collect(),
+        verdict: Verdict::Measured,
+        again: format!("stripmine reproduce --only {name}"),
+        figures: vec![],
+        tables: tables.collect(),
+        excerpt,
+        film: None,
+        seeds: vec![1],
+        depends_on_host: false,
+        provenance: None,
+    };
+    let data: Vec<&Programs> = all.iter().map(|(counted, _)| counted).collect();
+    Made::new(section, &data)
+}
+
+fn of_section(it: &VectorProgram, section: &'static str, counts: &OpCounts) -> Counted {
+    let class = |class: OpClass| counts.of_class(class);
+    Counted {
+        part: it.part,
+        section,
+        length: it.length,
+        n: it.n,
+        operations: it.times * counts.total(),
+        computing: it.times * counts.filtered(|op| !op.class().moves_data()).total(),
+        divisions_and_roots: it.times * (class(OpClass::Divide) + class(OpClass::SquareRoot)),
+    }
+}
