@@ -4,7 +4,7 @@
 //! Throughput is in cells; `cargo bench --bench lattice forces`.
 
 use crate::intrinsics::{self, Numbers, Place, Vectors};
-use crate::scenery::{CONTACT, dense, warm_up};
+use crate::scenery::{CONTACT, dense, programs_of, warm_up};
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput};
 use std::hint::black_box;
@@ -12,7 +12,7 @@ use std::time::Duration;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Array;
 use stripmine_kernels::{Execution, InstructionSet};
-use stripmine_physics::method::lattice_md::{Arrays, Model, Part, Watch, execute, programs as programs_of};
+use stripmine_physics::method::lattice_md::{Arrays, Model, Part, Watch, execute};
 
 fn places<T: Precision>(model: &Model) -> Vec<Place<T>> {
     let place = |offset: &stripmine_kernels::mask::Offset| {
@@ -72,7 +72,7 @@ fn hand_written<P: ByHand, const FRICTION: bool>(
     model: &Model,
     arrays: &mut Arrays<f64, P>,
 ) {
-    let programs = programs_of::<f64, P>(model);
+    let programs = programs_of::<P>(model);
     {
         let (memory, lengths) = arrays.memory();
         let set = InstructionSet::best();
@@ -128,7 +128,7 @@ fn executions<P: ByHand>(criterion: &mut Criterion, precision: &str) {
         } else {
             hand_written::<P, false>(&mut group, "by hand", &model, &mut arrays);
         }
-        let programs = programs_of::<f64, P>(&model);
+        let programs = programs_of::<P>(&model);
         let best = InstructionSet::best();
         let mut ways: Vec<(String, Execution, InstructionSet)> = Vec::new();
         ways.extend(
@@ -145,7 +145,7 @@ fn executions<P: ByHand>(criterion: &mut Criterion, precision: &str) {
         }
         // What the checks of a run cost: the deepest contact watched in every cell.
         let watch = Some(Watch::new(0.1, 0.3, 0.5));
-        let watching = programs_of::<f64, P>(&Model { watch, ..model.clone() });
+        let watching = programs_of::<P>(&Model { watch, ..model.clone() });
         let mut arrays = Arrays::<f64, P>::new(&Model { watch, ..model.clone() }, &particles);
         warm_up::<P>(&watching, &mut arrays);
         let (memory, lengths) = arrays.memory();

@@ -1,6 +1,7 @@
 //! The scene of the benches: a dense packing of discs with all contacts at work.
 
 use stripmine_kernels::backend::Precision;
+use stripmine_kernels::isa::Storage;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
@@ -10,6 +11,7 @@ use stripmine_physics::method::lattice_md::{
 };
 use stripmine_physics::particles::Particles;
 use stripmine_physics::placement::hexagonal;
+use stripmine_physics::scene;
 
 pub const CONTACT: Contact = Contact {
     stiffness: 187.0,
@@ -44,8 +46,14 @@ pub fn dense<P: Precision>(cells: usize, friction: bool) -> (Model, Particles, A
         gravity: [0.0; 2],
     };
     let mut arrays = Arrays::new(&model, &packing.particles);
-    warm_up::<P>(&programs::<f64, P>(&model), &mut arrays);
+    warm_up::<P>(&programs_of::<P>(&model), &mut arrays);
     (model, packing.particles, arrays)
+}
+
+/// The programs of a step whose forces have a precision.
+pub fn programs_of<P: Precision>(model: &Model) -> Vec<StepProgram> {
+    let is_double = P::NAME == f64::NAME;
+    programs(model, if is_double { scene::Precision::F64 } else { scene::Precision::Mixed })
 }
 
 /// Everything of a step before the forces.

@@ -8,6 +8,7 @@ use std::time::Duration;
 use stripmine_kernels::ledger::Length;
 use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::lattice_md::{Arrays, Model, Part, StepProgram, Watch, execute, programs};
+use stripmine_physics::scene::Precision;
 
 /// The programs without the one that looks for lost discs: the last of the Index that runs over discs.
 fn without_check(mut programs: Vec<StepProgram>) -> Vec<StepProgram> {
@@ -20,9 +21,9 @@ pub fn step(criterion: &mut Criterion) {
     let (model, particles, _) = dense::<f64>(100_000, true);
     let watched = Model { watch: Some(Watch::new(0.1, 0.3, 0.5)), ..model.clone() };
     let cases = [
-        ("with the checks", &watched, programs::<f64, f64>(&watched), Part::ALL),
-        ("without the checks", &model, without_check(programs::<f64, f64>(&model)), Part::ALL),
-        ("forces alone, without the checks", &model, programs::<f64, f64>(&model), &[Part::Forces]),
+        ("with the checks", &watched, programs(&watched, Precision::F64), Part::ALL),
+        ("without the checks", &model, without_check(programs(&model, Precision::F64)), Part::ALL),
+        ("forces alone, without the checks", &model, programs(&model, Precision::F64), &[Part::Forces]),
     ];
     let mut group = criterion.benchmark_group("step/f64/friction/100000");
     group.throughput(Throughput::Elements(particles.len() as u64)).sample_size(20);

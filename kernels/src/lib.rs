@@ -40,6 +40,7 @@
 //! ```
 
 pub mod backend;
+pub mod drills;
 pub mod flight;
 pub mod integrator;
 pub mod isa;

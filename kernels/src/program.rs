@@ -74,8 +74,8 @@ where
         memory.admit(&self.footprint, &range)?;
         match execution {
             Execution::Strip(0) => Err(ProgramError::EmptyStrip),
-            Execution::Eager => self.tape.interpret(memory, range.clone(), range.len(), set),
-            Execution::Strip(length) => self.tape.interpret(memory, range, length, set),
+            Execution::Eager => T::Lane::interpret(&self.tape, memory, range.clone(), range.len(), set),
+            Execution::Strip(length) => T::Lane::interpret(&self.tape, memory, range, length, set),
             Execution::Chained => dispatch(set, Compiled { text: &self.text, memory, range }),
         }
     }
@@ -102,17 +102,27 @@ where
             return self.run(memory, range, execution, set);
         }
         memory.admit(&self.footprint, &range)?;
-        let shared = Shared(memory);
-        let counters = on_threads(pieces(range, BAND), |band| {
-            // SAFETY: bands do not overlap, and the program writes only at the own place and reads at others only what
-            // it does not write.
-            let part = unsafe { shared.part() };
-            self.run(&part, band, execution, set).map(|()| part.counters())
-        });
-        let counters: Result<Vec<_>, _> = counters.into_iter().collect();
-        counters?.into_iter().for_each(|more| memory.join(more));
-        Ok(())
+        in_bands(memory, range, &|part, band| self.run(part, band, execution, set))
     }
+}
+
+/// Runs a program over bands of a range, each with a part of the memory. The program is called through a pointer, so that this is compiled
+/// once. The memory was admitted, and the program is elementwise.
+fn in_bands(
+    memory: &Memory<'_>,
+    range: Range<usize>,
+    run: &(dyn Fn(&Memory<'_>, Range<usize>) -> Result<(), ProgramError> + Sync),
+) -> Result<(), ProgramError> {
+    let shared = Shared(memory);
+    let counters = on_threads(pieces(range, BAND), |band| {
+        // SAFETY: bands do not overlap, and the program writes only at the own place and reads at others only what it
+        // does not write.
+        let part = unsafe { shared.part() };
+        run(&part, band).map(|()| part.counters())
+    });
+    let counters: Result<Vec<_>, _> = counters.into_iter().collect();
+    counters?.into_iter().for_each(|more| memory.join(more));
+    Ok(())
 }
 
 /// Elements of a band: enough to be worth a thread's while.
@@ -196,8 +206,8 @@ where
     ) -> Result<(&'static str, [usize; 3]), ProgramError> {
         let bytes = match execution {
             Execution::Chained => [0; 3],
-            Execution::Eager => self.tape.register_bytes(range.len(), set)?,
-            Execution::Strip(length) => self.tape.register_bytes(length.min(range.len()), set)?,
+            Execution::Eager => T::Lane::register_bytes(&self.tape, range.len(), set)?,
+            Execution::Strip(length) => T::Lane::register_bytes(&self.tape, length.min(range.len()), set)?,
         };
         Ok((T::Lane::NAME, bytes))
     }

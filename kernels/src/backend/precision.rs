@@ -1,10 +1,56 @@
 //! The precisions that programs may have.
 
+use super::dispatch::InstructionSet;
 use super::estimated::Estimates;
+use super::tape::Tape;
 use super::wide::WideElement;
+use crate::isa::{Memory, ProgramError};
+use std::ops::Range;
 
-/// A precision that every register file has lanes for.
-pub trait Precision: Estimates + WideElement {}
+/// A precision that every register file has lanes for. The interpreter of tapes is compiled here, once for each, and not in every crate that
+/// has a program.
+pub trait Precision: Estimates + WideElement {
+    /// As [`Tape::interpret`].
+    #[doc(hidden)]
+    fn interpret(
+        tape: &Tape<Self>,
+        memory: &Memory<'_>,
+        range: Range<usize>,
+        strip: usize,
+        set: InstructionSet,
+    ) -> Result<(), ProgramError>;
 
-impl Precision for f64 {}
-impl Precision for f32 {}
+    /// As [`Tape::register_bytes`].
+    #[doc(hidden)]
+    fn register_bytes(
+        tape: &Tape<Self>,
+        strip: usize,
+        set: InstructionSet,
+    ) -> Result<[usize; 3], ProgramError>;
+}
+
+macro_rules! precisions {
+    ($($lane:ty)*) => {$(
+        impl Precision for $lane {
+            fn interpret(
+                tape: &Tape<Self>,
+                memory: &Memory<'_>,
+                range: Range<usize>,
+                strip: usize,
+                set: InstructionSet,
+            ) -> Result<(), ProgramError> {
+                tape.interpret(memory, range, strip, set)
+            }
+
+            fn register_bytes(
+                tape: &Tape<Self>,
+                strip: usize,
+                set: InstructionSet,
+            ) -> Result<[usize; 3], ProgramError> {
+                tape.register_bytes(strip, set)
+            }
+        }
+    )*};
+}
+
+precisions! { f64 f32 }

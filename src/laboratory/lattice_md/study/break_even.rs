@@ -5,7 +5,7 @@ use super::StudyError;
 use super::density_cost::{ListFigures, grid, list_figures};
 use super::model_validation::Calibrated;
 use super::phase_times::{FAST, FAST_LISTS, HALF_MASK, LISTS, PhaseTimes, Run, Sampling, phase_times};
-use super::predicted_step::{Step, of_precision};
+use super::predicted_step::Step;
 use super::rounds::Bound;
 use crate::model::host::{Amounts, HostModel, OutOfRange};
 use crate::model::machine::MachineModel;
@@ -13,7 +13,7 @@ use serde::Serialize;
 use stripmine_kernels::Execution;
 use stripmine_physics::method::lattice_md::Lengths;
 use stripmine_physics::method::lattice_md::Phase;
-use stripmine_physics::method::lattice_md::model;
+use stripmine_physics::method::lattice_md::{model, programs};
 use stripmine_physics::method::throughput::MeasurementError;
 
 /// ρ of the atlas, below the ceiling of cells as wide as the radius.
@@ -254,7 +254,7 @@ fn predict(
     let (model, discs) = (model(&checked), checked.particles.grain_count());
     let lengths = Lengths::new(&model, discs, checked.particles.len());
     if let Some(execution) = variant.1 {
-        let step = Step::new(&of_precision(&model, checked.scene.machine.precision), &lengths);
+        let step = Step::new(&programs(&model, checked.scene.machine.precision), &lengths);
         let phases = Phase::ALL.iter().map(|&phase| Ok(step.phase(host, phase, execution)?[0]));
         return phases.sum::<Result<f64, AtlasError>>();
     }

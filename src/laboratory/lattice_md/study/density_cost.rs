@@ -143,7 +143,7 @@ fn rival(choice: Choice) -> Result<Ledger, QuestionError> {
         occupancy,
         cause,
     })?;
-    Ok(rival_ledger::<f64, f64>(&model))
+    Ok(rival_ledger(&model))
 }
 
 /// What is counted, and the machine whose clock charges it.

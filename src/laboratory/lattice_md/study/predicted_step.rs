@@ -3,18 +3,7 @@
 use crate::model::host::{HostModel, OutOfRange, Surroundings};
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
-use stripmine_physics::method::lattice_md::Phase;
-use stripmine_physics::method::lattice_md::{Lengths, Model, Part, StepProgram, programs};
-use stripmine_physics::scene::Precision;
-
-/// The programs of a model in its precision.
-pub fn of_precision(model: &Model, precision: Precision) -> Vec<StepProgram> {
-    match precision {
-        Precision::F64 => programs::<f64, f64>(model),
-        Precision::F32 => programs::<f32, f32>(model),
-        Precision::Mixed => programs::<f64, f32>(model),
-    }
-}
+use stripmine_physics::method::lattice_md::{Lengths, Part, Phase, StepProgram};
 
 /// The programs of a step as the model sees them.
 pub struct Step {

@@ -18,6 +18,7 @@ use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::lattice_md::{Arrays, Document, Model, Part, StepProgram, execute, programs};
 use stripmine_physics::method::throughput::{MeasurementError, TimedRun};
 use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
+use stripmine_physics::scene::Precision;
 
 /// How much is measured.
 #[derive(Clone, Debug)]
@@ -251,7 +252,7 @@ fn eager(cells: usize, occupancy: f64, choice: Choice, samples: usize) -> Vec<Ti
     let particles = scattered(&model, occupancy);
     let mut arrays = Arrays::<f64, f64>::new(&model, &particles);
     drop(particles);
-    let step = programs::<f64, f64>(&model);
+    let step = programs(&model, Precision::F64);
     let parts: Vec<Part> =
         Part::ALL.iter().copied().filter(|part| step.iter().any(|step| step.part == *part)).collect();
     let mut all = vec![Samples::default(); parts.len()];
@@ -346,7 +347,7 @@ fn straight(points: &[(f64, f64)]) -> [f64; 2] {
 /// Bytes of registers and arrays that the passes of a part hold for an element.
 fn bytes_an_element(part: &str) -> f64 {
     let Ok(model) = counting_model(400, Choice::default().printed()) else { return f64::NAN };
-    let of_part = programs::<f64, f64>(&model).into_iter().filter(|step| step.part.name() == part);
+    let of_part = programs(&model, Precision::F64).into_iter().filter(|step| step.part.name() == part);
     let bytes = of_part.map(|step| {
         let Outlines { registers, passes, .. } = step.program.outlines();
         let mut arrays: Vec<Array> = vec![];

@@ -81,7 +81,7 @@ fn share(figures: ListFigures) -> Result<Share, StudyError> {
             cause,
         }
     })?;
-    let lists = rival_ledger::<f64, f64>(&model);
+    let lists = rival_ledger(&model);
     let of_pair: u64 = lists
         .entries()
         .iter()

@@ -209,11 +209,7 @@ impl Sizes {
 fn registers(checked: &Checked, model: &Model) -> f64 {
     let (machine, particles) = (&checked.scene.machine, &checked.particles);
     let lengths = Lengths::new(model, particles.grain_count(), particles.len());
-    let programs = match machine.precision {
-        Precision::F64 => programs::<f64, f64>(model),
-        Precision::F32 => programs::<f32, f32>(model),
-        Precision::Mixed => programs::<f64, f32>(model),
-    };
+    let programs = programs(model, machine.precision);
     // Programs of one precision share their registers, which are as many and as long as the largest asks for.
     let mut largest: BTreeMap<&str, [usize; 3]> = BTreeMap::new();
     for step in programs {

@@ -23,7 +23,7 @@ use crate::method::{
 use crate::number::significant;
 use crate::observe::{Observation, Scenery, Sums};
 use crate::particles::Particles;
-use crate::scene::{Output, SceneErrors, Warning};
+use crate::scene::{Output, Precision, SceneErrors, Warning};
 use crate::words::Words;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -149,7 +149,7 @@ impl Prepared for Discs {
             times: 1,
             program: step.program,
         };
-        programs::<f64, f64>(&model).into_iter().map(as_any).collect()
+        programs(&model, Precision::F64).into_iter().map(as_any).collect()
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
@@ -244,7 +244,7 @@ impl Running {
         let [grains, walls] = self.discs;
         let lengths = Lengths::new(&self.model, grains, grains + walls);
         let work = |model: &Model| -> u64 {
-            let parts = ledger(&programs::<f64, f64>(model)).parts();
+            let parts = ledger(&programs(model, Precision::F64)).parts();
             let cost = parts.iter();
             cost.map(|(_, length, counts)| counts.total() * lengths.range(*length).len() as u64).sum()
         };

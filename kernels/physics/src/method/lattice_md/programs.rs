@@ -3,6 +3,7 @@
 use super::options::ProgramText;
 use super::{Discs, GearValues, Lengths, Model, Scheme};
 use crate::method::pairwise::{CarriedBy, WithLaw, WithScheme};
+use crate::scene;
 use std::marker::PhantomData;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::DERIVATIVES;
@@ -70,8 +71,17 @@ pub struct StepProgram {
     pub program: Box<dyn Runnable>,
 }
 
-/// The programs of a step of `model`, with state of precision `S` and forces of precision `P`, in their order.
-pub fn programs<S: Precision, P: Precision>(model: &Model) -> Vec<StepProgram> {
+/// The programs of a step of `model`, in their order. They are compiled here, once.
+pub fn programs(model: &Model, precision: scene::Precision) -> Vec<StepProgram> {
+    match precision {
+        scene::Precision::F64 => programs_of::<f64, f64>(model),
+        scene::Precision::F32 => programs_of::<f32, f32>(model),
+        scene::Precision::Mixed => programs_of::<f64, f32>(model),
+    }
+}
+
+/// With state of precision `S` and forces of precision `P`.
+pub(super) fn programs_of<S: Precision, P: Precision>(model: &Model) -> Vec<StepProgram> {
     match model.text {
         ProgramText::Ours => ours::<S, P>(model),
         ProgramText::Printed => printed_programs(model),
@@ -179,13 +189,18 @@ pub fn ledger(programs: &[StepProgram]) -> Ledger {
 }
 
 /// What a step of the neighbour-list rival executes, element by element: the programs it shares with the lattice, and
-/// the law as its own text counts it, asked for its distance by every candidate and for the rest by every pair.
-pub fn rival_ledger<S: Precision, P: Precision>(model: &Model) -> Ledger {
+/// the law as its own text counts it, asked for its distance by every candidate and for the rest by every pair; in double precision.
+pub fn rival_ledger(model: &Model) -> Ledger {
+    rival_ledger_of::<f64, f64>(model)
+}
+
+/// With state of precision `S` and forces of precision `P`.
+pub(super) fn rival_ledger_of<S: Precision, P: Precision>(model: &Model) -> Ledger {
     let one_place = Model { mask: Mask::one_place(), ..model.clone() };
     let (law, _) = with_law_of_text(&one_place, LatticeSweep::<P>(&one_place, PhantomData));
     let part = Part::Forces.name();
     let mut ledger = Ledger::default();
-    for step in programs::<S, P>(model) {
+    for step in programs_of::<S, P>(model) {
         match step.part {
             Part::Lattice => {}
             Part::Forces => {

@@ -16,6 +16,7 @@ use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::lattice_md::model;
 use stripmine_physics::method::lattice_md::{Arrays, Lengths, programs};
 use stripmine_physics::method::throughput::MeasurementError;
+use stripmine_physics::scene;
 
 /// The interpreter is slow: it takes part in every n-th sweep, by the number of elements of the vectors.
 fn turn(elements: usize) -> usize {
@@ -64,9 +65,9 @@ impl Loops {
             for precision in ["f64", "f32", "mixed"] {
                 let run = Run { particles, occupancy, precision, ..DRILL };
                 match precision {
-                    "f64" => loops.lay_out::<f64, f64>(&run, variant)?,
-                    "f32" => loops.lay_out::<f32, f32>(&run, variant)?,
-                    _ => loops.lay_out::<f64, f32>(&run, variant)?,
+                    "f64" => loops.lay_out::<f64, f64>(&run, variant, scene::Precision::F64)?,
+                    "f32" => loops.lay_out::<f32, f32>(&run, variant, scene::Precision::F32)?,
+                    _ => loops.lay_out::<f64, f32>(&run, variant, scene::Precision::Mixed)?,
                 }
             }
         }
@@ -77,12 +78,13 @@ impl Loops {
         &mut self,
         run: &Run,
         variant: &Variant,
+        precision: scene::Precision,
     ) -> Result<(), MeasurementError> {
         let checked = run.scene(&AT_REST)?;
         let mut model = model(&checked);
         (variant.change)(&mut model);
         let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
-        let programs = programs::<S, P>(&model);
+        let programs = programs(&model, precision);
         let ranges = programs.iter().map(|step| lengths.range(step.length)).collect();
         let near: Vec<Near> = programs.iter().map(|_| Near::default()).collect();
         let whole: Vec<Samples> = programs.iter().map(|_| Samples::default()).collect();
@@ -211,7 +213,7 @@ mod tests {
     fn the_step_of_the_source_is_drilled() {
         let mut loops = Loops { steps: vec![], arrays: vec![] };
         let source = VARIANTS.last().unwrap();
-        loops.lay_out::<f64, f64>(&DRILL, source).unwrap();
+        loops.lay_out::<f64, f64>(&DRILL, source, scene::Precision::F64).unwrap();
         let signatures = |programs: &[StepProgram]| -> Vec<String> {
             programs.iter().map(|step| step.program.outlines().signature()).collect()
         };

@@ -2,7 +2,6 @@
 //! as the method's, timed over vectors of 8 to 4 million elements, and a host model fitted to the times.
 
 mod capacities;
-mod drills;
 mod fit;
 mod large;
 mod levels;
@@ -15,7 +14,6 @@ mod variants;
 
 use super::samples::Samples;
 use crate::model::host::{FORMAT, HostModel, LoopCosts, Measured};
-use drills::{Arrays, LONGEST};
 use levels::{Levels, fit_levels};
 use loops::Loops;
 use passes::{Lane, NEAR, SHORTEST_VECTOR};
@@ -23,6 +21,7 @@ use point::Charged;
 use scenes::Scenes;
 use std::time::{Duration, Instant};
 use stripmine_kernels::InstructionSet;
+use stripmine_kernels::drills::{Arrays, LONGEST};
 use stripmine_kernels::isa::ProgramError;
 use stripmine_physics::method::lattice_md::{Phase, Timings};
 use stripmine_physics::method::throughput::MeasurementError;
@@ -100,7 +99,7 @@ impl Calibration {
             begun: Instant::now(),
             sweeps: 0,
             timer: timer_resolution(),
-            lanes: [Lane::new::<f64, f32>(set)?, Lane::new::<f32, f64>(set)?],
+            lanes: [Lane::new::<f64>(set)?, Lane::new::<f32>(set)?],
             arrays: (Arrays::new(LONGEST), Arrays::new(LONGEST)),
             loops: Loops::new()?,
             scenes: Scenes::new()?,

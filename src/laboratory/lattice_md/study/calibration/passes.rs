@@ -1,12 +1,11 @@
 //! Passes of the interpreter: what each kind takes in the first-level cache, and how long it takes beyond.
 
-use super::drills::{Kind, LONGEST, ROUNDS, drill, mixture};
 use super::fit::{self, median};
 use super::point::{Charged, Waiting};
 use crate::laboratory::lattice_md::study::samples::{PARTS, Samples};
 use crate::model::host::{Change, LaneCosts, PassCost, Surroundings, touches};
-use stripmine_kernels::backend::Precision;
 use stripmine_kernels::backend::tape::{Outline, Outlines, register_shape};
+use stripmine_kernels::drills::{Drilled, Kind, LONGEST, ROUNDS};
 use stripmine_kernels::isa::{Memory, ProgramError};
 use stripmine_kernels::{Execution, InstructionSet, Runnable};
 
@@ -74,7 +73,7 @@ pub(super) struct Lane {
 
 impl Lane {
     /// Nothing measured yet; conversions are from and to `O`.
-    pub(super) fn new<L: Precision, O: Precision>(set: InstructionSet) -> Result<Lane, ProgramError> {
+    pub(super) fn new<L: Drilled>(set: InstructionSet) -> Result<Lane, ProgramError> {
         let (register_bytes, lanes) = register_shape::<L>(set)?;
         let mut points = vec![];
         for (at, kind) in Kind::ALL.iter().enumerate() {
@@ -86,9 +85,9 @@ impl Lane {
         let lengths = (0..MIXED.len()).flat_map(|at| MIXED_LENGTHS.map(|n| (at, n, Samples::default())));
         Ok(Lane {
             name: L::NAME,
-            programs: Kind::ALL.iter().map(|&kind| drill::<L, O>(kind)).collect(),
+            programs: Kind::ALL.iter().map(|&kind| L::drill(kind)).collect(),
             points,
-            mixtures: MIXED.map(mixture::<L, O>).into_iter().collect(),
+            mixtures: MIXED.map(L::mixture).into_iter().collect(),
             mixed: lengths.collect(),
             costs: LaneCosts { register_bytes, lanes, ..LaneCosts::default() },
         })

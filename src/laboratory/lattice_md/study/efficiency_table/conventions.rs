@@ -12,6 +12,7 @@ use stripmine_kernels::isa::{Array, Machine, Op, OpClass, OpCounts, Slot, Text, 
 use stripmine_kernels::ledger::Length;
 use stripmine_kernels::mask::Mask;
 use stripmine_physics::method::lattice_md::{Part, StepProgram, programs};
+use stripmine_physics::scene::Precision;
 
 /// A way of counting, and of writing what is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -197,7 +198,7 @@ impl Texts {
         let places = model.mask.offsets().len();
         let gravity = model.gravity != [0.0; 2];
         model.mask = Mask::one_place();
-        let one = programs::<f64, f64>(&model);
+        let one = programs(&model, Precision::F64);
         debug_assert!(one.iter().any(|step| step.length == Length::SweptCells));
         Ok(Texts {
             index: tally(&all, Part::Index),

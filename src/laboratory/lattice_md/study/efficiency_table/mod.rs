@@ -14,6 +14,7 @@ use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape, ShapeE
 use stripmine_physics::method::lattice_md::{
     Discs, GearValues, Lengths, Model, Part, ProgramText, Scheme, StepProgram, ledger, programs,
 };
+use stripmine_physics::scene::Precision;
 use stripmine_physics::words::Words;
 
 /// What the table is made for.
@@ -327,7 +328,7 @@ fn model_of(question: &Question) -> Result<Model, QuestionError> {
 pub fn step(question: &Question) -> Result<(Vec<StepProgram>, Lengths), QuestionError> {
     let model = model_of(question)?;
     let lengths = Lengths::new(&model, question.particles, question.particles);
-    Ok((programs::<f64, f64>(&model), lengths))
+    Ok((programs(&model, Precision::F64), lengths))
 }
 
 /// The efficiency table of a question on a machine.
@@ -416,7 +417,7 @@ fn step_clocks(clock: Clock, ledger: &Ledger, lengths: &Lengths, machine: &Machi
 /// What a section does once, and what it does at a place, by the sweeps over all places and over one.
 fn force_sections(question: &Question) -> Result<Vec<SectionRow>, QuestionError> {
     let tally = |model: &Model| -> Vec<(&'static str, OpCounts)> {
-        let forces = programs::<f64, f64>(model).into_iter().filter(|step| step.part == Part::Forces);
+        let forces = programs(model, Precision::F64).into_iter().filter(|step| step.part == Part::Forces);
         forces.flat_map(|step| step.program.tally()).collect()
     };
     let model = model_of(question)?;

@@ -8,13 +8,13 @@ pub use errors::{Case, Errors, PHASES, PHASES_OF_DATA, STEPS, STEPS_OF_DATA, STR
 
 use super::calibration::CalibrationError;
 use super::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampling, phase_times};
-use super::predicted_step::{Step, of_precision};
+use super::predicted_step::Step;
 use super::rounds::Bound;
 use crate::model::host::{HostModel, OutOfRange};
 use serde::Serialize;
 use strangers::strangers;
 use stripmine_kernels::Execution;
-use stripmine_physics::method::lattice_md::{Checked, Lengths, Phase, model};
+use stripmine_physics::method::lattice_md::{Checked, Lengths, Phase, model, programs};
 use stripmine_physics::method::throughput::MeasurementError;
 
 /// How much is measured.
@@ -193,7 +193,7 @@ impl Scene {
         let step = named.and_then(|(_, execution)| *execution).map(|execution| {
             let model = model(&checked);
             let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
-            (Step::new(&of_precision(&model, checked.scene.machine.precision), &lengths), execution)
+            (Step::new(&programs(&model, checked.scene.machine.precision), &lengths), execution)
         });
         Ok(Scene { run, checked, step, halves: [None, None] })
     }

@@ -8,10 +8,10 @@ use super::fast::{self, FastSearch};
 use super::judge::judge_depth;
 use super::neighbor_list::Rival;
 use super::options::ProgramText;
-use super::programs::{rival_ledger, scales};
+use super::programs::{programs_of, rival_ledger_of, scales};
 use super::walls::walls_at;
 use super::watch::Names;
-use super::{Arrays, ListOptions, Model, Part, StepProgram, execute, ledger, programs};
+use super::{Arrays, ListOptions, Model, Part, StepProgram, execute, ledger};
 use super::{Elapsed, Engine, Phase, Timings, Totals};
 use crate::io::checkpoint::Column;
 use crate::method::Failure;
@@ -112,7 +112,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         };
         let crossings = Crossings::new(model.counts_crossings(), particles.len());
         let mut simulation = LatticeMd {
-            programs: programs::<S, P>(&model),
+            programs: programs_of::<S, P>(&model),
             arrays: match contacts {
                 Contacts::Lists(_) => Arrays::with_forces_by_disc(&model, &particles),
                 Contacts::Lattice | Contacts::Fast(_) => Arrays::new(&model, &particles),
@@ -364,7 +364,7 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
     fn ledger(&self) -> Ledger {
         match self.rival {
             None => ledger(&self.programs),
-            Some(_) => rival_ledger::<S, P>(&self.model),
+            Some(_) => rival_ledger_of::<S, P>(&self.model),
         }
     }
 

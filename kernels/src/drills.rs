@@ -3,19 +3,19 @@
 //! Which operation is a number of the text, not a type: the interpreter never sees the branch, and a text a precision is
 //! all that is compiled.
 
-use std::marker::PhantomData;
-use stripmine_kernels::backend::Precision;
-use stripmine_kernels::isa::{
+use crate::backend::Precision;
+use crate::isa::{
     AlignedColumn, Array, Counter, Element, Machine, Memory, Op, Predicate, Slot, Text, Vector,
 };
-use stripmine_kernels::{Program, Runnable};
+use crate::{Program, Runnable};
+use std::marker::PhantomData;
 
 /// Registers that a drill works on at once.
 const WIDTH: usize = 8;
 /// Predicates and index vectors at once.
 const FEW: usize = 4;
 /// Executions of the drilled operation in a long and in a short drill; their difference leaves beginning and end out.
-pub(super) const ROUNDS: [usize; 2] = [36, 8];
+pub const ROUNDS: [usize; 2] = [36, 8];
 /// How far the operand of [`Kind::Shifted`] lies: no whole number of registers.
 const SHIFT: usize = 5;
 
@@ -24,7 +24,7 @@ const PERIOD: usize = 61;
 
 /// What is drilled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub enum Kind {
     /// An operation on numbers, predicates or index vectors in registers.
     Plain(Op),
     /// The same on entries of an index vector in memory.
@@ -37,7 +37,7 @@ pub(super) enum Kind {
 
 impl Kind {
     /// Every kind.
-    pub(super) const ALL: [Kind; 30] = [
+    pub const ALL: [Kind; 30] = [
         Kind::Plain(Op::Add),
         Kind::Plain(Op::Subtract),
         Kind::Plain(Op::Multiply),
@@ -71,12 +71,12 @@ impl Kind {
     ];
 
     /// Whether it is one of those that tell the levels of memory from each other: operands in place, from afar, written over, stored.
-    pub(super) fn moves(self) -> bool {
+    pub fn moves(self) -> bool {
         matches!(self, Kind::Plain(Op::Add | Op::Absolute | Op::Store) | Kind::Shifted)
     }
 
     /// The name of the pass, as outlines give it.
-    pub(super) fn name(self) -> String {
+    pub fn name(self) -> String {
         match self {
             Kind::Plain(op) => op.mnemonic().to_owned(),
             Kind::Index(op) => format!("{}.index", op.mnemonic()),
@@ -256,23 +256,46 @@ unsafe impl<L: Element, O: Element> Text for Mixture<L, O> {
     }
 }
 
-/// A long and a short drill of a kind on lanes of `L`, conversions from and to `O`.
-pub(super) fn drill<L: Precision, O: Precision>(kind: Kind) -> [Box<dyn Runnable>; 2] {
-    ROUNDS.map(|rounds| -> Box<dyn Runnable> {
-        Box::new(Program::new(Drill::<L, O> { kind, rounds, precisions: PhantomData }))
-    })
+/// Lanes that are drilled, with the other precision that they are converted from and to. Drills are compiled here, once.
+pub trait Drilled: Precision {
+    /// The other precision.
+    type Other: Precision;
+
+    /// A long and a short drill of a kind.
+    fn drill(kind: Kind) -> [Box<dyn Runnable>; 2];
+
+    /// A mixture of `passes` passes.
+    fn mixture(passes: usize) -> Box<dyn Runnable>;
 }
 
-/// A mixture of `passes` passes.
-pub(super) fn mixture<L: Precision, O: Precision>(passes: usize) -> Box<dyn Runnable> {
-    Box::new(Program::new(Mixture::<L, O> { passes, precisions: PhantomData }))
+macro_rules! drilled {
+    ($($lane:ty, $other:ty;)*) => {$(
+        impl Drilled for $lane {
+            type Other = $other;
+
+            fn drill(kind: Kind) -> [Box<dyn Runnable>; 2] {
+                ROUNDS.map(|rounds| -> Box<dyn Runnable> {
+                    Box::new(Program::new(Drill::<$lane, $other> { kind, rounds, precisions: PhantomData }))
+                })
+            }
+
+            fn mixture(passes: usize) -> Box<dyn Runnable> {
+                Box::new(Program::new(Mixture::<$lane, $other> { passes, precisions: PhantomData }))
+            }
+        }
+    )*};
+}
+
+drilled! {
+    f64, f32;
+    f32, f64;
 }
 
 /// Most elements of a vector in a calibration.
-pub(super) const LONGEST: usize = 4_000_000;
+pub const LONGEST: usize = 4_000_000;
 
 /// The arrays of the drills.
-pub(super) struct Arrays<L, O> {
+pub struct Arrays<L, O> {
     read: [AlignedColumn<L>; 2],
     written: Vec<AlignedColumn<L>>,
     others: [AlignedColumn<O>; 2],
@@ -283,7 +306,7 @@ pub(super) struct Arrays<L, O> {
 
 impl<L: Element, O: Element> Arrays<L, O> {
     /// For vectors of up to `n` elements.
-    pub(super) fn new(n: usize) -> Self {
+    pub fn new(n: usize) -> Self {
         let n = n + SHIFT;
         // Near 1, so that no chain of products, quotients or roots leaves the normal numbers.
         let near_one = |array, step: f64| {
@@ -303,12 +326,12 @@ impl<L: Element, O: Element> Arrays<L, O> {
     }
 
     /// How many arrays there are.
-    pub(super) fn count(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.read.len() + self.written.len() + self.others.len() + 2 + self.written_index.len()
     }
 
     /// The arrays bound to their slots.
-    pub(super) fn memory(&mut self) -> Memory<'_> {
+    pub fn memory(&mut self) -> Memory<'_> {
         let mut memory = Memory::new();
         for (array, column) in [Array::X, Array::Y].into_iter().zip(&self.read) {
             memory.bind_read(Slot::new(array), column);
@@ -336,7 +359,7 @@ mod tests {
     fn every_round_of_a_drill_is_a_pass_of_its_kind() {
         for kind in Kind::ALL {
             let name = if kind == Kind::Shifted { Op::Subtract.mnemonic().to_owned() } else { kind.name() };
-            let [long, short] = drill::<f64, f32>(kind)
+            let [long, short] = f64::drill(kind)
                 .map(|program| program.outlines().passes.iter().filter(|pass| pass.kind() == name).count());
             assert_eq!(long - short, ROUNDS[0] - ROUNDS[1], "{kind:?}");
         }
