@@ -1,6 +1,6 @@
 //! What is observed, by its name: the one place where names of quantities are looked up.
 
-use super::entry::Quantity;
+use super::entry::{Observable, Quantity};
 use crate::reported::{Class, Reported};
 use serde_json::{Map, Value};
 
@@ -27,6 +27,22 @@ impl Reported for UnknownName {
     fn class(&self) -> Class {
         Class::Precondition
     }
+}
+
+/// A list of what is observed: name, unit, how it is read off what a method has seen, and meaning, in one row.
+macro_rules! observables {
+    ($($name:literal, $unit:literal, $of:expr, $doc:literal;)*) => {
+        [$($crate::method::Observable {
+            quantity: $crate::method::Quantity { name: $name, unit: $unit, doc: $doc },
+            of: $of,
+        }),*]
+    };
+}
+pub(super) use observables;
+
+/// The values of observables, in their order.
+pub(super) fn values<S>(observables: &[Observable<S>], seen: &S) -> Vec<f64> {
+    observables.iter().map(|observable| (observable.of)(seen)).collect()
 }
 
 /// The place of a quantity among those observed, as a constant: a name that is misspelt does not compile.

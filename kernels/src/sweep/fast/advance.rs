@@ -271,11 +271,12 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Task<S> for Pas
                 self.motion.draw(self.arrays.step, &self.arrays.ids[some.clone()], [x, y]);
             }
             while first + R::LANES <= some.end {
-                let [x, y] = [0, 1].map(|axis| &noise[axis][first - some.start..]);
-                self.register(registers, first, [x, y]);
+                let from = first - some.start;
+                self.register(registers, first, [&noise[0][from..], &noise[1][from..]]);
                 first += R::LANES;
             }
-            self.elements(first..some.end, [0, 1].map(|axis| &noise[axis][first - some.start..]));
+            let from = first - some.start;
+            self.elements(first..some.end, [&noise[0][from..], &noise[1][from..]]);
             first = some.end;
         }
     }
@@ -300,11 +301,11 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
         let nothing = uniform(f64::NAN);
         let normals = match C::DRAWS {
             Draws::Never => [nothing; 2],
-            _ => noise.map(|numbers| {
-                assert!(numbers.len() >= R::LANES);
+            _ => {
+                assert!(noise[0].len() >= R::LANES && noise[1].len() >= R::LANES);
                 // SAFETY: there are as many as lanes.
-                unsafe { registers.load(numbers.as_ptr()) }
-            }),
+                unsafe { [registers.load(noise[0].as_ptr()), registers.load(noise[1].as_ptr())] }
+            }
         };
         for freedom in 0..FREEDOMS {
             // SAFETY: Advance has checked that every sum has an entry for every disc that moves; the discs of a register are
@@ -340,8 +341,8 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             }
         }
         let stays = match arrays.limit {
-            DisplacementLimit::Cell(edge) => {
-                let [x, y] = edge.map(|edge| uniform(0.5 * edge));
+            DisplacementLimit::Cell([x, y]) => {
+                let (x, y) = (uniform(0.5 * x), uniform(0.5 * y));
                 place[0].abs().less_equal(x).and(place[1].abs().less_equal(y))
             }
             DisplacementLimit::From { places: [x, y], distance } => {
@@ -353,14 +354,10 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             }
         };
         let creeps = (velocity[0] * velocity[0] + velocity[1] * velocity[1]).less_equal(uniform(self.square));
-        let list = |bits: u64, to: &mut Vec<u32>| {
-            let lanes = (0..R::LANES).filter(|lane| bits >> lane & 1 == 1);
-            to.extend(lanes.map(|lane| (first + lane) as u32));
-        };
         let moved = registers.bits(stays.and(creeps).not());
         if moved != 0 {
-            list(registers.bits(stays.not()), &mut self.passed.left);
-            list(registers.bits(creeps.not()), &mut self.passed.far);
+            list(registers.bits(stays.not()), first, R::LANES, &mut self.passed.left);
+            list(registers.bits(creeps.not()), first, R::LANES, &mut self.passed.far);
         }
         if !arrays.copies_places {
             return;
@@ -371,17 +368,26 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             // SAFETY: `along` has 16 entries, and no register has more lanes.
             unsafe { registers.store(along.as_mut_ptr(), place[axis] * unit) };
             // First all, then one by one: so they are converted at once.
-            let along = along.map(|along| along.to_f64() as f32);
-            for (lane, &along) in along.iter().enumerate().take(R::LANES) {
+            let mut narrow = [0.0_f32; 16];
+            for lane in 0..16 {
+                narrow[lane] = along[lane].to_f64() as f32;
+            }
+            for lane in 0..R::LANES {
                 // SAFETY: the cells are ones of the lattice, each of one disc only but for the spare cell behind it, which
                 // discs in shared cells have in common and only these stores touch: they are atomic, and compile to plain ones.
                 unsafe {
                     let place = arrays.places[axis].add(*arrays.cells.add(first + lane) as usize);
-                    AtomicU32::from_ptr(place.cast()).store(along.to_bits(), Ordering::Relaxed);
+                    AtomicU32::from_ptr(place.cast()).store(narrow[lane].to_bits(), Ordering::Relaxed);
                 }
             }
         }
     }
+}
+
+/// Lists the discs of a register from `first` on whose bits are set.
+#[inline(never)]
+fn list(bits: u64, first: usize, lanes: usize, to: &mut Vec<u32>) {
+    to.extend((0..lanes).filter(|lane| bits >> lane & 1 == 1).map(|lane| (first + lane) as u32));
 }
 
 /// Loads sums and sets them to zero.
@@ -399,10 +405,10 @@ unsafe fn take<R: Registers, P: Element>(registers: R, sums: *mut P) -> R::V {
         };
     }
     let mut lanes = [R::Lane::default(); 16];
-    for (lane, number) in lanes.iter_mut().enumerate().take(R::LANES) {
+    for lane in 0..R::LANES {
         // SAFETY: lane < LANES, and the caller promises LANES sums that are this thread's alone.
         let sum = unsafe { &mut *sums.add(lane) };
-        *number = R::Lane::from_f64(sum.to_f64());
+        lanes[lane] = R::Lane::from_f64(sum.to_f64());
         *sum = P::default();
     }
     // SAFETY: `lanes` has 16 entries, and no register has more lanes.

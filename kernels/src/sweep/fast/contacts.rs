@@ -270,7 +270,8 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
         }
         let zero = || Cell::new(registers.splat(P::default()));
         // SAFETY: each array has GROUP entries, and LANES <= GROUP.
-        let cell_offset = cell_offsets.map(|cell_offset| unsafe { registers.load(cell_offset.as_ptr()) });
+        let cell_offset =
+            unsafe { [registers.load(cell_offsets[0].as_ptr()), registers.load(cell_offsets[1].as_ptr())] };
         let gathered = Gathered {
             registers,
             discs: self.discs,
@@ -292,7 +293,8 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
 
         let (mut own_sums, mut partner_sums) = ([[P::default(); GROUP]; 3], [[P::default(); GROUP]; 3]);
         let mut magnitude = registers.splat(P::default());
-        for sum in L::SUMS.iter().map(|sum| sum.column::<2>()) {
+        for sum in L::SUMS {
+            let sum = sum.column::<2>();
             let value = gathered.own_sums[sum].get();
             magnitude = magnitude + value.abs();
             own_sums[sum] = spill(registers, value);
@@ -303,7 +305,8 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
             if lane == count {
                 break;
             }
-            for sum in L::SUMS.iter().map(|sum| sum.column::<2>()) {
+            for sum in L::SUMS {
+                let sum = sum.column::<2>();
                 // SAFETY: Sweep has checked that the column of every sum that L states has an entry for every disc, and a
                 // finder's pairs are of discs; no other thread adds to discs of the rows that this one sweeps.
                 unsafe {
@@ -311,7 +314,8 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
                     *to = *to + own_sums[sum][lane];
                 }
             }
-            for sum in L::SUMS.iter().map(|sum| sum.column::<2>()) {
+            for sum in L::SUMS {
+                let sum = sum.column::<2>();
                 // SAFETY: the partner is a disc too, in these rows or those ahead of them, to which no other thread adds
                 // at this stage; the reference to the own disc's sum has ended.
                 unsafe {
@@ -322,40 +326,47 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
         }
         // One pair after the other. Two fixed discs that touch have no effective mass, and of any others whose force is no
         // number the pair is listed below.
-        let add = |value: R::V, to: &mut f64| {
-            let values = spill(registers, value);
-            let values = values.iter().take(count).map(|value| value.to_f64());
-            values.filter(|value| value.is_finite()).for_each(|value| *to += value);
-        };
-        let list = |bits: u64, to: &mut Vec<Pair>| {
-            to.extend((0..count).filter(|lane| bits >> lane & 1 == 1).map(|lane| [own[lane], partner[lane]]));
-        };
         if self.asked.dissipation {
-            add(gathered.power.get(), &mut notes.dissipated);
+            add(&spill(registers, gathered.power.get()), count, &mut notes.dissipated);
         }
         if self.asked.energy {
             let [energy, virial] = &mut notes.energy;
-            add(gathered.energy[0].get(), energy);
-            add(gathered.energy[1].get(), virial);
+            add(&spill(registers, gathered.energy[0].get()), count, energy);
+            add(&spill(registers, gathered.energy[1].get()), count, virial);
             let contact = gathered.contact.get();
             // Sentinels never touch: what fills up a register is no contact.
             let there = registers.bits(registers.splat(P::default()).less_than(contact));
             if there != 0 {
                 notes.contacts += u64::from(there.count_ones());
-                let depths = spill(registers, contact).into_iter().take(count);
-                notes.deepest = depths.map(|depth| depth.to_f64()).fold(notes.deepest, f64::max);
+                notes.deepest = deepest(&spill(registers, contact), count, notes.deepest);
             }
         }
         if let Some(depth) = self.asked.watched {
             let depth = registers.splat(P::from_f64(depth));
             let bits = registers.bits(depth.less_than(gathered.penetration.get()));
             if bits != 0 {
-                list(bits, &mut notes.deep);
+                list(bits, count, [&own, &partner], &mut notes.deep);
             }
         }
         let finite = registers.bits(magnitude.less_than(registers.splat(P::from_f64(f64::INFINITY))));
         if finite.trailing_ones() < R::LANES as u32 {
-            list(!finite, &mut notes.not_finite);
+            list(!finite, count, [&own, &partner], &mut notes.not_finite);
         }
     }
+}
+
+/// Adds numbers of pairs one after the other, but those that are none.
+fn add<P: Element>(values: &Lanes<P>, count: usize, to: &mut f64) {
+    let values = values.iter().take(count).map(|value| value.to_f64());
+    values.filter(|value| value.is_finite()).for_each(|value| *to += value);
+}
+
+/// The largest of the numbers of pairs and one before.
+fn deepest<P: Element>(values: &Lanes<P>, count: usize, before: f64) -> f64 {
+    values.iter().take(count).map(|depth| depth.to_f64()).fold(before, f64::max)
+}
+
+/// Lists the pairs whose bits are set.
+fn list(bits: u64, count: usize, [own, partner]: [&Lanes<u32>; 2], to: &mut Vec<Pair>) {
+    to.extend((0..count).filter(|lane| bits >> lane & 1 == 1).map(|lane| [own[lane], partner[lane]]));
 }

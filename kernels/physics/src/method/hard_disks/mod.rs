@@ -16,6 +16,7 @@ mod options;
 mod oracle;
 mod prepared;
 mod presets;
+mod quantities;
 pub mod reference;
 mod restored;
 mod scene;

@@ -1,6 +1,5 @@
 //! Hard discs under way, observed.
 
-use super::benches::QUANTITIES;
 use super::collapse::{Endless, Watch};
 use super::collision_log::Log;
 use super::engine::{Engine, Happened, Partner, Stopped};
@@ -8,10 +7,11 @@ use super::event::Arena;
 use super::fast::Fast;
 use super::idle::never;
 use super::prepared::Checked;
+use super::quantities::{OBSERVABLES, Seen};
 use super::reference;
 use super::restored::sound;
 use crate::io::checkpoint::Column;
-use crate::method::observed::place;
+use crate::method::observed::values;
 use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
 use crate::particles::{Particles, in_space};
@@ -251,6 +251,35 @@ fn failure(
     }
 }
 
+impl Running {
+    /// All that there is to be seen now.
+    fn seen(&self) -> Seen {
+        let (count, time, space) = (self.engine.count() as f64, self.clock.time, &self.arena.space);
+        let sum = |of: &dyn Fn(&Disc) -> f64| self.discs().map(of).sum::<f64>();
+        let mass = sum(&|disc| disc.mass);
+        let momentum = [0, 1].map(|axis| sum(&|disc| disc.mass * disc.velocity_at(space, time)[axis]));
+        let kinetic = kinetic(self.discs(), &self.arena, time);
+        let drift = momentum.iter().map(|p| p * p).sum::<f64>() / (2.0 * mass);
+        let temperature = (kinetic - drift) / count;
+        let Totals { collisions, virial, .. } = self.totals;
+        Seen {
+            clock: self.clock,
+            collisions,
+            kinetic,
+            energy_error: if self.kinetic > 0.0 { kinetic / self.kinetic - 1.0 } else { 0.0 },
+            temperature,
+            momentum,
+            virial,
+            // Without collisions an ideal gas, even one at rest.
+            compressibility: match collisions {
+                0 => 1.0,
+                _ => 1.0 + virial / (2.0 * count * temperature * time),
+            },
+            collision_rate: if time > 0.0 { 2.0 * collisions as f64 / (count * time) } else { 0.0 },
+        }
+    }
+}
+
 impl Simulation for Running {
     fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure> {
         let begun = Instant::now();
@@ -306,30 +335,7 @@ impl Simulation for Running {
     }
 
     fn observe(&self) -> Vec<f64> {
-        let (count, time, space) = (self.engine.count() as f64, self.clock.time, &self.arena.space);
-        let sum = |of: &dyn Fn(&Disc) -> f64| self.discs().map(of).sum::<f64>();
-        let mass = sum(&|disc| disc.mass);
-        let momentum = [0, 1].map(|axis| sum(&|disc| disc.mass * disc.velocity_at(space, time)[axis]));
-        let kinetic = kinetic(self.discs(), &self.arena, time);
-        let drift = momentum.iter().map(|p| p * p).sum::<f64>() / (2.0 * mass);
-        let temperature = (kinetic - drift) / count;
-        let Totals { collisions, virial, .. } = self.totals;
-        let rate = if time > 0.0 { 2.0 * collisions as f64 / (count * time) } else { 0.0 };
-        // Without collisions an ideal gas, even one at rest.
-        let pressure = if collisions > 0 { 1.0 + virial / (2.0 * count * temperature * time) } else { 1.0 };
-        vec![
-            time,
-            self.clock.events as f64,
-            collisions as f64,
-            kinetic,
-            if self.kinetic > 0.0 { kinetic / self.kinetic - 1.0 } else { 0.0 },
-            temperature,
-            momentum[0],
-            momentum[1],
-            virial,
-            pressure,
-            rate,
-        ]
+        values(&OBSERVABLES, &self.seen())
     }
 
     fn snapshot(&self) -> Snapshot {
@@ -409,20 +415,14 @@ impl Simulation for Running {
     }
 
     fn in_words(&self) -> String {
-        const SAID: [usize; 3] = [
-            place(QUANTITIES, "temperature"),
-            place(QUANTITIES, "compressibility"),
-            place(QUANTITIES, "collision_rate"),
-        ];
-        let values = self.observe();
-        let [temperature, compressibility, rate] = SAID.map(|at| values[at]);
+        let Seen { temperature, compressibility, collision_rate, .. } = self.seen();
         format!(
             "{} discs, {} collisions of pairs; temperature {}, compressibility {}, {} collisions of a disc in a unit of time",
             self.places.len(),
             self.totals.collisions,
             significant(temperature, 5),
             significant(compressibility, 5),
-            significant(rate, 5)
+            significant(collision_rate, 5)
         )
     }
 }

@@ -1,26 +1,7 @@
-//! What is observed and what is measured of particles in a bath.
+//! What is measured of particles in a bath.
 
-use crate::method::{Bench, BenchOption, Quantity, Until};
-
-macro_rules! quantities {
-    ($($name:literal, $unit:literal, $doc:literal;)*) => {
-        &[$(Quantity { name: $name, unit: $unit, doc: $doc }),*]
-    };
-}
-
-/// What is observed, in the order of the columns.
-pub(super) const QUANTITIES: &[Quantity] = quantities! {
-    "time", "time", "The time.";
-    "kinetic", "energy", "Kinetic energy; by baoab of the velocities after the bath, which have m⟨v²⟩ = kT but for higher orders than dt², where those of the end of the step, in trajectory.xyz, are low by dt²⟨F²⟩/(4 m).";
-    "potential", "energy", "Energy of the pairs.";
-    "temperature", "energy", "Kinetic energy a particle and dimension: over N, for a bath does not conserve momentum, and all 2 N degrees of freedom have its temperature.";
-    "pressure", "force/length", "Pressure of the motion and of the pairs, over the area of the box.";
-    "msd", "length²", "Mean square displacement since the start, by the positions as if there were no sides.";
-    "rms", "length", "Its root.";
-    "momentum_x", "mass·length/time", "Momentum along x.";
-    "momentum_y", "mass·length/time", "Momentum along y.";
-    "lost", "", "Particles lost since the start.";
-};
+use super::quantities::QUANTITIES;
+use crate::method::{Bench, BenchOption, Until};
 
 macro_rules! options {
     ($($name:literal, $values:expr, $overrides:expr;)*) => {

@@ -10,6 +10,7 @@ pub mod options;
 mod prepared;
 mod presets;
 mod programs;
+mod quantities;
 mod scene;
 mod simulation;
 mod trials;

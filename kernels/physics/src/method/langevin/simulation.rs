@@ -1,11 +1,11 @@
 //! Particles in a bath under way, observed; what is thrown out is counted, and the run goes on without it.
 
-use super::benches::QUANTITIES;
 use super::dynamics::{Stepper, is_loss, stepper};
 use super::losses::Losses;
 use super::prepared::Checked;
+use super::quantities::{OBSERVABLES, Seen};
 use crate::io::checkpoint::{Column, Counter};
-use crate::method::observed::place;
+use crate::method::observed::values;
 use crate::method::{
     Clock, Failure, FailureKind, Prepared, Purpose, RunWarning, Simulation, Snapshot, Until,
 };
@@ -179,6 +179,32 @@ fn kept(name: String, column: Column, stays: &[bool]) -> (String, Column) {
     (name, column)
 }
 
+impl Running {
+    /// All that there is to be seen now.
+    fn seen(&self) -> Seen {
+        let (particles, mass) = (self.stepper.standing(), self.checked.mass);
+        let count = particles.len() as f64;
+        let velocities = || particles.all().iter().map(Particle::planar_velocity);
+        let thermal: Vec<[f64; 2]> = match self.checked.scene.scheme.is_observed_after_bath() {
+            true => self.stepper.predicted_velocities(),
+            false => velocities().collect(),
+        };
+        let kinetic = 0.5 * mass * thermal.iter().map(|[u, v]| u * u + v * v).sum::<f64>();
+        let [potential, virial] = self.of_pairs;
+        let square = self.displacements(&particles).iter().map(|[x, y]| x * x + y * y).sum::<f64>();
+        Seen {
+            time: self.clock().time,
+            kinetic,
+            potential,
+            temperature: kinetic / count,
+            pressure: (kinetic + 0.5 * virial) / self.checked.domain.area(),
+            msd: square / count,
+            momentum: [0, 1].map(|axis| mass * velocities().map(|velocity| velocity[axis]).sum::<f64>()),
+            lost: self.losses.count(),
+        }
+    }
+}
+
 impl Simulation for Running {
     fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure> {
         while !until.iter().any(|moment| moment.has_come(&self.clock())) {
@@ -211,31 +237,7 @@ impl Simulation for Running {
     }
 
     fn observe(&self) -> Vec<f64> {
-        let (particles, mass) = (self.stepper.standing(), self.checked.mass);
-        let count = particles.len() as f64;
-        let velocities = || particles.all().iter().map(Particle::planar_velocity);
-        let thermal: Vec<[f64; 2]> = match self.checked.scene.scheme.is_observed_after_bath() {
-            true => self.stepper.predicted_velocities(),
-            false => velocities().collect(),
-        };
-        let kinetic = 0.5 * mass * thermal.iter().map(|[u, v]| u * u + v * v).sum::<f64>();
-        let momentum = [0, 1].map(|axis| mass * velocities().map(|velocity| velocity[axis]).sum::<f64>());
-        let temperature = kinetic / count;
-        let [potential, virial] = self.of_pairs;
-        let pressure = (kinetic + 0.5 * virial) / self.checked.domain.area();
-        let square = self.displacements(&particles).iter().map(|[x, y]| x * x + y * y).sum::<f64>() / count;
-        vec![
-            self.clock().time,
-            kinetic,
-            potential,
-            temperature,
-            pressure,
-            square,
-            square.sqrt(),
-            momentum[0],
-            momentum[1],
-            self.losses.count() as f64,
-        ]
+        values(&OBSERVABLES, &self.seen())
     }
 
     fn snapshot(&self) -> Snapshot {
@@ -307,10 +309,7 @@ impl Simulation for Running {
     }
 
     fn in_words(&self) -> String {
-        const SAID: [usize; 3] =
-            [place(QUANTITIES, "temperature"), place(QUANTITIES, "pressure"), place(QUANTITIES, "msd")];
-        let seen = self.observe();
-        let [temperature, pressure, square] = SAID.map(|at| seen[at]);
+        let Seen { temperature, pressure, msd, .. } = self.seen();
         format!(
             "{} particles, {} lost{}; temperature {:.4}, pressure {}, mean square displacement {}",
             self.left(),
@@ -318,7 +317,7 @@ impl Simulation for Running {
             self.losses.first_in_words().map(|first| format!(", {first}")).unwrap_or_default(),
             temperature,
             significant(pressure, 5),
-            significant(square, 5)
+            significant(msd, 5)
         )
     }
 }

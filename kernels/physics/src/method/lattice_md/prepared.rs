@@ -16,6 +16,7 @@ use super::{
 use crate::domain::Domain;
 use crate::io::checkpoint::Counter;
 use crate::memory::Foreseen;
+use crate::method::observed::values;
 use crate::method::{
     Clock, Every, Fact, Failure, Prepared, Purpose, RunWarning, Schedule, Simulation, Snapshot, StepLimit,
     Until, VectorProgram,
@@ -302,7 +303,7 @@ impl Simulation for Running {
     }
 
     fn observe(&self) -> Vec<f64> {
-        OBSERVABLES.iter().map(|observable| (observable.of)(self.seen())).collect()
+        values(&OBSERVABLES, self.seen())
     }
 
     fn snapshot(&self) -> Snapshot {

@@ -2,6 +2,7 @@
 
 use super::Totals;
 use super::balance::Balance;
+use crate::method::observed::observables;
 use crate::method::{Observable, Quantity, quantities};
 use crate::observe::Observation;
 
@@ -14,12 +15,6 @@ pub(super) struct Seen {
     pub(super) balance: Balance,
     /// What has been counted and summed up since the start.
     pub(super) totals: Totals,
-}
-
-macro_rules! observables {
-    ($($name:literal, $unit:literal, $of:expr, $doc:literal;)*) => {
-        [$(Observable { quantity: Quantity { name: $name, unit: $unit, doc: $doc }, of: $of }),*]
-    };
 }
 
 /// What is observed, in the order of the columns.

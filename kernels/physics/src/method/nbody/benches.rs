@@ -1,28 +1,7 @@
-//! What is observed and what is measured of bodies.
+//! What is measured of bodies.
 
-use crate::method::{Bench, BenchOption, Quantity, Until};
-
-macro_rules! quantities {
-    ($($name:literal, $unit:literal, $doc:literal;)*) => {
-        &[$(Quantity { name: $name, unit: $unit, doc: $doc }),*]
-    };
-}
-
-/// What is observed, in the order of the columns.
-pub(super) const QUANTITIES: &[Quantity] = quantities! {
-    "time", "time", "The time.";
-    "kinetic", "energy", "Kinetic energy.";
-    "potential", "energy", "Energy of the softened pairs.";
-    "energy_error", "", "The energy less that of the start, over that of the start.";
-    "virial_ratio", "", "Kinetic energy over the magnitude of the potential energy: 0.5 in equilibrium.";
-    "momentum", "mass·length/time", "Magnitude of the momentum.";
-    "angular_momentum_x", "mass·length²/time", "Angular momentum about the origin, along x.";
-    "angular_momentum_y", "mass·length²/time", "The same along y.";
-    "angular_momentum_z", "mass·length²/time", "The same along z.";
-    "centre", "length", "Distance of the centre of mass from the origin.";
-    "balance_error", "energy", "The energy less that of the start.";
-    "half_mass_radius", "length", "Distance from the centre of mass within which half of the mass is.";
-};
+use super::quantities::QUANTITIES;
+use crate::method::{Bench, BenchOption, Until};
 
 macro_rules! options {
     ($($name:literal, $values:expr, $overrides:expr;)*) => {

@@ -11,6 +11,7 @@ mod keys;
 pub mod options;
 mod prepared;
 mod presets;
+mod quantities;
 mod rounded;
 pub mod scene;
 pub mod schemes;

@@ -1,15 +1,15 @@
 //! Bodies under way, observed.
 
-use super::benches::QUANTITIES;
 use super::bodies::{Bodies, Columns};
 use super::conserved::Conserved;
 use super::encounter::{Encounter, Encounters};
 use super::field::{Attraction, Stop, never};
 use super::prepared::Checked;
+use super::quantities::{OBSERVABLES, Seen};
 use super::schemes::Scheme;
 use super::watch::Watch;
 use crate::io::checkpoint::Column;
-use crate::method::observed::place;
+use crate::method::observed::values;
 use crate::method::{Clock, Culprit, Failure, FailureKind, Purpose, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
 use crate::particles::{Particles, in_plane};
@@ -272,6 +272,18 @@ impl Running {
         Err(failure.with([("energy", energy), ("energy_at_start", self.watch.start)]))
     }
 
+    /// All that there is to be seen now.
+    fn seen(&self) -> Seen {
+        let conserved = self.conserved_or_nothing();
+        Seen {
+            time: self.clock().time,
+            conserved,
+            energy_error: self.watch.relative(conserved.energy()),
+            balance_error: conserved.energy() - self.watch.start,
+            half_mass_radius: half_mass_radius(&self.bodies, conserved.centre),
+        }
+    }
+
     /// The energy as it stands, and after how many steps.
     fn now(&self) -> (f64, u64) {
         (self.conserved_or_nothing().energy(), self.steps)
@@ -308,24 +320,7 @@ impl Simulation for Running {
     }
 
     fn observe(&self) -> Vec<f64> {
-        let seen = self.conserved_or_nothing();
-        let length = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let [jx, jy, jz] = seen.angular_momentum;
-        vec![
-            self.clock().time,
-            seen.kinetic,
-            seen.potential,
-            self.watch.relative(seen.energy()),
-            // Any two bodies attract each other.
-            seen.kinetic / seen.potential.abs(),
-            length(seen.momentum),
-            jx,
-            jy,
-            jz,
-            length(seen.centre),
-            seen.energy() - self.watch.start,
-            half_mass_radius(&self.bodies, seen.centre),
-        ]
+        values(&OBSERVABLES, &self.seen())
     }
 
     fn snapshot(&self) -> Snapshot {
@@ -404,19 +399,13 @@ impl Simulation for Running {
     }
 
     fn in_words(&self) -> String {
-        const SAID: [usize; 3] = [
-            place(QUANTITIES, "energy_error"),
-            place(QUANTITIES, "virial_ratio"),
-            place(QUANTITIES, "momentum"),
-        ];
-        let seen = self.observe();
-        let [energy_error, virial_ratio, momentum] = SAID.map(|at| seen[at]);
+        let seen = self.seen();
         format!(
             "{} bodies; energy error {}, virial ratio {:.3}, momentum {}",
             self.bodies.len(),
-            significant(energy_error, 3),
-            virial_ratio,
-            significant(momentum, 2)
+            significant(seen.energy_error, 3),
+            seen.virial_ratio(),
+            significant(seen.momentum(), 2)
         )
     }
 }
