@@ -37,7 +37,7 @@ macro_rules! define_instruction_sets {
 
 define_instruction_sets! {
     (Scalar, "scalar", "One lane, no SIMD: the oracle."),
-    (Wide, "wide", "256 bits, whatever the build's target offers."),
+    (Wide, "wide", "256 bits, whatever the build's target offers; fast sweeps on x86-64 and ARM one lane at a time."),
     (Neon, "neon", "128 bits, 64-bit ARM."),
     (Avx2, "avx2", "256 bits, x86-64-v3."),
     (Avx512, "avx512", "512 bits, x86-64-v4."),
@@ -93,13 +93,29 @@ pub fn dispatch<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -> Resul
     Ok(())
 }
 
+/// As [`dispatch`], for work that is long to compile and of which a body on the `wide` registers is not worth that where the target has
+/// others: `wide` is then one lane at a time, to the same bits.
+///
+/// # Errors
+/// As of [`dispatch`].
+#[inline]
+pub fn dispatch_native<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -> Result<(), ProgramError> {
+    match set {
+        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+        InstructionSet::Wide => task.on(Wide::default()),
+        InstructionSet::Scalar | InstructionSet::Wide => task.on(Scalar::default()),
+        _ => return vectorized(set, OnSimd(task, PhantomData)),
+    }
+    Ok(())
+}
+
 /// As [`dispatch`], on registers that fuse products and sums and estimate inverse roots, where the set has such.
 pub(crate) fn dispatch_estimating<L: Precision, T: Task<L>, const RAW: bool>(
     set: InstructionSet,
     task: T,
 ) -> Result<(), ProgramError> {
     match set {
-        InstructionSet::Scalar | InstructionSet::Wide => dispatch(set, task),
+        InstructionSet::Scalar | InstructionSet::Wide => dispatch_native(set, task),
         _ => vectorized(set, OnEstimating::<T, L, RAW>(task, PhantomData)),
     }
 }

@@ -10,7 +10,7 @@ pub mod tape;
 mod wide;
 
 pub(crate) use dispatch::dispatch_estimating;
-pub use dispatch::{GROUP, InstructionSet, Task, dispatch};
+pub use dispatch::{GROUP, InstructionSet, Task, dispatch, dispatch_native};
 pub use estimated::Estimates;
 pub use precision::Precision;
 pub use pulp::{Pulp, PulpElement};

@@ -115,7 +115,7 @@ struct Lanes([f64; 16]);
 mod tests {
     use super::super::{Growth, meeting};
     use super::*;
-    use crate::backend::{InstructionSet, Task, dispatch};
+    use crate::backend::{InstructionSet, Task, dispatch_native};
     use crate::noise::{Purpose, Stream};
     use rand::RngExt;
 
@@ -164,7 +164,7 @@ mod tests {
                     let mut found = None;
                     let search =
                         Search { space, discs, known, partners, times: &mut times, found: &mut found };
-                    dispatch(set, search).unwrap();
+                    dispatch_native(set, search).unwrap();
                     (found.unwrap(), times[..count].to_vec())
                 };
                 let expected: Vec<f64> = discs[1..]

@@ -21,7 +21,7 @@
 pub mod shifts;
 mod tile;
 
-use crate::backend::{GROUP, InstructionSet, Precision, dispatch, dispatch_estimating};
+use crate::backend::{GROUP, InstructionSet, Precision, dispatch_estimating, dispatch_native};
 use crate::isa::ProgramError;
 use crate::isa::Storage;
 use crate::law::{self, Field, Law};
@@ -190,7 +190,7 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
                 is_stopped,
             };
             match arithmetic {
-                Arithmetic::Exact => dispatch(set, Tile::<P, L, SUMS, true>(work)),
+                Arithmetic::Exact => dispatch_native(set, Tile::<P, L, SUMS, true>(work)),
                 // Nothing asks for rates of raw forces.
                 Arithmetic::Raw if SUMS == 3 => {
                     dispatch_estimating::<_, _, true>(set, Tile::<P, L, SUMS, false>(work))

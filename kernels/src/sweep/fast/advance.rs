@@ -20,7 +20,7 @@
 
 use crate::InstructionSet;
 use crate::backend::{Precision, Registers, Scalar};
-use crate::backend::{Task, dispatch};
+use crate::backend::{Task, dispatch_native};
 use crate::integrator::{Context, DERIVATIVES, Draws, Inertia, Scheme, acceleration};
 use crate::isa::{Element, Predicate, ProgramError, Vector, same};
 use crate::noise::{self, Purpose};
@@ -208,11 +208,11 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             let mut passed = Passed::default();
             let (arrays, found) = (&arrays, &mut passed);
             match freedoms {
-                2 => dispatch(
+                2 => dispatch_native(
                     set,
                     Pass::<_, _, _, 2> { motion, arrays, range, corrected, square, unit, passed: found },
                 ),
-                _ => dispatch(
+                _ => dispatch_native(
                     set,
                     Pass::<_, _, _, 3> { motion, arrays, range, corrected, square, unit, passed: found },
                 ),

@@ -28,7 +28,7 @@ use super::finder::{Cursor, Finder, Rows};
 use super::pairs::{Pairs, SENTINELS, Touches};
 use crate::InstructionSet;
 use crate::backend::Precision;
-use crate::backend::dispatch;
+use crate::backend::dispatch_native;
 use crate::isa::{Element, ProgramError};
 use crate::law::{self, Asked, Law};
 use crate::threads::{in_stages, on_threads, pieces, threads};
@@ -133,7 +133,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
                 let pairs = finder.pairs(&band.found);
                 band.pairs += pairs.count() as u64;
                 let (sentinel, notes) = (count as u32, &mut band.notes);
-                dispatch(set, Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes })?;
+                dispatch_native(set, Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes })?;
             }
             Ok(())
         };
@@ -160,7 +160,10 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
                         let pairs = finder.pairs(found);
                         band.pairs += pairs.count() as u64;
                         let (sentinel, notes) = (count as u32, &mut band.notes);
-                        dispatch(set, Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes })?;
+                        dispatch_native(
+                            set,
+                            Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes },
+                        )?;
                     }
                 }
             }
@@ -174,7 +177,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
             let Band { notes, pairs: count_of_band, .. } = &mut self.bands[0];
             *count_of_band += pairs.count() as u64;
             let sentinel = count as u32;
-            dispatch(set, Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes })?;
+            dispatch_native(set, Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes })?;
         }
         let mut met = Met::default();
         for band in &mut self.bands {

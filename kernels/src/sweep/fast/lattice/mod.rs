@@ -28,7 +28,7 @@ use super::grid::Grid;
 use super::pairs::{Pairs, SENTINELS, Touches};
 use crate::InstructionSet;
 use crate::backend::Precision;
-use crate::backend::dispatch;
+use crate::backend::dispatch_native;
 use crate::isa::{Element, ProgramError};
 use crate::sweep::lattice::LatticeShape;
 use codes::Candidate;
@@ -92,13 +92,13 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
         found.clear();
         if occupancy.is_sparse() {
             let reach = occupancy.reach();
-            dispatch(
+            dispatch_native(
                 set,
                 SparseSearch { occupancy, codes, places, reach, rows, cursor, full: AT_ONCE, found, cells },
             )
         } else {
             let beyond = (1.0 + slack) * (1.0 + slack);
-            dispatch(set, Search { occupancy, beyond, rows, cursor, full: AT_ONCE, found })
+            dispatch_native(set, Search { occupancy, beyond, rows, cursor, full: AT_ONCE, found })
         }
     }
 

@@ -17,7 +17,7 @@ use crate::method::hard_disks::event::Arena;
 use lists::Lists;
 use queue::Queue;
 use stripmine_kernels::InstructionSet;
-use stripmine_kernels::backend::{Registers, Task, dispatch};
+use stripmine_kernels::backend::{Registers, Task, dispatch_native};
 use stripmine_kernels::flight::{Disc, Earliest, MOST_PARTNERS, earliest};
 use stripmine_kernels::isa::AlignedColumn;
 
@@ -139,7 +139,7 @@ impl Fast {
         self.partners.fill(Expected::RENEWAL);
         self.renewals += count as u64;
         self.sorted_until = self.events + SORTED_AFTER * count as u64;
-        let found = dispatch(self.set, All { engine: self, time });
+        let found = dispatch_native(self.set, All { engine: self, time });
         found.map_err(|_| Stopped::NoInstructions(self.set))
     }
 
@@ -354,7 +354,7 @@ impl Engine for Fast {
         let set = self.set;
         let mut found = Ok(None);
         let missing = |_| Stopped::NoInstructions(set);
-        dispatch(set, Next { engine: self, until, most, found: &mut found }).map_err(missing)?;
+        dispatch_native(set, Next { engine: self, until, most, found: &mut found }).map_err(missing)?;
         found
     }
 
