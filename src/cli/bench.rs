@@ -2,10 +2,11 @@
 
 use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
 use crate::report::terminal;
-use clap::Args;
+use clap::{Arg, ArgAction, ArgMatches, Args, value_parser};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use stripmine_physics::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
-use stripmine_physics::method::{Bench, Entry, Methods};
+use stripmine_physics::method::{Bench, BenchOption, Entry, Methods, Takes};
 use stripmine_physics::number::counted;
 use stripmine_physics::scene::{SceneErrors, Values};
 
@@ -14,63 +15,43 @@ use stripmine_physics::scene::{SceneErrors, Values};
 pub(super) struct BenchVerb {
     /// What to measure
     what: String,
-    /// Number of particles, at least
-    #[arg(long, value_parser = count)]
-    particles: Option<u64>,
-    /// Area of the discs over that of the box
-    #[arg(long, allow_negative_numbers = true)]
-    packing_fraction: Option<f64>,
-    /// Precision of state and forces
-    #[arg(long, value_parser = ["f64", "f32", "mixed"])]
-    precision: Option<String>,
-    /// Integrator, such as gear4, gear5, gear6, velocity-verlet, baoab or stochastic
-    #[arg(long)]
-    integrator: Option<String>,
-    /// What moves the particles: auto, fast, or programs of lattice MD, reference of hard discs; the fastest by default
-    #[arg(long)]
-    engine: Option<String>,
-    /// Whose programs: ours, or printed for the source's own; implies programs
-    #[arg(long)]
-    text: Option<String>,
-    /// How programs are executed: eager, strip:N or chained; implies programs
-    #[arg(long)]
-    execution: Option<String>,
-    /// Leave out friction, and with it rotation
-    #[arg(long)]
-    frictionless: bool,
-    /// Side of a lattice cell; the largest that the geometry allows by default
-    #[arg(long, allow_negative_numbers = true)]
-    cell_edge: Option<f64>,
-    /// Mask of cells around a disc, such as min or r3; the cheapest by default
-    #[arg(long)]
-    mask: Option<String>,
-    /// How products and roots of bodies are formed: exact, estimated or raw
-    #[arg(long)]
-    arithmetic: Option<String>,
-    /// Pair law of particles in a bath: none, wca or lennard-jones
-    #[arg(long)]
-    law: Option<String>,
-    /// How pairs of particles in a bath are found: auto, lattice, sectors or neighbor-list
-    #[arg(long)]
-    search: Option<String>,
-    /// Sectors along each side
-    #[arg(long)]
-    sectors: Option<u64>,
-    /// When particles in a bath are put in the order of their sectors: auto, when-needed or every-step
-    #[arg(long)]
-    sort: Option<String>,
-    /// How much farther than the cut-off listed pairs may be
-    #[arg(long, allow_negative_numbers = true)]
-    skin: Option<f64>,
     /// Steps, or collisions, of each repeat; about a second's worth by default
     #[arg(long, visible_alias = "collisions", value_parser = count)]
     steps: Option<u64>,
     /// Repeats
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
-    /// scalar, avx2, avx512, wide, or auto for the widest there is
-    #[arg(long, value_parser = ["scalar", "avx2", "avx512", "wide", "auto"])]
-    instruction_set: Option<String>,
+}
+
+/// The options of all benches, each once.
+fn options(methods: Methods) -> impl Iterator<Item = &'static BenchOption> {
+    let all = methods.iter().flat_map(|method| method.benches).flat_map(|bench| bench.options);
+    let mut seen = BTreeSet::new();
+    all.filter(move |option| seen.insert(option.name))
+}
+
+/// The same as arguments.
+pub(super) fn arguments(methods: Methods) -> impl Iterator<Item = Arg> {
+    options(methods).map(|option| {
+        let value = option.name.to_uppercase().replace('-', "_");
+        let argument = Arg::new(option.name).long(option.name).value_name(value).help(option.doc);
+        match option.takes {
+            Takes::Nothing => argument.action(ArgAction::SetTrue),
+            Takes::Count => argument.value_parser(count),
+            Takes::Number => argument.value_parser(value_parser!(f64)).allow_negative_numbers(true),
+            Takes::Word => argument,
+        }
+    })
+}
+
+/// The value of an option that was given, as text.
+fn value_of(option: &BenchOption, given: &ArgMatches) -> Option<String> {
+    match option.takes {
+        Takes::Nothing => given.get_flag(option.name).then(String::new),
+        Takes::Count => given.get_one::<u64>(option.name).map(u64::to_string),
+        Takes::Number => given.get_one::<f64>(option.name).map(f64::to_string),
+        Takes::Word => given.get_one::<String>(option.name).cloned(),
+    }
 }
 
 /// An override, and the option that it stands for.
@@ -80,61 +61,43 @@ struct Override {
 }
 
 impl BenchVerb {
-    /// The options given, by name, with their values; those without a value are there or not.
-    fn given(&self) -> Vec<(&'static str, Option<String>)> {
-        vec![
-            ("particles", self.particles.map(|count| count.to_string())),
-            ("packing-fraction", self.packing_fraction.map(|fraction| fraction.to_string())),
-            ("precision", self.precision.clone()),
-            ("integrator", self.integrator.clone()),
-            ("engine", self.engine.clone()),
-            ("text", self.text.clone()),
-            ("execution", self.execution.clone()),
-            ("instruction-set", self.instruction_set.clone()),
-            ("frictionless", self.frictionless.then(String::new)),
-            ("mask", self.mask.clone()),
-            ("arithmetic", self.arithmetic.clone()),
-            ("law", self.law.clone()),
-            ("search", self.search.clone()),
-            ("sectors", self.sectors.map(|count| count.to_string())),
-            ("sort", self.sort.clone()),
-            ("skin", self.skin.map(|skin| skin.to_string())),
-            ("cell-edge", self.cell_edge.map(|edge| edge.to_string())),
-        ]
-    }
-
     /// What the options say in a scene, defaults included.
-    fn overrides(&self, bench: &Bench) -> Result<Vec<Override>, Failure> {
+    fn overrides(
+        &self,
+        bench: &Bench,
+        given: &ArgMatches,
+        methods: Methods,
+    ) -> Result<Vec<Override>, Failure> {
         let mut all: Vec<Override> = bench
             .overrides
             .iter()
             .map(|text| Override { text: (*text).to_owned(), option: bench.name.to_owned() })
             .collect();
-        for (name, given) in self.given() {
-            let default = bench.defaults.iter().find(|(known, _)| *known == name);
-            let Some(value) = given.or_else(|| default.map(|(_, value)| (*value).to_owned())) else {
-                continue;
-            };
-            let Some(known) = bench.options.iter().find(|known| known.name == name) else {
-                return Err(Failure::NoSuchOption { bench: bench.name, option: name });
-            };
+        let has = |name: &str| bench.options.iter().any(|known| known.name == name);
+        if let Some(foreign) = options(methods).find(|it| !has(it.name) && value_of(it, given).is_some()) {
+            return Err(Failure::NoSuchOption { bench: bench.name, option: foreign.name });
+        }
+        for known in bench.options {
+            let default = bench.defaults.iter().find(|(name, _)| *name == known.name);
+            let default = default.map(|(_, value)| (*value).to_owned());
+            let Some(value) = value_of(known, given).or(default) else { continue };
             if !known.values.is_empty() && !known.values.contains(&value.as_str()) {
-                return Err(Failure::NoSuchValue { option: name, value, values: known.values });
+                return Err(Failure::NoSuchValue { option: known.name, value, values: known.values });
             }
-            let option = format!("--{name} {value}").trim_end().to_owned();
+            let option = format!("--{} {value}", known.name).trim_end().to_owned();
             let overrides = (known.overrides)(&value).into_iter();
             all.extend(overrides.map(|text| Override { text, option: option.clone() }));
         }
         Ok(all)
     }
 
-    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
+    pub(super) fn run(&self, matches: &ArgMatches, common: &Common, methods: Methods) -> Result<(), Failure> {
         let benches = methods.iter().flat_map(|&entry| entry.benches.iter().map(move |it| (entry, it)));
         let found = benches.into_iter().find(|(_, bench)| bench.name == self.what);
         let Some((entry, bench)) = found else {
             return Err(Failure::NoSuchOption { bench: "bench", option: "what" });
         };
-        let given = self.overrides(bench)?;
+        let given = self.overrides(bench, matches, methods)?;
         let bar = progress(common, "bench");
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
         let result = self.measured(entry, bench, &given, show);

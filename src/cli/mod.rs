@@ -86,7 +86,9 @@ fn command(methods: Methods) -> clap::Command {
             reproduce.mut_arg("only", |only| only.value_parser(PossibleValuesParser::new(items)))
         })
         .mut_subcommand("bench", |bench| {
-            bench.mut_arg("what", |what| what.value_parser(PossibleValuesParser::new(benches)))
+            bench
+                .mut_arg("what", |what| what.value_parser(PossibleValuesParser::new(benches)))
+                .args(bench::arguments(methods))
         })
         .mut_subcommand("scene", |scene| {
             scene
@@ -174,7 +176,10 @@ fn carried_out(matches: &ArgMatches, command: &str, methods: Methods) -> Result<
         GeneralVerb::Scene(verb) => verb.run(&common, methods),
         GeneralVerb::Run(verb) => verb.run(&common, methods),
         GeneralVerb::Plot(verb) => verb.run(&common, methods),
-        GeneralVerb::Bench(verb) => verb.run(&common, methods),
+        GeneralVerb::Bench(verb) => {
+            let given = matches.subcommand().map_or(matches, |(_, below)| below);
+            verb.run(given, &common, methods)
+        }
         GeneralVerb::Chart(verb) => verb.run(&common, methods),
         GeneralVerb::Compare(verb) => verb.run(&common, methods),
         GeneralVerb::Completions(verb) => verb.run(methods),

@@ -9,7 +9,7 @@ use stripmine_physics::io::checkpoint::Column;
 use stripmine_physics::memory::Foreseen;
 use stripmine_physics::method::{
     Axis, Bench, BenchOption, Clock, Decides, Entry, Every, Fact, Failure, Prepared, Purpose, Quantity,
-    RunWarning, SMALLEST_RADIUS, Schedule, Setting, Simulation, Snapshot, Trials, Until, compress,
+    RunWarning, SMALLEST_RADIUS, Schedule, Setting, Simulation, Snapshot, Takes, Trials, Until, compress,
 };
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{
@@ -35,7 +35,9 @@ pub static ENTRY: Entry = Entry {
         defaults: &[("particles", "50")],
         options: &[BenchOption {
             name: "particles",
+            takes: Takes::Count,
             values: &[],
+            doc: "Number of particles",
             overrides: |count| vec![format!("particles.count={count}")],
         }],
         overrides: &[],

@@ -102,11 +102,42 @@ pub struct Bench {
 pub struct BenchOption {
     /// The name.
     pub name: &'static str,
+    /// What follows it.
+    pub takes: Takes,
     /// The values that it may have; none where the scene judges them.
     pub values: &'static [&'static str],
+    /// What it is, for the help.
+    pub doc: &'static str,
     /// The overrides that a value makes.
     pub overrides: fn(&str) -> Vec<String>,
 }
+
+/// What follows an option.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Takes {
+    /// Nothing: it is there or not.
+    Nothing,
+    /// A whole number from 1 on.
+    Count,
+    /// A number.
+    Number,
+    /// A word.
+    Word,
+}
+
+/// The options of a bench: name, what follows, values where they are named here, what a value says in a scene, and the help.
+macro_rules! bench_options {
+    ($($name:literal $takes:ident $values:expr, $overrides:expr, $doc:literal;)*) => {
+        &[$($crate::method::BenchOption {
+            name: $name,
+            takes: $crate::method::Takes::$takes,
+            values: &$values,
+            doc: $doc,
+            overrides: $overrides,
+        }),*]
+    };
+}
+pub(super) use bench_options;
 
 /// Something to be said of a scene.
 #[derive(Clone, Debug, PartialEq)]

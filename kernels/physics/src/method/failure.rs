@@ -69,23 +69,31 @@ impl FailureKind {
 /// A particle that a failure names.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Culprit {
+    /// What its method calls it.
+    pub called: &'static str,
     /// Its id.
     pub id: u32,
     /// Where it is (length).
-    pub position: [f64; 2],
+    pub position: [f64; 3],
     /// How fast (length/time).
-    pub velocity: [f64; 2],
+    pub velocity: [f64; 3],
+}
+
+impl Culprit {
+    /// One that moves in a plane.
+    pub fn in_plane(called: &'static str, id: u32, [x, y]: [f64; 2], [u, v]: [f64; 2]) -> Culprit {
+        Culprit { called, id, position: [x, y, 0.0], velocity: [u, v, 0.0] }
+    }
 }
 
 impl fmt::Display for Culprit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Culprit { id, position: [x, y], velocity: [vx, vy] } = self;
-        write!(
-            f,
-            "disc {id} at ({x:.9}, {y:.9}) with velocity ({vx}, {vy})",
-            vx = significant(*vx, 5),
-            vy = significant(*vy, 5)
-        )
+        let Culprit { called, id, position, velocity } = self;
+        let axes = if position[2] == 0.0 && velocity[2] == 0.0 { 2 } else { 3 };
+        let list = |numbers: Vec<String>| numbers.join(", ");
+        let position = list(position.iter().take(axes).map(|x| format!("{x:.9}")).collect());
+        let velocity = list(velocity.iter().take(axes).map(|v| significant(*v, 5)).collect());
+        write!(f, "{called} {id} at ({position}) with velocity ({velocity})")
     }
 }
 
@@ -213,7 +221,7 @@ mod tests {
 
     #[test]
     fn failures_are_sentences_and_data() {
-        let culprit = Culprit { id: 7, position: [1.0, f64::NAN], velocity: [0.5, 0.0] };
+        let culprit = Culprit::in_plane("disc", 7, [1.0, f64::NAN], [0.5, 0.0]);
         let at = |clock| {
             let failure = Failure::new(FailureKind::NotFinite, format!("first {culprit}"), "halve dt");
             failure.at(clock).of(3, [culprit]).with([("limit", 0.25)])
@@ -227,7 +235,7 @@ mod tests {
         let data = json!({
             "kind": "not-finite", "count": 3, "values": {"limit": 0.25},
             "when": {"steps": 61, "time": 0.5, "events": 0},
-            "who": [{"id": 7, "position": [1.0, null], "velocity": [0.5, 0.0]}],
+            "who": [{"called": "disc", "id": 7, "position": [1.0, null, 0.0], "velocity": [0.5, 0.0, 0.0]}],
         });
         assert_eq!(failure.details(), Some(data));
         let whole = serde_json::to_value(&failure).unwrap();

@@ -1,7 +1,8 @@
 //! What is measured of hard discs.
 
 use super::quantities::QUANTITIES;
-use crate::method::{Bench, BenchOption, Until};
+use crate::method::entry::bench_options;
+use crate::method::{Bench, Until};
 
 /// The benchmark.
 pub const BENCHES: &[Bench] = &[Bench {
@@ -12,29 +13,13 @@ pub const BENCHES: &[Bench] = &[Bench {
     until: Until::Events,
     amount: |_| 2_000_000,
     defaults: &[("particles", "2500"), ("packing-fraction", "0.50")],
-    options: &[
-        BenchOption {
-            name: "particles",
-            values: &[],
-            overrides: |count| vec![format!("particles.count={count}")],
-        },
-        BenchOption {
-            name: "packing-fraction",
-            values: &[],
-            overrides: |fraction| vec![format!("particles.packing_fraction={fraction}")],
-        },
-        BenchOption {
-            name: "engine",
-            values: &["auto", "fast", "reference"],
-            overrides: |engine| vec![format!("machine.engine={engine}")],
-        },
-        BenchOption {
-            name: "instruction-set",
-            values: &[],
-            overrides: |set| vec![format!("machine.instruction_set={set}")],
-        },
-        BenchOption { name: "mask", values: &[], overrides: |mask| vec![format!("search.mask={mask}")] },
-    ],
+    options: bench_options! {
+        "particles" Count [], |count| vec![format!("particles.count={count}")], "Number of particles, at least";
+        "packing-fraction" Number [], |fraction| vec![format!("particles.packing_fraction={fraction}")], "Area of the discs over that of the box";
+        "engine" Word ["auto", "fast", "reference"], |engine| vec![format!("machine.engine={engine}")], "What moves the particles: auto, fast, or programs of lattice MD, reference of hard discs; the fastest by default";
+        "instruction-set" Word [], |set| vec![format!("machine.instruction_set={set}")], "scalar, avx2, avx512, wide, or auto for the widest there is";
+        "mask" Word [], |mask| vec![format!("search.mask={mask}")], "Mask of cells around a disc, such as min or r3; the cheapest by default";
+    },
     overrides: &[],
     quantities: QUANTITIES,
     compared: &["temperature"],

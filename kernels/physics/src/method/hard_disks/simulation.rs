@@ -207,7 +207,7 @@ fn falling<'d>(discs: impl IntoIterator<Item = &'d Disc>, arena: &Arena) -> f64 
 
 fn culprit(number: u32, disc: &Disc, particles: &Particles, places: &[usize]) -> Culprit {
     let Disc { position, velocity, .. } = *disc;
-    Culprit { id: particles.all()[places[number as usize]].id, position, velocity }
+    Culprit::in_plane("disc", particles.all()[places[number as usize]].id, position, velocity)
 }
 
 fn failure(

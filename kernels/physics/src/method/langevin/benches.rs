@@ -1,13 +1,8 @@
 //! What is measured of particles in a bath.
 
 use super::quantities::QUANTITIES;
-use crate::method::{Bench, BenchOption, Until};
-
-macro_rules! options {
-    ($($name:literal, $values:expr, $overrides:expr;)*) => {
-        &[$(BenchOption { name: $name, values: &$values, overrides: $overrides }),*]
-    };
-}
+use crate::method::entry::bench_options;
+use crate::method::{Bench, Until};
 
 /// The benchmark: the source's system.
 pub(super) const BENCHES: &[Bench] = &[Bench {
@@ -18,22 +13,22 @@ pub(super) const BENCHES: &[Bench] = &[Bench {
     until: Until::Steps,
     amount: |particles| (40_000_000 / particles.max(1)).clamp(20, 20_000),
     defaults: &[("particles", "40000")],
-    options: options! {
+    options: bench_options! {
         // The source's density, 4 particles in a unit of area.
-        "particles", [], |count| {
+        "particles" Count [], |count| {
             let side = count.parse::<f64>().map_or(100.0, |count| (count / 4.0).sqrt());
             vec![format!("particles.count={count}"), format!("domain.sides=[{side:?}, {side:?}]")]
-        };
-        "law", ["none", "wca", "lennard-jones"], |law| vec![format!("law.kind={law}")];
-        "search", ["auto", "lattice", "sectors", "neighbor-list"], |by| vec![format!("search.by={by}")];
-        "sectors", [], |count| vec!["search.by=sectors".to_owned(), format!("search.sectors={count}")];
-        "sort", ["auto", "when-needed", "every-step"], |sort| {
+        }, "Number of particles, at least";
+        "law" Word ["none", "wca", "lennard-jones"], |law| vec![format!("law.kind={law}")], "Pair law of particles in a bath: none, wca or lennard-jones";
+        "search" Word ["auto", "lattice", "sectors", "neighbor-list"], |by| vec![format!("search.by={by}")], "How pairs of particles in a bath are found: auto, lattice, sectors or neighbor-list";
+        "sectors" Count [], |count| vec!["search.by=sectors".to_owned(), format!("search.sectors={count}")], "Sectors along each side";
+        "sort" Word ["auto", "when-needed", "every-step"], |sort| {
             vec!["search.by=sectors".to_owned(), format!("search.sort={sort}")]
-        };
-        "skin", [], |skin| vec!["search.by=neighbor-list".to_owned(), format!("search.skin={skin}")];
-        "integrator", ["baoab", "stochastic", "as-printed"], |kind| vec![format!("integrator.kind={kind}")];
-        "precision", [], |precision| vec![format!("machine.precision={precision}")];
-        "instruction-set", [], |set| vec![format!("machine.instruction_set={set}")];
+        }, "When particles in a bath are put in the order of their sectors: auto, when-needed or every-step";
+        "skin" Number [], |skin| vec!["search.by=neighbor-list".to_owned(), format!("search.skin={skin}")], "How much farther than the cut-off listed pairs may be";
+        "integrator" Word ["baoab", "stochastic", "as-printed"], |kind| vec![format!("integrator.kind={kind}")], "Integrator, such as gear4, gear5, gear6, velocity-verlet, baoab or stochastic";
+        "precision" Word [], |precision| vec![format!("machine.precision={precision}")], "Precision of state and forces: f64, f32 or mixed";
+        "instruction-set" Word [], |set| vec![format!("machine.instruction_set={set}")], "scalar, avx2, avx512, wide, or auto for the widest there is";
     },
     overrides: &["integrator.dt=0.001"],
     quantities: QUANTITIES,

@@ -4,9 +4,8 @@ use super::checked::Checked;
 use super::found::Found;
 use super::options::{SchemeKind, SortKind};
 use crate::domain::Domain;
-use crate::io::checkpoint::Column;
 use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, Search, SectorSearch};
-use crate::method::pairwise::{Dynamics, Elapsed, Engine, Sort, System, WithLaw, WithScheme};
+use crate::method::pairwise::{Dynamics, Engine, Sort, Stepping, System, WithLaw, WithScheme};
 use crate::method::{Failure, FailureKind};
 use crate::particles::Particles;
 use crate::scene::Precision;
@@ -14,9 +13,7 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend;
 use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::integrator::langevin::{Baoab, Bath, Stochastic};
-use stripmine_kernels::law::Asked;
 use stripmine_kernels::law::lennard_jones::LennardJones;
-use stripmine_kernels::sweep::fast::Met;
 
 /// Particles of one kind in a bath.
 #[derive(Clone, Copy, Debug)]
@@ -57,101 +54,6 @@ impl Dynamics for InBath {
     }
 }
 
-/// What steps particles.
-pub(super) trait Stepper: Send {
-    /// The predicted state of the next step.
-    fn advance(&mut self) -> Result<(), Failure>;
-    /// Forces on it; without pairs there are none.
-    fn meet(&mut self, asked: Asked) -> Result<Met, Failure>;
-    /// Particles that belong to no cell, or of which something is no finite number, by their place among the particles.
-    fn unfit(&self) -> Vec<usize>;
-    /// Brings cells up to date from the places as predicted.
-    fn settle(&mut self) -> Result<(), Failure>;
-    /// Steps, periods and seconds.
-    fn elapsed(&self) -> &Elapsed;
-    /// The same, to be changed.
-    fn elapsed_mut(&mut self) -> &mut Elapsed;
-    /// The particles inside the box.
-    fn particles(&self) -> Particles;
-    /// Their positions alone.
-    fn positions(&self) -> Vec<[f32; 3]>;
-    /// The particles where the periods counted as crossed are to be added.
-    fn standing(&self) -> Particles;
-    /// Their velocities as the last predictor left them (length/time).
-    fn predicted_velocities(&self) -> Vec<[f64; 2]>;
-    /// Everything that the next step depends on.
-    fn columns(&self) -> Vec<(String, Column)>;
-    /// Takes columns up.
-    fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String>;
-    /// Entries of the lists, and how often they were made.
-    fn lists(&self) -> Option<(usize, u64)>;
-}
-
-struct Stepping<S, P, Q> {
-    engine: Engine<S, P, Q, InBath>,
-    has_pairs: bool,
-}
-
-impl<S: backend::Precision, P: backend::Precision, Q: Search<S, P>> Stepper for Stepping<S, P, Q> {
-    fn advance(&mut self) -> Result<(), Failure> {
-        self.engine.advance().map(drop)
-    }
-
-    fn meet(&mut self, asked: Asked) -> Result<Met, Failure> {
-        match self.has_pairs {
-            true => self.engine.meet(asked),
-            false => {
-                self.engine.meet_nothing();
-                Ok(Met::default())
-            }
-        }
-    }
-
-    fn unfit(&self) -> Vec<usize> {
-        self.engine.unfit()
-    }
-
-    fn settle(&mut self) -> Result<(), Failure> {
-        self.engine.settle()
-    }
-
-    fn elapsed(&self) -> &Elapsed {
-        self.engine.elapsed()
-    }
-
-    fn elapsed_mut(&mut self) -> &mut Elapsed {
-        self.engine.elapsed_mut()
-    }
-
-    fn particles(&self) -> Particles {
-        self.engine.particles()
-    }
-
-    fn positions(&self) -> Vec<[f32; 3]> {
-        self.engine.positions()
-    }
-
-    fn standing(&self) -> Particles {
-        self.engine.standing()
-    }
-
-    fn predicted_velocities(&self) -> Vec<[f64; 2]> {
-        self.engine.predicted_velocities()
-    }
-
-    fn columns(&self) -> Vec<(String, Column)> {
-        self.engine.columns()
-    }
-
-    fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
-        self.engine.restore(steps, columns)
-    }
-
-    fn lists(&self) -> Option<(usize, u64)> {
-        self.engine.lists()
-    }
-}
-
 /// Particles of a checked scene, some of them or all, at their start.
 ///
 /// # Errors
@@ -160,7 +62,7 @@ pub(super) fn stepper(
     checked: &Checked,
     particles: Particles,
     follows: bool,
-) -> Result<Box<dyn Stepper>, Failure> {
+) -> Result<Box<dyn Stepping>, Failure> {
     match checked.scene.precision {
         Precision::F64 => of_precision::<f64, f64>(checked, particles, follows),
         Precision::F32 => of_precision::<f32, f32>(checked, particles, follows),
@@ -172,7 +74,7 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
     checked: &Checked,
     particles: Particles,
     follows: bool,
-) -> Result<Box<dyn Stepper>, Failure> {
+) -> Result<Box<dyn Stepping>, Failure> {
     let Checked { scene, domain, mass, reach, found, .. } = checked;
     let (domain, mass, reach): (Domain, f64, f64) = (*domain, *mass, *reach);
     let dynamics = InBath::of(checked);
@@ -195,15 +97,12 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
     };
     let count = particles.len();
     let set = scene.instructions();
-    let has_pairs = checked.has_pairs();
     fn boxed<S: backend::Precision, P: backend::Precision, Q: Search<S, P> + 'static>(
         (dynamics, system, set): (InBath, System, InstructionSet),
         search: Q,
         particles: Particles,
-        has_pairs: bool,
-    ) -> Result<Box<dyn Stepper>, Failure> {
-        let engine = Engine::<S, P, Q, _>::new(dynamics, system, search, set, particles)?;
-        Ok(Box::new(Stepping { engine, has_pairs }))
+    ) -> Result<Box<dyn Stepping>, Failure> {
+        Ok(Box::new(Engine::<S, P, Q, _>::new(dynamics, system, search, set, particles)?))
     }
     let all = (dynamics, system, set);
     match found.clone() {
@@ -211,13 +110,13 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
             // Each particle has the room of the cut-off to itself; those that come nearer share a cell.
             let radii = std::iter::repeat_n(0.5 * reach, count);
             let search = LatticeSearch::<P>::new::<S>(shape, frame, OnConflict::Resolve, radii);
-            boxed::<S, P, _>(all, search, particles, has_pairs)
+            boxed::<S, P, _>(all, search, particles)
         }
         Found::Sectors(grid) => {
-            boxed::<S, P, _>(all, SectorSearch::<P>::new::<S>(grid, count, reach), particles, has_pairs)
+            boxed::<S, P, _>(all, SectorSearch::<P>::new::<S>(grid, count, reach), particles)
         }
         Found::Lists(grid, skin) => {
-            boxed::<S, P, _>(all, ListSearch::<S, P>::new(grid, count, reach, skin), particles, has_pairs)
+            boxed::<S, P, _>(all, ListSearch::<S, P>::new(grid, count, reach, skin), particles)
         }
     }
 }

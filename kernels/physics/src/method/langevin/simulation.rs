@@ -1,11 +1,12 @@
 //! Particles in a bath under way, observed; what is thrown out is counted, and the run goes on without it.
 
 use super::checked::Checked;
-use super::dynamics::{Stepper, is_loss, stepper};
+use super::dynamics::{is_loss, stepper};
 use super::losses::Losses;
 use super::quantities::{OBSERVABLES, Seen};
 use crate::io::checkpoint::{Column, Counter};
 use crate::method::observed::values;
+use crate::method::pairwise::Stepping;
 use crate::method::{
     Clock, Failure, FailureKind, Prepared, Purpose, RunWarning, Simulation, Snapshot, Until,
 };
@@ -27,7 +28,7 @@ const OF_PAIRS: [&str; 2] = ["potential", "virial"];
 pub(super) struct Running {
     checked: Checked,
     purpose: Purpose,
-    stepper: Box<dyn Stepper>,
+    stepper: Box<dyn Stepping>,
     /// The particles of the start that are still there.
     start: Particles,
     losses: Losses,
@@ -60,12 +61,16 @@ impl Running {
     /// All forces of the places as they stand.
     fn meet(&mut self) -> Result<(), Failure> {
         let asked = Asked { energy: self.purpose == Purpose::Run, ..Asked::default() };
-        self.of_pairs = self.stepper.meet(asked)?.energy;
+        if self.checked.has_pairs() {
+            self.of_pairs = self.stepper.meet(asked)?.energy;
+        } else {
+            self.stepper.meet_nothing();
+        }
         Ok(())
     }
 
     fn step(&mut self) -> Result<(), Failure> {
-        let mut done = self.stepper.advance();
+        let mut done = self.stepper.advance().map(drop);
         loop {
             match done.and_then(|()| self.meet()) {
                 Ok(()) => break,

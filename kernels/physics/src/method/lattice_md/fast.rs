@@ -12,10 +12,10 @@ use crate::io::checkpoint::Column;
 use crate::method::Failure;
 use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, Search, SectorSearch};
 use crate::method::pairwise::{
-    self, Dynamics, Elapsed, Named, Prescribed, Sort, System, WithLaw, WithScheme,
+    self, Dynamics, Elapsed, Prescribed, Sort, Stepping, System, WithLaw, WithScheme,
 };
 use crate::observe::{Scenery, Sums};
-use crate::particles::{Particle, Particles};
+use crate::particles::Particles;
 use crate::scene::WallMotion;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
@@ -52,20 +52,21 @@ pub(super) fn start<S: Precision, P: Precision>(
     let (discs, reach) = (particles.len(), reach(&particles));
     let single = S::NAME != f64::NAME || P::NAME != f64::NAME;
     let sectors = |skin: f64| sectors_of(&model.domain(), reach + skin, single, discs);
-    Ok(match search {
+    let stepping = match search {
         FastSearch::Lattice(on_conflict) => {
             let search = LatticeSearch::<P>::new::<S>(model.shape, model.frame, on_conflict, radii);
-            Box::new(FastMd::<S, P, _>::new(model, search, set, walls, particles)?)
+            stepping::<S, P, _>(&model, search, set, walls, particles)?
         }
         FastSearch::Sectors => {
             let search = SectorSearch::<P>::new::<S>(sectors(0.0)?, discs, reach);
-            Box::new(FastMd::<S, P, _>::new(model, search, set, walls, particles)?)
+            stepping::<S, P, _>(&model, search, set, walls, particles)?
         }
         FastSearch::Lists { skin } => {
             let search = ListSearch::<S, P>::new(sectors(skin)?, discs, reach, skin);
-            Box::new(FastMd::<S, P, _>::new(model, search, set, walls, particles)?)
+            stepping::<S, P, _>(&model, search, set, walls, particles)?
         }
-    })
+    };
+    Ok(Box::new(FastMd::new(stepping, model, walls)?))
 }
 
 /// How far apart two discs may be and touch (length).
@@ -93,106 +94,106 @@ impl Dynamics for Granular {
     }
 }
 
-/// A fast simulation with state of precision `S`, forces of precision `P` and search `Q`.
-struct FastMd<S, P, Q> {
-    engine: pairwise::Engine<S, P, Q, Granular>,
+/// The engine for a search.
+fn stepping<S: Precision, P: Precision, Q: Search<S, P> + 'static>(
+    model: &Model,
+    search: Q,
+    set: InstructionSet,
+    walls: WallMotion,
+    particles: Particles,
+) -> Result<Box<dyn Stepping>, Failure> {
+    let system = System {
+        domain: model.domain(),
+        dt: model.dt,
+        gravity: model.gravity,
+        freedoms: model.freedoms(),
+        inertia: model.inertia(),
+        inertia_factor: model.inertia_factor,
+        radius: model.radius(),
+        reach: reach(&particles),
+        sort: Sort::WhenNeeded,
+        longest_step: model.watch.map_or(f64::INFINITY, |watch| watch.longest_step()),
+        followed: model.counts_crossings(),
+        // None of these schemes draws random numbers.
+        seed: 0,
+    };
+    let granular = Granular { model: model.clone(), walls };
+    Ok(Box::new(pairwise::Engine::<S, P, Q, _>::new(granular, system, search, set, particles)?))
+}
+
+/// A fast simulation.
+struct FastMd {
+    stepping: Box<dyn Stepping>,
+    model: Model,
+    walls: WallMotion,
     totals: Totals,
     /// Pairs met in the last step.
     met: u64,
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> FastMd<S, P, Q> {
-    /// Lays out `particles` and finds their first forces.
+impl FastMd {
+    /// Finds the first forces.
     ///
     /// # Errors
     /// [`Failure`] if the start breaks a precondition already.
-    fn new(
-        model: Model,
-        search: Q,
-        set: InstructionSet,
-        walls: WallMotion,
-        particles: Particles,
-    ) -> Result<Self, Failure> {
-        let system = System {
-            domain: model.domain(),
-            dt: model.dt,
-            gravity: model.gravity,
-            freedoms: model.freedoms(),
-            inertia: model.inertia(),
-            inertia_factor: model.inertia_factor,
-            radius: model.radius(),
-            reach: reach(&particles),
-            sort: Sort::WhenNeeded,
-            longest_step: model.watch.map_or(f64::INFINITY, |watch| watch.longest_step()),
-            followed: model.counts_crossings(),
-            // None of these schemes draws random numbers.
-            seed: 0,
-        };
-        let granular = Granular { model, walls };
-        let engine = pairwise::Engine::new(granular, system, search, set, particles)?;
-        let mut simulation = FastMd { engine, totals: Totals::default(), met: 0 };
+    fn new(stepping: Box<dyn Stepping>, model: Model, walls: WallMotion) -> Result<Self, Failure> {
+        let mut simulation = FastMd { stepping, model, walls, totals: Totals::default(), met: 0 };
         let power = simulation.meet()?;
         simulation.totals = Totals::starting_with(power, simulation.wall_power());
         Ok(simulation)
     }
 
-    fn model(&self) -> &Model {
-        &self.engine.dynamics().model
-    }
-
     /// All forces of the positions as they stand; gives what contacts dissipate (energy/time).
     fn meet(&mut self) -> Result<f64, Failure> {
-        let met = self.engine.meet(self.model().asked())?;
+        let met = self.stepping.meet(self.model.asked())?;
         self.met = met.pairs;
         let deep = met.deep.iter().map(|pair| pair.map(|disc| disc as usize));
-        judge_depth(&self.engine, deep, self.model().watch, &mut self.totals)?;
+        judge_depth(self.stepping.as_ref(), deep, self.model.watch, &mut self.totals)?;
         Ok(met.dissipated)
     }
 
     /// What moving walls put in (energy/time).
     fn wall_power(&self) -> f64 {
-        let Granular { model, walls } = self.engine.dynamics();
-        wall_power(model, *walls, self.time(), self.engine.grains().len(), || self.engine.forces())
+        wall_power(&self.model, self.walls, self.time(), self.stepping.grains().len(), || {
+            self.stepping.forces()
+        })
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> Engine for FastMd<S, P, Q> {
+impl Engine for FastMd {
     fn step(&mut self) -> Result<(), Failure> {
-        let far = self.engine.advance()?;
+        let far = self.stepping.advance()?;
         let far = far.into_iter().map(|disc| disc as usize);
-        judge_steps(&self.engine, far, self.model().watch, &mut self.totals)?;
-        self.totals.shared_cells += self.engine.shared_cells() as u64;
+        judge_steps(self.stepping.as_ref(), far, self.model.watch, &mut self.totals)?;
+        self.totals.shared_cells += self.stepping.shared_cells() as u64;
         let power = self.meet()?;
-        self.totals.add_work(self.model().dt, power, self.wall_power());
+        self.totals.add_work(self.model.dt, power, self.wall_power());
         Ok(())
     }
 
     fn elapsed(&self) -> &Elapsed {
-        self.engine.elapsed()
+        self.stepping.elapsed()
     }
 
     fn elapsed_mut(&mut self) -> &mut Elapsed {
-        self.engine.elapsed_mut()
+        self.stepping.elapsed_mut()
     }
 
     fn particles(&self) -> Particles {
-        self.engine.particles()
+        self.stepping.particles()
     }
 
     fn standing(&self) -> Particles {
-        self.engine.standing()
+        self.stepping.standing()
     }
 
     fn sums(&self, scenery: &Scenery, way: &Way) -> Sums {
-        let (engine, crossings) = (&self.engine, self.crossings());
-        let corrected = engine.corrected_discs();
-        let work = |number: usize, grain: &Particle, position| way.work(number, grain, position, crossings);
-        let grains = engine.grain_sums(&corrected, scenery, work);
-        Sums { grains, contacts: engine.contact_sums(&corrected) }
+        let crossings = self.crossings();
+        self.stepping.sums(scenery, &|number, grain, position| way.work(number, grain, position, crossings))
     }
 
     fn forces(&self) -> Vec<[f64; 3]> {
-        self.engine.forces()
+        self.stepping.forces()
     }
 
     fn totals(&self) -> Totals {
@@ -200,11 +201,11 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine for FastMd<S, P, Q> {
     }
 
     fn state(&self) -> Vec<(String, Column)> {
-        self.engine.columns()
+        self.stepping.columns()
     }
 
     fn restore(&mut self, steps: u64, totals: Totals, columns: Vec<(String, Column)>) -> Result<(), String> {
-        self.engine.restore(steps, &columns)?;
+        self.stepping.restore(steps, &columns)?;
         self.totals = totals;
         Ok(())
     }
@@ -218,13 +219,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine for FastMd<S, P, Q> {
         match length {
             Length::Pairs => self.met,
             _ => {
-                let [grains, discs] = [self.engine.grains().len(), self.engine.discs()];
-                Lengths::new(self.model(), grains, discs).range(length).len() as u64
+                let [grains, discs] = [self.stepping.grains().len(), self.stepping.discs()];
+                Lengths::new(&self.model, grains, discs).range(length).len() as u64
             }
         }
     }
 
     fn lists(&self) -> Option<(usize, u64)> {
-        self.engine.lists()
+        self.stepping.lists()
     }
 }

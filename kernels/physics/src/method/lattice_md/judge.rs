@@ -7,7 +7,7 @@ use crate::number::significant;
 
 /// Counts discs that are so fast that contacts may pass unseen in a step, and stops if there must be none.
 pub(super) fn judge_steps(
-    discs: &impl Named,
+    discs: &(impl Named + ?Sized),
     far: impl Iterator<Item = usize>,
     watch: Option<Watch>,
     totals: &mut Totals,
@@ -34,7 +34,7 @@ pub(super) fn judge_steps(
 
 /// Counts grains in contacts that are too deep, and stops at what must not be. A pair may be given once or from both sides.
 pub(super) fn judge_depth(
-    discs: &impl Named,
+    discs: &(impl Named + ?Sized),
     pairs: impl Iterator<Item = [usize; 2]>,
     watch: Option<Watch>,
     totals: &mut Totals,

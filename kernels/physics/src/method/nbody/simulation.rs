@@ -13,7 +13,7 @@ use crate::io::checkpoint::Column;
 use crate::method::observed::values;
 use crate::method::{Clock, Culprit, Failure, FailureKind, Purpose, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
-use crate::particles::{Particles, in_plane};
+use crate::particles::Particles;
 use serde_json::{Map, Value, json};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -137,9 +137,10 @@ impl Running {
 
     fn culprit(&self, body: usize) -> Culprit {
         Culprit {
+            called: "body",
             id: self.id(body),
-            position: in_plane(self.bodies.position_of(body)),
-            velocity: in_plane(self.bodies.velocity_of(body)),
+            position: self.bodies.position_of(body),
+            velocity: self.bodies.velocity_of(body),
         }
     }
 

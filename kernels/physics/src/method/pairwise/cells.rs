@@ -104,7 +104,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 
     /// A disc where it would be.
     fn culprit_at(&self, at: &Move) -> Culprit {
-        Culprit { position: self.position_in_cell(at.cell, at.place), ..self.culprit(at.disc) }
+        let disc = at.disc;
+        Culprit::in_plane(
+            "disc",
+            self.id(disc),
+            self.position_in_cell(at.cell, at.place),
+            self.velocity(disc),
+        )
     }
 
     /// Looks for the cells that the places of some discs lie in.

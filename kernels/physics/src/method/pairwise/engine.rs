@@ -4,11 +4,11 @@ use super::search::{Cells, Search};
 use super::state::{Move, State};
 use super::{
     CarriedBy, Crossings, Dynamics, Elapsed, Named, Phase, Prescribed, Sort, System, WithLaw, WithScheme,
-    not_finite, standing, wrapped,
+    not_finite,
 };
 use crate::domain::Domain;
 use crate::method::{Clock, Failure};
-use crate::particles::{Particle, Particles, in_space};
+use crate::particles::{Particle, Particles};
 use std::collections::BTreeSet;
 use std::ops::Range;
 use stripmine_kernels::InstructionSet;
@@ -17,7 +17,7 @@ use stripmine_kernels::integrator::Scheme;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::{Advance, Met, Motion, Passed};
-use stripmine_kernels::{alone_if, keep_awake, reordered};
+use stripmine_kernels::{keep_awake, reordered};
 
 /// Fewer discs are one thread's: a step of them is over before others have begun. Measured on two cores: 2000 discs took twice as
 /// long on two threads, 4000 as long as on one, 8000 were faster by a fifth.
@@ -43,7 +43,7 @@ pub struct Engine<S, P, Q, D> {
 }
 
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
-    /// Lays out `particles`. Their forces are not yet known: [`meet`](Self::meet) finds them.
+    /// Lays out `particles`. Their forces are not yet known: [`meet`](super::Stepping::meet) finds them.
     ///
     /// # Errors
     /// [`Failure`] if a disc is outside the box, or in another's cell.
@@ -78,39 +78,9 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         Ok(engine)
     }
 
-    /// By what the discs move.
-    pub fn dynamics(&self) -> &D {
-        &self.dynamics
-    }
-
-    /// Steps, periods and seconds so far.
-    pub fn elapsed(&self) -> &Elapsed {
-        &self.elapsed
-    }
-
-    /// The same, to be changed.
-    pub fn elapsed_mut(&mut self) -> &mut Elapsed {
-        &mut self.elapsed
-    }
-
-    /// How many discs there are.
-    pub fn discs(&self) -> usize {
-        self.start.len()
-    }
-
     /// Whether the discs are so few that one thread does all the work.
     pub(super) fn is_small(&self) -> bool {
-        self.discs() < FEW
-    }
-
-    /// How many discs are in cells that are another disc's.
-    pub fn shared_cells(&self) -> usize {
-        self.search.cells().shared_cells()
-    }
-
-    /// Entries of the lists, and how often they were made; none where there are no lists.
-    pub fn lists(&self) -> Option<(usize, u64)> {
-        self.search.lists().map(|lists| (lists.entries(), lists.made()))
+        self.start.len() < FEW
     }
 
     /// How the discs that no force moves stand, where they move at all.
@@ -143,16 +113,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         order
     }
 
-    /// Corrects the last step, unless this is the first one, predicts the next and brings the search up to date. Gives the
-    /// discs that moved farther than [`System::longest_step`], or whose speed is no number.
-    ///
-    /// # Errors
-    /// [`Failure`] if a disc left the box, or came into another's cell.
-    pub fn advance(&mut self) -> Result<Vec<u32>, Failure> {
-        alone_if(self.is_small(), || self.moved_on())
-    }
-
-    fn moved_on(&mut self) -> Result<Vec<u32>, Failure> {
+    pub(super) fn moved_on(&mut self) -> Result<Vec<u32>, Failure> {
         let mut timings = self.elapsed.timings;
         if self.system.sort == Sort::EveryStep || self.changes > self.start.grain_count() / 4 {
             timings.time(Phase::Index, || _ = self.put_in_order());
@@ -180,20 +141,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         })
     }
 
-    /// All forces of the positions as they stand.
-    ///
-    /// # Errors
-    /// [`Failure`] if a force is no finite number, or the machine refuses the law.
-    pub fn meet(&mut self, asked: Asked) -> Result<Met, Failure> {
-        let mut timings = self.elapsed.timings;
-        let met = timings.time(Phase::Forces, || alone_if(self.is_small(), || self.add_forces(asked)))?;
-        self.elapsed.timings = timings;
-        self.awaits_forces = false;
-        self.refuse_not_finite(&met)?;
-        Ok(met)
-    }
-
-    fn add_forces(&mut self, asked: Asked) -> Result<Met, ProgramError> {
+    pub(super) fn add_forces(&mut self, asked: Asked) -> Result<Met, ProgramError> {
         let Engine { dynamics, system, state, sums, search, start, set, .. } = self;
         // Grains' sums are zero already.
         sums.iter_mut().for_each(|sum| sum[start.grain_count()..].fill(P::default()));
@@ -201,7 +149,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     }
 
     /// Stops at pairs of a grain whose force is no finite number.
-    fn refuse_not_finite(&self, met: &Met) -> Result<(), Failure> {
+    pub(super) fn refuse_not_finite(&self, met: &Met) -> Result<(), Failure> {
         let grains = self.start.grain_count();
         let pairs = met.not_finite.iter().map(|pair| pair.map(|disc| disc as usize));
         // Two fixed discs have no effective mass: what they do to each other means nothing.
@@ -218,7 +166,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     }
 
     /// A degree of freedom of a disc at the end of the step, and its rate of change.
-    fn corrected(&self, freedom: usize, disc: usize) -> [f64; 2] {
+    pub(super) fn corrected(&self, freedom: usize, disc: usize) -> [f64; 2] {
         let [mut value, mut rate] = [[0.0]; 2];
         self.correct(freedom, disc, [&mut value, &mut rate]);
         [value[0], rate[0]]
@@ -245,54 +193,6 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         for (disc, (value, rate)) in (first + moving..).zip(others.iter_mut().zip(rates_of_others)) {
             [*value, *rate] = state.value_and_rate(&state.row(freedom, disc));
         }
-    }
-
-    /// The particles as they stand, positions inside the box.
-    pub fn particles(&self) -> Particles {
-        wrapped(self.standing(), &self.system.domain)
-    }
-
-    /// Positions alone, inside the box and in single precision, in the scene's order.
-    pub fn positions(&self) -> Vec<[f32; 3]> {
-        let mut places = vec![[0.0; 3]; self.start.len()];
-        for disc in 0..self.start.len() {
-            let place = [0, 1].map(|freedom| self.corrected(freedom, disc)[0]);
-            let place = self.system.domain.wrapped(in_space(self.seen_from_origin(disc, place)));
-            places[self.state.number(disc)] = place.map(|x| x as f32);
-        }
-        places
-    }
-
-    /// The particles as they stand; positions are consistent with the periods that are counted as crossed.
-    pub fn standing(&self) -> Particles {
-        let freedoms = self.system.freedoms;
-        let of = |disc: usize| {
-            let [x, y, angle] = [0, 1, 2].map(|freedom| match freedom < freedoms {
-                true => self.corrected(freedom, disc),
-                false => [0.0; 2],
-            });
-            let position = self.seen_from_origin(disc, [x[0], y[0]]);
-            let rows = [[position[0], x[1]], [position[1], y[1]], angle];
-            (self.state.number(disc), rows)
-        };
-        let walls = self.prescribed().unwrap_or_default().velocity;
-        standing(&self.start, walls, (0..self.start.len()).map(of))
-    }
-
-    /// Velocities as the last predictor left them (length/time), in the scene's order; at the start those of the start.
-    pub fn predicted_velocities(&self) -> Vec<[f64; 2]> {
-        let mut velocities = vec![[0.0; 2]; self.start.len()];
-        (0..velocities.len()).for_each(|disc| velocities[self.state.number(disc)] = self.velocity(disc));
-        velocities
-    }
-
-    /// Force along x and y and torque on every particle, in the scene's order.
-    pub fn forces(&self) -> Vec<[f64; 3]> {
-        let mut forces = vec![[0.0; 3]; self.start.len()];
-        for disc in 0..self.start.len() {
-            forces[self.state.number(disc)] = [0, 1, 2].map(|sum| self.sums[sum][disc].to_f64());
-        }
-        forces
     }
 }
 

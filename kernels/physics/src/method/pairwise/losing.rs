@@ -6,13 +6,8 @@ use crate::method::Failure;
 use stripmine_kernels::backend::Precision;
 
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
-    /// Takes the forces as found where no pair acts: there are none.
-    pub fn meet_nothing(&mut self) {
-        self.awaits_forces = false;
-    }
-
     /// The particles, by their places in the scene and rising, that belong to no cell or of which a number is not finite.
-    pub fn unfit(&self) -> Vec<usize> {
+    pub(super) fn unfit_discs(&self) -> Vec<usize> {
         let is_finite = |disc: usize| {
             let state =
                 (0..2).flat_map(|axis| self.state.row(axis, disc)).all(|value| value.to_f64().is_finite());
@@ -20,7 +15,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         };
         let is_unfit = |&disc: &usize| !is_finite(disc) || self.is_outside(disc);
         let mut unfit: Vec<usize> =
-            (0..self.discs()).filter(is_unfit).map(|disc| self.state.number(disc)).collect();
+            (0..self.start.len()).filter(is_unfit).map(|disc| self.state.number(disc)).collect();
         unfit.sort_unstable();
         unfit
     }
@@ -29,8 +24,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     ///
     /// # Errors
     /// [`Failure`] if a particle belongs to no cell.
-    pub fn settle(&mut self) -> Result<(), Failure> {
-        let looked = self.look(0..self.discs());
+    pub(super) fn settle_all(&mut self) -> Result<(), Failure> {
+        let looked = self.look(0..self.start.len());
         let moves = self.changes_of(vec![looked])?;
         self.change_cells(&moves)?;
         self.put_in_order();

@@ -25,6 +25,7 @@ mod saved;
 pub mod search;
 mod standing;
 mod state;
+mod stepping;
 mod timings;
 
 pub use carried::{Carried, CarriedBy};
@@ -34,6 +35,7 @@ pub use elapsed::Elapsed;
 pub use engine::Engine;
 pub use named::{Named, conflict, not_finite, outside};
 pub use standing::{standing, wrapped};
+pub use stepping::{Stepping, Work};
 pub use timings::{Phase, Timings};
 
 use crate::domain::Domain;

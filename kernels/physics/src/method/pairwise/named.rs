@@ -2,6 +2,7 @@
 
 use crate::domain::Domain;
 use crate::method::{Clock, Culprit, Failure, FailureKind};
+use crate::particles::in_plane;
 use std::ops::Range;
 
 /// Discs that can be named, by their numbers in memory.
@@ -32,7 +33,7 @@ pub trait Named {
 
     /// A disc, where it is.
     fn culprit(&self, disc: usize) -> Culprit {
-        Culprit { id: self.id(disc), position: self.position(disc), velocity: self.velocity(disc) }
+        Culprit::in_plane("disc", self.id(disc), self.position(disc), self.velocity(disc))
     }
 
     /// Penetration of two discs, as a fraction of the sum of their radii.
@@ -76,7 +77,8 @@ pub fn not_finite(at: Clock, count: u64, first: Culprit) -> Failure {
 
 /// The failure of two discs in one cell: the exclusive lattice would lose one.
 pub fn conflict(at: Clock, domain: Domain, [first, second]: [Culprit; 2]) -> Failure {
-    let [dx, dy] = domain.displacement(first.position, second.position);
+    let [first_place, second_place] = [first, second].map(|disc| in_plane(disc.position));
+    let [dx, dy] = domain.displacement(first_place, second_place);
     let distance = dx.hypot(dy);
     let what = format!(
         "{first} and {second} are in one cell, {distance:.6} apart; the exclusive lattice holds one disc a cell"

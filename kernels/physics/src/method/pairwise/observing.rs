@@ -10,9 +10,9 @@
 //! leave room for. No sum depends on the numbers of threads, the order in memory, or how the run came here.
 
 use super::search::Search;
-use super::{Dynamics, Engine, WithLaw};
+use super::{Dynamics, Engine, WithLaw, Work};
 use crate::observe::{ContactSums, GrainSums, Scenery};
-use crate::particles::{Kind, Particle};
+use crate::particles::Kind;
 use std::marker::PhantomData;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Inertia;
@@ -22,7 +22,7 @@ use stripmine_kernels::sweep::fast::{Discs, Met, SENTINELS};
 use stripmine_kernels::{InstructionSet, alone_if, in_parts, over_parts};
 
 /// All discs at the end of a step, an entry a disc in the order in memory and sentinels behind.
-pub struct Corrected {
+pub(super) struct Corrected {
     place: [Vec<f64>; 2],
     velocity: [Vec<f64>; 2],
     /// Empty where discs do not turn.
@@ -35,7 +35,7 @@ pub struct Corrected {
 
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
     /// The discs at the end of the step.
-    pub fn corrected_discs(&self) -> Corrected {
+    pub(super) fn corrected_discs(&self) -> Corrected {
         alone_if(self.is_small(), || {
             let discs = self.start.len();
             let mut disc = vec![0; discs];
@@ -61,14 +61,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         })
     }
 
-    /// Sums over the grains. `work` gives what gravity has done to a grain (by its number in the scene) that is at a position
-    /// (length), which is consistent with the periods that are counted as crossed; it is asked only where there is gravity.
-    pub fn grain_sums(
-        &self,
-        corrected: &Corrected,
-        scenery: &Scenery,
-        work: impl Fn(usize, &Particle, [f64; 2]) -> f64 + Sync,
-    ) -> GrainSums {
+    /// Sums over the grains.
+    pub(super) fn grain_sums(&self, corrected: &Corrected, scenery: &Scenery, work: &Work<'_>) -> GrainSums {
         let grains = self.start.grains();
         let has_gravity = scenery.gravity != [0.0; 2];
         let parts = alone_if(self.is_small(), || {
@@ -94,7 +88,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     }
 
     /// Sums over the contacts.
-    pub fn contact_sums(&self, corrected: &Corrected) -> ContactSums {
+    pub(super) fn contact_sums(&self, corrected: &Corrected) -> ContactSums {
         alone_if(self.is_small(), || {
             let (mut radius, mut inverse_mass) = (vec![], vec![]);
             if self.system.inertia == Inertia::Varying {

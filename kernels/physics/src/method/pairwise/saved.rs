@@ -24,7 +24,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     }
 
     /// Everything that the next step depends on, by name.
-    pub fn columns(&self) -> Vec<(String, Column)> {
+    pub(super) fn saved(&self) -> Vec<(String, Column)> {
         let mut columns = Vec::new();
         for (names, rows) in STATE.iter().zip(&self.state.columns) {
             for (name, column) in names.iter().zip(rows) {
@@ -54,7 +54,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     ///
     /// # Errors
     /// A sentence, if the columns are not those of these discs.
-    pub fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
+    pub(super) fn take_up(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
         let numbers = self.state.numbers().to_vec();
         for (names, rows) in STATE.iter().zip(&mut self.state.columns) {
             for (name, column) in names.iter().zip(rows) {

@@ -1,0 +1,191 @@
+//! What a method sees of the engine, whatever its precisions, search and dynamics.
+
+use super::search::{Cells, Search};
+use super::{Dynamics, Elapsed, Engine, Named, Phase, standing, wrapped};
+use crate::io::checkpoint::Column;
+use crate::method::Failure;
+use crate::observe::{Scenery, Sums};
+use crate::particles::{Particle, Particles, in_space};
+use stripmine_kernels::alone_if;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::law::Asked;
+use stripmine_kernels::sweep::fast::Met;
+
+/// What gravity has done to a grain, by its number in the scene, that is at a position.
+pub type Work<'w> = dyn Fn(usize, &Particle, [f64; 2]) -> f64 + Sync + 'w;
+
+/// Discs that are stepped.
+pub trait Stepping: Named + Send {
+    /// Corrects the last step, unless this is the first one, predicts the next and brings the search up to date. Gives the
+    /// discs that moved farther than [`System::longest_step`], or whose speed is no number.
+    ///
+    /// # Errors
+    /// [`Failure`] if a disc left the box, or came into another's cell.
+    fn advance(&mut self) -> Result<Vec<u32>, Failure>;
+
+    /// All forces of the positions as they stand.
+    ///
+    /// # Errors
+    /// [`Failure`] if a force is no finite number, or the machine refuses the law.
+    fn meet(&mut self, asked: Asked) -> Result<Met, Failure>;
+
+    /// Steps, periods and seconds so far.
+    fn elapsed(&self) -> &Elapsed;
+
+    /// The same, to be changed.
+    fn elapsed_mut(&mut self) -> &mut Elapsed;
+
+    /// How many discs there are.
+    fn discs(&self) -> usize;
+
+    /// How many discs are in cells that are another disc's.
+    fn shared_cells(&self) -> usize;
+
+    /// Entries of the lists, and how often they were made; none where there are no lists.
+    fn lists(&self) -> Option<(usize, u64)>;
+
+    /// The particles as they stand, positions inside the box.
+    fn particles(&self) -> Particles;
+
+    /// Positions alone, inside the box and in single precision, in the scene's order.
+    fn positions(&self) -> Vec<[f32; 3]>;
+
+    /// The particles as they stand; positions are consistent with the periods that are counted as crossed.
+    fn standing(&self) -> Particles;
+
+    /// Velocities as the last predictor left them (length/time), in the scene's order; at the start those of the start.
+    fn predicted_velocities(&self) -> Vec<[f64; 2]>;
+
+    /// Force along x and y and torque on every particle, in the scene's order.
+    fn forces(&self) -> Vec<[f64; 3]>;
+
+    /// Takes the forces as found where no pair acts: there are none.
+    fn meet_nothing(&mut self);
+
+    /// The particles, by their places in the scene and rising, that belong to no cell or of which a number is not finite.
+    fn unfit(&self) -> Vec<usize>;
+
+    /// Brings all cells up to date from the places as they were predicted, whose forces are not yet known.
+    ///
+    /// # Errors
+    /// [`Failure`] if a particle belongs to no cell.
+    fn settle(&mut self) -> Result<(), Failure>;
+
+    /// Everything that the next step depends on, by name.
+    fn columns(&self) -> Vec<(String, Column)>;
+
+    /// Takes columns up, of a moment after so many steps.
+    ///
+    /// # Errors
+    /// A sentence, if they are not those of this engine and scene.
+    fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String>;
+
+    /// Sums over the grains and their contacts at the end of the step. `work` gives what gravity has done to a grain (by its number in
+    /// the scene) that is at a position (length), which is consistent with the periods that are counted as crossed; it is asked only
+    /// where there is gravity.
+    fn sums(&self, scenery: &Scenery, work: &Work<'_>) -> Sums;
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engine<S, P, Q, D> {
+    fn advance(&mut self) -> Result<Vec<u32>, Failure> {
+        alone_if(self.is_small(), || self.moved_on())
+    }
+
+    fn meet(&mut self, asked: Asked) -> Result<Met, Failure> {
+        let mut timings = self.elapsed.timings;
+        let met = timings.time(Phase::Forces, || alone_if(self.is_small(), || self.add_forces(asked)))?;
+        self.elapsed.timings = timings;
+        self.awaits_forces = false;
+        self.refuse_not_finite(&met)?;
+        Ok(met)
+    }
+
+    fn elapsed(&self) -> &Elapsed {
+        &self.elapsed
+    }
+
+    fn elapsed_mut(&mut self) -> &mut Elapsed {
+        &mut self.elapsed
+    }
+
+    fn discs(&self) -> usize {
+        self.start.len()
+    }
+
+    fn shared_cells(&self) -> usize {
+        self.search.cells().shared_cells()
+    }
+
+    fn lists(&self) -> Option<(usize, u64)> {
+        self.search.lists().map(|lists| (lists.entries(), lists.made()))
+    }
+
+    fn particles(&self) -> Particles {
+        wrapped(self.standing(), &self.system.domain)
+    }
+
+    fn positions(&self) -> Vec<[f32; 3]> {
+        let mut places = vec![[0.0; 3]; self.start.len()];
+        for disc in 0..self.start.len() {
+            let place = [0, 1].map(|freedom| self.corrected(freedom, disc)[0]);
+            let place = self.system.domain.wrapped(in_space(self.seen_from_origin(disc, place)));
+            places[self.state.number(disc)] = place.map(|x| x as f32);
+        }
+        places
+    }
+
+    fn standing(&self) -> Particles {
+        let freedoms = self.system.freedoms;
+        let of = |disc: usize| {
+            let [x, y, angle] = [0, 1, 2].map(|freedom| match freedom < freedoms {
+                true => self.corrected(freedom, disc),
+                false => [0.0; 2],
+            });
+            let position = self.seen_from_origin(disc, [x[0], y[0]]);
+            let rows = [[position[0], x[1]], [position[1], y[1]], angle];
+            (self.state.number(disc), rows)
+        };
+        let walls = self.prescribed().unwrap_or_default().velocity;
+        standing(&self.start, walls, (0..self.start.len()).map(of))
+    }
+
+    fn predicted_velocities(&self) -> Vec<[f64; 2]> {
+        let mut velocities = vec![[0.0; 2]; self.start.len()];
+        (0..velocities.len()).for_each(|disc| velocities[self.state.number(disc)] = self.velocity(disc));
+        velocities
+    }
+
+    fn forces(&self) -> Vec<[f64; 3]> {
+        let mut forces = vec![[0.0; 3]; self.start.len()];
+        for disc in 0..self.start.len() {
+            forces[self.state.number(disc)] = [0, 1, 2].map(|sum| self.sums[sum][disc].to_f64());
+        }
+        forces
+    }
+
+    fn meet_nothing(&mut self) {
+        self.awaits_forces = false;
+    }
+
+    fn unfit(&self) -> Vec<usize> {
+        self.unfit_discs()
+    }
+
+    fn settle(&mut self) -> Result<(), Failure> {
+        self.settle_all()
+    }
+
+    fn columns(&self) -> Vec<(String, Column)> {
+        self.saved()
+    }
+
+    fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
+        self.take_up(steps, columns)
+    }
+
+    fn sums(&self, scenery: &Scenery, work: &Work<'_>) -> Sums {
+        let corrected = self.corrected_discs();
+        let grains = self.grain_sums(&corrected, scenery, work);
+        Sums { grains, contacts: self.contact_sums(&corrected) }
+    }
+}
