@@ -57,7 +57,10 @@ const KNOWN_CIRCLES: [(&[&str], &str); 6] = [
         "arrays ask programs for their memory, and programs run on the arrays",
     ),
     (
-        &["kernels/physics/src/method/lattice_md/balance.rs", "kernels/physics/src/method/lattice_md/engine.rs"],
+        &[
+            "kernels/physics/src/method/lattice_md/balance.rs",
+            "kernels/physics/src/method/lattice_md/engine.rs",
+        ],
         "an engine is observed by its balance, which is of engines",
     ),
     (
@@ -118,9 +121,8 @@ fn arrows_of_the_code_are_those_that_are_drawn() {
         let drawn = drawn.iter().filter(|(name, ..)| name == of);
         let drawn: Vec<(&str, &str)> = drawn.map(|(_, used, user)| (user.as_str(), used.as_str())).collect();
         assert_eq!(graph::circles(drawn.iter().copied()), BTreeSet::new(), "{of}: the drawing has circles");
-        let is_in_code = |&(from, to): &(&str, &str)| {
-            found.iter().any(|it| (it.0, it.1, it.2) == (of, from, to))
-        };
+        let is_in_code =
+            |&(from, to): &(&str, &str)| found.iter().any(|it| (it.0, it.1, it.2) == (of, from, to));
         let idle: Vec<_> = drawn.iter().filter(|arrow| !is_in_code(arrow)).collect();
         assert!(idle.is_empty(), "{of}: drawn, but not in the code (user, used): {idle:?}");
         let allowed = graph::reached(drawn.iter().copied());
@@ -138,7 +140,9 @@ fn lower_crates_know_nothing_of_higher_ones() {
     for (folder, expected) in DEPENDENCIES {
         let manifest = text(Path::new(folder).join("Cargo.toml"));
         let mut found = BTreeSet::new();
-        for section in manifest.split("\n[").filter(|it| it.split(']').next().unwrap().ends_with("dependencies")) {
+        for section in
+            manifest.split("\n[").filter(|it| it.split(']').next().unwrap().ends_with("dependencies"))
+        {
             let is_of_tests = section.starts_with("dev-");
             let lines = section.lines().skip(1).filter(|line| line.contains('=') && !line.starts_with('#'));
             let names = lines.map(|line| line.split([' ', '.', '=']).next().unwrap());
