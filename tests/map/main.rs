@@ -133,21 +133,26 @@ fn arrows_of_the_code_are_those_that_are_drawn() {
     }
 }
 
+/// What a manifest names in its lists of dependencies, those of tests apart.
+fn dependencies(manifest: &str) -> impl Iterator<Item = &str> {
+    let sections = manifest.split("\n[").filter(|section| !section.starts_with("dev-"));
+    sections.flat_map(|section| {
+        let heading = section.split(']').next().unwrap();
+        let lines = section.lines().skip(1).filter(|line| line.contains('=') && !line.starts_with('#'));
+        let names = lines.map(|line| line.split([' ', '.', '=']).next().unwrap());
+        let listed = names.filter(|_| heading.ends_with("dependencies"));
+        // Or a section of its own.
+        listed.chain(heading.split_once("dependencies.").map(|(_, name)| name))
+    })
+}
+
 /// The kernels name neither physics nor laboratory, and the physics does not name the laboratory; neither depends on a crate beyond its
 /// list.
 #[test]
 fn lower_crates_know_nothing_of_higher_ones() {
     for (folder, expected) in DEPENDENCIES {
         let manifest = text(Path::new(folder).join("Cargo.toml"));
-        let mut found = BTreeSet::new();
-        for section in
-            manifest.split("\n[").filter(|it| it.split(']').next().unwrap().ends_with("dependencies"))
-        {
-            let is_of_tests = section.starts_with("dev-");
-            let lines = section.lines().skip(1).filter(|line| line.contains('=') && !line.starts_with('#'));
-            let names = lines.map(|line| line.split([' ', '.', '=']).next().unwrap());
-            found.extend(names.filter(|_| !is_of_tests));
-        }
+        let found: BTreeSet<&str> = dependencies(&manifest).collect();
         assert_eq!(found, expected.iter().copied().collect(), "{folder}/Cargo.toml");
     }
     let code = code();
