@@ -302,24 +302,3 @@ fn multiple(power: i32) -> String {
         format!("1/{} of its own step", 1 << -power)
     }
 }
-
-/// Studies know methods by their entries alone.
-#[test]
-fn no_study_names_a_method() {
-    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src")];
-    let mut wrong = vec![];
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() && !path.ends_with("src/laboratory") {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "rs") {
-                let text = fs::read_to_string(&path).unwrap();
-                if text.contains("lattice_md") || text.contains("LatticeMd") {
-                    wrong.push(path);
-                }
-            }
-        }
-    }
-    assert!(wrong.is_empty(), "{wrong:?}");
-}

@@ -3,7 +3,6 @@
 use super::error::{Reason, SceneError, SceneErrors};
 use super::key_set::{KeySet, SECTIONS};
 use super::keys::{Fallback, Key, Value};
-use super::rules::is_used;
 use super::values::Values;
 use crate::words::Words;
 
@@ -106,7 +105,7 @@ impl Binding for Read<'_> {
         let value = self.values.value(key);
         if value.is_none()
             && key.fallback == Fallback::Required
-            && is_used(self.values, key.used) != Some(false)
+            && self.values.applies(key.used) != Some(false)
         {
             let error = self.values.spot(key).error(Reason::Missing, format!("`{}` is missing", key.path()));
             self.missing.push(error.expecting(key.expected()));

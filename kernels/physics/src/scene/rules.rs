@@ -1,7 +1,7 @@
 //! What keys demand of each other: which are used, which are missing, which exclude each other, which must agree.
 
 use super::error::{Reason, SceneError};
-use super::keys::{Fallback, Key, Use};
+use super::keys::{Fallback, Key};
 use super::values::Values;
 
 /// Holds all rules against the values, drops what overrides have made meaningless, and notes every mistake.
@@ -15,21 +15,13 @@ pub(super) fn apply(values: &mut Values, further: &[fn(&Values) -> Vec<SceneErro
     }
 }
 
-/// Whether a key is used; nothing where the choice that decides it is not known.
-pub(super) fn is_used(values: &Values, used: Use) -> Option<bool> {
-    match used {
-        None => Some(true),
-        Some((key, choices)) => values.choice(key).map(|choice| choices.contains(&choice.as_str())),
-    }
-}
-
 fn quoted(keys: &[&Key], between: &str) -> String {
     keys.iter().map(|key| format!("`{}`", key.path())).collect::<Vec<_>>().join(between)
 }
 
 fn rivals(values: &mut Values) {
     for rivals in values.keys.rivals.iter().copied().flatten() {
-        if is_used(values, rivals.used) != Some(true) {
+        if values.applies(rivals.used) != Some(true) {
             continue;
         }
         // An override takes the place of all rivals that the file gives.
@@ -89,7 +81,7 @@ fn unused(values: &mut Values) {
 fn missing(values: &mut Values) {
     for key in values.keys.keys() {
         let absent = !values.gives(key) && !values.is_faulty(key);
-        if key.fallback == Fallback::Required && absent && is_used(values, key.used) == Some(true) {
+        if key.fallback == Fallback::Required && absent && values.is_used(key) {
             let error = values
                 .spot(key)
                 .error(Reason::Missing, format!("`{}` is missing", key.path()))

@@ -2,8 +2,7 @@
 
 use super::error::{Mistakes, Place, Spot};
 use super::key_set::KeySet;
-use super::keys::{Fallback, Key, Value};
-use super::rules::is_used;
+use super::keys::{Fallback, Key, Use, Value};
 use std::collections::{BTreeMap, BTreeSet};
 use toml::de::DeValue;
 
@@ -87,9 +86,17 @@ impl Values {
         self.entry(key).map(|entry| &entry.value)
     }
 
+    /// Whether what is used with some choices of a key is used; nothing where the choice is not known.
+    pub(super) fn applies(&self, used: Use) -> Option<bool> {
+        match used {
+            None => Some(true),
+            Some((key, choices)) => self.choice(key).map(|choice| choices.contains(&choice.as_str())),
+        }
+    }
+
     /// Whether a key means anything in this scene.
     pub fn is_used(&self, key: &Key) -> bool {
-        is_used(self, key.used) == Some(true)
+        self.applies(key.used) == Some(true)
     }
 
     /// Whether a key was given, but not well.

@@ -1,6 +1,6 @@
 //! Discs that grow to their radii while they move.
 
-use super::making::{COMPRESSED, fill, grain_count};
+use super::filling::{COMPRESSED, fill, grain_count};
 use super::{Stated, Uncompressed};
 use crate::domain::Domain;
 use crate::particles::Particles;

@@ -1,45 +1,19 @@
 //! The discs of a scene.
 
 use super::compressing::compressed;
+use super::filling::{JAMMING, MOST, disc, fill, grain_count, placeable};
 use super::meshing::on_mesh;
 use super::{Stated, readable};
 use crate::domain::Domain;
 use crate::io::extxyz;
-use crate::memory::{self, Available};
 use crate::number::significant;
 use crate::particles::{Kind, Particle, Particles, in_space};
-use crate::placement::{Filling, Row, hexagonal, random, row, stir};
+use crate::placement::{Row, hexagonal, row};
 use crate::quoted;
 use crate::scene::{
-    Amount, CLEAR_WIDTH, COUNT, FILE, FILL_HEIGHT, GENERATE, Grains, Key, Lining, List, ORIGIN,
-    PACKING_FRACTION, PERIODIC, Reason, SIDES, SceneError, Speed, Start, WALL_SPACING, WallMotion, Warning,
+    Amount, CLEAR_WIDTH, COUNT, FILE, FILL_HEIGHT, Grains, Key, Lining, List, ORIGIN, PERIODIC, Reason,
+    SIDES, SceneError, Speed, Start, WALL_SPACING, WallMotion, Warning,
 };
-use std::f64::consts::PI;
-
-/// Most discs of one kind, grains or walls: with those of the other their ids must be numbers of 32 bits.
-pub(super) const MOST: f64 = (u32::MAX / 2) as f64;
-
-/// Whether the machine has the memory to place that many discs and to look for overlaps: each disc, and its entry in a map of
-/// squares whose number is a power of two. Asked before anything is placed.
-pub(super) fn placeable(stated: &Stated<'_>, count: f64, key: &Key) -> Result<(), SceneError> {
-    /// Bytes of an entry of the map, and of a disc in its square.
-    const SQUARE: [f64; 2] = [25.0, 40.0];
-    let squares = (count * 8.0 / 7.0).log2().ceil().exp2();
-    let needed = count * (size_of::<Particle>() as f64 + SQUARE[1]) + squares * SQUARE[0];
-    match memory::available() {
-        Some(Available { bytes, by }) if needed > bytes as f64 => {
-            let message = format!(
-                "to place {} discs takes {:.1} GB of memory; {} has {:.1} left",
-                significant(count, 5),
-                1e-9 * needed,
-                by.in_words(),
-                1e-9 * bytes as f64
-            );
-            Err(stated.spot(key).error(Reason::Memory, message).advising("take fewer discs"))
-        }
-        _ => Ok(()),
-    }
-}
 
 /// Smallest and largest radius: those that the scene admits, and those that there are.
 pub fn radii(start: &Start, found: Option<[f64; 2]>) -> Option<[f64; 2]> {
@@ -193,20 +167,6 @@ fn from_file(stated: &Stated<'_>, domain: &Domain, path: &std::path::Path) -> Re
     Ok(frame.particles)
 }
 
-pub(super) fn disc(id: u32, kind: Kind, position: [f64; 2], radius: f64, [unit, mass]: [f64; 2]) -> Particle {
-    let share = radius / unit;
-    Particle {
-        id,
-        kind,
-        position: in_space(position),
-        velocity: [0.0; 3],
-        angle: 0.0,
-        omega: 0.0,
-        radius,
-        mass: mass * share * share,
-    }
-}
-
 fn listed(list: &List) -> Particles {
     let of = [list.radius, list.mass];
     let columns = list.velocities.iter().zip(&list.omegas).zip(&list.radii);
@@ -242,77 +202,6 @@ fn on_lattice(
     }
     let sides = packing.sides.map(|side| diameter * side);
     (Domain::planar(origin, sides, stated.domain.periodic), packing.particles)
-}
-
-/// Beyond this packing fraction random sequential placement jams, however large the box.
-const JAMMING: f64 = 0.547;
-/// Beyond this one discs that grow find no order in which they fit, in any time worth waiting for.
-pub(super) const COMPRESSED: f64 = 0.885;
-/// How many grains fill an area that is open to them, at most up to a packing fraction.
-pub(super) fn grain_count(
-    stated: &Stated<'_>,
-    amount: Amount,
-    open: f64,
-    grains: &Grains,
-    most: f64,
-) -> Result<usize, SceneError> {
-    let share = PI * grains.second.mean_square(grains.radius) / open;
-    let (count, key): (f64, &Key) = match amount {
-        Amount::Count(count) => (count as f64, &COUNT),
-        Amount::PackingFraction(fraction) => ((fraction / share).round(), &PACKING_FRACTION),
-    };
-    let fraction = count * share;
-    let refuse = |message: String| stated.spot(key).error(Reason::Placement, message);
-    if count > MOST {
-        return Err(refuse(format!(
-            "{count} discs are more than the {MOST} that can be numbered",
-            count = significant(count, 5),
-            MOST = significant(MOST, 4)
-        )));
-    }
-    if count < 1.0 {
-        return Err(refuse(format!("no disc: one alone fills {share:.4} of the area open to grains")));
-    }
-    // Few discs in a small box may do better than many in a large one.
-    let compresses = most == COMPRESSED;
-    let bound = if compresses { most } else { most * (1.0 + 2.0 / count.sqrt()) };
-    if fraction > bound {
-        let how = if compresses {
-            "discs that grow find their places up to about"
-        } else {
-            "random placement jams at about"
-        };
-        let error =
-            refuse(format!("{count} discs fill {fraction:.4} of the area open to grains; {how} {most}"));
-        return Err(error.advising(match compresses {
-            true => "place fewer discs, or start from generate = \"hexagonal\"",
-            false => "place fewer discs, or start from generate = \"compressed\" or \"hexagonal\"",
-        }));
-    }
-    placeable(stated, count, key)?;
-    Ok(count as usize)
-}
-
-pub(super) fn fill(
-    stated: &Stated<'_>,
-    domain: &Domain,
-    room: [[f64; 2]; 2],
-    obstacles: &[Particle],
-    count: usize,
-    grains: &Grains,
-) -> Result<Vec<Particle>, SceneError> {
-    let Grains { radius, spread, cut, second, mass, seed, .. } = *grains;
-    let cut = if spread > 0.0 { cut } else { 0.0 };
-    let filling =
-        Filling { domain: *domain, room, obstacles, count, radius, spread, cut, second, mass, seed };
-    let mut discs = random(&filling).map_err(|jammed| {
-        let error = stated.spot(&GENERATE).error(Reason::Placement, jammed.to_string());
-        error.advising("lower count or packing_fraction, or make more room")
-    })?;
-    // Where walls take up momentum there is none to balance.
-    let balanced = domain.periodic() == [true; 2] && obstacles.is_empty() && discs.len() > 1;
-    stir(&mut discs, seed, balanced, |disc| grains.deviation(disc.mass));
-    Ok(discs)
 }
 
 /// Wall discs with ids behind those of `count` grains.

@@ -1,7 +1,7 @@
 //! Discs at places of a mesh.
 
 use super::Stated;
-use super::making::{MOST, disc, placeable};
+use super::filling::{MOST, disc, placeable};
 use crate::domain::Domain;
 use crate::number::significant;
 use crate::particles::{Kind, Particle, Particles};

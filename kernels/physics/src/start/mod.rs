@@ -2,6 +2,7 @@
 
 mod checks;
 mod compressing;
+mod filling;
 mod making;
 mod meshing;
 

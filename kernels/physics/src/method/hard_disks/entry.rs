@@ -1,8 +1,8 @@
 //! The entry of hard discs in the list of methods.
 
 use super::benches::BENCHES;
+use super::checked::prepare;
 use super::keys::VOCABULARY;
-use super::prepared::prepare;
 use super::quantities::QUANTITIES;
 use crate::method::Entry;
 

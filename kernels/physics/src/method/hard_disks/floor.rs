@@ -1,6 +1,6 @@
 //! A floor that moves up and down, and when a disc meets it.
 
-use super::event::fall;
+use super::fall::fall;
 
 /// A floor whose height over its lowest place is A (1 − cos ω t), ω = 2π f: at the start it is at rest there.
 #[derive(Clone, Copy, Debug, PartialEq)]

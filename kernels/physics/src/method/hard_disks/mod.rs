@@ -1,12 +1,14 @@
 //! ISO99: event-driven hard discs, exact between collisions.
 
 pub mod benches;
+mod checked;
 mod collapse;
 mod collision_log;
 mod compress;
 mod engine;
 mod entry;
 mod event;
+mod fall;
 mod fast;
 mod floor;
 mod idle;

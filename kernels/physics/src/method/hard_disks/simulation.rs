@@ -1,12 +1,12 @@
 //! Hard discs under way, observed.
 
+use super::checked::Checked;
 use super::collapse::{Endless, Watch};
 use super::collision_log::Log;
 use super::engine::{Engine, Happened, Partner, Stopped};
 use super::event::Arena;
 use super::fast::Fast;
 use super::idle::never;
-use super::prepared::Checked;
 use super::quantities::{OBSERVABLES, Seen};
 use super::reference;
 use super::restored::sound;

@@ -1,7 +1,8 @@
 //! Law, scheme and search of a scene, put together: what steps the particles.
 
-use super::options::{By, SchemeKind, SortKind};
-use super::prepared::Checked;
+use super::checked::Checked;
+use super::found::Found;
+use super::options::{SchemeKind, SortKind};
 use crate::domain::Domain;
 use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, Search, SectorSearch};
 use crate::method::pairwise::{Dynamics, Engine, Sort, Stepping, System, WithLaw, WithScheme};
@@ -13,31 +14,6 @@ use stripmine_kernels::backend;
 use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::integrator::langevin::{Baoab, Bath, Stochastic};
 use stripmine_kernels::law::lennard_jones::LennardJones;
-use stripmine_kernels::mask::Mask;
-use stripmine_kernels::sweep::fast::Grid;
-use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
-
-/// How pairs are found, with all that is needed for it.
-#[derive(Clone, Debug)]
-pub(super) enum Found {
-    /// On a lattice.
-    Lattice(LatticeShape, Frame),
-    /// In sectors.
-    Sectors(Grid),
-    /// In lists, made of sectors, up to so much beyond the cut-off (length).
-    Lists(Grid, f64),
-}
-
-impl Found {
-    /// The word for it.
-    pub(super) fn by(&self) -> By {
-        match self {
-            Found::Lattice(..) => By::Lattice,
-            Found::Sectors(_) => By::Sectors,
-            Found::Lists(..) => By::NeighborList,
-        }
-    }
-}
 
 /// Particles of one kind in a bath.
 #[derive(Clone, Copy, Debug)]
@@ -143,24 +119,6 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
             boxed::<S, P, _>(all, ListSearch::<S, P>::new(grid, count, reach, skin), particles)
         }
     }
-}
-
-/// The lattice for pairs up to `reach` (length) apart of which hardly any comes nearer than `nearest`; none where the box has none.
-pub(super) fn lattice_of(domain: &Domain, reach: f64, nearest: f64) -> Option<(LatticeShape, Frame)> {
-    const HALF_WIDTH: u32 = 2;
-    let least = reach / f64::from(HALF_WIDTH);
-    if least > nearest / std::f64::consts::SQRT_2 {
-        return None;
-    }
-    let counts = [0, 1].map(|axis| (domain.length(axis) / least).floor());
-    let edge = [0, 1].map(|axis| domain.length(axis) / counts[axis]);
-    if counts.iter().any(|&count| count < 1.0 || count > f64::from(u32::MAX)) {
-        return None;
-    }
-    let mask = Mask::square(HALF_WIDTH);
-    let [columns, rows] = counts.map(|count| count as usize);
-    let shape = LatticeShape::new(columns, rows, &mask, domain.periodic()).ok()?;
-    Some((shape, Frame { origin: domain.corner(), edge }))
 }
 
 /// Whether a failure is of particles that were thrown out, so that a run may go on without them.

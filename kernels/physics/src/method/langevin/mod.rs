@@ -1,8 +1,10 @@
 //! LAN17: particles in a bath of friction and noise, with Lennard-Jones pairs.
 
 mod benches;
+mod checked;
 mod dynamics;
 mod entry;
+mod found;
 mod keys;
 mod limits;
 mod losses;

@@ -1,7 +1,8 @@
 //! The law as the source's vector machine would meet it: at every place of a mask of the lattice.
 
+use super::checked::Checked;
 use super::dynamics::InBath;
-use super::prepared::{Checked, NEAREST};
+use super::found::NEAREST;
 use crate::method::VectorProgram;
 use stripmine_kernels::Program;
 use stripmine_kernels::ledger::Length;
@@ -44,8 +45,8 @@ pub(super) fn programs(checked: &Checked) -> Vec<VectorProgram> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::checked::checked;
     use super::super::keys::VOCABULARY;
-    use super::super::prepared::checked;
     use super::*;
     use crate::particles::{Particle, Particles};
     use crate::scene::Values;

@@ -1,8 +1,8 @@
 //! Particles in a bath under way, observed; what is thrown out is counted, and the run goes on without it.
 
+use super::checked::Checked;
 use super::dynamics::{is_loss, stepper};
 use super::losses::Losses;
-use super::prepared::Checked;
 use super::quantities::{OBSERVABLES, Seen};
 use crate::io::checkpoint::{Column, Counter};
 use crate::method::observed::values;

@@ -1,7 +1,7 @@
 //! How particles in a bath may be run, and what a map of stability varies.
 
+use super::checked::prepare;
 use super::keys::{BATH_TEMPERATURE, DRAG, STRENGTH};
-use super::prepared::prepare;
 use crate::method::{Axis, Decides, Mapped, Parameter, Prepared, SMALLEST_RADIUS, Setting, Trials};
 use crate::scene::{DT, Key, Values};
 

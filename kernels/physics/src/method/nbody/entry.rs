@@ -1,8 +1,8 @@
 //! The entry of bodies in the list of methods.
 
 use super::benches::BENCHES;
+use super::checked::prepare;
 use super::keys::VOCABULARY;
-use super::prepared::prepare;
 use super::quantities::QUANTITIES;
 use super::trials::TRIALS;
 use crate::method::Entry;

@@ -5,6 +5,8 @@ use super::options::{ArithmeticKind, Engine};
 use super::scene::Scene;
 use super::schemes::{Field, SchemeName};
 use super::shifted::Shifted;
+use super::sums::{Stop, Sums, go_on};
+pub use super::sums::{never, potential};
 use super::swept::Swept;
 use crate::scene::Precision;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -13,14 +15,6 @@ use stripmine_kernels::sweep::all_pairs::Arithmetic;
 
 /// Derivatives of the acceleration that a start may ask for, itself first.
 const ORDERS: usize = 4;
-
-/// Asked now and then whether to stop.
-pub type Stop<'a> = &'a (dyn Fn() -> bool + Sync);
-
-/// Never stops.
-pub fn never() -> bool {
-    false
-}
 
 /// The attraction of some masses.
 pub struct Attraction {
@@ -40,24 +34,6 @@ pub enum Pairs {
     Reference,
     /// By sums of forces, in the scene's precision.
     Summed(Box<dyn Sums>),
-}
-
-/// A way to sum up forces and, where velocities are given, their rates.
-pub trait Sums: Send + Sync {
-    /// Sums up; gives the energy of the pairs if it is observed, else 0.
-    ///
-    /// # Errors
-    /// [`ProgramError`] if the processor lacks what is asked for, or `stop` says so.
-    fn sum(
-        &mut self,
-        position: &Columns,
-        velocity: Option<&Columns>,
-        observed: bool,
-        stop: Stop<'_>,
-    ) -> Result<f64, ProgramError>;
-
-    /// The forces, and their rates, over the masses.
-    fn over(&self, inverse_mass: &[f64], into: [Option<&mut Columns>; 2]);
 }
 
 /// An attraction as a scheme asks for it.
@@ -214,32 +190,6 @@ impl Attraction {
         }
         found
     }
-}
-
-/// Stops where it should.
-fn go_on(stop: Stop<'_>) -> Result<(), ProgramError> {
-    if stop() { Err(ProgramError::Interrupted) } else { Ok(()) }
-}
-
-/// The energy of all pairs, as it is written.
-///
-/// # Errors
-/// [`ProgramError::Interrupted`] if `stop` says so.
-pub fn potential(
-    mass: &[f64],
-    position: &Columns,
-    softening: f64,
-    stop: Stop<'_>,
-) -> Result<f64, ProgramError> {
-    let mut energy = 0.0;
-    for body in 0..mass.len() {
-        go_on(stop)?;
-        for other in 0..body {
-            let squares = position.iter().map(|column| (column[body] - column[other]).powi(2));
-            energy -= mass[body] * mass[other] / (squares.sum::<f64>() + softening * softening).sqrt();
-        }
-    }
-    Ok(energy)
 }
 
 /// The series of a power of a series, up to an order.

@@ -2,6 +2,7 @@
 
 mod benches;
 pub mod bodies;
+mod checked;
 mod choice;
 mod conserved;
 mod encounter;
@@ -18,6 +19,7 @@ pub mod schemes;
 mod shifted;
 mod simulation;
 pub mod starts;
+mod sums;
 mod swept;
 #[cfg(test)]
 mod tests;

@@ -1,149 +1,21 @@
-//! A scene of bodies, held against what the method demands.
+//! What a checked scene of bodies offers.
 
-use super::choice;
+use super::checked::Checked;
 use super::field::Attraction;
-use super::keys::{BODIES, ENGINE, GENERATE, SOFTENING};
-use super::options::{Engine, StartKind};
-use super::scene::Scene;
+use super::options::StartKind;
 use super::shifted::counted;
 use super::simulation::Running;
-use super::starts::{ORBIT, bodies};
+use super::starts::ORBIT;
 use crate::domain::{Domain, Side};
 use crate::memory::{Foreseen, PROGRAM, available};
 use crate::method::{
     Beyond, Every, Fact, Failure, Prepared, Purpose, Schedule, Simulation, StepLimit, Until, VectorProgram,
 };
-use crate::particles::{Kind, Particle, Particles};
-use crate::scene::{Output, PRECISION, Precision, Read, Reason, SceneError, SceneErrors, Values, Warning};
+use crate::particles::{Particle, Particles};
+use crate::scene::{Output, Warning};
 use crate::words::Words;
 use serde_json::{Map, Value, json};
-use std::collections::HashMap;
 use std::path::Path;
-
-/// The lightest body over the heaviest in single precision: products of two such masses are still normal numbers.
-const LIGHTEST: f64 = 1e-18;
-
-/// A checked scene.
-#[derive(Clone)]
-pub(super) struct Checked {
-    pub(super) scene: Scene,
-    pub(super) particles: Particles,
-    choices: Vec<String>,
-}
-
-/// Makes the bodies of a scene and holds it against every precondition.
-///
-/// # Errors
-/// [`SceneErrors`]: every precondition that does not hold.
-pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> {
-    Ok(Box::new(checked(values)?))
-}
-
-/// The same, as this method knows it.
-pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
-    let (mut scene, mut read) = (Scene::default(), Read::new(&values));
-    scene.bind(&mut read);
-    read.done()?;
-    let mut errors = vec![];
-    if scene.precision == Precision::F32 {
-        let error = values.spot(&PRECISION).error(
-            Reason::Contradiction,
-            "`machine.precision` is \"f32\", but the state of bodies is in double precision",
-        );
-        errors.push(error.expecting("\"f64\", or \"mixed\" for forces in single precision"));
-    }
-    if scene.engine == Engine::Reference && scene.precision == Precision::Mixed {
-        let message = format!(
-            "`machine.precision` is \"mixed\", but `{}` = \"reference\" sums in double precision only",
-            ENGINE.path()
-        );
-        let error = values.spot(&PRECISION).error(Reason::Contradiction, message);
-        errors.push(error.expecting("\"f64\", or another engine"));
-    }
-    if scene.start.kind == StartKind::List {
-        errors.extend(wrong_rows(&values, &scene));
-        SceneErrors::none_of(std::mem::take(&mut errors))?;
-    }
-    let of = bodies(&scene.start, scene.softening);
-    let all = of.iter().zip(1..).map(|(&(mass, position, velocity), id)| Particle {
-        id,
-        kind: Kind::Grain,
-        position,
-        velocity,
-        angle: 0.0,
-        omega: 0.0,
-        // Points have none; it is what a viewer draws.
-        radius: scene.softening.max(0.01),
-        mass,
-    });
-    let particles = Particles::new(all.collect());
-    if scene.softening == 0.0 {
-        errors.extend(coincident(&values, &particles));
-    }
-    if scene.precision == Precision::Mixed {
-        errors.extend(too_light(&values, &particles));
-    }
-    SceneErrors::none_of(errors)?;
-    let choices = choice::choose(&mut scene, particles.len());
-    Ok(Checked { scene, particles, choices })
-}
-
-/// Fewer than two bodies, or masses that are not positive.
-fn wrong_rows(values: &Values, scene: &Scene) -> Vec<SceneError> {
-    let rows = &scene.start.bodies;
-    let mut errors = vec![];
-    if rows.len() < 2 {
-        let message =
-            format!("`particles.bodies` lists {}, but one body alone does not attract anything", rows.len());
-        errors.push(values.spot(&BODIES).error(Reason::Range, message).expecting("two bodies or more"));
-    }
-    for (number, row) in rows.iter().enumerate().filter(|(_, row)| row[0] <= 0.0).take(5) {
-        let message = format!("body {} has the mass {:?}", number + 1, row[0]);
-        errors.push(
-            values.item_spot(&BODIES, number).error(Reason::Range, message).expecting("a mass above 0"),
-        );
-    }
-    errors
-}
-
-/// A body so light beside the heaviest that forces in single precision vanish.
-fn too_light(values: &Values, particles: &Particles) -> Option<SceneError> {
-    let heaviest = particles.all().iter().max_by(|a, b| a.mass.total_cmp(&b.mass))?;
-    let lightest = particles.all().iter().min_by(|a, b| a.mass.total_cmp(&b.mass))?;
-    if lightest.mass >= LIGHTEST * heaviest.mass {
-        return None;
-    }
-    let message = format!(
-        "body {} has the mass {:?}, less than {LIGHTEST:e} of the {:?} of body {}: its forces vanish in single precision",
-        lightest.id, lightest.mass, heaviest.mass, heaviest.id
-    );
-    let error = values.spot(&PRECISION).error(Reason::Contradiction, message);
-    Some(error.expecting("machine.precision = \"f64\", or a heavier body"))
-}
-
-/// Two bodies at one place, whose attraction is without bound where it is not softened.
-fn coincident(values: &Values, particles: &Particles) -> Option<SceneError> {
-    let mut places: HashMap<[u64; 3], u32> = HashMap::new();
-    for (number, body) in particles.all().iter().enumerate() {
-        // −0 and 0 are one place.
-        let place = body.position.map(|x| (x + 0.0).to_bits());
-        if let Some(first) = places.insert(place, body.id) {
-            let [x, y, z] = body.position;
-            let message = format!(
-                "bodies {first} and {} are both at ({x}, {y}, {z}), and nothing softens their attraction",
-                body.id
-            );
-            let spot = if values.gives(&BODIES) {
-                values.item_spot(&BODIES, number)
-            } else {
-                values.spot(&GENERATE)
-            };
-            let error = spot.error(Reason::Overlap, message);
-            return Some(error.advising(format!("set `{}` above 0, or move one of them", SOFTENING.path())));
-        }
-    }
-    None
-}
 
 impl Prepared for Checked {
     fn scene(&self) -> String {

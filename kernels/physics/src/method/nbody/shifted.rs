@@ -1,9 +1,8 @@
 //! The source's vector machine: whole-array operations between all bodies and those that are a shift behind them, for every shift.
 
 use super::bodies::{Bodies, Columns};
-use super::field::{Stop, Sums, potential};
 use super::rounded::Rounded;
-use super::swept::over;
+use super::sums::{Stop, Sums, over, potential};
 use crate::method::VectorProgram;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::{Memory, ProgramError, Slot};

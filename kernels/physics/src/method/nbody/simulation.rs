@@ -1,12 +1,13 @@
 //! Bodies under way, observed.
 
 use super::bodies::{Bodies, Columns};
+use super::checked::Checked;
 use super::conserved::Conserved;
 use super::encounter::{Encounter, Encounters};
-use super::field::{Attraction, Stop, never};
-use super::prepared::Checked;
+use super::field::Attraction;
 use super::quantities::{OBSERVABLES, Seen};
 use super::schemes::Scheme;
+use super::sums::{Stop, never};
 use super::watch::Watch;
 use crate::io::checkpoint::Column;
 use crate::method::observed::values;

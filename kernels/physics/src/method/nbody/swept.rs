@@ -1,8 +1,8 @@
 //! Each pair once, in registers and on threads.
 
 use super::bodies::{Bodies, Columns};
-use super::field::{Stop, Sums};
 use super::rounded::Rounded;
+use super::sums::{Stop, Sums, over};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::ProgramError;
@@ -76,19 +76,5 @@ impl<P: backend::Precision> Sums for Swept<P> {
         let units = self.bodies.units;
         over(&self.sums[..3], units.force(), inverse_mass, acceleration);
         over(&self.sums[3..], units.force_rate(), inverse_mass, jerk);
-    }
-}
-
-/// Three sums in their unit over the masses.
-pub(super) fn over<P: backend::Precision>(
-    sums: &[Vec<P>],
-    unit: f64,
-    inverse_mass: &[f64],
-    into: Option<&mut Columns>,
-) {
-    for (into, sum) in into.into_iter().flatten().zip(sums) {
-        for ((into, sum), inverse) in into.iter_mut().zip(sum).zip(inverse_mass) {
-            *into = unit * sum.to_f64() * inverse;
-        }
     }
 }

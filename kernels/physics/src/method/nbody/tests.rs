@@ -1,11 +1,12 @@
 //! Runs of bodies from within: what stops them, what they are warned of, what they count.
 
 use super::bodies::Columns;
-use super::field::{Pairs, Stop, Sums};
+use super::checked::{Checked, checked};
+use super::field::Pairs;
 use super::keys::VOCABULARY;
-use super::prepared::{Checked, checked};
 use super::schemes::SchemeName;
 use super::simulation::Running;
+use super::sums::{Stop, Sums};
 use crate::method::{Failure, FailureKind, Purpose, Simulation, Until};
 use crate::scene::Values;
 use crate::words::Words;

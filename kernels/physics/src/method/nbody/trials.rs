@@ -1,7 +1,7 @@
 //! How bodies may be run, and what theory says of the error.
 
+use super::checked::prepare;
 use super::keys::{ECCENTRICITY, SOFTENING};
-use super::prepared::prepare;
 use crate::method::{Axis, Balance, Decides, Length, Mapped, Parameter, Prepared, Setting, Theory, Trials};
 use crate::particles::{Particle, Particles};
 use crate::scene::{DT, Values};

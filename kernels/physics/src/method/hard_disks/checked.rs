@@ -1,0 +1,236 @@
+//! A scene of hard discs, held against what the method demands.
+
+use super::compress::compress;
+use super::fast;
+use super::idle::never;
+use super::keys::{ENGINE, EVENTS, FLOOR_AMPLITUDE, MASK, MASKS};
+use super::options::EngineChoice;
+use super::reference::choice::{candidates, mask};
+use super::reference::grid::Sizes;
+use super::scene::Scene;
+use crate::domain::{Domain, Side};
+use crate::method::{Prepared, Until};
+use crate::particles::{Particle, Particles};
+use crate::scene::{GENERATE, RADIUS, Read, Reason, SceneError, SceneErrors, Values, WallMotion, Warning};
+use crate::start::{Stated, make, outside, overlaps};
+use stripmine_kernels::flight::Disc;
+use stripmine_kernels::mask::Mask;
+
+/// Discs may overlap by this part of the sum of their radii at the start: rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// A checked scene.
+#[derive(Clone)]
+pub(super) struct Checked {
+    pub(super) scene: Scene,
+    pub(super) domain: Domain,
+    pub(super) particles: Particles,
+    /// The mask, where events are found the source's way.
+    pub(super) mask: Option<Mask>,
+    pub(super) warnings: Vec<Warning>,
+    pub(super) choices: Vec<String>,
+}
+
+/// Makes the discs of a scene and holds it against every precondition.
+///
+/// # Errors
+/// [`SceneErrors`]: every precondition that does not hold.
+pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> {
+    let (mut scene, mut read) = (Scene::default(), Read::new(&values));
+    scene.bind(&mut read);
+    read.done()?;
+    let stated = Stated {
+        values: &values,
+        domain: &scene.domain,
+        start: &scene.start,
+        walls: WallMotion::Fixed,
+        compress,
+    };
+    let made = make(&stated)?;
+    let (domain, particles) = (made.domain, made.particles);
+    let mut errors = outside(&stated, &domain, &particles);
+    errors.extend(overlaps(&stated, &domain, &particles, ROUNDING, "hard discs do not overlap"));
+    errors.extend(beyond_sides(&values, &domain, &particles));
+    errors.extend(squeezed(&values, &scene, &domain, &particles));
+    errors.extend(fixed(&values, &particles));
+    let mut choices = vec![];
+    let mask = match particles.radii() {
+        Some(radii) => way_of(&values, &mut scene, &domain, radii, &particles, &mut choices),
+        None => Err(values.spot(&RADIUS).error(Reason::Geometry, "there is nothing to simulate")),
+    };
+    let mask = mask.unwrap_or_else(|error| {
+        errors.push(error);
+        None
+    });
+    SceneErrors::none_of(errors)?;
+    SceneErrors::none_of(without_events(&values, &scene, domain, &particles).into_iter().collect())?;
+    Ok(Box::new(Checked { scene, domain, particles, mask, warnings: made.warnings, choices }))
+}
+
+/// Discs that reach beyond closed sides.
+fn beyond_sides(values: &Values, domain: &Domain, particles: &Particles) -> Option<SceneError> {
+    let beyond = |disc: &&Particle| {
+        (0..2).any(|axis| match domain.sides[axis] {
+            Side::Closed(side) => {
+                let along = disc.position[axis] - domain.origin[axis];
+                along < disc.radius * (1.0 - ROUNDING) || along > side - disc.radius * (1.0 - ROUNDING)
+            }
+            _ => false,
+        })
+    };
+    let first = particles.all().iter().find(beyond)?;
+    let [x, y] = first.place();
+    let message = format!(
+        "disc {} at ({x}, {y}) with radius {} reaches beyond a side that is not periodic",
+        first.id, first.radius
+    );
+    let error = values.spot(&GENERATE).error(Reason::Placement, message);
+    Some(error.advising("make the sides periodic, or list discs at least a radius away from the sides"))
+}
+
+/// A floor that comes so high that a disc has no room below the ceiling.
+fn squeezed(values: &Values, scene: &Scene, domain: &Domain, particles: &Particles) -> Option<SceneError> {
+    let swing = 2.0 * scene.law.floor?.amplitude;
+    let [_, largest] = particles.radii()?;
+    let room = domain.length(1) - swing;
+    (!scene.open_top && room < 2.0 * largest).then(|| {
+        let message = format!(
+            "the floor rises by {swing} and leaves {room:.6} below the ceiling to a disc of radius {largest}"
+        );
+        let error = values.spot(&FLOOR_AMPLITUDE).error(Reason::Geometry, message);
+        error.advising(
+            "lower law.floor_amplitude, raise the second of domain.sides, or set domain.open_top = true",
+        )
+    })
+}
+
+/// Discs that nothing moves.
+fn fixed(values: &Values, particles: &Particles) -> Option<SceneError> {
+    let count = particles.len() - particles.grain_count();
+    (count > 0).then(|| {
+        let message = format!("{count} wall discs, but every hard disc moves");
+        let error = values.spot(&GENERATE).error(Reason::Contradiction, message);
+        error.expecting("generate = \"hexagonal\", \"random\" or \"list\", or a file without wall discs")
+    })
+}
+
+/// Events of discs that have none.
+fn without_events(
+    values: &Values,
+    scene: &Scene,
+    domain: Domain,
+    particles: &Particles,
+) -> Option<SceneError> {
+    let is_idle = || never(&scene.arena(domain), &discs(&domain, particles).0);
+    (matches!(scene.run.until, Until::Events(_)) && is_idle()).then(|| {
+        let message = "nothing will ever happen: no disc meets another one or a side";
+        let error = values.spot(&EVENTS).error(Reason::Contradiction, message);
+        error.advising("give the discs a temperature or other velocities, or ask for a time")
+    })
+}
+
+/// The discs by id, as events see them at the start; and for each the place of its particle.
+fn discs(domain: &Domain, particles: &Particles) -> (Vec<Disc>, Vec<usize>) {
+    let all = particles.all();
+    let mut order: Vec<usize> = (0..all.len()).collect();
+    order.sort_by_key(|&place| all[place].id);
+    let disc = |&place: &usize| Disc {
+        position: domain.wrapped(all[place].place()),
+        velocity: all[place].planar_velocity(),
+        time: 0.0,
+        radius: all[place].radius,
+        mass: all[place].mass,
+        events: 0,
+    };
+    (order.iter().map(disc).collect(), order)
+}
+
+/// How events are found: the mask of the source's way; none for the fast one.
+fn way_of(
+    values: &Values,
+    scene: &mut Scene,
+    domain: &Domain,
+    radii: [f64; 2],
+    particles: &Particles,
+    choices: &mut Vec<String>,
+) -> Result<Option<Mask>, SceneError> {
+    let all = particles.all().iter().map(|disc| disc.radius);
+    let leash = fast::leash(&scene.arena(*domain), all);
+    let small = "the box is too small for lists: a disc would see others across two of its sides";
+    let way = match (scene.engine, leash) {
+        (EngineChoice::Fast, None) => {
+            let error = values.spot(&ENGINE).error(Reason::Geometry, small);
+            return Err(error.expecting("engine = \"reference\" or \"auto\", or a larger box"));
+        }
+        (EngineChoice::Auto, None) => {
+            choices.push(format!("machine.engine = \"reference\": {small}"));
+            EngineChoice::Reference
+        }
+        (EngineChoice::Auto, _) if values.gives(&MASK) && scene.mask != MASKS[0] => {
+            choices.push("machine.engine = \"reference\": a mask is given".to_owned());
+            EngineChoice::Reference
+        }
+        (EngineChoice::Auto, _) => EngineChoice::Fast,
+        (given, _) => given,
+    };
+    scene.engine = way;
+    if way == EngineChoice::Fast {
+        return Ok(None);
+    }
+    serving(values, scene, domain, radii, particles.len(), choices).map(Some)
+}
+
+/// The mask that was asked for, or the cheapest.
+fn serving(
+    values: &Values,
+    scene: &mut Scene,
+    domain: &Domain,
+    radii: [f64; 2],
+    count: usize,
+    choices: &mut Vec<String>,
+) -> Result<Mask, SceneError> {
+    let all = candidates(domain, radii, count);
+    let serve: Vec<&str> = all.iter().filter(|it| it.predictions.is_finite()).map(|it| it.name).collect();
+    let refused = |message: String| {
+        let error = values.spot(&MASK).error(Reason::Geometry, message);
+        match serve.as_slice() {
+            [] => error.advising("take a larger box, or radii that differ less"),
+            names => error.expecting(format!("one of {}", names.join(", "))),
+        }
+    };
+    let Sizes { cells: [columns, rows], .. } = Sizes::new(domain, radii[0]);
+    let in_words = format!("{columns} × {rows} cells, discs of radii {:.4} to {:.4}", radii[0], radii[1]);
+    match all.iter().find(|it| it.name == scene.mask) {
+        Some(own) if own.predictions.is_finite() => {}
+        Some(own) => {
+            return Err(refused(format!(
+                "mask {} does not serve {in_words}: it meets itself across a periodic side, or discs reach beyond it",
+                own.name
+            )));
+        }
+        None => {
+            let best = all.iter().min_by(|a, b| a.predictions.total_cmp(&b.predictions));
+            let Some(best) = best.filter(|best| best.predictions.is_finite()) else {
+                return Err(refused(format!("no mask serves {in_words}")));
+            };
+            best.name.clone_into(&mut scene.mask);
+            choices.push(format!(
+                "search.mask = \"{}\": about {:.0} predictions a collision, the fewest of all masks",
+                best.name, best.predictions
+            ));
+        }
+    }
+    mask(&scene.mask).ok_or_else(|| refused(format!("no mask is called {}", scene.mask)))
+}
+
+impl Checked {
+    /// The discs by id, as events see them at the start; and for each the place of its particle.
+    pub(super) fn discs(&self) -> (Vec<Disc>, Vec<usize>) {
+        discs(&self.domain, &self.particles)
+    }
+
+    pub(super) fn packing_fraction(&self) -> f64 {
+        let discs = self.particles.all().iter();
+        discs.map(|disc| std::f64::consts::PI * disc.radius.powi(2)).sum::<f64>() / self.domain.area()
+    }
+}

@@ -1,0 +1,143 @@
+//! A scene of particles in a bath, held against what the method demands.
+
+use super::found::{Found, found};
+use super::limits::{bound, step_limits};
+use super::options::PairLaw;
+use super::scene::Scene;
+use crate::domain::Domain;
+use crate::method::{Prepared, StepLimit, compress};
+use crate::number::significant;
+use crate::particles::{Particle, Particles};
+use crate::scene::{
+    DT, GENERATE, RADIUS, Read, Reason, SceneError, SceneErrors, Values, WallMotion, Warning,
+};
+use crate::start::{Stated, make, outside, overlaps};
+
+/// Particles may be nearer than a diameter by this part of it at the start: the potential is then 100 ε.
+const DEEPEST: f64 = 0.25;
+
+/// A checked scene.
+#[derive(Clone)]
+pub(super) struct Checked {
+    pub(super) scene: Scene,
+    pub(super) domain: Domain,
+    pub(super) particles: Particles,
+    /// σ and the mass of every particle (length, mass).
+    pub(super) diameter: f64,
+    pub(super) mass: f64,
+    /// The cut-off (length); a diameter where there are no pairs.
+    pub(super) reach: f64,
+    pub(super) found: Found,
+    /// Seed of the noise.
+    pub(super) seed: u64,
+    pub(super) warnings: Vec<Warning>,
+    pub(super) choices: Vec<String>,
+}
+
+/// Makes the particles of a scene and holds it against every precondition.
+///
+/// # Errors
+/// [`SceneErrors`]: every precondition that does not hold.
+pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> {
+    Ok(Box::new(checked(values)?))
+}
+
+/// The same, as this method knows it.
+pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
+    let (mut scene, mut read) = (Scene::default(), Read::new(&values));
+    scene.bind(&mut read);
+    read.done()?;
+    let stated = Stated {
+        values: &values,
+        domain: &scene.domain,
+        start: &scene.start,
+        walls: WallMotion::Fixed,
+        compress,
+    };
+    let made = make(&stated)?;
+    let (domain, particles) = (made.domain, made.particles);
+    let mut errors = outside(&stated, &domain, &particles);
+    if scene.law != PairLaw::None {
+        let why = "so near they would be thrown apart";
+        errors.extend(overlaps(&stated, &domain, &particles, DEEPEST, why));
+    }
+    let first = match of_one_kind(&values, &particles) {
+        Ok(first) => first,
+        Err(error) => {
+            errors.push(error);
+            return Err(SceneErrors(errors));
+        }
+    };
+    let (diameter, mass) = (2.0 * first.radius, first.mass);
+    let reach = diameter * scene.law.cutoff().unwrap_or(1.0);
+    let mut choices = vec![];
+    let found = found(&values, &mut scene, &domain, [diameter, reach], particles.len(), &mut choices);
+    let found = match found {
+        Ok(found) => found,
+        Err(error) => {
+            errors.push(error);
+            return Err(SceneErrors(errors));
+        }
+    };
+    SceneErrors::none_of(errors)?;
+    let mut warnings = made.warnings;
+    warnings.extend(too_long(&scene, diameter, mass));
+    // Written down where the start has no seed. Where it has one, the noise follows that of the start, also where a
+    // resolved scene is run again with another one.
+    if scene.start.seed().is_none() {
+        scene.noise_seed.get_or_insert(1);
+    }
+    let seed = scene.noise_seed.or(scene.start.seed()).unwrap_or(1);
+    Ok(Checked { scene, domain, particles, diameter, mass, reach, found, seed, warnings, choices })
+}
+
+/// The first particle, if all are alike and move.
+fn of_one_kind(values: &Values, particles: &Particles) -> Result<Particle, SceneError> {
+    let refused = |message: String| values.spot(&RADIUS).error(Reason::Contradiction, message);
+    let Some(&first) = particles.all().first() else {
+        return Err(refused("there is no particle".to_owned()));
+    };
+    let walls = particles.len() - particles.grain_count();
+    if walls > 0 {
+        let error = values
+            .spot(&GENERATE)
+            .error(Reason::Contradiction, format!("{walls} wall discs, but every particle moves"));
+        return Err(error.expecting(
+            "generate = \"mesh\", \"random\", \"hexagonal\" or \"list\", or a file without wall discs",
+        ));
+    }
+    let differs = |other: &&Particle| other.radius != first.radius || other.mass != first.mass;
+    match particles.all().iter().find(differs) {
+        None => Ok(first),
+        Some(other) => Err(refused(format!(
+            "particle {} has radius {} and mass {}, particle {} has {} and {}: particles in a bath are all alike",
+            first.id, first.radius, first.mass, other.id, other.radius, other.mass
+        ))
+        .expecting("one radius and one mass, no radius_spread")),
+    }
+}
+
+/// A step beyond the source's bound.
+fn too_long(scene: &Scene, diameter: f64, mass: f64) -> Option<Warning> {
+    let (step, _) = bound(scene, diameter, mass);
+    (scene.law != PairLaw::None && scene.dt > step).then(|| Warning {
+        key: DT.path(),
+        message: format!(
+            "dt = {} is beyond √(2 m r_c/F) = {step}, in which a particle crosses the cut-off: particles will be lost",
+            scene.dt
+        , step = significant(step, 5)),
+        suggestion: format!("take a step of at most {}", significant(0.1 * step, 2)),
+    })
+}
+
+impl Checked {
+    /// Whether particles act on each other.
+    pub(super) fn has_pairs(&self) -> bool {
+        self.scene.law != PairLaw::None
+    }
+
+    /// What bounds the step.
+    pub(super) fn limits(&self) -> Vec<StepLimit> {
+        step_limits(&self.scene, self.diameter, self.mass)
+    }
+}

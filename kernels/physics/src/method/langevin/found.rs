@@ -1,0 +1,157 @@
+//! How pairs of a scene are found: as it says, or by what serves.
+
+use super::keys::{LAW, PER_SIDE, SEARCH, SKIN};
+use super::options::{By, PairLaw};
+use super::scene::Scene;
+use crate::domain::Domain;
+use crate::grid::sectors_of;
+use crate::number::significant;
+use crate::scene::{GENERATE, Precision, Reason, SIDES, SceneError, Spot, Values};
+use stripmine_kernels::mask::Mask;
+use stripmine_kernels::sweep::fast::{Grid, GridError};
+use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
+
+/// How near particles come at all, in diameters: on a lattice those that come nearer share a cell, which costs time.
+pub(super) const NEAREST: f64 = 0.82;
+/// Sectors of the source's case of all pairs.
+const FEWEST: f64 = 3.0;
+
+/// How pairs are found, with all that is needed for it.
+#[derive(Clone, Debug)]
+pub(super) enum Found {
+    /// On a lattice.
+    Lattice(LatticeShape, Frame),
+    /// In sectors.
+    Sectors(Grid),
+    /// In lists, made of sectors, up to so much beyond the cut-off (length).
+    Lists(Grid, f64),
+}
+
+impl Found {
+    /// The word for it.
+    pub(super) fn by(&self) -> By {
+        match self {
+            Found::Lattice(..) => By::Lattice,
+            Found::Sectors(_) => By::Sectors,
+            Found::Lists(..) => By::NeighborList,
+        }
+    }
+}
+
+/// How pairs are found, by what the scene says or what serves.
+pub(super) fn found(
+    values: &Values,
+    scene: &mut Scene,
+    domain: &Domain,
+    [diameter, reach]: [f64; 2],
+    count: usize,
+    choices: &mut Vec<String>,
+) -> Result<Found, SceneError> {
+    let single = scene.precision != Precision::F64;
+    let box_spot =
+        || -> Spot { if values.gives(&SIDES) { values.spot(&SIDES) } else { values.spot(&GENERATE) } };
+    let lattice = || match scene.law {
+        PairLaw::Wca => lattice_of(domain, reach, NEAREST * diameter),
+        _ => None,
+    };
+    let lists = |scene: &Scene| {
+        let skin = scene.skin.unwrap_or_else(|| roomy_skin(domain, reach, count));
+        let grid = sectors_of(domain, reach + skin, single, count);
+        (grid.map(|grid| Found::Lists(grid, skin)), skin)
+    };
+    let sectors = |scene: &Scene| match scene.per_side {
+        None => sectors_of(domain, reach, single, count)
+            .map_err(|cause| box_spot().error(Reason::Geometry, cause.to_string())),
+        Some(per_side) => grid(values, domain, per_side, reach),
+    };
+    let chosen = match scene.by {
+        By::Lattice => lattice().ok_or_else(|| {
+            let message = format!(
+                "no lattice serves: a cell that is one particle's and a mask of 5 × 5 of them that sees to the cut-off {reach} are \
+                 for law.kind = \"wca\" and boxes of at least five cells"
+            );
+            let spot = if scene.law == PairLaw::Wca { values.spot(&SEARCH) } else { values.spot(&LAW) };
+            spot.error(Reason::Geometry, message).expecting("search.by = \"sectors\" or \"neighbor-list\"")
+        }).map(|(shape, frame)| Found::Lattice(shape, frame))?,
+        By::Sectors => Found::Sectors(sectors(scene)?),
+        By::Auto | By::NeighborList if scene.by == By::NeighborList || scene.skin.is_some() => {
+            let (lists, skin) = lists(scene);
+            lists.map_err(|cause| {
+                let spot = if values.gives(&SKIN) { values.spot(&SKIN) } else { box_spot() };
+                let error = spot.error(Reason::Geometry, format!("{cause}, with a skin of {skin}", skin = significant(skin, 5)));
+                error.advising("make the box larger, lower search.skin, or set search.by = \"sectors\"")
+            })?
+        }
+        By::Auto if scene.per_side.is_some() => {
+            choices.push("search.by = \"sectors\": their number is given".to_owned());
+            Found::Sectors(sectors(scene)?)
+        }
+        By::Auto | By::NeighborList => match lists(scene).0 {
+            Ok(lists) => {
+                choices.push("search.by = \"neighbor-list\": fastest wherever all were measured".to_owned());
+                lists
+            }
+            Err(_) => {
+                choices.push("search.by = \"sectors\": the box has no room for lists".to_owned());
+                Found::Sectors(sectors(scene)?)
+            }
+        },
+    };
+    scene.by = chosen.by();
+    if let Found::Lists(_, skin) = &chosen {
+        scene.skin = Some(*skin);
+    }
+    Ok(chosen)
+}
+
+/// So many sectors along each side.
+fn grid(values: &Values, domain: &Domain, per_side: u64, reach: f64) -> Result<Grid, SceneError> {
+    let counts = [per_side as usize; 2];
+    let edge = domain.lengths().map(|side| side / per_side as f64);
+    if edge.iter().any(|&edge| edge < reach) {
+        let most =
+            domain.lengths().map(|side| (side / reach).floor()).into_iter().fold(f64::INFINITY, f64::min);
+        let message = format!(
+            "search.sectors = {per_side} makes sectors {:.6} wide, narrower than the cut-off {reach:.6}: pairs would be missed",
+            edge[0].min(edge[1])
+        );
+        let error = values.spot(&PER_SIDE).error(Reason::Geometry, message);
+        return Err(match most >= FEWEST {
+            true => error.expecting(format!("from 3 to {most} sectors")),
+            false => error.advising("make the box larger: a side takes at least three sectors"),
+        });
+    }
+    let along = per_side as f64;
+    if along * along >= f64::from(u32::MAX) {
+        let cause = GridError::TooMany { columns: along, rows: along };
+        return Err(values.spot(&PER_SIDE).error(Reason::Geometry, cause.to_string()));
+    }
+    Ok(Grid { frame: Frame { origin: domain.corner(), edge }, counts, periodic: domain.periodic() })
+}
+
+/// How much farther than the cut-off listed pairs may be (length): about a mean distance, within bounds, and not more than the box has
+/// room for.
+fn roomy_skin(domain: &Domain, reach: f64, count: usize) -> f64 {
+    let spacing = (domain.area() / count.max(1) as f64).sqrt();
+    let wanted = (0.5 * spacing).clamp(0.2 * reach, 2.0 * reach);
+    let room = (0..2).map(|axis| domain.length(axis) / 3.0 - reach).fold(f64::INFINITY, f64::min);
+    if room > 0.0 { wanted.min(room * (1.0 - 1e-12)) } else { wanted }
+}
+
+/// The lattice for pairs up to `reach` (length) apart of which hardly any comes nearer than `nearest`; none where the box has none.
+fn lattice_of(domain: &Domain, reach: f64, nearest: f64) -> Option<(LatticeShape, Frame)> {
+    const HALF_WIDTH: u32 = 2;
+    let least = reach / f64::from(HALF_WIDTH);
+    if least > nearest / std::f64::consts::SQRT_2 {
+        return None;
+    }
+    let counts = [0, 1].map(|axis| (domain.length(axis) / least).floor());
+    let edge = [0, 1].map(|axis| domain.length(axis) / counts[axis]);
+    if counts.iter().any(|&count| count < 1.0 || count > f64::from(u32::MAX)) {
+        return None;
+    }
+    let mask = Mask::square(HALF_WIDTH);
+    let [columns, rows] = counts.map(|count| count as usize);
+    let shape = LatticeShape::new(columns, rows, &mask, domain.periodic()).ok()?;
+    Some((shape, Frame { origin: domain.corner(), edge }))
+}

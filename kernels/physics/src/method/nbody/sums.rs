@@ -1,0 +1,71 @@
+//! Sums over pairs of bodies: what every way to them gives, and what the ways share.
+
+use super::bodies::Columns;
+use stripmine_kernels::backend;
+use stripmine_kernels::isa::ProgramError;
+
+/// Asked now and then whether to stop.
+pub type Stop<'a> = &'a (dyn Fn() -> bool + Sync);
+
+/// Never stops.
+pub fn never() -> bool {
+    false
+}
+
+/// A way to sum up forces and, where velocities are given, their rates.
+pub trait Sums: Send + Sync {
+    /// Sums up; gives the energy of the pairs if it is observed, else 0.
+    ///
+    /// # Errors
+    /// [`ProgramError`] if the processor lacks what is asked for, or `stop` says so.
+    fn sum(
+        &mut self,
+        position: &Columns,
+        velocity: Option<&Columns>,
+        observed: bool,
+        stop: Stop<'_>,
+    ) -> Result<f64, ProgramError>;
+
+    /// The forces, and their rates, over the masses.
+    fn over(&self, inverse_mass: &[f64], into: [Option<&mut Columns>; 2]);
+}
+
+/// Stops where it should.
+pub(super) fn go_on(stop: Stop<'_>) -> Result<(), ProgramError> {
+    if stop() { Err(ProgramError::Interrupted) } else { Ok(()) }
+}
+
+/// The energy of all pairs, as it is written.
+///
+/// # Errors
+/// [`ProgramError::Interrupted`] if `stop` says so.
+pub fn potential(
+    mass: &[f64],
+    position: &Columns,
+    softening: f64,
+    stop: Stop<'_>,
+) -> Result<f64, ProgramError> {
+    let mut energy = 0.0;
+    for body in 0..mass.len() {
+        go_on(stop)?;
+        for other in 0..body {
+            let squares = position.iter().map(|column| (column[body] - column[other]).powi(2));
+            energy -= mass[body] * mass[other] / (squares.sum::<f64>() + softening * softening).sqrt();
+        }
+    }
+    Ok(energy)
+}
+
+/// Three sums in their unit over the masses.
+pub(super) fn over<P: backend::Precision>(
+    sums: &[Vec<P>],
+    unit: f64,
+    inverse_mass: &[f64],
+    into: Option<&mut Columns>,
+) {
+    for (into, sum) in into.into_iter().flatten().zip(sums) {
+        for ((into, sum), inverse) in into.iter_mut().zip(sum).zip(inverse_mass) {
+            *into = unit * sum.to_f64() * inverse;
+        }
+    }
+}

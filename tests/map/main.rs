@@ -1,0 +1,274 @@
+//! What ARCHITECTURE.md says of the code is true: crates, rooms, arrows, walls; and every path that the documents name exists.
+
+mod code;
+mod documents;
+mod graph;
+mod tokens;
+
+use code::{Arrow, CRATES, Code, Crate};
+use documents::{anchors, documents, drawn, links, map, quoted, root, rows, section, text};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+/// All that the lower crates depend on: none of it reads a command line, draws, or writes pages.
+const DEPENDENCIES: [(&str, &[&str]); 2] = [
+    ("kernels", &["libm", "memmap2", "pulp", "rand", "rayon", "serde", "thiserror", "wide"]),
+    (
+        "kernels/physics",
+        &[
+            "cpu-time",
+            "crc32fast",
+            "ctrlc",
+            "gethostname",
+            "humantime",
+            "libm",
+            "nix",
+            "rand",
+            "rayon",
+            "serde",
+            "serde_json",
+            "sha2",
+            "stripmine-kernels",
+            "strsim",
+            "tempfile",
+            "thiserror",
+            "toml",
+            "zmij",
+        ],
+    ),
+];
+
+/// Circles of files that there are, each with the reason.
+const KNOWN_CIRCLES: [(&[&str], &str); 6] = [
+    (
+        &["kernels/src/backend/dispatch.rs", "kernels/src/backend/precision.rs"],
+        "a precision says which programs are compiled for it, and work is dispatched by precision",
+    ),
+    (
+        &["kernels/physics/src/method/entry.rs", "kernels/physics/src/method/trials.rs"],
+        "an entry states its trials, and a setting is held against what is prepared",
+    ),
+    (
+        &[
+            "kernels/physics/src/method/lattice_md/arrays.rs",
+            "kernels/physics/src/method/lattice_md/programs.rs",
+        ],
+        "arrays ask programs for their memory, and programs run on the arrays",
+    ),
+    (
+        &[
+            "kernels/physics/src/method/lattice_md/balance.rs",
+            "kernels/physics/src/method/lattice_md/engine.rs",
+        ],
+        "an engine is observed by its balance, which is of engines",
+    ),
+    (
+        &["src/console/failure.rs", "src/console/output.rs"],
+        "output that cannot be written is a failure, and a failure is written by the output's rules",
+    ),
+    (
+        &["src/report/figure/draw/chart.rs", "src/report/figure/draw/legend.rs"],
+        "a chart has a legend, which is laid out by the chart's measures",
+    ),
+];
+
+/// Folders of methods, in the physics and in the laboratory.
+const METHODS: [&str; 4] = ["hard_disks", "langevin", "lattice_md", "nbody"];
+const FOLDERS_OF_METHODS: [&str; 2] = ["kernels/physics/src/method", "src/laboratory"];
+
+/// The files that may name a method's: the lists. And the one file of a method that others use.
+const LISTS: [&str; 2] = ["kernels/physics/src/method/list.rs", "src/laboratory/mod.rs"];
+const SHARED: &str = "kernels/physics/src/method/hard_disks/compress.rs";
+
+fn code() -> Code {
+    Code::read(root())
+}
+
+/// The rooms of a crate: its files and folders, without the two that hold it together.
+fn rooms(of: Crate) -> BTreeSet<String> {
+    let entries = fs::read_dir(root().join(of.folder)).unwrap();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let names = names.map(|name| name.trim_end_matches(".rs").to_owned());
+    names.filter(|name| !["lib", "main"].contains(&name.as_str())).collect()
+}
+
+/// Arrows between rooms of each crate, and between crates: whose, from, to, and the files.
+fn arrows_of_rooms(arrows: &BTreeSet<Arrow>) -> Vec<(&str, &str, &str, &Arrow)> {
+    let of = |arrow| {
+        let (from, to): &(String, String) = arrow;
+        let (user, used) = (Crate::of(from), Crate::of(to));
+        match user.name == used.name {
+            true => (user.short, user.room(from), used.room(to), arrow),
+            false => ("crates", user.short, used.short, arrow),
+        }
+    };
+    let is_room = |name: &str| !["lib", "main"].contains(&name);
+    let arrows = arrows.iter().map(of);
+    arrows.filter(|(_, from, to, _)| from != to && is_room(from) && is_room(to)).collect()
+}
+
+/// Every arrow of the code follows arrows that are drawn, every drawn arrow is one of the code, and none of them closes a circle: so
+/// that no arrow goes up.
+#[test]
+fn arrows_of_the_code_are_those_that_are_drawn() {
+    let (drawn, code) = (drawn(&text("ARCHITECTURE.md")), code());
+    let arrows = code.arrows();
+    let found = arrows_of_rooms(&arrows);
+    assert!(found.len() > 500, "{} arrows", found.len());
+    for of in CRATES.iter().map(|it| it.short).chain(["crates"]) {
+        // A drawn arrow is "is used by".
+        let drawn = drawn.iter().filter(|(name, ..)| name == of);
+        let drawn: Vec<(&str, &str)> = drawn.map(|(_, used, user)| (user.as_str(), used.as_str())).collect();
+        assert_eq!(graph::circles(drawn.iter().copied()), BTreeSet::new(), "{of}: the drawing has circles");
+        let is_in_code =
+            |&(from, to): &(&str, &str)| found.iter().any(|it| (it.0, it.1, it.2) == (of, from, to));
+        let idle: Vec<_> = drawn.iter().filter(|arrow| !is_in_code(arrow)).collect();
+        assert!(idle.is_empty(), "{of}: drawn, but not in the code (user, used): {idle:?}");
+        let allowed = graph::reached(drawn.iter().copied());
+        let is_allowed = |from: &str, to: &str| allowed.get(from).is_some_and(|all| all.contains(to));
+        let wrong: Vec<_> =
+            found.iter().filter(|it| it.0 == of && !is_allowed(it.1, it.2)).map(|it| it.3).collect();
+        assert!(wrong.is_empty(), "{of}: the drawing does not lead from (user) to (used): {wrong:#?}");
+    }
+}
+
+/// What a manifest names in its lists of dependencies, those of tests apart.
+fn dependencies(manifest: &str) -> impl Iterator<Item = &str> {
+    let sections = manifest.split("\n[").filter(|section| !section.starts_with("dev-"));
+    sections.flat_map(|section| {
+        let heading = section.split(']').next().unwrap();
+        let lines = section.lines().skip(1).filter(|line| line.contains('=') && !line.starts_with('#'));
+        let names = lines.map(|line| line.split([' ', '.', '=']).next().unwrap());
+        let listed = names.filter(|_| heading.ends_with("dependencies"));
+        // Or a section of its own.
+        listed.chain(heading.split_once("dependencies.").map(|(_, name)| name))
+    })
+}
+
+/// The kernels name neither physics nor laboratory, and the physics does not name the laboratory; neither depends on a crate beyond its
+/// list.
+#[test]
+fn lower_crates_know_nothing_of_higher_ones() {
+    for (folder, expected) in DEPENDENCIES {
+        let manifest = text(Path::new(folder).join("Cargo.toml"));
+        let found: BTreeSet<&str> = dependencies(&manifest).collect();
+        assert_eq!(found, expected.iter().copied().collect(), "{folder}/Cargo.toml");
+    }
+    let code = code();
+    for (path, name) in code.foreign() {
+        let is_laboratory = Crate::of(path).short == "src";
+        let is_allowed = ["std", "core", "alloc"].contains(&name)
+            || is_laboratory
+            || DEPENDENCIES.iter().any(|(_, names)| names.iter().any(|it| it.replace('-', "_") == name))
+            // Names in scope: what an enumeration or a trait has.
+            || name.starts_with(char::is_uppercase);
+        assert!(is_allowed, "{path} uses {name}");
+    }
+    let place = |path: &str| CRATES.iter().position(|it| it.name == Crate::of(path).name);
+    let up: Vec<Arrow> = code.arrows().into_iter().filter(|(from, to)| place(from) < place(to)).collect();
+    assert!(up.is_empty(), "{up:#?}");
+}
+
+/// No files use each other in a circle, but for the known ones. A module and the files of its folder are one: they may name what it
+/// defines for them all.
+#[test]
+fn there_is_no_circle_of_files() {
+    let all = code().arrows();
+    let is_to_own_module = |(from, to): &&Arrow| {
+        let (from, to) = (Path::new(from), Path::new(to));
+        to.file_name().unwrap() == "mod.rs" && from.starts_with(to.parent().unwrap())
+            || from.starts_with(to.with_extension(""))
+    };
+    let arrows = all.iter().filter(|arrow| !is_to_own_module(arrow));
+    let found = graph::circles(arrows.map(|(from, to)| (from.as_str(), to.as_str())));
+    let known: BTreeSet<Vec<&str>> = KNOWN_CIRCLES.iter().map(|(files, _)| files.to_vec()).collect();
+    let new: Vec<_> = found.difference(&known).collect();
+    assert!(new.is_empty(), "new circles: {new:#?}");
+    let gone: Vec<_> = known.difference(&found).collect();
+    assert!(gone.is_empty(), "no circles any more, to be struck off the list: {gone:#?}");
+}
+
+/// No file names a method but those of its own folders and the lists.
+#[test]
+fn methods_are_named_by_lists_only() {
+    let method = |path: &str| {
+        let within = FOLDERS_OF_METHODS.iter().find_map(|folder| path.strip_prefix(folder));
+        let name = within.and_then(|it| it.split('/').nth(1)).map(str::to_owned);
+        name.filter(|name| METHODS.contains(&name.as_str()))
+    };
+    let is_wrong = |(from, to): &Arrow| {
+        method(to).is_some() && method(to) != method(from) && !LISTS.contains(&from.as_str()) && to != SHARED
+    };
+    let wrong: Vec<Arrow> = code().arrows().into_iter().filter(is_wrong).collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Every room of the crates is a line of the map, and every name of a line is there.
+#[test]
+fn the_map_names_every_room_and_nothing_else() {
+    let map = map(&text("ARCHITECTURE.md"));
+    for of in CRATES {
+        let lines = map.iter().filter(|line| line.folder == Path::new(of.folder));
+        let mapped: BTreeSet<String> = lines.flat_map(|line| line.names.iter().cloned()).collect();
+        assert_eq!(mapped, rooms(of), "{}", of.folder);
+    }
+    for path in map.iter().flat_map(|line| line.names.iter().map(|name| line.folder.join(name))) {
+        let full = root().join(&path);
+        assert!(full.is_dir() || full.with_extension("rs").is_file(), "{} is not there", path.display());
+    }
+}
+
+/// Every path that a document names exists, and every link leads to a file and to a heading that are there.
+#[test]
+fn paths_in_documents_exist() {
+    let roots = ["src/", "kernels/", "benches/", "tests/", "reports/", "docs/"];
+    for document in documents() {
+        let text = text(&document);
+        for path in quoted(&text).into_iter().filter(|word| roots.iter().any(|it| word.starts_with(it))) {
+            assert!(root().join(path).exists(), "{}: `{path}`", document.display());
+        }
+        for (path, heading) in links(&text) {
+            let target = match path {
+                "" => root().join(&document),
+                path => root().join(&document).parent().unwrap().join(path),
+            };
+            assert!(target.exists(), "{}: {path}", document.display());
+            if let Some(heading) = heading {
+                let there = anchors(&fs::read_to_string(target).unwrap());
+                assert!(there.contains(heading), "{}: {path}#{heading}", document.display());
+            }
+        }
+    }
+}
+
+/// Every invariant names the test that holds it, which is there, or is said to be untested.
+#[test]
+fn invariants_name_their_tests() {
+    let rows = rows(&section(&text("ARCHITECTURE.md"), "Invariants"));
+    assert!(rows.len() > 10, "{}", rows.len());
+    for row in rows {
+        let [invariant, held] = row.as_slice() else { panic!("{row:?}") };
+        if ["untested", "the compiler"].contains(&held.as_str()) {
+            continue;
+        }
+        let names = quoted(held);
+        assert!(!names.is_empty(), "{invariant}: neither a test nor \"untested\"");
+        let mut file = String::new();
+        for name in names {
+            if name.contains('/') {
+                file = text(name);
+            } else {
+                assert!(file.contains(&format!("fn {name}(")), "{invariant}: there is no test {name}");
+            }
+        }
+    }
+}
+
+/// The README is short, and shows the command that the checks run.
+#[test]
+fn the_readme_is_short_and_has_the_test_command_alone_on_a_line() {
+    let text = text("README.md");
+    assert!(text.lines().count() <= 150);
+    assert!(text.lines().any(|line| line == "cargo test --workspace"));
+}
