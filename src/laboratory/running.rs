@@ -1,6 +1,6 @@
 //! A scene of a study that runs: by its preset and overrides, and seen by the names of what is observed.
 
-use crate::console::Failure;
+use crate::study::StudyError;
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::method::observed::{UnknownName, observed};
 use stripmine_physics::method::{self, Entry, METHODS, Prepared, Purpose, Quantity, Simulation, Until, load};
@@ -8,9 +8,21 @@ use stripmine_physics::method::{self, Entry, METHODS, Prepared, Purpose, Quantit
 /// A preset with overrides.
 ///
 /// # Errors
-/// [`Failure`] if the scene is bad.
-pub fn prepared(preset: &str, overrides: &[String]) -> Result<Box<dyn Prepared>, Failure> {
+/// [`StudyError`] if the scene is bad.
+pub fn prepared(preset: &str, overrides: &[String]) -> Result<Box<dyn Prepared>, StudyError> {
     Ok(load(preset, overrides, METHODS)?.0)
+}
+
+/// Does something on so many threads.
+///
+/// # Errors
+/// [`StudyError`] if they cannot be had, or what is done fails.
+pub fn on_threads<T: Send>(
+    threads: usize,
+    work: impl FnOnce() -> Result<T, StudyError> + Send,
+) -> Result<T, StudyError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(StudyError::Threads)?.install(work)
 }
 
 /// A scene that runs.
@@ -24,8 +36,8 @@ impl Running {
     /// A preset with overrides, at its start, to be observed.
     ///
     /// # Errors
-    /// [`Failure`] if the scene is bad, or the processor lacks what it asks for.
-    pub fn begin(preset: &str, overrides: &[String]) -> Result<Running, Failure> {
+    /// [`StudyError`] if the scene is bad, or the processor lacks what it asks for.
+    pub fn begin(preset: &str, overrides: &[String]) -> Result<Running, StudyError> {
         let (prepared, method) = load(preset, overrides, METHODS)?;
         Ok(Running::of(method, prepared.start(Purpose::Run)?))
     }
@@ -34,7 +46,7 @@ impl Running {
     ///
     /// # Errors
     /// As of [`begin`](Self::begin).
-    pub fn timed(preset: &str, overrides: &[String]) -> Result<Running, Failure> {
+    pub fn timed(preset: &str, overrides: &[String]) -> Result<Running, StudyError> {
         let (prepared, method) = load(preset, overrides, METHODS)?;
         Ok(Running::of(method, prepared.start(Purpose::Measurement)?))
     }

@@ -2,7 +2,7 @@
 //! in which hardly anything happens says nothing of a scene.
 
 use super::choice::Choice;
-use super::meter::Meter;
+use crate::results::Meter;
 use super::subject::Subject;
 use super::trial::{Course, follow};
 use serde::{Deserialize, Serialize};

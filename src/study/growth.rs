@@ -1,7 +1,7 @@
 //! How fast a small disturbance grows, and up to which time trajectories are therefore comparable.
 
 use super::choice::Choice;
-use super::meter::Meter;
+use crate::results::Meter;
 use super::state::{State, displaced};
 use super::subject::Subject;
 use super::trial::advance;

@@ -1,6 +1,6 @@
 //! One run of a study: to a time, looked at on the way.
 
-use super::meter::Meter;
+use crate::results::Meter;
 use super::state::State;
 use crate::model::clock::{Clock, Work};
 use crate::model::machine::MachineModel;

@@ -3,7 +3,7 @@
 mod benches;
 mod dynamics;
 mod entry;
-mod keys;
+pub mod keys;
 mod limits;
 mod losses;
 pub mod options;
