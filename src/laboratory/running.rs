@@ -2,6 +2,7 @@
 
 use crate::study::StudyError;
 use std::sync::atomic::AtomicBool;
+use stripmine_physics::domain::Domain;
 use stripmine_physics::method::observed::{UnknownName, observed};
 use stripmine_physics::method::{self, Entry, METHODS, Prepared, Purpose, Quantity, Simulation, Until, load};
 
@@ -29,6 +30,8 @@ pub fn on_threads<T: Send>(
 pub struct Running {
     /// The simulation, as it stands.
     pub simulation: Box<dyn Simulation>,
+    /// The box.
+    pub domain: Domain,
     quantities: &'static [Quantity],
 }
 
@@ -39,7 +42,7 @@ impl Running {
     /// [`StudyError`] if the scene is bad, or the processor lacks what it asks for.
     pub fn begin(preset: &str, overrides: &[String]) -> Result<Running, StudyError> {
         let (prepared, method) = load(preset, overrides, METHODS)?;
-        Ok(Running::of(method, prepared.start(Purpose::Run)?))
+        Running::of(method, prepared.as_ref(), Purpose::Run)
     }
 
     /// A preset with overrides, at its start, of which nothing is followed that the motion does not need.
@@ -48,12 +51,20 @@ impl Running {
     /// As of [`begin`](Self::begin).
     pub fn timed(preset: &str, overrides: &[String]) -> Result<Running, StudyError> {
         let (prepared, method) = load(preset, overrides, METHODS)?;
-        Ok(Running::of(method, prepared.start(Purpose::Measurement)?))
+        Running::of(method, prepared.as_ref(), Purpose::Measurement)
     }
 
-    /// A simulation of a method.
-    pub fn of(method: &'static Entry, simulation: Box<dyn Simulation>) -> Running {
-        Running { simulation, quantities: method.quantities }
+    /// A scene of a method, at its start.
+    ///
+    /// # Errors
+    /// [`StudyError`] if the processor lacks what it asks for.
+    pub fn of(
+        method: &'static Entry,
+        prepared: &dyn Prepared,
+        purpose: Purpose,
+    ) -> Result<Running, StudyError> {
+        let (simulation, domain) = (prepared.start(purpose)?, prepared.domain());
+        Ok(Running { simulation, domain, quantities: method.quantities })
     }
 
     /// Goes on for some steps.

@@ -10,7 +10,6 @@ use std::time::Instant;
 use stripmine_physics::io::extxyz::{self, Frame};
 use stripmine_physics::method::langevin::keys::{LAW, PER_SIDE, SEARCH, SORT};
 use stripmine_physics::method::langevin::options::{By, PairLaw, SortKind};
-use stripmine_physics::method::{METHODS, Purpose, load};
 use stripmine_physics::scene::{COUNT, Overrides, SIDES, SPACING};
 use stripmine_physics::words::Words;
 
@@ -172,8 +171,7 @@ fn fluid(law: PairLaw, density: f64, effort: &Effort) -> Result<Fluid, StudyErro
 /// Seconds of the source's run in each phase on one thread, and of the ten frames that it would write.
 fn phases() -> Result<BTreeMap<String, f64>, StudyError> {
     on_threads(1, || {
-        let (scene, method) = load("langevin-report", &[], METHODS)?;
-        let mut running = Running::of(method, scene.start(Purpose::Measurement)?);
+        let mut running = Running::timed("langevin-report", &[])?;
         running.steps(50)?;
         running.simulation.reset_phases();
         let steps = 500;
@@ -186,9 +184,9 @@ fn phases() -> Result<BTreeMap<String, f64>, StudyError> {
         for step in 0..10 {
             let frame = Frame {
                 particles: running.simulation.particles(),
-                cell: scene.domain().lengths(),
-                origin: scene.domain().corner(),
-                periodic: Some(scene.domain().periodic()),
+                cell: running.domain.lengths(),
+                origin: running.domain.corner(),
+                periodic: Some(running.domain.periodic()),
                 time: 0.0,
                 step,
                 seed: None,

@@ -11,7 +11,7 @@ mod fast;
 mod floor;
 mod idle;
 pub mod keys;
-mod options;
+pub mod options;
 #[cfg(test)]
 mod oracle;
 mod prepared;
