@@ -73,8 +73,7 @@ pub fn atmosphere(looks: usize, progress: Progress<'_>) -> Result<Atmosphere, St
     let gases = [(0.02, 1.0), (0.2, 1.0), (1.0, 1.0), (1.0, restitution)];
     let scenes = ["hot-floor", "vibrating-floor"];
     let meter = Meter::new((gases.len() + scenes.len()) as f64, progress);
-    let mut profiles =
-        meter.each(&gases, |&(layers, restitution)| profile(layers, restitution, looks))?;
+    let mut profiles = meter.each(&gases, |&(layers, restitution)| profile(layers, restitution, looks))?;
     let granular = profiles.split_off(gases.len() - 1).remove(0);
     let look_ups = meter.each(&scenes, |&scene| look_up(scene))?;
     Ok(Atmosphere { profiles, looks, granular, restitution, look_ups })

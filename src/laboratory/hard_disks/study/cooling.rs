@@ -79,9 +79,8 @@ pub fn cooling(discs: u64, each: f64, progress: Progress<'_>) -> Result<Cooling,
 
 fn gas(discs: u64, restitution: f64, each: f64) -> Result<Gas, StudyError> {
     let scene = Overrides::new().set(&COUNT, discs);
-    let begin = |restitution: f64| {
-        Running::begin("cooling-gas", &scene.clone().set(&RESTITUTION, restitution))
-    };
+    let begin =
+        |restitution: f64| Running::begin("cooling-gas", &scene.clone().set(&RESTITUTION, restitution));
     let names = ["time", "collisions", "temperature", "collision_rate"];
     // An elastic gas forgets the lattice of the start, and shows its rate.
     let mut elastic = begin(1.0)?;

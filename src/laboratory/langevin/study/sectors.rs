@@ -54,9 +54,7 @@ pub struct Row {
 /// Ways to find pairs that are compared: names, and what they set.
 pub const SEARCHES: [(&str, fn(Overrides) -> Overrides); 4] = [
     ("lattice", |scene| scene.set(&SEARCH, By::Lattice)),
-    ("sectors, sorted when needed", |scene| {
-        scene.set(&SEARCH, By::Sectors).set(&SORT, SortKind::WhenNeeded)
-    }),
+    ("sectors, sorted when needed", |scene| scene.set(&SEARCH, By::Sectors).set(&SORT, SortKind::WhenNeeded)),
     ("sectors, sorted at every step", |scene| {
         scene.set(&SEARCH, By::Sectors).set(&SORT, SortKind::EveryStep)
     }),

@@ -133,10 +133,7 @@ fn rate(
             let (rate, accelerations) = on_threads(threads, || {
                 let mut field = Attraction::new(&scene, &all);
                 let mut into = zeros(all.entries());
-                field
-                    .asking(false, &never)
-                    .acceleration(&all.position, &mut into)
-                    .map_err(Failure::from)?;
+                field.asking(false, &never).acceleration(&all.position, &mut into).map_err(Failure::from)?;
                 let (begun, mut sweeps) = (Instant::now(), 0);
                 while begun.elapsed().as_secs_f64() < effort.seconds {
                     field
@@ -201,8 +198,7 @@ fn energy(particles: &Particles, softening: f64) -> Result<f64, StudyError> {
     let position = [0, 1, 2].map(|axis| all.iter().map(|body| body.position[axis]).collect());
     let square = |body: &Particle| body.velocity.iter().map(|v| v * v).sum::<f64>();
     let kinetic: f64 = all.iter().map(|body| 0.5 * body.mass * square(body)).sum();
-    let potential =
-        potential(&mass, &position, softening, &never).map_err(Failure::from)?;
+    let potential = potential(&mass, &position, softening, &never).map_err(Failure::from)?;
     Ok(kinetic + potential)
 }
 
