@@ -1,22 +1,37 @@
 //! A scene of a study that runs: by its preset and overrides, and seen by the names of what is observed.
 
-use crate::console::Failure;
+use crate::study::StudyError;
 use std::sync::atomic::AtomicBool;
+use stripmine_physics::domain::Domain;
 use stripmine_physics::method::observed::{UnknownName, observed};
 use stripmine_physics::method::{self, Entry, METHODS, Prepared, Purpose, Quantity, Simulation, Until, load};
 
 /// A preset with overrides.
 ///
 /// # Errors
-/// [`Failure`] if the scene is bad.
-pub fn prepared(preset: &str, overrides: &[String]) -> Result<Box<dyn Prepared>, Failure> {
+/// [`StudyError`] if the scene is bad.
+pub fn prepared(preset: &str, overrides: &[String]) -> Result<Box<dyn Prepared>, StudyError> {
     Ok(load(preset, overrides, METHODS)?.0)
+}
+
+/// Does something on so many threads.
+///
+/// # Errors
+/// [`StudyError`] if they cannot be had, or what is done fails.
+pub fn on_threads<T: Send>(
+    threads: usize,
+    work: impl FnOnce() -> Result<T, StudyError> + Send,
+) -> Result<T, StudyError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(StudyError::Threads)?.install(work)
 }
 
 /// A scene that runs.
 pub struct Running {
     /// The simulation, as it stands.
     pub simulation: Box<dyn Simulation>,
+    /// The box.
+    pub domain: Domain,
     quantities: &'static [Quantity],
 }
 
@@ -24,24 +39,32 @@ impl Running {
     /// A preset with overrides, at its start, to be observed.
     ///
     /// # Errors
-    /// [`Failure`] if the scene is bad, or the processor lacks what it asks for.
-    pub fn begin(preset: &str, overrides: &[String]) -> Result<Running, Failure> {
+    /// [`StudyError`] if the scene is bad, or the processor lacks what it asks for.
+    pub fn begin(preset: &str, overrides: &[String]) -> Result<Running, StudyError> {
         let (prepared, method) = load(preset, overrides, METHODS)?;
-        Ok(Running::of(method, prepared.start(Purpose::Run)?))
+        Running::of(method, prepared.as_ref(), Purpose::Run)
     }
 
     /// A preset with overrides, at its start, of which nothing is followed that the motion does not need.
     ///
     /// # Errors
     /// As of [`begin`](Self::begin).
-    pub fn timed(preset: &str, overrides: &[String]) -> Result<Running, Failure> {
+    pub fn timed(preset: &str, overrides: &[String]) -> Result<Running, StudyError> {
         let (prepared, method) = load(preset, overrides, METHODS)?;
-        Ok(Running::of(method, prepared.start(Purpose::Measurement)?))
+        Running::of(method, prepared.as_ref(), Purpose::Measurement)
     }
 
-    /// A simulation of a method.
-    pub fn of(method: &'static Entry, simulation: Box<dyn Simulation>) -> Running {
-        Running { simulation, quantities: method.quantities }
+    /// A scene of a method, at its start.
+    ///
+    /// # Errors
+    /// [`StudyError`] if the processor lacks what it asks for.
+    pub fn of(
+        method: &'static Entry,
+        prepared: &dyn Prepared,
+        purpose: Purpose,
+    ) -> Result<Running, StudyError> {
+        let (simulation, domain) = (prepared.start(purpose)?, prepared.domain());
+        Ok(Running { simulation, domain, quantities: method.quantities })
     }
 
     /// Goes on for some steps.

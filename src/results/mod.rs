@@ -3,11 +3,13 @@
 mod folder;
 mod item;
 mod journal;
+mod meter;
 mod own_files;
 
 pub use folder::{Folder, FolderError};
 pub use item::{Item, Progress};
 pub use journal::{Identity, Journal, JournalError};
+pub use meter::Meter;
 pub(crate) use own_files::OwnFiles;
 
 use crate::console::Failure;

@@ -6,12 +6,11 @@
 //! mean, which falls faster.
 
 use super::choice::Choice;
-use super::meter::Meter;
 use super::orders::{Fitted, fit};
 use super::state::{State, displaced};
 use super::subject::Subject;
 use super::trial::{Course, follow};
-use crate::results::{Journal, JournalError};
+use crate::results::{Journal, JournalError, Meter};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 use stripmine_physics::method::{Decides, Purpose};

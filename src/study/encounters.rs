@@ -2,9 +2,9 @@
 //! in which hardly anything happens says nothing of a scene.
 
 use super::choice::Choice;
-use super::meter::Meter;
 use super::subject::Subject;
 use super::trial::{Course, follow};
+use crate::results::Meter;
 use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::{PI, TAU};

@@ -3,6 +3,7 @@
 use crate::results::JournalError;
 use stripmine_physics::method::Failure;
 use stripmine_physics::method::observed::UnknownName;
+use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::number::significant;
 use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::scene::SceneErrors;
@@ -36,6 +37,15 @@ pub enum StudyError {
     /// The scene as it stands.
     #[error(transparent)]
     Physics(#[from] Failure),
+    /// A scene that is timed.
+    #[error(transparent)]
+    Measurement(#[from] MeasurementError),
+    /// Threads that the system does not give.
+    #[error("the threads cannot be had: {0}; ask for fewer with --threads")]
+    Threads(rayon::ThreadPoolBuildError),
+    /// What the studies of one method are asked and cannot answer.
+    #[error("{0}")]
+    Own(Box<dyn Reported>),
     /// The scene ends before anything is seen of it.
     #[error(
         "the scene is over after {steps} steps, before its first output (after {first}): no run of it was tried\n  help: \
@@ -90,24 +100,28 @@ pub enum StudyError {
 impl Reported for StudyError {
     fn class(&self) -> Class {
         match self {
-            StudyError::NothingToVary(_)
-            | StudyError::NoPrograms(_)
-            | StudyError::NoTrajectories(_)
-            | StudyError::NoSuchParameter { .. }
-            | StudyError::NothingOfTheKind(_)
-            | StudyError::OutOfRange { .. } => Class::Usage,
-            StudyError::Unknown(error) => error.class(),
-            StudyError::Scene(errors) => errors.class(),
-            StudyError::Physics(failure) => failure.class(),
             StudyError::OverBeforeOutput { .. } | StudyError::EveryRunFails { .. } => Class::Precondition,
-            StudyError::Journal(error) => error.class(),
+            StudyError::Threads(_) => Class::InputOutput,
+            _ => self.passed_on().map_or(Class::Usage, Reported::class),
         }
     }
 
-    fn mistakes(&self) -> Option<&SceneErrors> {
+    fn passed_on(&self) -> Option<&dyn Reported> {
+        Some(match self {
+            StudyError::Unknown(error) => error,
+            StudyError::Scene(errors) => errors,
+            StudyError::Physics(failure) => failure,
+            StudyError::Measurement(error) => error,
+            StudyError::Own(error) => error.as_ref(),
+            StudyError::Journal(error) => error,
+            _ => return None,
+        })
+    }
+
+    fn remedy(&self) -> Option<String> {
         match self {
-            StudyError::Scene(errors) => Some(errors),
-            _ => None,
+            StudyError::Threads(_) => Some("ask for fewer with --threads".to_owned()),
+            _ => self.passed_on()?.remedy(),
         }
     }
 }

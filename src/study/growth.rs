@@ -1,10 +1,10 @@
 //! How fast a small disturbance grows, and up to which time trajectories are therefore comparable.
 
 use super::choice::Choice;
-use super::meter::Meter;
 use super::state::{State, displaced};
 use super::subject::Subject;
 use super::trial::advance;
+use crate::results::Meter;
 use crate::statistics::slope;
 use serde::{Deserialize, Serialize};
 use stripmine_physics::method::{Decides, Failure, Prepared, Purpose, Simulation};

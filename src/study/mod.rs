@@ -7,7 +7,6 @@ mod encounters;
 mod error;
 mod growth;
 mod items;
-mod meter;
 mod observables;
 mod observed;
 mod orders;

@@ -2,21 +2,19 @@
 
 use super::averages::{Averages, LOOKS, Means, PROFILE};
 use super::choice::Choice;
-use super::meter::Meter;
 use super::subject::Subject;
 use super::trial::{Course, follow};
-use crate::results::{Journal, JournalError};
-use crate::statistics::Spread;
+use crate::results::{Journal, JournalError, Meter};
+use crate::statistics::{Mean, Spread};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 use stripmine_physics::method::{Purpose, Simulation};
+use stripmine_physics::scene::{Overrides, SEED};
 
 /// Seeds, each an independent start.
 pub const SEEDS: [u64; 4] = [1, 2, 3, 4];
 /// The share of comparisons whose bar misses zero by chance.
 pub const CHANCE: f64 = 0.05;
-/// Student's t for that, and one seed less than there are.
-const STUDENT: f64 = 3.182;
 /// Steps that are tried, in steps of the scene, and that of the reference.
 pub const STEPS: [f64; 4] = [4.0, 2.0, 1.0, 0.5];
 /// The step of the reference, in steps of the scene.
@@ -121,7 +119,7 @@ fn means(
     (steps, each): (u64, f64),
     meter: &Meter<'_>,
 ) -> Result<Means, String> {
-    let seeded = [format!("particles.seed={seed}")];
+    let seeded = Overrides::new().set(&SEED, seed);
     let prepared =
         subject.prepared_as(choice, factor * subject.step, &seeded).map_err(|errors| errors.to_string())?;
     let domain = prepared.domain();
@@ -155,9 +153,9 @@ fn compare(runs: &[Vec<f64>], reference: &[Vec<f64>]) -> (f64, f64, f64) {
     for i in 0..count {
         values.push(Spread::of(&reference.iter().map(|run| run[i]).collect::<Vec<_>>()).mean);
         let paired: Vec<f64> = runs.iter().zip(reference).map(|(run, other)| run[i] - other[i]).collect();
-        let spread = Spread::of(&paired);
-        differences.push(spread.mean);
-        bars.push(STUDENT * spread.error.unwrap_or(f64::INFINITY));
+        let Mean { value, bar } = Mean::of(&paired);
+        differences.push(value);
+        bars.push(bar);
     }
     let scale = rms(&values).max(f64::MIN_POSITIVE);
     let difference = if count == 1 { differences[0] } else { rms(&differences) };
@@ -167,6 +165,7 @@ fn compare(runs: &[Vec<f64>], reference: &[Vec<f64>]) -> (f64, f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statistics::student;
 
     /// By hand: differences 1, 1, 1, 1 are certain; 1, −1, 1, −1 are none.
     #[test]
@@ -177,6 +176,6 @@ mod tests {
         assert_eq!((value, difference, bar), (10.0, 0.1, 0.0));
         let (_, difference, bar) = compare(&of([11.0, 10.0, 10.0, 9.0]), &reference);
         // The standard error of ±1 four times is 1/√3.
-        assert!(difference == 0.0 && (bar - 0.1 * STUDENT / 3f64.sqrt()).abs() < 1e-15);
+        assert!(difference == 0.0 && (bar - 0.1 * student(1.0 - CHANCE, 3) / 3f64.sqrt()).abs() < 1e-15);
     }
 }

@@ -5,7 +5,7 @@ use super::{Choice, StudyError};
 use crate::results::Identity;
 use sha2::{Digest, Sha256};
 use stripmine_physics::method::{Every, Methods, Prepared, Setting, Trials, Until, prepare, vocabularies};
-use stripmine_physics::scene::{SceneErrors, Values};
+use stripmine_physics::scene::{Overrides, SceneErrors, Values};
 
 /// The form in which studies keep finished runs; another one whenever these hold other things.
 const JOURNALED: &str = "2";
@@ -105,10 +105,9 @@ impl Subject {
     }
 
     fn values_as(&self, choice: &Choice, step: f64, more: &[String]) -> Result<Values, SceneErrors> {
-        let mut overrides = self.overrides.clone();
-        overrides.extend(choice.overrides());
-        overrides.push(format!("{}={step:?}", self.trials.step.path()));
-        overrides.extend_from_slice(more);
+        let chosen: Vec<String> = choice.overrides().collect();
+        let step = Overrides::new().set(self.trials.step, step);
+        let overrides = [&self.overrides[..], &chosen, &step, more].concat();
         Values::load(&self.what, &overrides, &vocabularies(self.methods))
     }
 

@@ -1,9 +1,9 @@
 //! One run of a study: to a time, looked at on the way.
 
-use super::meter::Meter;
 use super::state::State;
 use crate::model::clock::{Clock, Work};
 use crate::model::machine::MachineModel;
+use crate::results::Meter;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use stripmine_physics::method::{Failure, Prepared, Purpose, Simulation, Until};

@@ -6,6 +6,9 @@ use crate::console::Failure;
 use crate::laboratory::programs;
 use crate::laboratory::running::prepared;
 use crate::results::{Effort, Item, Made, Progress};
+use stripmine_physics::method::langevin::keys::LAW;
+use stripmine_physics::method::langevin::options::PairLaw;
+use stripmine_physics::scene::Overrides;
 
 macro_rules! items {
     ($($name:literal, $seconds:expr, $is_quick:literal, $make:ident, $doc:literal;)*) => {
@@ -49,13 +52,10 @@ fn errors(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 }
 
 fn counted(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let scene = |name: &'static str, preset: &str, overrides: &[&str]| {
-        let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
-        Ok::<_, Failure>((name, prepared(preset, &overrides)?))
-    };
+    let repulsive = Overrides::new().set(&LAW, PairLaw::Wca);
     let scenes = [
-        scene("langevin-dense, WCA", "langevin-dense", &["law.kind=wca"])?,
-        scene("langevin-dense, cut off at 2.5", "langevin-dense", &[])?,
+        ("langevin-dense, WCA", prepared("langevin-dense", &repulsive)?),
+        ("langevin-dense, cut off at 2.5", prepared("langevin-dense", &[])?),
     ];
     progress(1.0);
     programs::made(

@@ -13,14 +13,14 @@ use crate::console::Failure;
 use crate::model::host::default_model;
 use crate::model::machines;
 use crate::report::Section;
-use crate::results::{Effort, Item, Made, Progress};
+use crate::results::{Effort, Item, Made, Meter, Progress};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 use stripmine_kernels::InstructionSet;
 use stripmine_physics::method::lattice_md::Part;
 use stripmine_physics::origin;
+use stripmine_physics::scene::{Overrides, PACKING_FRACTION};
 
 macro_rules! items {
     ($($name:literal, $seconds:expr, $is_quick:literal, $make:ident, $doc:literal;)*) => {
@@ -146,21 +146,22 @@ fn pipe_small(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let title = "Density waves in a short pipe (figures 5 and 6)";
     let question = "Do grains that fall through two fifths of the pipe form density waves?";
     let showing = Showing { name: "pipe-small", title, question, asks_ways: false, from: 0.0, snapshots: 11 };
-    pipes(showing, ("pipe-small", &[]), &[1], progress)
+    pipes(showing, ("pipe-small", Overrides::new()), &[1], progress)
 }
 
 fn pipe(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let title = "Density waves in the whole pipe (figures 5 and 6)";
     let question = "Do grains that fall through the source's whole pipe form density waves?";
     let showing = Showing { name: "pipe", title, question, asks_ways: false, from: 10.0, snapshots: 14 };
-    pipes(showing, ("pipe", &[]), &[1, 2], progress)
+    pipes(showing, ("pipe", Overrides::new()), &[1, 2], progress)
 }
 
 fn pipe_thin(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let title = "Density waves both ways in a thinner filling";
     let question = "Do the waves run both ways where the pipe is filled less?";
     let showing = Showing { name: "pipe-thin", title, question, asks_ways: true, from: 0.0, snapshots: 0 };
-    pipes(showing, ("pipe", &["particles.packing_fraction=0.35"]), &[1, 2], progress)
+    let thin = Overrides::new().set(&PACKING_FRACTION, 0.35);
+    pipes(showing, ("pipe", thin), &[1, 2], progress)
 }
 
 fn waves(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
@@ -277,25 +278,16 @@ fn threads_effort(effort: Effort) -> threads::Effort {
 /// Runs of a scene with overrides, side by side; the first keeps its frames if snapshots are shown.
 fn pipes(
     showing: Showing,
-    (scene, overrides): (&'static str, &[&str]),
+    (scene, overrides): (&'static str, Overrides),
     seeds: &[u64],
     progress: Progress<'_>,
 ) -> Result<Made, Failure> {
-    const PARTS: f64 = 1000.0;
-    let done: Vec<AtomicUsize> = seeds.iter().map(|_| AtomicUsize::new(0)).collect();
-    let numbered: Vec<(usize, u64)> = seeds.iter().copied().enumerate().collect();
-    let flows = numbered.par_iter().map(|&(at, seed)| {
-        let question = pipe_flow::Question {
-            scene,
-            overrides: overrides.iter().map(|&text| text.to_owned()).collect(),
-            seed,
-            keep_frames: at == 0 && showing.snapshots > 0,
-        };
-        pipe_flow::pipe_flow(&question, |share| {
-            done[at].store((PARTS * share) as usize, Ordering::Relaxed);
-            let sum: usize = done.iter().map(|part| part.load(Ordering::Relaxed)).sum();
-            progress(sum as f64 / PARTS / seeds.len() as f64);
-        })
+    let meter = Meter::new(seeds.len() as f64, progress);
+    let flows = seeds.par_iter().map(|&seed| {
+        let keep_frames = seed == seeds[0] && showing.snapshots > 0;
+        let question = pipe_flow::Question { scene, overrides: overrides.clone(), seed, keep_frames };
+        let mut before = 0.0;
+        pipe_flow::pipe_flow(&question, |share| meter.add(share - std::mem::replace(&mut before, share)))
     });
     let flows: Vec<pipe_flow::PipeFlow> = flows.collect::<Result<_, _>>()?;
     made(sections::pipe_flow::section(showing, &flows), &flows)

@@ -6,6 +6,8 @@ use crate::console::Failure;
 use crate::laboratory::programs;
 use crate::laboratory::running::prepared;
 use crate::results::{Effort, Item, Made, Progress};
+use stripmine_physics::method::nbody::keys::COUNT;
+use stripmine_physics::scene::Overrides;
 
 macro_rules! items {
     ($($name:literal, $seconds:expr, $is_quick:literal, $make:ident, $doc:literal;)*) => {
@@ -42,10 +44,8 @@ fn fall(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 }
 
 fn counted(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let scene = |name: &'static str, count: u32| {
-        Ok::<_, Failure>((name, prepared("plummer", &[format!("particles.count={count}")])?))
-    };
-    let scenes = [scene("plummer, N = 1024", 1024)?, scene("plummer, N = 16", 16)?];
+    let scene = |count: u64| prepared("plummer", &Overrides::new().set(&COUNT, count));
+    let scenes = [("plummer, N = 1024", scene(1024)?), ("plummer, N = 16", scene(16)?)];
     progress(1.0);
     programs::made(
         ("nbody-programs", "Bodies: all pairs by cyclic shifts on the vector machine"),

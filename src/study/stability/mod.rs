@@ -18,10 +18,8 @@ pub use dataset::{Boundary, Limit, Said, SchemeLimit, Stability, over_seeds};
 pub use outcome::{Cell, Class, Foreseen};
 
 use super::choice::Choice;
-use super::meter::Meter;
 use super::{StudyError, Subject};
-use crate::results::Progress;
-use crate::results::{Journal, JournalError};
+use crate::results::{Journal, JournalError, Meter, Progress};
 use crate::statistics::median;
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use stripmine_physics::method::{Decides, Parameter, probed};

@@ -1,12 +1,12 @@
 //! What is expected of the means of a run that is right: by runs with a fine step, over seeds.
 
-use crate::statistics::Spread;
+use crate::statistics::{Spread, student};
 use crate::study::averages::Means;
 
 /// Runs that the expectation is made of, each from a seed of its own.
 pub const SEEDS: u64 = 8;
-/// Student's t for one run of a thousand to be off by chance, and one seed less than there are.
-const STUDENT: f64 = 5.408;
+/// The share of runs that are right and lie within what is expected.
+const WITHIN: f64 = 0.999;
 /// What is off by less than this part of the mean is not called wrong.
 pub const TOLERANCE: f64 = 0.05;
 /// A mean that is not known to this part of itself tells nothing.
@@ -74,11 +74,12 @@ impl Interval {
         let all = middle(values.iter().copied());
         let scale = rms(all.iter().copied()).max(at_least);
         let count = values.len() as f64;
-        let wider = (1.0 + 1.0 / count).sqrt();
+        // Of one run beside the mean of the others, in standard errors of that mean.
+        let reach_of_one = student(WITHIN, values.len() - 1) * count.sqrt() * (1.0 + 1.0 / count).sqrt();
         let reach = if all.len() == 1 {
             let spread = Spread::of(&values.iter().map(|value| value[0]).collect::<Vec<_>>());
             let error = spread.error.filter(|error| *error < KNOWN * scale)?;
-            STUDENT * error * count.sqrt() * wider
+            reach_of_one * error
         } else {
             // How far each is from the middle of the others.
             let apart: Vec<f64> = (0..values.len())
@@ -88,7 +89,7 @@ impl Interval {
                 })
                 .collect();
             let spread = Spread::of(&apart);
-            spread.mean + STUDENT * spread.error.unwrap_or(0.0) * count.sqrt() * wider
+            spread.mean + reach_of_one * spread.error.unwrap_or(0.0)
         };
         Some(Interval { observable: name.to_owned(), middle: all, reach, scale })
     }

@@ -4,17 +4,16 @@ use super::boundary::{Edge, edge};
 use super::dataset::{Boundary, SchemeLimit};
 use super::outcome::{Cell, Class, End, Foreseen, Ran};
 use super::reference::{Expected, SEEDS};
-use crate::results::{Journal, JournalError};
+use crate::results::{Journal, JournalError, Meter};
 use crate::statistics::Spread;
 use crate::study::averages::{Averages, LOOKS, Means};
 use crate::study::choice::Choice;
-use crate::study::meter::Meter;
 use crate::study::state::displaced;
 use crate::study::subject::Subject;
 use crate::study::trial::{Course, follow};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use stripmine_physics::method::{Beyond, Decides, Parameter, Prepared, Purpose, Simulation, StepLimit};
-use stripmine_physics::scene::SceneErrors;
+use stripmine_physics::scene::{Overrides, SEED, SceneErrors};
 
 /// From a seed to the one that confirms what it shows.
 const ANOTHER: u64 = 1000;
@@ -138,13 +137,10 @@ impl Survey<'_> {
         scene.map_or(vec![], |(scene, _)| scene.step_limits())
     }
 
-    fn overrides(&self, case: Case<'_>, seed: u64) -> Vec<String> {
-        let mut overrides =
-            case.value.map_or(vec![], |value| (self.parameter.overrides)(&self.subject.values, value));
-        if self.subject.prepared.seed().is_some() {
-            overrides.push(format!("particles.seed={seed}"));
-        }
-        overrides
+    fn overrides(&self, case: Case<'_>, seed: u64) -> Overrides {
+        let varied = |value| (self.parameter.overrides)(&self.subject.values, value);
+        let overrides = case.value.map_or_else(Overrides::new, varied);
+        if self.subject.prepared.seed().is_some() { overrides.set(&SEED, seed) } else { overrides }
     }
 
     /// The scene of a case, and what is said of its step before it runs.

@@ -3,7 +3,7 @@
 
 use super::entry::Prepared;
 use crate::particles::Particles;
-use crate::scene::{Key, SceneErrors, Values};
+use crate::scene::{Key, Overrides, SceneErrors, Values};
 
 /// How the scenes of a method may be run, and what is measured of them.
 #[derive(Clone, Debug)]
@@ -82,7 +82,7 @@ pub struct Parameter {
     /// From where to where a map goes if nothing else is asked for; none where the scene has nothing of the kind.
     pub range: fn(&Values) -> Option<[f64; 2]>,
     /// The overrides by which a scene comes to have a value.
-    pub overrides: fn(&Values, f64) -> Vec<String>,
+    pub overrides: fn(&Values, f64) -> Overrides,
     /// Values that theory names, with what they are.
     pub marks: fn(&Values) -> Vec<(f64, String)>,
 }

@@ -15,6 +15,7 @@ mod general;
 mod key_set;
 pub(crate) mod keys;
 mod machine;
+mod overrides;
 mod reading;
 mod rules;
 mod text;
@@ -24,7 +25,7 @@ mod vocabulary;
 pub use binding::{Binding, Read, Write};
 pub use disc_keys::{
     CLEAR_WIDTH, COUNT, DISC_RIVALS, DISCS, FILE, FILL_HEIGHT, GENERATE, MASS, PACKING_FRACTION, POSITIONS,
-    RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, SECOND_RADIUS, SECOND_SHARE, SPACING, SPEED, TEMPERATURE,
+    RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, SECOND_RADIUS, SECOND_SHARE, SEED, SPACING, SPEED, TEMPERATURE,
     VELOCITIES, WALL_AMPLITUDE, WALL_POSITIONS, WALL_RADIUS, WALL_SPACING,
 };
 pub use discs::{Amount, Grains, Lining, List, Speed, Start, WallMotion, disagreements};
@@ -32,7 +33,7 @@ pub use domain::{Domain, GRAVITY, ORIGIN, PERIODIC, PLANAR_DOMAIN, SIDES};
 pub use error::{Place, Reason, SceneError, SceneErrors, Spot, Warning};
 pub use general::{
     DT, DURATION, FORMAT_VERSION, HEADING, LAMMPS_DATA, LAMMPS_DUMP, METHOD, OUTPUT, Output, Run, STEP,
-    STEPPED_RUN, bind_heading, too_many_steps,
+    STEPPED_RUN, STEPS, bind_heading, too_many_steps,
 };
 pub use key_set::{KeySet, Rivals, SECTIONS};
 pub use keys::{Bounds, Fallback, Key, Kind, Use, Value};
@@ -40,6 +41,7 @@ pub use machine::{
     ARITHMETIC, INSTRUCTION_SET, INSTRUCTIONS, PRECISION, Precision, bind_arithmetic, bind_execution,
     bind_instructions, execution_name,
 };
+pub use overrides::Overrides;
 pub use values::Values;
 pub use vocabulary::{Preset, Renamed, Vocabulary};
 

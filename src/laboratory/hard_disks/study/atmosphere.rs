@@ -1,13 +1,14 @@
 //! Discs under gravity above a hot floor, without a ceiling: their density over the height, beside the barometric law.
 
-use crate::console::Failure;
 use crate::laboratory::running::Running;
-use crate::results::Progress;
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use crate::results::{Meter, Progress};
+use crate::study::StudyError;
 use serde::Serialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use stripmine_physics::method::Until;
+use stripmine_physics::method::hard_disks::keys::{ENGINE, RESTITUTION, TIME};
+use stripmine_physics::method::hard_disks::options::EngineChoice;
 use stripmine_physics::method::observed::summed_up;
+use stripmine_physics::scene::{COUNT, GRAVITY, Overrides, SIDES};
 
 /// Bins of the profile, each of this part of the height kT/(m g).
 const BIN: f64 = 0.25;
@@ -66,31 +67,26 @@ pub struct LookUp {
 /// Follows discs over `looks` looks, a time √(kT/m)/g apart.
 ///
 /// # Errors
-/// [`Failure`] if a scene breaks.
-pub fn atmosphere(looks: usize, progress: Progress<'_>) -> Result<Atmosphere, Failure> {
+/// [`StudyError`] if a scene breaks.
+pub fn atmosphere(looks: usize, progress: Progress<'_>) -> Result<Atmosphere, StudyError> {
     let restitution = 0.95;
     let gases = [(0.02, 1.0), (0.2, 1.0), (1.0, 1.0), (1.0, restitution)];
-    let done = AtomicUsize::new(0);
-    let followed = gases.into_par_iter().map(|(layers, restitution)| {
-        let profile = profile(layers, restitution, looks)?;
-        progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / gases.len() as f64);
-        Ok(profile)
-    });
-    let mut profiles = followed.collect::<Result<Vec<Profile>, Failure>>()?;
-    let granular = profiles.split_off(gases.len() - 1).remove(0);
     let scenes = ["hot-floor", "vibrating-floor"];
-    let look_ups = scenes.into_par_iter().map(look_up).collect::<Result<_, Failure>>()?;
+    let meter = Meter::new((gases.len() + scenes.len()) as f64, progress);
+    let mut profiles = meter.each(&gases, |&(layers, restitution)| profile(layers, restitution, looks))?;
+    let granular = profiles.split_off(gases.len() - 1).remove(0);
+    let look_ups = meter.each(&scenes, |&scene| look_up(scene))?;
     Ok(Atmosphere { profiles, looks, granular, restitution, look_ups })
 }
 
 /// A scene by the source's engine, and beside it by the fast one.
-fn look_up(scene: &'static str) -> Result<LookUp, Failure> {
-    let run = |engine: &str| {
-        let mut gas = Running::begin(scene, &[format!("machine.engine={engine}")])?;
+fn look_up(scene: &'static str) -> Result<LookUp, StudyError> {
+    let run = |engine: EngineChoice| {
+        let mut gas = Running::begin(scene, &Overrides::new().set(&ENGINE, engine))?;
         gas.until(Until::Time(100.0))?;
-        Ok::<_, Failure>(gas)
+        Ok::<_, StudyError>(gas)
     };
-    let [source, fast] = [run("reference")?, run("fast")?];
+    let [source, fast] = [run(EngineChoice::Reference)?, run(EngineChoice::Fast)?];
     Ok(LookUp {
         scene,
         discs: source.simulation.particles().len(),
@@ -101,19 +97,12 @@ fn look_up(scene: &'static str) -> Result<LookUp, Failure> {
 }
 
 /// Discs of diameter, mass and kT 1, and kT/(m g) of 20.
-fn profile(layers: f64, restitution: f64, looks: usize) -> Result<Profile, Failure> {
-    let (height, discs) = (20.0, 200);
+fn profile(layers: f64, restitution: f64, looks: usize) -> Result<Profile, StudyError> {
+    let (height, discs) = (20.0, 200_usize);
     let width = discs as f64 / layers;
-    let mut gas = Running::begin(
-        "hot-floor",
-        &[
-            format!("domain.sides=[{width}, 120.0]"),
-            format!("domain.gravity=[0.0, {}]", -1.0 / height),
-            format!("particles.count={discs}"),
-            format!("law.restitution={restitution}"),
-            "run.time=1e9".to_owned(),
-        ],
-    )?;
+    let place = Overrides::new().set(&SIDES, [width, 120.0]).set(&GRAVITY, [0.0, -1.0 / height]);
+    let overrides = place.set(&COUNT, discs).set(&RESTITUTION, restitution).set(&TIME, 1e9);
+    let mut gas = Running::begin("hot-floor", &overrides)?;
     // A disc falls through the height in a time of about √2 √(kT/m)/g.
     let between = height;
     let mut now = 40.0 * between;

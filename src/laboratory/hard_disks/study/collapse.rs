@@ -1,15 +1,15 @@
 //! Where the method fails: inelastic collapse over restitution and number of discs, in a row and in the plane.
 
-use crate::console::Failure;
-use crate::laboratory::running::Running;
-use crate::results::Progress;
+use crate::laboratory::running::{Running, prepared};
+use crate::results::{Meter, Progress};
+use crate::study::StudyError;
 use rand::RngExt;
-use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_4;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_physics::method::hard_disks::keys::RESTITUTION;
 use stripmine_physics::method::{FailureKind, Until};
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, POSITIONS, SEED, VELOCITIES};
 
 /// Discs of the rows.
 const ROWS: [u32; 7] = [3, 4, 5, 6, 8, 12, 16];
@@ -75,47 +75,41 @@ pub fn of_a_row(discs: f64) -> f64 {
 /// Surveys rows and gases.
 ///
 /// # Errors
-/// [`Failure`] if a scene breaks otherwise than by collapse.
-pub fn collapses(progress: Progress<'_>) -> Result<Collapses, Failure> {
-    let parts = (ROWS.len() + DISCS.len() * RESTITUTIONS.len()) as f64;
-    let done = AtomicUsize::new(0);
-    let tick = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / parts);
-    let rows = ROWS.par_iter().map(|&discs| {
-        let row = row(discs)?;
-        tick();
-        Ok(row)
-    });
-    let rows: Vec<Row> = rows.collect::<Result<_, Failure>>()?;
-    // The largest take longest: first.
-    let gases = DISCS.into_par_iter().rev().map(|discs| gases(discs, tick));
-    let mut gases: Vec<Gases> = gases.collect::<Result<_, Failure>>()?;
-    gases.reverse();
+/// [`StudyError`] if a scene breaks otherwise than by collapse.
+pub fn collapses(progress: Progress<'_>) -> Result<Collapses, StudyError> {
+    let places = DISCS.iter().flat_map(|&discs| RESTITUTIONS.map(|restitution| (discs, restitution)));
+    let places: Vec<(u64, f64)> = places.collect();
+    let meter = Meter::new((ROWS.len() + places.len()) as f64, progress);
+    let rows = meter.each(&ROWS, |&discs| row(discs))?;
+    let shares = meter.each_from_last(&places, |&(discs, restitution)| share(discs, restitution))?;
+    let shares = shares.chunks(RESTITUTIONS.len());
+    let gases = DISCS.iter().zip(shares).map(|(&discs, collapsed)| gases(discs, collapsed.to_vec()));
+    let gases = gases.collect::<Result<_, StudyError>>()?;
     Ok(Collapses { rows, restitutions: RESTITUTIONS.to_vec(), gases, seeds: SEEDS, collisions: COLLISIONS })
 }
 
 /// Whether a scene collapses before its end.
 fn collapses_before(
     preset: &str,
-    overrides: &[String],
+    overrides: &Overrides,
     end: impl Fn(usize) -> Until,
-) -> Result<bool, Failure> {
+) -> Result<bool, StudyError> {
     let mut gas = Running::begin(preset, overrides)?;
     let end = end(gas.simulation.particles().grain_count());
-    match gas.simulation.advance(&[end], &AtomicBool::new(false)) {
+    match gas.until(end) {
         Ok(()) => Ok(false),
         Err(failure) if failure.kind == FailureKind::InelasticCollapse => Ok(true),
         Err(failure) => Err(failure.into()),
     }
 }
 
-fn row(discs: u32) -> Result<Row, Failure> {
-    let starts: Vec<[String; 2]> = (0..STARTS).map(|start| flying_together(discs, start)).collect();
+fn row(discs: u32) -> Result<Row, StudyError> {
+    let starts: Vec<Overrides> = (0..STARTS).map(|start| flying_together(discs, start)).collect();
     let some_collapses = |restitution: f64| {
         for start in &starts {
-            let mut overrides = start.to_vec();
-            overrides.push(format!("law.restitution={restitution:?}"));
+            let overrides = start.clone().set(&RESTITUTION, restitution);
             if collapses_before("row-of-discs", &overrides, |_| Until::Time(1e3))? {
-                return Ok::<_, Failure>(true);
+                return Ok::<_, StudyError>(true);
             }
         }
         Ok(false)
@@ -134,7 +128,7 @@ fn row(discs: u32) -> Result<Row, Failure> {
 
 /// Places and velocities of discs in a row: gaps of about a diameter, the faster inwards the farther out. The first start is
 /// regular and symmetric, others are drawn.
-fn flying_together(discs: u32, start: u32) -> [String; 2] {
+fn flying_together(discs: u32, start: u32) -> Overrides {
     let mut stream = Stream::new(1, Purpose::Test, start);
     let spread = if start == 0 { 0.0 } else { 0.8 };
     let mut off = || 1.0 + spread * stream.random_range(-1.0..1.0);
@@ -142,35 +136,30 @@ fn flying_together(discs: u32, start: u32) -> [String; 2] {
     let (mut positions, mut velocities, mut x) = (vec![], vec![], 0.0);
     for disc in 0..discs {
         x += 1.0 + off();
-        positions.push(format!("[{:?}, 5.0]", 500.0 + x));
-        velocities.push(format!("[{:?}, 0.0]", (middle - f64::from(disc)) / middle * off()));
+        positions.push([500.0 + x, 5.0]);
+        velocities.push([(middle - f64::from(disc)) / middle * off(), 0.0]);
     }
-    [
-        format!("particles.positions=[{}]", positions.join(", ")),
-        format!("particles.velocities=[{}]", velocities.join(", ")),
-    ]
+    Overrides::new().set(&POSITIONS, positions).set(&VELOCITIES, velocities)
 }
 
-fn gases(discs: u64, tick: impl Fn() + Sync) -> Result<Gases, Failure> {
-    let scene = |restitution: f64, seed: u64| {
-        vec![
-            format!("particles.count={discs}"),
-            format!("particles.packing_fraction={PACKING}"),
-            format!("particles.seed={seed}"),
-            format!("law.restitution={restitution}"),
-        ]
-    };
-    let share = |restitution: f64| {
-        let mut count = 0;
-        for seed in 1..=SEEDS {
-            let end = |discs: usize| Until::Events((0.5 * COLLISIONS * discs as f64) as u64);
-            count += u64::from(collapses_before("cooling-gas", &scene(restitution, seed), end)?);
-        }
-        tick();
-        Ok(count as f64 / SEEDS as f64)
-    };
-    let collapsed = RESTITUTIONS.into_par_iter().map(share).collect::<Result<Vec<f64>, Failure>>()?;
-    let discs = Running::begin("cooling-gas", &scene(1.0, 1))?.simulation.particles().grain_count();
+/// A gas of the map.
+fn gas(discs: u64) -> Overrides {
+    Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, PACKING)
+}
+
+/// The share of the seeds with which gases collapse.
+fn share(discs: u64, restitution: f64) -> Result<f64, StudyError> {
+    let mut count = 0;
+    for seed in 1..=SEEDS {
+        let overrides = gas(discs).set(&RESTITUTION, restitution).set(&SEED, seed);
+        let end = |discs: usize| Until::Events((0.5 * COLLISIONS * discs as f64) as u64);
+        count += u64::from(collapses_before("cooling-gas", &overrides, end)?);
+    }
+    Ok(count as f64 / SEEDS as f64)
+}
+
+fn gases(discs: u64, collapsed: Vec<f64>) -> Result<Gases, StudyError> {
+    let discs = prepared("cooling-gas", &gas(discs))?.particles().grain_count();
     // N d/L with N = ν L²/(π d²/4).
     let across = (discs as f64 * PACKING / FRAC_PI_4).sqrt();
     Ok(Gases { discs, across, collapsed, theory: of_a_row(across) })

@@ -1,13 +1,13 @@
 //! A granular gas cools: Haff's law while it is even, and inelastic collapse where it is too dissipative.
 
-use crate::console::Failure;
-use crate::laboratory::running::Running;
-use crate::results::Progress;
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use crate::laboratory::running::{Running, prepared};
+use crate::results::{Meter, Progress};
+use crate::study::StudyError;
 use serde::Serialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use stripmine_physics::method::FailureKind;
+use stripmine_physics::method::hard_disks::keys::{CONTACT_DURATION, RESTITUTION};
 use stripmine_physics::method::observed::summed_up;
+use stripmine_physics::method::{FailureKind, Until};
+use stripmine_physics::scene::{COUNT, Overrides};
 
 /// Restitutions of the gases that are followed.
 const RESTITUTIONS: [f64; 3] = [0.99, 0.95, 0.90];
@@ -67,27 +67,20 @@ pub fn haff(time: f64, haff_time: f64) -> f64 {
 /// Follows gases over `each` collisions of a disc.
 ///
 /// # Errors
-/// [`Failure`] if a scene breaks otherwise than by collapse.
-pub fn cooling(discs: u64, each: f64, progress: Progress<'_>) -> Result<Cooling, Failure> {
-    let parts = (RESTITUTIONS.len() + COLLAPSING.len()) as f64;
-    let done = AtomicUsize::new(0);
-    let tick = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / parts);
-    let gases = RESTITUTIONS.par_iter().map(|&restitution| gas(discs, restitution, each).inspect(|_| tick()));
-    let gases = gases.collect::<Result<Vec<_>, Failure>>()?;
+/// [`StudyError`] if a scene breaks otherwise than by collapse.
+pub fn cooling(discs: u64, each: f64, progress: Progress<'_>) -> Result<Cooling, StudyError> {
+    let meter = Meter::new((RESTITUTIONS.len() + COLLAPSING.len()) as f64, progress);
+    let gases = meter.each(&RESTITUTIONS, |&restitution| gas(discs, restitution, each))?;
     let contact_duration = 1e-4;
-    let fates = COLLAPSING.par_iter().map(|&it| fate(discs, it, contact_duration).inspect(|_| tick()));
-    let fates = fates.collect::<Result<Vec<_>, Failure>>()?;
-    let discs = Running::begin("cooling-gas", &[format!("particles.count={discs}")])?;
-    Ok(Cooling { discs: discs.simulation.particles().grain_count(), gases, fates, contact_duration })
+    let fates = meter.each(&COLLAPSING, |&restitution| fate(discs, restitution, contact_duration))?;
+    let scene = prepared("cooling-gas", &Overrides::new().set(&COUNT, discs))?;
+    Ok(Cooling { discs: scene.particles().grain_count(), gases, fates, contact_duration })
 }
 
-fn gas(discs: u64, restitution: f64, each: f64) -> Result<Gas, Failure> {
-    let begin = |restitution: f64| {
-        Running::begin(
-            "cooling-gas",
-            &[format!("particles.count={discs}"), format!("law.restitution={restitution}")],
-        )
-    };
+fn gas(discs: u64, restitution: f64, each: f64) -> Result<Gas, StudyError> {
+    let scene = Overrides::new().set(&COUNT, discs);
+    let begin =
+        |restitution: f64| Running::begin("cooling-gas", &scene.clone().set(&RESTITUTION, restitution));
     let names = ["time", "collisions", "temperature", "collision_rate"];
     // An elastic gas forgets the lattice of the start, and shows its rate.
     let mut elastic = begin(1.0)?;
@@ -121,25 +114,15 @@ fn gas(discs: u64, restitution: f64, each: f64) -> Result<Gas, Failure> {
 }
 
 /// Up to 200 collisions of a disc, or to the collapse.
-fn fate(discs: u64, restitution: f64, contact_duration: f64) -> Result<Fate, Failure> {
+fn fate(discs: u64, restitution: f64, contact_duration: f64) -> Result<Fate, StudyError> {
+    let scene = Overrides::new().set(&COUNT, discs).set(&RESTITUTION, restitution);
     let begin = |contact_duration: f64| {
-        Running::begin(
-            "cooling-gas",
-            &[
-                format!("particles.count={discs}"),
-                format!("law.restitution={restitution}"),
-                format!("law.contact_duration={contact_duration}"),
-            ],
-        )
+        Running::begin("cooling-gas", &scene.clone().set(&CONTACT_DURATION, contact_duration))
     };
     let mut gas = begin(0.0)?;
     let count = gas.simulation.particles().grain_count() as f64;
     let events = (100.0 * count) as u64;
-    let ended = gas.simulation.advance(
-        &[stripmine_physics::method::Until::Events(events)],
-        &std::sync::atomic::AtomicBool::new(false),
-    );
-    let collapse = match ended {
+    let collapse = match gas.until(Until::Events(events)) {
         Ok(()) => None,
         Err(failure) if failure.kind == FailureKind::InelasticCollapse => Some(failure.what()),
         Err(failure) => return Err(failure.into()),

@@ -1,11 +1,12 @@
 //! Pressure and collision rate of the equilibrium fluid, over the packing fraction.
 
-use crate::console::Failure;
 use crate::laboratory::running::Running;
-use crate::results::Progress;
-use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use crate::results::{Meter, Progress};
+use crate::study::StudyError;
 use serde::Serialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
+
+pub use crate::statistics::Mean;
 
 /// Packing fraction, Z, and collisions of a disc in a unit of time (diameter = m = kT = 1), measured by two independent codes with
 /// 250 000 discs, good to about 0.1 %.
@@ -21,8 +22,6 @@ pub const KNOWN: [[f64; 3]; 7] = [
 
 /// Parts of a run, each a measurement; their scatter gives the error.
 const PARTS: u64 = 20;
-/// Student's t of 19 degrees of freedom, for 95 of 100.
-const STUDENT: f64 = 2.093;
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug)]
@@ -31,15 +30,6 @@ pub struct Effort {
     pub discs: u64,
     /// Collisions that are measured.
     pub collisions: u64,
-}
-
-/// A mean with half the width of the interval that holds it in 95 of 100 studies.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Mean {
-    /// The mean.
-    pub value: f64,
-    /// Half the width.
-    pub bar: f64,
 }
 
 /// A fluid.
@@ -92,29 +82,16 @@ pub fn luding(packing_fraction: f64) -> f64 {
 /// Measures every packing fraction that is known.
 ///
 /// # Errors
-/// [`Failure`] if a scene breaks.
-pub fn fluids(effort: &Effort, progress: Progress<'_>) -> Result<Fluids, Failure> {
-    let done = AtomicUsize::new(0);
-    let discs = effort.discs;
-    let mut states: Vec<State> = KNOWN
-        .par_iter()
-        // The densest take longest: first.
-        .rev()
-        .map(|&[packing_fraction, z, rate]| {
-            let state = state(packing_fraction, [z, rate], effort)?;
-            progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / KNOWN.len() as f64);
-            Ok(state)
-        })
-        .collect::<Result<_, Failure>>()?;
-    states.reverse();
-    Ok(Fluids { discs, collisions: effort.collisions, states })
+/// [`StudyError`] if a scene breaks.
+pub fn fluids(effort: &Effort, progress: Progress<'_>) -> Result<Fluids, StudyError> {
+    let meter = Meter::new(KNOWN.len() as f64, progress);
+    let states = meter
+        .each_from_last(&KNOWN, |&[packing_fraction, z, rate]| state(packing_fraction, [z, rate], effort))?;
+    Ok(Fluids { discs: effort.discs, collisions: effort.collisions, states })
 }
 
-fn state(packing_fraction: f64, known: [f64; 2], effort: &Effort) -> Result<State, Failure> {
-    let overrides = [
-        format!("particles.packing_fraction={packing_fraction}"),
-        format!("particles.count={}", effort.discs),
-    ];
+fn state(packing_fraction: f64, known: [f64; 2], effort: &Effort) -> Result<State, StudyError> {
+    let overrides = Overrides::new().set(&PACKING_FRACTION, packing_fraction).set(&COUNT, effort.discs);
     let mut fluid = Running::begin("hard-disks", &overrides)?;
     let discs = fluid.simulation.particles().grain_count() as f64;
     // The lattice of the start melts within some tens of collisions of each disc.
@@ -133,18 +110,11 @@ fn state(packing_fraction: f64, known: [f64; 2], effort: &Effort) -> Result<Stat
     }
     Ok(State {
         packing_fraction,
-        compressibility: mean(&pressures),
-        rate: mean(&rates),
+        compressibility: Mean::of(&pressures),
+        rate: Mean::of(&rates),
         energy_error: before[4],
         known,
     })
-}
-
-fn mean(values: &[f64]) -> Mean {
-    let count = values.len() as f64;
-    let value = values.iter().sum::<f64>() / count;
-    let square = values.iter().map(|it| (it - value).powi(2)).sum::<f64>() / (count - 1.0);
-    Mean { value, bar: STUDENT * (square / count).sqrt() }
 }
 
 #[cfg(test)]

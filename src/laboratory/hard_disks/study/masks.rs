@@ -1,12 +1,14 @@
 //! The source's comparison: what a collision costs, over the mask and the packing fraction; and its cost formula, fitted.
 
-use crate::console::Failure;
 use crate::laboratory::running::{Running, prepared};
 use crate::results::Progress;
 use crate::statistics::{median, non_negative};
+use crate::study::StudyError;
 use serde::Serialize;
-use stripmine_physics::method::hard_disks::keys::MASKS;
+use stripmine_physics::method::hard_disks::keys::{ENGINE, MASK, MASKS};
+use stripmine_physics::method::hard_disks::options::EngineChoice;
 use stripmine_physics::method::observed::summed_up;
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
 /// Constants of the source's formula.
 pub const TERMS: [&str; 4] = [
@@ -53,23 +55,19 @@ pub struct Masks {
 /// Measures `rounds` times `collisions` collisions of every mask, in turns.
 ///
 /// # Errors
-/// [`Failure`] if a scene breaks.
+/// [`StudyError`] if a scene breaks.
 pub fn masks(
     discs: u64,
     packing_fractions: &[f64],
     (rounds, collisions): (usize, u64),
     progress: Progress<'_>,
-) -> Result<Masks, Failure> {
+) -> Result<Masks, StudyError> {
     let masks = &MASKS[1..];
     let (mut costs, mut best, mut count) = (vec![], vec![], 0);
     for (at, &packing_fraction) in packing_fractions.iter().enumerate() {
         let overrides = |mask: &str| {
-            [
-                format!("particles.count={discs}"),
-                format!("particles.packing_fraction={packing_fraction}"),
-                "machine.engine=reference".to_owned(),
-                format!("search.mask={mask}"),
-            ]
+            let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, packing_fraction);
+            scene.set(&ENGINE, EngineChoice::Reference).set(&MASK, mask)
         };
         let mut running: Vec<(Running, Vec<f64>)> = vec![];
         for mask in masks {

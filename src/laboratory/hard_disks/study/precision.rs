@@ -1,9 +1,11 @@
 //! Speed against accuracy: the error of Z over the processor time that it took.
 
-use crate::console::Failure;
 use crate::laboratory::running::Running;
 use crate::results::Progress;
+use crate::study::StudyError;
 use serde::Serialize;
+use stripmine_physics::method::hard_disks::keys::ENGINE;
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, SEED};
 
 /// The packing fraction, and Z of it, measured with two independent codes to 0.1 % (the figures of the specification of ISO99).
 pub const STATE: [f64; 2] = [0.50, 4.1094];
@@ -61,8 +63,8 @@ pub struct Precision {
 /// Follows every engine with every number of discs.
 ///
 /// # Errors
-/// [`Failure`] if a scene breaks.
-pub fn precision(effort: &Effort, progress: Progress<'_>) -> Result<Precision, Failure> {
+/// [`StudyError`] if a scene breaks.
+pub fn precision(effort: &Effort, progress: Progress<'_>) -> Result<Precision, StudyError> {
     let mut ways = vec![];
     let parts = (effort.discs.len() * super::rates::ENGINES.len()) as f64;
     for &discs in &effort.discs {
@@ -74,7 +76,7 @@ pub fn precision(effort: &Effort, progress: Progress<'_>) -> Result<Precision, F
     Ok(Precision { ways, seeds: SEEDS })
 }
 
-fn way(engine: &'static str, discs: u64, most: u64) -> Result<Way, Failure> {
+fn way(engine: &'static str, discs: u64, most: u64) -> Result<Way, StudyError> {
     let mut looks: Vec<u64> = std::iter::successors(Some(most), |it| Some(it / 4)).take(6).collect();
     looks.reverse();
     // By look: seconds, and Z of every seed.
@@ -82,15 +84,8 @@ fn way(engine: &'static str, discs: u64, most: u64) -> Result<Way, Failure> {
     let mut count = 0;
     for seed in 1..=SEEDS {
         let [packing, _] = STATE;
-        let mut fluid = Running::begin(
-            "hard-disks",
-            &[
-                format!("particles.count={discs}"),
-                format!("particles.packing_fraction={packing}"),
-                format!("particles.seed={seed}"),
-                format!("machine.engine={engine}"),
-            ],
-        )?;
+        let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, packing);
+        let mut fluid = Running::begin("hard-disks", &scene.set(&SEED, seed).set(&ENGINE, engine))?;
         count = fluid.simulation.particles().grain_count();
         fluid.events((0.5 * FORGOTTEN * count as f64) as u64)?;
         let names = ["time", "virial", "temperature"];

@@ -1,13 +1,15 @@
 //! Collisions a second: the fast engine and the source's, over packing fraction and number of discs, in turns.
 
-use crate::console::Failure;
 use crate::laboratory::running::prepared;
 use crate::results::Progress;
 use crate::statistics::median;
+use crate::study::StudyError;
 use serde::Serialize;
 use stripmine_kernels::InstructionSet;
 use stripmine_physics::method::hard_disks::benches::BENCHES;
+use stripmine_physics::method::hard_disks::keys::ENGINE;
 use stripmine_physics::method::throughput::TimedRun;
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
 /// The engines, by the names that scenes give them.
 pub const ENGINES: [&str; 2] = ["fast", "reference"];
@@ -63,8 +65,8 @@ pub struct Rates {
 /// Measures.
 ///
 /// # Errors
-/// [`Failure`] if a scene breaks.
-pub fn rates(effort: &Effort, progress: Progress<'_>) -> Result<Rates, Failure> {
+/// [`StudyError`] if a scene breaks.
+pub fn rates(effort: &Effort, progress: Progress<'_>) -> Result<Rates, StudyError> {
     let mut rates = vec![];
     let scenes = effort.discs.len() * effort.packing_fractions.len();
     for &discs in &effort.discs {
@@ -76,16 +78,12 @@ pub fn rates(effort: &Effort, progress: Progress<'_>) -> Result<Rates, Failure> 
     Ok(Rates { instruction_set: InstructionSet::best().name(), collisions: effort.collisions, rates })
 }
 
-fn engines(discs: u64, packing_fraction: f64, effort: &Effort) -> Result<Vec<Rate>, Failure> {
+fn engines(discs: u64, packing_fraction: f64, effort: &Effort) -> Result<Vec<Rate>, StudyError> {
     let mut rates = vec![];
     let mut running = vec![];
     for engine in ENGINES {
-        let overrides = [
-            format!("particles.count={discs}"),
-            format!("particles.packing_fraction={packing_fraction}"),
-            format!("machine.engine={engine}"),
-        ];
-        let scene = prepared("hard-disks", &overrides)?;
+        let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, packing_fraction);
+        let scene = prepared("hard-disks", &scene.set(&ENGINE, engine))?;
         rates.push(Rate {
             discs: scene.particles().grain_count(),
             packing_fraction,

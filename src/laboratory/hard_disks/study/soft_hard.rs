@@ -1,15 +1,14 @@
 //! Soft against hard: one scene by lattice MD with stiffer and stiffer discs, and by hard ones.
 
 use super::fluid::luding;
-use crate::console::Failure;
-use crate::results::Progress;
-use crate::statistics::median;
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use crate::laboratory::running::Running;
+use crate::results::{Meter, Progress};
+use crate::statistics::{Spread, median};
+use crate::study::StudyError;
 use serde::Serialize;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use stripmine_physics::method::observed::{UnknownName, observed};
-use stripmine_physics::method::{Entry, METHODS, Prepared, Purpose, Quantity, Simulation, Until, method};
-use stripmine_physics::scene::Values;
+use stripmine_physics::method::lattice_md::keys::{FRICTION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
+use stripmine_physics::method::{Until, hard_disks};
+use stripmine_physics::scene::{COUNT, DT, Overrides, PACKING_FRACTION, SEED, STEPS, TEMPERATURE};
 
 /// The scene, and how much is measured. Diameter, mass and kT are 1.
 #[derive(Clone, Debug, Serialize)]
@@ -86,17 +85,17 @@ impl SoftHard {
 /// Runs every model with every seed.
 ///
 /// # Errors
-/// [`Failure`] if a scene is refused or breaks.
-pub fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<SoftHard, Failure> {
+/// [`StudyError`] if a scene is refused or breaks.
+pub fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<SoftHard, StudyError> {
     let pressure = luding(question.packing_fraction);
     // ω = 4 (Z − 1)/√π, of a gas that keeps its temperature.
     let rate = 4.0 * (pressure - 1.0) / std::f64::consts::PI.sqrt();
     let cooling_time = COOLING / rate;
     // Mean normal speed of impacts at kT = m = 1: √π.
     let impact_speed = std::f64::consts::PI.sqrt();
-    let done = AtomicUsize::new(0);
     let kinds: Vec<Option<f64>> = question.stiffnesses.iter().copied().map(Some).chain([None]).collect();
-    let all = kinds.len() * question.seeds as usize;
+    let seeds: Vec<u64> = (1..=question.seeds).collect();
+    let meter = Meter::new((kinds.len() * seeds.len()) as f64, progress);
     let mut models = vec![];
     let mut discs = 0;
     for stiffness in kinds {
@@ -104,14 +103,7 @@ pub fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<SoftHard
             Some(stiffness) => Way::soft(stiffness, question.restitution, impact_speed)?,
             None => Way::Hard,
         };
-        let runs: Vec<One> = (1..=question.seeds)
-            .into_par_iter()
-            .map(|seed| {
-                let one = way.run(question, seed, cooling_time)?;
-                progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / all as f64);
-                Ok(one)
-            })
-            .collect::<Result<_, Failure>>()?;
+        let runs = meter.each(&seeds, |&seed| way.run(question, seed, cooling_time))?;
         discs = runs[0].discs;
         let depth = stiffness.map_or(0.0, |stiffness| (2.5 / stiffness).powf(0.4));
         let diameter = 1.0 - GAMMA * depth;
@@ -146,7 +138,7 @@ struct One {
 
 impl Way {
     /// Discs of a stiffness, with the damping that gives a restitution at a speed.
-    fn soft(stiffness: f64, restitution: f64, speed: f64) -> Result<Way, Failure> {
+    fn soft(stiffness: f64, restitution: f64, speed: f64) -> Result<Way, StudyError> {
         let (mut low, mut high) = (0.0, 1.0);
         while impact(stiffness, high, speed).0 > restitution {
             high *= 2.0;
@@ -167,59 +159,52 @@ impl Way {
         if let Way::Soft { step, .. } = self { Some(*step) } else { None }
     }
 
-    fn entry(&self) -> Result<&'static Entry, UnknownName> {
-        let name = if let Way::Hard = self { "hard-disks" } else { "lattice-md" };
-        let known = METHODS.iter().map(|entry| entry.vocabulary.keys.method);
-        method(METHODS, name).ok_or_else(|| UnknownName::new("method", name, known))
-    }
-
-    fn prepared(&self, question: &Question, seed: u64, elastic: bool) -> Result<Box<dyn Prepared>, Failure> {
-        let Question { discs, packing_fraction, restitution, .. } = question;
-        let mut overrides = vec![
-            format!("particles.count={discs}"),
-            format!("particles.packing_fraction={packing_fraction}"),
-            format!("particles.seed={seed}"),
-            "particles.temperature=1.0".to_owned(),
-        ];
-        let preset = match self {
+    fn begin(&self, question: &Question, seed: u64, elastic: bool) -> Result<Running, StudyError> {
+        let scene = Overrides::new()
+            .set(&COUNT, question.discs)
+            .set(&PACKING_FRACTION, question.packing_fraction)
+            .set(&SEED, seed)
+            .set(&TEMPERATURE, 1.0);
+        match self {
             Way::Hard => {
-                let restitution = if elastic { 1.0 } else { *restitution };
-                overrides.push(format!("law.restitution={restitution}"));
-                "hard-disks"
+                let restitution = if elastic { 1.0 } else { question.restitution };
+                Running::begin("hard-disks", &scene.set(&hard_disks::keys::RESTITUTION, restitution))
             }
             Way::Soft { stiffness, damping, step } => {
                 let damping = if elastic { 0.0 } else { *damping };
-                overrides.extend([
-                    format!("law.stiffness={stiffness}"),
-                    format!("law.normal_damping={damping}"),
-                    "law.shear_damping=0.0".to_owned(),
-                    "law.friction=0.0".to_owned(),
-                    format!("integrator.dt={step}"),
-                    "run.steps=1".to_owned(),
-                ]);
-                "bench"
+                let law = scene.set(&STIFFNESS, *stiffness).set(&NORMAL_DAMPING, damping);
+                let law = law.set(&SHEAR_DAMPING, 0.0).set(&FRICTION, 0.0);
+                Running::begin("bench", &law.set(&DT, *step).set(&STEPS, 1_u64))
             }
-        };
-        let entry = self.entry()?;
-        Ok((entry.prepare)(Values::load(preset, &overrides, &[entry.vocabulary])?)?)
+        }
     }
 
-    fn run(&self, question: &Question, seed: u64, cooling_time: f64) -> Result<One, Failure> {
-        let none = AtomicBool::new(false);
-        let prepared = self.prepared(question, seed, true)?;
-        let (discs, area) = (prepared.particles().grain_count(), prepared.domain().area());
-        let mut fluid = Observed::begin(prepared.as_ref(), self)?;
+    /// A time, as a moment: the step that is nearest to it, where there are steps.
+    fn at(&self, time: f64) -> Until {
+        match self.step() {
+            Some(step) => Until::Steps((time / step).round() as u64),
+            None => Until::Time(time),
+        }
+    }
+
+    fn run(&self, question: &Question, seed: u64, cooling_time: f64) -> Result<One, StudyError> {
+        let mut fluid = self.begin(question, seed, true)?;
+        let (discs, area) = (fluid.simulation.particles().grain_count(), fluid.domain.area());
         // The lattice of the start melts.
         let melted = 0.5 * question.time;
-        fluid.until(melted, &none)?;
+        fluid.until(self.at(melted))?;
         let begun = cpu_time::ThreadTime::now();
         let mut pressure = 0.0;
-        let virial = || if let Way::Hard = self { fluid.value("virial") } else { Ok(0.0) };
-        let (virial, time) = (virial()?, fluid.simulation.clock().time);
+        let virial = |fluid: &Running| match self {
+            Way::Hard => fluid.observed(["virial"]).map(|[virial]| virial),
+            Way::Soft { .. } => Ok(0.0),
+        };
+        let (before, time) = (virial(&fluid)?, fluid.simulation.clock().time);
         for look in 1..=LOOKS {
-            fluid.until(melted + question.time * look as f64 / LOOKS as f64, &none)?;
+            fluid.until(self.at(melted + question.time * look as f64 / LOOKS as f64))?;
             if let Way::Soft { .. } = self {
-                pressure += fluid.value("pressure")? * area / (discs as f64 * fluid.value("temperature")?);
+                let [seen, temperature] = fluid.observed(["pressure", "temperature"])?;
+                pressure += seen * area / (discs as f64 * temperature);
             }
         }
         let flown = fluid.simulation.clock().time - time;
@@ -227,43 +212,15 @@ impl Way {
         let compressibility = match self {
             Way::Soft { .. } => pressure / LOOKS as f64,
             Way::Hard => {
-                1.0 + (fluid.value("virial")? - virial)
-                    / (2.0 * discs as f64 * fluid.value("temperature")? * flown)
+                let [temperature] = fluid.observed(["temperature"])?;
+                1.0 + (virial(&fluid)? - before) / (2.0 * discs as f64 * temperature * flown)
             }
         };
-        let prepared = self.prepared(question, seed, false)?;
-        let mut gas = Observed::begin(prepared.as_ref(), self)?;
-        let start = gas.value("temperature")?;
-        gas.until(cooling_time, &none)?;
-        Ok(One { discs, compressibility, cooled: gas.value("temperature")? / start, cost })
-    }
-}
-
-/// A simulation, with what is observed of it.
-struct Observed {
-    simulation: Box<dyn Simulation>,
-    quantities: &'static [Quantity],
-    step: Option<f64>,
-}
-
-impl Observed {
-    fn begin(prepared: &dyn Prepared, way: &Way) -> Result<Observed, Failure> {
-        let quantities = way.entry()?.quantities;
-        Ok(Observed { simulation: prepared.start(Purpose::Run)?, quantities, step: way.step() })
-    }
-
-    /// Up to a time: the step that is nearest to it, where there are steps.
-    fn until(&mut self, time: f64, interrupted: &AtomicBool) -> Result<(), Failure> {
-        let moment = match self.step {
-            Some(step) => Until::Steps((time / step).round() as u64),
-            None => Until::Time(time),
-        };
-        Ok(self.simulation.advance(&[moment], interrupted)?)
-    }
-
-    fn value(&self, name: &str) -> Result<f64, UnknownName> {
-        let [value] = observed(self.quantities, &self.simulation.observe(), [name])?;
-        Ok(value)
+        let mut gas = self.begin(question, seed, false)?;
+        let [start] = gas.observed(["temperature"])?;
+        gas.until(self.at(cooling_time))?;
+        let [end] = gas.observed(["temperature"])?;
+        Ok(One { discs, compressibility, cooled: end / start, cost })
     }
 }
 
@@ -289,10 +246,8 @@ fn impact(stiffness: f64, damping: f64, speed: f64) -> (f64, f64) {
 }
 
 fn mean(values: &[f64]) -> Mean {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
-    [mean, (square / count).sqrt()]
+    let spread = Spread::of(values);
+    [spread.mean, spread.error.unwrap_or(0.0)]
 }
 
 #[cfg(test)]

@@ -1,17 +1,17 @@
 //! Order, free times and speeds of hard discs on both sides of melting.
 
-use crate::console::Failure;
 use crate::laboratory::running::Running;
-use crate::results::Progress;
+use crate::results::{Meter, Progress};
 use crate::statistics::kolmogorov_smirnov;
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use crate::study::StudyError;
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
-use std::sync::atomic::{AtomicUsize, Ordering};
 use stripmine_physics::domain::Domain;
+use stripmine_physics::method::hard_disks::keys::COLLISION_LOG;
 use stripmine_physics::method::observed::UnknownName;
 use stripmine_physics::method::{METHODS, Purpose, Until, load};
 use stripmine_physics::near::Near;
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
 /// Packing fractions: a gas, the fluid, between fluid and crystal, the crystal.
 const PACKING_FRACTIONS: [f64; 4] = [0.02, 0.65, 0.71, 0.74];
@@ -75,15 +75,11 @@ pub struct Structures {
 /// Follows discs at every packing fraction, from a crystal in which all are equally fast.
 ///
 /// # Errors
-/// [`Failure`] if a scene breaks.
-pub fn structures(discs: usize, progress: Progress<'_>) -> Result<Structures, Failure> {
-    let done = AtomicUsize::new(0);
-    let structures = PACKING_FRACTIONS.par_iter().map(|&packing_fraction| {
-        let structure = structure(packing_fraction, discs)?;
-        progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / PACKING_FRACTIONS.len() as f64);
-        Ok(structure)
-    });
-    let structures = structures.collect::<Result<Vec<_>, Failure>>()?;
+/// [`StudyError`] if a scene breaks.
+pub fn structures(discs: usize, progress: Progress<'_>) -> Result<Structures, StudyError> {
+    let meter = Meter::new(PACKING_FRACTIONS.len() as f64, progress);
+    let structures =
+        meter.each(&PACKING_FRACTIONS, |&packing_fraction| structure(packing_fraction, discs))?;
     let middles = |(width, count): (f64, usize)| (0..count).map(|bin| (bin as f64 + 0.5) * width).collect();
     let times: Vec<f64> = middles(TIMES);
     let dilute = times.iter().map(|&time| dilute(time)).collect();
@@ -98,12 +94,9 @@ pub fn structures(discs: usize, progress: Progress<'_>) -> Result<Structures, Fa
     })
 }
 
-fn structure(packing_fraction: f64, discs: usize) -> Result<Structure, Failure> {
-    let overrides = [
-        format!("particles.packing_fraction={packing_fraction}"),
-        format!("particles.count={discs}"),
-        "output.collisions=true".to_owned(),
-    ];
+fn structure(packing_fraction: f64, discs: usize) -> Result<Structure, StudyError> {
+    let overrides = Overrides::new().set(&PACKING_FRACTION, packing_fraction).set(&COUNT, discs);
+    let overrides = overrides.set(&COLLISION_LOG, true);
     let (scene, method) = load("melting", &overrides, METHODS)?;
     let (domain, mut start) = (scene.domain(), scene.particles().clone());
     for (disc, turn) in start.all_mut().iter_mut().zip(1..) {
@@ -111,7 +104,7 @@ fn structure(packing_fraction: f64, discs: usize) -> Result<Structure, Failure> 
         let angle = TAU * (f64::from(turn) * 0.618_033_988_749_895).fract();
         disc.velocity = [2f64.sqrt() * angle.cos(), 2f64.sqrt() * angle.sin(), 0.0];
     }
-    let mut running = Running::of(method, scene.started_from(start).start(Purpose::Run)?);
+    let mut running = Running::of(method, scene.started_from(start).as_ref(), Purpose::Run)?;
     let count = running.simulation.particles().grain_count();
     let begin = maxwell(&running)?;
     for _ in 0..SETTLING {

@@ -1,14 +1,14 @@
 //! The error of the step: energy and pressure of a Lennard-Jones fluid over dt, by both integrators.
 
 use super::{Mean, PARTS};
-use crate::console::Failure;
 use crate::laboratory::running::Running;
-use crate::results::Progress;
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use crate::results::{Meter, Progress};
+use crate::study::StudyError;
 use serde::Serialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
+use stripmine_physics::method::langevin::keys::INTEGRATOR;
 use stripmine_physics::method::langevin::options::SchemeKind;
+use stripmine_physics::scene::{DT, Overrides};
 use stripmine_physics::words::Words;
 
 /// Steps (time); the shortest is the reference of both integrators together.
@@ -51,17 +51,12 @@ pub struct Accuracy {
 /// Measures every step over a time.
 ///
 /// # Errors
-/// [`Failure`] if a scene is refused.
-pub fn accuracy(time: f64, progress: Progress<'_>) -> Result<Accuracy, Failure> {
+/// [`StudyError`] if a scene is refused.
+pub fn accuracy(time: f64, progress: Progress<'_>) -> Result<Accuracy, StudyError> {
     let cases: Vec<(SchemeKind, f64)> =
         STEPS.iter().flat_map(|&dt| SCHEMES.map(|scheme| (scheme, dt))).collect();
-    let done = AtomicUsize::new(0);
-    let fluids = cases.par_iter().map(|&(scheme, dt)| {
-        let fluid = fluid(scheme, dt, time)?;
-        progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / cases.len() as f64);
-        Ok(fluid)
-    });
-    let fluids = fluids.collect::<Result<Vec<Fluid>, Failure>>()?;
+    let meter = Meter::new(cases.len() as f64, progress);
+    let fluids = meter.each(&cases, |&(scheme, dt)| fluid(scheme, dt, time))?;
     let particles = Running::timed("langevin-dense", &[])?.simulation.particles().len();
     let limit = limit(&fluids);
     Ok(Accuracy { particles, time, fluids, limit })
@@ -80,8 +75,8 @@ fn limit(fluids: &[Fluid]) -> Mean {
     Mean { value: (wxx * wy - wx * wxy) / determinant, bar: (wxx / determinant).sqrt() }
 }
 
-fn fluid(scheme: SchemeKind, dt: f64, time: f64) -> Result<Fluid, Failure> {
-    let overrides = [format!("integrator.kind={}", scheme.word()), format!("integrator.dt={dt:?}")];
+fn fluid(scheme: SchemeKind, dt: f64, time: f64) -> Result<Fluid, StudyError> {
+    let overrides = Overrides::new().set(&INTEGRATOR, scheme).set(&DT, dt);
     let mut running = Running::begin("langevin-dense", &overrides)?;
     let count = running.simulation.particles().len() as f64;
     // The mesh melts within some units of time.

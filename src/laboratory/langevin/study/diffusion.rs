@@ -1,21 +1,21 @@
 //! Mean square displacement and velocities of particles in a bath, beside exact results.
 
 use super::{Mean, PARTS};
-use crate::console::Failure;
 use crate::laboratory::running::Running;
-use crate::results::Progress;
+use crate::results::{Meter, Progress};
 use crate::statistics::kolmogorov_smirnov;
-use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use crate::study::StudyError;
 use serde::Serialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use stripmine_physics::method::langevin::options::SchemeKind;
+use stripmine_physics::method::langevin::keys::{INTEGRATOR, LAW};
+use stripmine_physics::method::langevin::options::{PairLaw, SchemeKind};
 use stripmine_physics::particles::Particle;
+use stripmine_physics::scene::{COUNT, DT, Overrides, SIDES};
 use stripmine_physics::words::Words;
 
 /// The systems of the source's figures 3 to 6: particles and side (length).
 pub const SYSTEMS: [(u64, f64); 4] = [(1000, 50.0), (1000, 100.0), (1000, 1000.0), (40_000, 100.0)];
 /// The step of runs with pairs (time), their duration, and looks at them for each factor of ten.
-const DT: f64 = 0.001;
+const STEP: f64 = 0.001;
 const DURATION: f64 = 30.0;
 const LOOKS: f64 = 8.0;
 /// Steps at which the bath's temperature is looked at, over m/γ.
@@ -68,41 +68,23 @@ pub struct Diffusion {
 /// Follows every system.
 ///
 /// # Errors
-/// [`Failure`] if a scene breaks.
-pub fn diffusion(progress: Progress<'_>) -> Result<Diffusion, Failure> {
+/// [`StudyError`] if a scene breaks.
+pub fn diffusion(progress: Progress<'_>) -> Result<Diffusion, StudyError> {
     let schemes = [SchemeKind::Stochastic, SchemeKind::AsPrinted, SchemeKind::Baoab];
     let cases: Vec<(SchemeKind, f64)> =
         schemes.into_iter().flat_map(|scheme| STEPS.map(|dt| (scheme, dt))).collect();
-    let (done, all) = (AtomicUsize::new(0), (SYSTEMS.len() + 1 + cases.len()) as f64);
-    let tick = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / all);
-    // The largest first.
-    let mut systems = SYSTEMS
-        .par_iter()
-        .rev()
-        .map(|&(particles, side)| {
-            let followed = followed(particles, side, "wca")?;
-            tick();
-            Ok(followed)
-        })
-        .collect::<Result<Vec<Followed>, Failure>>()?;
-    systems.reverse();
-    let free = followed(SYSTEMS[0].0, SYSTEMS[0].1, "none")?;
-    tick();
-    let heated = cases.par_iter().map(|&(scheme, dt)| {
-        let heated = heated(scheme, dt)?;
-        tick();
-        Ok(heated)
-    });
-    Ok(Diffusion { systems, free, heated: heated.collect::<Result<_, Failure>>()? })
+    let meter = Meter::new((SYSTEMS.len() + 1 + cases.len()) as f64, progress);
+    let systems =
+        meter.each_from_last(&SYSTEMS, |&(particles, side)| followed(particles, side, PairLaw::Wca))?;
+    let free = followed(SYSTEMS[0].0, SYSTEMS[0].1, PairLaw::None)?;
+    meter.add(1.0);
+    let heated = meter.each(&cases, |&(scheme, dt)| heated(scheme, dt))?;
+    Ok(Diffusion { systems, free, heated })
 }
 
-fn followed(particles: u64, side: f64, law: &str) -> Result<Followed, Failure> {
-    let overrides = [
-        format!("particles.count={particles}"),
-        format!("domain.sides=[{side:?}, {side:?}]"),
-        format!("law.kind={law}"),
-        format!("integrator.dt={DT:?}"),
-    ];
+fn followed(particles: u64, side: f64, law: PairLaw) -> Result<Followed, StudyError> {
+    let overrides =
+        Overrides::new().set(&COUNT, particles).set(&SIDES, [side; 2]).set(&LAW, law).set(&DT, STEP);
     let mut running = Running::begin("langevin-report", &overrides)?;
     let start = running.simulation.particles();
     let (mut times, mut square) = (vec![], vec![]);
@@ -113,7 +95,7 @@ fn followed(particles: u64, side: f64, law: &str) -> Result<Followed, Failure> {
             break;
         }
         look += 1.0;
-        let wanted = (time / DT).round() as u64;
+        let wanted = (time / STEP).round() as u64;
         running.steps(wanted.saturating_sub(running.simulation.clock().steps))?;
         let now = running.simulation.particles();
         let inside = now.all().iter().zip(start.all()).map(|(now, start)| {
@@ -140,12 +122,8 @@ fn maxwell(running: &Running) -> f64 {
     kolmogorov_smirnov(components.collect(), |x| 0.5 * libm::erfc(-x / 2f64.sqrt()))
 }
 
-fn heated(scheme: SchemeKind, dt: f64) -> Result<Heated, Failure> {
-    let overrides = [
-        "particles.count=4000".to_owned(),
-        format!("integrator.kind={}", scheme.word()),
-        format!("integrator.dt={dt:?}"),
-    ];
+fn heated(scheme: SchemeKind, dt: f64) -> Result<Heated, StudyError> {
+    let overrides = Overrides::new().set(&COUNT, 4000_u64).set(&INTEGRATOR, scheme).set(&DT, dt);
     let mut running = Running::begin("langevin-free", &overrides)?;
     // Looks five times m/γ apart.
     let between = (5.0 / dt).ceil() as u64;

@@ -1,14 +1,13 @@
 //! Particles that a long step throws out of the box: how many over the step, and from which step on.
 
-use crate::console::Failure;
 use crate::laboratory::running::{Running, prepared};
-use crate::results::Progress;
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use crate::results::{Meter, Progress};
+use crate::study::StudyError;
 use serde::Serialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use stripmine_physics::method::langevin::keys::{BATH_TEMPERATURE, INTEGRATOR, MOST_LOST, STRENGTH};
 use stripmine_physics::method::langevin::options::SchemeKind;
 use stripmine_physics::method::observed::UnknownName;
-use stripmine_physics::words::Words;
+use stripmine_physics::scene::{COUNT, DT, Overrides, SIDES, TEMPERATURE};
 
 /// The source's table: step, particles lost.
 pub const SOURCE: [(f64, u64); 4] = [(1.0, 19_200), (0.1, 6393), (0.01, 754), (0.001, 0)];
@@ -56,20 +55,15 @@ pub struct LossTable {
     pub boundaries: Vec<Boundary>,
 }
 
-fn overrides(particles: u64, dt: f64, more: &[String]) -> Vec<String> {
+fn overrides(particles: u64, dt: f64) -> Overrides {
     let side = (particles as f64 / 4.0).sqrt();
-    let own = [
-        format!("particles.count={particles}"),
-        format!("domain.sides=[{side:?}, {side:?}]"),
-        format!("integrator.dt={dt:?}"),
-        format!("run.most_lost={particles}"),
-    ];
-    own.into_iter().chain(more.iter().cloned()).collect()
+    let scene = Overrides::new().set(&COUNT, particles).set(&SIDES, [side; 2]);
+    scene.set(&DT, dt).set(&MOST_LOST, particles)
 }
 
 /// Particles lost in the source's number of steps; all of them where none is left.
-fn lost(particles: u64, dt: f64, more: &[String]) -> Result<u64, Failure> {
-    let mut running = Running::timed("langevin-report", &overrides(particles, dt, more))?;
+fn lost(particles: u64, overrides: &Overrides) -> Result<u64, StudyError> {
+    let mut running = Running::timed("langevin-report", overrides)?;
     Ok(match running.steps(STEPS) {
         Ok(()) => running.observed(["lost"])?[0] as u64,
         Err(_) => particles,
@@ -79,42 +73,34 @@ fn lost(particles: u64, dt: f64, more: &[String]) -> Result<u64, Failure> {
 /// Counts losses and looks for boundaries, of as many particles.
 ///
 /// # Errors
-/// [`Failure`] if a scene is refused.
-pub fn losses(particles: u64, progress: Progress<'_>) -> Result<LossTable, Failure> {
+/// [`StudyError`] if a scene is refused.
+pub fn losses(particles: u64, progress: Progress<'_>) -> Result<LossTable, StudyError> {
     let mut steps: Vec<f64> = SOURCE.iter().map(|(dt, _)| *dt).chain(FINER).collect();
     steps.sort_by(|a, b| b.total_cmp(a));
     let places: Vec<(f64, f64)> = [0.1, 1.0, 10.0, 100.0]
         .into_iter()
         .flat_map(|strength| [0.1, 1.0, 10.0].map(|kt| (strength, kt)))
         .collect();
-    let (done, all) = (AtomicUsize::new(0), steps.len() + places.len());
-    let tick = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / all as f64);
-    let rows = steps.into_par_iter().map(|dt| {
+    let meter = Meter::new((steps.len() + places.len()) as f64, progress);
+    let rows = meter.each(&steps, |&dt| {
         let mut counts = [0; 2];
         for (count, scheme) in counts.iter_mut().zip(SCHEMES) {
-            *count = lost(particles, dt, &[format!("integrator.kind={}", scheme.word())])?;
+            *count = lost(particles, &overrides(particles, dt).set(&INTEGRATOR, scheme))?;
         }
-        tick();
         let source = SOURCE.iter().find(|(there, _)| *there == dt).map(|(_, lost)| *lost);
-        Ok(Row { dt, lost: counts, source })
-    });
-    let rows = rows.collect::<Result<Vec<Row>, Failure>>()?;
-    let boundaries = places.into_par_iter().map(|(strength, temperature)| {
-        let boundary = boundary(particles, strength, temperature)?;
-        tick();
-        Ok(boundary)
-    });
-    let boundaries = boundaries.collect::<Result<Vec<Boundary>, Failure>>()?;
+        Ok::<_, StudyError>(Row { dt, lost: counts, source })
+    })?;
+    let boundaries =
+        meter.each(&places, |&(strength, temperature)| boundary(particles, strength, temperature))?;
     Ok(LossTable { particles, rows, boundaries })
 }
 
-fn boundary(particles: u64, strength: f64, temperature: f64) -> Result<Boundary, Failure> {
-    let more = [
-        format!("law.strength={strength:?}"),
-        format!("law.bath_temperature={temperature:?}"),
-        format!("particles.temperature={temperature:?}"),
-    ];
-    let limits = prepared("langevin-report", &overrides(particles, 0.001, &more))?.step_limits();
+fn boundary(particles: u64, strength: f64, temperature: f64) -> Result<Boundary, StudyError> {
+    let overrides = |dt: f64| {
+        let scene = overrides(particles, dt).set(&STRENGTH, strength);
+        scene.set(&BATH_TEMPERATURE, temperature).set(&TEMPERATURE, temperature)
+    };
+    let limits = prepared("langevin-report", &overrides(0.001))?.step_limits();
     let step = |name: &str| {
         let unknown = || UnknownName::new("limit of the step", name, limits.iter().map(|limit| limit.name));
         limits.iter().find(|limit| limit.name == name).map(|limit| limit.step).ok_or_else(unknown)
@@ -123,7 +109,7 @@ fn boundary(particles: u64, strength: f64, temperature: f64) -> Result<Boundary,
     let (mut low, mut high) = (0.05 * bounds[1], 4.0 * bounds[1]);
     while high / low > 1.0 + TOLERANCE {
         let middle = (low * high).sqrt();
-        match lost(particles, middle, &more)? {
+        match lost(particles, &overrides(middle))? {
             0 => low = middle,
             _ => high = middle,
         }

@@ -5,7 +5,10 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use stripmine_kernels::InstructionSet;
 use stripmine_physics::method::lattice_md::Document;
+use stripmine_physics::method::lattice_md::keys::{ENGINE, INTEGRATOR, SEARCH};
+use stripmine_physics::method::lattice_md::options::{EngineChoice, IntegratorKind};
 use stripmine_physics::method::throughput::{MeasurementError, TimedRun};
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, PRECISION};
 
 /// The searches, as `search.by` names them. The lattice comes first.
 pub const METHODS: [&str; 3] = ["lattice", "neighbor-list", "sectors"];
@@ -127,14 +130,12 @@ fn begin(
     (precision, particles, packing_fraction): (&str, usize, f64),
     effort: &Effort,
 ) -> Result<TimedRun, MeasurementError> {
-    let overrides = [
-        format!("particles.count={particles}"),
-        format!("particles.packing_fraction={packing_fraction}"),
-        format!("search.by=\"{method}\""),
-        format!("machine.precision=\"{precision}\""),
-        "machine.engine=\"fast\"".to_owned(),
-        "integrator.kind=\"velocity-verlet\"".to_owned(),
-    ];
+    let scene = Overrides::new().set(&COUNT, particles).set(&PACKING_FRACTION, packing_fraction);
+    let overrides = scene
+        .set(&SEARCH, method)
+        .set(&PRECISION, precision)
+        .set(&ENGINE, EngineChoice::Fast)
+        .set(&INTEGRATOR, IntegratorKind::VelocityVerlet);
     running(Document::load("bench", &overrides)?, 200, effort.steps)
 }
 

@@ -2,10 +2,11 @@
 
 use super::StudyError;
 use super::pipe_flow::{PipeFlow, Question, pipe_flow};
+use crate::results::{Meter, Progress};
 use crate::statistics::Spread;
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use stripmine_physics::method::lattice_md::keys::{FRICTION, NORMAL_DAMPING, SHEAR_DAMPING};
+use stripmine_physics::scene::{DT, GRAVITY, Overrides};
 
 /// One case over its seeds.
 #[derive(Clone, Debug, Serialize)]
@@ -15,7 +16,7 @@ pub struct Case {
     /// γ_N (1/s).
     pub normal_damping: f64,
     /// What differs from `pipe-small`.
-    pub overrides: Vec<String>,
+    pub overrides: Overrides,
     /// Fano factor at the start.
     pub fano_start: Spread,
     /// Fano factor over the last half of the run.
@@ -53,30 +54,20 @@ pub const SCAN: [f64; 5] = [100.0, 200.0, 400.0, 700.0, 1000.0];
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks.
-pub fn damping(seeds: &[u64], progress: impl Fn(f64) + Sync) -> Result<Damping, StudyError> {
+pub fn damping(seeds: &[u64], progress: Progress<'_>) -> Result<Damping, StudyError> {
     let scan = SCAN.map(|damping| {
-        (format!("γ_N = {damping:.0} 1/s"), damping, vec![format!("law.normal_damping={damping:.0}")])
+        (format!("γ_N = {damping:.0} 1/s"), damping, Overrides::new().set(&NORMAL_DAMPING, damping))
     });
-    let elastic = [
-        "domain.gravity=[0.0, 0.0]",
-        "law.normal_damping=0",
-        "law.shear_damping=0",
-        "law.friction=0",
-        "integrator.dt=5e-5",
-    ];
-    let elastic = ("elastic gas without gravity".to_owned(), 0.0, elastic.map(str::to_owned).to_vec());
+    let elastic = Overrides::new().set(&GRAVITY, [0.0; 2]).set(&NORMAL_DAMPING, 0.0).set(&SHEAR_DAMPING, 0.0);
+    let elastic = elastic.set(&FRICTION, 0.0).set(&DT, 5e-5);
+    let elastic = ("elastic gas without gravity".to_owned(), 0.0, elastic);
     let cases: Vec<_> = scan.into_iter().chain([elastic]).collect();
     let runs: Vec<(usize, u64)> =
         (0..cases.len()).flat_map(|case| seeds.iter().map(move |&seed| (case, seed))).collect();
-    let done = AtomicUsize::new(0);
-    let flows = runs.par_iter().map(|&(case, seed)| {
+    let flows = Meter::new(runs.len() as f64, progress).each(&runs, |&(case, seed)| {
         let overrides = cases[case].2.clone();
-        let question = Question { scene: "pipe-small", overrides, seed, keep_frames: false };
-        let flow = pipe_flow(&question, |_| {});
-        progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / runs.len() as f64);
-        flow
-    });
-    let flows: Vec<PipeFlow> = flows.collect::<Result<_, _>>()?;
+        pipe_flow(&Question { scene: "pipe-small", overrides, seed, keep_frames: false }, |_| {})
+    })?;
     let cases =
         cases.into_iter().zip(flows.chunks(seeds.len())).map(|((name, normal_damping, overrides), flows)| {
             let over =

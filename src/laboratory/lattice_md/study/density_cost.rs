@@ -2,7 +2,6 @@
 
 use super::StudyError;
 use super::efficiency_table::{Choice, Question, QuestionError, counting_model, printed_nop, step};
-use super::executed;
 use crate::model::clock::Clock;
 use crate::model::machine::MachineModel;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -12,7 +11,10 @@ use stripmine_kernels::isa::{Op, OpCounts};
 use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_physics::method::lattice_md::Document;
 use stripmine_physics::method::lattice_md::assemble;
+use stripmine_physics::method::lattice_md::keys::{EXECUTION, SEARCH};
+use stripmine_physics::method::lattice_md::options::By;
 use stripmine_physics::method::lattice_md::{Lengths, Part, ledger, rival_ledger};
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
 /// The densest that discs can lie on cells as wide as their radius: touching discs in hexagonal order, `1/(2√3)`.
 pub const CEILING: f64 = 0.288_675_134_594_812_9;
@@ -241,12 +243,8 @@ impl Model<'_> {
 pub(super) fn list_figures(occupancy: f64) -> Result<ListFigures, StudyError> {
     const EQUILIBRATION: u64 = 200;
     const STEPS: u64 = 1000;
-    let overrides = [
-        "particles.count=1024".to_owned(),
-        format!("particles.packing_fraction={}", PI * occupancy),
-        "search.by=neighbor-list".to_owned(),
-        executed("chained"),
-    ];
+    let scene = Overrides::new().set(&COUNT, 1024_u64).set(&PACKING_FRACTION, PI * occupancy);
+    let overrides = scene.set(&SEARCH, By::NeighborList).set(&EXECUTION, "chained");
     let mut method = assemble(&Document::load("bench", &overrides)?.check()?)?;
     (0..EQUILIBRATION).try_for_each(|_| method.step())?;
     let made = method.lists().map_or(0, |(_, rebuilds)| rebuilds);

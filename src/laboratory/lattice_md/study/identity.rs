@@ -1,12 +1,14 @@
 //! Does the lattice give what neighbour lists give? BP93 section 4: "no differences in the results".
 
 use super::StudyError;
-use super::executed;
+use crate::results::{Meter, Progress};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
-use std::sync::atomic::{AtomicU64, Ordering};
 use stripmine_physics::method::lattice_md::Document;
 use stripmine_physics::method::lattice_md::assemble;
+use stripmine_physics::method::lattice_md::keys::{EXECUTION, NORMAL_DAMPING, SEARCH};
+use stripmine_physics::method::lattice_md::options::By;
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
 /// A scene that both methods ran.
 #[derive(Clone, Debug, Serialize)]
@@ -16,7 +18,7 @@ pub struct Pair {
     /// The scene.
     pub scene: &'static str,
     /// What differs from it.
-    pub overrides: Vec<String>,
+    pub overrides: Overrides,
     /// Discs that move.
     pub grains: usize,
     /// The states that were compared.
@@ -57,21 +59,21 @@ const STRIDE: u64 = 1000;
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks.
-pub fn identity(progress: impl Fn(f64) + Sync) -> Result<Identity, StudyError> {
-    let dense = ["particles.count=400", "particles.packing_fraction=0.84", "law.normal_damping=0.5"];
-    let scenes: [(&str, &str, Vec<String>, u64); 3] = [
-        ("dense gas with friction", "bench", dense.map(str::to_owned).to_vec(), 2000),
-        ("density waves", "pipe-small", vec![], 4000),
-        ("elastic gas", "dense-gas", vec!["particles.count=400".to_owned()], 2000),
+pub fn identity(progress: Progress<'_>) -> Result<Identity, StudyError> {
+    let few = Overrides::new().set(&COUNT, 400_u64);
+    let dense = few.clone().set(&PACKING_FRACTION, 0.84).set(&NORMAL_DAMPING, 0.5);
+    let scenes: [(&str, &str, Overrides, u64); 3] = [
+        ("dense gas with friction", "bench", dense, 2000),
+        ("density waves", "pipe-small", Overrides::new(), 4000),
+        ("elastic gas", "dense-gas", few, 2000),
     ];
-    let (done, all) = (AtomicU64::new(0), scenes.iter().map(|scene| scene.3).sum::<u64>());
+    let meter = Meter::new(scenes.iter().map(|scene| scene.3 as f64).sum(), progress);
     let pairs = scenes.par_iter().map(|(name, scene, overrides, steps)| {
-        let start = |kind: &str| {
-            let mut overrides = overrides.clone();
-            overrides.extend([format!("search.by={kind}"), executed("chained")]);
+        let start = |search: By| {
+            let overrides = overrides.clone().set(&SEARCH, search).set(&EXECUTION, "chained");
             Ok::<_, StudyError>(assemble(&Document::load(scene, &overrides)?.check()?)?)
         };
-        let (mut lattice, mut lists) = (start("lattice")?, start("neighbor-list")?);
+        let (mut lattice, mut lists) = (start(By::Lattice)?, start(By::NeighborList)?);
         let mut states = vec![];
         for step in 1..=*steps {
             lattice.step()?;
@@ -85,7 +87,7 @@ pub fn identity(progress: impl Fn(f64) + Sync) -> Result<Identity, StudyError> {
                     .map(|(a, b)| (a.position[0] - b.position[0]).hypot(a.position[1] - b.position[1]));
                 let farthest = apart.fold(0.0, f64::max);
                 states.push(State { step, lattice: a.checksum(), lists: b.checksum(), farthest });
-                progress((done.fetch_add(STRIDE, Ordering::Relaxed) + STRIDE) as f64 / all as f64);
+                meter.add(STRIDE as f64);
             }
         }
         let grains = lattice.particles().grain_count();

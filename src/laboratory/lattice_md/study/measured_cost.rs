@@ -1,11 +1,14 @@
 //! What does a step take on this host, over the number of particles and their density?
 
-use super::executed;
 use serde::Serialize;
 use std::f64::consts::PI;
 use stripmine_kernels::InstructionSet;
 use stripmine_physics::method::lattice_md::Document;
+use stripmine_physics::method::lattice_md::keys::{
+    CELL_EDGE, COHESIONLESS, EXECUTION, REBUILD, SEARCH, TEXT,
+};
 use stripmine_physics::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
 /// Method and execution that the bench scene is run with.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -161,20 +164,15 @@ fn sample(
     effort: &Effort,
 ) -> Result<Sample, MeasurementError> {
     let Variant { text, kind, execution, rebuild, .. } = VARIANTS[variant];
-    let mut overrides = vec![
-        format!("particles.count={particles}"),
-        format!("particles.packing_fraction={}", PI * occupancy),
-        format!("search.by=\"{kind}\""),
-        format!("machine.text={text}"),
-        // The source has no clamp.
-        "law.cohesionless=false".to_owned(),
-    ];
-    if kind == "lattice" {
+    let scene = Overrides::new().set(&COUNT, particles).set(&PACKING_FRACTION, PI * occupancy);
+    // The source has no clamp.
+    let scene = scene.set(&SEARCH, kind).set(&TEXT, text).set(&COHESIONLESS, false);
+    let scene = scene.set(&EXECUTION, execution.unwrap_or("chained"));
+    let overrides = match rebuild {
+        Some(rebuild) => scene.set(&REBUILD, rebuild),
         // As the source has it; the largest cell that the geometry allows would need fewer.
-        overrides.push("search.cell_edge=0.5".to_owned());
-    }
-    overrides.push(executed(execution.unwrap_or("chained")));
-    overrides.extend(rebuild.map(|rebuild| format!("search.rebuild=\"{rebuild}\"")));
+        None => scene.set(&CELL_EDGE, 0.5),
+    };
     let elements = if kind == "lattice" { (particles as f64 / occupancy) as usize } else { particles };
     let steps = (effort.element_steps / elements).clamp(4, 2000) as u64;
     let document = Document::load("bench", &overrides)?;

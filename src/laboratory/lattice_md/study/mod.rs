@@ -24,22 +24,10 @@ pub mod samples;
 pub mod threads;
 pub mod useful_work;
 
+pub use crate::study::StudyError;
+
 use stripmine_physics::method::lattice_md::Document;
 use stripmine_physics::method::throughput::{MeasurementError, TimedRun};
-
-/// Why a study has no result.
-#[derive(Debug, thiserror::Error)]
-pub enum StudyError {
-    /// The scene.
-    #[error(transparent)]
-    Scene(#[from] stripmine_physics::scene::SceneErrors),
-    /// The physics.
-    #[error(transparent)]
-    Physics(#[from] stripmine_physics::method::Failure),
-    /// A question that has no answer.
-    #[error(transparent)]
-    Question(#[from] efficiency_table::QuestionError),
-}
 
 /// The override that has a step executed: by the fast engine, or by programs in some execution.
 fn executed(execution: &str) -> String {

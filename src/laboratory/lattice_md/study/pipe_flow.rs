@@ -1,21 +1,23 @@
 //! Do grains that fall through a pipe gather into density waves? BP93 section 4, figures 5 and 6.
 
 use super::StudyError;
-use super::executed;
 use serde::Serialize;
 use stripmine_physics::method::lattice_md::Document;
+use stripmine_physics::method::lattice_md::keys::{EXECUTION, SEARCH};
+use stripmine_physics::method::lattice_md::options::By;
 use stripmine_physics::method::lattice_md::{assemble, model};
 use stripmine_physics::observe::waves::{Directions, directions, fano, histogram, strongest_mode};
 use stripmine_physics::observe::{Observation, Scenery};
 use stripmine_physics::particles::Particles;
+use stripmine_physics::scene::{Overrides, SEED};
 
 /// What to run: a pipe scene with overrides, and for how long.
 #[derive(Clone, Debug)]
 pub struct Question {
     /// A preset's name, or a scene file.
     pub scene: &'static str,
-    /// Values that differ from the scene's, each `section.key=value`.
-    pub overrides: Vec<String>,
+    /// What differs from the scene.
+    pub overrides: Overrides,
     /// Seed of the start.
     pub seed: u64,
     /// Whether positions are kept for drawing.
@@ -37,7 +39,7 @@ pub struct PipeFlow {
     /// The scene.
     pub scene: &'static str,
     /// What differed from it.
-    pub overrides: Vec<String>,
+    pub overrides: Overrides,
     /// Seed of the start.
     pub seed: u64,
     /// Grains.
@@ -83,13 +85,9 @@ impl PipeFlow {
 ///
 /// # Errors
 /// [`StudyError`] if the scene is bad or breaks while running.
-pub fn pipe_flow(question: &Question, progress: impl Fn(f64)) -> Result<PipeFlow, StudyError> {
-    let mut overrides = vec![
-        format!("particles.seed={}", question.seed),
-        "search.by=neighbor-list".to_owned(),
-        executed("chained"),
-    ];
-    overrides.extend(question.overrides.iter().cloned());
+pub fn pipe_flow(question: &Question, mut progress: impl FnMut(f64)) -> Result<PipeFlow, StudyError> {
+    let overrides = question.overrides.clone().set(&SEED, question.seed);
+    let overrides = overrides.set(&SEARCH, By::NeighborList).set(&EXECUTION, "chained");
     let checked = Document::load(question.scene, &overrides)?.check()?;
     let mut method = assemble(&checked)?;
     let scenery = Scenery::of(&model(&checked));

@@ -15,10 +15,14 @@ use stripmine_kernels::backend::tape::{Outlines, Place};
 use stripmine_kernels::isa::Array;
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::{Execution, InstructionSet};
-use stripmine_physics::method::lattice_md::{Arrays, Document, Model, Part, StepProgram, execute, programs};
+use stripmine_physics::method::lattice_md::keys::{CELL_EDGE, COHESIONLESS, ENGINE, EXECUTION, SEARCH, TEXT};
+use stripmine_physics::method::lattice_md::options::{By, EngineChoice};
+use stripmine_physics::method::lattice_md::{
+    Arrays, Document, Model, Part, ProgramText, StepProgram, execute, programs,
+};
 use stripmine_physics::method::throughput::{MeasurementError, TimedRun};
 use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
-use stripmine_physics::scene::Precision;
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, Precision};
 
 /// How much is measured.
 #[derive(Clone, Debug)]
@@ -85,52 +89,53 @@ pub struct Fitted {
 pub const HOLDS: f64 = 0.1;
 
 /// One way to run the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Way {
     /// Its name.
     pub name: &'static str,
     /// What it changes against the one before.
     pub change: &'static str,
-    /// Overrides of the bench scene.
+    /// What it sets in the bench scene.
     #[serde(skip)]
-    overrides: &'static [&'static str],
+    overrides: fn(Overrides) -> Overrides,
 }
 
-const PRINTED: &str = "machine.text=printed";
-const UNCLAMPED: &str = "law.cohesionless=false";
-const NARROW: &str = "search.cell_edge=0.5";
+/// The programs of a text, executed so, on cells of the source's size.
+fn on_narrow_cells(scene: Overrides, text: ProgramText, execution: &str) -> Overrides {
+    scene.set(&TEXT, text).set(&CELL_EDGE, 0.5).set(&EXECUTION, execution)
+}
 
 /// From 1993 to today, each one change further.
 pub const WAYS: [Way; 6] = [
     Way {
         name: "printed, eager",
         change: "the CRAY's way: every instruction a pass over the whole lattice",
-        overrides: &[PRINTED, UNCLAMPED, NARROW, "machine.execution=eager"],
+        overrides: |scene| on_narrow_cells(scene, ProgramText::Printed, "eager"),
     },
     Way {
         name: "printed, strips of 256",
         change: "strip-mining: passes stay in the first cache",
-        overrides: &[PRINTED, UNCLAMPED, NARROW, "machine.execution=strip:256"],
+        overrides: |scene| on_narrow_cells(scene, ProgramText::Printed, "strip:256"),
     },
     Way {
         name: "printed, chained",
         change: "registers: every operation of an element before the next element",
-        overrides: &[PRINTED, UNCLAMPED, NARROW, "machine.execution=chained"],
+        overrides: |scene| on_narrow_cells(scene, ProgramText::Printed, "chained"),
     },
     Way {
         name: "ours, chained",
         change: "our text: a select for the products, inverse masses, no Test; scaled derivatives; positions relative to the cell",
-        overrides: &["machine.text=ours", UNCLAMPED, NARROW, "machine.execution=chained"],
+        overrides: |scene| on_narrow_cells(scene, ProgramText::Ours, "chained"),
     },
     Way {
         name: "ours, chained, largest cells",
         change: "the largest cells that the geometry allows",
-        overrides: &["machine.text=ours", UNCLAMPED, "machine.execution=chained"],
+        overrides: |scene| scene.set(&TEXT, ProgramText::Ours).set(&EXECUTION, "chained"),
     },
     Way {
         name: "fast lattice",
         change: "half the pairs, contacts first: the law for contacts only, each once",
-        overrides: &["machine.engine=fast", UNCLAMPED, "search.by=lattice"],
+        overrides: |scene| scene.set(&ENGINE, EngineChoice::Fast).set(&SEARCH, By::Lattice),
     },
 ];
 
@@ -371,14 +376,10 @@ fn prices(
 ) -> Result<(Vec<Price>, usize), MeasurementError> {
     let steps = (200_000 / effort.particles.max(1)).clamp(4, 200) as u64;
     let mut ways: Vec<(TimedRun, Vec<f64>)> = vec![];
+    let scene = Overrides::new().set(&COUNT, effort.particles).set(&PACKING_FRACTION, packing_fraction);
+    let unclamped = scene.set(&COHESIONLESS, false);
     for way in &WAYS {
-        let scene = [
-            format!("particles.count={}", effort.particles),
-            format!("particles.packing_fraction={packing_fraction}"),
-        ];
-        let own = way.overrides.iter().map(|&text| text.to_owned());
-        let overrides: Vec<String> = scene.into_iter().chain(own).collect();
-        let document = Document::load("bench", &overrides)?;
+        let document = Document::load("bench", &(way.overrides)(unclamped.clone()))?;
         ways.push((running(document, 200, steps)?, vec![]));
     }
     let mut rounds = effort.rounds.begin();

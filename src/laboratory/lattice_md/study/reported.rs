@@ -15,21 +15,9 @@ impl Reported for QuestionError {
     }
 }
 
-impl Reported for StudyError {
-    fn class(&self) -> Class {
-        match self {
-            StudyError::Scene(errors) => errors.class(),
-            StudyError::Physics(failure) => failure.class(),
-            StudyError::Question(error) => error.class(),
-        }
-    }
-
-    fn passed_on(&self) -> Option<&dyn Reported> {
-        match self {
-            StudyError::Scene(errors) => Some(errors),
-            StudyError::Physics(failure) => Some(failure),
-            StudyError::Question(_) => None,
-        }
+impl From<QuestionError> for StudyError {
+    fn from(error: QuestionError) -> Self {
+        StudyError::Own(Box::new(error))
     }
 }
 

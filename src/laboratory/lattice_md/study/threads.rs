@@ -1,7 +1,6 @@
 //! What do more threads give? One thread, all threads on one scene, and, as the measure of what the machine gives at all,
 //! as many scenes side by side, each on a thread of its own.
 
-use super::executed;
 use super::running;
 use crate::statistics::median;
 use rayon::ThreadPool;
@@ -9,7 +8,10 @@ use serde::Serialize;
 use std::time::Instant;
 use stripmine_kernels::InstructionSet;
 use stripmine_physics::method::lattice_md::Document;
+use stripmine_physics::method::lattice_md::keys::{ENGINE, INTEGRATOR, SEARCH};
+use stripmine_physics::method::lattice_md::options::{By, EngineChoice, IntegratorKind};
 use stripmine_physics::method::throughput::{MeasurementError, TimedRun};
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
 /// How much is measured.
 #[derive(Clone, Debug)]
@@ -114,13 +116,11 @@ pub fn threads(
 }
 
 fn begin(particles: usize, packing_fraction: f64, steps: u64) -> Result<TimedRun, MeasurementError> {
-    let overrides = [
-        format!("particles.count={particles}"),
-        format!("particles.packing_fraction={packing_fraction}"),
-        "search.by=lattice".to_owned(),
-        executed("fast"),
-        "integrator.kind=\"velocity-verlet\"".to_owned(),
-    ];
+    let scene = Overrides::new().set(&COUNT, particles).set(&PACKING_FRACTION, packing_fraction);
+    let overrides = scene
+        .set(&SEARCH, By::Lattice)
+        .set(&ENGINE, EngineChoice::Fast)
+        .set(&INTEGRATOR, IntegratorKind::VelocityVerlet);
     running(Document::load("bench", &overrides)?, 200, steps)
 }
 

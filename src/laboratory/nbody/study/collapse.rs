@@ -1,10 +1,12 @@
 //! A cold sphere that falls in on itself.
 
-use crate::console::Failure;
 use crate::laboratory::running::Running;
 use crate::results::Progress;
+use crate::study::StudyError;
 use serde::Serialize;
+use stripmine_physics::method::nbody::keys::COUNT;
 use stripmine_physics::particles::{Particle, Particles};
+use stripmine_physics::scene::Overrides;
 
 /// Bodies.
 pub const BODIES: usize = 2048;
@@ -59,9 +61,9 @@ pub struct Collapse {
 /// Follows the sphere.
 ///
 /// # Errors
-/// [`Failure`] if the scene breaks.
-pub fn collapse(progress: Progress<'_>) -> Result<Collapse, Failure> {
-    let mut running = Running::timed("cold-collapse", &[format!("particles.count={BODIES}")])?;
+/// [`StudyError`] if the scene breaks.
+pub fn collapse(progress: Progress<'_>) -> Result<Collapse, StudyError> {
+    let mut running = Running::timed("cold-collapse", &Overrides::new().set(&COUNT, BODIES))?;
     let (mut moments, mut late) = (vec![], vec![]);
     for look in 0..=LOOKS {
         if look > 0 {

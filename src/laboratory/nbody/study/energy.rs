@@ -1,13 +1,13 @@
 //! What integrators do to the energy of an orbit: the error over the step and the cost, and where the orbit is lost.
 
-use crate::console::Failure;
 use crate::laboratory::running::Running;
-use crate::results::Progress;
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use crate::results::{Meter, Progress};
+use crate::study::StudyError;
 use serde::Serialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use stripmine_physics::method::nbody::keys::{DAMPING, ECCENTRICITY, INTEGRATOR};
 use stripmine_physics::method::nbody::schemes::SchemeName;
 use stripmine_physics::method::nbody::starts::ORBIT;
+use stripmine_physics::scene::{DT, Overrides};
 use stripmine_physics::words::Words;
 
 /// Orbits that are followed.
@@ -92,50 +92,32 @@ impl Orbit {
     }
 }
 
-fn overrides(scheme: SchemeName, steps: u64, eccentricity: f64) -> Vec<String> {
-    vec![
-        format!("integrator.kind={}", scheme.word()),
-        format!("integrator.dt={:?}", ORBIT / steps as f64),
-        format!("particles.eccentricity={eccentricity:?}"),
-    ]
+fn overrides(scheme: SchemeName, steps: u64, eccentricity: f64) -> Overrides {
+    let orbit = Overrides::new().set(&INTEGRATOR, scheme).set(&DT, ORBIT / steps as f64);
+    orbit.set(&ECCENTRICITY, eccentricity)
 }
 
 /// Measures every scheme.
 ///
 /// # Errors
-/// [`Failure`] if a scene is refused.
-pub fn energies(progress: Progress<'_>) -> Result<Energies, Failure> {
+/// [`StudyError`] if a scene is refused.
+pub fn energies(progress: Progress<'_>) -> Result<Energies, StudyError> {
     let schemes: Vec<SchemeName> = SchemeName::ALL.iter().map(|(scheme, _)| *scheme).collect();
     let orbits: Vec<(SchemeName, u64)> =
-        STEPS.iter().rev().flat_map(|&steps| schemes.iter().map(move |&scheme| (scheme, steps))).collect();
+        STEPS.iter().flat_map(|&steps| schemes.iter().rev().map(move |&scheme| (scheme, steps))).collect();
     // These two lose every orbit.
     let kept =
         schemes.iter().filter(|scheme| !matches!(scheme, SchemeName::Euler | SchemeName::EulerWithHalf));
     let edges: Vec<(SchemeName, f64)> =
         kept.flat_map(|&scheme| ECCENTRICITIES.map(|eccentricity| (scheme, eccentricity))).collect();
-    let (done, all) = (AtomicUsize::new(0), orbits.len() + edges.len());
-    let tick = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / all as f64);
-    let errors = orbits.par_iter().map(|&(scheme, steps)| {
-        let orbit = orbit(scheme, steps)?;
-        tick();
-        Ok(orbit)
-    });
-    let mut errors = errors.collect::<Result<Vec<Orbit>, Failure>>()?;
-    errors.reverse();
-    let edges = edges.par_iter().map(|&(scheme, eccentricity)| {
-        let edge = edge(scheme, eccentricity)?;
-        tick();
-        Ok(edge)
-    });
-    let edges = edges.collect::<Result<Vec<Edge>, Failure>>()?;
-    let mut damped = vec![];
-    for steps in STEPS {
-        damped.push(damped_orbit(steps, 0.9999)?);
-    }
+    let meter = Meter::new((orbits.len() + edges.len()) as f64, progress);
+    let errors = meter.each_from_last(&orbits, |&(scheme, steps)| orbit(scheme, steps))?;
+    let edges = meter.each(&edges, |&(scheme, eccentricity)| edge(scheme, eccentricity))?;
+    let damped = STEPS.into_iter().map(|steps| damped_orbit(steps, 0.9999)).collect::<Result<_, _>>()?;
     Ok(Energies { orbits: ORBITS, errors, edges, damped })
 }
 
-fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, Failure> {
+fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, StudyError> {
     let mut running = Running::timed("kepler", &overrides(scheme, steps, 0.5))?;
     let names = ["energy_error", "momentum", "angular_momentum_z"];
     let turning = running.observed(names)?[2];
@@ -167,7 +149,7 @@ fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, Failure> {
 }
 
 /// Whether an orbit is kept.
-fn keeps(scheme: SchemeName, steps: u64, eccentricity: f64) -> Result<bool, Failure> {
+fn keeps(scheme: SchemeName, steps: u64, eccentricity: f64) -> Result<bool, StudyError> {
     let mut running = Running::timed("kepler", &overrides(scheme, steps, eccentricity))?;
     for _ in 0..ORBITS {
         if running.steps(steps).is_err() {
@@ -181,7 +163,7 @@ fn keeps(scheme: SchemeName, steps: u64, eccentricity: f64) -> Result<bool, Fail
     Ok(true)
 }
 
-fn edge(scheme: SchemeName, eccentricity: f64) -> Result<Edge, Failure> {
+fn edge(scheme: SchemeName, eccentricity: f64) -> Result<Edge, StudyError> {
     let (mut low, mut high) = (4, 8);
     while !keeps(scheme, high, eccentricity)? {
         if high >= MOST {
@@ -199,10 +181,9 @@ fn edge(scheme: SchemeName, eccentricity: f64) -> Result<Edge, Failure> {
     Ok(Edge { scheme: scheme.word(), eccentricity, steps: Some(high) })
 }
 
-fn damped_orbit(steps: u64, damping: f64) -> Result<Damped, Failure> {
-    let mut with = overrides(SchemeName::DampedEuler, steps, 0.5);
-    with.push(format!("integrator.damping={damping}"));
-    let mut running = Running::timed("kepler", &with)?;
+fn damped_orbit(steps: u64, damping: f64) -> Result<Damped, StudyError> {
+    let overrides = overrides(SchemeName::DampedEuler, steps, 0.5).set(&DAMPING, damping);
+    let mut running = Running::timed("kepler", &overrides)?;
     let done = running.steps(10 * steps);
     let [error] = running.observed(["energy_error"])?;
     Ok(Damped { steps, damping, energy: done.is_ok().then_some(1.0 + error) })

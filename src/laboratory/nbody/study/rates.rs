@@ -1,20 +1,22 @@
 //! Interactions a second, and how exact the forces are.
 
-use crate::console::Failure;
-use crate::laboratory::running::Running;
+use crate::laboratory::running::{Running, on_threads};
 use crate::results::Progress;
 use crate::statistics::median;
+use crate::study::StudyError;
 use serde::Serialize;
 use std::time::Instant;
 use stripmine_kernels::InstructionSet;
+use stripmine_physics::method::Failure;
 use stripmine_physics::method::nbody::bodies::{Bodies, zeros};
 use stripmine_physics::method::nbody::field::{Attraction, never, potential};
+use stripmine_physics::method::nbody::keys::{ROOTS, SOFTENING};
 use stripmine_physics::method::nbody::options::{ArithmeticKind, StartKind};
 use stripmine_physics::method::nbody::scene::Scene;
 use stripmine_physics::method::nbody::schemes::Field;
 use stripmine_physics::method::nbody::starts::bodies;
 use stripmine_physics::particles::{Particle, Particles};
-use stripmine_physics::scene::Precision;
+use stripmine_physics::scene::{DT, Overrides, PRECISION, Precision};
 use stripmine_physics::words::Words;
 
 /// The ways to compute forces.
@@ -28,7 +30,7 @@ const WAYS: [(Precision, ArithmeticKind); 5] = [
 /// Bodies whose forces are held against the sum as it is written.
 const SAMPLED: usize = 512;
 /// Softening of the sphere whose energy is followed (length).
-const SOFTENING: f64 = 0.05;
+const SOFTENED: f64 = 0.05;
 /// Threads compared.
 pub const THREADS: [usize; 2] = [1, 2];
 
@@ -88,8 +90,8 @@ pub struct Rates {
 /// Measures every way.
 ///
 /// # Errors
-/// [`Failure`] if threads cannot be had.
-pub fn rates(effort: &Effort, progress: Progress<'_>) -> Result<Rates, Failure> {
+/// [`StudyError`] if threads cannot be had.
+pub fn rates(effort: &Effort, progress: Progress<'_>) -> Result<Rates, StudyError> {
     let (mut rates, mut same_bits) = (vec![], true);
     let all = (effort.bodies.len() * WAYS.len() + 1) as f64;
     for &count in &effort.bodies {
@@ -120,7 +122,7 @@ fn rate(
     precision: Precision,
     arithmetic: ArithmeticKind,
     effort: &Effort,
-) -> Result<(Rate, bool), Failure> {
+) -> Result<(Rate, bool), StudyError> {
     let mut scene = Scene { softening: 0.01, precision, arithmetic, ..Scene::default() };
     (scene.start.kind, scene.start.count) = (StartKind::Plummer, count);
     let all = Bodies::new(bodies(&scene.start, 0.01).into_iter().map(|(m, r, v)| (r, v, m)));
@@ -128,21 +130,16 @@ fn rate(
     let mut last = vec![];
     for _ in 0..effort.rounds {
         for (rates, threads) in found.iter_mut().zip(THREADS) {
-            let pool =
-                rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::Threads)?;
-            let (rate, accelerations) = pool.install(|| -> Result<_, Failure> {
+            let (rate, accelerations) = on_threads(threads, || {
                 let mut field = Attraction::new(&scene, &all);
                 let mut into = zeros(all.entries());
-                field
-                    .asking(false, &never)
-                    .acceleration(&all.position, &mut into)
-                    .map_err(stripmine_physics::method::Failure::from)?;
+                field.asking(false, &never).acceleration(&all.position, &mut into).map_err(Failure::from)?;
                 let (begun, mut sweeps) = (Instant::now(), 0);
                 while begun.elapsed().as_secs_f64() < effort.seconds {
                     field
                         .asking(false, &never)
                         .acceleration(&all.position, &mut into)
-                        .map_err(stripmine_physics::method::Failure::from)?;
+                        .map_err(Failure::from)?;
                     sweeps += 1;
                 }
                 let seconds = begun.elapsed().as_secs_f64() / f64::from(sweeps);
@@ -195,14 +192,13 @@ fn written_down(all: &Bodies, body: usize, softening: f64, is_rounded: bool) -> 
 }
 
 /// Kinetic energy and that of the pairs, in double precision.
-fn energy(particles: &Particles, softening: f64) -> Result<f64, Failure> {
+fn energy(particles: &Particles, softening: f64) -> Result<f64, StudyError> {
     let all = particles.all();
     let mass: Vec<f64> = all.iter().map(|body| body.mass).collect();
     let position = [0, 1, 2].map(|axis| all.iter().map(|body| body.position[axis]).collect());
     let square = |body: &Particle| body.velocity.iter().map(|v| v * v).sum::<f64>();
     let kinetic: f64 = all.iter().map(|body| 0.5 * body.mass * square(body)).sum();
-    let potential =
-        potential(&mass, &position, softening, &never).map_err(stripmine_physics::method::Failure::from)?;
+    let potential = potential(&mass, &position, softening, &never).map_err(Failure::from)?;
     Ok(kinetic + potential)
 }
 
@@ -210,16 +206,12 @@ fn conserving_run(
     arithmetic: ArithmeticKind,
     precision: Precision,
     steps: u64,
-) -> Result<Conserving, Failure> {
-    let overrides = [
-        format!("machine.precision={}", precision.word()),
-        format!("machine.arithmetic={}", arithmetic.word()),
-        format!("integrator.dt={:?}", 1.0 / steps as f64),
-        format!("law.softening={SOFTENING}"),
-    ];
+) -> Result<Conserving, StudyError> {
+    let machine = Overrides::new().set(&PRECISION, precision).set(&ROOTS, arithmetic);
+    let overrides = machine.set(&DT, 1.0 / steps as f64).set(&SOFTENING, SOFTENED);
     let mut running = Running::timed("plummer", &overrides)?;
-    let begin = energy(&running.simulation.particles(), SOFTENING)?;
+    let begin = energy(&running.simulation.particles(), SOFTENED)?;
     running.steps(2 * steps)?;
-    let error = energy(&running.simulation.particles(), SOFTENING)? / begin - 1.0;
+    let error = energy(&running.simulation.particles(), SOFTENED)? / begin - 1.0;
     Ok(Conserving { arithmetic: arithmetic.word(), precision: precision.word(), steps, error: error.abs() })
 }

@@ -13,7 +13,7 @@ mod fast;
 mod floor;
 mod idle;
 pub mod keys;
-mod options;
+pub mod options;
 #[cfg(test)]
 mod oracle;
 mod prepared;

@@ -5,7 +5,7 @@ mod checked;
 mod dynamics;
 mod entry;
 mod found;
-mod keys;
+pub mod keys;
 mod limits;
 mod losses;
 pub mod options;

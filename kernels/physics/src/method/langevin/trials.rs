@@ -3,7 +3,7 @@
 use super::checked::prepare;
 use super::keys::{BATH_TEMPERATURE, DRAG, STRENGTH};
 use crate::method::{Axis, Decides, Mapped, Parameter, Prepared, SMALLEST_RADIUS, Setting, Trials};
-use crate::scene::{DT, Key, Values};
+use crate::scene::{DT, Key, Overrides, Values};
 
 macro_rules! settings {
     ($($name:literal [$($override:literal),*],)*) => {
@@ -90,7 +90,7 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [1e-300, 1e300],
         is_logarithmic: true,
         range: |values| around(values, &STRENGTH),
-        overrides: |_, value| vec![format!("{}={value:?}", STRENGTH.path())],
+        overrides: |_, value| Overrides::new().set(&STRENGTH, value),
         marks: |_| vec![],
     },
     Parameter {
@@ -100,7 +100,7 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [1e-300, 1e300],
         is_logarithmic: true,
         range: |values| around(values, &BATH_TEMPERATURE),
-        overrides: |_, value| vec![format!("{}={value:?}", BATH_TEMPERATURE.path())],
+        overrides: |_, value| Overrides::new().set(&BATH_TEMPERATURE, value),
         marks: |_| vec![],
     },
     Parameter {
@@ -110,7 +110,7 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [1e-300, 1e300],
         is_logarithmic: true,
         range: |values| around(values, &DRAG),
-        overrides: |_, value| vec![format!("{}={value:?}", DRAG.path())],
+        overrides: |_, value| Overrides::new().set(&DRAG, value),
         marks: |_| vec![],
     },
 ];

@@ -1,18 +1,21 @@
 //! How granular discs may be run, and what theory says of the error.
 
 use super::document::Document;
-use super::keys::{FRICTION, INERTIA, MAX_PENETRATION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
-use super::options::Inertia;
+use super::keys::{
+    COORDINATES, ENGINE, FRICTION, INERTIA, MAX_PENETRATION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS,
+};
+use super::options::{EngineChoice, Inertia};
 use super::quantities::QUANTITIES;
 use crate::method::observed::place;
 use crate::method::{
     Axis, Balance, Decides, Mapped, Parameter, Prepared, Purpose, SMALLEST_RADIUS, Setting, Theory, Trials,
 };
 use crate::scene::{
-    DT, Key, PACKING_FRACTION, PRECISION, Precision, RADIUS_SPREAD, SPEED, TEMPERATURE, VELOCITIES, Value,
-    Values,
+    DT, ORIGIN, Overrides, PACKING_FRACTION, PRECISION, Precision, RADIUS_CUT, RADIUS_SPREAD, SPEED,
+    TEMPERATURE, VELOCITIES, Value, Values,
 };
 use crate::words::Words;
+use stripmine_kernels::sweep::lattice::Coordinates;
 
 macro_rules! settings {
     ($($name:literal [$($override:literal),*],)*) => {
@@ -90,7 +93,7 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [1e-300, 1e300],
         is_logarithmic: true,
         range: |values| around(values.number(&STIFFNESS)?, 30.0),
-        overrides: |_, value| vec![format!("law.stiffness={value:?}")],
+        overrides: |_, value| Overrides::new().set(&STIFFNESS, value),
         marks: |_| vec![],
     },
     Parameter {
@@ -100,7 +103,7 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [0.0, 1e300],
         is_logarithmic: true,
         range: |values| around(values.number(&NORMAL_DAMPING)?, 30.0),
-        overrides: |_, value| vec![format!("law.normal_damping={value:?}")],
+        overrides: |_, value| Overrides::new().set(&NORMAL_DAMPING, value),
         marks: |_| vec![],
     },
     Parameter {
@@ -110,7 +113,7 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [0.0, 1e300],
         is_logarithmic: true,
         range: |values| around(values.number(&SHEAR_DAMPING)?, 30.0),
-        overrides: |_, value| vec![format!("law.shear_damping={value:?}")],
+        overrides: |_, value| Overrides::new().set(&SHEAR_DAMPING, value),
         marks: |_| vec![],
     },
     Parameter {
@@ -120,7 +123,7 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [0.0, 1e3],
         is_logarithmic: false,
         range: |values| (values.number(&FRICTION)? > 0.0).then_some([0.0, 2.0]),
-        overrides: |_, value| vec![format!("law.friction={value:?}")],
+        overrides: |_, value| Overrides::new().set(&FRICTION, value),
         marks: |_| vec![],
     },
     Parameter {
@@ -130,7 +133,7 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [1e-3, 0.907],
         is_logarithmic: false,
         range: |values| values.gives(&PACKING_FRACTION).then_some([0.05, 0.85]),
-        overrides: |_, value| vec![format!("particles.packing_fraction={value:?}")],
+        overrides: |_, value| Overrides::new().set(&PACKING_FRACTION, value),
         marks: |_| vec![],
     },
     Parameter {
@@ -152,7 +155,7 @@ const PARAMETERS: &[Parameter] = &[
         range: |values| values.is_used(&RADIUS_SPREAD).then_some([1.0, 1.6]),
         overrides: |_, ratio| {
             let cut = (ratio - 1.0) / (ratio + 1.0);
-            vec![format!("particles.radius_spread={:?}", 0.5 * cut), format!("particles.radius_cut={cut:?}")]
+            Overrides::new().set(&RADIUS_SPREAD, 0.5 * cut).set(&RADIUS_CUT, cut)
         },
         marks: largest_ratio,
     },
@@ -164,11 +167,10 @@ const PARAMETERS: &[Parameter] = &[
         is_logarithmic: true,
         range: |values| (values.choice(&PRECISION)? != Precision::F64.word()).then_some([10.0, 1e6]),
         overrides: |_, value| {
-            vec![
-                format!("domain.origin=[{value:?}, {value:?}]"),
-                "machine.engine=programs".to_owned(),
-                "machine.coordinates=absolute".to_owned(),
-            ]
+            Overrides::new()
+                .set(&ORIGIN, [value; 2])
+                .set(&ENGINE, EngineChoice::Programs)
+                .set(&COORDINATES, Coordinates::Absolute)
         },
         marks: |_| vec![],
     },
@@ -190,20 +192,20 @@ fn around(value: f64, factor: f64) -> Option<[f64; 2]> {
 }
 
 /// The overrides that make the discs of the start faster by a factor.
-fn faster(values: &Values, factor: f64) -> Vec<String> {
-    let scaled = |key: &Key, power: i32| {
-        let value = values.number(key)?;
-        Some(format!("{}={:?}", key.path(), value * factor.powi(power)))
-    };
-    let listed = match values.value(&VELOCITIES) {
-        Some(Value::Pairs(all)) => {
-            let pair = |[x, y]: &[f64; 2]| format!("[{:?}, {:?}]", factor * x, factor * y);
-            let all: Vec<String> = all.iter().map(pair).collect();
-            Some(format!("{}=[{}]", VELOCITIES.path(), all.join(", ")))
+fn faster(values: &Values, factor: f64) -> Overrides {
+    let mut overrides = Overrides::new();
+    for (key, power) in [(&TEMPERATURE, 2), (&SPEED, 1)] {
+        if let Some(value) = values.number(key) {
+            overrides = overrides.set(key, value * factor.powi(power));
         }
-        _ => None,
-    };
-    [scaled(&TEMPERATURE, 2), scaled(&SPEED, 1), listed].into_iter().flatten().collect()
+    }
+    match values.value(&VELOCITIES) {
+        Some(Value::Pairs(all)) => {
+            let all: Vec<[f64; 2]> = all.iter().map(|pair| pair.map(|part| factor * part)).collect();
+            overrides.set(&VELOCITIES, all)
+        }
+        _ => overrides,
+    }
 }
 
 const AXES: &[Axis] = &[

@@ -8,7 +8,7 @@ mod conserved;
 mod encounter;
 mod entry;
 pub mod field;
-mod keys;
+pub mod keys;
 pub mod options;
 mod prepared;
 mod presets;

@@ -4,7 +4,7 @@ use super::checked::prepare;
 use super::keys::{ECCENTRICITY, SOFTENING};
 use crate::method::{Axis, Balance, Decides, Length, Mapped, Parameter, Prepared, Setting, Theory, Trials};
 use crate::particles::{Particle, Particles};
-use crate::scene::{DT, Values};
+use crate::scene::{DT, Overrides, Values};
 
 macro_rules! settings {
     ($($name:literal [$($override:literal),*],)*) => {
@@ -83,7 +83,7 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [0.0, 0.999],
         is_logarithmic: false,
         range: |values| values.is_used(&ECCENTRICITY).then_some([0.0, 0.95]),
-        overrides: |_, value| vec![format!("particles.eccentricity={value:?}")],
+        overrides: |_, value| Overrides::new().set(&ECCENTRICITY, value),
         marks: |_| vec![],
     },
     Parameter {
@@ -93,7 +93,7 @@ const PARAMETERS: &[Parameter] = &[
         bounds: [1e-300, 1e300],
         is_logarithmic: true,
         range: |values| values.number(&SOFTENING).filter(|it| *it > 0.0).map(|it| [it / 30.0, it * 30.0]),
-        overrides: |_, value| vec![format!("law.softening={value:?}")],
+        overrides: |_, value| Overrides::new().set(&SOFTENING, value),
         marks: |_| vec![],
     },
 ];

@@ -2,12 +2,16 @@
 
 use super::gas::{Gas, SEEDS, place};
 use crate::laboratory::lattice_md::study::StudyError;
+use crate::results::{Meter, Progress};
 use crate::statistics::{Spread, slope};
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use stripmine_physics::method::lattice_md::keys::{
+    ENGINE, FRICTION, INTEGRATOR, NORMAL_DAMPING, SHEAR_DAMPING, VALUES,
+};
+use stripmine_physics::method::lattice_md::options::{EngineChoice, IntegratorKind};
 use stripmine_physics::observe::Observation;
+use stripmine_physics::scene::{DT, PRECISION};
 
 /// Discs, at least.
 pub const PARTICLES: usize = 400;
@@ -65,17 +69,12 @@ pub struct EnergyCase {
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks.
-pub fn energies(progress: impl Fn(f64) + Sync) -> Result<Vec<EnergyCase>, StudyError> {
+pub fn energies(progress: Progress<'_>) -> Result<Vec<EnergyCase>, StudyError> {
     let cases: Vec<(Stepping, &str)> =
         STEPPINGS.iter().flat_map(|&stepping| PRECISIONS.map(|precision| (stepping, precision))).collect();
     let runs: Vec<_> = cases.iter().flat_map(|&case| SEEDS.map(|seed| (case, seed))).collect();
-    let done = AtomicUsize::new(0);
-    let deviations = runs.par_iter().map(|&((stepping, precision), seed)| {
-        let deviations = deviations(stepping, precision, seed, STEPS);
-        progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / runs.len() as f64);
-        deviations
-    });
-    let deviations: Vec<Vec<f64>> = deviations.collect::<Result<_, StudyError>>()?;
+    let deviations = Meter::new(runs.len() as f64, progress)
+        .each(&runs, |&((stepping, precision), seed)| deviations(stepping, precision, seed, STEPS))?;
     let cases = cases.into_iter().zip(deviations.chunks(SEEDS.len()));
     Ok(cases.map(|((stepping, precision), runs)| over_seeds(stepping, precision, runs)).collect())
 }
@@ -112,16 +111,15 @@ fn windows(count: usize) -> impl Iterator<Item = Range<usize>> {
 
 /// Deviations of the energy of one run, at every look after the first.
 fn deviations(stepping: Stepping, precision: &str, seed: u64, steps: u64) -> Result<Vec<f64>, StudyError> {
-    let mut overrides = place(PARTICLES, PACKING_FRACTION, seed);
-    overrides.extend(["normal_damping", "shear_damping", "friction"].map(|key| format!("law.{key}=0")));
-    let discs = Gas::equilibrated(&overrides)?;
-    overrides.push(format!("integrator.dt={}", stepping.dt));
-    overrides.push("machine.engine=\"fast\"".to_owned());
-    overrides.push(format!("machine.precision=\"{precision}\""));
-    overrides.push(match stepping.gear_values {
-        Some(values) => format!("integrator.values={values}"),
-        None => "integrator.kind=\"velocity-verlet\"".to_owned(),
-    });
+    let place = place(PARTICLES, PACKING_FRACTION, seed);
+    let undamped = place.set(&NORMAL_DAMPING, 0.0).set(&SHEAR_DAMPING, 0.0).set(&FRICTION, 0.0);
+    let discs = Gas::equilibrated(&undamped)?;
+    let overrides =
+        undamped.set(&DT, stepping.dt).set(&ENGINE, EngineChoice::Fast).set(&PRECISION, precision);
+    let overrides = match stepping.gear_values {
+        Some(values) => overrides.set(&VALUES, u64::from(values)),
+        None => overrides.set(&INTEGRATOR, IntegratorKind::VelocityVerlet),
+    };
     let mut gas = Gas::begin(&overrides, Some(&discs))?;
     let energy = |gas: &Gas| {
         Observation::of(gas.method.steps(), gas.method.time(), &gas.method.particles(), &gas.scenery).energy()

@@ -4,7 +4,9 @@ use super::gas::{Gas, PACKING_FRACTIONS, place};
 use crate::laboratory::lattice_md::study::StudyError;
 use serde::Serialize;
 use stripmine_kernels::sweep::lattice::Coordinates;
+use stripmine_physics::method::lattice_md::keys::ENGINE;
 use stripmine_physics::observe::contacts;
+use stripmine_physics::scene::PRECISION;
 
 /// A precision, engine and choice of coordinates that forces are computed with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -94,16 +96,16 @@ pub fn force_errors(progress: impl Fn(f64)) -> Result<Vec<ForceError>, StudyErro
 }
 
 fn on_one_configuration(packing_fraction: f64, count: usize) -> Result<Vec<ForceError>, StudyError> {
-    let overrides = place(count, packing_fraction, 1);
-    let discs = Gas::equilibrated(&overrides)?;
+    let place = place(count, packing_fraction, 1);
+    let discs = Gas::equilibrated(&place)?;
     let computed = |variant: Variant| -> Result<Gas, StudyError> {
         let Variant { precision, engine, .. } = variant;
-        let machine = [format!("machine.precision={precision}"), format!("machine.engine={engine}")];
+        let overrides = place.clone().set(&PRECISION, precision).set(&ENGINE, engine);
         let coordinates = match variant.coordinates {
             "absolute" => Coordinates::Absolute,
             _ => Coordinates::CellRelative,
         };
-        Gas::seen_from(coordinates, &[overrides.as_slice(), &machine].concat(), Some(&discs))
+        Gas::seen_from(coordinates, &overrides, Some(&discs))
     };
     let reference = computed(Variant { precision: "f64", ..VARIANTS[0] })?;
     let exact = reference.method.forces();

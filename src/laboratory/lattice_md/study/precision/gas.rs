@@ -4,9 +4,12 @@ use crate::laboratory::lattice_md::study::StudyError;
 use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_physics::method::lattice_md::Document;
 use stripmine_physics::method::lattice_md::Engine;
+use stripmine_physics::method::lattice_md::keys::{ENGINE, INTEGRATOR, SEARCH};
+use stripmine_physics::method::lattice_md::options::{By, EngineChoice, IntegratorKind};
 use stripmine_physics::method::lattice_md::{assemble, model};
 use stripmine_physics::observe::Scenery;
 use stripmine_physics::particles::Particles;
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, SEED};
 
 /// Packing fractions: nearly a solid, and a gas.
 pub const PACKING_FRACTIONS: [f64; 2] = [0.84, 0.3];
@@ -23,7 +26,7 @@ pub(super) struct Gas {
 
 impl Gas {
     /// The bench scene with overrides, from `discs` where given.
-    pub(super) fn begin(overrides: &[String], discs: Option<&Particles>) -> Result<Gas, StudyError> {
+    pub(super) fn begin(overrides: &Overrides, discs: Option<&Particles>) -> Result<Gas, StudyError> {
         Gas::seen_from(Coordinates::CellRelative, overrides, discs)
     }
 
@@ -31,7 +34,7 @@ impl Gas {
     /// that does is the question here.
     pub(super) fn seen_from(
         coordinates: Coordinates,
-        overrides: &[String],
+        overrides: &Overrides,
         discs: Option<&Particles>,
     ) -> Result<Gas, StudyError> {
         let mut checked = Document::load("bench", overrides)?.check()?;
@@ -43,11 +46,9 @@ impl Gas {
     }
 
     /// The same after [`EQUILIBRATION`] steps in f64 with velocity Verlet.
-    pub(super) fn equilibrated(overrides: &[String]) -> Result<Particles, StudyError> {
-        let mut overrides = overrides.to_vec();
-        overrides
-            .extend(["machine.engine=\"fast\"", "integrator.kind=\"velocity-verlet\""].map(str::to_owned));
-        let mut gas = Gas::begin(&overrides, None)?;
+    pub(super) fn equilibrated(overrides: &Overrides) -> Result<Particles, StudyError> {
+        let fast = overrides.clone().set(&ENGINE, EngineChoice::Fast);
+        let mut gas = Gas::begin(&fast.set(&INTEGRATOR, IntegratorKind::VelocityVerlet), None)?;
         gas.advance(EQUILIBRATION)?;
         Ok(gas.method.particles())
     }
@@ -58,11 +59,7 @@ impl Gas {
 }
 
 /// Number of discs, density and seed, as overrides.
-pub(super) fn place(count: usize, packing_fraction: f64, seed: u64) -> Vec<String> {
-    vec![
-        format!("particles.count={count}"),
-        format!("particles.packing_fraction={packing_fraction}"),
-        format!("particles.seed={seed}"),
-        "search.by=lattice".to_owned(),
-    ]
+pub(super) fn place(count: usize, packing_fraction: f64, seed: u64) -> Overrides {
+    let scene = Overrides::new().set(&COUNT, count).set(&PACKING_FRACTION, packing_fraction);
+    scene.set(&SEED, seed).set(&SEARCH, By::Lattice)
 }

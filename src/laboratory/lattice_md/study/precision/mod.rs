@@ -10,6 +10,7 @@ pub mod trajectories;
 pub use gas::{EQUILIBRATION, PACKING_FRACTIONS, SEEDS};
 
 use super::StudyError;
+use crate::results::Progress;
 use energy::EnergyCase;
 use forces::ForceError;
 use serde::Serialize;
@@ -30,12 +31,12 @@ pub struct Precisions {
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks.
-pub fn precision(progress: impl Fn(f64) + Sync) -> Result<Precisions, StudyError> {
+pub fn precision(progress: Progress<'_>) -> Result<Precisions, StudyError> {
     // Shares of the time, about.
     let (forces_end, trajectories_end) = (0.3, 0.4);
     let forces = forces::force_errors(|share| progress(forces_end * share))?;
     let trajectories = trajectories::divergences()?;
     progress(trajectories_end);
-    let energies = energy::energies(|share| progress(trajectories_end + (1.0 - trajectories_end) * share))?;
+    let energies = energy::energies(&|share| progress(trajectories_end + (1.0 - trajectories_end) * share))?;
     Ok(Precisions { forces, energies, trajectories })
 }

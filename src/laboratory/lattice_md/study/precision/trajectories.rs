@@ -5,6 +5,9 @@ use crate::laboratory::lattice_md::study::StudyError;
 use crate::statistics::{Spread, slope};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
+use stripmine_physics::method::lattice_md::keys::{ENGINE, INTEGRATOR};
+use stripmine_physics::method::lattice_md::options::IntegratorKind;
+use stripmine_physics::scene::{self, Overrides, PRECISION};
 
 /// Discs, at least.
 pub const PARTICLES: usize = 400;
@@ -69,15 +72,11 @@ pub fn divergences() -> Result<Vec<Divergence>, StudyError> {
 }
 
 /// Root of the mean square distance between the discs of each rival and those of the reference, at every look.
-fn distances(overrides: &[String], steps: u64) -> Result<[Vec<f64>; RIVALS.len()], StudyError> {
-    let discs = Gas::equilibrated(overrides)?;
+fn distances(place: &Overrides, steps: u64) -> Result<[Vec<f64>; RIVALS.len()], StudyError> {
+    let discs = Gas::equilibrated(place)?;
     let begin = |(precision, engine): (&str, &str)| {
-        let mut overrides = overrides.to_vec();
-        overrides.push("integrator.kind=\"velocity-verlet\"".to_owned());
-        overrides.push(format!("integrator.dt={DT}"));
-        overrides.push(format!("machine.precision=\"{precision}\""));
-        overrides.push(format!("machine.engine={engine}"));
-        Gas::begin(&overrides, Some(&discs))
+        let overrides = place.clone().set(&INTEGRATOR, IntegratorKind::VelocityVerlet).set(&scene::DT, DT);
+        Gas::begin(&overrides.set(&PRECISION, precision).set(&ENGINE, engine), Some(&discs))
     };
     let mut reference = begin(("f64", "fast"))?;
     let mut rivals = Vec::new();
