@@ -216,7 +216,7 @@ fn conflicts_are_resolved_beside_the_lattice() {
         let stopped =
             begin(Precision::F64, model, Contacts::Fast(LATTICE), fast(), WallMotion::Fixed, particles);
         let stopped = stopped.err().expect("two discs in one cell");
-        assert_eq!((stopped.kind, stopped.at.map(|clock| clock.steps)), (FailureKind::Conflict, Some(0)));
+        assert_eq!((stopped.kind, stopped.at.map(|clock| clock.steps)), (FailureKind::CONFLICT, Some(0)));
     }
 }
 
@@ -364,20 +364,20 @@ fn failures_are_found_in_their_step() {
         assert_eq!(faithful.kind, other.kind, "{faithful}\nbut {other}");
         let value = |name: &str| [&faithful, &other].map(|failure| failure.value(name).unwrap());
         match faithful.kind {
-            FailureKind::NotFinite => assert_eq!(faithful.culprits[0].id, other.culprits[0].id),
+            FailureKind::NOT_FINITE => assert_eq!(faithful.culprits[0].id, other.culprits[0].id),
             _ => assert_eq!(faithful.at, other.at, "{search:?}"),
         }
         match faithful.kind {
-            FailureKind::OutOfBox => {
+            FailureKind::OUT_OF_BOX => {
                 let (first, disc) = (faithful.culprits[0], other.culprits[0]);
                 assert_eq!(first.id, disc.id);
                 assert!((first.position[0] - disc.position[0]).abs() < 1e-9);
             }
-            FailureKind::TooDeep => {
+            FailureKind::TOO_DEEP => {
                 let [penetration, also] = value("penetration");
                 assert!((penetration - also).abs() < 1e-9);
             }
-            FailureKind::Conflict => {
+            FailureKind::CONFLICT => {
                 let [distance, also] = value("distance");
                 assert!((distance - also).abs() < 1e-9, "{distance} {also}");
             }

@@ -416,7 +416,7 @@ fn a_velocity_that_is_no_number_stops_the_first_step() {
     let mut start = gas(400, 0.84, 2);
     start.1.all_mut()[123].velocity[1] = f64::NAN;
     let id = start.1.all()[123].id;
-    let failure = breaks(&start, 1, FailureKind::NotFinite, 1);
+    let failure = breaks(&start, 1, FailureKind::NOT_FINITE, 1);
     assert_eq!((failure.count, failure.culprits[0].id), (1, id));
 }
 
@@ -428,7 +428,7 @@ fn a_disc_that_leaves_a_closed_box_is_named_in_its_step() {
         grain(31, [7.6975, 5.25], [1.0, 0.1], 0.5, 1.0),
         grain(8, [2.0, 5.0], [0.1, 0.0], 0.5, 1.0),
     ];
-    let failure = breaks(&arena([16, 16], false, &discs), 100, FailureKind::OutOfBox, 61);
+    let failure = breaks(&arena([16, 16], false, &discs), 100, FailureKind::OUT_OF_BOX, 61);
     let first = failure.culprits[0];
     assert_eq!((failure.count, first.id), (1, 31));
     assert!((first.position[0] - 8.0025).abs() < 1e-9, "{first}");
@@ -450,7 +450,7 @@ fn ghosts(stop_penetration: f64) -> (Model, Particles) {
 #[test]
 fn a_contact_beyond_the_limit_names_both_discs_in_its_step() {
     // 1.95 − 0.04 n < 0.7: n = 32, at 0.67.
-    let failure = breaks(&ghosts(0.3), 100, FailureKind::TooDeep, 32);
+    let failure = breaks(&ghosts(0.3), 100, FailureKind::TOO_DEEP, 32);
     assert_eq!(ids(&failure), [5, 12]);
     assert!((failure.value("penetration").unwrap() - 0.33).abs() < 1e-6, "{failure}");
     assert_eq!(failure.value("limit"), Some(0.3));
@@ -461,7 +461,7 @@ fn two_discs_in_one_cell_are_named_in_their_step() {
     // Step 49 takes the second from 3.01 to 2.99, into the cell where the first is at 2.985.
     let mut start = ghosts(0.999);
     start.1.all_mut()[0].position[0] = 2.005;
-    let failure = breaks(&start, 100, FailureKind::Conflict, 49);
+    let failure = breaks(&start, 100, FailureKind::CONFLICT, 49);
     assert_eq!(ids(&failure), [5, 12]);
     assert!((failure.value("distance").unwrap() - 0.005).abs() < 1e-6, "{failure}");
 }

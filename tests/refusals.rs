@@ -69,7 +69,7 @@ fn a_thin_box_ends_where_the_scene_says() {
         let mut method = assemble(&checked).unwrap();
         let failure =
             (0..200).find_map(|_| method.step().err()).unwrap_or_else(|| panic!("{name}: never left"));
-        assert_eq!((failure.kind, failure.count), (FailureKind::OutOfBox, 1), "{name}: {failure}");
+        assert_eq!((failure.kind, failure.count), (FailureKind::OUT_OF_BOX, 1), "{name}: {failure}");
         let (step, first) = step_and_first(&failure);
         assert!(first.id == 1 && (0.9..0.906).contains(&first.position[1]), "{name}: {first}");
         found.push(step);
@@ -105,7 +105,7 @@ fn discs_in_one_cell_meet_in_lists() {
         (0..1000).find_map(|_| method.step().err()).expect("too deep")
     };
     for (name, engine) in [ENGINES[3], ENGINES[4], ENGINES[5]] {
-        assert_eq!(failure(engine).kind, FailureKind::TooDeep, "{name}");
+        assert_eq!(failure(engine).kind, FailureKind::TOO_DEEP, "{name}");
     }
 }
 
@@ -330,7 +330,7 @@ fn a_disc_that_returns_has_left() {
         (0..200).find_map(|_| method.step().err()).expect("it left the box")
     };
     let left = |failure: Failure| {
-        assert_eq!(failure.kind, FailureKind::OutOfBox, "{failure}");
+        assert_eq!(failure.kind, FailureKind::OUT_OF_BOX, "{failure}");
         let (step, first) = step_and_first(&failure);
         (step, first.id)
     };
@@ -350,7 +350,7 @@ fn steps_that_are_too_long_are_caught() {
     for (name, engine) in ENGINES {
         let mut method = assemble(&checked(&scene, &[engine])).unwrap();
         let failure = (0..400).find_map(|_| method.step().err()).expect("too fast");
-        assert_eq!(failure.kind, FailureKind::LongStep, "{name}: {failure}");
+        assert_eq!(failure.kind, FailureKind::LONG_STEP, "{name}: {failure}");
         let ((step, first), limit) = (step_and_first(&failure), failure.value("limit").unwrap());
         assert!(first.velocity[0].abs() * 0.01 > limit && failure.count >= 1, "{name}");
         steps.push(step);

@@ -82,11 +82,11 @@ impl Class {
     /// The class of what stops a run.
     pub fn of(kind: FailureKind) -> Class {
         match kind {
-            FailureKind::NotFinite | FailureKind::Overflow => Class::NonFinite,
-            FailureKind::OutOfBox => Class::ParticleLost,
-            FailureKind::Conflict => Class::SharedCell,
-            FailureKind::TooDeep => Class::Penetration,
-            FailureKind::LongStep => Class::MaskOutrun,
+            FailureKind::NOT_FINITE | FailureKind::OVERFLOW => Class::NonFinite,
+            FailureKind::OUT_OF_BOX => Class::ParticleLost,
+            FailureKind::CONFLICT => Class::SharedCell,
+            FailureKind::TOO_DEEP => Class::Penetration,
+            FailureKind::LONG_STEP => Class::MaskOutrun,
             _ => Class::Stopped,
         }
     }

@@ -354,7 +354,7 @@ fn overflow(at: Clock, quantity: &'static str, value: f64) -> Failure {
     let what = format!("{quantity} is {value}, which is no finite number");
     let remedy = "the units make masses, speeds or stiffness too large for double precision; choose units in which they are \
                   nearer to 1";
-    Failure::new(FailureKind::Overflow, what, remedy).at(at).with([(quantity, value)])
+    Failure::new(FailureKind::OVERFLOW, what, remedy).at(at).with([(quantity, value)])
 }
 
 /// The files that a scene asks for beyond what every run writes.

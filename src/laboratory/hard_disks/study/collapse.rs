@@ -7,8 +7,8 @@ use rand::RngExt;
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_4;
 use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_physics::method::Until;
 use stripmine_physics::method::hard_disks::keys::RESTITUTION;
-use stripmine_physics::method::{FailureKind, Until};
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, POSITIONS, SEED, VELOCITIES};
 
 /// Discs of the rows.
@@ -98,7 +98,7 @@ fn collapses_before(
     let end = end(gas.simulation.particles().grain_count());
     match gas.until(end) {
         Ok(()) => Ok(false),
-        Err(failure) if failure.kind == FailureKind::InelasticCollapse => Ok(true),
+        Err(failure) if failure.kind == stripmine_physics::method::hard_disks::INELASTIC_COLLAPSE => Ok(true),
         Err(failure) => Err(failure.into()),
     }
 }

@@ -4,9 +4,9 @@ use crate::laboratory::running::{Running, prepared};
 use crate::results::{Meter, Progress};
 use crate::study::StudyError;
 use serde::Serialize;
+use stripmine_physics::method::Until;
 use stripmine_physics::method::hard_disks::keys::{CONTACT_DURATION, RESTITUTION};
 use stripmine_physics::method::observed::summed_up;
-use stripmine_physics::method::{FailureKind, Until};
 use stripmine_physics::scene::{COUNT, Overrides};
 
 /// Restitutions of the gases that are followed.
@@ -124,7 +124,9 @@ fn fate(discs: u64, restitution: f64, contact_duration: f64) -> Result<Fate, Stu
     let events = (100.0 * count) as u64;
     let collapse = match gas.until(Until::Events(events)) {
         Ok(()) => None,
-        Err(failure) if failure.kind == FailureKind::InelasticCollapse => Some(failure.what()),
+        Err(failure) if failure.kind == stripmine_physics::method::hard_disks::INELASTIC_COLLAPSE => {
+            Some(failure.what())
+        }
         Err(failure) => return Err(failure.into()),
     };
     let [collisions] = gas.observed(["collisions"])?;

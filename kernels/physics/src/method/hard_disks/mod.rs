@@ -26,3 +26,17 @@ mod simulation;
 
 pub use compress::compress;
 pub use entry::ENTRY;
+
+use crate::method::FailureKind;
+
+/// An event that lies before one that has happened.
+pub const BACK_IN_TIME: FailureKind = FailureKind::new("back-in-time");
+
+/// Collisions without end in a finite time.
+pub const INELASTIC_COLLAPSE: FailureKind = FailureKind::new("inelastic-collapse");
+
+/// Discs that lie still, where contacts do not last.
+pub const RESTING: FailureKind = FailureKind::new("resting");
+
+/// Nothing will ever happen.
+pub const IDLE: FailureKind = FailureKind::new("idle");

@@ -132,7 +132,7 @@ impl Running {
     fn idle(&self) -> Failure {
         let message = "no disc will ever meet another one or a side";
         let remedy = "ask for a time instead of events, or give the discs other velocities";
-        Failure::new(FailureKind::Idle, message, remedy).at(self.clock)
+        Failure::new(super::IDLE, message, remedy).at(self.clock)
     }
 
     fn failure(&self, why: Stopped) -> Failure {
@@ -155,14 +155,14 @@ impl Running {
                 "raise law.contact_duration to {least} or more, so that discs at rest bounce less often; raise law.wall_restitution; or \
                  take soft discs, method.kind = \"lattice-md\""
             );
-            (FailureKind::Resting, message, remedy)
+            (super::RESTING, message, remedy)
         } else {
             let message = format!(
                 "inelastic collapse: {events} collisions within a time of {took}, the last of {named}"
             );
             let remedy = "set law.contact_duration to a small part of the mean free time: collisions that come sooner are then \
                           elastic; or raise law.restitution";
-            (FailureKind::InelasticCollapse, message, remedy.to_owned())
+            (super::INELASTIC_COLLAPSE, message, remedy.to_owned())
         };
         let failure = Failure::new(kind, message, remedy).at(self.clock);
         let rate = events as f64 / duration.max(f64::MIN_POSITIVE);
@@ -224,13 +224,13 @@ fn failure(
             let message =
                 format!("{a} and {b} have their centres in one cell of the exclusive grid: they overlap");
             let remedy = "this must not happen between hard discs: report it with the scene";
-            Failure::new(FailureKind::Conflict, message, remedy).at(clock).of(2, [a, b])
+            Failure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(2, [a, b])
         }
         Stopped::Crowded(disc, most) => {
             let who = named(disc);
             let message = format!("{who} has more than {most} others around it, and a list holds no more");
             let remedy = "set machine.engine = \"reference\", or take radii that differ less";
-            Failure::new(FailureKind::Conflict, message, remedy).at(clock).of(1, [who])
+            Failure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(1, [who])
         }
         Stopped::TooHigh(disc, entries) => {
             let who = named(disc);
@@ -238,14 +238,14 @@ fn failure(
                 "{who} is so high that the source's look-up of cells takes {entries} entries: they grow with the height"
             );
             let remedy = "set machine.engine = \"fast\", whose memory grows with the discs only";
-            Failure::new(FailureKind::Conflict, message, remedy).at(clock).of(1, [who])
+            Failure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(1, [who])
         }
         Stopped::NoInstructions(set) => ProgramError::NoSuchInstructionSet(set.name()).into(),
         Stopped::BackInTime(disc, time, now) => {
             let who = named(disc);
             let message = format!("the next event of {who} is at {time:?}, before the last one at {now:?}");
             let remedy = "this must not happen: a mask missed a partner; report it with the scene";
-            let failure = Failure::new(FailureKind::BackInTime, message, remedy).at(clock).of(1, [who]);
+            let failure = Failure::new(super::BACK_IN_TIME, message, remedy).at(clock).of(1, [who]);
             failure.with([("time", time), ("now", now)])
         }
     }

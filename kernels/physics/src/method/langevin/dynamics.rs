@@ -123,5 +123,5 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
 
 /// Whether a failure is of particles that were thrown out, so that a run may go on without them.
 pub(super) fn is_loss(failure: &Failure) -> bool {
-    matches!(failure.kind, FailureKind::OutOfBox | FailureKind::NotFinite)
+    matches!(failure.kind, FailureKind::OUT_OF_BOX | FailureKind::NOT_FINITE)
 }

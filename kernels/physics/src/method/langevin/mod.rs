@@ -18,3 +18,8 @@ mod simulation;
 mod trials;
 
 pub use entry::ENTRY;
+
+use crate::method::FailureKind;
+
+/// More particles were thrown out than the scene allows.
+pub const LOST: FailureKind = FailureKind::new("lost");

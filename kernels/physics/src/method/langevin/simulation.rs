@@ -7,9 +7,7 @@ use super::quantities::{OBSERVABLES, Seen};
 use crate::io::checkpoint::{Column, Counter};
 use crate::method::observed::values;
 use crate::method::pairwise::Stepping;
-use crate::method::{
-    Clock, Failure, FailureKind, Prepared, Purpose, RunWarning, Simulation, Snapshot, Until,
-};
+use crate::method::{Clock, Failure, Prepared, Purpose, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
 use crate::particles::{Particle, Particles};
 use serde_json::{Map, Value, json};
@@ -86,7 +84,7 @@ impl Running {
     fn lose(&mut self, failure: Failure) -> Result<(), Failure> {
         let unfit: BTreeSet<usize> = self.stepper.unfit().into_iter().collect();
         if unfit.is_empty() {
-            return Err(Failure { kind: FailureKind::Lost, ..failure });
+            return Err(Failure { kind: super::LOST, ..failure });
         }
         let clock = self.clock();
         let standing = self.stepper.standing();
@@ -99,7 +97,7 @@ impl Running {
             return Err(self.too_many(failure, lost, most));
         }
         self.without(&|place, _| unfit.contains(&place))
-            .map_err(|why| Failure::new(FailureKind::Lost, why, "report this with the scene").at(clock))?;
+            .map_err(|why| Failure::new(super::LOST, why, "report this with the scene").at(clock))?;
         self.stepper.settle()
     }
 
@@ -112,7 +110,7 @@ impl Running {
             "the time step is too long for the pairs: take integrator.dt below {shortest}, or allow losses by run.most_lost",
             shortest = significant(shortest, 3)
         );
-        let failure = Failure { message, remedy, kind: FailureKind::Lost, ..failure };
+        let failure = Failure { message, remedy, kind: super::LOST, ..failure };
         failure.with([("lost", lost as f64), ("most_lost", most as f64)])
     }
 

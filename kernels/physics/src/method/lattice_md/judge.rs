@@ -72,7 +72,7 @@ fn long_step(at: Clock, count: u64, first: Culprit, limit: f64, dt: f64) -> Fail
         "lower dt to {dt}, slow the discs, or set integrator.on_long_step = \"count\"",
         dt = significant(dt, 5)
     );
-    let failure = Failure::new(FailureKind::LongStep, what, remedy).at(at).of(count, [first]);
+    let failure = Failure::new(FailureKind::LONG_STEP, what, remedy).at(at).of(count, [first]);
     failure.with([("limit", limit), ("dt", dt)])
 }
 
@@ -82,6 +82,6 @@ fn too_deep(at: Clock, [first, second]: [Culprit; 2], penetration: f64, limit: f
         "{first} and {second} overlap by {penetration:.4} of the sum of their radii, more than law.stop_penetration = {limit}"
     );
     let remedy = "the contacts are too soft for these weights and speeds: raise law.stiffness (and lower dt), or slow the discs";
-    let failure = Failure::new(FailureKind::TooDeep, what, remedy).at(at).of(2, [first, second]);
+    let failure = Failure::new(FailureKind::TOO_DEEP, what, remedy).at(at).of(2, [first, second]);
     failure.with([("penetration", penetration), ("limit", limit)])
 }

@@ -27,3 +27,8 @@ mod trials;
 mod watch;
 
 pub use entry::ENTRY;
+
+use crate::method::FailureKind;
+
+/// Bodies that were bound are not any more.
+pub const UNBOUND: FailureKind = FailureKind::new("unbound");

@@ -215,7 +215,7 @@ impl Running {
         let message = format!("{count} bodies are at no finite place, first body {}", culprit.id);
         let met =
             before.map_or(String::new(), |before| format!("; a step before, {}", self.met(&before, "were")));
-        self.of_encounter(FailureKind::NotFinite, message + &met, before).of(count as u64, [culprit])
+        self.of_encounter(FailureKind::NOT_FINITE, message + &met, before).of(count as u64, [culprit])
     }
 
     /// Two bodies in words, that `are` or `were` near each other.
@@ -254,7 +254,7 @@ impl Running {
                 significant(seen.kinetic, 5),
                 significant(seen.potential, 5)
             );
-            let failure = self.of_encounter(FailureKind::Overflow, message, nearest);
+            let failure = self.of_encounter(FailureKind::OVERFLOW, message, nearest);
             let culprits = nearest.map_or(vec![], |it| it.bodies.map(|body| self.culprit(body)).to_vec());
             return Err(failure.of(culprits.len() as u64, culprits));
         }
@@ -270,7 +270,7 @@ impl Running {
             nearest.map_or(String::new(), |words| format!("; {words}"))
         );
         let remedy = "the integrator loses the orbit: take a smaller dt, another integrator, or a softening";
-        let failure = Failure::new(FailureKind::Unbound, message, remedy).at(self.clock());
+        let failure = Failure::new(super::UNBOUND, message, remedy).at(self.clock());
         Err(failure.with([("energy", energy), ("energy_at_start", self.watch.start)]))
     }
 

@@ -80,9 +80,9 @@ fn a_sweep_that_fails_is_no_row_of_zeros() {
     advance(&mut running, 1).unwrap();
     between(&mut running, |_, _, _, _, _| Err(ProgramError::EmptyStrip));
     let failure = running.check().unwrap_err();
-    assert_eq!(failure.kind, FailureKind::Machine);
+    assert_eq!(failure.kind, FailureKind::MACHINE);
     assert!(running.observe()[2].is_nan(), "{:?}", running.observe());
-    assert_eq!(advance(&mut running, 9).unwrap_err().kind, FailureKind::Machine);
+    assert_eq!(advance(&mut running, 9).unwrap_err().kind, FailureKind::MACHINE);
 }
 
 /// A row takes no sweep more than its step, and one is enough for all that is said of a state.
@@ -260,7 +260,7 @@ fn what_is_lost_in_the_last_steps_is_found() {
     advance(&mut running, 66).unwrap();
     running.bodies.velocity.iter_mut().flatten().for_each(|v| *v *= 300.0);
     let failure = advance(&mut running, 70).unwrap_err();
-    assert_eq!(failure.kind, FailureKind::Unbound);
+    assert_eq!(failure.kind, super::UNBOUND);
     assert!(failure.message.contains("not any more"), "{failure}");
     let [warning] = &running.warnings()[..] else { panic!() };
     assert!(!warning.message.contains('%') && warning.message.contains("at the start and"), "{warning:?}");

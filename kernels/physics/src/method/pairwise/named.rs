@@ -64,7 +64,7 @@ fn out_of_box(at: Clock, count: u64, first: Culprit) -> Failure {
     let what = format!("{count} discs left the box, first {first}");
     let remedy = "a wall was passed or the time step is too large: use larger or stiffer wall discs, slower grains, or a \
                   smaller dt";
-    Failure::new(FailureKind::OutOfBox, what, remedy).at(at).of(count, [first])
+    Failure::new(FailureKind::OUT_OF_BOX, what, remedy).at(at).of(count, [first])
 }
 
 /// The failure of discs that are nowhere, or that no finite force acts on.
@@ -72,7 +72,7 @@ pub fn not_finite(at: Clock, count: u64, first: Culprit) -> Failure {
     let what = format!("{count} discs have a position or force that is no finite number, first {first}");
     let remedy =
         "the time step is too large for the stiffness or the damping: halve dt, or use fewer Gear values";
-    Failure::new(FailureKind::NotFinite, what, remedy).at(at).of(count, [first])
+    Failure::new(FailureKind::NOT_FINITE, what, remedy).at(at).of(count, [first])
 }
 
 /// The failure of two discs in one cell: the exclusive lattice would lose one.
@@ -85,6 +85,6 @@ pub fn conflict(at: Clock, domain: Domain, [first, second]: [Culprit; 2]) -> Fai
     );
     let remedy = "the discs overlap too deeply (stiffen the contacts), or the cells are too large (set search.cell_edge \
                   towards the largest radius)";
-    let failure = Failure::new(FailureKind::Conflict, what, remedy).at(at).of(2, [first, second]);
+    let failure = Failure::new(FailureKind::CONFLICT, what, remedy).at(at).of(2, [first, second]);
     failure.with([("distance", distance)])
 }
