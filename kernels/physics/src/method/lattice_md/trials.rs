@@ -1,7 +1,7 @@
 //! How granular discs may be run, and what theory says of the error.
 
 use super::document::Document;
-use super::keys::{FRICTION, INERTIA, MAX_PENETRATION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
+use super::keys::{FRICTION, INERTIA, LAW, MAX_PENETRATION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
 use super::options::Inertia;
 use super::quantities::QUANTITIES;
 use crate::method::observed::place;
@@ -13,6 +13,7 @@ use crate::scene::{
     Values,
 };
 use crate::words::Words;
+use stripmine_kernels::law::spring::Spring;
 
 macro_rules! settings {
     ($($name:literal [$($override:literal),*],)*) => {
@@ -277,7 +278,8 @@ fn theory(values: &Values, prepared: &dyn Prepared, integrator: &Setting) -> Opt
         _ => (5.0, "the order of the scheme"),
     };
     let jump = (1.0, "the damping force jumps from zero where a contact begins");
-    let kink = (2.5, "the Hertz force ξ^1.5 has a kink where a contact begins and ends");
+    let spring = values.choice(&LAW).and_then(|word| Spring::parse(&word))?;
+    let kink = (spring.exponent() + 1.0, spring.kink());
     let touching =
         (2.0, "moving discs touch at the start, and Gear's scheme begins without the third derivatives");
     let is_gear = integrator.name != "velocity-verlet";
