@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 use std::sync::atomic::AtomicBool;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
+use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::noise::{Purpose as Draw, Stream};
 use stripmine_physics::domain::Domain;
 use stripmine_physics::method::lattice_md::{Document, model};
@@ -247,6 +248,7 @@ fn the_pressure_is_that_of_the_formula() {
         let mut random = Stream::new(seed, Draw::Test, 0);
         let mut spread = |width: f64| random.random_range(-0.5 * width..=0.5 * width);
         let contact = Contact {
+            spring: Spring::Hertz,
             stiffness: 18.7,
             normal_damping: 4.0 + spread(4.0),
             shear_damping: 3.0,

@@ -3,6 +3,7 @@
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Storage;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
+use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
 use stripmine_kernels::{Execution, InstructionSet};
@@ -14,6 +15,7 @@ use stripmine_physics::placement::hexagonal;
 use stripmine_physics::scene;
 
 pub const CONTACT: Contact = Contact {
+    spring: Spring::Hertz,
     stiffness: 187.0,
     normal_damping: 1e-6,
     shear_damping: 3e-7,

@@ -8,6 +8,7 @@ use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Predictor};
 use stripmine_kernels::isa::{Array, Element, Machine, Memory, Op, OpCounts, Slot, Text, Vector};
 use stripmine_kernels::law::Law;
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
+use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::cells::{Check, Clear, Enter, Images};
 use stripmine_kernels::sweep::lattice::forces::Forces;
@@ -17,6 +18,7 @@ use stripmine_kernels::{Execution, InstructionSet, Program};
 
 fn law<const FRICTION: bool, const EQUAL: bool>() -> Granular<FRICTION, EQUAL> {
     let contact = Contact {
+        spring: Spring::Hertz,
         stiffness: 100.0,
         normal_damping: 3.0,
         shear_damping: 2.0,

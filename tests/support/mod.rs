@@ -3,6 +3,7 @@
 
 use rand::RngExt;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
+use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
@@ -16,6 +17,7 @@ use stripmine_physics::placement::hexagonal;
 use stripmine_physics::scene::{Precision, WallMotion};
 
 pub const CONTACT: Contact = Contact {
+    spring: Spring::Hertz,
     stiffness: 187.0,
     normal_damping: 0.05,
     shear_damping: 0.02,

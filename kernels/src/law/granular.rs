@@ -1,5 +1,6 @@
-//! Granular discs: Hertz contacts with viscous damping, Coulomb friction and rotation.
+//! Granular discs: contacts with a spring, viscous damping, Coulomb friction and rotation.
 
+use super::spring::Spring;
 use super::{Axis::X, Axis::Y, Env, Field, Law, Sum};
 use crate::isa::{Predicate, Vector};
 
@@ -18,7 +19,9 @@ pub enum ContactArm {
 /// The parameters of the contact law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// Hertz stiffness k_N (force/length^1.5).
+    /// How the elastic force grows with the overlap.
+    pub spring: Spring,
+    /// Stiffness k_N of the spring (force/length^p; Hertz: force/length^1.5).
     pub stiffness: f64,
     /// Normal damping γ_N (1/time); multiplied by the effective mass.
     pub normal_damping: f64,
@@ -30,14 +33,6 @@ pub struct Contact {
     pub cohesionless: bool,
     /// Where the tangential force acts.
     pub arm: ContactArm,
-}
-
-impl Contact {
-    /// Energy that a contact `depth` deep (length, at least 0) stores, ⅖ k_N ξ^{5/2}.
-    #[inline(always)]
-    pub fn energy<V: Vector>(&self, uniform: impl Fn(f64) -> V, depth: V) -> V {
-        uniform(0.4 * self.stiffness) * depth * depth * depth.sqrt()
-    }
 }
 
 /// Discs that are all alike.
@@ -117,7 +112,7 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
     /// other tangent than (13): here (13) throughout.
     #[inline(always)]
     fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &Own<E::V>) {
-        let Contact { stiffness, normal_damping, shear_damping, friction, cohesionless, arm } = self.contact;
+        let Contact { normal_damping, shear_damping, friction, cohesionless, arm, .. } = self.contact;
         let uniform = |value: f64| env.uniform(value);
         let zero = uniform(0.0);
 
@@ -145,7 +140,7 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         let inverse_mass = self.inverse_mass(uniform, |field| env.partner(field, place));
         let effective_mass = uniform(1.0) / (own.inverse_mass + inverse_mass);
         let overlap = penetration.max(zero);
-        let elastic = uniform(stiffness) * (overlap * overlap.sqrt());
+        let elastic = self.contact.elastic(uniform, overlap);
         let rate = uniform(normal_damping) * effective_mass;
         let separation = vx * nx + vy * ny;
         let damping = rate * separation;

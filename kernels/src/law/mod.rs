@@ -5,6 +5,7 @@ pub mod granular;
 pub mod gravity;
 pub mod lennard_jones;
 mod quantity;
+pub mod spring;
 mod stated;
 
 pub use environment::{Asked, Env, Law};

@@ -59,7 +59,7 @@ impl Law<2> for Printed {
     /// contact it has no value. (15): bounded on both sides. (16): the component along the tangent, both spins with one sign.
     #[inline(always)]
     fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &Own<E::V>) {
-        let Contact { stiffness, normal_damping, shear_damping, friction, .. } = self.contact;
+        let Contact { normal_damping, shear_damping, friction, .. } = self.contact;
         let uniform = |value: f64| env.uniform(value);
         let (zero, one) = (uniform(0.0), uniform(1.0));
 
@@ -84,7 +84,7 @@ impl Law<2> for Printed {
         let inverse = one / dist;
         let separation = (vx * dx + vy * dy) * inverse;
         let xi = contact * overlap;
-        let elastic = uniform(stiffness) * (xi * xi.sqrt());
+        let elastic = self.contact.elastic(uniform, xi);
         let normal = elastic - (uniform(normal_damping) * m_eff) * separation;
         env.section("(16)");
         let sliding = (vy * dx - vx * dy) * inverse;

@@ -7,6 +7,7 @@ use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Predictor, STATE};
 use stripmine_kernels::isa::{Array, Memory, ProgramError, Slot};
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
+use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::law::{Asked, Field, Law, Sum};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};
@@ -20,6 +21,7 @@ use stripmine_kernels::sweep::pair::{Body, Pair};
 use stripmine_kernels::{Execution, InstructionSet, Program};
 
 pub const CONTACT: Contact = Contact {
+    spring: Spring::Hertz,
     stiffness: 100.0,
     normal_damping: 3.0,
     shear_damping: 2.0,

@@ -39,7 +39,7 @@ pub struct Observation {
     pub kinetic: f64,
     /// Kinetic energy of their rotation.
     pub rotational: f64,
-    /// Energy of the Hertz contacts, ⅖ k_N ξ^{5/2} each.
+    /// Energy that contacts store, as their spring has it.
     pub elastic: f64,
     /// Potential energy in gravity, from the box's corner; jumps where a grain crosses a periodic side along gravity.
     pub gravitational: f64,

@@ -77,7 +77,7 @@ fn lattice_facts(checked: &Checked) -> Vec<Fact> {
 pub(super) fn expected_error(checked: &Checked) -> Option<Fact> {
     let Checked { scene, estimates, .. } = checked;
     let (contact, integrator) = (limits::contact(checked, 1.0), &scene.integrator);
-    let error = contact_error(contact, &scene.law.contact, integrator.scheme, integrator.dt)?;
+    let error = contact_error(contact, integrator.scheme, integrator.dt)?;
     let most = if error.step > integrator.dt { "at most " } else { "" };
     let words = format!(
         "{most}{} of its energy, falling as dt^{:.1}; by {} trials at {}",

@@ -15,6 +15,7 @@ use crate::scene::{
 };
 use crate::words::Words;
 use stripmine_kernels::law::granular::ContactArm;
+use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
 const ALWAYS: Use = None;
@@ -27,10 +28,10 @@ const PROGRAMS: Use = Some((&ENGINE, &["auto", "programs"]));
 define_keys! {
     /// Law, search, machine and integrator.
     static OWN;
-    LAW = "law" "kind", Choice(&["granular"]), "", Is("\"granular\""), ALWAYS,
-        "The contact law: Hertz contacts, viscous damping, Coulomb friction, rotation (BP93).";
+    LAW = "law" "kind", Choice(Spring::WORDS), "", Is("\"granular\""), ALWAYS,
+        "The contact law: granular, Hertz contacts, viscous damping, Coulomb friction, rotation (BP93); or linear, the same with the force k_N ξ of a linear spring, as LAMMPS's gran/hooke.";
     STIFFNESS = "law" "stiffness", Number(Positive), "force/length^1.5", Required, ALWAYS,
-        "Hertz stiffness k_N.";
+        "Stiffness k_N of the Hertz force k_N ξ^1.5; of the linear force k_N ξ in force/length.";
     NORMAL_DAMPING = "law" "normal_damping", Number(NonNegative), "1/time", Is("0.0"), ALWAYS,
         "Normal damping γ_N; multiplied by the effective mass, which with a wall disc is the grain's own, twice that of two equal grains.";
     SHEAR_DAMPING = "law" "shear_damping", Number(NonNegative), "1/time", Is("0.0"), ALWAYS,
@@ -134,10 +135,11 @@ fn own_rules(values: &Values) -> Vec<SceneError> {
 
 /// What the source's own text has no equation for.
 fn beyond_the_print(values: &Values) -> Vec<SceneError> {
-    let demands: [(&Key, &str, &str); 5] = [
+    let demands: [(&Key, &str, &str); 6] = [
         (&PRECISION, "\"f64\"", "the source has one precision, that of a CRAY's words of 64 bits"),
         (&COORDINATES, "\"absolute\"", "(5) and (6) subtract the positions themselves"),
         (&INTEGRATOR, "\"gear\"", "appendix A is Gear's predictor-corrector"),
+        (&LAW, "\"granular\"", "(14) has the force of Hertz"),
         (&COHESIONLESS, "false", "(14) has no clamp"),
         (&CONTACT_ARM, "\"radius\"", "the arm of (12) is the radius"),
     ];

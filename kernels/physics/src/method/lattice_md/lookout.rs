@@ -2,7 +2,7 @@
 //! many steps a contact takes and what rounding takes of a step.
 
 use super::check::{Checked, LEAST_STEPS, MUCH_LOST, rounding};
-use super::theory::contact::HertzContact;
+use super::theory::contact::HeadOn;
 use super::theory::limits;
 use crate::io::checkpoint::Counter;
 use crate::method::RunWarning;
@@ -18,7 +18,7 @@ const COUNTERS: [&str; 2] = ["looked.fastest", "looked.slowest"];
 /// What was seen of the speeds so far.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Lookout {
-    contact: HertzContact,
+    contact: HeadOn,
     dt: f64,
     /// By how much a position is rounded (length), where that is in single precision.
     rounding: Option<f64>,
@@ -81,7 +81,7 @@ impl Lookout {
     /// What is to be said of it.
     pub(super) fn warnings(&self) -> Vec<RunWarning> {
         let [most, least] = self.typical;
-        let contact = HertzContact { speed: most, ..self.contact };
+        let contact = HeadOn { speed: most, ..self.contact };
         let steps = contact.duration() / self.dt;
         let mut warnings = vec![];
         if steps < LEAST_STEPS {

@@ -2,8 +2,10 @@
 
 use crate::words::{define_words, words_for};
 use stripmine_kernels::law::granular::ContactArm;
+use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
+words_for!(Spring { Hertz = "granular", Linear = "linear", });
 words_for!(ContactArm { Radius = "radius", Overlap = "overlap", Lammps = "lammps", });
 words_for!(Coordinates { CellRelative = "cell-relative", Absolute = "absolute", });
 

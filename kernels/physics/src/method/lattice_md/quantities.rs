@@ -22,7 +22,7 @@ pub(super) const OBSERVABLES: [Observable<Seen>; 18] = observables! {
     "time", "time", |seen| seen.now.time, "The time.";
     "kinetic", "energy", |seen| seen.now.kinetic, "Kinetic energy of the grains' translation.";
     "rotational", "energy", |seen| seen.now.rotational, "Kinetic energy of their rotation.";
-    "elastic", "energy", |seen| seen.now.elastic, "Energy of the Hertz contacts.";
+    "elastic", "energy", |seen| seen.now.elastic, "Energy that contacts store.";
     "gravitational", "energy", |seen| seen.now.gravitational,
         "Potential energy in gravity, from the box's corner; jumps where a grain crosses a periodic side along gravity.";
     "dissipated", "energy", |seen| seen.balance.dissipated, "What contacts have turned into heat since the start.";

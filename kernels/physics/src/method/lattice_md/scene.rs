@@ -11,6 +11,7 @@ use crate::scene::{
 };
 use crate::words::Words;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
+use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::{Execution, InstructionSet};
 
@@ -42,7 +43,7 @@ pub struct Scene {
 /// The granular contact law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law {
-    /// Stiffness, dampings, friction, clamp and arm.
+    /// Spring, dampings, friction, clamp and arm.
     pub contact: Contact,
     /// How mass is distributed in a disc.
     pub inertia: Inertia,
@@ -55,6 +56,7 @@ pub struct Law {
 impl Default for Law {
     fn default() -> Self {
         let contact = Contact {
+            spring: Spring::Hertz,
             stiffness: 0.0,
             normal_damping: 0.0,
             shear_damping: 0.0,
@@ -73,7 +75,7 @@ impl Law {
     }
 
     fn bind(&mut self, binding: &mut dyn Binding) {
-        binding.word(&LAW, &mut "granular".to_owned());
+        binding.choice(&LAW, &mut self.contact.spring);
         binding.number(&STIFFNESS, &mut self.contact.stiffness);
         binding.number(&NORMAL_DAMPING, &mut self.contact.normal_damping);
         binding.number(&SHEAR_DAMPING, &mut self.contact.shear_damping);

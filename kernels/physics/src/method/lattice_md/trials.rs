@@ -2,7 +2,7 @@
 
 use super::document::Document;
 use super::keys::{
-    COORDINATES, ENGINE, FRICTION, INERTIA, MAX_PENETRATION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS,
+    COORDINATES, ENGINE, FRICTION, INERTIA, LAW, MAX_PENETRATION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS,
 };
 use super::options::{EngineChoice, Inertia};
 use super::quantities::QUANTITIES;
@@ -15,6 +15,7 @@ use crate::scene::{
     TEMPERATURE, VELOCITIES, Value, Values,
 };
 use crate::words::Words;
+use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
 macro_rules! settings {
@@ -279,7 +280,8 @@ fn theory(values: &Values, prepared: &dyn Prepared, integrator: &Setting) -> Opt
         _ => (5.0, "the order of the scheme"),
     };
     let jump = (1.0, "the damping force jumps from zero where a contact begins");
-    let kink = (2.5, "the Hertz force ξ^1.5 has a kink where a contact begins and ends");
+    let spring = values.choice(&LAW).and_then(|word| Spring::parse(&word))?;
+    let kink = (spring.exponent() + 1.0, spring.kink());
     let touching =
         (2.0, "moving discs touch at the start, and Gear's scheme begins without the third derivatives");
     let is_gear = integrator.name != "velocity-verlet";

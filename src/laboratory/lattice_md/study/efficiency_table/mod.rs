@@ -8,6 +8,7 @@ use conventions::Conventions;
 use serde::Serialize;
 use stripmine_kernels::isa::{Op, OpClass, OpCounts};
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc};
+use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape, ShapeError};
@@ -280,6 +281,7 @@ pub fn counting_model(cells: usize, choice: Choice) -> Result<Model, ShapeError>
         mask,
         coordinates,
         contact: Contact {
+            spring: Spring::Hertz,
             stiffness: 100.0,
             normal_damping: 1000.0,
             shear_damping: 300.0,

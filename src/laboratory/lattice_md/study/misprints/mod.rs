@@ -8,6 +8,7 @@ use as_printed::{AsPrinted, Misprint};
 use serde::Serialize;
 use stripmine_kernels::law::Law;
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
+use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::sweep::pair::Pair;
 
@@ -110,6 +111,7 @@ pub struct Misprints {
 /// The source's stiffness and friction, damping weak enough for discs of mass 1 to bounce, and its form of the law:
 /// separating discs may pull.
 const CONTACT: Contact = Contact {
+    spring: Spring::Hertz,
     stiffness: 100.0,
     normal_damping: 3.0,
     shear_damping: 2.0,

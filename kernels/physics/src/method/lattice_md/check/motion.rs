@@ -6,7 +6,7 @@ use crate::method::lattice_md::document::Document;
 use crate::method::lattice_md::keys::{COORDINATES, FRICTION, SHEAR_DAMPING, STIFFNESS};
 use crate::method::lattice_md::model::{GearValues, OnLongStep, Scheme};
 use crate::method::lattice_md::scene::{Inertia, Integrator, Scene};
-use crate::method::lattice_md::theory::contact::HertzContact;
+use crate::method::lattice_md::theory::contact::HeadOn;
 use crate::method::lattice_md::theory::step_matrix::largest_step;
 use crate::number::significant;
 use crate::particles::{Particle, Particles, longest_step};
@@ -23,7 +23,7 @@ pub struct Estimates {
     /// Typical speed of approach (length/time): √2 of the root mean square speed, that of a fall through a diameter, or
     /// that of the walls.
     pub approach_speed: f64,
-    /// Duration of an undamped Hertz contact at that speed (time); none if nothing moves.
+    /// Duration of an undamped contact at that speed (time); none if nothing moves.
     pub contact_duration: Option<f64>,
     /// The same in time steps.
     pub steps_per_contact: Option<f64>,
@@ -89,16 +89,16 @@ impl Estimates {
         };
         let fall = (2.0 * gravity * radius).sqrt();
         let speed = (2.0 * square).sqrt().max(fall).max(walls);
-        let stiffness = scene.law.contact.stiffness;
-        let contact = HertzContact { speed, stiffness, effective_mass: 0.5 * mass };
+        let law = scene.law.contact;
+        let contact = HeadOn { law, speed, effective_mass: 0.5 * mass };
         let duration = (speed > 0.0).then(|| contact.duration());
-        let damping = scene.law.contact.normal_damping * scene.integrator.dt;
+        let damping = law.normal_damping * scene.integrator.dt;
         Estimates {
             approach_speed: speed,
             contact_duration: duration,
             steps_per_contact: duration.map(|duration| duration / scene.integrator.dt),
             impact_penetration: contact.depth() / (2.0 * radius),
-            resting_depth: (heaviest * gravity / stiffness).powf(2.0 / 3.0) / radius,
+            resting_depth: law.depth_under(heaviest * gravity) / radius,
             damping,
             network_damping: NETWORK * damping,
             damping_limit: damping_limit(scene.integrator.scheme),
@@ -332,9 +332,8 @@ pub(super) fn warnings(
 }
 
 fn depth_warnings(scene: &Scene, estimates: &Estimates, warn: &mut impl FnMut(&Key, String, String)) {
-    let most = scene.law.max_penetration;
-    // Depth grows with the 4/5th power of the speed.
-    let deepest = estimates.impact_penetration * FASTEST.powf(0.8);
+    let (law, most) = (&scene.law.contact, scene.law.max_penetration);
+    let deepest = estimates.impact_penetration * law.depth_of_faster(FASTEST);
     if deepest > most {
         warn(
             &STIFFNESS,
@@ -345,7 +344,7 @@ fn depth_warnings(scene: &Scene, estimates: &Estimates, warn: &mut impl FnMut(&K
             ),
             format!(
                 "a stiffness above {}, with a smaller dt, or slower discs",
-                significant(scene.law.contact.stiffness * (deepest / most).powf(2.5), 5)
+                significant(law.stiffness_for_impact(deepest / most), 5)
             ),
         );
     }
@@ -360,7 +359,7 @@ fn depth_warnings(scene: &Scene, estimates: &Estimates, warn: &mut impl FnMut(&K
             ),
             format!(
                 "a stiffness above {}, or lighter grains",
-                significant(scene.law.contact.stiffness * (estimates.resting_depth / rest).powf(1.5), 5)
+                significant(law.stiffness_for_rest(estimates.resting_depth / rest), 5)
             ),
         );
     }

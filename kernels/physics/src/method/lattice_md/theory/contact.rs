@@ -1,33 +1,32 @@
-//! An undamped Hertz contact: how long it lasts, how deep and how stiff it becomes.
+//! An undamped contact: how long it lasts, how deep and how stiff it becomes.
 
-/// Duration over depth/speed: 2 ∫ (1 − x^(5/2))^(−1/2) dx from 0 to 1.
-const DURATION: f64 = 2.943_275;
+use stripmine_kernels::law::granular::Contact;
 
 /// A contact of two discs that approach each other head on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HertzContact {
+pub struct HeadOn {
+    /// The contact law.
+    pub law: Contact,
     /// Speed of approach (length/time).
     pub speed: f64,
-    /// Stiffness k of the force k ξ^(3/2) (force/length^1.5).
-    pub stiffness: f64,
     /// Effective mass m₁ m₂/(m₁ + m₂) (mass).
     pub effective_mass: f64,
 }
 
-impl HertzContact {
-    /// Largest overlap ξ (length): where ⅖ k ξ^(5/2) is the energy ½ m v².
+impl HeadOn {
+    /// Largest overlap (length).
     pub fn depth(&self) -> f64 {
-        (1.25 * self.effective_mass * self.speed * self.speed / self.stiffness).powf(0.4)
+        self.law.impact_depth(self.effective_mass, self.speed)
     }
 
     /// How long it lasts (time); infinite at rest.
     pub fn duration(&self) -> f64 {
-        DURATION * self.depth() / self.speed
+        self.law.impact_duration(self.effective_mass, self.speed)
     }
 
     /// Square of the angular frequency of a spring that is as stiff as the contact where it is deepest (1/time²).
     pub fn stiffest(&self) -> f64 {
-        1.5 * self.stiffness * self.depth().sqrt() / self.effective_mass
+        self.law.stiffness_at(self.depth()) / self.effective_mass
     }
 }
 
@@ -36,23 +35,63 @@ mod tests {
     use super::*;
     use stripmine_kernels::integrator::single::Single;
     use stripmine_kernels::integrator::velocity_verlet::VelocityVerlet;
+    use stripmine_kernels::law::granular::ContactArm;
+    use stripmine_kernels::law::spring::Spring;
+
+    fn head_on(spring: Spring) -> HeadOn {
+        let law = Contact {
+            spring,
+            stiffness: 300.0,
+            normal_damping: 0.0,
+            shear_damping: 0.0,
+            friction: 0.0,
+            cohesionless: true,
+            arm: ContactArm::Radius,
+        };
+        HeadOn { law, speed: 0.7, effective_mass: 0.4 }
+    }
 
     /// The contact followed in 10⁵ steps.
     #[test]
     fn duration_and_depth_are_those_of_a_contact_that_is_followed() {
-        let contact = HertzContact { speed: 0.7, stiffness: 300.0, effective_mass: 0.4 };
-        let force = |overlap: f64, _: f64| {
-            -contact.stiffness / contact.effective_mass * overlap.max(0.0) * overlap.max(0.0).sqrt()
-        };
-        let dt = contact.duration() / 1e5;
-        let mut single = Single::new(VelocityVerlet, dt).starting(0.0, contact.speed, force);
-        let (mut deepest, mut steps) = (0.0, 0);
-        while single.motion()[0] >= 0.0 {
-            single.step(force);
-            deepest = f64::max(deepest, single.motion()[0]);
-            steps += 1;
+        for spring in [Spring::Hertz, Spring::Linear] {
+            let contact = head_on(spring);
+            let force = |overlap: f64, _: f64| {
+                -contact.law.elastic(|number| number, overlap.max(0.0)) / contact.effective_mass
+            };
+            let dt = contact.duration() / 1e5;
+            let mut single = Single::new(VelocityVerlet, dt).starting(0.0, contact.speed, force);
+            let (mut deepest, mut steps) = (0.0, 0);
+            while single.motion()[0] >= 0.0 {
+                single.step(force);
+                deepest = f64::max(deepest, single.motion()[0]);
+                steps += 1;
+            }
+            assert!((f64::from(steps) / 1e5 - 1.0).abs() < 1e-4, "{spring:?}: {steps}");
+            assert!((deepest / contact.depth() - 1.0).abs() < 1e-6, "{spring:?}: {deepest}");
         }
-        assert!((f64::from(steps) / 1e5 - 1.0).abs() < 1e-4, "{steps}");
-        assert!((deepest / contact.depth() - 1.0).abs() < 1e-6, "{deepest}");
+    }
+
+    /// Energy, stiffness and depth at rest follow from the force.
+    #[test]
+    fn what_a_spring_says_follows_from_its_force() {
+        let number = |number: f64| number;
+        for spring in [Spring::Hertz, Spring::Linear] {
+            let law = head_on(spring).law;
+            let (overlap, h) = (0.03, 1e-6);
+            let slope = |of: &dyn Fn(f64) -> f64| (of(overlap + h) - of(overlap - h)) / (2.0 * h);
+            let force = law.elastic(number, overlap);
+            assert!((slope(&|x| law.energy(number, x)) / force - 1.0).abs() < 1e-8, "{spring:?}");
+            let stiffness = law.stiffness_at(overlap);
+            assert!((slope(&|x| law.elastic(number, x)) / stiffness - 1.0).abs() < 1e-8, "{spring:?}");
+            assert!((law.depth_under(force) / overlap - 1.0).abs() < 1e-14, "{spring:?}");
+            let stiffer = Contact { stiffness: law.stiffness_for_rest(2.0), ..law };
+            assert!((stiffer.depth_under(force) / (0.5 * overlap) - 1.0).abs() < 1e-14, "{spring:?}");
+            let stiffer = Contact { stiffness: law.stiffness_for_impact(2.0), ..law };
+            let depths = [law.impact_depth(0.4, 0.7), stiffer.impact_depth(0.4, 0.7)];
+            assert!((depths[1] / (0.5 * depths[0]) - 1.0).abs() < 1e-14, "{spring:?}");
+            let faster = law.impact_depth(0.4, 3.0 * 0.7) / depths[0];
+            assert!((faster / law.depth_of_faster(3.0) - 1.0).abs() < 1e-14, "{spring:?}");
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! What bounds the step of a scene.
 
-use super::contact::HertzContact;
+use super::contact::HeadOn;
 use super::step_matrix::largest_step;
 use crate::method::lattice_md::check::{Checked, FASTEST, FEWEST_STEPS, LEAST_STEPS, NETWORK};
 use crate::method::{Beyond, StepLimit};
@@ -24,11 +24,11 @@ pub fn step_limits(checked: &Checked) -> Vec<StepLimit> {
 }
 
 /// A head-on contact of the lightest grains at the typical speed of approach times a factor.
-pub fn contact(checked: &Checked, faster: f64) -> HertzContact {
+pub fn contact(checked: &Checked, faster: f64) -> HeadOn {
     let masses = checked.particles.grains().iter().map(|disc| disc.mass);
-    HertzContact {
+    HeadOn {
+        law: checked.scene.law.contact,
         speed: faster * checked.estimates.approach_speed,
-        stiffness: checked.scene.law.contact.stiffness,
         effective_mass: 0.5 * masses.fold(f64::INFINITY, f64::min),
     }
 }

@@ -1,12 +1,11 @@
 //! Trial contacts: two typical grains that meet head on, followed by the scene's own scheme and step.
 
-use super::contact::HertzContact;
+use super::contact::HeadOn;
 use crate::method::lattice_md::model::{GearValues, Scheme};
 use stripmine_kernels::integrator;
 use stripmine_kernels::integrator::gear::{Acceleration, Gear};
 use stripmine_kernels::integrator::single::Single;
 use stripmine_kernels::integrator::velocity_verlet::VelocityVerlet;
-use stripmine_kernels::law::granular::Contact;
 
 /// Contacts begin at this many places of a step.
 const PHASES: u32 = 16;
@@ -31,13 +30,13 @@ pub struct ContactError {
 }
 
 /// Tries a contact; none where nothing moves, or discs do not part again.
-pub fn contact_error(hertz: HertzContact, law: &Contact, scheme: Scheme, dt: f64) -> Option<ContactError> {
-    let duration = hertz.duration();
+pub fn contact_error(contact: HeadOn, scheme: Scheme, dt: f64) -> Option<ContactError> {
+    let duration = contact.duration();
     if !(duration.is_finite() && duration > 0.0) {
         return None;
     }
     let step = dt.max(duration / MOST);
-    let trial = Trial { hertz, damping: law.normal_damping, pulls: !law.cohesionless };
+    let trial = Trial(contact);
     let after =
         |step: f64, phase: u32| trial.energy_after(scheme, step, f64::from(phase) / f64::from(PHASES));
     let reference = after(REFERENCE * step, 0)?;
@@ -50,17 +49,15 @@ pub fn contact_error(hertz: HertzContact, law: &Contact, scheme: Scheme, dt: f64
     Some(ContactError { energy, order, step, phases: PHASES })
 }
 
-struct Trial {
-    hertz: HertzContact,
-    damping: f64,
-    /// Whether separating discs pull.
-    pulls: bool,
-}
+struct Trial(HeadOn);
 
 impl Trial {
     /// The energy after the contact over that before, if the contact begins a part `phase` of a step late.
     fn energy_after(&self, scheme: Scheme, step: f64, phase: f64) -> Option<f64> {
-        let kind = if self.damping == 0.0 { Acceleration::OfPositions } else { Acceleration::OfVelocities };
+        let kind = match self.0.law.normal_damping {
+            0.0 => Acceleration::OfPositions,
+            _ => Acceleration::OfVelocities,
+        };
         match scheme {
             Scheme::Gear(GearValues::Four) => self.followed(Gear::<4>::new(kind), step, phase),
             Scheme::Gear(GearValues::Five) => self.followed(Gear::<5>::new(kind), step, phase),
@@ -74,17 +71,17 @@ impl Trial {
         if overlap <= 0.0 {
             return 0.0;
         }
-        let HertzContact { stiffness, effective_mass, .. } = self.hertz;
-        let push = stiffness / effective_mass * overlap * overlap.sqrt() + self.damping * velocity;
-        -if self.pulls { push } else { push.max(0.0) }
+        let HeadOn { law, effective_mass, .. } = self.0;
+        let push = law.elastic(|number| number, overlap) / effective_mass + law.normal_damping * velocity;
+        -if law.cohesionless { push.max(0.0) } else { push }
     }
 
     fn followed<C: integrator::Scheme>(&self, scheme: C, step: f64, phase: f64) -> Option<f64> {
-        let speed = self.hertz.speed;
+        let speed = self.0.speed;
         // A whole step before the contact, and a part more: the derivatives of the start are those of free flight.
         let gap = (1.0 + phase) * speed * step;
         let mut single = Single::new(scheme, step).starting(-gap, speed, |_, _| 0.0);
-        let most = (ENDLESS * self.hertz.duration() / step) as u64 + 64;
+        let most = (ENDLESS * self.0.duration() / step) as u64 + 64;
         for _ in 0..most {
             single.step(|overlap, velocity| self.acceleration(overlap, velocity));
             let [overlap, velocity] = single.motion();
@@ -103,11 +100,12 @@ impl Trial {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stripmine_kernels::law::granular::ContactArm;
+    use stripmine_kernels::law::granular::{Contact, ContactArm};
+    use stripmine_kernels::law::spring::Spring;
 
     fn error(damping: f64, scheme: Scheme, steps: f64) -> ContactError {
-        let hertz = HertzContact { speed: 0.5, stiffness: 1e4, effective_mass: 0.5 };
         let law = Contact {
+            spring: Spring::Hertz,
             stiffness: 1e4,
             normal_damping: damping,
             shear_damping: 0.0,
@@ -115,7 +113,8 @@ mod tests {
             cohesionless: true,
             arm: ContactArm::Radius,
         };
-        contact_error(hertz, &law, scheme, hertz.duration() / steps).unwrap()
+        let contact = HeadOn { law, speed: 0.5, effective_mass: 0.5 };
+        contact_error(contact, scheme, contact.duration() / steps).unwrap()
     }
 
     /// The kink of Hertz's force leaves velocity Verlet an order of 2½, the jump of the damping any scheme one of 1.

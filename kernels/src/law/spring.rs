@@ -1,0 +1,111 @@
+//! Springs of contacts: how the elastic force grows with the overlap, and all that follows from it.
+//!
+//! The one place that knows such a force by its formula. Laws, observers, checks and theory ask here; a further spring is a
+//! further variant of [`Spring`].
+
+use super::granular::Contact;
+use crate::isa::Vector;
+use std::f64::consts::PI;
+
+/// An elastic force k ξ^p of the overlap ξ.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Spring {
+    /// k ξ^(3/2), of elastic spheres (Hertz).
+    #[default]
+    Hertz,
+    /// k ξ.
+    Linear,
+}
+
+impl Spring {
+    /// The power p of the overlap.
+    pub const fn exponent(self) -> f64 {
+        match self {
+            Spring::Hertz => 1.5,
+            Spring::Linear => 1.0,
+        }
+    }
+
+    /// What the force leaves of a scheme's order, in words: it is that of ξ^(p + 1).
+    pub const fn kink(self) -> &'static str {
+        match self {
+            Spring::Hertz => "the Hertz force ξ^1.5 has a kink where a contact begins and ends",
+            Spring::Linear => "the linear force ξ has a kink where a contact begins and ends",
+        }
+    }
+
+    /// ξ^p.
+    #[inline(always)]
+    fn power<V: Vector>(self, overlap: V) -> V {
+        match self {
+            Spring::Hertz => overlap * overlap.sqrt(),
+            Spring::Linear => overlap,
+        }
+    }
+
+    /// Duration of an undamped head-on impact over depth/speed: 2 ∫ (1 − x^(p + 1))^(−1/2) dx from 0 to 1.
+    const fn duration(self) -> f64 {
+        match self {
+            Spring::Hertz => 2.943_275,
+            Spring::Linear => PI,
+        }
+    }
+}
+
+/// What the spring of a contact says.
+impl Contact {
+    /// The force of an overlap (length, at least 0), k ξ^p.
+    #[inline(always)]
+    pub fn elastic<V: Vector>(&self, uniform: impl Fn(f64) -> V, overlap: V) -> V {
+        uniform(self.stiffness) * self.spring.power(overlap)
+    }
+
+    /// The energy that an overlap (length, at least 0) stores, k ξ^(p + 1)/(p + 1).
+    #[inline(always)]
+    pub fn energy<V: Vector>(&self, uniform: impl Fn(f64) -> V, overlap: V) -> V {
+        match self.spring {
+            Spring::Hertz => uniform(0.4 * self.stiffness) * overlap * overlap * overlap.sqrt(),
+            Spring::Linear => uniform(0.5 * self.stiffness) * overlap * overlap,
+        }
+    }
+
+    /// How stiff a contact is at an overlap (length), p k ξ^(p − 1) (force/length).
+    pub fn stiffness_at(&self, overlap: f64) -> f64 {
+        match self.spring {
+            Spring::Hertz => 1.5 * self.stiffness * overlap.sqrt(),
+            Spring::Linear => self.stiffness,
+        }
+    }
+
+    /// The overlap (length) at rest under a force.
+    pub fn depth_under(&self, force: f64) -> f64 {
+        (force / self.stiffness).powf(1.0 / self.spring.exponent())
+    }
+
+    /// The largest overlap (length) of an undamped head-on impact of an effective mass m at a speed v (length/time): where the
+    /// energy stored is ½ m v².
+    pub fn impact_depth(&self, effective_mass: f64, speed: f64) -> f64 {
+        let power = self.spring.exponent() + 1.0;
+        (0.5 * power * effective_mass * speed * speed / self.stiffness).powf(1.0 / power)
+    }
+
+    /// How long such an impact lasts (time); infinite at rest.
+    pub fn impact_duration(&self, effective_mass: f64, speed: f64) -> f64 {
+        self.spring.duration() * self.impact_depth(effective_mass, speed) / speed
+    }
+
+    /// By which factor an impact that is this much faster is deeper.
+    pub fn depth_of_faster(&self, faster: f64) -> f64 {
+        faster.powf(2.0 / (self.spring.exponent() + 1.0))
+    }
+
+    /// The stiffness that makes an impact this many times less deep.
+    pub fn stiffness_for_impact(&self, less: f64) -> f64 {
+        self.stiffness * less.powf(self.spring.exponent() + 1.0)
+    }
+
+    /// The stiffness that makes an overlap at rest this many times less deep.
+    pub fn stiffness_for_rest(&self, less: f64) -> f64 {
+        self.stiffness * less.powf(self.spring.exponent())
+    }
+}
