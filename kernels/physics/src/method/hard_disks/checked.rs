@@ -155,9 +155,9 @@ fn way_of(
     choices: &mut Vec<String>,
 ) -> Result<Option<Mask>, SceneError> {
     let all = particles.all().iter().map(|disc| disc.radius);
-    let leash = fast::leash(&scene.arena(*domain), all);
+    let displacement_limit = fast::displacement_limit(&scene.arena(*domain), all);
     let small = "the box is too small for lists: a disc would see others across two of its sides";
-    let way = match (scene.engine, leash) {
+    let way = match (scene.engine, displacement_limit) {
         (EngineChoice::Fast, None) => {
             let error = values.spot(&ENGINE).error(Reason::Geometry, small);
             return Err(error.expecting("engine = \"reference\" or \"auto\", or a larger box"));

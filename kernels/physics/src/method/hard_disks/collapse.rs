@@ -4,7 +4,7 @@
 //! - Rest: a disc that has come to lie on a side, or on discs that do, bounces on for ever, as often as it takes the contact
 //!   duration of the TC model to make bounces elastic. Hard discs have no contact that lasts.
 
-use super::engine::{Happened, Partner};
+use super::engine::{Occurred, Partner};
 use crate::io::checkpoint::Column;
 use crate::method::Snapshot;
 
@@ -95,7 +95,7 @@ impl Watch {
 
     /// An event; `crossing` says how long a typical disc flies through a radius now.
     #[inline]
-    pub fn see(&mut self, happened: &Happened, crossing: impl FnOnce() -> f64) -> Option<Endless> {
+    pub fn see(&mut self, happened: &Occurred, crossing: impl FnOnce() -> f64) -> Option<Endless> {
         self.events += 1;
         if self.fall.is_finite() && self.involved.len() <= FEW {
             self.involve(happened.disc);
@@ -132,8 +132,8 @@ impl Watch {
 mod tests {
     use super::*;
 
-    fn at(time: f64, disc: u32, with: Partner) -> Happened {
-        Happened { time, disc, with, impact: None, thrust: 0.0, free: [0.0; 2] }
+    fn at(time: f64, disc: u32, with: Partner) -> Occurred {
+        Occurred { time, disc, with, impact: None, thrust: 0.0, free: [0.0; 2] }
     }
 
     /// Events so far apart, of so many discs in turn: after how many events that is found to be endless.

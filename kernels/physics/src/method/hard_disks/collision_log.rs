@@ -1,6 +1,6 @@
 //! Rows of `events.csv`: a collision each.
 
-use super::engine::{Happened, Partner};
+use super::engine::{Occurred, Partner};
 use super::event::Arena;
 use std::fmt::Write;
 use stripmine_kernels::flight::Disc;
@@ -20,12 +20,12 @@ impl Log {
     pub(super) fn add<'d>(
         &mut self,
         event: u64,
-        happened: &Happened,
+        happened: &Occurred,
         arena: &Arena,
         disc: &dyn Fn(u32) -> &'d Disc,
         id: &dyn Fn(u32) -> u32,
     ) {
-        let Happened { time, disc: number, with, impact, thrust, free } = *happened;
+        let Occurred { time, disc: number, with, impact, thrust, free } = *happened;
         let own = disc(number);
         let (partner, towards, impulse) = match with {
             Partner::Disc(other) => {

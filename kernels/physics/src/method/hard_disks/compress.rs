@@ -2,7 +2,7 @@
 
 use super::engine::Engine;
 use super::event::{Arena, Law};
-use super::fast::{Fast, leash};
+use super::fast::{Fast, displacement_limit};
 use crate::domain::Domain;
 use crate::particles::{Particle, in_space};
 use crate::start::Uncompressed;
@@ -33,7 +33,7 @@ pub fn compress(domain: &Domain, grains: &mut [Particle], scale: f64, seed: u64)
     let packing = area / domain.area();
     let law = Law::ELASTIC;
     let arena = Arena::new(*domain, [0.0; 2], law);
-    if leash(&arena, grains.iter().map(|grain| grain.radius)).is_none() {
+    if displacement_limit(&arena, grains.iter().map(|grain| grain.radius)).is_none() {
         return Err(Uncompressed::TooSmall);
     }
     // Masses are of no matter here: all are 1, and so is kT; speeds are in mean radii.

@@ -17,11 +17,11 @@ pub trait Engine: Send {
     /// times.
     ///
     /// # Errors
-    /// [`Stopped`]: what must not be.
-    fn next(&mut self, until: f64, most: u64) -> Result<Option<Happened>, Stopped>;
+    /// [`EngineError`]: what must not be.
+    fn next(&mut self, until: f64, most: u64) -> Result<Option<Occurred>, EngineError>;
 
     /// How often the partners of a disc were found, of all discs together over their number.
-    fn fillings(&self) -> u64;
+    fn rebuilds(&self) -> u64;
 
     /// What a checkpoint keeps of it beside the discs, so that it goes on as if there had been none.
     fn snapshot(&self) -> Snapshot;
@@ -47,7 +47,7 @@ pub enum Partner {
 
 /// What has happened.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Happened {
+pub struct Occurred {
     /// When (time).
     pub time: f64,
     /// To which disc, the one with the smaller number of two.
@@ -64,7 +64,7 @@ pub struct Happened {
 
 /// Why the discs stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stopped {
+pub enum EngineError {
     /// Two discs have their centres in one cell: they overlap.
     SharedCell([u32; 2]),
     /// A disc is so high that the look-up of cells above a floor takes too many entries.
@@ -77,21 +77,21 @@ pub enum Stopped {
     NoInstructions(InstructionSet),
 }
 
-impl Happened {
+impl Occurred {
     /// Two discs collide, known by their numbers and in any order.
     #[inline]
-    pub fn collision(arena: &Arena, a: (u32, &mut Disc), b: (u32, &mut Disc), time: f64) -> Happened {
+    pub fn collision(arena: &Arena, a: (u32, &mut Disc), b: (u32, &mut Disc), time: f64) -> Occurred {
         let ((a, one), (b, other)) = if a.0 < b.0 { (a, b) } else { (b, a) };
         let free = [time - one.time, time - other.time];
         let impact = arena.collide(one, other, time);
-        Happened { time, disc: a, with: Partner::Disc(b), impact: Some(impact), thrust: 0.0, free }
+        Occurred { time, disc: a, with: Partner::Disc(b), impact: Some(impact), thrust: 0.0, free }
     }
 
     /// A disc meets a closed side across an axis.
     #[inline]
-    pub fn at_wall(arena: &Arena, (number, disc): (u32, &mut Disc), axis: u8, time: f64) -> Happened {
+    pub fn at_wall(arena: &Arena, (number, disc): (u32, &mut Disc), axis: u8, time: f64) -> Occurred {
         let free = [time - disc.time, 0.0];
         let thrust = arena.rebound(disc, number, axis.into(), time);
-        Happened { time, disc: number, with: Partner::Wall(axis), impact: None, thrust, free }
+        Occurred { time, disc: number, with: Partner::Wall(axis), impact: None, thrust, free }
     }
 }

@@ -1,8 +1,8 @@
 //! What every engine is held against: all pairs and all walls, again and again.
 
-use super::engine::{Engine, Happened, Partner};
+use super::engine::{Engine, Occurred, Partner};
 use super::event::{Arena, Law, Thermal};
-use super::fast::{Fast, leash};
+use super::fast::{Fast, displacement_limit};
 use super::floor::Floor;
 use super::reference;
 use crate::domain::{Domain, Side};
@@ -13,7 +13,7 @@ use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};
 
 /// The next event of all.
-fn naive(arena: &Arena, discs: &mut [Disc], now: f64) -> Happened {
+fn naive(arena: &Arena, discs: &mut [Disc], now: f64) -> Occurred {
     let count = discs.len() as u32;
     let mut next = (f64::INFINITY, 0, Partner::Wall(0));
     for a in 0..count {
@@ -31,11 +31,11 @@ fn naive(arena: &Arena, discs: &mut [Disc], now: f64) -> Happened {
     }
     let (time, first, with) = next;
     match with {
-        Partner::Wall(axis) => Happened::at_wall(arena, (first, &mut discs[first as usize]), axis, time),
+        Partner::Wall(axis) => Occurred::at_wall(arena, (first, &mut discs[first as usize]), axis, time),
         Partner::Disc(other) => {
             let [a, b] = [first.min(other), first.max(other)];
             let (left, right) = discs.split_at_mut(b as usize);
-            Happened::collision(arena, (a, &mut left[a as usize]), (b, &mut right[0]), time)
+            Occurred::collision(arena, (a, &mut left[a as usize]), (b, &mut right[0]), time)
         }
     }
 }
@@ -66,7 +66,7 @@ fn engines(arena: Arena, discs: &[Disc]) -> Vec<(String, Box<dyn Engine>)> {
         let name = format!("{} places", mask.offsets().len());
         engines.push((name, reference::begin(arena, discs.to_vec(), &mask, 0.0).unwrap()));
     }
-    if leash(&arena, discs.iter().map(|disc| disc.radius)).is_some() {
+    if displacement_limit(&arena, discs.iter().map(|disc| disc.radius)).is_some() {
         for set in InstructionSet::available() {
             let engine = Fast::new(arena, discs.to_vec(), set, 0.0).unwrap();
             engines.push((set.name().to_owned(), Box::new(engine)));
@@ -78,7 +78,7 @@ fn engines(arena: Arena, discs: &[Disc]) -> Vec<(String, Box<dyn Engine>)> {
 /// Holds both engines against all pairs: every event, and every disc at the end. Gives how many were fast.
 fn hold(arena: Arena, discs: &[Disc], events: usize) -> usize {
     let (mut oracle, mut now) = (discs.to_vec(), 0.0);
-    let events: Vec<Happened> = (0..events)
+    let events: Vec<Occurred> = (0..events)
         .map(|_| {
             let event = naive(&arena, &mut oracle, now);
             now = event.time;

@@ -3,7 +3,7 @@
 use super::checked::Checked;
 use super::collapse::{Endless, Watch};
 use super::collision_log::Log;
-use super::engine::{Engine, Happened, Partner, Stopped};
+use super::engine::{Engine, EngineError, Occurred, Partner};
 use super::event::Arena;
 use super::fast::Fast;
 use super::idle::never;
@@ -24,8 +24,8 @@ use stripmine_kernels::flight::Disc;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::mask::Mask;
 
-/// Events, or fillings of the grid, between looks at whether a run is to be interrupted.
-const UNHEARD: u64 = 4096;
+/// Events, or rebuilds of the grid, between looks at whether a run is to be interrupted.
+const INTERRUPT_CHECK_INTERVAL: u64 = 4096;
 
 /// Discs under way.
 pub(super) struct Running {
@@ -54,7 +54,7 @@ enum Way {
 }
 
 impl Way {
-    fn begin(&self, arena: Arena, discs: Vec<Disc>, time: f64) -> Result<Box<dyn Engine>, Stopped> {
+    fn begin(&self, arena: Arena, discs: Vec<Disc>, time: f64) -> Result<Box<dyn Engine>, EngineError> {
         Ok(match self {
             Way::Fast(set) => Box::new(Fast::new(arena, discs, *set, time)?),
             Way::Reference(mask) => reference::begin(arena, discs, mask, time)?,
@@ -104,7 +104,7 @@ impl Running {
         (0..self.engine.count() as u32).map(|number| self.engine.disc(number))
     }
 
-    fn count(&mut self, happened: &Happened) {
+    fn count(&mut self, happened: &Occurred) {
         self.clock.events += 1;
         self.clock.time = happened.time;
         self.may_meet = false;
@@ -135,11 +135,11 @@ impl Running {
         Failure::new(super::IDLE, message, remedy).at(self.clock)
     }
 
-    fn failure(&self, why: Stopped) -> Failure {
+    fn failure(&self, why: EngineError) -> Failure {
         failure(why, &|disc| *self.engine.disc(disc), &self.particles, &self.places, self.clock)
     }
 
-    fn endless(&self, happened: &Happened, Endless { rests, events, duration }: Endless) -> Failure {
+    fn endless(&self, happened: &Occurred, Endless { rests, events, duration }: Endless) -> Failure {
         let discs =
             [Some(happened.disc), if let Partner::Disc(other) = happened.with { Some(other) } else { None }];
         let culprits: Vec<Culprit> = discs.into_iter().flatten().map(|disc| self.culprit(disc)).collect();
@@ -211,7 +211,7 @@ fn culprit(number: u32, disc: &Disc, particles: &Particles, places: &[usize]) ->
 }
 
 fn failure(
-    why: Stopped,
+    why: EngineError,
     disc: &dyn Fn(u32) -> Disc,
     particles: &Particles,
     places: &[usize],
@@ -219,20 +219,20 @@ fn failure(
 ) -> Failure {
     let named = |number: u32| culprit(number, &disc(number), particles, places);
     match why {
-        Stopped::SharedCell(pair) => {
+        EngineError::SharedCell(pair) => {
             let [a, b] = pair.map(named);
             let message =
                 format!("{a} and {b} have their centres in one cell of the exclusive grid: they overlap");
             let remedy = "this must not happen between hard discs: report it with the scene";
             Failure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(2, [a, b])
         }
-        Stopped::Crowded(disc, most) => {
+        EngineError::Crowded(disc, most) => {
             let who = named(disc);
             let message = format!("{who} has more than {most} others around it, and a list holds no more");
             let remedy = "set machine.engine = \"reference\", or take radii that differ less";
             Failure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(1, [who])
         }
-        Stopped::TooHigh(disc, entries) => {
+        EngineError::TooHigh(disc, entries) => {
             let who = named(disc);
             let message = format!(
                 "{who} is so high that the source's look-up of cells takes {entries} entries: they grow with the height"
@@ -240,8 +240,8 @@ fn failure(
             let remedy = "set machine.engine = \"fast\", whose memory grows with the discs only";
             Failure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(1, [who])
         }
-        Stopped::NoInstructions(set) => ProgramError::NoSuchInstructionSet(set.name()).into(),
-        Stopped::BackInTime(disc, time, now) => {
+        EngineError::NoInstructions(set) => ProgramError::NoSuchInstructionSet(set.name()).into(),
+        EngineError::BackInTime(disc, time, now) => {
             let who = named(disc);
             let message = format!("the next event of {who} is at {time:?}, before the last one at {now:?}");
             let remedy = "this must not happen: a mask missed a partner; report it with the scene";
@@ -289,11 +289,13 @@ impl Simulation for Running {
         });
         let end = end.fold(f64::INFINITY, f64::min);
         while !until.iter().any(|moment| moment.has_come(&self.clock)) {
-            if self.clock.events.is_multiple_of(UNHEARD) && interrupted.load(Ordering::Relaxed) {
+            if self.clock.events.is_multiple_of(INTERRUPT_CHECK_INTERVAL)
+                && interrupted.load(Ordering::Relaxed)
+            {
                 break;
             }
-            let unheard = self.engine.fillings() + UNHEARD;
-            match self.engine.next(end, unheard) {
+            let since_check = self.engine.rebuilds() + INTERRUPT_CHECK_INTERVAL;
+            match self.engine.next(end, since_check) {
                 Err(why) => return Err(self.failure(why)),
                 Ok(Some(happened)) => {
                     self.count(&happened);
@@ -304,8 +306,8 @@ impl Simulation for Running {
                     }
                 }
                 // Nothing is expected any more, or nothing up to the end, or nothing has happened for long.
-                Ok(None) if self.engine.fillings() < unheard && end.is_finite() => self.clock.time = end,
-                Ok(None) if self.engine.fillings() < unheard || self.is_idle() => {
+                Ok(None) if self.engine.rebuilds() < since_check && end.is_finite() => self.clock.time = end,
+                Ok(None) if self.engine.rebuilds() < since_check || self.is_idle() => {
                     if end.is_infinite() {
                         return Err(self.idle());
                     }

@@ -52,17 +52,17 @@ impl Running {
         let checked = checked.clone();
         let mut running =
             Running { checked, purpose, stepper, start, losses, of_pairs: [0.0; 2], work: 0, made_before: 0 };
-        running.meet()?;
+        running.compute_forces()?;
         Ok(running)
     }
 
     /// All forces of the places as they stand.
-    fn meet(&mut self) -> Result<(), Failure> {
+    fn compute_forces(&mut self) -> Result<(), Failure> {
         let asked = Asked { energy: self.purpose == Purpose::Run, ..Asked::default() };
         if self.checked.has_pairs() {
-            self.of_pairs = self.stepper.meet(asked)?.energy;
+            self.of_pairs = self.stepper.compute_forces(asked)?.energy;
         } else {
-            self.stepper.meet_nothing();
+            self.stepper.skip_forces();
         }
         Ok(())
     }
@@ -70,7 +70,7 @@ impl Running {
     fn step(&mut self) -> Result<(), Failure> {
         let mut done = self.stepper.advance().map(drop);
         loop {
-            match done.and_then(|()| self.meet()) {
+            match done.and_then(|()| self.compute_forces()) {
                 Ok(()) => break,
                 Err(failure) if is_loss(&failure) => done = self.lose(failure),
                 Err(failure) => return Err(failure),
@@ -87,7 +87,7 @@ impl Running {
             return Err(Failure { kind: super::LOST, ..failure });
         }
         let clock = self.clock();
-        let standing = self.stepper.standing();
+        let standing = self.stepper.unwrapped();
         for &place in &unfit {
             let Particle { id, .. } = self.start.all()[place];
             self.losses.add(id, clock.steps, clock.time, standing.all()[place].place());
@@ -185,7 +185,7 @@ fn kept(name: String, column: Column, stays: &[bool]) -> (String, Column) {
 impl Running {
     /// All that there is to be seen now.
     fn seen(&self) -> Seen {
-        let (particles, mass) = (self.stepper.standing(), self.checked.mass);
+        let (particles, mass) = (self.stepper.unwrapped(), self.checked.mass);
         let count = particles.len() as f64;
         let velocities = || particles.all().iter().map(Particle::planar_velocity);
         let thermal: Vec<[f64; 2]> = match self.checked.scene.scheme.is_observed_after_bath() {

@@ -29,7 +29,7 @@ impl Way {
         let Scenery { domain, gravity, .. } = *scenery;
         let mut way = Way { domain, gravity, from: vec![] };
         if gravity != [0.0; 2] {
-            let standing = engine.standing();
+            let standing = engine.unwrapped();
             let grains = standing.grains().iter().enumerate();
             way.from = grains
                 .map(|(number, grain)| way.unfolded(number, grain.place(), engine.crossings()))

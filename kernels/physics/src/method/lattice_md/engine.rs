@@ -27,7 +27,7 @@ pub trait Engine: Send {
 
     /// The same as the state has them: the last correction may have taken a position beyond a periodic side, and no
     /// [crossing](Self::crossings) is counted before the next step.
-    fn standing(&self) -> Particles;
+    fn unwrapped(&self) -> Particles;
 
     /// Sums over the discs and their contacts as they stand, with what gravity has done on their way. Summed in an order that
     /// depends on the scene alone.

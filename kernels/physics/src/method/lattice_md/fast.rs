@@ -138,14 +138,14 @@ impl FastMd {
     /// [`Failure`] if the start breaks a precondition already.
     fn new(stepping: Box<dyn Stepping>, model: Model, walls: WallMotion) -> Result<Self, Failure> {
         let mut simulation = FastMd { stepping, model, walls, totals: Totals::default(), met: 0 };
-        let power = simulation.meet()?;
+        let power = simulation.compute_forces()?;
         simulation.totals = Totals::starting_with(power, simulation.wall_power());
         Ok(simulation)
     }
 
     /// All forces of the positions as they stand; gives what contacts dissipate (energy/time).
-    fn meet(&mut self) -> Result<f64, Failure> {
-        let met = self.stepping.meet(self.model.asked())?;
+    fn compute_forces(&mut self) -> Result<f64, Failure> {
+        let met = self.stepping.compute_forces(self.model.asked())?;
         self.met = met.pairs;
         let deep = met.deep.iter().map(|pair| pair.map(|disc| disc as usize));
         judge_depth(self.stepping.as_ref(), deep, self.model.watch, &mut self.totals)?;
@@ -166,7 +166,7 @@ impl Engine for FastMd {
         let far = far.into_iter().map(|disc| disc as usize);
         judge_steps(self.stepping.as_ref(), far, self.model.watch, &mut self.totals)?;
         self.totals.shared_cells += self.stepping.shared_cells() as u64;
-        let power = self.meet()?;
+        let power = self.compute_forces()?;
         self.totals.add_work(self.model.dt, power, self.wall_power());
         Ok(())
     }
@@ -183,8 +183,8 @@ impl Engine for FastMd {
         self.stepping.particles()
     }
 
-    fn standing(&self) -> Particles {
-        self.stepping.standing()
+    fn unwrapped(&self) -> Particles {
+        self.stepping.unwrapped()
     }
 
     fn sums(&self, scenery: &Scenery, way: &Way) -> Sums {

@@ -6,8 +6,8 @@ use super::checks;
 use super::document::Document;
 use super::engine::Engine;
 use super::facts::{expected_error, facts};
-use super::lookout::Lookout;
 use super::quantities::{OBSERVABLES, Seen};
+use super::run_monitor::RunMonitor;
 use super::theory::limits::step_limits;
 use super::{
     Lengths, Model, StepProgram, Total, Totals, assemble, assemble_following_energy, ledger, memory, model,
@@ -158,8 +158,8 @@ impl Prepared for Discs {
             Purpose::Run => assemble_following_energy(&self.0)?,
             Purpose::Measurement => assemble(&self.0)?,
         };
-        let lookout = (purpose == Purpose::Run).then(|| Lookout::of(&self.0));
-        Ok(Box::new(Running::new(&self.0, engine, lookout)))
+        let run_monitor = (purpose == Purpose::Run).then(|| RunMonitor::of(&self.0));
+        Ok(Box::new(Running::new(&self.0, engine, run_monitor)))
     }
 
     fn started_from(&self, particles: Particles) -> Box<dyn Prepared> {
@@ -187,20 +187,20 @@ struct Running {
     lattice: Option<([usize; 2], f64)>,
     discs: [usize; 2],
     /// What is looked at now and then, in a run.
-    lookout: Option<Lookout>,
+    run_monitor: Option<RunMonitor>,
 }
 
 impl Running {
-    fn new(checked: &Checked, engine: Box<dyn Engine>, lookout: Option<Lookout>) -> Running {
+    fn new(checked: &Checked, engine: Box<dyn Engine>, run_monitor: Option<RunMonitor>) -> Running {
         let Checked { scene, particles, geometry, .. } = checked;
         let model = model(checked);
         let scenery = Scenery::of(&model);
         let way = Way::begin(engine.as_ref(), &scenery);
         let sums = engine.sums(&scenery, &way);
         let work = Work::begin(way, &Observation::new(engine.steps(), engine.time(), &sums, &scenery));
-        let lookout = lookout.map(|mut lookout| {
-            lookout.look(&sums.grains);
-            lookout
+        let run_monitor = run_monitor.map(|mut run_monitor| {
+            run_monitor.look(&sums.grains);
+            run_monitor
         });
         let grains = particles.grain_count();
         let cells = [geometry.shape.columns(), geometry.shape.rows()];
@@ -214,7 +214,7 @@ impl Running {
             observing: Cell::default(),
             lattice: scene.needs_lattice().then_some((cells, geometry.occupancy)),
             discs: [grains, particles.len() - grains],
-            lookout,
+            run_monitor,
         }
     }
 
@@ -286,9 +286,9 @@ impl Simulation for Running {
             }
             self.seen.take();
             self.engine.step()?;
-            if self.lookout.is_some() && Lookout::is_due(self.engine.steps()) {
+            if self.run_monitor.is_some() && RunMonitor::is_due(self.engine.steps()) {
                 let sums = self.sums();
-                self.lookout.iter_mut().for_each(|lookout| lookout.look(&sums.grains));
+                self.run_monitor.iter_mut().for_each(|run_monitor| run_monitor.look(&sums.grains));
             }
         }
         Ok(())
@@ -311,7 +311,7 @@ impl Simulation for Running {
             Total::Count(count) => (name.to_owned(), Counter::Count(count)),
             Total::Sum(sum) => (name.to_owned(), Counter::Sum(sum)),
         });
-        let looked = self.lookout.iter().flat_map(Lookout::counters);
+        let looked = self.run_monitor.iter().flat_map(RunMonitor::counters);
         Snapshot { counters: counters.chain(looked).collect(), columns: self.engine.state() }
     }
 
@@ -324,8 +324,8 @@ impl Simulation for Running {
         let discs = self.discs[0] + self.discs[1];
         let totals = totals.map_err(|name| format!("the total {name} is missing"))?;
         totals.are_of(clock.steps, discs as u64)?;
-        if let Some(lookout) = &mut self.lookout {
-            lookout.restore(&snapshot.counters)?;
+        if let Some(run_monitor) = &mut self.run_monitor {
+            run_monitor.restore(&snapshot.counters)?;
         }
         self.seen.take();
         self.engine.restore(clock.steps, totals, snapshot.columns)
@@ -376,8 +376,9 @@ impl Simulation for Running {
 
     fn warnings(&self) -> Vec<RunWarning> {
         let Seen { balance, totals, .. } = self.seen();
-        let energy = self.lookout.as_ref().and_then(|_| checks::energy(balance, self.work.passed(balance)));
-        let looked = self.lookout.iter().flat_map(Lookout::warnings);
+        let energy =
+            self.run_monitor.as_ref().and_then(|_| checks::energy(balance, self.work.passed(balance)));
+        let looked = self.run_monitor.iter().flat_map(RunMonitor::warnings);
         checks::counted(totals, self.max_penetration).into_iter().chain(looked).chain(energy).collect()
     }
 

@@ -151,10 +151,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             stale |= self.search.lists().is_some_and(|lists| lists.has_strayed(to.disc, place));
         }
         let outside = |&&disc: &&u32| self.is_outside(disc as usize);
-        if let Some(&first) =
-            self.rim.iter().filter(outside).min_by_key(|&&disc| self.state.number(disc as usize))
+        if let Some(&first) = self
+            .boundary_candidates
+            .iter()
+            .filter(outside)
+            .min_by_key(|&&disc| self.state.number(disc as usize))
         {
-            let count = self.rim.iter().filter(outside).count() as u64;
+            let count = self.boundary_candidates.iter().filter(outside).count() as u64;
             let cell = self.search.cells().cell(first as usize).unwrap_or_default();
             let place = self.state.place(first as usize);
             return Err(self.stray(Move { disc: first as usize, cell, place, periods: [0.0; 2] }, count));
@@ -169,7 +172,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     }
 
     /// The discs that may leave through an open side before lists are made again.
-    pub(super) fn discs_at_the_rim(&self) -> Vec<u32> {
+    pub(super) fn discs_near_open_sides(&self) -> Vec<u32> {
         let domain = &self.system.domain;
         let Some(lists) = self.search.lists().filter(|_| domain.periodic() != [true; 2]) else {
             return vec![];

@@ -38,12 +38,12 @@ pub struct Engine<S, P, Q, D> {
     /// Whether the state is predicted and its forces are not yet known.
     pub(super) awaits_forces: bool,
     /// Discs that are so near to an open side that they may leave through it before lists are made again.
-    pub(super) rim: Vec<u32>,
+    pub(super) boundary_candidates: Vec<u32>,
     pub(super) elapsed: Elapsed,
 }
 
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
-    /// Lays out `particles`. Their forces are not yet known: [`meet`](super::Stepping::meet) finds them.
+    /// Lays out `particles`. Their forces are not yet known: [`compute_forces`](super::Stepping::compute_forces) finds them.
     ///
     /// # Errors
     /// [`Failure`] if a disc is outside the box, or in another's cell.
@@ -67,7 +67,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             start: particles,
             changes: 0,
             awaits_forces: false,
-            rim: vec![],
+            boundary_candidates: vec![],
         };
         engine.give_walls_their_velocity();
         let positions = engine.start.all().iter().map(Particle::place);
@@ -108,7 +108,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             *sum = reordered(sum, &order);
         }
         self.search.make_lists(&self.state);
-        self.rim = self.discs_at_the_rim();
+        self.boundary_candidates = self.discs_near_open_sides();
         self.changes = 0;
         order
     }

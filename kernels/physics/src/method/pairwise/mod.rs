@@ -23,10 +23,10 @@ mod named;
 mod observing;
 mod saved;
 pub mod search;
-mod standing;
 mod state;
 mod stepping;
 mod timings;
+mod unwrapped;
 
 pub use carried::{Carried, CarriedBy};
 pub use columns::real_column;
@@ -34,9 +34,9 @@ pub use crossings::Crossings;
 pub use elapsed::Elapsed;
 pub use engine::Engine;
 pub use named::{Named, conflict, not_finite, outside};
-pub use standing::{standing, wrapped};
 pub use stepping::{Stepping, Work};
 pub use timings::{Phase, Timings};
+pub use unwrapped::{unwrapped, wrapped};
 
 use crate::domain::Domain;
 use stripmine_kernels::integrator::{Inertia, Scheme};

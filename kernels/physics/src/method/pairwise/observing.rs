@@ -73,10 +73,10 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
                     let velocity = corrected.velocity.each_ref().map(|along| along[disc]);
                     let omega = corrected.omega.get(disc).copied().unwrap_or(0.0);
                     let place = || corrected.place.each_ref().map(|along| along[disc]);
-                    let standing = || self.seen_from_origin(disc, place());
-                    sums.add(scenery, grain, velocity, omega, || scenery.domain.wrapped(standing()));
+                    let unwrapped = || self.seen_from_origin(disc, place());
+                    sums.add(scenery, grain, velocity, omega, || scenery.domain.wrapped(unwrapped()));
                     if has_gravity {
-                        sums.gravity_work += work(number, grain, standing());
+                        sums.gravity_work += work(number, grain, unwrapped());
                     }
                 }
                 sums

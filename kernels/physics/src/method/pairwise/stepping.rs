@@ -1,7 +1,7 @@
 //! What a method sees of the engine, whatever its precisions, search and dynamics.
 
 use super::search::{Cells, Search};
-use super::{Dynamics, Elapsed, Engine, Named, Phase, standing, wrapped};
+use super::{Dynamics, Elapsed, Engine, Named, Phase, unwrapped, wrapped};
 use crate::io::checkpoint::Column;
 use crate::method::Failure;
 use crate::observe::{Scenery, Sums};
@@ -27,7 +27,7 @@ pub trait Stepping: Named + Send {
     ///
     /// # Errors
     /// [`Failure`] if a force is no finite number, or the machine refuses the law.
-    fn meet(&mut self, asked: Asked) -> Result<Met, Failure>;
+    fn compute_forces(&mut self, asked: Asked) -> Result<Met, Failure>;
 
     /// Steps, periods and seconds so far.
     fn elapsed(&self) -> &Elapsed;
@@ -51,7 +51,7 @@ pub trait Stepping: Named + Send {
     fn positions(&self) -> Vec<[f32; 3]>;
 
     /// The particles as they stand; positions are consistent with the periods that are counted as crossed.
-    fn standing(&self) -> Particles;
+    fn unwrapped(&self) -> Particles;
 
     /// Velocities as the last predictor left them (length/time), in the scene's order; at the start those of the start.
     fn predicted_velocities(&self) -> Vec<[f64; 2]>;
@@ -60,7 +60,7 @@ pub trait Stepping: Named + Send {
     fn forces(&self) -> Vec<[f64; 3]>;
 
     /// Takes the forces as found where no pair acts: there are none.
-    fn meet_nothing(&mut self);
+    fn skip_forces(&mut self);
 
     /// The particles, by their places in the scene and rising, that belong to no cell or of which a number is not finite.
     fn unfit(&self) -> Vec<usize>;
@@ -91,7 +91,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
         alone_if(self.is_small(), || self.moved_on())
     }
 
-    fn meet(&mut self, asked: Asked) -> Result<Met, Failure> {
+    fn compute_forces(&mut self, asked: Asked) -> Result<Met, Failure> {
         let mut timings = self.elapsed.timings;
         let met = timings.time(Phase::Forces, || alone_if(self.is_small(), || self.add_forces(asked)))?;
         self.elapsed.timings = timings;
@@ -121,7 +121,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
     }
 
     fn particles(&self) -> Particles {
-        wrapped(self.standing(), &self.system.domain)
+        wrapped(self.unwrapped(), &self.system.domain)
     }
 
     fn positions(&self) -> Vec<[f32; 3]> {
@@ -134,7 +134,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
         places
     }
 
-    fn standing(&self) -> Particles {
+    fn unwrapped(&self) -> Particles {
         let freedoms = self.system.freedoms;
         let of = |disc: usize| {
             let [x, y, angle] = [0, 1, 2].map(|freedom| match freedom < freedoms {
@@ -146,7 +146,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
             (self.state.number(disc), rows)
         };
         let walls = self.prescribed().unwrap_or_default().velocity;
-        standing(&self.start, walls, (0..self.start.len()).map(of))
+        unwrapped(&self.start, walls, (0..self.start.len()).map(of))
     }
 
     fn predicted_velocities(&self) -> Vec<[f64; 2]> {
@@ -163,7 +163,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
         forces
     }
 
-    fn meet_nothing(&mut self) {
+    fn skip_forces(&mut self) {
         self.awaits_forces = false;
     }
 

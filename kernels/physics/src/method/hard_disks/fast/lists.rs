@@ -1,8 +1,8 @@
 //! Which discs a disc may meet: lists around the places where discs were registered, each renewed when its own disc has moved
 //! away from there by a distance, and by nothing else.
 //!
-//! A disc that is within `leash` of its registered place meets only discs registered within the sum of the radii and twice the
-//! leash: those are in its list, and it is in theirs.
+//! A disc that is within `displacement_limit` of its registered place meets only discs registered within the sum of the radii and twice the
+//! displacement_limit: those are in its list, and it is in theirs.
 
 use crate::domain::{Domain, Side};
 use stripmine_kernels::isa::AlignedColumn;
@@ -16,7 +16,7 @@ const FILLED: f64 = 0.6;
 #[derive(Clone, Debug)]
 pub struct Lists {
     domain: Domain,
-    leash: f64,
+    displacement_limit: f64,
     /// Where each disc was registered (length).
     places: AlignedColumn<[f64; 2]>,
     /// How many discs are in each list, and then which, a row each.
@@ -45,7 +45,11 @@ const AROUND: isize = 2;
 
 /// How far discs may go from where they were registered (length): such that lists hold about `most` discs, and that no disc sees
 /// another one across two sides. None in a box too small for any.
-pub fn leash(domain: &Domain, radii: impl Iterator<Item = f64> + Clone, most: f64) -> Option<f64> {
+pub fn displacement_limit(
+    domain: &Domain,
+    radii: impl Iterator<Item = f64> + Clone,
+    most: f64,
+) -> Option<f64> {
     let (count, largest, sum) = radii.fold((0.0, 0.0_f64, 0.0), |(count, largest, sum), radius| {
         (count + 1.0, radius.max(largest), sum + radius)
     });
@@ -57,18 +61,25 @@ pub fn leash(domain: &Domain, radii: impl Iterator<Item = f64> + Clone, most: f6
     let periodic = (0..2).filter(|&axis| domain.is_periodic(axis)).map(|axis| domain.length(axis));
     // Registered within the sum of radii and two leashes, discs are within two more: less than half a side.
     let bound = periodic.fold(f64::INFINITY, f64::min) / 8.0 - 0.5 * largest;
-    let leash = wanted.max(0.1 * largest).min(0.9 * bound);
-    (leash >= 0.05 * largest).then_some(leash)
+    let displacement_limit = wanted.max(0.1 * largest).min(0.9 * bound);
+    (displacement_limit >= 0.05 * largest).then_some(displacement_limit)
 }
 
 impl Lists {
     /// Of no disc yet; with room for lists of about `most` discs, and for discs that are `largest` (length).
-    pub fn new(domain: Domain, count: usize, leash: f64, largest: f64, most: f64, stride: usize) -> Lists {
-        let sight = 2.0 * (largest + leash) * (1.0 + 1e-9);
+    pub fn new(
+        domain: Domain,
+        count: usize,
+        displacement_limit: f64,
+        largest: f64,
+        most: f64,
+        stride: usize,
+    ) -> Lists {
+        let sight = 2.0 * (largest + displacement_limit) * (1.0 + 1e-9);
         let least = (((most / FILLED) as usize + 1).next_multiple_of(16)).max(16);
         Lists {
             domain,
-            leash,
+            displacement_limit,
             places: AlignedColumn::filled(10, [0.0; 2], count),
             rows: empty_rows(count, stride.max(least)),
             stride: stride.max(least),
@@ -83,8 +94,8 @@ impl Lists {
 
     /// How far a disc may go from where it was registered (length).
     #[inline(always)]
-    pub fn leash(&self) -> f64 {
-        self.leash
+    pub fn displacement_limit(&self) -> f64 {
+        self.displacement_limit
     }
 
     /// Where a disc was registered (length).
@@ -128,7 +139,7 @@ impl Lists {
         let begin = disc as usize * self.stride;
         for entry in 1..=self.rows[begin] as usize {
             let other = self.rows[begin + entry];
-            self.strike(other, disc);
+            self.remove_partner(other, disc);
         }
         self.rows[begin..begin + self.stride].fill(NONE);
         self.rows[begin] = 0;
@@ -138,7 +149,7 @@ impl Lists {
     fn enter(&mut self, disc: u32, place: [f64; 2], radius: &impl Fn(u32) -> f64) -> Result<(), u32> {
         self.places[disc as usize] = place;
         let at = self.cells.coordinates(&self.domain, place);
-        let reach = radius(disc) + 2.0 * self.leash;
+        let reach = radius(disc) + 2.0 * self.displacement_limit;
         let [columns, rows] = [0, 1].map(|axis| self.cells.around(axis, at[axis]));
         // Those near enough are written one over the other until one is: a branch for each would be a matter of luck.
         let (mut found, mut count) = ([0; FOUND], 0);
@@ -173,7 +184,7 @@ impl Lists {
         Ok(())
     }
 
-    fn strike(&mut self, from: u32, disc: u32) {
+    fn remove_partner(&mut self, from: u32, disc: u32) {
         let row = &mut self.rows[from as usize * self.stride..][..self.stride];
         let filled = row[0] as usize;
         // Without a branch for each entry: where it is, is a matter of luck.
@@ -290,14 +301,14 @@ mod tests {
         for domain in [open, planar([true, true]), planar([true, false])] {
             let count = 150;
             let radii: Vec<f64> = (0..count).map(|_| stream.random_range(0.3..0.5)).collect();
-            let leash = leash(&domain, radii.iter().copied(), 6.0).unwrap();
+            let displacement_limit = displacement_limit(&domain, radii.iter().copied(), 6.0).unwrap();
             let mut draw = || {
                 let along = |axis: usize| domain.length(axis).min(90.0);
                 [0, 1].map(|axis| domain.origin[axis] + stream.random_range(0.0..along(axis)))
             };
             let mut places: Vec<[f64; 2]> = (0..count).map(|_| draw()).collect();
             let radius = |disc: u32| radii[disc as usize];
-            let mut lists = Lists::new(domain, count, leash, 0.5, 6.0, 64);
+            let mut lists = Lists::new(domain, count, displacement_limit, 0.5, 6.0, 64);
             lists.begin(&places, radius).unwrap();
             for moved in 0..400 {
                 let disc = moved % count;
@@ -307,7 +318,7 @@ mod tests {
                     let mut listed = lists.of(a as u32).to_vec();
                     listed.sort_unstable();
                     let near = |&b: &u32| {
-                        let reach = radii[a] + radii[b as usize] + 2.0 * leash;
+                        let reach = radii[a] + radii[b as usize] + 2.0 * displacement_limit;
                         b as usize != a && domain.distance(places[a], places[b as usize]) < reach
                     };
                     let expected: Vec<u32> = (0..count as u32).filter(near).collect();

@@ -12,7 +12,7 @@ mod queue;
 use crate::domain::Side;
 use crate::io::checkpoint::Column;
 use crate::method::Snapshot;
-use crate::method::hard_disks::engine::{Engine, Happened, Stopped};
+use crate::method::hard_disks::engine::{Engine, EngineError, Occurred};
 use crate::method::hard_disks::event::Arena;
 use lists::Lists;
 use queue::Queue;
@@ -64,7 +64,7 @@ pub struct Fast {
     numbers: AlignedColumn<u32>,
     places: Vec<u32>,
     lists: Lists,
-    leash: f64,
+    displacement_limit: f64,
     largest: f64,
     /// Whether all radii are the same.
     alike: bool,
@@ -87,21 +87,22 @@ impl Fast {
     /// Begins at a time.
     ///
     /// # Errors
-    /// [`Stopped`] if a disc has more others around it than can be listed.
-    pub fn new(arena: Arena, discs: Vec<Disc>, set: InstructionSet, time: f64) -> Result<Fast, Stopped> {
+    /// [`EngineError`] if a disc has more others around it than can be listed.
+    pub fn new(arena: Arena, discs: Vec<Disc>, set: InstructionSet, time: f64) -> Result<Fast, EngineError> {
         let count = discs.len();
         let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
-        let leash = leash(&arena, discs.iter().map(|disc| disc.radius)).unwrap_or(0.1 * largest);
+        let displacement_limit =
+            displacement_limit(&arena, discs.iter().map(|disc| disc.radius)).unwrap_or(0.1 * largest);
         let alike = discs.iter().all(|disc| disc.radius == largest);
-        let flight = 0.9 * leash.min(free_path(count as f64, largest, arena.domain.area()));
+        let flight = 0.9 * displacement_limit.min(free_path(count as f64, largest, arena.domain.area()));
         let mut engine = Fast {
-            lists: Lists::new(arena.domain, 0, leash, largest, LISTED, 0),
+            lists: Lists::new(arena.domain, 0, displacement_limit, largest, LISTED, 0),
             arena,
             set,
             discs: AlignedColumn::new(0, discs),
             numbers: AlignedColumn::new(1, 0..count as u32),
             places: vec![0; count],
-            leash,
+            displacement_limit,
             largest,
             alike,
             flight,
@@ -118,21 +119,21 @@ impl Fast {
     }
 
     /// Sorts the discs by their places at a time, registers all, and finds what each meets next.
-    fn begin(&mut self, time: f64) -> Result<(), Stopped> {
+    fn begin(&mut self, time: f64) -> Result<(), EngineError> {
         self.sort(time);
         let count = self.discs.len();
         let mut stride = self.lists.stride();
         let places: Vec<[f64; 2]> = self.discs.iter().map(|disc| self.registered(disc, time)).collect();
         loop {
             let (domain, discs) = (self.arena.domain, &self.discs);
-            self.lists = Lists::new(domain, count, self.leash, self.largest, LISTED, stride);
+            self.lists = Lists::new(domain, count, self.displacement_limit, self.largest, LISTED, stride);
             let Err(full) = self.lists.begin(&places, |disc| discs[disc as usize].radius) else { break };
             stride = self.lists.stride() + 16;
             if stride > MOST_PARTNERS + 1 {
-                if self.leash < 0.02 * self.largest {
-                    return Err(Stopped::Crowded(self.numbers[full as usize], MOST_PARTNERS));
+                if self.displacement_limit < 0.02 * self.largest {
+                    return Err(EngineError::Crowded(self.numbers[full as usize], MOST_PARTNERS));
                 }
-                (self.leash, stride) = (0.7 * self.leash, 0);
+                (self.displacement_limit, stride) = (0.7 * self.displacement_limit, 0);
             }
         }
         self.queue = Queue::new(count);
@@ -140,12 +141,12 @@ impl Fast {
         self.renewals += count as u64;
         self.sorted_until = self.events + SORTED_AFTER * count as u64;
         let found = dispatch_native(self.set, All { engine: self, time });
-        found.map_err(|_| Stopped::NoInstructions(self.set))
+        found.map_err(|_| EngineError::NoInstructions(self.set))
     }
 
     /// Puts discs that are near each other near each other in memory: by the digits of their coordinates in turn (Morton).
     fn sort(&mut self, time: f64) {
-        let edge = 2.0 * (self.largest + self.leash);
+        let edge = 2.0 * (self.largest + self.displacement_limit);
         let key = |disc: &Disc| {
             let at = self.arena.place(disc, time);
             let [x, y] =
@@ -191,7 +192,7 @@ impl Fast {
         if at_wall < next {
             (next, with) = (at_wall, WALL[axis]);
         }
-        let leaves = leaving(arena, own, lists.place(disc), lists.leash(), now);
+        let leaves = leaving(arena, own, lists.place(disc), lists.displacement_limit(), now);
         if leaves < next {
             (next, with) = (leaves, RENEWAL);
         }
@@ -214,7 +215,7 @@ impl Fast {
     }
 
     /// The list of a disc is renewed at a time; whether there was room for that. If not, all have begun with longer ones.
-    fn renew(&mut self, disc: u32, time: f64) -> Result<bool, Stopped> {
+    fn renew(&mut self, disc: u32, time: f64) -> Result<bool, EngineError> {
         let place = self.registered(&self.discs[disc as usize], time);
         self.renewals += 1;
         let Fast { lists, discs, alike, largest, .. } = self;
@@ -279,7 +280,7 @@ impl Fast {
         registers: R,
         until: f64,
         most: u64,
-    ) -> Result<Option<Happened>, Stopped> {
+    ) -> Result<Option<Occurred>, EngineError> {
         let most = most.saturating_mul(self.discs.len() as u64);
         loop {
             let Some((time, first)) = self.queue.first(registers, &self.numbers) else { return Ok(None) };
@@ -290,7 +291,7 @@ impl Fast {
                 self.look_ahead();
             }
             if time < self.time {
-                return Err(Stopped::BackInTime(self.numbers[first as usize], time, self.time));
+                return Err(EngineError::BackInTime(self.numbers[first as usize], time, self.time));
             }
             // Whose motion or list has changed, twice the same where it is one.
             let Expected { with, events } = self.partners[first as usize];
@@ -308,7 +309,7 @@ impl Fast {
                     let number = self.numbers[first as usize];
                     let disc = &mut self.discs[first as usize];
                     let axis = (wall - WALL[0]) as u8;
-                    ([first; 2], Some(Happened::at_wall(&self.arena, (number, disc), axis, time)))
+                    ([first; 2], Some(Occurred::at_wall(&self.arena, (number, disc), axis, time)))
                 }
                 other => {
                     let (low, high) = (first.min(other), first.max(other));
@@ -317,7 +318,7 @@ impl Fast {
                     let met = if other < first { &a } else { &b };
                     if met.events as u32 == events {
                         let [p, q] = [low, high].map(|disc| self.numbers[disc as usize]);
-                        let happened = Happened::collision(&self.arena, (p, a), (q, b), time);
+                        let happened = Occurred::collision(&self.arena, (p, a), (q, b), time);
                         ([first, other], Some(happened))
                     } else {
                         // The other one has changed its motion since.
@@ -350,15 +351,15 @@ impl Engine for Fast {
         &self.discs[self.places[number as usize] as usize]
     }
 
-    fn next(&mut self, until: f64, most: u64) -> Result<Option<Happened>, Stopped> {
+    fn next(&mut self, until: f64, most: u64) -> Result<Option<Occurred>, EngineError> {
         let set = self.set;
         let mut found = Ok(None);
-        let missing = |_| Stopped::NoInstructions(set);
+        let missing = |_| EngineError::NoInstructions(set);
         dispatch_native(set, Next { engine: self, until, most, found: &mut found }).map_err(missing)?;
         found
     }
 
-    fn fillings(&self) -> u64 {
+    fn rebuilds(&self) -> u64 {
         self.renewals / self.discs.len().max(1) as u64
     }
 
@@ -375,7 +376,7 @@ impl Engine for Fast {
         kept.add_column("expected.with", Column::U32(expected().map(|it| number(it.with)).collect()));
         kept.add_column("expected.events", Column::U32(expected().map(|it| it.events).collect()));
         kept.add_sum("engine.time", self.time);
-        kept.add_sum("engine.leash", self.leash);
+        kept.add_sum("engine.displacement_limit", self.displacement_limit);
         kept.add_count("engine.stride", self.lists.stride() as u64);
         kept.add_count("engine.renewals", self.renewals);
         kept.add_count("engine.events", self.events);
@@ -397,11 +398,12 @@ impl Engine for Fast {
         if with.iter().enumerate().any(none) {
             return Err("a disc expects itself or one that is not there".to_owned());
         }
-        let (stride, leash) = (kept.count("engine.stride")?, kept.sum("engine.leash")?);
+        let (stride, displacement_limit) =
+            (kept.count("engine.stride")?, kept.sum("engine.displacement_limit")?);
         // Narrower ones would be renewed without end.
         let narrowest = NARROWEST * self.largest;
-        if stride > MOST_PARTNERS as u64 + 1 || !(narrowest..f64::INFINITY).contains(&leash) {
-            return Err(format!("lists of {stride} entries within {leash}"));
+        if stride > MOST_PARTNERS as u64 + 1 || !(narrowest..f64::INFINITY).contains(&displacement_limit) {
+            return Err(format!("lists of {stride} entries within {displacement_limit}"));
         }
         let time = kept.sum("engine.time")?;
         if discs.iter().any(|disc| disc.time > time) || times.iter().any(|&expected| expected < time) {
@@ -409,7 +411,7 @@ impl Engine for Fast {
                 "a disc is ahead of the engine's time {time:?}, or expects something before it"
             ));
         }
-        self.leash = leash;
+        self.displacement_limit = displacement_limit;
         self.time = time;
         self.renewals = kept.count("engine.renewals")?;
         self.events = kept.count("engine.events")?;
@@ -423,7 +425,8 @@ impl Engine for Fast {
         };
         let places: Vec<[f64; 2]> = self.numbers.iter().map(|&number| place_of(number)).collect();
         let (domain, discs) = (self.arena.domain, &self.discs);
-        let mut lists = Lists::new(domain, count, self.leash, self.largest, LISTED, stride as usize);
+        let mut lists =
+            Lists::new(domain, count, self.displacement_limit, self.largest, LISTED, stride as usize);
         let full = lists.begin(&places, |disc| discs[disc as usize].radius);
         full.map_err(|disc| format!("the list of disc number {} is full", self.numbers[disc as usize]))?;
         self.lists = lists;
@@ -432,10 +435,11 @@ impl Engine for Fast {
             // Its list is renewed at the latest when it leaves the surroundings for which it was made; where discs fall, when one
             // from rest would have left them.
             let within = match self.arena.space.gravity() {
-                Some([gx, gy]) => (2.0 * self.leash / gx.hypot(gy)).sqrt(),
+                Some([gx, gy]) => (2.0 * self.displacement_limit / gx.hypot(gy)).sqrt(),
                 None => {
                     let listed_at = self.lists.place(place as u32);
-                    leaving(&self.arena, &self.discs[place], listed_at, self.lists.leash(), now) - now
+                    leaving(&self.arena, &self.discs[place], listed_at, self.lists.displacement_limit(), now)
+                        - now
                 }
             };
             if times[number as usize] - now > within * (1.0 + 1e-6) + 1e-9 * now.abs() {
@@ -458,14 +462,14 @@ impl Engine for Fast {
         vec![
             ("renewals_a_disc", self.renewals as f64 / count as f64),
             ("listed", listed as f64 / count as f64),
-            ("leash", self.leash),
+            ("displacement_limit", self.displacement_limit),
         ]
     }
 }
 
 /// How far discs may go from where they were registered (length); none in a box too small for lists.
-pub fn leash(arena: &Arena, radii: impl Iterator<Item = f64> + Clone) -> Option<f64> {
-    lists::leash(&arena.domain, radii, LISTED)
+pub fn displacement_limit(arena: &Arena, radii: impl Iterator<Item = f64> + Clone) -> Option<f64> {
+    lists::displacement_limit(&arena.domain, radii, LISTED)
 }
 
 /// The next event, compiled for an instruction set.
@@ -473,7 +477,7 @@ struct Next<'e> {
     engine: &'e mut Fast,
     until: f64,
     most: u64,
-    found: &'e mut Result<Option<Happened>, Stopped>,
+    found: &'e mut Result<Option<Occurred>, EngineError>,
 }
 
 impl Task<f64> for Next<'_> {
@@ -507,13 +511,13 @@ fn free_path(count: f64, radius: f64, area: f64) -> f64 {
     1.0 / (8.0_f64.sqrt() * density * 2.0 * radius * contact_value)
 }
 
-/// When a disc that is where it should be at `now` may be farther than `leash` from where it was registered (time).
+/// When a disc that is where it should be at `now` may be farther than `displacement_limit` from where it was registered (time).
 #[inline]
-fn leaving(arena: &Arena, disc: &Disc, registered: [f64; 2], leash: f64, now: f64) -> f64 {
+fn leaving(arena: &Arena, disc: &Disc, registered: [f64; 2], displacement_limit: f64, now: f64) -> f64 {
     let [dx, dy] = arena.domain.displacement(registered, disc.at(&arena.space, now));
     let [u, v] = disc.velocity_at(&arena.space, now);
     let square = u * u + v * v;
-    let left = leash * leash - (dx * dx + dy * dy);
+    let left = displacement_limit * displacement_limit - (dx * dx + dy * dy);
     match arena.space.gravity() {
         None if square == 0.0 => f64::INFINITY,
         None => {
@@ -523,7 +527,7 @@ fn leaving(arena: &Arena, disc: &Disc, registered: [f64; 2], leash: f64, now: f6
         }
         // No farther than as if it flew and fell straight away from there.
         Some([gx, gy]) => {
-            let way = (leash - (dx * dx + dy * dy).sqrt()).max(0.0);
+            let way = (displacement_limit - (dx * dx + dy * dy).sqrt()).max(0.0);
             let root = (square + 2.0 * (gx * gx + gy * gy).sqrt() * way).sqrt();
             now + 2.0 * way / (square.sqrt() + root)
         }

@@ -6,7 +6,7 @@ pub mod grid;
 mod half_space;
 mod tournament;
 
-use super::engine::{Engine, Happened, Partner, Stopped};
+use super::engine::{Engine, EngineError, Occurred, Partner};
 use super::event::Arena;
 use crate::domain::Side;
 use crate::io::checkpoint::Column;
@@ -75,8 +75,8 @@ const ROUNDED_UP: f64 = 1.0 + 1e-9;
 /// Begins at a time: over every cell of a box, or over those that hold a disc where there is no ceiling.
 ///
 /// # Errors
-/// [`Stopped`] if discs cannot be put into cells.
-pub fn begin(arena: Arena, discs: Vec<Disc>, mask: &Mask, time: f64) -> Result<Box<dyn Engine>, Stopped> {
+/// [`EngineError`] if discs cannot be put into cells.
+pub fn begin(arena: Arena, discs: Vec<Disc>, mask: &Mask, time: f64) -> Result<Box<dyn Engine>, EngineError> {
     let smallest = discs.iter().map(|disc| disc.radius).fold(f64::INFINITY, f64::min);
     let sizes = Sizes::new(&arena.domain, smallest);
     let reach = sizes.reach(mask);
@@ -91,7 +91,13 @@ pub fn begin(arena: Arena, discs: Vec<Disc>, mask: &Mask, time: f64) -> Result<B
 
 impl<C: Cells> Reference<C> {
     /// Begins at a time; within `reach` (length) of a disc the cells show every other one.
-    fn new(arena: Arena, discs: Vec<Disc>, grid: C, reach: f64, time: f64) -> Result<Reference<C>, Stopped> {
+    fn new(
+        arena: Arena,
+        discs: Vec<Disc>,
+        grid: C,
+        reach: f64,
+        time: f64,
+    ) -> Result<Reference<C>, EngineError> {
         let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
         let mut engine = Reference {
             grid,
@@ -118,12 +124,12 @@ impl<C: Cells> Reference<C> {
         self.since + self.slack / (2.0 * self.fastest)
     }
 
-    fn happen(&mut self, first: u32, event: Event) -> Happened {
+    fn happen(&mut self, first: u32, event: Event) -> Occurred {
         let Event { time, with } = event;
         match with {
             Partner::Wall(axis) => {
                 let disc = &mut self.discs[first as usize];
-                let happened = Happened::at_wall(&self.arena, (first, disc), axis, time);
+                let happened = Occurred::at_wall(&self.arena, (first, disc), axis, time);
                 self.heed(first);
                 self.repair([first, first]);
                 happened
@@ -132,7 +138,7 @@ impl<C: Cells> Reference<C> {
                 let [a, b] = [first.min(other), first.max(other)];
                 let (left, right) = self.discs.split_at_mut(b as usize);
                 let pair = ((a, &mut left[a as usize]), (b, &mut right[0]));
-                let happened = Happened::collision(&self.arena, pair.0, pair.1, time);
+                let happened = Occurred::collision(&self.arena, pair.0, pair.1, time);
                 self.heed(a);
                 self.heed(b);
                 self.repair([a, b]);
@@ -214,15 +220,15 @@ impl<C: Cells> Reference<C> {
     }
 
     /// Puts the discs into the cells of their places (length).
-    fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), Stopped> {
+    fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), EngineError> {
         self.grid.fill(places).map_err(|why| match why {
-            Misfit::Shared(pair) => Stopped::SharedCell(pair),
-            Misfit::TooHigh(disc, blocks) => Stopped::TooHigh(disc, blocks),
+            Misfit::Shared(pair) => EngineError::SharedCell(pair),
+            Misfit::TooHigh(disc, blocks) => EngineError::TooHigh(disc, blocks),
         })
     }
 
     /// Fills the grid with the discs as they are at a time, and finds what each meets next.
-    fn remap(&mut self, time: f64) -> Result<(), Stopped> {
+    fn remap(&mut self, time: f64) -> Result<(), EngineError> {
         self.fill(self.discs.iter().map(|disc| self.arena.place(disc, time)).collect())?;
         self.time = time;
         self.since = time;
@@ -273,7 +279,7 @@ impl<C: Cells> Engine for Reference<C> {
         &self.discs[number as usize]
     }
 
-    fn next(&mut self, until: f64, most: u64) -> Result<Option<Happened>, Stopped> {
+    fn next(&mut self, until: f64, most: u64) -> Result<Option<Occurred>, EngineError> {
         loop {
             let first = self.tree.first();
             let event = self.events[first as usize];
@@ -288,14 +294,14 @@ impl<C: Cells> Engine for Reference<C> {
                 continue;
             }
             if event.time < self.time {
-                return Err(Stopped::BackInTime(first, event.time, self.time));
+                return Err(EngineError::BackInTime(first, event.time, self.time));
             }
             self.time = event.time;
             return Ok(Some(self.happen(first, event)));
         }
     }
 
-    fn fillings(&self) -> u64 {
+    fn rebuilds(&self) -> u64 {
         self.remaps
     }
 

@@ -15,7 +15,7 @@ use super::{Arrays, ListOptions, Model, Part, StepProgram, execute, ledger};
 use super::{Elapsed, Engine, Phase, Timings, Totals};
 use crate::io::checkpoint::Column;
 use crate::method::Failure;
-use crate::method::pairwise::{Crossings, Named, Prescribed, standing, wrapped};
+use crate::method::pairwise::{Crossings, Named, Prescribed, unwrapped, wrapped};
 use crate::observe::{Scenery, Sums};
 use crate::particles::Particles;
 use crate::scene::{Precision, WallMotion};
@@ -128,7 +128,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             anchor: vec![],
         };
         simulation.move_walls(0.0);
-        let power = simulation.meet()?;
+        let power = simulation.compute_forces()?;
         simulation.start_derivatives();
         simulation.totals = Totals::starting_with(power, simulation.wall_power());
         simulation.elapsed.timings = Timings::default();
@@ -217,7 +217,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
     }
 
     /// Index, lattice vectors and forces of the positions as they stand; gives what contacts dissipate (energy/time).
-    fn meet(&mut self) -> Result<f64, Failure> {
+    fn compute_forces(&mut self) -> Result<f64, Failure> {
         let mut timings = self.elapsed.timings;
         if self.elapsed.crossings.is_followed() || self.model.is_anchored::<S>() {
             self.anchor.clear();
@@ -283,7 +283,7 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
         timings.time(Phase::Index, || self.judge_steps())?;
         self.elapsed.timings = timings;
         self.move_walls(self.time());
-        let power = self.meet()?;
+        let power = self.compute_forces()?;
         self.totals.add_work(self.model.dt, power, self.wall_power());
         let mut timings = self.elapsed.timings;
         let counted = timings.time(Phase::Correct, || self.run(&[Part::Corrector]))?;
@@ -306,10 +306,10 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
     }
 
     fn particles(&self) -> Particles {
-        wrapped(self.standing(), &self.model.domain())
+        wrapped(self.unwrapped(), &self.model.domain())
     }
 
-    fn standing(&self) -> Particles {
+    fn unwrapped(&self) -> Particles {
         let column = |array| self.arrays.state(array).unwrap_or(&[]);
         let places = [Array::X0, Array::Y0].map(column);
         let rates = [Array::X1, Array::Y1, Array::Phi1].map(column);
@@ -326,12 +326,12 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
             (disc, [[x, vx], [y, vy], [value(angle, disc), omega]])
         };
         let walls = walls_at(self.walls, self.time()).velocity;
-        standing(&self.start, walls, (0..self.start.len()).map(of))
+        unwrapped(&self.start, walls, (0..self.start.len()).map(of))
     }
 
     fn sums(&self, scenery: &Scenery, way: &Way) -> Sums {
         let crossings = self.crossings();
-        Sums::over_parts(&self.standing(), scenery, |number, grain, position| {
+        Sums::over_parts(&self.unwrapped(), scenery, |number, grain, position| {
             way.work(number, grain, position, crossings)
         })
     }

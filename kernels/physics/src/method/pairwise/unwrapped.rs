@@ -8,7 +8,7 @@ use crate::particles::{Particles, in_space};
 ///
 /// Positions are those of the state: the last correction may have taken one beyond a periodic side, where no crossing is
 /// counted yet.
-pub fn standing(
+pub fn unwrapped(
     start: &Particles,
     walls: [f64; 2],
     discs: impl Iterator<Item = (usize, [[f64; 2]; 3])>,

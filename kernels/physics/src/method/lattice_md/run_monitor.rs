@@ -17,7 +17,7 @@ const COUNTERS: [&str; 2] = ["looked.fastest", "looked.slowest"];
 
 /// What was seen of the speeds so far.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Lookout {
+pub(super) struct RunMonitor {
     contact: HeadOn,
     dt: f64,
     /// By how much a position is rounded (length), where that is in single precision.
@@ -28,10 +28,10 @@ pub(super) struct Lookout {
     typical: [f64; 2],
 }
 
-impl Lookout {
+impl RunMonitor {
     /// Of a scene, before the first look.
-    pub(super) fn of(checked: &Checked) -> Lookout {
-        Lookout {
+    pub(super) fn of(checked: &Checked) -> RunMonitor {
+        RunMonitor {
             contact: limits::contact(checked, 1.0),
             dt: checked.scene.integrator.dt,
             rounding: rounding(&checked.scene, &checked.domain, &checked.geometry),
