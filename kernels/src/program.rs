@@ -106,13 +106,12 @@ where
     }
 }
 
+/// What runs a program over one band.
+type BandOf<'r> = dyn Fn(&Memory<'_>, Range<usize>) -> Result<(), ProgramError> + Sync + 'r;
+
 /// Runs a program over bands of a range, each with a part of the memory. The program is called through a pointer, so that this is compiled
 /// once. The memory was admitted, and the program is elementwise.
-fn in_bands(
-    memory: &Memory<'_>,
-    range: Range<usize>,
-    run: &(dyn Fn(&Memory<'_>, Range<usize>) -> Result<(), ProgramError> + Sync),
-) -> Result<(), ProgramError> {
+fn in_bands(memory: &Memory<'_>, range: Range<usize>, run: &BandOf<'_>) -> Result<(), ProgramError> {
     let shared = Shared(memory);
     let counters = on_threads(pieces(range, BAND), |band| {
         // SAFETY: bands do not overlap, and the program writes only at the own place and reads at others only what it

@@ -41,6 +41,9 @@ pub fn replace(
 }
 
 /// A temporary file in the folder of `path` that holds what `write` writes, on the disk.
+///
+/// # Errors
+/// If the system does not let it be written.
 pub fn written_beside(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
@@ -62,6 +65,9 @@ pub fn written_beside(
 }
 
 /// Makes the renamings in a folder last.
+///
+/// # Errors
+/// If the folder cannot be opened or its entries not be written to the disk.
 pub fn sync_folder(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }
@@ -78,6 +84,9 @@ pub fn listing(names: &[String]) -> String {
 }
 
 /// Removes a file or a link, never what the link points to; one that is not there is no error.
+///
+/// # Errors
+/// If it is there and cannot be removed.
 pub fn remove_if_there(path: &Path) -> Result<(), FileError> {
     match fs::remove_file(path) {
         Err(cause) if cause.kind() != ErrorKind::NotFound => Err(FileError::at(path, "removing")(cause)),
@@ -87,6 +96,9 @@ pub fn remove_if_there(path: &Path) -> Result<(), FileError> {
 
 /// Whether `path` is still a name of the open file, and no link. Where the system has no numbers for its files, whether
 /// there is a file of that name.
+///
+/// # Errors
+/// If the system does not say what is there.
 pub fn is_name_of(path: &Path, file: &File) -> io::Result<bool> {
     let there = match fs::symlink_metadata(path) {
         Ok(there) => there,

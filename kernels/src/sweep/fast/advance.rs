@@ -405,10 +405,10 @@ unsafe fn take<R: Registers, P: Element>(registers: R, sums: *mut P) -> R::V {
         };
     }
     let mut lanes = [R::Lane::default(); 16];
-    for lane in 0..R::LANES {
-        // SAFETY: lane < LANES, and the caller promises LANES sums that are this thread's alone.
-        let sum = unsafe { &mut *sums.add(lane) };
-        lanes[lane] = R::Lane::from_f64(sum.to_f64());
+    // SAFETY: the caller promises LANES sums that are this thread's alone.
+    let sums = unsafe { std::slice::from_raw_parts_mut(sums, R::LANES) };
+    for (lane, sum) in lanes.iter_mut().zip(sums) {
+        *lane = R::Lane::from_f64(sum.to_f64());
         *sum = P::default();
     }
     // SAFETY: `lanes` has 16 entries, and no register has more lanes.

@@ -51,8 +51,11 @@ pub struct Row {
     pub source: Option<[f64; 2]>,
 }
 
-/// Ways to find pairs that are compared: names, and what they set.
-pub const SEARCHES: [(&str, fn(Overrides) -> Overrides); 4] = [
+/// A way to find pairs: its name, and what it sets.
+pub type Way = (&'static str, fn(Overrides) -> Overrides);
+
+/// Ways to find pairs that are compared.
+pub const SEARCHES: [Way; 4] = [
     ("lattice", |scene| scene.set(&SEARCH, By::Lattice)),
     ("sectors, sorted when needed", |scene| scene.set(&SEARCH, By::Sectors).set(&SORT, SortKind::WhenNeeded)),
     ("sectors, sorted at every step", |scene| {

@@ -64,6 +64,11 @@ impl Bodies {
         self.count
     }
 
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
     /// Entries of a column.
     pub fn entries(&self) -> usize {
         self.mass.len()
