@@ -1,111 +1,169 @@
-//! Threads that wait awake never wait for each other for ever: the code itself, run again and again by several simulations beside a pool
-//! and in it, each part taking a time of its own. A search through a model of it would not see what the code does otherwise.
+//! Threads that wait without falling asleep never wait for each other for ever, and a stage ends when all of it is done: the very file
+//! `kernels/src/threads/waiting.rs`, explored by `loom` in every order in which its threads take their turns, up to one or two
+//! interruptions.
 
-use std::ops::Range;
-use std::sync::mpsc::{Sender, channel};
-use std::time::Duration;
-use stripmine_kernels::{keep_awake, over_pieces, reordered};
+#[path = "../src/threads/waiting.rs"]
+mod waiting;
 
-/// Rounds of each arrangement, each with other times.
-const ROUNDS: u64 = 150;
-/// Entries of four pieces and a rest.
-const ENTRIES: usize = 70_000;
-/// No round takes as long: who is not back by then waits for ever.
-const PATIENCE: Duration = Duration::from_secs(60);
+/// In the place of `kernels/src/threads/pool.rs`: a pool of [`WORKERS`] that behaves as rayon's where it matters. A worker that waits for
+/// others takes up whatever work is in the queue meanwhile, and a thread from outside sleeps until all that it asked for is done.
+mod pool {
+    use loom::sync::{Condvar, Mutex};
+    use std::cell::Cell;
+    use std::collections::VecDeque;
+    use std::mem::transmute;
 
-/// Times as they come: Numerical Recipes' generator, whose high bits are the good ones.
-struct Times(u64);
+    pub(crate) use loom::sync::Arc;
+    pub(crate) use loom::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+    pub(crate) use loom::thread::yield_now;
+    pub(crate) use loom::thread_local;
 
-impl Times {
-    fn pass(&mut self) {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        match self.0 >> 61 {
-            0 => std::thread::sleep(Duration::from_micros(self.0 >> 57)),
-            1 | 2 => std::thread::yield_now(),
-            _ => (0..self.0 >> 54).for_each(|_| std::hint::spin_loop()),
+    pub(crate) const WORKERS: usize = 2;
+
+    type Task = Box<dyn FnOnce() + Send>;
+
+    #[derive(Default)]
+    struct Queue {
+        tasks: VecDeque<Task>,
+        is_closed: bool,
+    }
+
+    loom::lazy_static! {
+        static ref QUEUE: Mutex<Queue> = Mutex::new(Queue::default());
+        static ref CHANGED: Condvar = Condvar::new();
+    }
+    loom::thread_local! {
+        static WORKER: Cell<Option<usize>> = Cell::new(None);
+    }
+
+    fn push(task: Task) {
+        QUEUE.lock().unwrap().tasks.push_back(task);
+        CHANGED.notify_all();
+    }
+
+    fn work_until(is_over: impl Fn(&Queue) -> bool, next: fn(&mut VecDeque<Task>) -> Option<Task>) {
+        loop {
+            let mut queue = QUEUE.lock().unwrap();
+            let task = loop {
+                if is_over(&queue) {
+                    return;
+                }
+                match next(&mut queue.tasks) {
+                    Some(task) => break task,
+                    None => queue = CHANGED.wait(queue).unwrap(),
+                }
+            };
+            drop(queue);
+            task();
         }
     }
-}
 
-/// What a simulation does between two looks: parts for one thread while the others are kept awake, parts for all within them and after.
-fn simulation(calls: u64, seed: u64) -> usize {
-    let mut times = Times(seed);
-    let piece = |piece: Range<usize>| {
-        Times(seed ^ piece.start as u64).pass();
-        piece.len()
-    };
-    let mut sum = 0;
-    for _ in 0..calls {
-        times.pass();
-        sum += keep_awake(|| {
-            times.pass();
-            let within: usize = over_pieces(0..ENTRIES, piece).into_iter().sum();
-            times.pass();
-            within
-        });
-        sum += over_pieces(0..ENTRIES, piece).into_iter().sum::<usize>();
+    /// What `work` does beside a pool, which is closed after it.
+    pub(crate) fn with(work: impl FnOnce()) {
+        let workers: Vec<_> = (0..WORKERS)
+            .map(|number| {
+                loom::thread::spawn(move || {
+                    WORKER.with(|worker| worker.set(Some(number)));
+                    work_until(|queue| queue.is_closed && queue.tasks.is_empty(), VecDeque::pop_front);
+                })
+            })
+            .collect();
+        work();
+        QUEUE.lock().unwrap().is_closed = true;
+        CHANGED.notify_all();
+        workers.into_iter().for_each(|worker| worker.join().unwrap());
     }
-    let order: Vec<u32> = (0..ENTRIES as u32).rev().collect();
-    let sum = sum + reordered(&order, &order)[0] as usize;
-    // Nothing for the others to do before the end: they must be let go all the same.
-    keep_awake(|| times.pass());
-    sum
-}
 
-/// What comes out of every simulation.
-fn expected(calls: u64) -> usize {
-    2 * calls as usize * ENTRIES
-}
+    pub(crate) fn index() -> usize {
+        WORKER.with(Cell::get).unwrap_or(0)
+    }
 
-/// `outside` simulations on threads of their own and `inside` on those of the pool that is spawned into.
-fn begin(
-    outside: u64,
-    inside: u64,
-    calls: u64,
-    round: u64,
-    done: &Sender<usize>,
-    pool: Option<&rayon::ThreadPool>,
-) {
-    for number in 0..outside + inside {
-        let (done, seed) = (done.clone(), 1000 * round + number);
-        let work = move || {
-            // Who listens has given up where it cannot be sent.
-            let _sent = done.send(simulation(calls, seed));
+    pub(crate) fn spawn(work: impl FnOnce() + Send + 'static) {
+        push(Box::new(work));
+    }
+
+    pub(crate) fn on_each(count: usize, work: &(dyn Fn() + Sync)) {
+        // SAFETY: this comes back only when every task that has it is done.
+        let work: &'static (dyn Fn() + Sync) = unsafe { transmute(work) };
+        let left = Arc::new(AtomicUsize::new(count));
+        let task = || {
+            let left = Arc::clone(&left);
+            move || {
+                work();
+                // Under the lock: who looks between two looks at the queue would sleep through it.
+                let _queue = QUEUE.lock().unwrap();
+                left.fetch_sub(1, Ordering::AcqRel);
+                CHANGED.notify_all();
+            }
         };
-        match (number < outside, pool) {
-            (true, _) => drop(std::thread::spawn(work)),
-            (false, Some(pool)) => pool.spawn(work),
-            (false, None) => rayon::spawn(work),
+        let is_worker = WORKER.with(Cell::get).is_some();
+        (usize::from(is_worker)..count).for_each(|_| push(Box::new(task())));
+        if is_worker {
+            task()();
+            // The newest first: those are its own.
+            work_until(|_| left.load(Ordering::Acquire) == 0, VecDeque::pop_back);
+        } else {
+            work_until(|_| left.load(Ordering::Acquire) == 0, |_| None);
         }
     }
 }
 
-/// Every simulation of every round comes back.
-fn all_come_back(outside: u64, inside: u64, calls: u64, pool: Option<&rayon::ThreadPool>) {
-    for round in 0..ROUNDS {
-        let (done, back) = channel();
-        begin(outside, inside, calls, round, &done, pool);
-        for _ in 0..outside + inside {
-            let got = back.recv_timeout(PATIENCE);
-            assert_eq!(
-                got,
-                Ok(expected(calls)),
-                "round {round}: {outside} + {inside} simulations wait for each other"
-            );
-        }
-    }
+use loom::sync::atomic::{AtomicUsize, Ordering};
+use pool::WORKERS;
+use waiting::{each, keep_awake};
+
+/// Explores all orders in which threads are interrupted, where they did not have to wait, at most so many times.
+fn explored(interruptions: usize, work: impl Fn() + Sync + Send + 'static) {
+    let mut builder = loom::model::Builder::new();
+    builder.preemption_bound = Some(interruptions);
+    builder.check(move || pool::with(&work));
 }
 
-/// Simulations beside the pool and in it, alone and beside each other.
+/// Parts in stages: each once, and none before the stage before is done.
+fn stages(parts: usize) {
+    let done = [AtomicUsize::new(0), AtomicUsize::new(0)];
+    each(WORKERS, [2, parts], &|stage, _| {
+        if stage == 1 {
+            assert_eq!(done[0].load(Ordering::Relaxed), parts);
+        }
+        done[stage].fetch_add(1, Ordering::Relaxed);
+    });
+    assert_eq!(done.map(|it| it.load(Ordering::Relaxed)), [parts; 2]);
+}
+
 #[test]
-fn no_thread_waits_for_ever() {
-    // Those outside use the pool of the process, which is as small as it can be and have others to wait for.
-    rayon::ThreadPoolBuilder::new().num_threads(2).build_global().unwrap();
-    for (outside, inside, calls) in [(1, 0, 2), (2, 0, 2), (3, 0, 1), (0, 2, 2), (1, 1, 1), (2, 2, 1)] {
-        all_come_back(outside, inside, calls, None);
-    }
-    for (workers, inside, calls) in [(2, 3, 1), (3, 2, 1), (4, 3, 2)] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(workers).build().unwrap();
-        all_come_back(0, inside, calls, Some(&pool));
-    }
+fn a_stage_begins_when_the_one_before_is_done() {
+    explored(2, || stages(2));
+}
+
+#[test]
+fn those_kept_awake_are_let_go() {
+    explored(2, || {
+        keep_awake(WORKERS - 1, || ());
+        keep_awake(WORKERS - 1, || each(WORKERS, [1, 2], &|_, _| ()));
+    });
+}
+
+fn simulation() {
+    keep_awake(WORKERS - 1, || each(WORKERS, [1, 2], &|_, _| ()));
+}
+
+/// Two simulations that keep workers awake, and then have parts for them, beside the pool: were they not let go, both workers would be
+/// kept by simulations that wait for them.
+#[test]
+fn two_simulations_do_not_wait_for_each_other() {
+    explored(1, || {
+        let other = loom::thread::spawn(simulation);
+        simulation();
+        other.join().unwrap();
+    });
+}
+
+/// One of them in the pool.
+#[test]
+fn a_simulation_in_the_pool_does_not_wait_for_one_beside_it() {
+    explored(2, || {
+        pool::spawn(simulation);
+        simulation();
+    });
 }
