@@ -51,6 +51,26 @@ fn listings_and_table_count_the_same() {
     }
 }
 
+/// The source's own text is benched by its name, and the programs of a scene that runs it are named by its equations.
+#[test]
+fn the_printed_text_is_benched_and_named_by_its_equations() {
+    for (arguments, text) in [(&["--text", "printed"][..], "printed"), (&[], "ours")] {
+        let bench = ["bench", "lattice", "--particles", "100", "--steps", "5", "--repeats", "1", "--json"];
+        let bench = json(&[&bench, arguments, &["--execution", "chained"]].concat());
+        assert_eq!(bench["text"], text);
+        assert!(bench["contacts"].as_f64().unwrap() > 0.0);
+    }
+    for (scene, is_printed) in [("dense-gas-printed", true), ("dense-gas", false)] {
+        let said = stripmine(&["scene", "programs", scene, "--set", "machine.engine=programs"]);
+        let said = String::from_utf8(said.stdout).unwrap();
+        assert_eq!(
+            ["(2)", "(7)", "(12)", "A 3"].map(|tag| said.contains(&format!(" {tag} "))),
+            [is_printed; 4],
+            "{said}"
+        );
+    }
+}
+
 /// What a scene does not need is not executed.
 #[test]
 fn simpler_scenes_cost_less() {

@@ -81,17 +81,19 @@ const PROGRAM: f64 = 12.0e6;
 /// Bytes that a run was said to need, and the most that it took, begun or gone on with.
 fn needed_and_most(preset: &str, sets: &[&str]) -> (f64, f64) {
     let folder = tempfile::tempdir().unwrap();
-    let with_sets = |words: &[&str], steps: &str| {
-        let sets = sets.iter().chain([&steps]).flat_map(|&set| ["--set".to_owned(), set.to_owned()]);
+    let until = if preset == "hard-disks" { "run.events" } else { "run.steps" };
+    let with_sets = |words: &[&str], end: u32| {
+        let end = format!("{until}={end}");
+        let sets = sets.iter().chain([&end.as_str()]).flat_map(|&set| ["--set".to_owned(), set.to_owned()]);
         words.iter().map(|&word| word.to_owned()).chain(sets).collect::<Vec<String>>()
     };
     // Not asked in this process: what it holds counts in the memory of its children while they begin.
-    let check = with_sets(&["scene", "check", preset, "--json"], "run.steps=1");
+    let check = with_sets(&["scene", "check", preset, "--json"], 1);
     let checked = Command::new(env!("CARGO_BIN_EXE_stripmine")).args(check).output().unwrap();
     let checked: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
     let out = folder.path().join("run").display().to_string();
-    let taken = [("--overwrite", "run.steps=1"), ("--resume", "run.steps=2")]
-        .map(|(how, steps)| peak(&with_sets(&["run", preset, how, "--threads", "2", "--out", &out], steps)));
+    let taken = [("--overwrite", 1), ("--resume", 2)]
+        .map(|(how, end)| peak(&with_sets(&["run", preset, how, "--threads", "2", "--out", &out], end)));
     (checked["memory"]["needed"].as_u64().unwrap() as f64, taken[0].max(taken[1]) as f64)
 }
 
@@ -103,6 +105,15 @@ fn particles_in_a_bath_take_the_memory_that_was_foreseen() {
         let sets = ["particles.count=100000", "domain.sides=[160, 160]", by];
         said.push(foreseen_and_taken("langevin-report", &sets, FRAME));
     }
+    judged(&said);
+}
+
+/// Hard discs by both engines; three times as many, three frames.
+#[test]
+fn hard_discs_take_the_memory_that_was_foreseen() {
+    let ways = ["machine.engine=fast", "machine.engine=reference"];
+    let said =
+        ways.map(|way| foreseen_and_taken("hard-disks", &["particles.count=300000", way], 3.0 * FRAME));
     judged(&said);
 }
 

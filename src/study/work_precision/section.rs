@@ -8,6 +8,7 @@ use super::dataset::WorkPrecision;
 use crate::console::Failure;
 use crate::report::{Part, Section, Verdict, csv};
 use crate::results::Made;
+use stripmine_physics::number::counted;
 
 /// What an item of it is called.
 pub const NAME: &str = "work-precision";
@@ -32,18 +33,21 @@ fn answer(scenes: &[(String, WorkPrecision)]) -> String {
         (None, [(name, _)], _) => {
             format!("In {name} nothing is as accurate as the scene's own way and cheaper.")
         }
-        (None, ..) => format!(
-            "In none of the {decided} scenes that are decided is anything as accurate as the scene's own way and cheaper."
-        ),
+        (None, ..) => {
+            "In none of the scenes that are decided is anything as accurate as the scene's own way and cheaper."
+                .to_owned()
+        }
         (Some((name, best)), all, _) => {
             let begin = match all {
                 [_] => format!(
                     "In {name} another way or step is at least as accurate as the scene's own and cheaper:"
                 ),
                 _ => format!(
-                    "In {} of the {decided} scenes that are decided another way or step is at least as accurate as the scene's own and \
-                     cheaper; most in {name},",
-                    cheaper.len()
+                    "In {} of {} that {} decided another way or step is at least as accurate as the scene's own and cheaper; most in \
+                     {name},",
+                    cheaper.len(),
+                    counted(decided, "scene", "scenes"),
+                    if decided == 1 { "is" } else { "are" }
                 ),
             };
             format!(
