@@ -40,10 +40,14 @@ const DEPENDENCIES: [(&str, &[&str]); 2] = [
 ];
 
 /// Circles of files that there are, each with the reason.
-const KNOWN_CIRCLES: [(&[&str], &str); 6] = [
+const KNOWN_CIRCLES: [(&[&str], &str); 7] = [
     (
         &["kernels/src/backend/dispatch.rs", "kernels/src/backend/precision.rs"],
         "a precision says which programs are compiled for it, and work is dispatched by precision",
+    ),
+    (
+        &["kernels/src/law/granular.rs", "kernels/src/law/spring.rs"],
+        "a contact has a spring, and energy, depth and duration of a contact follow from its spring's formula",
     ),
     (
         &["kernels/physics/src/method/entry.rs", "kernels/physics/src/method/trials.rs"],
@@ -77,8 +81,12 @@ const KNOWN_CIRCLES: [(&[&str], &str); 6] = [
 const METHODS: [&str; 4] = ["hard_disks", "langevin", "lattice_md", "nbody"];
 const FOLDERS_OF_METHODS: [&str; 2] = ["kernels/physics/src/method", "src/laboratory"];
 
-/// The files that may name a method's: the lists. And the one file of a method that others use.
-const LISTS: [&str; 2] = ["kernels/physics/src/method/list.rs", "src/laboratory/mod.rs"];
+/// The files that may name a method's: the lists, and a study that compares two. And the one file of a method that others use.
+const LISTS: [&str; 3] = [
+    "kernels/physics/src/method/list.rs",
+    "src/laboratory/mod.rs",
+    "src/laboratory/hard_disks/study/soft_hard.rs",
+];
 const SHARED: &str = "kernels/physics/src/method/hard_disks/compress.rs";
 
 fn code() -> Code {
