@@ -84,7 +84,8 @@ fn needed_and_most(preset: &str, sets: &[&str]) -> (f64, f64) {
     let until = if preset == "hard-disks" { "run.events" } else { "run.steps" };
     let with_sets = |words: &[&str], end: u32| {
         let end = format!("{until}={end}");
-        let sets = sets.iter().chain([&end.as_str()]).flat_map(|&set| ["--set".to_owned(), set.to_owned()]);
+        let sets =
+            sets.iter().copied().chain([end.as_str()]).flat_map(|set| ["--set".to_owned(), set.to_owned()]);
         words.iter().map(|&word| word.to_owned()).chain(sets).collect::<Vec<String>>()
     };
     // Not asked in this process: what it holds counts in the memory of its children while they begin.

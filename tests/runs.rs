@@ -256,8 +256,7 @@ fn bench_prints_what_it_promises() {
 #[test]
 fn checkpoints_are_written_by_the_wall_clock() {
     for preset in METHODS.iter().flat_map(|method| method.vocabulary.presets) {
-        let checkpoints =
-            |more: &[String]| load(preset.name, more, METHODS).unwrap().0.schedule().checkpoints;
+        let checkpoints = |more: &[String]| load(preset.name, more, METHODS).unwrap().0.schedule.checkpoints;
         let by_default = checkpoints(&[]);
         assert!(
             matches!(by_default, Every::Seconds(_)) || preset.name == "bench",

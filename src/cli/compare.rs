@@ -30,7 +30,7 @@ pub(super) struct CompareVerb {
 const PARTS: u32 = 16;
 
 /// A way to run the scene, and the scene under way.
-type Begun = (Box<dyn Prepared>, Box<dyn Simulation>);
+type Begun = (Prepared, Box<dyn Simulation>);
 
 /// How far both are from each other at a moment.
 #[derive(Serialize)]
@@ -71,7 +71,7 @@ impl CompareVerb {
         };
         let (prepared, mut first) = begin(&[])?;
         let (_, mut second) = begin(&self.against)?;
-        let (until, domain) = (prepared.schedule().until, prepared.domain());
+        let (until, domain) = (prepared.schedule.until, prepared.domain);
         let mut looks = vec![look(&*first, &*second, &domain)];
         for part in (0..=PARTS).rev() {
             let moment = share(until, part);

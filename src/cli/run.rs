@@ -43,7 +43,7 @@ impl RunVerb {
         let values = Values::load(&self.scene, &self.overrides, &vocabularies)?;
         let (mut prepared, entry) = prepare(values.clone(), methods)?;
         if self.resume {
-            let chosen = chosen_otherwise(&values, entry.vocabulary, &prepared.scene(), &folder);
+            let chosen = chosen_otherwise(&values, entry.vocabulary, &prepared.scene, &folder);
             if !chosen.is_empty() {
                 let overrides = [self.overrides.as_slice(), &chosen].concat();
                 (prepared, _) = prepare(Values::load(&self.scene, &overrides, &vocabularies)?, methods)?;
@@ -54,10 +54,10 @@ impl RunVerb {
             (_, true) => Existing::Overwrite,
             _ => Existing::Refuse,
         };
-        prepared.memory().fits(&self.scene)?;
+        prepared.memory.fits(&self.scene)?;
         let begins = begins(&folder, existing)?;
         if !common.quiet {
-            before(prepared.as_ref(), begins);
+            before(&prepared, begins);
         }
         let bar = bar(common, 0, STEPS);
         let progress = |done, all| {
@@ -69,7 +69,7 @@ impl RunVerb {
                 warn(note);
             }
         };
-        let job = Job { prepared: prepared.as_ref(), quantities: entry.quantities, program: &built() };
+        let job = Job { prepared: &prepared, quantities: entry.quantities, program: &built() };
         let ending = run(job, &folder, existing, signals::asked(), progress, notice);
         clear_progress();
         match ending? {
@@ -86,7 +86,7 @@ impl RunVerb {
 }
 
 /// Says what is to be expected: of the time, of a run that begins at the start.
-fn before(prepared: &dyn Prepared, begins: bool) {
+fn before(prepared: &Prepared, begins: bool) {
     let of_the_time = begins.then(|| forecast::of_the_time(prepared)).flatten();
     let of_this_host = of_the_time.into_iter().chain([forecast::of_the_memory(prepared)]);
     let facts = forecast::of_the_step(prepared).into_iter().chain(of_this_host);

@@ -70,7 +70,7 @@ impl SceneVerb {
             Action::Programs { scene, overrides, machine, listing } => {
                 let (prepared, _) = load(scene, overrides, methods)?;
                 let machine = machines::find(machine)?;
-                programs(scene, prepared.as_ref(), &machine, *listing, common)
+                programs(scene, &prepared, &machine, *listing, common)
             }
             Action::Keys { method } => keys(method.as_deref(), common, methods),
         }
@@ -117,11 +117,11 @@ pub(super) fn presets(methods: Methods) -> impl Iterator<Item = &'static Preset>
     methods.iter().flat_map(|method| method.vocabulary.presets)
 }
 
-fn table(name: &str, facts: &[Fact], prepared: &dyn Prepared) -> Table {
+fn table(name: &str, facts: &[Fact], prepared: &Prepared) -> Table {
     let rows = facts.iter().filter_map(|fact| fact.words.as_ref());
-    let chosen = prepared.choices().iter().map(|choice| format!("chosen: {choice}"));
-    let left_out = prepared.left_out().iter().map(|what| format!("left out: {what}"));
-    let limits = prepared.step_limits().into_iter().map(|limit| format!("{}: {}", limit.name, limit.why));
+    let chosen = prepared.choices.iter().map(|choice| format!("chosen: {choice}"));
+    let left_out = prepared.left_out.iter().map(|what| format!("left out: {what}"));
+    let limits = prepared.step_limits.iter().map(|limit| format!("{}: {}", limit.name, limit.why));
     Table {
         name: "scene".into(),
         title: format!("{}: scene is valid", quoted::path(name.as_ref())),
@@ -133,25 +133,25 @@ fn table(name: &str, facts: &[Fact], prepared: &dyn Prepared) -> Table {
 
 fn check(name: &str, overrides: &[String], common: &Common, methods: Methods) -> Result<(), Failure> {
     let (prepared, entry) = load(name, overrides, methods)?;
-    prepared.memory().fits(name)?;
+    prepared.memory.fits(name)?;
     if !common.quiet {
-        prepared.warnings().iter().for_each(warn);
+        prepared.warnings.iter().for_each(warn);
     }
-    let mut facts = prepared.facts();
-    facts.extend(forecast::of_the_step(prepared.as_ref()));
-    facts.extend(forecast::of_the_files(prepared.as_ref()));
-    facts.extend(forecast::of_the_time(prepared.as_ref()));
-    facts.push(forecast::of_the_memory(prepared.as_ref()));
+    let mut facts = prepared.facts.clone();
+    facts.extend(forecast::of_the_step(&prepared));
+    facts.extend(forecast::of_the_files(&prepared));
+    facts.extend(forecast::of_the_time(&prepared));
+    facts.push(forecast::of_the_memory(&prepared));
     if !common.json {
-        return print(&terminal::render(&table(name, &facts, prepared.as_ref())));
+        return print(&terminal::render(&table(name, &facts, &prepared)));
     }
     let mut data = Map::new();
     data.insert("scene".to_owned(), json!(name));
     data.insert("method".to_owned(), json!(entry.vocabulary.keys.method));
     data.extend(forecast::as_data(facts));
-    data.insert("choices".to_owned(), json!(prepared.choices()));
-    data.insert("left_out".to_owned(), json!(prepared.left_out()));
-    data.insert("warnings".to_owned(), json!(prepared.warnings()));
+    data.insert("choices".to_owned(), json!(prepared.choices));
+    data.insert("left_out".to_owned(), json!(prepared.left_out));
+    data.insert("warnings".to_owned(), json!(prepared.warnings));
     print_json(&data)
 }
 
@@ -169,12 +169,12 @@ struct Listing {
 
 fn programs(
     name: &str,
-    prepared: &dyn Prepared,
+    prepared: &Prepared,
     machine: &MachineModel,
     listing: bool,
     common: &Common,
 ) -> Result<(), Failure> {
-    let programs = prepared.programs();
+    let programs = prepared.model.programs();
     if programs.is_empty() {
         return Err(StudyError::NoPrograms(name.to_owned()).into());
     }

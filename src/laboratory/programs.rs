@@ -164,14 +164,14 @@ fn milliseconds(clocks: Option<&Clocks>) -> String {
 pub fn made(
     (name, title): (&str, &str),
     (question, expected): (&str, &str),
-    scenes: &[(&str, Box<dyn Prepared>)],
+    scenes: &[(&str, Prepared)],
 ) -> Result<Made, Failure> {
     let machines: Vec<MachineModel> =
         MACHINES.iter().map(|name| machines::preset(name)).collect::<Result<_, _>>()?;
     let all: Vec<(Programs, Vec<VectorProgram>)> = scenes
         .iter()
         .map(|(scene, prepared)| {
-            let programs = prepared.programs();
+            let programs = prepared.model.programs();
             (Programs::of(scene, &programs, &machines), programs)
         })
         .collect();

@@ -10,7 +10,7 @@ use stripmine_physics::method::{self, Entry, METHODS, Prepared, Purpose, Quantit
 ///
 /// # Errors
 /// [`StudyError`] if the scene is bad.
-pub fn prepared(preset: &str, overrides: &[String]) -> Result<Box<dyn Prepared>, StudyError> {
+pub fn prepared(preset: &str, overrides: &[String]) -> Result<Prepared, StudyError> {
     Ok(load(preset, overrides, METHODS)?.0)
 }
 
@@ -42,7 +42,7 @@ impl Running {
     /// [`StudyError`] if the scene is bad, or the processor lacks what it asks for.
     pub fn begin(preset: &str, overrides: &[String]) -> Result<Running, StudyError> {
         let (prepared, method) = load(preset, overrides, METHODS)?;
-        Running::of(method, prepared.as_ref(), Purpose::Run)
+        Running::of(method, &prepared, Purpose::Run)
     }
 
     /// A preset with overrides, at its start, of which nothing is followed that the motion does not need.
@@ -51,19 +51,15 @@ impl Running {
     /// As of [`begin`](Self::begin).
     pub fn timed(preset: &str, overrides: &[String]) -> Result<Running, StudyError> {
         let (prepared, method) = load(preset, overrides, METHODS)?;
-        Running::of(method, prepared.as_ref(), Purpose::Measurement)
+        Running::of(method, &prepared, Purpose::Measurement)
     }
 
     /// A scene of a method, at its start.
     ///
     /// # Errors
     /// [`StudyError`] if the processor lacks what it asks for.
-    pub fn of(
-        method: &'static Entry,
-        prepared: &dyn Prepared,
-        purpose: Purpose,
-    ) -> Result<Running, StudyError> {
-        let (simulation, domain) = (prepared.start(purpose)?, prepared.domain());
+    pub fn of(method: &'static Entry, prepared: &Prepared, purpose: Purpose) -> Result<Running, StudyError> {
+        let (simulation, domain) = (prepared.start(purpose)?, prepared.domain);
         Ok(Running { simulation, domain, quantities: method.quantities })
     }
 

@@ -44,7 +44,7 @@ impl<'s> Averages<'s> {
     /// Takes a look that counts, at which `values` were observed.
     pub fn add(&mut self, simulation: &dyn Simulation, values: &[f64]) {
         self.looks += 1;
-        let has_seeds = self.subject.prepared.seed().is_some();
+        let has_seeds = self.subject.prepared.seed.is_some();
         let means = self.subject.observed.means.iter().filter(|watched| has_seeds || !watched.fluctuates);
         let observed = means.map(|watched| (watched.name.to_owned(), vec![values[watched.place]]));
         let state = State::of(&simulation.particles());

@@ -27,7 +27,7 @@ impl Choice {
     }
 
     /// How a scene itself is run; the first setting where its own is not among those of an axis.
-    pub fn own(trials: &Trials, prepared: &dyn Prepared) -> Choice {
+    pub fn own(trials: &Trials, prepared: &Prepared) -> Choice {
         let of = |axis: &'static Axis| {
             let own = (axis.own)(prepared).and_then(|name| axis.setting(&name));
             Some((axis, own.or(axis.settings.first())?))

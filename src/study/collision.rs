@@ -141,15 +141,15 @@ fn mean(values: &[[f64; 2]]) -> [f64; 2] {
 /// What comes out of a collision whose discs fly a part of a step longer before it; none where it breaks or does not end.
 fn outcome(subject: &Subject, choice: &Choice, step: f64, phase: f64, meter: &Meter<'_>) -> Option<[f64; 2]> {
     let scene = subject.prepared_as(choice, step, &[]).ok()?;
-    let domain = scene.domain();
+    let domain = scene.domain;
     let late = displaced(scene.particles(), &domain, |_, disc| {
         disc.planar_velocity().map(|part| -phase * step * part)
     });
-    let scene = scene.started_from(late);
+    let scene = scene.model.started_from(late);
     let (before, gap) = State::of(scene.particles()).pair(&domain)?;
     let steps = (subject.steps as f64 * subject.step / step).round() as u64;
     let course = Course { steps, looks: 1, each: 1e-6 };
-    let end = follow(scene.as_ref(), Purpose::Measurement, course, None, meter, |_| {}).ok()?;
+    let end = follow(&scene, Purpose::Measurement, course, None, meter, |_| {}).ok()?;
     let (after, apart) = end.state.pair(&domain)?;
     let speed = |[u, v]: [f64; 2]| u.hypot(v);
     let turned =

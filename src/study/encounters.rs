@@ -42,7 +42,7 @@ pub fn encounters(
     meter: &Meter<'_>,
 ) -> Encounters {
     let of_contacts = subject.trials.has_contacts;
-    let domain = subject.prepared.domain();
+    let domain = subject.prepared.domain;
     let (mut contacts, mut turns) = (Contacts::new(domain), Turns::default());
     if let Ok(scene) = subject.prepared_as(choice, step, &[]) {
         let steps = (duration / step).round() as u64;
@@ -52,7 +52,7 @@ pub fn encounters(
             if of_contacts { contacts.look(&particles) } else { turns.look(&particles) }
         };
         // A run that breaks has been seen up to there.
-        let _ended = follow(scene.as_ref(), Purpose::Measurement, course, None, meter, look);
+        let _ended = follow(&scene, Purpose::Measurement, course, None, meter, look);
     }
     let grains = subject.prepared.particles().grain_count().max(1) as f64;
     let all = if of_contacts { contacts.begun as f64 } else { turns.angle / TAU };

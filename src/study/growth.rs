@@ -112,15 +112,15 @@ fn at_step(
 ) -> Result<Growth, String> {
     let prepare = |step| subject.prepared_as(choice, step, &[]).map_err(|errors| errors.to_string());
     let (base, halved) = (prepare(step)?, prepare(0.5 * step)?);
-    let domain = base.domain();
+    let domain = base.domain;
     let length = (subject.trials.length.of)(base.particles());
-    let disturbed = base.started_from(displaced(base.particles(), &domain, |place, _| {
+    let disturbed = base.model.started_from(displaced(base.particles(), &domain, |place, _| {
         // Directions without a pattern, the same everywhere.
         let angle = 2.399_963_229_728_653 * (place as f64 + 1.0);
         [libm::cos(angle), libm::sin(angle)].map(|part| DISTURBANCE * length * part)
     }));
-    let begin = |scene: &dyn Prepared| scene.start(Purpose::Measurement).map_err(|failure| failure.what());
-    let mut runs = [begin(base.as_ref())?, begin(disturbed.as_ref())?, begin(halved.as_ref())?];
+    let begin = |scene: &Prepared| scene.start(Purpose::Measurement).map_err(|failure| failure.what());
+    let mut runs = [begin(&base)?, begin(&disturbed)?, begin(&halved)?];
     let looks = LOOKS.min(most);
     let mut growth = Growth {
         way: choice.label(),

@@ -122,7 +122,7 @@ fn means(
     let seeded = Overrides::new().set(&SEED, seed);
     let prepared =
         subject.prepared_as(choice, factor * subject.step, &seeded).map_err(|errors| errors.to_string())?;
-    let domain = prepared.domain();
+    let domain = prepared.domain;
     let course = Course { steps: (steps as f64 / factor) as u64, looks: LOOKS, each };
     let mut averages = Averages::new(subject, domain);
     let see = |simulation: &dyn Simulation| {
@@ -132,8 +132,7 @@ fn means(
             averages.pass();
         }
     };
-    follow(prepared.as_ref(), Purpose::Measurement, course, None, meter, see)
-        .map_err(|failure| failure.what())?;
+    follow(&prepared, Purpose::Measurement, course, None, meter, see).map_err(|failure| failure.what())?;
     Ok(averages.means())
 }
 

@@ -20,7 +20,7 @@ pub struct Subject {
     /// The values of the scene as they were given.
     pub values: Values,
     /// The scene as it was given.
-    pub prepared: Box<dyn Prepared>,
+    pub prepared: Prepared,
     /// What is observed of it.
     pub observed: Observed,
     /// How the scene itself is run.
@@ -40,19 +40,19 @@ impl Subject {
         let values = Values::load(what, overrides, &vocabularies(methods))?;
         let (prepared, entry) = prepare(values.clone(), methods)?;
         let nothing = StudyError::NothingToVary(entry.vocabulary.keys.method);
-        let (Some(trials), Until::Steps(steps)) = (entry.trials, prepared.schedule().until) else {
+        let (Some(trials), Until::Steps(steps)) = (entry.trials, prepared.schedule.until) else {
             return Err(nothing);
         };
         let Some(step) = values.number(trials.step) else { return Err(nothing) };
-        let first = match prepared.schedule().rows {
+        let first = match prepared.schedule.rows {
             Every::Steps(steps) => steps,
             Every::Never | Every::Time(_) | Every::Seconds(_) => 1,
         };
         if steps < first.max(1) {
             return Err(StudyError::OverBeforeOutput { steps, first: first.max(1) });
         }
-        prepared.memory().fits("scene").map_err(StudyError::Scene)?;
-        let own = Choice::own(trials, prepared.as_ref());
+        prepared.memory.fits("scene").map_err(StudyError::Scene)?;
+        let own = Choice::own(trials, &prepared);
         Ok(Subject {
             what: what.to_owned(),
             overrides: overrides.to_vec(),
@@ -82,12 +82,7 @@ impl Subject {
     ///
     /// # Errors
     /// [`SceneErrors`]: why it cannot be run so.
-    pub fn prepared_as(
-        &self,
-        choice: &Choice,
-        step: f64,
-        more: &[String],
-    ) -> Result<Box<dyn Prepared>, SceneErrors> {
+    pub fn prepared_as(&self, choice: &Choice, step: f64, more: &[String]) -> Result<Prepared, SceneErrors> {
         Ok(prepare(self.values_as(choice, step, more)?, self.methods)?.0)
     }
 
@@ -100,7 +95,7 @@ impl Subject {
         choice: &Choice,
         step: f64,
         more: &[String],
-    ) -> Result<Box<dyn Prepared>, SceneErrors> {
+    ) -> Result<Prepared, SceneErrors> {
         (self.trials.at_any_step)(self.values_as(choice, step, more)?)
     }
 
@@ -113,7 +108,7 @@ impl Subject {
 
     /// The setting of the axis that decides the order, of a way to run it.
     pub fn theory(&self, setting: &Setting) -> Option<stripmine_physics::method::Theory> {
-        (self.trials.theory)(&self.values, self.prepared.as_ref(), setting)
+        (self.trials.theory)(&self.values, &self.prepared, setting)
     }
 
     /// What distances are measured in (length).
@@ -129,7 +124,7 @@ impl Subject {
     /// What a study of it depends on: the resolved scene, the options and the version of the program.
     pub fn identity(&self, study: &str, options: &str) -> Identity {
         let mut sum = Sha256::new();
-        for part in [study, JOURNALED, options, env!("CARGO_PKG_VERSION"), &self.prepared.scene()] {
+        for part in [study, JOURNALED, options, env!("CARGO_PKG_VERSION"), &self.prepared.scene] {
             sum.update(part.as_bytes());
             sum.update([0]);
         }

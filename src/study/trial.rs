@@ -35,7 +35,7 @@ pub struct Course {
 /// # Errors
 /// [`Failure`] if it breaks.
 pub fn follow(
-    prepared: &dyn Prepared,
+    prepared: &Prepared,
     purpose: Purpose,
     course: Course,
     machine: Option<&MachineModel>,
@@ -78,7 +78,7 @@ pub fn advance(
 ///
 /// # Errors
 /// [`Failure`] if it breaks.
-pub fn timed(prepared: &dyn Prepared, course: Course, meter: &Meter<'_>) -> Result<f64, Failure> {
+pub fn timed(prepared: &Prepared, course: Course, meter: &Meter<'_>) -> Result<f64, Failure> {
     let (mut spent, mut runs) = (Duration::ZERO, 0);
     while spent < LONG_ENOUGH {
         let mut simulation = prepared.start(Purpose::Measurement)?;

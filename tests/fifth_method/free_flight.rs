@@ -8,14 +8,14 @@ use stripmine_physics::domain::Domain;
 use stripmine_physics::io::checkpoint::Column;
 use stripmine_physics::memory::Foreseen;
 use stripmine_physics::method::{
-    Axis, Bench, BenchOption, Clock, Decides, Entry, Every, Fact, Failure, Prepared, Purpose, Quantity,
-    RunWarning, SMALLEST_RADIUS, Schedule, Setting, Simulation, Snapshot, Takes, Trials, Until, compress,
+    Axis, Bench, BenchOption, Clock, Decides, Entry, Fact, Failure, Prepared, Purpose, Quantity, RunWarning,
+    SMALLEST_RADIUS, Schedule, Setting, Simulation, Snapshot, Startable, Takes, Trials, Until, compress,
 };
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{
     self, Binding, DISC_RIVALS, DISCS, DT, DURATION, HEADING, KeySet, OUTPUT, Output, PLANAR_DOMAIN, Preset,
-    Read, Run, STEP, STEPPED_RUN, SceneErrors, Start, Values, Vocabulary, WallMotion, Warning, Write,
-    bind_heading, disagreements, too_many_steps,
+    Read, Run, STEP, STEPPED_RUN, SceneErrors, Start, Values, Vocabulary, WallMotion, Write, bind_heading,
+    disagreements, too_many_steps,
 };
 use stripmine_physics::start::{Stated, make, outside};
 
@@ -24,7 +24,7 @@ pub static ENTRY: Entry = Entry {
     source: "this test",
     doc: "discs that do not meet",
     quantities: QUANTITIES,
-    prepare: |values| Ok(Box::new(Flight::prepare(values)?)),
+    prepare: |values| Ok(Flight::prepare(values)?.prepared()),
     benches: &[Bench {
         name: "free-flight",
         doc: "Discs that do not meet",
@@ -129,72 +129,51 @@ impl Flight {
     }
 }
 
-impl Prepared for Flight {
-    fn scene(&self) -> String {
+impl Flight {
+    fn prepared(self) -> Prepared {
         let mut write = Write::default();
         self.clone().bind(&mut write);
-        write.to_toml(&VOCABULARY.keys)
-    }
-
-    fn schedule(&self) -> Schedule {
-        Schedule {
-            until: Until::Steps(self.run.steps),
-            rows: Every::steps(self.run.thermo_every),
-            snapshots: Every::steps(self.run.snapshot_every),
-            checkpoints: Every::checkpoints(self.run.checkpoint_every.map(Every::steps)),
+        Prepared {
+            scene: write.to_toml(&VOCABULARY.keys),
+            schedule: Schedule::of_steps(&self.run),
+            output: self.output,
+            domain: self.domain(),
+            seed: self.start.seed(),
+            start_file: self.start.file().map(Path::to_owned),
+            facts: vec![Fact::new("discs", self.made.len(), "discs", self.made.len().to_string())],
+            warnings: vec![],
+            choices: vec![],
+            left_out: vec![],
+            step_limits: vec![],
+            expected_error: None,
+            memory: Foreseen {
+                needed: 1,
+                available: None,
+                what: "a few discs".to_owned(),
+                remedy: "take fewer",
+            },
+            settings: Map::new(),
+            event_columns: None,
+            model: Box::new(self),
         }
-    }
-
-    fn output(&self) -> Output {
-        self.output
     }
 
     fn domain(&self) -> Domain {
         self.bounds.expect("it was prepared")
     }
+}
 
+impl Startable for Flight {
     fn particles(&self) -> &Particles {
         &self.made
-    }
-
-    fn seed(&self) -> Option<u64> {
-        self.start.seed()
-    }
-
-    fn start_file(&self) -> Option<&Path> {
-        self.start.file()
-    }
-
-    fn facts(&self) -> Vec<Fact> {
-        vec![Fact::new("discs", self.made.len(), "discs", self.made.len().to_string())]
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &[]
-    }
-
-    fn choices(&self) -> &[String] {
-        &[]
-    }
-
-    fn left_out(&self) -> &[String] {
-        &[]
-    }
-
-    fn memory(&self) -> Foreseen {
-        Foreseen { needed: 1, available: None, what: "a few discs".to_owned(), remedy: "take fewer" }
-    }
-
-    fn settings(&self) -> Map<String, Value> {
-        Map::new()
     }
 
     fn start(&self, _: Purpose) -> Result<Box<dyn Simulation>, Failure> {
         Ok(Box::new(Flying { domain: self.domain(), dt: self.dt, discs: self.made.clone(), steps: 0 }))
     }
 
-    fn started_from(&self, particles: Particles) -> Box<dyn Prepared> {
-        Box::new(Flight { made: particles, ..self.clone() })
+    fn started_from(&self, particles: Particles) -> Prepared {
+        Flight { made: particles, ..self.clone() }.prepared()
     }
 }
 

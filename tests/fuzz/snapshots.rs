@@ -41,7 +41,7 @@ fn advance(simulation: &mut dyn Simulation) -> bool {
     simulation.advance(&until, &AtomicBool::new(false)).is_ok()
 }
 
-fn started(prepared: &dyn Prepared) -> Box<dyn Simulation> {
+fn started(prepared: &Prepared) -> Box<dyn Simulation> {
     prepared.start(Purpose::Run).unwrap()
 }
 
@@ -86,7 +86,7 @@ fn clocks(clock: Clock) -> Vec<Clock> {
 }
 
 /// Takes up a snapshot and goes on; whether it was taken up.
-fn taken_up(prepared: &dyn Prepared, clock: Clock, snapshot: Snapshot) -> bool {
+fn taken_up(prepared: &Prepared, clock: Clock, snapshot: Snapshot) -> bool {
     let mut simulation = started(prepared);
     if let Err(why) = simulation.restore(clock, snapshot) {
         assert!(!why.is_empty());
@@ -103,7 +103,7 @@ fn forged_snapshots_are_refused_or_gone_on_with() {
         let sets: Vec<String> = overrides.iter().map(|set| (*set).to_owned()).collect();
         let what = format!("{preset} {}", overrides.join(" "));
         let (prepared, _) = load(preset, &sets, METHODS).unwrap_or_else(|why| panic!("{what}: {why}"));
-        let prepared = prepared.as_ref();
+        let prepared = &prepared;
         let mut simulation = started(prepared);
         assert!(advance(simulation.as_mut()), "{what}");
         let (clock, whole) = (simulation.clock(), || simulation.snapshot());

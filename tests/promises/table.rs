@@ -124,7 +124,7 @@ fn cases(methods: Methods, entry: &'static Entry, extent: Extent) -> Vec<Case> {
             let overrides = [short.clone(), way.clone()].concat();
             let Ok((prepared, _)) = load(preset.name, &overrides, methods) else { continue };
             let is_plain = way.is_empty();
-            let is_new = scenes.insert(prepared.scene());
+            let is_new = scenes.insert(prepared.scene);
             if is_plain || is_new && (extent == Extent::Full || seen.insert(way.clone())) {
                 cases.push(Case { entry, preset: preset.name, overrides, is_plain });
             }
@@ -151,14 +151,14 @@ fn shortened(methods: Methods, entry: &'static Entry, preset: &str) -> Vec<Strin
     if whole.particles().len() > MANY && prepared(&fewer).is_ok() {
         overrides = fewer;
     }
-    overrides.push(match whole.schedule().until {
+    overrides.push(match whole.schedule.until {
         Until::Steps(steps) => format!("run.steps={}", steps.min(60)),
         Until::Events(events) => format!("run.events={}", events / 100),
         Until::Time(time) => format!("run.time={:?}", time / 8.0),
     });
     let short = prepared(&overrides).expect("it is a scene that is short");
-    let (clock, ..) = end_of(short.as_ref());
-    let every = |parts: f64| match short.schedule().rows {
+    let (clock, ..) = end_of(&short);
+    let every = |parts: f64| match short.schedule.rows {
         Every::Time(_) => format!("{:?}", clock.time / parts),
         _ => format!("{}", (clock.steps as f64 / parts) as u64),
     };
@@ -171,9 +171,9 @@ fn shortened(methods: Methods, entry: &'static Entry, preset: &str) -> Vec<Strin
 }
 
 /// How a scene ends that nothing is written of: when, with which particles, and their positions alone.
-fn end_of(prepared: &dyn Prepared) -> (Clock, Particles, Vec<[f32; 3]>) {
+fn end_of(prepared: &Prepared) -> (Clock, Particles, Vec<[f32; 3]>) {
     let mut simulation = prepared.start(Purpose::Run).expect("it starts");
-    simulation.advance(&[prepared.schedule().until], &AtomicBool::new(false)).expect("it does not break");
+    simulation.advance(&[prepared.schedule.until], &AtomicBool::new(false)).expect("it does not break");
     (simulation.clock(), simulation.particles(), simulation.positions())
 }
 
@@ -215,14 +215,14 @@ impl Case {
         let folder = tempfile::tempdir().expect("there is room");
         let (prepared, _) = load(self.preset, &self.overrides, methods).expect("it was a scene before");
         let path = folder.path().join("whole");
-        let (_, words) = self.session(prepared.as_ref(), &path, None);
+        let (_, words) = self.session(&prepared, &path, None);
         let mut held = Held { runs: 1, sessions: 1, ..Held::default() };
-        self.files(prepared.as_ref(), &path, &mut held);
+        self.files(&prepared, &path, &mut held);
         let mut stream = Stream::new(self.label().len() as u64, Of::Test, 0);
         let ways = if extent == Extent::Full { 20 } else { 1 };
         for way in 0..ways {
             let parts = folder.path().join(format!("parts{way}"));
-            held.sessions += self.interrupted(prepared.as_ref(), &parts, words, &mut stream);
+            held.sessions += self.interrupted(&prepared, &parts, words, &mut stream);
             self.same("interrupted", &path, &parts);
             held.runs += 1;
         }
@@ -242,7 +242,7 @@ impl Case {
 
     /// Begins or goes on, and is interrupted when the run has said so often how far it has come; whether it is done, and how often
     /// that was.
-    fn session(&self, prepared: &dyn Prepared, folder: &Path, stop: Option<u64>) -> (bool, u64) {
+    fn session(&self, prepared: &Prepared, folder: &Path, stop: Option<u64>) -> (bool, u64) {
         let (is_interrupted, mut words) = (AtomicBool::new(false), 0);
         let progress = |_, _| {
             words += 1;
@@ -256,7 +256,7 @@ impl Case {
     }
 
     /// Interrupted three times, at random.
-    fn interrupted(&self, prepared: &dyn Prepared, folder: &Path, words: u64, stream: &mut Stream) -> usize {
+    fn interrupted(&self, prepared: &Prepared, folder: &Path, words: u64, stream: &mut Stream) -> usize {
         for stops in 0..3 {
             let stop = stream.random_range(1..(words / 2).max(2));
             if self.session(prepared, folder, Some(stop)).0 {
@@ -324,8 +324,8 @@ impl Case {
     }
 
     /// As many frames and rows as the scene says, the last ones those of the end.
-    fn files(&self, prepared: &dyn Prepared, folder: &Path, held: &mut Held) {
-        let Schedule { rows, snapshots, .. } = prepared.schedule();
+    fn files(&self, prepared: &Prepared, folder: &Path, held: &mut Held) {
+        let Schedule { rows, snapshots, .. } = prepared.schedule;
         let (clock, particles, positions) = end_of(prepared);
         let label = self.label();
         let (expected, (columns, table)) = (moments(rows, &clock), table(&folder.join("thermo.csv")));
@@ -346,7 +346,7 @@ impl Case {
         };
         assert!(expected.len() > 5);
         assert_eq!(xyz.iter().map(moment).collect::<Vec<_>>(), expected, "{label}: moments of the frames");
-        let output = prepared.output();
+        let output = prepared.output;
         let dump =
             output.lammps_dump.then(|| ("dump.lammpstrj", lammps_dump(&folder.join("dump.lammpstrj"))));
         for (name, frames) in [("trajectory.xyz", xyz)].into_iter().chain(dump) {

@@ -11,7 +11,7 @@
 //!
 //! let (prepared, method) = load("two-discs", &["run.steps=100".to_owned()], METHODS)?;
 //! let mut simulation = prepared.start(Purpose::Run)?;
-//! simulation.advance(&[prepared.schedule().until], &AtomicBool::new(false))?;
+//! simulation.advance(&[prepared.schedule.until], &AtomicBool::new(false))?;
 //! let [momentum] = observed(method.quantities, &simulation.observe(), ["momentum_x"])?;
 //! assert!((momentum - 1.0).abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

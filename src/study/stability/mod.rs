@@ -182,7 +182,7 @@ fn rate(subject: &Subject, parameter: &Parameter, values: &[f64]) -> f64 {
     let of = |value: f64| {
         let overrides = (parameter.overrides)(&subject.values, value);
         let scene = subject.prepared_at_any_step(&subject.own, subject.step, &overrides).ok()?;
-        probed(scene.as_ref(), subject.steps.min(PROBED)).ok()
+        probed(&scene, subject.steps.min(PROBED)).ok()
     };
     let rates: Vec<f64> = at.into_iter().filter_map(of).collect();
     if rates.is_empty() { SLOW } else { median(rates.into_iter()) }

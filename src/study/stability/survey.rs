@@ -134,40 +134,35 @@ impl Survey<'_> {
     /// What theory says of the step of a case.
     pub fn limits(&self, case: Case<'_>) -> Vec<StepLimit> {
         let scene = self.prepared(case, self.subject.step, 1);
-        scene.map_or(vec![], |(scene, _)| scene.step_limits())
+        scene.map_or(vec![], |(scene, _)| scene.step_limits)
     }
 
     fn overrides(&self, case: Case<'_>, seed: u64) -> Overrides {
         let varied = |value| (self.parameter.overrides)(&self.subject.values, value);
         let overrides = case.value.map_or_else(Overrides::new, varied);
-        if self.subject.prepared.seed().is_some() { overrides.set(&SEED, seed) } else { overrides }
+        if self.subject.prepared.seed.is_some() { overrides.set(&SEED, seed) } else { overrides }
     }
 
     /// The scene of a case, and what is said of its step before it runs.
-    fn prepared(
-        &self,
-        case: Case<'_>,
-        step: f64,
-        seed: u64,
-    ) -> Result<(Box<dyn Prepared>, Foreseen), SceneErrors> {
+    fn prepared(&self, case: Case<'_>, step: f64, seed: u64) -> Result<(Prepared, Foreseen), SceneErrors> {
         let overrides = self.overrides(case, seed);
         let (scene, foreseen) = match self.subject.prepared_as(case.choice, step, &overrides) {
-            Ok(scene) if scene.warnings().is_empty() => (scene, Foreseen::Nothing),
+            Ok(scene) if scene.warnings.is_empty() => (scene, Foreseen::Nothing),
             Ok(scene) => (scene, Foreseen::Warned),
             Err(_) => {
                 let scene = self.subject.prepared_at_any_step(case.choice, step, &overrides)?;
                 (scene, Foreseen::Refused)
             }
         };
-        if self.subject.prepared.seed().is_some() {
+        if self.subject.prepared.seed.is_some() {
             return Ok((scene, foreseen));
         }
         // Where a start has no seed, contacts begin elsewhere in a step.
         let phase = (seed - 1) as f64 / (SEEDS as f64 + 0.5);
-        let late = displaced(scene.particles(), &scene.domain(), |_, disc| {
+        let late = displaced(scene.particles(), &scene.domain, |_, disc| {
             disc.planar_velocity().map(|part| -phase * step * part)
         });
-        Ok((scene.started_from(late), foreseen))
+        Ok((scene.model.started_from(late), foreseen))
     }
 
     fn run(&self, case: Case<'_>, step: f64, seed: u64) -> Result<Ran, JournalError> {
@@ -186,7 +181,7 @@ impl Survey<'_> {
         };
         let steps = (self.duration / step).round() as u64;
         let course = Course { steps, looks: LOOKS, each: self.each };
-        let mut averages = Averages::new(self.subject, scene.domain());
+        let mut averages = Averages::new(self.subject, scene.domain);
         let (mut energy, mut scale, mut warned, mut looks) = (None, 0.0, vec![], 0);
         let see = |simulation: &dyn Simulation| {
             let values = simulation.observe();
@@ -204,7 +199,7 @@ impl Survey<'_> {
             }
             looks += 1;
         };
-        let end = match follow(scene.as_ref(), Purpose::Run, course, None, self.meter, see) {
+        let end = match follow(&scene, Purpose::Run, course, None, self.meter, see) {
             Ok(_) => {
                 let energy = energy.filter(|_| scale > 0.0).map(|error| error / scale);
                 End::Whole { speed: averages.speed(), means: averages.means(), energy, warned }

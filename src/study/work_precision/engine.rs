@@ -42,7 +42,7 @@ pub fn probes(
 ) -> Result<Vec<Result<f64, String>>, JournalError> {
     let probe = |choice: &Choice| {
         let scene = subject.prepared_as(choice, subject.step, &[]).map_err(|errors| refusal(&errors))?;
-        probed(scene.as_ref(), subject.steps.min(PROBED)).map_err(|failure| first_line(&failure.what()))
+        probed(&scene, subject.steps.min(PROBED)).map_err(|failure| first_line(&failure.what()))
     };
     let of = |choice: &Choice| {
         journal.recall(&format!("probe|{}", choice.label()), || Ok::<_, JournalError>(probe(choice)))
@@ -102,12 +102,12 @@ struct Ended {
 }
 
 /// What limits of theory and checks say against a scene before it runs.
-fn objections(scene: &dyn Prepared) -> Vec<String> {
-    let limits = scene.step_limits().into_iter().filter(|limit| limit.share > 1.0);
+fn objections(scene: &Prepared) -> Vec<String> {
+    let limits = scene.step_limits.iter().filter(|limit| limit.share > 1.0);
     let limits = limits.map(|limit| {
         format!("the step is {} times the limit \"{}\" of theory", significant(limit.share, 3), limit.name)
     });
-    let checks = scene.warnings().iter().map(|warning| format!("checked: {}", warning.message));
+    let checks = scene.warnings.iter().map(|warning| format!("checked: {}", warning.message));
     limits.chain(checks).collect()
 }
 
@@ -126,7 +126,7 @@ impl Work<'_> {
         self.subject.step * 2f64.powi(power)
     }
 
-    fn prepared(&self, choice: &Choice, power: i32) -> Result<Box<dyn Prepared>, String> {
+    fn prepared(&self, choice: &Choice, power: i32) -> Result<Prepared, String> {
         let prepared = self.subject.prepared_as(choice, self.step(power), &[]);
         prepared.map_err(|errors| refusal(&errors))
     }
@@ -137,7 +137,7 @@ impl Work<'_> {
         let steps = self.steps(power);
         let course = Course { steps, looks: LOOKS.min(steps), each };
         let (mut worst, mut scale) = (0.0, 0.0);
-        let mut objections = objections(scene.as_ref());
+        let mut objections = objections(&scene);
         let mut looks = 0;
         let see = |simulation: &dyn Simulation| {
             if looks == course.looks {
@@ -151,7 +151,7 @@ impl Work<'_> {
             scale = f64::max(scale, balance.energies(&values));
         };
         let machine = self.effort.machine.as_ref();
-        let end = follow(scene.as_ref(), Purpose::Run, course, machine, self.meter, see);
+        let end = follow(&scene, Purpose::Run, course, machine, self.meter, see);
         let end = end.map_err(|failure| first_line(&failure.what()))?;
         let has_balance = self.subject.observed.balance.is_some() && scale > 0.0;
         let balance = has_balance.then(|| worst / scale);
@@ -161,7 +161,7 @@ impl Work<'_> {
     fn errors(&self, Ended { state, balance, .. }: &Ended, reference: &State) -> Errors {
         let inertia = (self.subject.trials.inertia)(&self.subject.values);
         let mut errors =
-            errors(state, reference, (&self.subject.prepared.domain(), self.subject.length()), inertia);
+            errors(state, reference, (&self.subject.prepared.domain, self.subject.length()), inertia);
         errors.extend(balance.map(|error| (Measure::Energy, error)));
         errors
     }
@@ -272,7 +272,7 @@ impl Work<'_> {
                     let each = self.rates[run.way].unwrap_or(0.0);
                     let course = Course { steps: self.steps(run.power), looks: 1, each };
                     let scene = self.prepared(choice, run.power);
-                    let timed = scene.ok().and_then(|scene| timed(scene.as_ref(), course, self.meter).ok());
+                    let timed = scene.ok().and_then(|scene| timed(&scene, course, self.meter).ok());
                     Ok::<Option<f64>, JournalError>(timed)
                 })?;
                 run.costs.extend(seconds.map(|seconds| seconds / self.duration()));
@@ -292,7 +292,7 @@ impl Work<'_> {
     /// [`JournalError`] if a run cannot be kept.
     pub fn observables(&self, each: f64) -> Result<Option<Observables>, JournalError> {
         let subject = self.subject;
-        if subject.prepared.seed().is_none() || subject.trials.observables.is_empty() {
+        if subject.prepared.seed.is_none() || subject.trials.observables.is_empty() {
             return Ok(None);
         }
         let [first, _] = subject.trials.references.map(|settings| subject.own.with(settings));

@@ -1,5 +1,6 @@
 //! How far a simulation has come, and when something is due.
 
+use crate::scene::Run;
 use std::fmt;
 
 /// How far a simulation has come.
@@ -188,6 +189,16 @@ pub struct Schedule {
 }
 
 impl Schedule {
+    /// Of a scene that counts in steps.
+    pub fn of_steps(run: &Run) -> Schedule {
+        Schedule {
+            until: Until::Steps(run.steps),
+            rows: Every::steps(run.thermo_every),
+            snapshots: Every::steps(run.snapshot_every),
+            checkpoints: Every::checkpoints(run.checkpoint_every.map(Every::steps)),
+        }
+    }
+
     /// Rows of observables of the whole run, that of the start among them; none where it is not known beforehand.
     pub fn row_count(&self) -> Option<u64> {
         self.rows.times(self.until).map(|(times, _)| times + 1)

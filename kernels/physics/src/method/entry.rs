@@ -11,7 +11,7 @@ use crate::scene::{Output, SceneErrors, Values, Vocabulary, Warning};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use stripmine_kernels::Runnable;
 use stripmine_kernels::isa::OpCounts;
@@ -28,7 +28,7 @@ pub struct Entry {
     /// What it observes: the columns of thermo.csv after the step.
     pub quantities: &'static [Quantity],
     /// Holds a scene against every precondition and makes its particles; every mistake at once.
-    pub prepare: fn(Values) -> Result<Box<dyn Prepared>, SceneErrors>,
+    pub prepare: fn(Values) -> Result<Prepared, SceneErrors>,
     /// What `bench` can measure of it.
     pub benches: &'static [Bench],
     /// How its scenes may be tried; none where nothing of them may be varied.
@@ -234,60 +234,60 @@ pub struct VectorProgram {
 }
 
 /// A scene that may run: its particles are made, and every precondition holds.
-pub trait Prepared: Send + Sync {
+pub struct Prepared {
     /// The scene as TOML, every value spelled out and every choice made.
-    fn scene(&self) -> String;
-
+    pub scene: String,
     /// How long it runs, and how often something is written.
-    fn schedule(&self) -> Schedule;
-
+    pub schedule: Schedule,
     /// Which files are written.
-    fn output(&self) -> Output;
-
+    pub output: Output,
     /// The box.
-    fn domain(&self) -> Domain;
+    pub domain: Domain,
+    /// Seed of the random numbers that made the start; none where it was read or listed.
+    pub seed: Option<u64>,
+    /// The file that the start was read from.
+    pub start_file: Option<PathBuf>,
+    /// What there is to be said of the scene.
+    pub facts: Vec<Fact>,
+    /// What seldom ends well.
+    pub warnings: Vec<Warning>,
+    /// What the scene left open and has been chosen, with the reason.
+    pub choices: Vec<String>,
+    /// What the scene has no need of, with the reason.
+    pub left_out: Vec<String>,
+    /// What bounds the step, by theory; none where there is no step, or theory says nothing.
+    pub step_limits: Vec<StepLimit>,
+    /// How wrong a run is expected to be, and by what measure; none where nothing is known of it.
+    pub expected_error: Option<Fact>,
+    /// The memory that a run takes.
+    pub memory: Foreseen,
+    /// How it is run: precision, integrator and the like, by the names that `bench --json` gives them.
+    pub settings: Map<String, Value>,
+    /// The names of the columns of `events.csv`, where the scene asks for a row for each event.
+    pub event_columns: Option<&'static str>,
+    /// What simulations of it are made from.
+    pub model: Box<dyn Startable>,
+}
 
+impl Prepared {
+    /// The particles at the start.
+    pub fn particles(&self) -> &Particles {
+        self.model.particles()
+    }
+
+    /// Begins.
+    ///
+    /// # Errors
+    /// [`Failure`] if the start breaks a precondition, or the processor lacks what is asked for.
+    pub fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
+        self.model.start(purpose)
+    }
+}
+
+/// A method's checked scene, with its particles: what simulations are made from.
+pub trait Startable: Send + Sync {
     /// The particles at the start.
     fn particles(&self) -> &Particles;
-
-    /// Seed of the random numbers that made the start; none where it was read or listed.
-    fn seed(&self) -> Option<u64>;
-
-    /// The file that the start was read from.
-    fn start_file(&self) -> Option<&Path>;
-
-    /// What there is to be said of the scene.
-    fn facts(&self) -> Vec<Fact>;
-
-    /// What seldom ends well.
-    fn warnings(&self) -> &[Warning];
-
-    /// What the scene left open and has been chosen, with the reason.
-    fn choices(&self) -> &[String];
-
-    /// What the scene has no need of, with the reason.
-    fn left_out(&self) -> &[String];
-
-    /// What bounds the step, by theory; none where there is no step, or theory says nothing.
-    fn step_limits(&self) -> Vec<StepLimit> {
-        vec![]
-    }
-
-    /// How wrong a run is expected to be, and by what measure; none where nothing is known of it.
-    fn expected_error(&self) -> Option<Fact> {
-        None
-    }
-
-    /// The memory that a run takes.
-    fn memory(&self) -> Foreseen;
-
-    /// How it is run: precision, integrator and the like, by the names that `bench --json` gives them.
-    fn settings(&self) -> Map<String, Value>;
-
-    /// The names of the columns of `events.csv`, where the scene asks for a row for each event.
-    fn event_columns(&self) -> Option<&'static str> {
-        None
-    }
 
     /// The vector programs that a step of the scene, or its forces, consists of: what is counted, listed and charged by clocks; none
     /// where a method has no such.
@@ -302,7 +302,7 @@ pub trait Prepared: Send + Sync {
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure>;
 
     /// The same scene with other positions and velocities at the start: of the same particles in the same order.
-    fn started_from(&self, particles: Particles) -> Box<dyn Prepared>;
+    fn started_from(&self, particles: Particles) -> Prepared;
 }
 
 /// A simulation under way. It never prints and never writes a file.

@@ -28,7 +28,7 @@ pub fn load(
     what: &str,
     overrides: &[String],
     methods: Methods,
-) -> Result<(Box<dyn Prepared>, &'static Entry), SceneErrors> {
+) -> Result<(Prepared, &'static Entry), SceneErrors> {
     prepare(Values::load(what, overrides, &vocabularies(methods))?, methods)
 }
 
@@ -36,7 +36,7 @@ pub fn load(
 ///
 /// # Errors
 /// [`SceneErrors`]: every precondition that does not hold.
-pub fn prepare(values: Values, methods: Methods) -> Result<(Box<dyn Prepared>, &'static Entry), SceneErrors> {
+pub fn prepare(values: Values, methods: Methods) -> Result<(Prepared, &'static Entry), SceneErrors> {
     // A scene is read as one of a method of the list.
     let unlisted = || values.spot(&METHOD).error(Reason::Unknown, "there is no such method");
     let entry = method(methods, values.method()).ok_or_else(unlisted)?;

@@ -19,7 +19,7 @@ mod trials;
 pub use clock::{Clock, Every, Schedule, Until};
 pub use entry::{
     Bench, BenchOption, Beyond, Entry, Fact, Observable, Prepared, Purpose, Quantity, RunWarning, Simulation,
-    StepLimit, Takes, VectorProgram, quantities,
+    Startable, StepLimit, Takes, VectorProgram, quantities,
 };
 pub use failure::{Culprit, Failure, FailureKind};
 pub use hard_disks::compress;

@@ -13,7 +13,7 @@ const LONG_ENOUGH: Duration = Duration::from_millis(2);
 ///
 /// # Errors
 /// [`Failure`] if it breaks.
-pub fn probed(prepared: &dyn Prepared, most: u64) -> Result<f64, Failure> {
+pub fn probed(prepared: &Prepared, most: u64) -> Result<f64, Failure> {
     let mut simulation = prepared.start(Purpose::Measurement)?;
     let before = cpu_time::ProcessTime::now();
     let mut steps = 1;

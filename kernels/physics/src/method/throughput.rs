@@ -14,7 +14,7 @@ pub struct Measurement {
     /// The bench: what a repeat and the rate are.
     pub bench: &'static Bench,
     /// The scene.
-    pub prepared: Box<dyn Prepared>,
+    pub prepared: Prepared,
     /// Steps or events before the clock starts; a start on a lattice is kinder than a gas.
     pub equilibration: u64,
     /// Steps or events of each repeat.
@@ -127,7 +127,7 @@ struct Repeat {
 /// A scene that runs, and is timed again and again.
 pub struct TimedRun {
     bench: &'static Bench,
-    prepared: Box<dyn Prepared>,
+    prepared: Prepared,
     simulation: Box<dyn Simulation>,
     steps: u64,
     before: Vec<f64>,
@@ -144,7 +144,7 @@ impl TimedRun {
     /// [`MeasurementError`] if the scene is bad or breaks while running.
     pub fn begin(
         bench: &'static Bench,
-        prepared: Box<dyn Prepared>,
+        prepared: Prepared,
         equilibration: u64,
         steps: u64,
     ) -> Result<Self, MeasurementError> {
@@ -200,7 +200,7 @@ impl TimedRun {
         Throughput {
             what: bench.name,
             particles: prepared.particles().grain_count(),
-            settings: prepared.settings(),
+            settings: prepared.settings,
             threads: rayon::current_num_threads(),
             repeats: repeats.len(),
             steps,

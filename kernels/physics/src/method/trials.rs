@@ -31,13 +31,13 @@ pub struct Trials {
     /// Whether particles rotate, and their moment of inertia over m R² if so.
     pub inertia: fn(&Values) -> Option<f64>,
     /// The order of convergence of positions that theory gives for a setting of the axis that decides it.
-    pub theory: fn(&Values, &dyn Prepared, &Setting) -> Option<Theory>,
+    pub theory: fn(&Values, &Prepared, &Setting) -> Option<Theory>,
     /// Scenes that `reproduce` shows: name, preset and overrides.
     pub shown: &'static [(&'static str, &'static str, &'static [&'static str])],
     /// What a map of stability may vary beside the step.
     pub parameters: &'static [Parameter],
     /// As the entry's `prepare`, but whatever the step is: what theory foresees of it refuses nothing.
-    pub at_any_step: fn(Values) -> Result<Box<dyn Prepared>, SceneErrors>,
+    pub at_any_step: fn(Values) -> Result<Prepared, SceneErrors>,
     /// Maps that `reproduce` shows.
     pub mapped: &'static [Mapped],
 }
@@ -110,7 +110,7 @@ pub struct Axis {
     /// The settings.
     pub settings: &'static [Setting],
     /// The setting of a scene as it was prepared; none if it is not among these.
-    pub own: fn(&dyn Prepared) -> Option<String>,
+    pub own: fn(&Prepared) -> Option<String>,
 }
 
 /// What a choice decides.

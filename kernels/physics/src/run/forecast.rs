@@ -20,13 +20,13 @@ const FIRST_STRETCH: f64 = 1e-9;
 const MARGIN: f64 = 1.5;
 
 /// What is to be expected of the step of a scene, the same on every host.
-pub fn of_the_step(prepared: &dyn Prepared) -> Vec<Fact> {
-    let limits = prepared.step_limits();
+pub fn of_the_step(prepared: &Prepared) -> Vec<Fact> {
+    let limits = &prepared.step_limits;
     let mut facts = vec![];
     if !limits.is_empty() {
         facts.push(Fact::data("step_limits", json!(limits)));
     }
-    let said = limits.into_iter().map(|limit| {
+    let said = limits.iter().map(|limit| {
         let beyond = match limit.beyond {
             Beyond::Unstable => "errors grow beyond",
             Beyond::Inaccurate => "inaccurate beyond",
@@ -36,21 +36,21 @@ pub fn of_the_step(prepared: &dyn Prepared) -> Vec<Fact> {
         Fact { data: None, words: Some((limit.name, words)) }
     });
     facts.extend(said);
-    facts.extend(prepared.expected_error());
+    facts.extend(prepared.expected_error.clone());
     facts
 }
 
 /// The memory that it takes, and what this host has left.
-pub fn of_the_memory(prepared: &dyn Prepared) -> Fact {
-    let memory = prepared.memory();
+pub fn of_the_memory(prepared: &Prepared) -> Fact {
+    let memory = &prepared.memory;
     let left = memory.available.map(|available| format!(" of {} left", in_words(available.bytes)));
     let words = in_words(memory.needed) + &left.unwrap_or_default();
     Fact::new("memory", json!(memory), "memory of a run", words)
 }
 
 /// How often rows and frames are written, where that is known beforehand.
-pub fn of_the_files(prepared: &dyn Prepared) -> Vec<Fact> {
-    let schedule = prepared.schedule();
+pub fn of_the_files(prepared: &Prepared) -> Vec<Fact> {
+    let schedule = prepared.schedule;
     let counts = [
         ("thermo_rows", "rows of thermo.csv", schedule.row_count()),
         ("frames", "frames of a trajectory", schedule.snapshot_count()),
@@ -61,8 +61,8 @@ pub fn of_the_files(prepared: &dyn Prepared) -> Vec<Fact> {
 
 /// How long it takes on this host, as a range, by its first stretches once it is warm and one row of observables; none where it does
 /// not come so far.
-pub fn of_the_time(prepared: &dyn Prepared) -> Option<Fact> {
-    let schedule = prepared.schedule();
+pub fn of_the_time(prepared: &Prepared) -> Option<Fact> {
+    let schedule = prepared.schedule;
     let Probed { each, row } = probed(prepared).ok()??;
     let length = length(schedule.until);
     let rows = schedule.row_count().unwrap_or(0) as f64;
@@ -127,8 +127,8 @@ struct Probed {
 
 /// Runs the beginning of a scene. Stretches that are over too soon to be timed are doubled; the first that is not has met cold
 /// memory and threads that had not begun, and does not count where others follow. None where there is nothing to do.
-fn probed(prepared: &dyn Prepared) -> Result<Option<Probed>, Failure> {
-    let until = prepared.schedule().until;
+fn probed(prepared: &Prepared) -> Result<Option<Probed>, Failure> {
+    let until = prepared.schedule.until;
     let mut simulation = prepared.start(Purpose::Run)?;
     let mut stretch = match until {
         Until::Steps(_) => Until::Steps(1),

@@ -57,10 +57,10 @@ impl Growing {
     /// Begins the files that a scene asks for.
     pub(super) fn begin(
         folder: &RunFolder,
-        prepared: &dyn Prepared,
+        prepared: &Prepared,
         quantities: &'static [Quantity],
     ) -> Result<Growing, RunError> {
-        let output = prepared.output();
+        let output = prepared.output;
         let thermo = TableFile::create(folder.file(THERMO), &columns(quantities))?;
         let trajectory = Frames::create(folder.file(TRAJECTORY), extxyz::write)?;
         let dump = output.lammps_dump.then(|| Frames::create(folder.file(DUMP), lammps::write_dump));
@@ -102,8 +102,8 @@ impl Growing {
 
     /// Cuts the files where the checkpoint was written. Those that it does not know were begun after it, if they are there at
     /// all: they are begun again if the scene asks for them.
-    pub(super) fn cut(&mut self, folder: &mut RunFolder, prepared: &dyn Prepared) -> Result<(), RunError> {
-        let output = prepared.output();
+    pub(super) fn cut(&mut self, folder: &mut RunFolder, prepared: &Prepared) -> Result<(), RunError> {
+        let output = prepared.output;
         self.thermo.cut()?;
         self.trajectory.cut()?;
         match &mut self.dump {
@@ -169,8 +169,8 @@ fn columns(quantities: &'static [Quantity]) -> Vec<&'static str> {
 }
 
 /// The file of events with its heading, where the scene asks for them.
-fn begin_events(folder: &RunFolder, prepared: &dyn Prepared) -> Result<Option<GrowingFile>, RunError> {
-    let Some(columns) = prepared.event_columns() else { return Ok(None) };
+fn begin_events(folder: &RunFolder, prepared: &Prepared) -> Result<Option<GrowingFile>, RunError> {
+    let Some(columns) = prepared.event_columns else { return Ok(None) };
     let mut file = GrowingFile::create(folder.file(EVENTS))?;
     writeln!(file, "{columns}").map_err(FileError::at(file.path(), "writing"))?;
     Ok(Some(file))

@@ -30,9 +30,9 @@ pub(super) struct Identity {
 
 impl Identity {
     pub(super) fn of(Job { prepared, program, .. }: Job<'_>) -> Identity {
-        let file = prepared.start_file().map(|file| file.display().to_string());
+        let file = prepared.start_file.as_ref().map(|file| file.display().to_string());
         Identity {
-            scene: prepared.scene(),
+            scene: prepared.scene.clone(),
             discs: digest(prepared.particles()),
             file,
             program: program.clone(),

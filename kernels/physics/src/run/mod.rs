@@ -225,7 +225,7 @@ pub enum Ending {
 #[derive(Clone, Copy)]
 pub struct Job<'j> {
     /// The scene.
-    pub prepared: &'j dyn Prepared,
+    pub prepared: &'j Prepared,
     /// What its method observes.
     pub quantities: &'static [Quantity],
     /// The program that runs it, for the record.
@@ -266,7 +266,7 @@ pub fn run(
     notice: impl FnMut(&str),
 ) -> Result<Ending, RunError> {
     let prepared = job.prepared;
-    prepared.memory().fits("scene")?;
+    prepared.memory.fits("scene")?;
     // What would be refused in the end is refused before anything takes its time.
     begins(folder, existing)?;
     let mut simulation = prepared.start(Purpose::Run).map_err(RunError::Start)?;
@@ -275,7 +275,7 @@ pub fn run(
     let mut recorder = Recorder::open(folder, existing, job, simulation.as_mut())?;
     let _held = held.unwrap_or_else(signals::hold);
     recorder.new_notes().iter().map(String::as_str).for_each(notice);
-    let until = prepared.schedule().until;
+    let until = prepared.schedule.until;
     let from = simulation.clock();
     let mut strides = STRIDES;
     let start = Instant::now();

@@ -70,7 +70,7 @@ impl Recorder {
             Existing::Resume { other_version } if folder.is_run() => match read_latest(path)? {
                 Some(latest) => Recorder::resume(folder, latest, job, simulation, other_version, notes),
                 None => {
-                    begun_with(&folder, &job.prepared.scene())?;
+                    begun_with(&folder, &job.prepared.scene)?;
                     notes.push("begun again: there was no checkpoint yet".to_owned());
                     Recorder::begin(folder, job, simulation, notes)
                 }
@@ -107,15 +107,15 @@ impl Recorder {
         notes: Vec<String>,
     ) -> Recorder {
         let Job { prepared, quantities, .. } = job;
-        let schedule = prepared.schedule();
+        let schedule = prepared.schedule;
         let due = [schedule.rows, schedule.snapshots, schedule.checkpoints].map(|every| every.next(clock));
         Recorder {
             folder,
             identity: Identity::of(job),
             schedule,
-            output: prepared.output(),
-            seed: prepared.seed(),
-            domain: prepared.domain(),
+            output: prepared.output,
+            seed: prepared.seed,
+            domain: prepared.domain,
             quantities,
             due,
             growing,
@@ -153,7 +153,7 @@ impl Recorder {
                 quoted::path(&newest)
             ));
         }
-        let asked = prepared.schedule().until;
+        let asked = prepared.schedule.until;
         if asked.has_passed(&clock) {
             let done = match asked {
                 Until::Steps(_) => Until::Steps(clock.steps),
@@ -358,13 +358,13 @@ fn overflow(at: Clock, quantity: &'static str, value: f64) -> Failure {
 }
 
 /// The files that a scene asks for beyond what every run writes.
-fn on_request(prepared: &dyn Prepared) -> Vec<&'static str> {
-    let output = prepared.output();
+fn on_request(prepared: &Prepared) -> Vec<&'static str> {
+    let output = prepared.output;
     let asked = [
         (output.lammps_dump, DUMP),
         (output.dcd, DCD),
         (output.lammps_data, DATA),
-        (prepared.event_columns().is_some(), EVENTS),
+        (prepared.event_columns.is_some(), EVENTS),
     ];
     asked.into_iter().filter_map(|(asked, name)| asked.then_some(name)).collect()
 }

@@ -70,7 +70,7 @@ impl Summary {
         failure: Option<&Failure>,
     ) -> Summary {
         let clock = simulation.clock();
-        let mut warnings: Vec<String> = prepared.warnings().iter().map(ToString::to_string).collect();
+        let mut warnings: Vec<String> = prepared.warnings.iter().map(ToString::to_string).collect();
         let checks = simulation.warnings();
         warnings.extend(checks.iter().map(|check| check.message.clone()));
         Summary {
@@ -78,11 +78,11 @@ impl Summary {
             host: host(),
             begun: moment(SystemTime::now() - Duration::from_secs_f64(seconds)),
             ended: moment(SystemTime::now()),
-            seed: prepared.seed(),
-            instruction_set: prepared.settings().remove("instruction_set"),
+            seed: prepared.seed,
+            instruction_set: prepared.settings.get("instruction_set").cloned(),
             threads: rayon::current_num_threads(),
-            choices: prepared.choices().to_vec(),
-            left_out: prepared.left_out().to_vec(),
+            choices: prepared.choices.clone(),
+            left_out: prepared.left_out.clone(),
             warnings,
             checks,
             foreseen: forecast::as_data(forecast::of_the_step(prepared)),

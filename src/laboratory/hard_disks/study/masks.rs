@@ -86,7 +86,7 @@ pub fn masks(
             let done = at as f64 + (round + 1) as f64 / rounds as f64;
             progress(done / packing_fractions.len() as f64);
         }
-        let auto = prepared("hard-disks", &overrides("auto"))?.settings();
+        let auto = prepared("hard-disks", &overrides("auto"))?.settings;
         let mut here: Vec<Cost> = vec![];
         for ((mask, (system, times)), before) in masks.iter().zip(&running).zip(before) {
             count = system.simulation.particles().grain_count();

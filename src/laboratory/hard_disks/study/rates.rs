@@ -88,9 +88,9 @@ fn engines(discs: u64, packing_fraction: f64, effort: &Effort) -> Result<Vec<Rat
             discs: scene.particles().grain_count(),
             packing_fraction,
             engine,
-            mask: scene.settings()["mask"].as_str().map(str::to_owned),
+            mask: scene.settings["mask"].as_str().map(str::to_owned),
             rates: vec![],
-            bytes: scene.memory().needed,
+            bytes: scene.memory.needed,
         });
         // From the lattice of the start to moving discs: a few collisions of each, as many as take about as long as a round.
         let equilibration = (10 * discs).min(2 * effort.collisions);

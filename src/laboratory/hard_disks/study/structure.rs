@@ -98,13 +98,13 @@ fn structure(packing_fraction: f64, discs: usize) -> Result<Structure, StudyErro
     let overrides = Overrides::new().set(&PACKING_FRACTION, packing_fraction).set(&COUNT, discs);
     let overrides = overrides.set(&COLLISION_LOG, true);
     let (scene, method) = load("melting", &overrides, METHODS)?;
-    let (domain, mut start) = (scene.domain(), scene.particles().clone());
+    let (domain, mut start) = (scene.domain, scene.particles().clone());
     for (disc, turn) in start.all_mut().iter_mut().zip(1..) {
         // Multiples of the golden section: directions that are even and in no order.
         let angle = TAU * (f64::from(turn) * 0.618_033_988_749_895).fract();
         disc.velocity = [2f64.sqrt() * angle.cos(), 2f64.sqrt() * angle.sin(), 0.0];
     }
-    let mut running = Running::of(method, scene.started_from(start).as_ref(), Purpose::Run)?;
+    let mut running = Running::of(method, &scene.model.started_from(start), Purpose::Run)?;
     let count = running.simulation.particles().grain_count();
     let begin = maxwell(&running)?;
     for _ in 0..SETTLING {

@@ -100,7 +100,7 @@ fn boundary(particles: u64, strength: f64, temperature: f64) -> Result<Boundary,
         let scene = overrides(particles, dt).set(&STRENGTH, strength);
         scene.set(&BATH_TEMPERATURE, temperature).set(&TEMPERATURE, temperature)
     };
-    let limits = prepared("langevin-report", &overrides(0.001))?.step_limits();
+    let limits = prepared("langevin-report", &overrides(0.001))?.step_limits;
     let step = |name: &str| {
         let unknown = || UnknownName::new("limit of the step", name, limits.iter().map(|limit| limit.name));
         limits.iter().find(|limit| limit.name == name).map(|limit| limit.step).ok_or_else(unknown)

@@ -165,7 +165,7 @@ fn fluid(law: PairLaw, density: f64, effort: &Effort) -> Result<Fluid, StudyErro
         }
     }
     let middle = |times: Vec<f64>| (!times.is_empty()).then(|| median(times.into_iter()));
-    let auto = prepared("langevin-dense", &scene)?.settings()["search"].as_str().unwrap_or("").to_owned();
+    let auto = prepared("langevin-dense", &scene)?.settings["search"].as_str().unwrap_or("").to_owned();
     Ok(Fluid { law: law.word(), density, seconds: found.into_iter().map(middle).collect(), auto })
 }
 

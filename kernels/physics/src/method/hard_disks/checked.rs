@@ -35,7 +35,7 @@ pub(super) struct Checked {
 ///
 /// # Errors
 /// [`SceneErrors`]: every precondition that does not hold.
-pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> {
+pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
     let (mut scene, mut read) = (Scene::default(), Read::new(&values));
     scene.bind(&mut read);
     read.done()?;
@@ -64,7 +64,7 @@ pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> 
     });
     SceneErrors::none_of(errors)?;
     SceneErrors::none_of(without_events(&values, &scene, domain, &particles).into_iter().collect())?;
-    Ok(Box::new(Checked { scene, domain, particles, mask, warnings: made.warnings, choices }))
+    Ok(Checked { scene, domain, particles, mask, warnings: made.warnings, choices }.prepared())
 }
 
 /// Discs that reach beyond closed sides.

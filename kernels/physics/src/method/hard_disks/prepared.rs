@@ -4,43 +4,36 @@ use super::checked::Checked;
 use super::collision_log::COLUMNS;
 use super::reference::grid::Sizes;
 use super::simulation::Running;
-use crate::domain::Domain;
 use crate::memory::{Foreseen, PROGRAM, available};
-use crate::method::{Fact, Failure, Prepared, Purpose, Schedule, Simulation};
+use crate::method::{Fact, Failure, Prepared, Purpose, Simulation, Startable};
 use crate::particles::{Kind, Particle, Particles};
-use crate::scene::{Output, Warning};
 use crate::words::Words;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use stripmine_kernels::flight::Disc;
 
-impl Prepared for Checked {
-    fn scene(&self) -> String {
-        self.scene.to_toml()
-    }
-
-    fn schedule(&self) -> Schedule {
-        self.scene.run.schedule()
-    }
-
-    fn output(&self) -> Output {
-        self.scene.output
-    }
-
-    fn domain(&self) -> Domain {
-        self.domain
-    }
-
-    fn particles(&self) -> &Particles {
-        &self.particles
-    }
-
-    fn seed(&self) -> Option<u64> {
-        self.scene.start.seed()
-    }
-
-    fn start_file(&self) -> Option<&Path> {
-        self.scene.start.file()
+impl Checked {
+    /// What is offered.
+    pub(super) fn prepared(self) -> Prepared {
+        let scene = &self.scene;
+        Prepared {
+            scene: scene.to_toml(),
+            schedule: scene.run.schedule(),
+            output: scene.output,
+            domain: self.domain,
+            seed: scene.start.seed(),
+            start_file: scene.start.file().map(Path::to_owned),
+            facts: self.facts(),
+            warnings: self.warnings.clone(),
+            choices: self.choices.clone(),
+            left_out: vec![],
+            step_limits: vec![],
+            expected_error: None,
+            memory: self.memory(),
+            settings: self.settings(),
+            event_columns: scene.collision_log.then_some(COLUMNS),
+            model: Box::new(self),
+        }
     }
 
     fn facts(&self) -> Vec<Fact> {
@@ -67,18 +60,6 @@ impl Prepared for Checked {
             facts.push(Fact::new("mask", self.scene.mask.as_str(), "mask", places));
         }
         facts
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &self.warnings
-    }
-
-    fn choices(&self) -> &[String] {
-        &self.choices
-    }
-
-    fn left_out(&self) -> &[String] {
-        &[]
     }
 
     fn memory(&self) -> Foreseen {
@@ -115,17 +96,19 @@ impl Prepared for Checked {
         ];
         settings.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
     }
+}
 
-    fn event_columns(&self) -> Option<&'static str> {
-        self.scene.collision_log.then_some(COLUMNS)
+impl Startable for Checked {
+    fn particles(&self) -> &Particles {
+        &self.particles
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
         Ok(Box::new(Running::new(self, self.scene.collision_log && purpose == Purpose::Run)?))
     }
 
-    fn started_from(&self, particles: Particles) -> Box<dyn Prepared> {
+    fn started_from(&self, particles: Particles) -> Prepared {
         debug_assert!(particles.all().iter().all(|disc| disc.kind == Kind::Grain));
-        Box::new(Checked { particles, ..self.clone() })
+        Checked { particles, ..self.clone() }.prepared()
     }
 }

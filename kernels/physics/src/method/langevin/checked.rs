@@ -38,8 +38,8 @@ pub(super) struct Checked {
 ///
 /// # Errors
 /// [`SceneErrors`]: every precondition that does not hold.
-pub(super) fn prepare(values: Values) -> Result<Box<dyn Prepared>, SceneErrors> {
-    Ok(Box::new(checked(values)?))
+pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
+    Ok(checked(values)?.prepared())
 }
 
 /// The same, as this method knows it.

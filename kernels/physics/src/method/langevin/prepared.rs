@@ -6,51 +6,41 @@ use super::losses;
 use super::options::PairLaw;
 use super::programs::programs;
 use super::simulation::Running;
-use crate::domain::Domain;
 use crate::memory::{Foreseen, PROGRAM, available};
-use crate::method::{
-    Every, Fact, Failure, Prepared, Purpose, Schedule, Simulation, StepLimit, Until, VectorProgram,
-};
+use crate::method::{Fact, Failure, Prepared, Purpose, Schedule, Simulation, Startable, VectorProgram};
 use crate::particles::{Particle, Particles};
-use crate::scene::{Output, Warning};
 use crate::words::Words;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use stripmine_kernels::sweep::fast::lattice::SPARSE;
 
-impl Prepared for Checked {
-    fn scene(&self) -> String {
-        self.scene.to_toml()
-    }
-
-    fn schedule(&self) -> Schedule {
-        let run = self.scene.run;
-        Schedule {
-            until: Until::Steps(run.steps),
-            rows: Every::steps(run.thermo_every),
-            snapshots: Every::steps(run.snapshot_every),
-            checkpoints: Every::checkpoints(run.checkpoint_every.map(Every::steps)),
+impl Checked {
+    /// What is offered.
+    pub(super) fn prepared(self) -> Prepared {
+        let scene = &self.scene;
+        Prepared {
+            scene: scene.to_toml(),
+            schedule: Schedule::of_steps(&scene.run),
+            output: scene.output,
+            domain: self.domain,
+            seed: scene.start.seed(),
+            start_file: scene.start.file().map(Path::to_owned),
+            facts: self.facts(),
+            warnings: self.warnings.clone(),
+            choices: self.choices.clone(),
+            left_out: vec![],
+            step_limits: self.limits(),
+            expected_error: None,
+            memory: self.memory(),
+            settings: self.settings(),
+            event_columns: self.lists_losses().then_some(losses::COLUMNS),
+            model: Box::new(self),
         }
     }
 
-    fn output(&self) -> Output {
-        self.scene.output
-    }
-
-    fn domain(&self) -> Domain {
-        self.domain
-    }
-
-    fn particles(&self) -> &Particles {
-        &self.particles
-    }
-
-    fn seed(&self) -> Option<u64> {
-        self.scene.start.seed()
-    }
-
-    fn start_file(&self) -> Option<&Path> {
-        self.scene.start.file()
+    /// Whether `events.csv` has a row for each loss.
+    pub(super) fn lists_losses(&self) -> bool {
+        self.scene.losses && self.scene.most_lost > 0
     }
 
     fn facts(&self) -> Vec<Fact> {
@@ -77,22 +67,6 @@ impl Prepared for Checked {
         facts.push(Fact::new("noise_seed", self.seed, "seed of the noise", self.seed.to_string()));
         facts.push(Fact::words("steps", format!("{} of dt = {}", scene.run.steps, scene.dt)));
         facts
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &self.warnings
-    }
-
-    fn choices(&self) -> &[String] {
-        &self.choices
-    }
-
-    fn left_out(&self) -> &[String] {
-        &[]
-    }
-
-    fn step_limits(&self) -> Vec<StepLimit> {
-        self.limits()
     }
 
     fn memory(&self) -> Foreseen {
@@ -131,9 +105,11 @@ impl Prepared for Checked {
         ];
         settings.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
     }
+}
 
-    fn event_columns(&self) -> Option<&'static str> {
-        (self.scene.losses && self.scene.most_lost > 0).then_some(losses::COLUMNS)
+impl Startable for Checked {
+    fn particles(&self) -> &Particles {
+        &self.particles
     }
 
     fn programs(&self) -> Vec<VectorProgram> {
@@ -144,7 +120,7 @@ impl Prepared for Checked {
         Ok(Box::new(Running::new(self, purpose)?))
     }
 
-    fn started_from(&self, particles: Particles) -> Box<dyn Prepared> {
-        Box::new(Checked { particles, ..self.clone() })
+    fn started_from(&self, particles: Particles) -> Prepared {
+        Checked { particles, ..self.clone() }.prepared()
     }
 }

@@ -7,7 +7,7 @@ use super::quantities::{OBSERVABLES, Seen};
 use crate::io::checkpoint::{Column, Counter};
 use crate::method::observed::values;
 use crate::method::pairwise::Stepping;
-use crate::method::{Clock, Failure, Prepared, Purpose, RunWarning, Simulation, Snapshot, Until};
+use crate::method::{Clock, Failure, Purpose, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
 use crate::particles::{Particle, Particles};
 use serde_json::{Map, Value, json};
@@ -302,7 +302,7 @@ impl Simulation for Running {
     fn warnings(&self) -> Vec<RunWarning> {
         let (lost, all) = (self.losses.count(), self.checked.particles.len());
         let first = self.losses.first_in_words().unwrap_or_default();
-        let listed = if self.checked.event_columns().is_some() { "events.csv" } else { "summary.json" };
+        let listed = if self.checked.lists_losses() { "events.csv" } else { "summary.json" };
         let message = format!(
             "{lost} of {all} particles were thrown out of the box and lost, {first}: the time step is too long for the pairs; \
              {listed} lists them"

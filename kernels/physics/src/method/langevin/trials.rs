@@ -120,6 +120,6 @@ fn around(values: &Values, key: &Key) -> Option<[f64; 2]> {
     values.number(key).filter(|value| *value > 0.0).map(|value| [value / 30.0, value * 30.0])
 }
 
-fn setting_of(prepared: &dyn Prepared, name: &str) -> Option<String> {
-    Some(prepared.settings().get(name)?.as_str()?.to_owned())
+fn setting_of(prepared: &Prepared, name: &str) -> Option<String> {
+    Some(prepared.settings.get(name)?.as_str()?.to_owned())
 }

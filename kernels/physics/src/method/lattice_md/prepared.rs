@@ -13,18 +13,16 @@ use super::{
     Lengths, Model, StepProgram, Total, Totals, assemble, assemble_following_energy, ledger, memory, model,
     programs,
 };
-use crate::domain::Domain;
 use crate::io::checkpoint::Counter;
-use crate::memory::Foreseen;
 use crate::method::observed::values;
 use crate::method::{
-    Clock, Every, Fact, Failure, Prepared, Purpose, RunWarning, Schedule, Simulation, Snapshot, StepLimit,
-    Until, VectorProgram,
+    Clock, Failure, Prepared, Purpose, RunWarning, Schedule, Simulation, Snapshot, Startable, Until,
+    VectorProgram,
 };
 use crate::number::significant;
 use crate::observe::{Observation, Scenery, Sums};
 use crate::particles::Particles;
-use crate::scene::{Output, Precision, SceneErrors, Warning};
+use crate::scene::{Precision, SceneErrors};
 use crate::words::Words;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -35,92 +33,50 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use stripmine_kernels::isa::OpCounts;
 
-/// A checked scene of granular discs.
-struct Discs(Checked);
-
 impl Document {
     /// Makes the discs and holds the scene against what the method demands, as every method does.
     ///
     /// # Errors
     /// As [`check`](Self::check).
-    pub fn prepare(self) -> Result<Box<dyn Prepared>, SceneErrors> {
-        Ok(Box::new(Discs(self.check()?)))
+    pub fn prepare(self) -> Result<Prepared, SceneErrors> {
+        Ok(self.check()?.prepared())
     }
 
     /// The same, but whatever the step is: what is foreseen of it refuses nothing.
     ///
     /// # Errors
     /// As [`check`](Self::check).
-    pub fn prepare_at_any_step(self) -> Result<Box<dyn Prepared>, SceneErrors> {
-        Ok(Box::new(Discs(self.check_at_any_step()?)))
+    pub fn prepare_at_any_step(self) -> Result<Prepared, SceneErrors> {
+        Ok(self.check_at_any_step()?.prepared())
     }
 }
 
-impl Prepared for Discs {
-    fn scene(&self) -> String {
-        self.0.scene.to_toml()
-    }
-
-    fn schedule(&self) -> Schedule {
-        let run = self.0.scene.run;
-        Schedule {
-            until: Until::Steps(run.steps),
-            rows: Every::steps(run.thermo_every),
-            snapshots: Every::steps(run.snapshot_every),
-            checkpoints: Every::checkpoints(run.checkpoint_every.map(Every::steps)),
+impl Checked {
+    /// What is offered.
+    fn prepared(self) -> Prepared {
+        let scene = &self.scene;
+        Prepared {
+            scene: scene.to_toml(),
+            schedule: Schedule::of_steps(&scene.run),
+            output: scene.output,
+            domain: self.domain,
+            seed: scene.start.seed(),
+            start_file: scene.start.file().map(Path::to_owned),
+            facts: facts(&self),
+            warnings: self.warnings.clone(),
+            choices: self.choices.clone(),
+            left_out: self.left_out.clone(),
+            step_limits: step_limits(&self),
+            expected_error: expected_error(&self),
+            memory: memory::foreseen(&self),
+            settings: self.settings(),
+            event_columns: None,
+            model: Box::new(self),
         }
     }
 
-    fn output(&self) -> Output {
-        self.0.scene.output
-    }
-
-    fn domain(&self) -> Domain {
-        self.0.domain
-    }
-
-    fn particles(&self) -> &Particles {
-        &self.0.particles
-    }
-
-    fn seed(&self) -> Option<u64> {
-        self.0.scene.start.seed()
-    }
-
-    fn start_file(&self) -> Option<&Path> {
-        self.0.scene.start.file()
-    }
-
-    fn facts(&self) -> Vec<Fact> {
-        facts(&self.0)
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &self.0.warnings
-    }
-
-    fn choices(&self) -> &[String] {
-        &self.0.choices
-    }
-
-    fn left_out(&self) -> &[String] {
-        &self.0.left_out
-    }
-
-    fn step_limits(&self) -> Vec<StepLimit> {
-        step_limits(&self.0)
-    }
-
-    fn expected_error(&self) -> Option<Fact> {
-        expected_error(&self.0)
-    }
-
-    fn memory(&self) -> Foreseen {
-        memory::foreseen(&self.0)
-    }
-
     fn settings(&self) -> Map<String, Value> {
-        let Checked { scene, domain, particles, geometry, .. } = &self.0;
+        let Checked { scene, domain, particles, geometry, .. } = self;
         let discs: f64 = particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius.powi(2)).sum();
         let cell_edge = scene.needs_lattice().then_some(geometry.frame.edge);
         let settings = [
@@ -135,13 +91,19 @@ impl Prepared for Discs {
         ];
         settings.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
     }
+}
+
+impl Startable for Checked {
+    fn particles(&self) -> &Particles {
+        &self.particles
+    }
 
     fn programs(&self) -> Vec<VectorProgram> {
-        let Checked { scene, particles, .. } = &self.0;
+        let Checked { scene, particles, .. } = self;
         if !scene.needs_lattice() {
             return vec![];
         }
-        let model = model(&self.0);
+        let model = model(self);
         let lengths = Lengths::new(&model, particles.grain_count(), particles.len());
         let as_any = |step: StepProgram| VectorProgram {
             part: step.part.name(),
@@ -155,16 +117,16 @@ impl Prepared for Discs {
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
         let engine = match purpose {
-            Purpose::Run => assemble_following_energy(&self.0)?,
-            Purpose::Measurement => assemble(&self.0)?,
+            Purpose::Run => assemble_following_energy(self)?,
+            Purpose::Measurement => assemble(self)?,
         };
-        let run_monitor = (purpose == Purpose::Run).then(|| RunMonitor::of(&self.0));
-        Ok(Box::new(Running::new(&self.0, engine, run_monitor)))
+        let run_monitor = (purpose == Purpose::Run).then(|| RunMonitor::of(self));
+        Ok(Box::new(Running::new(self, engine, run_monitor)))
     }
 
-    fn started_from(&self, particles: Particles) -> Box<dyn Prepared> {
-        let estimates = Estimates::of(&self.0.scene, &particles);
-        Box::new(Discs(Checked { particles, estimates, ..self.0.clone() }))
+    fn started_from(&self, particles: Particles) -> Prepared {
+        let estimates = Estimates::of(&self.scene, &particles);
+        Checked { particles, estimates, ..self.clone() }.prepared()
     }
 }
 

@@ -253,12 +253,13 @@ const AXES: &[Axis] = &[
     },
 ];
 
-fn setting_of(prepared: &dyn Prepared, name: &str) -> Option<String> {
-    Some(prepared.settings().get(name)?.as_str()?.to_owned())
+fn setting_of(prepared: &Prepared, name: &str) -> Option<String> {
+    Some(prepared.settings.get(name)?.as_str()?.to_owned())
 }
 
-fn fact_of(prepared: &dyn Prepared, name: &str) -> Option<String> {
-    let fact = prepared.facts().into_iter().filter_map(|fact| fact.data).find(|(known, _)| *known == name)?;
+fn fact_of(prepared: &Prepared, name: &str) -> Option<String> {
+    let fact =
+        prepared.facts.iter().filter_map(|fact| fact.data.as_ref()).find(|(known, _)| *known == name)?;
     Some(fact.1.as_str()?.to_owned())
 }
 
@@ -270,7 +271,7 @@ fn inertia(values: &Values) -> Option<f64> {
 }
 
 /// The order of positions after contacts: that of the scheme, or what the law, or the start, leaves of it.
-fn theory(values: &Values, prepared: &dyn Prepared, integrator: &Setting) -> Option<Theory> {
+fn theory(values: &Values, prepared: &Prepared, integrator: &Setting) -> Option<Theory> {
     let is_damped = values.number(&NORMAL_DAMPING)? > 0.0;
     let scheme = match integrator.name {
         "velocity-verlet" if is_damped => (1.0, "velocities of the damping lag by half a step"),
@@ -294,7 +295,7 @@ fn theory(values: &Values, prepared: &dyn Prepared, integrator: &Setting) -> Opt
 }
 
 /// Whether discs touch at the start while they move; where all are at rest the third derivatives are zero.
-fn touches(prepared: &dyn Prepared) -> bool {
+fn touches(prepared: &Prepared) -> bool {
     let moves = prepared.particles().grains().iter().any(|disc| disc.velocity != [0.0; 3]);
     const CONTACTS: usize = place(QUANTITIES, "contacts");
     let started = || prepared.start(Purpose::Measurement);

@@ -9,47 +9,34 @@ use super::starts::ORBIT;
 use crate::domain::{Domain, Side};
 use crate::memory::{Foreseen, PROGRAM, available};
 use crate::method::{
-    Beyond, Every, Fact, Failure, Prepared, Purpose, Schedule, Simulation, StepLimit, Until, VectorProgram,
+    Beyond, Fact, Failure, Prepared, Purpose, Schedule, Simulation, Startable, StepLimit, VectorProgram,
 };
 use crate::particles::{Particle, Particles};
-use crate::scene::{Output, Warning};
 use crate::words::Words;
 use serde_json::{Map, Value, json};
-use std::path::Path;
 
-impl Prepared for Checked {
-    fn scene(&self) -> String {
-        self.scene.to_toml()
-    }
-
-    fn schedule(&self) -> Schedule {
-        let run = self.scene.run;
-        Schedule {
-            until: Until::Steps(run.steps),
-            rows: Every::steps(run.thermo_every),
-            snapshots: Every::steps(run.snapshot_every),
-            checkpoints: Every::checkpoints(run.checkpoint_every.map(Every::steps)),
+impl Checked {
+    /// What is offered.
+    pub(super) fn prepared(self) -> Prepared {
+        let scene = &self.scene;
+        Prepared {
+            scene: scene.to_toml(),
+            schedule: Schedule::of_steps(&scene.run),
+            output: scene.output,
+            domain: Domain { origin: [0.0; 3], sides: [Side::Open; 3] },
+            seed: scene.start.is_drawn().then_some(scene.start.seed),
+            start_file: None,
+            facts: self.facts(),
+            warnings: vec![],
+            choices: self.choices.clone(),
+            left_out: vec![],
+            step_limits: self.step_limits(),
+            expected_error: None,
+            memory: self.memory(),
+            settings: self.settings(),
+            event_columns: None,
+            model: Box::new(self),
         }
-    }
-
-    fn output(&self) -> Output {
-        self.scene.output
-    }
-
-    fn domain(&self) -> Domain {
-        Domain { origin: [0.0; 3], sides: [Side::Open; 3] }
-    }
-
-    fn particles(&self) -> &Particles {
-        &self.particles
-    }
-
-    fn seed(&self) -> Option<u64> {
-        self.scene.start.is_drawn().then_some(self.scene.start.seed)
-    }
-
-    fn start_file(&self) -> Option<&Path> {
-        None
     }
 
     fn facts(&self) -> Vec<Fact> {
@@ -62,18 +49,6 @@ impl Prepared for Checked {
             Fact::new("integrator", scene.scheme.word(), "integrator", scene.scheme.word()),
             Fact::words("steps", format!("{} of dt = {}", scene.run.steps, scene.dt)),
         ]
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &[]
-    }
-
-    fn choices(&self) -> &[String] {
-        &self.choices
-    }
-
-    fn left_out(&self) -> &[String] {
-        &[]
     }
 
     fn step_limits(&self) -> Vec<StepLimit> {
@@ -138,6 +113,12 @@ impl Prepared for Checked {
         ];
         settings.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
     }
+}
+
+impl Startable for Checked {
+    fn particles(&self) -> &Particles {
+        &self.particles
+    }
 
     fn programs(&self) -> Vec<VectorProgram> {
         counted(self.scene.softening, self.particles.len())
@@ -147,7 +128,7 @@ impl Prepared for Checked {
         Ok(Box::new(Running::new(self, purpose)?))
     }
 
-    fn started_from(&self, particles: Particles) -> Box<dyn Prepared> {
-        Box::new(Checked { particles, ..self.clone() })
+    fn started_from(&self, particles: Particles) -> Prepared {
+        Checked { particles, ..self.clone() }.prepared()
     }
 }

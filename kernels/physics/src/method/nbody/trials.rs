@@ -98,12 +98,12 @@ const PARAMETERS: &[Parameter] = &[
     },
 ];
 
-fn setting_of(prepared: &dyn Prepared, name: &str) -> Option<String> {
-    Some(prepared.settings().get(name)?.as_str()?.to_owned())
+fn setting_of(prepared: &Prepared, name: &str) -> Option<String> {
+    Some(prepared.settings.get(name)?.as_str()?.to_owned())
 }
 
 /// The order of positions: that of the scheme, for nothing jumps.
-fn theory(_: &Values, _: &dyn Prepared, integrator: &Setting) -> Option<Theory> {
+fn theory(_: &Values, _: &Prepared, integrator: &Setting) -> Option<Theory> {
     let order = match integrator.name {
         "damped-euler" => 1.0,
         "leapfrog" => 2.0,
