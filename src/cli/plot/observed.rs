@@ -1,6 +1,6 @@
 //! The observables of a run: `thermo.csv` as charts, and a line for each in the terminal.
 
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
 use crate::report::table::{Cell, Table};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -193,24 +193,25 @@ impl Observed {
         let names: Vec<String> = columns.iter().map(|&column| quoted(&self.columns[column])).collect();
         let every = self.rows.len().div_ceil(POINTS);
         let time = self.time();
-        let series = columns.iter().zip(&names).enumerate().map(|(hue, (&column, name))| Series {
-            name: name.replace('_', " "),
-            style: Style::Line,
-            hue,
-            points: self.rows.iter().step_by(every).map(|row| Point::at(row[time], row[column])).collect(),
+        let series = columns.iter().zip(&names).enumerate().map(|(hue, (&column, name))| {
+            Series::new(
+                name.replace('_', " "),
+                Style::Line,
+                hue,
+                self.rows.iter().step_by(every).map(|row| Point::at(row[time], row[column])),
+            )
         });
         let label = if names.len() == 1 { names[0].replace('_', " ") } else { "value".to_owned() };
-        Figure {
-            name: names.join("-").replace('_', "-"),
-            title: names.iter().map(|name| name.replace('_', " ")).collect::<Vec<_>>().join(", "),
-            caption: "Of thermo.csv.".into(),
-            picture: Picture::Chart(Chart {
-                x: Axis::linear("time", Some("the scene's unit")),
-                y: Axis::linear(&label, (!unit.is_empty()).then_some(unit)),
-                series: series.collect(),
-                bands: vec![],
-            }),
-        }
+        Chart::of(
+            Axis::linear("time", Some("the scene's unit")),
+            Axis::linear(&label, (!unit.is_empty()).then_some(unit)),
+        )
+        .with(series)
+        .figure(
+            names.join("-").replace('_', "-"),
+            names.iter().map(|name| name.replace('_', " ")).collect::<Vec<_>>().join(", "),
+        )
+        .caption("Of thermo.csv.")
     }
 
     /// Every column in a line: first, last, and its course.

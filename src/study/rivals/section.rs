@@ -2,7 +2,7 @@
 
 use super::{Contest, Rival, rivals};
 use crate::console::Failure;
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
 use crate::report::{Cell, Part, Section, Table, Verdict};
 use crate::results::Made;
 use crate::statistics::median;
@@ -40,28 +40,17 @@ fn ratios_of(data: &[Rival], (system, way, _): &(&str, &str, f64)) -> Option<[f6
 fn section(data: &[Rival]) -> Section {
     let met = |aim: &&(&str, &str, f64)| ratios_of(data, aim).is_some_and(|[low, _]| low >= aim.2);
     let aims = AIMS.iter().map(|aim| format!("{} {} {:.1}", aim.0, aim.1, aim.2));
-    Section {
-        name: NAME.into(),
-        title: "Beside other programs".into(),
-        part: Part::Host,
-        question: "How many times as fast as other programs is ours, on the same system and one core?".into(),
-        expected: format!(
+    Section::new(NAME, "Beside other programs", Part::Host)
+        .asks("How many times as fast as other programs is ours, on the same system and one core?")
+        .expects(format!(
             "Our aims, times as fast: {}. For granular discs none is stated.",
             aims.collect::<Vec<_>>().join(", ")
-        ),
-        answer: answer(data),
-        details: details(data),
-        verdict: Verdict::aim(AIMS.iter().all(|aim| met(&aim))),
-        again: format!("stripmine reproduce --only {NAME}"),
-        figures: vec![figure(data)],
-        tables: vec![contests(data), same(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![],
-        // Shipped: what is said is of the host that it names, wherever it is read.
-        depends_on_host: false,
-        provenance: None,
-    }
+        ))
+        .answers(answer(data))
+        .verdict(Verdict::aim(AIMS.iter().all(|aim| met(&aim))))
+        .details(details(data))
+        .figures([figure(data)])
+        .tables([contests(data), same(data)])
 }
 
 /// The range of the ratios of every system.
@@ -128,25 +117,20 @@ fn figure(data: &[Rival]) -> Figure {
             Some(known) => known.points.push(point),
             None => {
                 let hue = series.len();
-                series.push(Series { name, style: Style::Joined, hue, points: vec![point] });
+                series.push(Series::new(name, Style::Joined, hue, [point]));
             }
         }
     }
     for known in &mut series {
         known.points.sort_by(|a, b| a.x.total_cmp(&b.x));
     }
-    Figure {
-        name: "ratio-over-packing".into(),
-        title: "Granular discs: ours over LAMMPS, one core".into(),
-        caption: "Particle-steps a second of processor time, ours over theirs; medians and range over the rounds. At 1 both are as fast."
-            .into(),
-        picture: Picture::Chart(Chart {
-            x: Axis { limits: Some([0.0, 0.9]), ..Axis::linear("packing fraction", None) },
-            y: Axis::logarithmic("times as fast as LAMMPS", None),
-            series,
-            bands: vec![],
-        }),
-    }
+    Chart::of(
+        Axis::linear("packing fraction", None).between([0.0, 0.9]),
+        Axis::logarithmic("times as fast as LAMMPS", None),
+    )
+    .with(series)
+    .figure("ratio-over-packing", "Granular discs: ours over LAMMPS, one core")
+    .caption("Particle-steps a second of processor time, ours over theirs; medians and range over the rounds. At 1 both are as fast.")
 }
 
 fn contests(data: &[Rival]) -> Table {

@@ -1,7 +1,7 @@
 //! Collisions a second of both engines.
 
 use crate::laboratory::hard_disks::study::rates::{ENGINES, Rate, Rates};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
 use crate::report::{Cell, Part, Section, Table, Verdict};
 
 /// Million collisions a second of the source's program, with 2500 discs and with 2 500 000: the best over the densities.
@@ -20,31 +20,22 @@ pub fn section(data: &Rates) -> Section {
         });
         1e-6 * of.map(Rate::median).fold(0.0, f64::max)
     };
-    Section {
-        name: "hard-disks-rates".into(),
-        title: "Hard discs: collisions a second".into(),
-        part: Part::Host,
-        question: "How many collisions a second?".into(),
-        expected: "ISO99: 0.128 million a second with 2500 discs and 0.058 million with 2 500 000, on an Alpha of 600 MHz. Our aim: at least \
-                   5.5 million with 2500 discs at ν ≥ 0.5, and 1 million by the source's way."
-            .into(),
-        answer: format!(
+    Section::new("hard-disks-rates", "Hard discs: collisions a second", Part::Host)
+        .asks("How many collisions a second?")
+        .expects("ISO99: 0.128 million a second with 2500 discs and 0.058 million with 2 500 000, on an Alpha of 600 MHz. Our aim: at least 5.5 \
+                  million with 2500 discs at ν ≥ 0.5, and 1 million by the source's way.")
+        .answers(format!(
             "One thread, {}: at best {:.2} million collisions a second by lists of each disc's own, {:.2} million the source's way.",
             data.instruction_set,
             best(ENGINES[0]),
             best(ENGINES[1])
-        ),
-        details: vec!["Both engines find the same collisions, to the bit.".into()],
-        verdict: Verdict::aim(aimed(ENGINES[0]) >= 5.5 && aimed(ENGINES[1]) >= 1.0),
-        again: "stripmine reproduce --only hard-disks-rates".into(),
-        figures: vec![figure(data)],
-        tables: vec![table(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![1],
-        depends_on_host: true,
-        provenance: None,
-    }
+        ))
+        .verdict(Verdict::aim(aimed(ENGINES[0]) >= 5.5 && aimed(ENGINES[1]) >= 1.0))
+        .details(["Both engines find the same collisions, to the bit.".into()])
+        .figures([figure(data)])
+        .tables([table(data)])
+        .seeds([1])
+        .depends_on_host()
 }
 
 fn sizes(data: &Rates) -> Vec<usize> {
@@ -70,28 +61,24 @@ fn figure(data: &Rates) -> Figure {
                 });
                 Point { x: rate.packing_fraction, y: 1e-6 * rate.median(), spread: Some([low, high]) }
             });
-            series.push(Series {
-                name: format!("{engine}, {} discs", Cell::Number(first.discs as f64, 0).for_reading()),
-                style: if number == 0 { Style::Joined } else { Style::Dashed },
-                hue: place,
-                points: points.collect(),
-            });
+            series.push(Series::new(
+                format!("{engine}, {} discs", Cell::Number(first.discs as f64, 0).for_reading()),
+                if number == 0 { Style::Joined } else { Style::Dashed },
+                place,
+                points,
+            ));
         }
     }
-    Figure {
-        name: "rates".into(),
-        title: "Collisions a second of processor time".into(),
-        caption: format!(
-            "Medians of rounds in which the engines take turns, {}, one thread; bars from the lowest to the highest.",
-            data.instruction_set
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::linear("packing fraction ν", None),
-            y: Axis::logarithmic("rate", Some("million collisions/s")),
-            series,
-            bands: vec![],
-        }),
-    }
+    Chart::of(
+        Axis::linear("packing fraction ν", None),
+        Axis::logarithmic("rate", Some("million collisions/s")),
+    )
+    .with(series)
+    .figure("rates", "Collisions a second of processor time")
+    .caption(format!(
+        "Medians of rounds in which the engines take turns, {}, one thread; bars from the lowest to the highest.",
+        data.instruction_set
+    ))
 }
 
 fn table(data: &Rates) -> Table {

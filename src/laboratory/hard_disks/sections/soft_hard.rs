@@ -1,7 +1,7 @@
 //! Soft against hard.
 
 use crate::laboratory::hard_disks::study::soft_hard::{Mean, Model, SoftHard};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
 use crate::report::{Cell, Part, Section, Table, Verdict};
 use stripmine_physics::number::in_tens;
 
@@ -16,43 +16,41 @@ pub fn section(data: &SoftHard, again: String) -> Section {
     let first = soft.first().map_or(f64::NAN, |model| off(model));
     let last = soft.last().map_or(f64::NAN, |model| off(model));
     let dearer = soft.last().map_or(f64::NAN, |model| model.cost) / hard.map_or(f64::NAN, |hard| hard.cost);
-    Section {
-        name: "soft-hard".into(),
-        title: "Soft against hard discs".into(),
-        part: Part::Physics,
-        question: "From which stiffness on do soft discs behave as hard ones, and what does that cost?".into(),
-        expected: "Hard discs are the limit of stiff ones; soft discs press as hard ones of their effective diameter do (Barker and \
-                   Henderson)."
-            .into(),
-        answer: format!(
+    Section::new("soft-hard", "Soft against hard discs", Part::Physics)
+        .asks("From which stiffness on do soft discs behave as hard ones, and what does that cost?")
+        .expects("Hard discs are the limit of stiff ones; soft discs press as hard ones of their effective diameter do (Barker and Henderson).")
+        .answers(format!(
             "From a stiffness of {} to {} the pressure comes from {first:.1} % to {last:.1} % of that of hard discs, and the stiffest discs cost \
              {dearer:.0} times as much as hard ones.",
             in_tens(soft.first().and_then(|model| model.stiffness).unwrap_or(f64::NAN), 2),
             in_tens(soft.last().and_then(|model| model.stiffness).unwrap_or(f64::NAN), 2),
-        ),
-        details: vec![format!("{} discs at ν = {}.", data.discs, data.question.packing_fraction)],
-        verdict: Verdict::reproduced(last.abs() < first.abs() && last.abs() < 2.0),
-        again,
-        figures: vec![
-            over_stiffness(data, "pressure", "Compressibility of the elastic fluid", "compressibility Z", |model| {
-                model.compressibility
-            }),
+        ))
+        .verdict(Verdict::reproduced(last.abs() < first.abs() && last.abs() < 2.0))
+        .details([format!("{} discs at ν = {}.", data.discs, data.question.packing_fraction)])
+        .figures([
+            over_stiffness(
+                data,
+                "pressure",
+                "Compressibility of the elastic fluid",
+                "compressibility Z",
+                |model| model.compressibility,
+            ),
             over_stiffness(
                 data,
                 "cooled",
-                &format!("Temperature after a time of {:.2}, restitution {}", data.cooling_time, data.question.restitution),
+                &format!(
+                    "Temperature after a time of {:.2}, restitution {}",
+                    data.cooling_time, data.question.restitution
+                ),
                 "temperature over that at the start",
                 |model| model.cooled,
             ),
             cost(data),
-        ],
-        tables: vec![table(data)],
-        excerpt: None,
-        film: None,
-        seeds: (1..=data.question.seeds).collect(),
-        depends_on_host: true,
-        provenance: None,
-    }
+        ])
+        .tables([table(data)])
+        .again(again)
+        .seeds(1..=data.question.seeds)
+        .depends_on_host()
 }
 
 fn stiffness_axis() -> Axis {
@@ -64,72 +62,56 @@ fn over_stiffness(data: &SoftHard, name: &str, title: &str, label: &str, of: fn(
     let soft = || data.models.iter().filter_map(|model| Some((model.stiffness?, model)));
     let ends: Vec<f64> =
         [soft().next(), soft().next_back()].into_iter().flatten().map(|(stiffness, _)| stiffness).collect();
-    let mut series = vec![Series {
-        name: "soft discs".into(),
-        style: Style::Points,
-        hue: 0,
-        points: soft()
-            .map(|(x, model)| {
-                let [y, error] = of(model);
-                Point { x, y, spread: Some([y - 2.0 * error, y + 2.0 * error]) }
-            })
-            .collect(),
-    }];
+    let mut series = vec![Series::new(
+        "soft discs",
+        Style::Points,
+        0,
+        soft().map(|(x, model)| {
+            let [y, error] = of(model);
+            Point { x, y, spread: Some([y - 2.0 * error, y + 2.0 * error]) }
+        }),
+    )];
     if let Some(hard) = data.hard() {
         let [mean, _] = of(hard);
         let points = ends.iter().map(|&x| Point::at(x, mean)).collect();
-        series.push(Series { name: "hard discs".into(), style: Style::Dashed, hue: 1, points });
+        series.push(Series::new("hard discs", Style::Dashed, 1, points));
     }
     if name == "pressure" {
-        series.push(Series {
-            name: "hard discs of the effective diameter".into(),
-            style: Style::Line,
-            hue: 2,
-            points: soft().map(|(x, model)| Point::at(x, model.effective)).collect(),
-        });
+        series.push(Series::new(
+            "hard discs of the effective diameter",
+            Style::Line,
+            2,
+            soft().map(|(x, model)| Point::at(x, model.effective)),
+        ));
     }
-    Figure {
-        name: name.into(),
-        title: title.into(),
-        caption: format!("{} seeds; bars are two standard errors.", data.question.seeds),
-        picture: Picture::Chart(Chart {
-            x: stiffness_axis(),
-            y: Axis::linear(label, None),
-            series,
-            bands: vec![],
-        }),
-    }
+    Chart::of(stiffness_axis(), Axis::linear(label, None))
+        .with(series)
+        .figure(name, title)
+        .caption(format!("{} seeds; bars are two standard errors.", data.question.seeds))
 }
 
 fn cost(data: &SoftHard) -> Figure {
     let soft = || data.models.iter().filter_map(|model| Some((model.stiffness?, model)));
     let ends: Vec<f64> =
         [soft().next(), soft().next_back()].into_iter().flatten().map(|(stiffness, _)| stiffness).collect();
-    let mut series = vec![Series {
-        name: "soft discs, 40 steps a contact".into(),
-        style: Style::Joined,
-        hue: 0,
-        points: soft().map(|(x, model)| Point::at(x, model.cost)).collect(),
-    }];
+    let mut series = vec![Series::new(
+        "soft discs, 40 steps a contact",
+        Style::Joined,
+        0,
+        soft().map(|(x, model)| Point::at(x, model.cost)),
+    )];
     if let Some(hard) = data.hard() {
-        series.push(Series {
-            name: "hard discs".into(),
-            style: Style::Dashed,
-            hue: 1,
-            points: ends.iter().map(|&x| Point::at(x, hard.cost)).collect(),
-        });
+        series.push(Series::new(
+            "hard discs",
+            Style::Dashed,
+            1,
+            ends.iter().map(|&x| Point::at(x, hard.cost)),
+        ));
     }
-    Figure {
-        name: "cost".into(),
-        title: "What a unit of time costs".into(),
-        caption: "Processor seconds of the elastic fluid, looks included; the median of the seeds.".into(),
-        picture: Picture::Chart(Chart {
-            x: stiffness_axis(),
-            y: Axis::logarithmic("processor time for a unit of simulated time", Some("s")),
-            series,
-            bands: vec![],
-        }),
-    }
+    Chart::of(stiffness_axis(), Axis::logarithmic("processor time for a unit of simulated time", Some("s")))
+        .with(series)
+        .figure("cost", "What a unit of time costs")
+        .caption("Processor seconds of the elastic fluid, looks included; the median of the seeds.")
 }
 
 fn table(data: &SoftHard) -> Table {

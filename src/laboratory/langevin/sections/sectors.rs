@@ -1,8 +1,8 @@
 //! Wall time over the number of sectors.
 
 use crate::laboratory::langevin::study::sectors::{Fluid, Row, SEARCHES, SOURCE, Sectors, THREADS};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
+use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 
 /// Two threads help where they are at least so many times as fast as one.
 const HELPS: f64 = 1.2;
@@ -77,31 +77,22 @@ pub fn section(data: &Sectors) -> Section {
         )
     });
     let [one, two] = lists.map_or([f64::NAN; 2], |row| row.seconds);
-    Section {
-        name: "langevin-sectors".into(),
-        title: "Langevin: wall time over the number of sectors".into(),
-        part: Part::Host,
-        question: "How does the time of a step depend on the number of sectors, and do two threads help?".into(),
-        expected: "LAN17: 100 steps of 40 000 particles take 1008 s with 3 sectors along a side, as 1/d² up to 20, and 4 s from 100 on; two \
-                   threads are 1.92 times as fast as one with 3 sectors and do not help at the best d."
-            .into(),
-        answer: format!("{opposite}{sought}"),
-        details: vec![format!(
+    Section::new("langevin-sectors", "Langevin: wall time over the number of sectors", Part::Host)
+        .asks("How does the time of a step depend on the number of sectors, and do two threads help?")
+        .expects("LAN17: 100 steps of 40 000 particles take 1008 s with 3 sectors along a side, as 1/d² up to 20, and 4 s from 100 on; two \
+                  threads are 1.92 times as fast as one with 3 sectors and do not help at the best d.")
+        .answers(format!("{opposite}{sought}"))
+        .verdict(Verdict::of_claims(&claims))
+        .details([format!(
             "{falling}{floored}Neighbour lists take {one:.3} s on one thread and {two:.3} s on two, which are {:.2} times as fast. Where the \
              search is left open it takes at most {:.0} % longer than the best of all.",
             one / two,
             100.0 * data.fluids.iter().filter_map(loss).fold(0.0, f64::max)
-        )],
-        verdict: Verdict::of_claims(&claims),
-        again: "stripmine reproduce --only langevin-sectors".into(),
-        figures: vec![figure(data)],
-        tables: vec![table(data), searches(data), phases(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![1],
-        depends_on_host: true,
-        provenance: None,
-    }
+        )])
+        .figures([figure(data)])
+        .tables([table(data), searches(data), phases(data)])
+        .seeds([1])
+        .depends_on_host()
 }
 
 /// By how much `auto` is slower than the best, relative to it.
@@ -146,34 +137,20 @@ fn figure(data: &Sectors) -> Figure {
         let of_sectors = || data.rows.iter().filter_map(|row| Some((row.per_side? as f64, row)));
         let ours = of_sectors().map(|(count, row)| Point::at(count, row.seconds[which]));
         let source = of_sectors().filter_map(|(count, row)| Some(Point::at(count, row.source?[which])));
-        series.push(Series { name: name.clone(), style: Style::Joined, hue: which, points: ours.collect() });
-        series.push(Series {
-            name: format!("source, {name}"),
-            style: Style::Points,
-            hue: which + 2,
-            points: source.collect(),
-        });
+        series.push(Series::new(name.clone(), Style::Joined, which, ours));
+        series.push(Series::new(format!("source, {name}"), Style::Points, which + 2, source));
     }
     if let Some(lists) = data.rows.iter().find(|row| row.per_side.is_none()) {
         let points = [3.0, 800.0].map(|count| Point::at(count, lists.seconds[0]));
-        series.push(Series {
-            name: "lists, 1 thread".into(),
-            style: Style::Dashed,
-            hue: 6,
-            points: points.to_vec(),
-        });
+        series.push(Series::new("lists, 1 thread", Style::Dashed, 6, points.to_vec()));
     }
-    Figure {
-        name: "wall-time".into(),
-        title: "Wall time of 100 steps".into(),
-        caption: format!("{} particles. With 3 sectors along a side every pair is tried.", data.particles),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("sectors along a side", None),
-            y: Axis::logarithmic("wall time of 100 steps", Some("s")),
-            series,
-            bands: vec![],
-        }),
-    }
+    Chart::of(
+        Axis::logarithmic("sectors along a side", None),
+        Axis::logarithmic("wall time of 100 steps", Some("s")),
+    )
+    .with(series)
+    .figure("wall-time", "Wall time of 100 steps")
+    .caption(format!("{} particles. With 3 sectors along a side every pair is tried.", data.particles))
 }
 
 fn table(data: &Sectors) -> Table {
@@ -200,21 +177,12 @@ fn table(data: &Sectors) -> Table {
 }
 
 fn phases(data: &Sectors) -> Table {
-    let rows = data
-        .phases
-        .iter()
-        .map(|(name, seconds)| vec![Cell::Text(name.clone()), Cell::Number(1e3 * seconds, 2)]);
-    Table {
-        name: "phases".into(),
-        title: "Where the time goes: 100 steps by lists on one thread".into(),
-        columns: ["part", "time (ms)"].map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        notes: vec![
-            "correct_predict holds velocities, positions, noise and wrapping; index the lists and their order. The source: writing \
-             3.8 s, ordering 0.41, velocities 0.08, boundary 0.03, noise 0.03."
-                .into(),
-        ],
-    }
+    Rows::of(&data.phases)
+        .text("part", |(name, _)| name.clone())
+        .number("time (ms)", 2, |(_, seconds)| 1e3 * seconds)
+        .table("phases", "Where the time goes: 100 steps by lists on one thread")
+        .note("correct_predict holds velocities, positions, noise and wrapping; index the lists and their order. The source: writing 3.8 s, \
+               ordering 0.41, velocities 0.08, boundary 0.03, noise 0.03.")
 }
 
 #[cfg(test)]

@@ -50,9 +50,9 @@ fn operations(model: &HostModel) -> Table {
         rows: rows.collect(),
         notes: vec![
             format!(
-                "Passes over vectors in the first-level cache: t = t0 + n tau. Vectors of {shortest} to {longest} elements; timer steps \
-                 of {timer} ns. Measured in {seconds:.0} s on a machine that was {state}: what counts is the middle of the samples. Half of \
-                 them lie within {:.1} % of it, their lowest tenth {:.1} % below; the two halves of the measurement differ by {:.1} %.",
+                "Passes over vectors in the first-level cache: t = t0 + n tau. Vectors of {shortest} to {longest} elements; timer steps of \
+                 {timer} ns. Measured in {seconds:.0} s on a machine that was {state}: what counts is the middle of the samples. Half of them \
+                 lie within {:.1} % of it, their lowest tenth {:.1} % below; the two halves of the measurement differ by {:.1} %.",
                 100.0 * spread,
                 100.0 * low,
                 100.0 * disagreement
@@ -77,9 +77,9 @@ fn loops(model: &HostModel) -> Table {
         columns: headings(&["lanes", "operations of the class", "ns an element"]),
         rows: rows.collect(),
         notes: vec![format!(
-            "Fitted to the programs of the lattice method, which deviate from it by {:.0} % (the median). A run takes {:.1} ns in addition, \
-             an element beyond whole registers {:.1} times as long. Of the shorter of computing and waiting for streams {:.0} % hide behind \
-             the longer. In the interpreter a pass among others takes {:.2} times as long to begin as in a drill of nothing but itself.",
+            "Fitted to the programs of the lattice method, which deviate from it by {:.0} % (the median). A run takes {:.1} ns in addition, an \
+             element beyond whole registers {:.1} times as long. Of the shorter of computing and waiting for streams {:.0} % hide behind the \
+             longer. In the interpreter a pass among others takes {:.2} times as long to begin as in a drill of nothing but itself.",
             100.0 * model.loops.residual,
             model.loops.start.value,
             model.loops.left.value,
@@ -148,8 +148,8 @@ fn levels(model: &HostModel) -> Table {
         ]),
         rows: rows.collect(),
         notes: vec![format!(
-            "A pass whose operands come from beyond the nearest level waits {:.3} ns an element in addition. The passes and \
-             programs that this was fitted to deviate by {:.0} % (the median).",
+            "A pass whose operands come from beyond the nearest level waits {:.3} ns an element in addition. The passes and programs that this \
+             was fitted to deviate by {:.0} % (the median).",
             model.operand,
             100.0 * model.measured.residual
         )],

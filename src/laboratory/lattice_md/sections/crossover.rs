@@ -1,8 +1,8 @@
 //! Where the lattice overtakes its rivals.
 
 use crate::laboratory::lattice_md::study::crossover::{Crossover, METHODS, Sample};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
+use crate::report::{Cell, Part, Section, Table};
 
 /// What came out.
 pub fn section(data: &Crossover) -> Section {
@@ -14,27 +14,21 @@ pub fn section(data: &Crossover) -> Section {
         };
         format!("{} with {} discs {at}", crossing.precision, count(crossing.particles))
     });
-    Section {
-        name: "crossover".into(),
-        title: "Lattice, neighbour lists and sectors, each as fast as it goes".into(),
-        part: Part::Host,
-        question: "From which density on is the lattice faster than neighbour lists and sectors, each as fast as it goes?".into(),
-        expected: "BP93 expects the vector method to pay where discs are dense.".into(),
-        answer: format!("Packing fraction from which on the lattice is the fastest: {}.", named.collect::<Vec<_>>().join("; ")),
-        details: vec![format!(
+    Section::new("crossover", "Lattice, neighbour lists and sectors, each as fast as it goes", Part::Host)
+        .asks("From which density on is the lattice faster than neighbour lists and sectors, each as fast as it goes?")
+        .expects("BP93 expects the vector method to pay where discs are dense.")
+        .answers(format!(
+            "Packing fraction from which on the lattice is the fastest: {}.",
+            named.collect::<Vec<_>>().join("; ")
+        ))
+        .details([format!(
             "Whole steps with friction, velocity Verlet, one thread, {}, moving discs.",
             data.instruction_set
-        )],
-        verdict: Verdict::Measured,
-        again: "stripmine reproduce --only crossover".into(),
-        figures: groups(data).into_iter().map(|group| figure(data, group)).collect(),
-        tables: vec![rates(data), phases(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![1],
-        depends_on_host: true,
-        provenance: None,
-    }
+        )])
+        .figures(groups(data).into_iter().map(|group| figure(data, group)))
+        .tables([rates(data), phases(data)])
+        .seeds([1])
+        .depends_on_host()
 }
 
 fn count(particles: usize) -> String {
@@ -56,34 +50,32 @@ fn of<'a>(
 }
 
 fn figure(data: &Crossover, group: (&'static str, usize)) -> Figure {
-    let series = METHODS.into_iter().enumerate().map(|(hue, method)| Series {
-        name: method.into(),
-        style: Style::Joined,
-        hue,
-        points: of(data, group)
-            .filter(|sample| sample.method == method)
-            .map(|sample| {
+    let series = METHODS.into_iter().enumerate().map(|(hue, method)| {
+        Series::new(
+            method,
+            Style::Joined,
+            hue,
+            of(data, group).filter(|sample| sample.method == method).map(|sample| {
                 let (best, median) = (1e-6 * sample.rate, 1e-6 * sample.median);
                 Point {
                     x: sample.packing_fraction,
                     y: best,
                     spread: Some([best.min(median), best.max(median)]),
                 }
-            })
-            .collect(),
+            }),
+        )
     });
     let (precision, particles) = group;
-    Figure {
-        name: format!("crossover_{precision}_{particles}"),
-        title: format!("Rate over the packing fraction, {precision}, {} discs", count(particles)),
-        caption: "Points: best repeat in processor time; bars reach to the median in wall time.".into(),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("packing fraction", None),
-            y: Axis::logarithmic("rate", Some("million particle-steps/s")),
-            series: series.collect(),
-            bands: vec![],
-        }),
-    }
+    Chart::of(
+        Axis::logarithmic("packing fraction", None),
+        Axis::logarithmic("rate", Some("million particle-steps/s")),
+    )
+    .with(series)
+    .figure(
+        format!("crossover_{precision}_{particles}"),
+        format!("Rate over the packing fraction, {precision}, {} discs", count(particles)),
+    )
+    .caption("Points: best repeat in processor time; bars reach to the median in wall time.")
 }
 
 fn rates(data: &Crossover) -> Table {

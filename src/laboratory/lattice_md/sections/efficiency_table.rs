@@ -12,27 +12,14 @@ use stripmine_physics::number::significant;
 
 /// What came out.
 pub fn section(data: &EfficiencyTable) -> Section {
-    Section {
-        name: "table".into(),
-        title: "The efficiency table".into(),
-        part: report::Part::Machine,
-        question: "How many vector operations and clock periods does a step take?".into(),
-        expected: "BP93, section 3, counts 59, 12, 1656 = 24·69 and 54 operations for predictor, index, forces and corrector, each at \
-                   NOP·(n + D) clock periods with D = 20. It prints no program and no rule of counting."
-            .into(),
-        answer: answer(data),
-        details: details(data),
-        // The same four numbers by one rule: no less would be the source's table.
-        verdict: Verdict::reproduced(data.conventions.all_exact > 0),
-        again: "stripmine reproduce --only table".into(),
-        figures: vec![],
-        tables: tables(data),
-        excerpt: None,
-        film: None,
-        seeds: vec![],
-        depends_on_host: false,
-        provenance: None,
-    }
+    Section::new("table", "The efficiency table", report::Part::Machine)
+        .asks("How many vector operations and clock periods does a step take?")
+        .expects("BP93, section 3, counts 59, 12, 1656 = 24·69 and 54 operations for predictor, index, forces and corrector, each at NOP·(n + D) \
+                  clock periods with D = 20. It prints no program and no rule of counting.")
+        .answers(answer(data))
+        .verdict(Verdict::reproduced(data.conventions.all_exact > 0))
+        .details(details(data))
+        .tables(tables(data))
 }
 
 /// The tables of the dataset: the source's own beside both texts, and the ways of counting.
@@ -79,8 +66,8 @@ fn answer(data: &EfficiencyTable) -> String {
         many => format!("{many} give all four"),
     };
     format!(
-        "The source's own program, written as it is printed and counted with every load and store, has {} operations where 59, 12, \
-         1656 and 54 are printed. Of {} ways of counting it {all}, and none more than {}{nearest}.",
+        "The source's own program, written as it is printed and counted with every load and store, has {} operations where 59, 12, 1656 and 54 \
+         are printed. Of {} ways of counting it {all}, and none more than {}{nearest}.",
         counted.join(", "),
         data.conventions.tried,
         data.conventions.most_exact
@@ -95,25 +82,25 @@ fn details(data: &EfficiencyTable) -> Vec<String> {
     vec![
         format!(
             "One by one, ways of counting that give the printed number: {} for the predictor's 59, {} for the index's 12, {} for the 69 of a \
-             place of the mask, {} for the corrector's 54. 1656 is 24·69, so the source counts nothing outside the loop over the places. A place as printed has {place} \
-             operations with its shifted copies; with its three sums stored it has 69.",
+             place of the mask, {} for the corrector's 54. 1656 is 24·69, so the source counts nothing outside the loop over the places. A place \
+             as printed has {place} operations with its shifted copies; with its three sums stored it has 69.",
             ways(exact[0]),
             ways(exact[1]),
             ways(exact[2]),
             ways(exact[3])
         ),
         format!(
-            "Periodic sides: with a halo, which is what runs here, an image is shifted once a cell and side ({} operations beside the \
-             source's parts copy Index and Test into the halo). Shifts that wrap would need no halo and the nearest image at every place: \
-             {} operations a place and side, {} a step for one periodic side.",
+            "Periodic sides: with a halo, which is what runs here, an image is shifted once a cell and side ({} operations beside the source's \
+             parts copy Index and Test into the halo). Shifts that wrap would need no halo and the nearest image at every place: {} operations a \
+             place and side, {} a step for one periodic side.",
             data.printed.of(Part::Halo),
             data.conventions.nearest_image,
             24 * data.conventions.nearest_image
         ),
         format!(
-            "Clock periods of a step by NOP·(n + D) on {}, at NP = {} and LMAX = {}: {:.0} as printed, {:.0} by the printed text ({:.0} \
-             without the parts that the source does not count), {:.0} by ours. Our text counts its halo, its checks and scaled \
-             derivatives; that its sum is near the printed one is two differences that cancel.",
+            "Clock periods of a step by NOP·(n + D) on {}, at NP = {} and LMAX = {}: {:.0} as printed, {:.0} by the printed text ({:.0} without \
+             the parts that the source does not count), {:.0} by ours. Our text counts its halo, its checks and scaled derivatives; that its sum \
+             is near the printed one is two differences that cancel.",
             data.machine,
             data.particles,
             data.cells,
@@ -165,15 +152,15 @@ fn parts(data: &EfficiencyTable) -> Table {
     let each = |clocks: f64| clocks / data.particles as f64;
     let mut notes = vec![
         format!(
-            "NP = {} discs, LMAX = {} cells, occupancy {:.4}; a count of 1 is one vector instruction over n elements, loads, stores, \
-             gathers and shifted copies among them. The source counts the lattice vectors nowhere, and nothing returns discs into a \
-             periodic box or repeats the halo: these rows are beside its equations.",
+            "NP = {} discs, LMAX = {} cells, occupancy {:.4}; a count of 1 is one vector instruction over n elements, loads, stores, gathers and \
+             shifted copies among them. The source counts the lattice vectors nowhere, and nothing returns discs into a periodic box or repeats \
+             the halo: these rows are beside its equations.",
             data.particles, data.cells, data.occupancy
         ),
         format!(
-            "Clock periods by NOP·(n + D) on: {}. A disc and step: printed {:.0}, the printed text {:.0}, ours {:.0}; the operations of \
-             the printed text on a scalar machine (n·D) {:.0}: the vector machine is {:.1} times faster. At {} ns a clock period a step \
-             takes {:.4} s by the printed count, {:.4} s by the printed text, {:.4} s by ours.",
+            "Clock periods by NOP·(n + D) on: {}. A disc and step: printed {:.0}, the printed text {:.0}, ours {:.0}; the operations of the \
+             printed text on a scalar machine (n·D) {:.0}: the vector machine is {:.1} times faster. At {} ns a clock period a step takes {:.4} \
+             s by the printed count, {:.4} s by the printed text, {:.4} s by ours.",
             data.machine,
             each(data.source_clocks),
             each(data.printed.clocks),
@@ -264,9 +251,9 @@ fn conventions(data: &EfficiencyTable) -> Table {
         ]),
         rows,
         notes: vec![format!(
-            "Printed: {}. {} ways, every combination of the first nine columns, counted on recorded programs; shown are the nearest to \
-             all four, then those that give the most of them exactly, last the printed text with all that it executes. Changes between \
-             numbers and index vectors are counted by none: a word of a CRAY is both. Stores of a place are those of its three sums.",
+            "Printed: {}. {} ways, every combination of the first nine columns, counted on recorded programs; shown are the nearest to all four, \
+             then those that give the most of them exactly, last the printed text with all that it executes. Changes between numbers and index \
+             vectors are counted by none: a word of a CRAY is both. Stores of a place are those of its three sums.",
             printed.join(", "),
             data.conventions.tried
         )],
@@ -378,9 +365,7 @@ fn savings(data: &EfficiencyTable) -> Table {
         columns,
         rows: rows.collect(),
         notes: vec![
-            "No friction, no rotation: no spin, no torque, no angle. Equal discs: radius and mass are numbers, not \
-             vectors."
-                .to_owned(),
+            "No friction, no rotation: no spin, no torque, no angle. Equal discs: radius and mass are numbers, not vectors.".to_owned(),
         ],
     }
 }

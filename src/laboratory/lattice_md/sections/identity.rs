@@ -21,37 +21,32 @@ pub fn section(data: &Identity) -> Section {
             ]
         })
     });
-    Section {
-        name: "identity".into(),
-        title: "Lattice and neighbour lists give the same".into(),
-        part: Part::Physics,
-        question: "Do the lattice and neighbour lists give the same motion?".into(),
-        expected: "BP93, section 4: no differences in the results compared to simulations with neighbour lists.".into(),
-        answer: format!(
+    Section::new("identity", "Lattice and neighbour lists give the same", Part::Physics)
+        .asks("Do the lattice and neighbour lists give the same motion?")
+        .expects("BP93, section 4: no differences in the results compared to simulations with neighbour lists.")
+        .answers(format!(
             "{equal} of {states} states along {} are the same to the last bit: positions, velocities and spins.",
             counted(data.pairs.len(), "trajectory", "trajectories")
-        ),
-        details: vec![],
-        verdict: if data.holds() { Verdict::Reproduced } else { Verdict::NotReproduced },
-        again: "stripmine reproduce --only identity".into(),
-        figures: vec![],
-        tables: vec![Table {
+        ))
+        .verdict(if data.holds() { Verdict::Reproduced } else { Verdict::NotReproduced })
+        .tables([Table {
             name: "states".into(),
             title: "States compared".into(),
-            columns: ["scene", "grains", "step", "lattice (CRC-32)", "lists (CRC-32)", "farthest apart (length)"]
-                .map(str::to_owned)
-                .to_vec(),
+            columns: [
+                "scene",
+                "grains",
+                "step",
+                "lattice (CRC-32)",
+                "lists (CRC-32)",
+                "farthest apart (length)",
+            ]
+            .map(str::to_owned)
+            .to_vec(),
             rows: rows.collect(),
             notes: vec![
-                "Both methods use the same images of the discs and sum contacts in the mask's order, so not even rounding \
-                 differs. Seeds are those of the presets."
-                    .into(),
+                "Both methods use the same images of the discs and sum contacts in the mask's order, so not even rounding differs. Seeds are \
+                 those of the presets.".into(),
             ],
-        }],
-        excerpt: None,
-        film: None,
-        seeds: vec![1],
-        depends_on_host: false,
-        provenance: None,
-    }
+        }])
+        .seeds([1])
 }

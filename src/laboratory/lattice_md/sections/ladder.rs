@@ -2,7 +2,7 @@
 
 use crate::laboratory::lattice_md::study::host_ladder::HostLadder;
 use crate::laboratory::lattice_md::study::ladder::Ladder;
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::{Cell, Part, Section, Table};
 use stripmine_physics::method::lattice_md::Phase;
 use stripmine_physics::number::significant;
 
@@ -32,24 +32,13 @@ pub fn section(ladders: &[Ladder]) -> Section {
             others.collect::<Vec<_>>().join(", ")
         )
     });
-    Section {
-        name: "ladder".into(),
-        title: "What each refinement of the clock adds".into(),
-        part: Part::Machine,
-        question: "How many clock periods does a step take by finer clocks than the source's?".into(),
-        expected: "BP93 charges n + D for every operation and no chaining.".into(),
-        answer: chained.unwrap_or_default(),
-        details: vec![format!("With memory ports as well: {}.", said.collect::<Vec<_>>().join("; "))],
-        verdict: Verdict::Measured,
-        again: "stripmine table --ladder --machine cray-y-mp-el".into(),
-        figures: vec![],
-        tables: ladders.iter().enumerate().map(|(at, data)| numbered(at, rungs(data))).collect(),
-        excerpt: None,
-        film: None,
-        seeds: vec![],
-        depends_on_host: false,
-        provenance: None,
-    }
+    Section::new("ladder", "What each refinement of the clock adds", Part::Machine)
+        .asks("How many clock periods does a step take by finer clocks than the source's?")
+        .expects("BP93 charges n + D for every operation and no chaining.")
+        .answers(chained.unwrap_or_default())
+        .details([format!("With memory ports as well: {}.", said.collect::<Vec<_>>().join("; "))])
+        .tables(ladders.iter().enumerate().map(|(at, data)| numbered(at, rungs(data))))
+        .again("stripmine table --ladder --machine cray-y-mp-el")
 }
 
 fn numbered(at: usize, table: Table) -> Table {
@@ -115,9 +104,8 @@ fn convoys(data: &Ladder) -> Table {
             .to_vec(),
         rows: rows.collect(),
         notes: vec![
-            "Instructions include the steps of operations that the machine has to put together. Nothing is said where the \
-             machine's file names no functional units: then every instruction runs alone."
-                .to_owned(),
+            "Instructions include the steps of operations that the machine has to put together. Nothing is said where the machine's file names \
+             no functional units: then every instruction runs alone.".to_owned(),
         ],
     }
 }

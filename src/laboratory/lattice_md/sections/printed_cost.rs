@@ -4,34 +4,24 @@ use crate::laboratory::lattice_md::study::density_cost::CEILING;
 use crate::laboratory::lattice_md::study::printed_cost::{
     CELLS, Fitted, HOLDS, OCCUPANCY, PrintedCost, Timed,
 };
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
+use crate::report::{Cell, Part, Rows, Section, Table};
 
 /// What came out.
 pub fn section(data: &PrintedCost) -> Section {
-    Section {
-        name: "printed".into(),
-        title: "The printed text against the clock".into(),
-        part: Part::Host,
-        question: "Does NOP·(n + D) hold on this host for the source's own program, run the CRAY's way?"
-            .into(),
-        expected: format!(
-            "BP93, section 3: a part of the step takes NOP·(n + D) clock periods, whatever n; it assumes D = 20 and shows no measurement. \
-             The line holds here where it is within {:.0} %.",
+    Section::new("printed", "The printed text against the clock", Part::Host)
+        .asks("Does NOP·(n + D) hold on this host for the source's own program, run the CRAY's way?")
+        .expects(format!(
+            "BP93, section 3: a part of the step takes NOP·(n + D) clock periods, whatever n; it assumes D = 20 and shows no measurement. The \
+             line holds here where it is within {:.0} %.",
             100.0 * HOLDS
-        ),
-        answer: answer(data),
-        details: details(data),
-        verdict: Verdict::Measured,
-        again: "stripmine reproduce --only printed".into(),
-        figures: vec![against_the_clock(data), prices_drawn(data)],
-        tables: vec![fits(data), densities(data), prices(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![1],
-        depends_on_host: true,
-        provenance: None,
-    }
+        ))
+        .answers(answer(data))
+        .details(details(data))
+        .figures([against_the_clock(data), prices_drawn(data)])
+        .tables([fits(data), densities(data), prices(data)])
+        .seeds([1])
+        .depends_on_host()
 }
 
 fn kilobytes(bytes: f64) -> String {
@@ -50,22 +40,22 @@ fn answer(data: &PrintedCost) -> String {
     let last = data.prices.last().zip(data.prices.first()).map_or(1.0, |(last, first)| first.ns / last.ns);
     let holds = match *worst <= HOLDS {
         true => format!(
-            "The straight line holds within {:.0} % up to n = {holds_to} for the forces ({nop} operations; there their registers and arrays \
-             take {})",
+            "The straight line holds within {:.0} % up to n = {holds_to} for the forces ({nop} operations; there their registers and arrays take \
+             {})",
             100.0 * HOLDS,
             kilobytes(*bytes)
         ),
         false => format!(
-            "The straight line does not hold for the forces ({nop} operations): up to n = {holds_to}, where their registers and arrays take \
-             {}, it is {:.0} % off",
+            "The straight line does not hold for the forces ({nop} operations): up to n = {holds_to}, where their registers and arrays take {}, \
+             it is {:.0} % off",
             kilobytes(*bytes),
             100.0 * worst
         ),
     };
     format!(
-        "{holds}: a clock period of {:.3} ns an element and operation ({:.3} to {:.3}) and D = {:.0} ({:.0} to {:.0}), where the source \
-         assumes 20. At n = {} a step takes {beyond:.1} times the line. The fast lattice runs a scene {last:.0} times as fast as the printed \
-         text the CRAY's way.",
+        "{holds}: a clock period of {:.3} ns an element and operation ({:.3} to {:.3}) and D = {:.0} ({:.0} to {:.0}), where the source assumes \
+         20. At n = {} a step takes {beyond:.1} times the line. The fast lattice runs a scene {last:.0} times as fast as the printed text the \
+         CRAY's way.",
         period_ns[1],
         period_ns[0],
         period_ns[2],
@@ -79,8 +69,8 @@ fn answer(data: &PrintedCost) -> String {
 fn details(data: &PrintedCost) -> Vec<String> {
     vec![
         format!(
-            "One thread, {}, double precision. Eager: every instruction is a pass over all elements. Discs stand one a cell at random places \
-             and all but rest: an eager text has no branch, so its time does not depend on what moves. Fits by least squares of the relative \
+            "One thread, {}, double precision. Eager: every instruction is a pass over all elements. Discs stand one a cell at random places and \
+             all but rest: an eager text has no branch, so its time does not depend on what moves. Fits by least squares of the relative \
              differences; intervals are the range over four parts of the samples, each spread over the measurement.",
             data.instruction_set
         ),
@@ -107,53 +97,47 @@ fn against_the_clock(data: &PrintedCost) -> Figure {
             y: each(timed, timed.ns),
             spread: Some(timed.quartiles.map(|ns| each(timed, ns))),
         });
-        series.push(Series { name: fitted.part.into(), style: Style::Points, hue, points: points.collect() });
+        series.push(Series::new(fitted.part, Style::Points, hue, points));
         let line = over_n(data, fitted.part).filter(|timed| timed.n <= fitted.holds_to).map(|timed| {
             let n = timed.n as f64;
             Point::at(n, fitted.period_ns[1] * (n + fitted.depth[1]) / n)
         });
         let name = format!("{:.2} ns, D = {:.0}", fitted.period_ns[1], fitted.depth[1]);
-        series.push(Series { name, style: Style::Line, hue, points: line.collect() });
+        series.push(Series::new(name, Style::Line, hue, line));
     }
-    Figure {
-        name: "against_the_clock".into(),
-        title: "Time an element and operation of the printed text, eager".into(),
-        caption: format!(
-            "ρ = {OCCUPANCY}. Points: median and quartiles. Lines: NOP·(n + D) with its clock period and D, as far as it holds within {:.0} % \
-             (fitted to the three shortest where it does not).",
-            100.0 * HOLDS
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("length of the vectors n", None),
-            y: Axis::logarithmic("time an element and operation", Some("ns")),
-            series,
-            bands: vec![],
-        }),
-    }
+    Chart::of(
+        Axis::logarithmic("length of the vectors n", None),
+        Axis::logarithmic("time an element and operation", Some("ns")),
+    )
+    .with(series)
+    .figure("against_the_clock", "Time an element and operation of the printed text, eager")
+    .caption(format!(
+        "ρ = {OCCUPANCY}. Points: median and quartiles. Lines: NOP·(n + D) with its clock period and D, as far as it holds within {:.0} % \
+         (fitted to the three shortest where it does not).",
+        100.0 * HOLDS
+    ))
 }
 
 fn prices_drawn(data: &PrintedCost) -> Figure {
-    let series = data.prices.iter().enumerate().map(|(at, price)| Series {
-        name: format!("{} {}", at + 1, price.way.name),
-        style: Style::Points,
-        hue: at,
-        points: vec![Point { x: (at + 1) as f64, y: price.ns, spread: Some(price.ends) }],
+    let series = data.prices.iter().enumerate().map(|(at, price)| {
+        Series::new(
+            format!("{} {}", at + 1, price.way.name),
+            Style::Points,
+            at,
+            [Point { x: (at + 1) as f64, y: price.ns, spread: Some(price.ends) }],
+        )
     });
     let ways = data.prices.len() as f64;
-    Figure {
-        name: "price_of_faithfulness".into(),
-        title: "One scene from the CRAY's way to today's".into(),
-        caption: format!(
-            "{} discs at packing fraction {:.2}, one thread, {}. Median, lowest and highest of {} rounds.",
-            data.particles, data.packing_fraction, data.instruction_set, data.rounds
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis { limits: Some([0.5, ways + 0.5]), ..Axis::linear("step of the development", None) },
-            y: Axis::logarithmic("processor time a disc and step", Some("ns")),
-            series: series.collect(),
-            bands: vec![],
-        }),
-    }
+    Chart::of(
+        Axis::linear("step of the development", None).between([0.5, ways + 0.5]),
+        Axis::logarithmic("processor time a disc and step", Some("ns")),
+    )
+    .with(series)
+    .figure("price_of_faithfulness", "One scene from the CRAY's way to today's")
+    .caption(format!(
+        "{} discs at packing fraction {:.2}, one thread, {}. Median, lowest and highest of {} rounds.",
+        data.particles, data.packing_fraction, data.instruction_set, data.rounds
+    ))
 }
 
 fn headings(words: &[&str]) -> Vec<String> {
@@ -161,44 +145,21 @@ fn headings(words: &[&str]) -> Vec<String> {
 }
 
 fn fits(data: &PrintedCost) -> Table {
-    let rows = data.fitted.iter().map(|fitted| {
-        vec![
-            fitted.part.into(),
-            fitted.nop.into(),
-            Cell::Number(fitted.period_ns[1], 3),
-            Cell::Number(fitted.period_ns[0], 3),
-            Cell::Number(fitted.period_ns[2], 3),
-            Cell::Number(fitted.depth[1], 0),
-            Cell::Number(fitted.depth[0], 0),
-            Cell::Number(fitted.depth[2], 0),
-            Cell::Count(fitted.holds_to as u64),
-            Cell::Number(fitted.bytes / 1e3, 0),
-            Cell::Number(100.0 * fitted.worst, 1),
-            Cell::Number(fitted.beyond, 2),
-        ]
-    });
-    Table {
-        name: "fits".into(),
-        title: "NOP·(n + D) on this host, part by part".to_owned(),
-        columns: headings(&[
-            "part",
-            "NOP",
-            "clock period (ns)",
-            "lowest",
-            "highest",
-            "D",
-            "D lowest",
-            "D highest",
-            "holds to n",
-            "registers and arrays there (kB)",
-            "largest difference (%)",
-            "times the line at the longest n",
-        ]),
-        rows: rows.collect(),
-        notes: vec![
-            "n of predictor and corrector is NP, of the index the number of discs too, though it also clears LMAX cells.".to_owned(),
-        ],
-    }
+    Rows::of(&data.fitted)
+        .text("part", |fitted| fitted.part)
+        .text("NOP", |fitted| fitted.nop)
+        .number("clock period (ns)", 3, |fitted| fitted.period_ns[1])
+        .number("lowest", 3, |fitted| fitted.period_ns[0])
+        .number("highest", 3, |fitted| fitted.period_ns[2])
+        .number("D", 0, |fitted| fitted.depth[1])
+        .number("D lowest", 0, |fitted| fitted.depth[0])
+        .number("D highest", 0, |fitted| fitted.depth[2])
+        .count("holds to n", |fitted| fitted.holds_to)
+        .number("registers and arrays there (kB)", 0, |fitted| fitted.bytes / 1e3)
+        .number("largest difference (%)", 1, |fitted| 100.0 * fitted.worst)
+        .number("times the line at the longest n", 2, |fitted| fitted.beyond)
+        .table("fits", "NOP·(n + D) on this host, part by part")
+        .note("n of predictor and corrector is NP, of the index the number of discs too, though it also clears LMAX cells.")
 }
 
 fn densities(data: &PrintedCost) -> Table {

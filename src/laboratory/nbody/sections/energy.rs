@@ -1,7 +1,7 @@
 //! The energy of an orbit.
 
 use crate::laboratory::nbody::study::energy::{Energies, KNOWN, STEPS};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
 use crate::report::{Cell, Part, Section, Table, Verdict};
 use stripmine_physics::method::nbody::schemes::SchemeName;
 use stripmine_physics::number::in_tens;
@@ -28,18 +28,16 @@ pub fn section(data: &Energies) -> Section {
         let said = own.map(|it| it.error.map_or("lost".to_owned(), |error| in_tens(error, 2)));
         said.collect::<Vec<_>>().join(", ")
     };
-    Section {
-        name: "nbody-energy".into(),
-        title: "Bodies: what integrators do to an orbit".into(),
-        part: Part::Physics,
-        question: "How well does each integrator keep the energy of an orbit, and what do the source's missing ½ and its damping do?".into(),
-        expected: format!(
-            "The largest |ΔE/E| of {} schemes along 100 orbits of eccentricity 0.5, as other programs have it. PWP says that its scheme \
-             keeps the conservation laws and that damping makes orbits stable; the specification calls both wrong.",
+    Section::new("nbody-energy", "Bodies: what integrators do to an orbit", Part::Physics)
+        .asks("How well does each integrator keep the energy of an orbit, and what do the source's missing ½ and its damping do?")
+        .expects(format!(
+            "The largest |ΔE/E| of {} schemes along 100 orbits of eccentricity 0.5, as other programs have it. PWP says that its scheme keeps \
+             the conservation laws and that damping makes orbits stable; the specification calls both wrong.",
             KNOWN.len()
-        ),
-        answer: format!("Every error is {least:.2} to {most:.2} times the known one."),
-        details: vec![
+        ))
+        .answers(format!("Every error is {least:.2} to {most:.2} times the known one."))
+        .verdict(Verdict::reproduced(least > 0.5 && most < 2.0))
+        .details([
             format!(
                 "The source's scheme has errors of {} (from the longest step to the shortest); with the ½ that it lacks, {}. The largest \
                  momentum on the way is {}.",
@@ -48,24 +46,16 @@ pub fn section(data: &Energies) -> Section {
                 in_tens(momentum, 1),
             ),
             format!(
-                "Damping acts once a step, so what it does depends on the step: 0.9999 makes the orbit's energy {} times as large in ten \
-                 orbits of {} steps, and {} times in ten of {}.",
+                "Damping acts once a step, so what it does depends on the step: 0.9999 makes the orbit's energy {} times as large in ten orbits \
+                 of {} steps, and {} times in ten of {}.",
                 times(long.energy),
                 long.steps,
                 times(short.energy),
                 short.steps
             ),
-        ],
-        verdict: Verdict::reproduced(least > 0.5 && most < 2.0),
-        again: "stripmine reproduce --only nbody-energy".into(),
-        figures: vec![cost(data), lost(data)],
-        tables: vec![table(data), damped(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![],
-        depends_on_host: false,
-        provenance: None,
-    }
+        ])
+        .figures([cost(data), lost(data)])
+        .tables([table(data), damped(data)])
 }
 
 fn schemes(data: &Energies) -> Vec<&'static str> {
@@ -85,19 +75,15 @@ fn cost(data: &Energies) -> Figure {
             .filter_map(|it| Some(Point::at(it.evaluations, it.error.filter(|error| *error > 0.0)?)))
             .collect();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
-        (!points.is_empty()).then(|| Series { name: scheme.into(), style: Style::Joined, hue, points })
+        (!points.is_empty()).then(|| Series::new(scheme, Style::Joined, hue, points))
     });
-    Figure {
-        name: "error-over-cost".into(),
-        title: "Energy error over cost: two bodies, e = 0.5, 100 orbits".into(),
-        caption: "Largest error on the way. Schemes that lost the orbit are not drawn at those steps.".into(),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("evaluations of the forces an orbit", None),
-            y: Axis::logarithmic("largest |ΔE/E|", None),
-            series: series.collect(),
-            bands: vec![],
-        }),
-    }
+    Chart::of(
+        Axis::logarithmic("evaluations of the forces an orbit", None),
+        Axis::logarithmic("largest |ΔE/E|", None),
+    )
+    .with(series)
+    .figure("error-over-cost", "Energy error over cost: two bodies, e = 0.5, 100 orbits")
+    .caption("Largest error on the way. Schemes that lost the orbit are not drawn at those steps.")
 }
 
 fn lost(data: &Energies) -> Figure {
@@ -105,19 +91,12 @@ fn lost(data: &Energies) -> Figure {
         let of = data.edges.iter().filter(|it| it.scheme == scheme);
         let points: Vec<Point> =
             of.filter_map(|it| Some(Point::at(it.eccentricity, it.steps? as f64))).collect();
-        (!points.is_empty()).then(|| Series { name: scheme.into(), style: Style::Joined, hue, points })
+        (!points.is_empty()).then(|| Series::new(scheme, Style::Joined, hue, points))
     });
-    Figure {
-        name: "orbits-lost".into(),
-        title: "Fewest steps that keep an orbit for 100 turns".into(),
-        caption: "Kept: the energy stays within half of itself. Both schemes of Euler are off by more at every step of the table.".into(),
-        picture: Picture::Chart(Chart {
-            x: Axis::linear("eccentricity", None),
-            y: Axis::logarithmic("steps of an orbit", None),
-            series: series.collect(),
-            bands: vec![],
-        }),
-    }
+    Chart::of(Axis::linear("eccentricity", None), Axis::logarithmic("steps of an orbit", None))
+        .with(series)
+        .figure("orbits-lost", "Fewest steps that keep an orbit for 100 turns")
+        .caption("Kept: the energy stays within half of itself. Both schemes of Euler are off by more at every step of the table.")
 }
 
 fn table(data: &Energies) -> Table {

@@ -59,11 +59,9 @@ fn schemes(maps: &Maps) -> Table {
             "what comes first beyond",
         ],
         rows.collect(),
-        &[
-            "Works: the run comes to an end, its energy is off by at most 10 % of what passed through, and its means are those of runs \
-             with the smallest step: by at most 5 %, or by what chance alone exceeds once in a thousand runs. What is off by more is \
-             confirmed by another seed.",
-        ],
+        &["Works: the run comes to an end, its energy is off by at most 10 % of what passed through, and its means are those of runs with the \
+           smallest step: by at most 5 %, or by what chance alone exceeds once in a thousand runs. What is off by more is confirmed by another \
+           seed."],
     )
 }
 
@@ -100,9 +98,7 @@ fn said(maps: &Maps) -> Table {
             "nothing said",
         ],
         rows,
-        &[
-            "Maps try what the check of a scene refuses, to see what would have become of it. A run that is stopped says so itself.",
-        ],
+        &["Maps try what the check of a scene refuses, to see what would have become of it. A run that is stopped says so itself."],
     )
 }
 

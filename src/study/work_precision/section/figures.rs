@@ -77,7 +77,7 @@ fn series<'d>(
         let own = data.runs.iter().filter(|run| run.way == at);
         let mut points: Vec<Point> = own.filter_map(|run| point(run, measure, cost)).collect();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
-        (!points.is_empty()).then(|| Series { name: name(way), style: Style::Joined, hue: hue(way), points })
+        (!points.is_empty()).then(|| Series::new(name(way), Style::Joined, hue(way), points))
     })
 }
 
@@ -89,7 +89,7 @@ fn broken(data: &WorkPrecision, is_shown: impl Fn(&Way) -> bool, shown: &[Series
         .filter_map(|run| Some(Point::at(data.ways[run.way].each? / run.step, 4.0 * highest)))
         .collect();
     points.sort_by(|a, b| a.x.total_cmp(&b.x));
-    Some(Series { name: "failed: see the table".into(), style: Style::Points, hue: INK, points })
+    Some(Series::new("failed: see the table", Style::Points, INK, points))
 }
 
 /// A horizontal line across what is shown.
@@ -97,7 +97,7 @@ fn level(name: &str, y: f64, shown: &[Series]) -> Option<Series> {
     let x = || shown.iter().flat_map(|series| &series.points).map(|point| point.x);
     let ends = [x().reduce(f64::min)?, x().reduce(f64::max)?];
     let points = ends.map(|x| Point::at(x, y)).to_vec();
-    (y > 0.0).then(|| Series { name: name.into(), style: Style::Dashed, hue: INK, points })
+    (y > 0.0).then(|| Series::new(name, Style::Dashed, INK, points))
 }
 
 /// Error over cost, for every scheme and precision with the scene's own search and execution.
@@ -123,29 +123,27 @@ fn diagram(file: &str, name: &str, data: &WorkPrecision, measure: Measure) -> Op
         broken(data, is_shown, &all),
     ];
     all.extend(more.into_iter().flatten());
-    Some(Figure {
-        name: format!("{file}_{}", if measure == Measure::Position { "position" } else { "energy" }),
-        title: format!(
-            "{name}: {} over cost",
-            if measure == Measure::Position { "error" } else { "error of the energy" }
-        ),
-        caption: format!(
-            "{} particles over a time of {}; the scene's own step is {}, along each line it doubles from point to point. Cost: the \
-             median of the repeats, which differ by {:.0} % in the middle; search and execution as the scene has them ({}). The front is over \
-             all ways to run it against which nothing speaks.",
-            data.particles,
-            short(data.duration),
-            short(data.step),
-            100.0 * spread(data),
-            data.ways.iter().find(|way| way.is_primary).map_or("", |way| &way.cost)
-        ),
-        picture: Picture::Chart(Chart {
-            x: axis_of_cost(),
-            y: axis_of_error(measure, &data.unit),
-            series: all,
-            bands: vec![],
-        }),
-    })
+    Some(
+        Chart::of(axis_of_cost(), axis_of_error(measure, &data.unit))
+            .with(all)
+            .figure(
+                format!("{file}_{}", if measure == Measure::Position { "position" } else { "energy" }),
+                format!(
+                    "{name}: {} over cost",
+                    if measure == Measure::Position { "error" } else { "error of the energy" }
+                ),
+            )
+            .caption(format!(
+                "{} particles over a time of {}; the scene's own step is {}, along each line it doubles from point to point. Cost: the median of \
+                 the repeats, which differ by {:.0} % in the middle; search and execution as the scene has them ({}). The front is over all ways \
+                 to run it against which nothing speaks.",
+                data.particles,
+                short(data.duration),
+                short(data.step),
+                100.0 * spread(data),
+                data.ways.iter().find(|way| way.is_primary).map_or("", |way| &way.cost)
+            )),
+    )
 }
 
 /// By how much the repeats of a run differ, in parts of the shortest: the median over the runs.
@@ -160,7 +158,7 @@ fn spread(data: &WorkPrecision) -> f64 {
 fn front_of(data: &WorkPrecision, measure: Measure) -> Option<Series> {
     let (_, places) = data.fronts.iter().find(|(of, _)| *of == measure)?;
     let points = places.iter().filter_map(|&place| point(&data.runs[place], measure, Run::cost)).collect();
-    Some(Series { name: "Pareto front".into(), style: Style::Line, hue: INK, points })
+    Some(Series::new("Pareto front", Style::Line, INK, points))
 }
 
 /// The same for every search and execution, in the scene's own scheme and precision.
@@ -176,20 +174,15 @@ fn costs(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
         Run::cost,
     )
     .collect();
-    (all.len() > 1).then(|| Figure {
-        name: format!("{file}_searches"),
-        title: format!("{name}: the same error, found in other ways"),
-        caption: format!(
-            "The scene's own integrator and precision ({}) with every search and execution: errors are equal but for rounding, \
-             costs are not.",
-            data.own
-        ),
-        picture: Picture::Chart(Chart {
-            x: axis_of_cost(),
-            y: axis_of_error(Measure::Position, &data.unit),
-            series: all,
-            bands: vec![],
-        }),
+    (all.len() > 1).then(|| {
+        Chart::of(axis_of_cost(), axis_of_error(Measure::Position, &data.unit))
+            .with(all)
+            .figure(format!("{file}_searches"), format!("{name}: the same error, found in other ways"))
+            .caption(format!(
+                "The scene's own integrator and precision ({}) with every search and execution: errors are equal but for rounding, costs are \
+                 not.",
+                data.own
+            ))
     })
 }
 
@@ -208,20 +201,18 @@ fn clocks(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
         |run| run.clocks,
     )
     .collect();
-    Some(Figure {
-        name: format!("{file}_clocks"),
-        title: format!("{name}: error over clock periods"),
-        caption: format!(
-            "By the paper's clock of {machine}, n + D for each operation counted. Ways whose work depends on the data are not in it: \
-             they have no fixed program to count. Executions of one program have the same clock periods."
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("cost of a unit of simulated time", Some("clock periods")),
-            y: axis_of_error(Measure::Position, &data.unit),
-            series: all,
-            bands: vec![],
-        }),
-    })
+    Some(
+        Chart::of(
+            Axis::logarithmic("cost of a unit of simulated time", Some("clock periods")),
+            axis_of_error(Measure::Position, &data.unit),
+        )
+        .with(all)
+        .figure(format!("{file}_clocks"), format!("{name}: error over clock periods"))
+        .caption(format!(
+            "By the paper's clock of {machine}, n + D for each operation counted. Ways whose work depends on the data are not in it: they have \
+             no fixed program to count. Executions of one program have the same clock periods."
+        )),
+    )
 }
 
 /// How a disturbance and the error of the scene's own step grow.
@@ -234,30 +225,21 @@ fn growth(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
     let rate = grown.rate.map_or("No exponential growth is seen".to_owned(), |rate| {
         format!("The distance grows as exp({} t)", short(rate))
     });
-    Some(Figure {
-        name: format!("{file}_growth"),
-        title: format!("{name}: how long trajectories are comparable"),
-        caption: format!("{rate}; compared is a time of {}.", short(data.duration)),
-        picture: Picture::Chart(Chart {
-            x: Axis::linear("time", Some("reduced")),
-            y: Axis::logarithmic("distance, RMS", Some(&data.unit)),
-            series: vec![
-                Series {
-                    name: format!("start disturbed by 1e-9 {}", data.unit),
-                    style: Style::Line,
-                    hue: 0,
-                    points: over_time(&grown.separation),
-                },
-                Series {
-                    name: "half the step".into(),
-                    style: Style::Dashed,
-                    hue: 1,
-                    points: over_time(&grown.error),
-                },
-            ],
-            bands: vec![],
-        }),
-    })
+    Some(
+        Chart::of(
+            Axis::linear("time", Some("reduced")),
+            Axis::logarithmic("distance, RMS", Some(&data.unit)),
+        )
+        .series(
+            format!("start disturbed by 1e-9 {}", data.unit),
+            Style::Line,
+            0,
+            over_time(&grown.separation),
+        )
+        .series("half the step", Style::Dashed, 1, over_time(&grown.error))
+        .figure(format!("{file}_growth"), format!("{name}: how long trajectories are comparable"))
+        .caption(format!("{rate}; compared is a time of {}.", short(data.duration))),
+    )
 }
 
 /// Errors of what comes out of a collision over the step.
@@ -266,34 +248,33 @@ fn outcomes(file: &str, name: &str, data: &WorkPrecision, collision: &Collision)
     let schemes = || data.ways.iter().map(|way| way.scheme.clone());
     let mut labels: Vec<&str> = collision.errors.iter().map(|error| error.choice.as_str()).collect();
     labels.dedup();
-    let of = |label: &str, style, what: &str, value: fn(&OutcomeError) -> f64| Series {
-        name: format!("{}, {what}", scheme(label)),
-        style,
-        hue: place(schemes(), scheme(label)),
-        points: collision
-            .errors
-            .iter()
-            .filter(|error| error.choice == label)
-            .map(|error| Point::at(error.step, value(error)))
-            .filter(|point| point.y > 0.0)
-            .collect(),
+    let of = |label: &str, style, what: &str, value: fn(&OutcomeError) -> f64| {
+        Series::new(
+            format!("{}, {what}", scheme(label)),
+            style,
+            place(schemes(), scheme(label)),
+            collision
+                .errors
+                .iter()
+                .filter(|error| error.choice == label)
+                .map(|error| Point::at(error.step, value(error)))
+                .filter(|point| point.y > 0.0),
+        )
     };
     let spread = labels.iter().map(|label| of(label, Style::Joined, "RMS", |error| error.spread[0]));
     let mean = labels.iter().map(|label| of(label, Style::Dashed, "mean", |error| error.mean[0]));
-    Some(Figure {
-        name: format!("{file}_{}", OUTCOMES[0]),
-        title: format!("{name}: error of the restitution over the step"),
-        caption: format!(
+    Some(
+        Chart::of(
+            Axis::logarithmic("step", Some("reduced")),
+            Axis::logarithmic("error of the restitution", None),
+        )
+        .with(spread.chain(mean))
+        .figure(format!("{file}_{}", OUTCOMES[0]), format!("{name}: error of the restitution over the step"))
+        .caption(format!(
             "{} starts, each a part of a step later than the one before: root of the mean square over them, and the mean.",
             collision.phases
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("step", Some("reduced")),
-            y: Axis::logarithmic("error of the restitution", None),
-            series: spread.chain(mean).collect(),
-            bands: vec![],
-        }),
-    })
+        )),
+    )
 }
 
 /// Errors of what comes out of a collision over the cost, by the processor time that a step of the same way takes.
@@ -315,30 +296,24 @@ fn outcome_over_cost(
         let of_a_step = median(of_a_step.into_iter());
         let errors = collision.errors.iter().filter(|error| error.choice == way.label);
         let points = errors.map(|error| Point::at(of_a_step / error.step, error.spread[which]));
-        all.push(Series {
-            name: way.scheme.clone(),
-            style: Style::Joined,
-            hue: place(schemes(), &way.scheme),
-            points: points.filter(|point| point.y > 0.0).collect(),
-        });
+        all.push(Series::new(
+            way.scheme.clone(),
+            Style::Joined,
+            place(schemes(), &way.scheme),
+            points.filter(|point| point.y > 0.0),
+        ));
     }
     all.retain(|series| !series.points.is_empty());
     let (outcome, unit) = (OUTCOMES[which], [None, Some("rad")][which]);
-    Some(Figure {
-        name: format!("{file}_{outcome}_cost"),
-        title: format!("{name}: error of the {outcome} over the cost"),
-        caption: format!(
-            "Root of the mean square over {} starts, each a part of a step later than the one before. The cost is that of the \
-             scene's steps.",
-            collision.phases
-        ),
-        picture: Picture::Chart(Chart {
-            x: axis_of_cost(),
-            y: Axis::logarithmic(&format!("error of the {outcome}"), unit),
-            series: all,
-            bands: vec![],
-        }),
-    })
+    Some(
+        Chart::of(axis_of_cost(), Axis::logarithmic(&format!("error of the {outcome}"), unit))
+            .with(all)
+            .figure(format!("{file}_{outcome}_cost"), format!("{name}: error of the {outcome} over the cost"))
+            .caption(format!(
+                "Root of the mean square over {} starts, each a part of a step later than the one before. The cost is that of the scene's steps.",
+                collision.phases
+            )),
+    )
 }
 
 /// Differences of a mean over time: full where they count, hollow where the error bar reaches zero.
@@ -362,28 +337,23 @@ fn means(file: &str, name: &str, data: &WorkPrecision, all: &Observables) -> Opt
                 let [size, bar] = [100.0 * it.difference, 100.0 * it.bar];
                 Point { x: it.step, y: size, spread: Some([size - bar, size + bar]) }
             });
-            series.push(Series {
-                name: format!("{}{said}", way.scheme),
-                style: Style::Points,
-                hue: place(schemes(), &way.scheme),
-                points: points.collect(),
-            });
+            series.push(Series::new(
+                format!("{}{said}", way.scheme),
+                Style::Points,
+                place(schemes(), &way.scheme),
+                points,
+            ));
         }
     }
-    Some(Figure {
-        name: format!("{file}_means"),
-        title: format!("{name}: mean {observable}, off the reference's"),
-        caption: format!(
-            "Means over the second half of a time of {}, {} seeds; bars hold the difference in 95 of 100 studies. Hollow: no \
-             significant difference.",
-            short(all.duration),
-            data.seeds.len()
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("step", Some("reduced")),
-            y: Axis::linear("difference", Some("%")),
-            series,
-            bands: vec![],
-        }),
-    })
+    Some(
+        Chart::of(Axis::logarithmic("step", Some("reduced")), Axis::linear("difference", Some("%")))
+            .with(series)
+            .figure(format!("{file}_means"), format!("{name}: mean {observable}, off the reference's"))
+            .caption(format!(
+                "Means over the second half of a time of {}, {} seeds; bars hold the difference in 95 of 100 studies. Hollow: no significant \
+                 difference.",
+                short(all.duration),
+                data.seeds.len()
+            )),
+    )
 }

@@ -59,10 +59,8 @@ fn wishes(scenes: &Scenes) -> Table {
             "of the scene's own cost (%)",
         ],
         rows.collect(),
-        &[
-            "Errors of positions at the end of the time that is compared. A way: integrator, precision, search, execution. No way is \
-             named where too little happens in that time, nor one that theory, a check or a warning of its run speaks against.",
-        ],
+        &["Errors of positions at the end of the time that is compared. A way: integrator, precision, search, execution. No way is named where \
+           too little happens in that time, nor one that theory, a check or a warning of its run speaks against."],
     )
 }
 
@@ -92,10 +90,10 @@ fn orders(scenes: &Scenes) -> Table {
         &["scene", "integrator", "error", "order", "steps of the fit", "theory", "what decides it"],
         rows.collect(),
         &[
-            "In the digits of the reference; fitted through the smallest steps whose error is at least three times the reference's \
-             own. No number: fewer than three such steps.",
-            "A single run scatters about its line: the error that the beginning and the end of a contact make depends on where in a \
-             step they fall (see the collision). Theory is of the root of the mean square over these phases.",
+            "In the digits of the reference; fitted through the smallest steps whose error is at least three times the reference's own. No \
+             number: fewer than three such steps.",
+            "A single run scatters about its line: the error that the beginning and the end of a contact make depends on where in a step they \
+             fall (see the collision). Theory is of the root of the mean square over these phases.",
         ],
     )
 }
@@ -117,11 +115,11 @@ fn outcomes(scenes: &Scenes) -> Table {
         rows.collect(),
         &[
             "Over starts shifted by parts of a step. Where a force sets in as ξ^s inside a step, the step errs by dt^(s+1) ζ(−s, phase), \
-             Hurwitz's zeta function: order 2.5 for the kink of ξ^1.5, order 1 for the jump of a damping force. Its mean over all phases \
-             is zero, so the mean falls faster than the root of the mean square, and a line through single runs lies somewhere between: \
-             velocity Verlet on one elastic collision was seen at 2.6 to 2.8.",
-            "Velocity Verlet's own error of second order does not show in the speed after an elastic collision: the energy that it keeps \
-             differs from the energy itself only while discs touch.",
+             Hurwitz's zeta function: order 2.5 for the kink of ξ^1.5, order 1 for the jump of a damping force. Its mean over all phases is \
+             zero, so the mean falls faster than the root of the mean square, and a line through single runs lies somewhere between: velocity \
+             Verlet on one elastic collision was seen at 2.6 to 2.8.",
+            "Velocity Verlet's own error of second order does not show in the speed after an elastic collision: the energy that it keeps differs \
+             from the energy itself only while discs touch.",
         ],
     )
 }
@@ -156,10 +154,8 @@ fn compared(name: &str, scenes: &Scenes, is_shown: fn(&WorkPrecision, &str) -> b
         "Means over time of the scene's own way beside the reference's",
         &["scene", "mean of", "way", "step", "difference (%)", "bar, 95 % (%)", "significant"],
         rows.collect(),
-        &[
-            "Paired by seed; one bar in twenty misses zero by chance. The density profile: root of the mean square over bins along \
-             both sides of the box. All other ways: `all_means.csv`.",
-        ],
+        &["Paired by seed; one bar in twenty misses zero by chance. The density profile: root of the mean square over bins along both sides of \
+           the box. All other ways: `all_means.csv`."],
     )
 }
 
