@@ -1,7 +1,7 @@
 //! `stripmine compare`: two ways to run one scene, beside each other.
 
 use crate::console::{Common, Failure, print, print_json};
-use crate::report::table::{Cell, Table};
+use crate::report::Rows;
 use crate::report::terminal;
 use clap::Args;
 use serde::Serialize;
@@ -168,7 +168,7 @@ fn text(scene: &str, comparison: &Comparison) -> String {
         &Rows::of(looks.iter())
             .count(unit, |look| if has_events { look.events } else { look.steps })
             .number("time", 6, |look| look.time)
-            .text("same bits", |look| if look.same_bits { "yes".into() } else { "no".into() })
+            .text("same bits", |look| if look.same_bits { "yes" } else { "no" })
             .text("position", |look| significant(look.position, 2))
             .text("velocity", |look| significant(look.velocity, 2))
             .text("particle", |look| look.particle.map_or(String::new(), |id| id.to_string()))

@@ -198,7 +198,7 @@ impl Observed {
                 name.replace('_', " "),
                 Style::Line,
                 hue,
-                self.rows.iter().step_by(every).map(|row| Point::at(row[time], row[column])),
+                self.rows.iter().step_by(every).map(|row| (row[time], row[column])),
             )
         });
         let label = if names.len() == 1 { names[0].replace('_', " ") } else { "value".to_owned() };

@@ -28,7 +28,7 @@ impl Chart {
         name: impl Into<String>,
         style: Style,
         hue: usize,
-        points: impl IntoIterator<Item = Point>,
+        points: impl IntoIterator<Item = impl Into<Point>>,
     ) -> Chart {
         self.with([Series::new(name, style, hue, points)])
     }
@@ -117,9 +117,25 @@ impl Series {
         name: impl Into<String>,
         style: Style,
         hue: usize,
-        points: impl IntoIterator<Item = Point>,
+        points: impl IntoIterator<Item = impl Into<Point>>,
     ) -> Series {
-        Series { name: name.into(), style, hue, points: points.into_iter().collect() }
+        Series { name: name.into(), style, hue, points: points.into_iter().map(Into::into).collect() }
+    }
+
+    /// A series for each name that points bear, in the order in which names occur.
+    pub fn by_name(
+        style: Style,
+        points: impl IntoIterator<Item = (impl Into<String>, impl Into<Point>)>,
+    ) -> Vec<Series> {
+        let mut all: Vec<Series> = vec![];
+        for (name, point) in points {
+            let (name, hue) = (name.into(), all.len());
+            match all.iter_mut().find(|known| known.name == name) {
+                Some(known) => known.points.push(point.into()),
+                None => all.push(Series::new(name, style, hue, [point])),
+            }
+        }
+        all
     }
 }
 
@@ -154,10 +170,18 @@ impl Point {
     pub fn at(x: f64, y: f64) -> Point {
         Point { x, y, spread: None }
     }
+}
 
-    /// With the lowest and the highest value of y.
-    pub fn spread(self, ends: [f64; 2]) -> Point {
-        Point { spread: Some(ends), ..self }
+impl From<(f64, f64)> for Point {
+    fn from((x, y): (f64, f64)) -> Point {
+        Point::at(x, y)
+    }
+}
+
+/// With its spread.
+impl From<(f64, f64, [f64; 2])> for Point {
+    fn from((x, y, spread): (f64, f64, [f64; 2])) -> Point {
+        Point { x, y, spread: Some(spread) }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Discs above a hot floor, without a ceiling.
 
 use crate::laboratory::hard_disks::study::atmosphere::{Atmosphere, Profile};
-use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::{Part, Rows, Section, Table, Verdict};
 use stripmine_physics::number::counted;
 
@@ -46,27 +46,19 @@ fn named(data: &Atmosphere) -> impl Iterator<Item = (String, &Profile)> {
 }
 
 fn figure(data: &Atmosphere) -> Figure {
-    let heights = &data.profiles[0].heights;
-    let barometric = heights.iter().map(|&height| Point::at(height, (-height).exp()));
-    let mut series = vec![Series::new("barometric law", Style::Line, 6, barometric)];
-    series.extend(named(data).enumerate().map(|(hue, (name, profile))| {
-        Series::new(
-            name,
-            Style::Points,
-            hue,
-            profile
-                .heights
-                .iter()
-                .zip(&profile.densities)
-                .filter(|(_, [mean, error])| *mean > 2.0 * error)
-                .map(|(&x, &[mean, error])| Point { x, y: mean, spread: Some([mean - error, mean + error]) }),
-        )
-    }));
+    let barometric = data.profiles[0].heights.iter().map(|&height| (height, (-height).exp()));
+    let measured = named(data).enumerate().map(|(hue, (name, profile))| {
+        let seen = profile.heights.iter().zip(&profile.densities);
+        let seen = seen.filter(|(_, [mean, error])| *mean > 2.0 * error);
+        let points = seen.map(|(&height, &[mean, error])| (height, mean, [mean - error, mean + error]));
+        Series::new(name, Style::Points, hue, points)
+    });
     Chart::of(
         Axis::linear("height over kT/(m g)", None),
         Axis::logarithmic("density over the barometric one at the floor", None),
     )
-    .with(series)
+    .series("barometric law", Style::Line, 6, barometric)
+    .with(measured)
     .figure("profiles", "Density over the height")
     .caption(format!(
         "Means of {} looks; bars are standard errors, as if looks were independent.",
@@ -76,7 +68,7 @@ fn figure(data: &Atmosphere) -> Figure {
 
 fn table(data: &Atmosphere) -> Table {
     Rows::of(named(data))
-        .text("discs", |(name, _)| name)
+        .text("discs", |(name, _)| name.clone())
         .count("how many", |(_, profile)| profile.discs)
         .number("mean height over kT/(m g)", 3, |(_, profile)| profile.mean_height)
         .number("temperature over the floor's", 3, |(_, profile)| profile.temperature)

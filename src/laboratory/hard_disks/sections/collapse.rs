@@ -1,7 +1,7 @@
 //! Inelastic collapse over restitution and number of discs.
 
 use crate::laboratory::hard_disks::study::collapse::{Collapses, PACKING, Row, of_a_row};
-use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 
 /// The estimate for more than three discs holds where it is off by no more than this.
@@ -60,10 +60,10 @@ fn rows(data: &Collapses) -> Figure {
     let theory = (30..=10 * most).step_by(5).map(|tenths| f64::from(tenths) / 10.0);
     let measured = data.rows.iter().map(|row| {
         let [low, high] = row.edge;
-        Point { x: f64::from(row.discs), y: 0.5 * (low + high), spread: Some(row.edge) }
+        (f64::from(row.discs), 0.5 * (low + high), row.edge)
     });
     Chart::of(Axis::logarithmic("discs in the row", None), Axis::linear("restitution", None))
-        .series("theory", Style::Line, 6, theory.map(|discs| Point::at(discs, of_a_row(discs))))
+        .series("theory", Style::Line, 6, theory.map(|discs| (discs, of_a_row(discs))))
         .series("measured", Style::Points, 0, measured)
         .figure("rows", "Discs in a row collapse below this restitution")
         .caption("The largest restitution at which one of 24 starts collapses. The line is tan²(π/4 (1 − 2/N)): exact for three, an estimate for \
@@ -78,26 +78,20 @@ fn plane(data: &Collapses) -> Figure {
         ("some do", 3, |share| share > 0.0 && share < 1.0),
         ("none does", 2, |share| share <= 0.0),
     ];
-    let mut series: Vec<Series> = kinds
-        .into_iter()
-        .map(|(name, hue, is_it)| {
-            let of_discs = data.gases.iter().flat_map(|gases| {
-                let places = gases.collapsed.iter().zip(&data.restitutions);
-                places
-                    .filter(move |(share, _)| is_it(**share))
-                    .map(|(_, &restitution)| Point::at(gases.discs as f64, restitution))
-            });
-            Series::new(name, Style::Points, hue, of_discs)
+    let places = || {
+        data.gases.iter().flat_map(|gases| {
+            let shares = gases.collapsed.iter().zip(&data.restitutions);
+            shares.map(|(&share, &restitution)| (share, (gases.discs as f64, restitution)))
         })
-        .collect();
-    series.push(Series::new(
-        "a row of N d/L discs",
-        Style::Line,
-        6,
-        data.gases.iter().map(|gases| Point::at(gases.discs as f64, gases.theory)),
-    ));
+    };
+    let kinds = kinds.into_iter().map(|(name, hue, is_it)| {
+        let of_kind = places().filter(|(share, _)| is_it(*share)).map(|(_, place)| place);
+        Series::new(name, Style::Points, hue, of_kind)
+    });
+    let theory = data.gases.iter().map(|gases| (gases.discs as f64, gases.theory));
     Chart::of(Axis::logarithmic("discs", None), Axis::linear("restitution", None))
-        .with(series)
+        .with(kinds)
+        .series("a row of N d/L discs", Style::Line, 6, theory)
         .figure("plane", "Gases in the plane: the more discs, the less dissipation they bear")
         .caption(format!(
             "ν = {PACKING}, {} seeds each, {:.0} collisions of a disc. The line is the criterion of a row of as many discs as lie across the \
@@ -117,17 +111,10 @@ fn row_table(data: &Collapses) -> Table {
 
 fn plane_table(data: &Collapses) -> Table {
     let shares = data.restitutions.iter().map(|restitution| format!("e = {restitution}"));
-    let columns = ["discs", "N d/L", "theory of a row"].map(str::to_owned).into_iter().chain(shares);
-    let rows = data.gases.iter().map(|gases| {
-        let begin =
-            [Cell::Count(gases.discs as u64), Cell::Number(gases.across, 1), Cell::Number(gases.theory, 3)];
-        begin.into_iter().chain(gases.collapsed.iter().map(|&share| Cell::Number(share, 2))).collect()
-    });
-    Table {
-        name: "plane".into(),
-        title: "Share of the seeds that collapse".into(),
-        columns: columns.collect(),
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    Rows::of(&data.gases)
+        .count("discs", |gases| gases.discs)
+        .number("N d/L", 1, |gases| gases.across)
+        .number("theory of a row", 3, |gases| gases.theory)
+        .cells(shares, |gases| gases.collapsed.iter().map(|&share| Cell::Number(share, 2)))
+        .table("plane", "Share of the seeds that collapse")
 }

@@ -1,7 +1,7 @@
 //! Haff's law, and inelastic collapse.
 
 use crate::laboratory::hard_disks::study::cooling::{Cooling, haff};
-use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 
 /// What came out.
@@ -34,27 +34,20 @@ pub fn section(data: &Cooling) -> Section {
 }
 
 fn figure(data: &Cooling) -> Figure {
-    let mut series = vec![];
-    for (hue, gas) in data.gases.iter().enumerate() {
+    let curves = data.gases.iter().enumerate().flat_map(|(hue, gas)| {
         let later = || gas.times.iter().copied().enumerate().skip(1);
-        series.push(Series::new(
-            format!("e = {}, Haff", gas.restitution),
-            Style::Line,
-            hue,
-            later().map(|(_, time)| Point::at(time, haff(time, gas.haff_time))),
-        ));
-        series.push(Series::new(
-            format!("e = {}, measured", gas.restitution),
-            Style::Points,
-            hue,
-            later().step_by(2).map(|(at, time)| Point::at(time, gas.temperatures[at])),
-        ));
-    }
+        let haff = later().map(|(_, time)| (time, haff(time, gas.haff_time)));
+        let measured = later().step_by(2).map(|(at, time)| (time, gas.temperatures[at]));
+        [
+            Series::new(format!("e = {}, Haff", gas.restitution), Style::Line, hue, haff),
+            Series::new(format!("e = {}, measured", gas.restitution), Style::Points, hue, measured),
+        ]
+    });
     Chart::of(
         Axis::logarithmic("time since the first look", Some("reduced")),
         Axis::logarithmic("temperature over that of the first look", None),
     )
-    .with(series)
+    .with(curves)
     .figure("haff", "Haff's law")
     .caption(format!(
         "{} discs at ν = 0.25; t₀ from the collision rate of an elastic gas, nothing is fitted.",

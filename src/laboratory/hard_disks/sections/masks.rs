@@ -1,7 +1,7 @@
 //! The source's comparison of masks.
 
 use crate::laboratory::hard_disks::study::masks::{Cost, Masks, TERMS};
-use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 
 /// The formula fits where it is off by no more than this factor anywhere.
@@ -60,20 +60,21 @@ pub fn section(data: &Masks) -> Section {
 }
 
 fn figure(data: &Masks) -> Figure {
-    let mut series = vec![];
-    for (hue, (packing_fraction, ..)) in data.best.iter().enumerate() {
-        let own = || data.costs.iter().filter(|cost| cost.packing_fraction == *packing_fraction);
+    let curves = data.best.iter().enumerate().flat_map(|(hue, (packing_fraction, ..))| {
         let drawn = |name: String, style, of: fn(&Cost) -> f64| {
-            Series::new(name, style, hue, own().map(|cost| Point::at(cost.places as f64, 1e6 * of(cost))))
+            let own = data.costs.iter().filter(|cost| cost.packing_fraction == *packing_fraction);
+            Series::new(name, style, hue, own.map(|cost| (cost.places as f64, 1e6 * of(cost))))
         };
-        series.push(drawn(format!("ν = {packing_fraction}"), Style::Points, |cost| cost.seconds));
-        series.push(drawn(format!("ν = {packing_fraction}, formula"), Style::Dashed, |cost| cost.fitted));
-    }
+        [
+            drawn(format!("ν = {packing_fraction}"), Style::Points, |cost| cost.seconds),
+            drawn(format!("ν = {packing_fraction}, formula"), Style::Dashed, |cost| cost.fitted),
+        ]
+    });
     Chart::of(
         Axis::logarithmic("places of the mask", None),
         Axis::logarithmic("processor time of a collision", Some("µs")),
     )
-    .with(series)
+    .with(curves)
     .figure("masks", "The cost of a collision over the mask")
     .caption(format!(
         "{} discs, the source's way, one thread; medians of rounds in which the masks take turns.",
@@ -93,18 +94,10 @@ fn table(data: &Masks) -> Table {
 }
 
 fn constants(data: &Masks) -> Table {
-    let rows = TERMS
-        .iter()
-        .zip(data.constants)
-        .map(|(term, constant)| vec![Cell::from(*term), Cell::Number(1e9 * constant, 2)]);
-    Table {
-        name: "constants".into(),
-        title: "The source's formula of the cost, fitted".into(),
-        columns: vec!["of what".into(), "nanoseconds".into()],
-        rows: rows.collect(),
-        notes: vec![
-            "The source's k_MVS, k_CBT and k_UPDATE grow alike with the collisions and are the first constant here, for nothing in these runs \
-             sets them apart; 2 k_PP N_g is the second; k_EEPGM is the third and, for the predictions, the fourth.".into(),
-        ],
-    }
+    Rows::of(TERMS.into_iter().zip(data.constants))
+        .text("of what", |(term, _)| *term)
+        .number("nanoseconds", 2, |(_, constant)| 1e9 * constant)
+        .table("constants", "The source's formula of the cost, fitted")
+        .note("The source's k_MVS, k_CBT and k_UPDATE grow alike with the collisions and are the first constant here, for nothing in these runs \
+               sets them apart; 2 k_PP N_g is the second; k_EEPGM is the third and, for the predictions, the fourth.")
 }

@@ -1,8 +1,8 @@
 //! The error of Z over its cost.
 
 use crate::laboratory::hard_disks::study::precision::{KNOWN_TO, Precision, STATE, Way};
-use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::{Part, Rows, Section, Table};
 
 /// What came out.
 pub fn section(data: &Precision) -> Section {
@@ -40,25 +40,15 @@ fn named(way: &Way) -> String {
 }
 
 fn figure(data: &Precision) -> Figure {
-    let series = data.ways.iter().enumerate().map(|(hue, way)| {
-        Series::new(
-            named(way),
-            if way.engine == "fast" { Style::Joined } else { Style::Dashed },
-            hue / 2,
-            way.looks.iter().map(|look| Point::at(look.seconds, look.error)),
-        )
+    let ways = data.ways.iter().enumerate().map(|(hue, way)| {
+        let style = if way.engine == "fast" { Style::Joined } else { Style::Dashed };
+        Series::new(named(way), style, hue / 2, way.looks.iter().map(|look| (look.seconds, look.error)))
     });
-    let mut series: Vec<Series> = series.collect();
     let seconds = || data.ways.iter().flat_map(|way| way.looks.iter().map(|look| look.seconds));
     let ends = [seconds().fold(f64::INFINITY, f64::min), seconds().fold(0.0, f64::max)];
-    series.push(Series::new(
-        "to this Z is known",
-        Style::Line,
-        6,
-        ends.map(|at| Point::at(at, KNOWN_TO)).to_vec(),
-    ));
     Chart::of(Axis::logarithmic("processor time", Some("s")), Axis::logarithmic("relative error of Z", None))
-        .with(series)
+        .with(ways)
+        .series("to this Z is known", Style::Line, 6, ends.map(|at| (at, KNOWN_TO)))
         .figure("error-over-cost", "Few discs soon err by their number, many by chance")
         .caption(format!(
             "Root mean square of the errors of {} seeds; processor time of one run.",
@@ -67,33 +57,13 @@ fn figure(data: &Precision) -> Figure {
 }
 
 fn table(data: &Precision) -> Table {
-    let rows = data.ways.iter().flat_map(|way| {
-        way.looks.iter().map(move |look| {
-            vec![
-                Cell::Text(named(way)),
-                Cell::Count(look.collisions),
-                Cell::Number(look.seconds, 3),
-                Cell::Number(1e-6 * way.rate, 3),
-                Cell::Number(100.0 * look.error, 3),
-                Cell::Number(100.0 * look.bias[0], 3),
-                Cell::Number(100.0 * look.bias[1], 3),
-            ]
-        })
-    });
-    let columns = [
-        "engine and discs",
-        "collisions",
-        "processor time (s)",
-        "million collisions/s",
-        "error of Z (%)",
-        "mean error (%)",
-        "its standard error (%)",
-    ];
-    Table {
-        name: "precision".into(),
-        title: "Errors of Z after growing numbers of collisions".into(),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    Rows::of(data.ways.iter().flat_map(|way| way.looks.iter().map(move |look| (way, look))))
+        .text("engine and discs", |(way, _)| named(way))
+        .count("collisions", |(_, look)| look.collisions)
+        .number("processor time (s)", 3, |(_, look)| look.seconds)
+        .number("million collisions/s", 3, |(way, _)| 1e-6 * way.rate)
+        .number("error of Z (%)", 3, |(_, look)| 100.0 * look.error)
+        .number("mean error (%)", 3, |(_, look)| 100.0 * look.bias[0])
+        .number("its standard error (%)", 3, |(_, look)| 100.0 * look.bias[1])
+        .table("precision", "Errors of Z after growing numbers of collisions")
 }

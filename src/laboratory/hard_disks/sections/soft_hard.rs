@@ -1,8 +1,8 @@
 //! Soft against hard.
 
 use crate::laboratory::hard_disks::study::soft_hard::{Mean, Model, SoftHard};
-use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::{Part, Rows, Section, Table, Verdict};
 use stripmine_physics::number::in_tens;
 
 /// What came out.
@@ -59,98 +59,55 @@ fn stiffness_axis() -> Axis {
 
 /// An observable of the soft discs, and that of the hard ones as a line.
 fn over_stiffness(data: &SoftHard, name: &str, title: &str, label: &str, of: fn(&Model) -> Mean) -> Figure {
-    let soft = || data.models.iter().filter_map(|model| Some((model.stiffness?, model)));
-    let ends: Vec<f64> =
-        [soft().next(), soft().next_back()].into_iter().flatten().map(|(stiffness, _)| stiffness).collect();
-    let mut series = vec![Series::new(
-        "soft discs",
-        Style::Points,
-        0,
-        soft().map(|(x, model)| {
-            let [y, error] = of(model);
-            Point { x, y, spread: Some([y - 2.0 * error, y + 2.0 * error]) }
-        }),
-    )];
-    if let Some(hard) = data.hard() {
-        let [mean, _] = of(hard);
-        let points = ends.iter().map(|&x| Point::at(x, mean)).collect();
-        series.push(Series::new("hard discs", Style::Dashed, 1, points));
-    }
-    if name == "pressure" {
-        series.push(Series::new(
-            "hard discs of the effective diameter",
-            Style::Line,
-            2,
-            soft().map(|(x, model)| Point::at(x, model.effective)),
-        ));
-    }
+    let bars = soft(data).map(|(stiffness, model)| {
+        let [mean, error] = of(model);
+        (stiffness, mean, [mean - 2.0 * error, mean + 2.0 * error])
+    });
+    let effective = soft(data).map(|(stiffness, model)| (stiffness, model.effective));
+    let effective = Series::new("hard discs of the effective diameter", Style::Line, 2, effective);
     Chart::of(stiffness_axis(), Axis::linear(label, None))
-        .with(series)
+        .series("soft discs", Style::Points, 0, bars)
+        .with(hard_discs(data, |hard| of(hard)[0]))
+        .with((name == "pressure").then_some(effective))
         .figure(name, title)
         .caption(format!("{} seeds; bars are two standard errors.", data.question.seeds))
 }
 
+fn soft(data: &SoftHard) -> impl DoubleEndedIterator<Item = (f64, &Model)> {
+    data.models.iter().filter_map(|model| Some((model.stiffness?, model)))
+}
+
+/// What hard discs have, as a line from the softest to the stiffest of the soft ones.
+fn hard_discs(data: &SoftHard, of: impl Fn(&Model) -> f64) -> Option<Series> {
+    let level = of(data.hard()?);
+    let ends = [soft(data).next(), soft(data).next_back()].into_iter().flatten();
+    Some(Series::new("hard discs", Style::Dashed, 1, ends.map(|(stiffness, _)| (stiffness, level))))
+}
+
 fn cost(data: &SoftHard) -> Figure {
-    let soft = || data.models.iter().filter_map(|model| Some((model.stiffness?, model)));
-    let ends: Vec<f64> =
-        [soft().next(), soft().next_back()].into_iter().flatten().map(|(stiffness, _)| stiffness).collect();
-    let mut series = vec![Series::new(
-        "soft discs, 40 steps a contact",
-        Style::Joined,
-        0,
-        soft().map(|(x, model)| Point::at(x, model.cost)),
-    )];
-    if let Some(hard) = data.hard() {
-        series.push(Series::new(
-            "hard discs",
-            Style::Dashed,
-            1,
-            ends.iter().map(|&x| Point::at(x, hard.cost)),
-        ));
-    }
+    let own = soft(data).map(|(stiffness, model)| (stiffness, model.cost));
     Chart::of(stiffness_axis(), Axis::logarithmic("processor time for a unit of simulated time", Some("s")))
-        .with(series)
+        .series("soft discs, 40 steps a contact", Style::Joined, 0, own)
+        .with(hard_discs(data, |hard| hard.cost))
         .figure("cost", "What a unit of time costs")
         .caption("Processor seconds of the elastic fluid, looks included; the median of the seeds.")
 }
 
 fn table(data: &SoftHard) -> Table {
-    let rows = data.models.iter().map(|model| {
-        let number =
-            |value: Option<f64>, digits| value.map_or(Cell::Nothing, |value| Cell::Number(value, digits));
-        vec![
-            model.stiffness.map_or(Cell::from("hard"), |stiffness| Cell::Text(format!("{stiffness:e}"))),
-            number(model.damping, 3),
-            number(model.step, 6),
-            Cell::Number(100.0 * model.depth, 2),
-            Cell::Number(model.compressibility[0], 4),
-            Cell::Number(model.compressibility[1], 4),
-            Cell::Number(model.effective, 4),
-            Cell::Number(model.cooled[0], 4),
-            Cell::Number(model.cooled[1], 4),
-            Cell::Number(1e3 * model.cost, 2),
-        ]
-    });
-    let columns = [
-        "stiffness of a contact",
-        "damping γ_N",
-        "step",
-        "depth of a contact of kT (%)",
-        "Z",
-        "± (standard error)",
-        "Z of the effective diameter",
-        "T/T₀ cooled",
-        "± (standard error)",
-        "cost (ms for a unit of time)",
-    ];
-    Table {
-        name: "soft_hard".into(),
-        title: "Soft discs and hard ones".into(),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        notes: vec![format!(
+    Rows::of(&data.models)
+        .text("stiffness of a contact", |model| model.stiffness.map_or("hard".into(), |it| format!("{it:e}")))
+        .number("damping γ_N", 3, |model| model.damping)
+        .number("step", 6, |model| model.step)
+        .number("depth of a contact of kT (%)", 2, |model| 100.0 * model.depth)
+        .number("Z", 4, |model| model.compressibility[0])
+        .number("± (standard error)", 4, |model| model.compressibility[1])
+        .number("Z of the effective diameter", 4, |model| model.effective)
+        .number("T/T₀ cooled", 4, |model| model.cooled[0])
+        .number("± (standard error)", 4, |model| model.cooled[1])
+        .number("cost (ms for a unit of time)", 2, |model| 1e3 * model.cost)
+        .table("soft_hard", "Soft discs and hard ones")
+        .note(format!(
             "The damping gives a restitution of {} at a normal speed of {:.2}, the mean of impacts at kT = m = 1.",
             data.question.restitution, data.impact_speed
-        )],
-    }
+        ))
 }

@@ -1,9 +1,7 @@
 //! Order, free times and speeds on both sides of melting.
 
 use crate::laboratory::hard_disks::study::structure::{Structure, Structures};
-use crate::report::figure::{
-    Axis, Chart, Drawing, Figure, Guide, Picture, Point, Series, Shape, Style, Tint,
-};
+use crate::report::figure::{Axis, Chart, Drawing, Figure, Guide, Picture, Series, Shape, Style, Tint};
 use crate::report::{Part, Rows, Section, Table, Verdict};
 
 /// Free times over their mean that are drawn; longer ones are too few.
@@ -50,11 +48,8 @@ pub fn section(data: &Structures) -> Section {
             data.structures.iter().map(|it| it.maxwell[1]).fold(1.0, f64::min),
             data.structures.iter().map(|it| it.maxwell[1]).fold(0.0, f64::max),
         )])
-        .figures(
-            std::iter::once(correlation(data))
-                .chain([free_times(data)])
-                .chain(data.structures.iter().skip(1).map(picture)),
-        )
+        .figures([correlation(data), free_times(data)])
+        .figures(data.structures.iter().skip(1).map(picture))
         .tables([table(data)])
         .seeds([1])
 }
@@ -64,21 +59,17 @@ fn named(it: &Structure) -> String {
 }
 
 fn correlation(data: &Structures) -> Figure {
-    let series = data.structures.iter().enumerate().map(|(hue, it)| {
-        Series::new(
-            named(it),
-            Style::Line,
-            hue,
-            data.distances.iter().zip(&it.correlation).map(|(&x, &y)| Point::at(x, y)),
-        )
+    let curves = data.structures.iter().enumerate().map(|(hue, it)| {
+        let points = data.distances.iter().zip(&it.correlation).map(|(&x, &y)| (x, y));
+        Series::new(named(it), Style::Line, hue, points)
     });
-    let contacts = data.structures.iter().map(|it| Point::at(1.0, it.contact));
-    let contacts = Series::new("at contact, by the virial", Style::Points, 6, contacts);
+    let contacts = data.structures.iter().map(|it| (1.0, it.contact));
     Chart::of(
         Axis::linear("distance of the centres over the diameter", None),
         Axis::linear("pair correlation g", None),
     )
-    .with(series.chain([contacts]))
+    .with(curves)
+    .series("at contact, by the virial", Style::Points, 6, contacts)
     .figure("pair-correlation", "Pair correlation on both sides of melting")
     .caption(format!(
         "Means of {} looks; the points at contact follow from the pressure, (Z − 1)/(2 ν).",
@@ -87,21 +78,16 @@ fn correlation(data: &Structures) -> Figure {
 }
 
 fn free_times(data: &Structures) -> Figure {
-    let series = data.structures.iter().enumerate().map(|(hue, it)| {
-        Series::new(
-            named(it),
-            Style::Steps,
-            hue,
-            (0..data.times.len())
-                .filter(|&bin| data.times[bin] < LONGEST)
-                .map(|bin| Point::at(data.times[bin], it.free_times[bin] / data.dilute[bin])),
-        )
+    let curves = data.structures.iter().enumerate().map(|(hue, it)| {
+        let bins = (0..data.times.len()).filter(|&bin| data.times[bin] < LONGEST);
+        let points = bins.map(|bin| (data.times[bin], it.free_times[bin] / data.dilute[bin]));
+        Series::new(named(it), Style::Steps, hue, points)
     });
     Chart::of(
         Axis::linear("free time over its mean", None),
         Axis::linear("density over that of a dilute gas", None),
     )
-    .with(series)
+    .with(curves)
     .figure("free-times", "Time between two collisions of a disc")
     .caption("Probability density of the free time over what the Maxwell velocities of a dilute gas give. In a crystal long free times are rare.")
 }

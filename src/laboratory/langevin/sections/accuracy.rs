@@ -29,8 +29,9 @@ pub fn section(data: &Accuracy) -> Section {
     let fitted = order(data, "baoab");
     let said = match fitted {
         Some(order) => format!("By BAOAB the error falls with the step to the power {order:.1}."),
-        None => "The order of BAOAB's error is not seen: it is lost in the scatter at all steps but a few."
-            .to_owned(),
+        None => {
+            "The order of BAOAB's error is not seen: it is lost in the scatter at all steps but a few.".to_owned()
+        }
     };
     // Smaller beyond the bars of both.
     let is_smaller = source.value.abs() - ours.value.abs() > ours.bar.hypot(source.bar);
@@ -67,7 +68,7 @@ fn figure(data: &Accuracy, name: &str, axis: &str, x: fn(&Fluid) -> f64) -> Figu
     let series = ["stochastic", "baoab"].into_iter().enumerate().map(|(hue, scheme)| {
         let of = data.fluids.iter().filter(|it| it.scheme == scheme && it.is_whole);
         let mut points: Vec<_> = of.map(|it| point(x(it), error(data, it))).collect();
-        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
         Series::new(scheme, Style::Joined, hue, points)
     });
     let unit = if name.ends_with("cost") { "s" } else { "reduced" };

@@ -1,7 +1,7 @@
 //! Particles lost over the step.
 
-use crate::laboratory::langevin::study::losses::{LossTable, Row, SCHEMES};
-use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
+use crate::laboratory::langevin::study::losses::{Boundary, LossTable, Row, SCHEMES};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 use stripmine_physics::number::range;
 use stripmine_physics::words::Words;
@@ -76,22 +76,17 @@ pub fn section(data: &LossTable) -> Section {
 }
 
 fn losses(data: &LossTable) -> Figure {
-    let source = data.rows.iter().rev().filter_map(|row| Some((row.dt, row.source? as f64)));
-    let source = source.filter(|(_, lost)| *lost > 0.0).map(|(dt, lost)| Point::at(dt, lost));
+    let seen = |of: &dyn Fn(&Row) -> Option<u64>| -> Vec<(f64, f64)> {
+        let lost =
+            data.rows.iter().rev().filter_map(|row| Some((row.dt, of(row).filter(|lost| *lost > 0)? as f64)));
+        lost.collect()
+    };
     let ours = SCHEMES.iter().enumerate().map(|(which, scheme)| {
-        Series::new(
-            scheme.word(),
-            Style::Joined,
-            which,
-            data.rows
-                .iter()
-                .rev()
-                .filter(|row| row.lost[which] > 0)
-                .map(|row| Point::at(row.dt, row.lost[which] as f64)),
-        )
+        Series::new(scheme.word(), Style::Joined, which, seen(&|row| Some(row.lost[which])))
     });
     Chart::of(Axis::logarithmic("time step", Some("reduced")), Axis::logarithmic("particles lost", None))
-        .with(ours.chain([Series::new("source", Style::Points, 6, source)]))
+        .with(ours)
+        .series("source", Style::Points, 6, seen(&|row| row.source))
         .figure("losses", "Particles lost in 100 steps")
         .caption(format!(
             "Of {}. Steps without a loss are not drawn. In the source's table fewer are lost at long steps: no strength and temperature gave its \
@@ -101,22 +96,16 @@ fn losses(data: &LossTable) -> Figure {
 }
 
 fn boundaries(data: &LossTable) -> Figure {
-    let points = |of: &dyn Fn(usize) -> f64| -> Vec<Point> {
-        let mut points: Vec<Point> =
-            (0..data.boundaries.len()).map(|at| Point::at(data.boundaries[at].bounds[0], of(at))).collect();
-        points.sort_by(|a, b| a.x.total_cmp(&b.x));
-        points
-    };
-    let series = |name: &str, style, hue, points| Series::new(name, style, hue, points);
+    let mut sorted: Vec<&Boundary> = data.boundaries.iter().collect();
+    sorted.sort_by(|a, b| a.bounds[0].total_cmp(&b.bounds[0]));
+    let over_bound = |of: fn(&Boundary) -> f64| sorted.iter().map(move |it| (it.bounds[0], of(it)));
     Chart::of(
         Axis::logarithmic("the source's bound on the step", Some("reduced")),
         Axis::logarithmic("time step", Some("reduced")),
     )
-    .with([
-        series("the source's bound", Style::Line, 6, points(&|at| data.boundaries[at].bounds[0])),
-        series("by the hardest collisions", Style::Points, 1, points(&|at| data.boundaries[at].bounds[1])),
-        series("measured", Style::Points, 0, points(&|at| data.boundaries[at].dt)),
-    ])
+    .series("the source's bound", Style::Line, 6, over_bound(|it| it.bounds[0]))
+    .series("by the hardest collisions", Style::Points, 1, over_bound(|it| it.bounds[1]))
+    .series("measured", Style::Points, 0, over_bound(|it| it.dt))
     .figure("boundaries", "Longest step without a loss beside two bounds")
     .caption("For ε of 0.1 to 100 and kT of 0.1 to 10. The source's bound knows no temperature: where particles meet hard, the spring between \
               them is far stiffer than at the distance σ.")
@@ -147,7 +136,6 @@ fn boundary_table(data: &LossTable) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::laboratory::langevin::study::losses::Boundary;
 
     /// The losses of the source's steps, the longest first, and a longest step beside a bound of 1.
     fn section_of(lost: [u64; 4], dt: f64) -> Section {

@@ -1,7 +1,7 @@
 //! Wall time over the number of sectors.
 
 use crate::laboratory::langevin::study::sectors::{Fluid, Row, SEARCHES, SOURCE, Sectors, THREADS};
-use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 
 /// Two threads help where they are at least so many times as fast as one.
@@ -110,76 +110,58 @@ fn loss(fluid: &Fluid) -> Option<f64> {
 }
 
 fn searches(data: &Sectors) -> Table {
-    let rows = data.fluids.iter().map(|fluid| {
-        let begin = [Cell::Text(fluid.law.into()), Cell::Number(fluid.density, 2)];
-        let times = fluid.seconds.iter().map(|it| it.map_or(Cell::Nothing, |it| Cell::Number(1e6 * it, 1)));
-        let end = [
-            Cell::Text(fluid.auto.clone()),
-            loss(fluid).map_or(Cell::Nothing, |it| Cell::Number(100.0 * it, 0)),
-        ];
-        begin.into_iter().chain(times).chain(end).collect()
-    });
-    let names = SEARCHES.iter().map(|(name, _)| format!("{name} (µs)"));
-    let columns = ["pairs", "density N σ²/A"].map(str::to_owned).into_iter().chain(names);
-    Table {
-        name: "searches".into(),
-        title: "A step of 4000 particles by every search, on one thread".into(),
-        columns: columns.chain(["auto takes", "slower than the best (%)"].map(str::to_owned)).collect(),
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    let microseconds = |it: &Option<f64>| it.map_or(Cell::Nothing, |it| Cell::Number(1e6 * it, 1));
+    Rows::of(&data.fluids)
+        .text("pairs", |fluid| fluid.law)
+        .number("density N σ²/A", 2, |fluid| fluid.density)
+        .cells(SEARCHES.map(|(name, _)| format!("{name} (µs)")), |fluid| {
+            fluid.seconds.iter().map(microseconds)
+        })
+        .text("auto takes", |fluid| &fluid.auto)
+        .number("slower than the best (%)", 0, |fluid| loss(fluid).map(|it| 100.0 * it))
+        .table("searches", "A step of 4000 particles by every search, on one thread")
 }
 
 fn figure(data: &Sectors) -> Figure {
-    let mut series = vec![];
-    for (which, threads) in THREADS.into_iter().enumerate() {
+    let of_sectors = || data.rows.iter().filter_map(|row| Some((row.per_side? as f64, row)));
+    let threads = THREADS.into_iter().enumerate().flat_map(|(which, threads)| {
         let name = if threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") };
-        let of_sectors = || data.rows.iter().filter_map(|row| Some((row.per_side? as f64, row)));
-        let ours = of_sectors().map(|(count, row)| Point::at(count, row.seconds[which]));
-        let source = of_sectors().filter_map(|(count, row)| Some(Point::at(count, row.source?[which])));
-        series.push(Series::new(name.clone(), Style::Joined, which, ours));
-        series.push(Series::new(format!("source, {name}"), Style::Points, which + 2, source));
-    }
-    if let Some(lists) = data.rows.iter().find(|row| row.per_side.is_none()) {
-        let points = [3.0, 800.0].map(|count| Point::at(count, lists.seconds[0]));
-        series.push(Series::new("lists, 1 thread", Style::Dashed, 6, points.to_vec()));
-    }
+        let ours = of_sectors().map(|(count, row)| (count, row.seconds[which]));
+        let source = of_sectors().filter_map(|(count, row)| Some((count, row.source?[which])));
+        let source = Series::new(format!("source, {name}"), Style::Points, which + 2, source);
+        [Series::new(name, Style::Joined, which, ours), source]
+    });
+    let lists = data.rows.iter().find(|row| row.per_side.is_none()).map(|lists| {
+        let level = [3.0, 800.0].map(|count| (count, lists.seconds[0]));
+        Series::new("lists, 1 thread", Style::Dashed, 6, level)
+    });
     Chart::of(
         Axis::logarithmic("sectors along a side", None),
         Axis::logarithmic("wall time of 100 steps", Some("s")),
     )
-    .with(series)
+    .with(threads)
+    .with(lists)
     .figure("wall-time", "Wall time of 100 steps")
     .caption(format!("{} particles. With 3 sectors along a side every pair is tried.", data.particles))
 }
 
 fn table(data: &Sectors) -> Table {
-    let rows = data.rows.iter().map(|row| {
-        let source =
-            |which: usize| row.source.map_or(Cell::Text(String::new()), |it| Cell::Number(it[which], 1));
-        vec![
-            Cell::Text(row.per_side.map_or("lists".to_owned(), |count| count.to_string())),
-            Cell::Number(row.seconds[0], 4),
-            Cell::Number(row.seconds[1], 4),
-            Cell::Number(row.seconds[0] / row.seconds[1], 2),
-            source(0),
-            source(1),
-        ]
-    });
-    let columns = ["sectors", "1 thread (s)", "2 threads (s)", "ratio", "source, 1 (s)", "source, 2 (s)"];
-    Table {
-        name: "wall-time".into(),
-        title: "Wall time of 100 steps".into(),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        notes: vec!["Medians of alternating repeats; fewer steps where they are long.".into()],
-    }
+    let source = |row: &Row, which: usize| row.source.map_or(Cell::from(""), |it| Cell::Number(it[which], 1));
+    Rows::of(&data.rows)
+        .text("sectors", |row| row.per_side.map_or("lists".to_owned(), |count| count.to_string()))
+        .number("1 thread (s)", 4, |row| row.seconds[0])
+        .number("2 threads (s)", 4, |row| row.seconds[1])
+        .number("ratio", 2, |row| row.seconds[0] / row.seconds[1])
+        .cell("source, 1 (s)", |row| source(row, 0))
+        .cell("source, 2 (s)", |row| source(row, 1))
+        .table("wall-time", "Wall time of 100 steps")
+        .note("Medians of alternating repeats; fewer steps where they are long.")
 }
 
 fn phases(data: &Sectors) -> Table {
     Rows::of(&data.phases)
-        .text("part", |(name, _)| name.clone())
-        .number("time (ms)", 2, |(_, seconds)| 1e3 * seconds)
+        .text("part", |(name, _)| *name)
+        .number("time (ms)", 2, |(_, seconds)| 1e3 * **seconds)
         .table("phases", "Where the time goes: 100 steps by lists on one thread")
         .note("correct_predict holds velocities, positions, noise and wrapping; index the lists and their order. The source: writing 3.8 s, \
                ordering 0.41, velocities 0.08, boundary 0.03, noise 0.03.")

@@ -2,8 +2,8 @@
 
 use crate::laboratory::lattice_md::study::break_even::{Atlas, Named, Sheet};
 use crate::laboratory::lattice_md::study::density_cost::CEILING;
-use crate::report::figure::{Axis, Band, Chart, Figure, Point, Series, Style};
-use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
+use crate::report::figure::{Axis, Band, Chart, Figure, Series, Style};
+use crate::report::{Part, Rows, Section, Table, Verdict};
 use crate::statistics::median;
 
 /// A lead below this is a draw in the words.
@@ -56,8 +56,8 @@ fn wrong(named: &[Named]) -> Table {
     Rows::of(named.iter().filter(|it| it.named != it.cheapest))
         .number("occupancy ρ", 2, |it| it.occupancy)
         .count("NP", |it| it.particles)
-        .text("named by the model", |it| it.named.clone())
-        .text("cheapest as measured", |it| it.cheapest.clone())
+        .text("named by the model", |it| &it.named)
+        .text("cheapest as measured", |it| &it.cheapest)
         .number("costs more (%)", 0, |it| 100.0 * (it.dearer - 1.0))
         .table("wrong_winners", "Where the model of a host names another method than the cheapest")
 }
@@ -75,8 +75,7 @@ fn wins(sheet: &Sheet) -> String {
 fn figure(sheet: &Sheet) -> Figure {
     let series = sheet.methods.iter().enumerate().map(|(hue, name)| {
         let won = sheet.places.iter().filter(|place| place.winner().is_some_and(|(winner, _)| winner == hue));
-        let points = won.map(|place| Point::at(place.occupancy, place.particles as f64)).collect();
-        Series::new(name.clone(), Style::Points, hue, points)
+        Series::new(name, Style::Points, hue, won.map(|place| (place.occupancy, place.particles as f64)))
     });
     let narrow =
         sheet.places.iter().filter(|place| place.winner().is_some_and(|(_, lead)| lead < DRAW)).count();
@@ -101,37 +100,19 @@ fn figure(sheet: &Sheet) -> Figure {
 }
 
 fn places(data: &Atlas) -> Table {
-    let rows = data.sheets.iter().flat_map(|sheet| {
-        sheet.places.iter().filter_map(move |place| {
-            let (winner, lead) = place.winner()?;
-            Some(vec![
-                Cell::Text(sheet.title.clone()),
-                Cell::Number(place.occupancy, 2),
-                Cell::Count(place.particles as u64),
-                Cell::Text(sheet.methods.get(winner)?.clone()),
-                Cell::Number(lead, 2),
-                Cell::Number(place.costs[winner] / place.particles as f64, 1),
-                Cell::Text(sheet.unit.to_owned()),
-            ])
-        })
-    });
-    Table {
-        name: "atlas".into(),
-        title: "The cheapest method at each place".into(),
-        columns: [
-            "machine",
-            "occupancy ρ",
-            "NP",
-            "cheapest",
-            "the next costs (times)",
-            "a disc and step",
-            "unit",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    let won = data
+        .sheets
+        .iter()
+        .flat_map(|sheet| sheet.places.iter().filter_map(move |place| Some((sheet, place, place.winner()?))));
+    Rows::of(won)
+        .text("machine", |(sheet, ..)| &sheet.title)
+        .number("occupancy ρ", 2, |(_, place, _)| place.occupancy)
+        .count("NP", |(_, place, _)| place.particles)
+        .text("cheapest", |(sheet, _, (winner, _))| &sheet.methods[*winner])
+        .number("the next costs (times)", 2, |(.., (_, lead))| *lead)
+        .number("a disc and step", 1, |(_, place, (winner, _))| place.costs[*winner] / place.particles as f64)
+        .text("unit", |(sheet, ..)| sheet.unit)
+        .table("atlas", "The cheapest method at each place")
 }
 
 #[cfg(test)]

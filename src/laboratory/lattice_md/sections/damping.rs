@@ -1,8 +1,8 @@
 //! Waves over dissipation: tables, figures and what came out.
 
 use crate::laboratory::lattice_md::study::damping::{Case, Damping};
-use crate::report::figure::{Axis, Chart, Figure, Point, Style};
-use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Style};
+use crate::report::{Part, Rows, Section, Table, Verdict};
 use crate::statistics::Spread;
 
 /// The Fano factor above which there are waves.
@@ -42,35 +42,30 @@ pub fn section(data: &Damping) -> Section {
 fn figure(scan: &[&Case]) -> Figure {
     let point = |case: &&Case, spread: &Spread| {
         let error = spread.error.unwrap_or(0.0);
-        Point {
-            x: case.normal_damping,
-            y: spread.mean,
-            spread: Some([(spread.mean - error).max(spread.lowest), spread.mean + error]),
-        }
+        (case.normal_damping, spread.mean, [(spread.mean - error).max(spread.lowest), spread.mean + error])
     };
     let ends = [scan.first(), scan.last()].into_iter().flatten();
     Chart::of(Axis::logarithmic("normal damping γ", Some("1/s")), Axis::logarithmic("Fano factor", None))
         .series("late", Style::Joined, 0, scan.iter().map(|case| point(case, &case.fano)))
         .series("at the start", Style::Points, 1, scan.iter().map(|case| point(case, &case.fano_start)))
-        .series("waves above this", Style::Dashed, 2, ends.map(|case| Point::at(case.normal_damping, EVEN)))
+        .series("waves above this", Style::Dashed, 2, ends.map(|case| (case.normal_damping, EVEN)))
         .figure("fano_over_damping", "Variance over mean of the grains in a bin, over the damping")
         .caption("Bins of 20 mean radii; the last half of two seconds. Bars: standard error over the seeds.")
 }
 
 fn table(data: &Damping) -> Table {
-    let spread = |spread: &Spread, decimals: usize| -> Cell {
+    let with_error = |spread: &Spread, decimals: usize| {
         let error = spread.error.map_or(String::new(), |error| format!(" ± {error:.decimals$}"));
-        Cell::Text(format!("{:.decimals$}{error}", spread.mean))
+        format!("{:.decimals$}{error}", spread.mean)
     };
-    let range = |spread: &Spread| Cell::Text(format!("{:.2}–{:.2}", spread.lowest, spread.highest));
     Rows::of(&data.cases)
-        .text("case", |case| case.name.as_str())
-        .cell("Fano at the start", |case| spread(&case.fano_start, 2))
-        .cell("Fano late", |case| spread(&case.fano, 2))
-        .cell("single seeds", |case| range(&case.fano))
-        .cell("strongest mode at the start", |case| spread(&case.mode_start, 3))
-        .cell("strongest mode late", |case| spread(&case.mode, 3))
-        .cell("mean velocity late (m/s)", |case| spread(&case.flow, 3))
+        .text("case", |case| &case.name)
+        .text("Fano at the start", |case| with_error(&case.fano_start, 2))
+        .text("Fano late", |case| with_error(&case.fano, 2))
+        .text("single seeds", |case| format!("{:.2}–{:.2}", case.fano.lowest, case.fano.highest))
+        .text("strongest mode at the start", |case| with_error(&case.mode_start, 3))
+        .text("strongest mode late", |case| with_error(&case.mode, 3))
+        .text("mean velocity late (m/s)", |case| with_error(&case.flow, 3))
         .table("cases", "Every case")
         .note(format!(
             "Means over {} seeds with their standard errors. Strongest Fourier mode at wavelengths from 80 mean radii on, as a fraction of the \

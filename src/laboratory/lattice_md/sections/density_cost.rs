@@ -1,8 +1,8 @@
 //! Figures 3 and 4 of the source, by the model.
 
 use crate::laboratory::lattice_md::study::density_cost::{CEILING, Curve, DensityCost};
-use crate::report::figure::{Axis, Band, Chart, Figure, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Band, Chart, Figure, Series, Style};
+use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 use crate::statistics;
 
 /// What came out.
@@ -113,36 +113,26 @@ fn crossing(vector: &Curve, list: &Curve) -> Option<f64> {
     })
 }
 
-fn points(curve: &Curve, each: bool, printed: bool) -> Vec<Point> {
+fn points(curve: &Curve, each: bool, printed: bool) -> Vec<(f64, f64)> {
     let costs = curve.costs.iter().filter_map(|cost| {
         let clocks = if printed { cost.printed? } else { cost.counted };
-        Some(Point::at(cost.particles as f64, if each { clocks / cost.particles as f64 } else { clocks }))
+        Some((cost.particles as f64, if each { clocks / cost.particles as f64 } else { clocks }))
     });
     costs.collect()
 }
 
 fn figure_3(data: &DensityCost) -> Figure {
-    let mut series = vec![];
-    for (hue, curve) in data.vector.iter().enumerate() {
+    let vector = data.vector.iter().enumerate().map(|(hue, curve)| {
         let cells = rounded(curve.cells.unwrap_or(0) as f64);
-        series.push(Series::new(
-            format!("vector, LMAX = {cells}"),
-            Style::Line,
-            hue,
-            points(curve, false, false),
-        ));
-    }
-    series.push(Series::new(
-        "neighbour lists, scalar",
-        Style::Dashed,
-        data.vector.len(),
-        points(&data.list, false, false),
-    ));
+        Series::new(format!("vector, LMAX = {cells}"), Style::Line, hue, points(curve, false, false))
+    });
+    let lists = points(&data.list, false, false);
     Chart::of(
         Axis::logarithmic("number of particles NP", None),
         Axis::logarithmic("time of a step", Some("clock periods")),
     )
-    .with(series)
+    .with(vector)
+    .series("neighbour lists, scalar", Style::Dashed, data.vector.len(), lists)
     .figure("figure_3", "Clock periods of a step over the number of particles")
     .caption(format!(
         "Model: {}, counted operations. A vector curve ends where its lattice is full: ρ = {CEILING:.3}, touching discs in hexagonal order on \
@@ -154,12 +144,9 @@ fn figure_3(data: &DensityCost) -> Figure {
 fn figure_4(data: &DensityCost) -> Figure {
     let named = |curve: &Curve| format!("ρ = {:.2}", curve.occupancy.unwrap_or(f64::NAN));
     let vector = data.densities.iter().enumerate().map(|(hue, curve)| {
-        Series::new(
-            if curve.reachable { named(curve) } else { format!("{}, out of reach", named(curve)) },
-            if curve.reachable { Style::Line } else { Style::Points },
-            hue,
-            points(curve, true, false),
-        )
+        let (reach, style) =
+            if curve.reachable { ("", Style::Line) } else { (", out of reach", Style::Points) };
+        Series::new(format!("{}{reach}", named(curve)), style, hue, points(curve, true, false))
     });
     // The lists of the thinnest and of the densest are the farthest apart.
     let last = data.list_densities.len().saturating_sub(1);
@@ -171,7 +158,8 @@ fn figure_4(data: &DensityCost) -> Figure {
         Axis::logarithmic("number of particles NP", None),
         Axis::logarithmic("time of a particle and step", Some("clock periods")),
     )
-    .with(vector.chain(lists))
+    .with(vector)
+    .with(lists)
     .figure("figure_4", "Clock periods of a particle and step over the number of particles")
     .caption(format!(
         "Model: {}, counted operations. Lines: vector algorithm; dashed: scalar neighbour lists; points: occupancies that discs on cells as wide \
@@ -181,22 +169,20 @@ fn figure_4(data: &DensityCost) -> Figure {
 }
 
 fn over_density(data: &DensityCost) -> Figure {
-    let last = |curve: &Curve, printed: bool| {
-        let point = *points(curve, true, printed).last()?;
-        Some(Point::at(curve.occupancy?, point.y))
+    // Of the most particles that a density has.
+    let last = |curve: &Curve, printed| Some((curve.occupancy?, points(curve, true, printed).last()?.1));
+    let over = |curves, printed| {
+        let curves: &[Curve] = curves;
+        curves.iter().filter_map(move |curve| last(curve, printed))
     };
-    let curve = |curves: &[Curve], printed| curves.iter().filter_map(|curve| last(curve, printed)).collect();
     let largest = data.densities.iter().flat_map(|curve| &curve.costs).map(|cost| cost.particles).max();
-    let series = |name: &str, style, hue, points| Series::new(name, style, hue, points);
     Chart::of(
         Axis::linear("occupancy ρ = NP/LMAX", None).between([0.0, 0.55]),
         Axis::logarithmic("time of a particle and step", Some("clock periods")),
     )
-    .with([
-        series("vector, counted", Style::Joined, 0, curve(&data.densities, false)),
-        series("vector, as printed", Style::Dashed, 1, curve(&data.densities, true)),
-        series("lists, scalar", Style::Joined, 2, curve(&data.list_densities, false)),
-    ])
+    .series("vector, counted", Style::Joined, 0, over(&data.densities, false))
+    .series("vector, as printed", Style::Dashed, 1, over(&data.densities, true))
+    .series("lists, scalar", Style::Joined, 2, over(&data.list_densities, false))
     .band(Band::of_x("out of reach", [CEILING, 0.55]))
     .figure("figure_4_density", "Clock periods of a particle and step over the density")
     .caption(format!(
@@ -206,26 +192,17 @@ fn over_density(data: &DensityCost) -> Figure {
 }
 
 fn lists(data: &DensityCost) -> Table {
-    let rows = data.lists.iter().map(|figures| {
-        [figures.occupancy, figures.candidates, figures.contacts, figures.steps_a_list]
-            .iter()
-            .zip([2, 2, 3, 1])
-            .map(|(&value, decimals)| Cell::Number(value, decimals))
-            .collect()
-    });
-    Table {
-        name: "lists".into(),
-        title: "What the lists hold".into(),
-        columns: ["occupancy ρ", "candidates a disc", "contacts a disc", "steps a list serves"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
-        notes: vec![format!(
+    Rows::of(&data.lists)
+        .number("occupancy ρ", 2, |figures| figures.occupancy)
+        .number("candidates a disc", 2, |figures| figures.candidates)
+        .number("contacts a disc", 3, |figures| figures.contacts)
+        .number("steps a list serves", 1, |figures| figures.steps_a_list)
+        .table("lists", "What the lists hold")
+        .note(format!(
             "Measured in the bench scene with 1024 discs over 1000 steps; each pair is in both lists. Making the lists tests NP(NP − 1)/2 pairs \
              with the law's own {} operations for distance and contact.",
             data.test_operations
-        )],
-    }
+        ))
 }
 
 #[cfg(test)]

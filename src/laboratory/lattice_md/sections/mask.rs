@@ -1,7 +1,7 @@
 //! The neighbourhood as the source draws it.
 
 use crate::report::figure::{Drawing, Figure, Picture, Shape, Tint};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 use std::f64::consts::SQRT_2;
 use stripmine_kernels::mask::Mask;
 
@@ -53,27 +53,11 @@ fn drawing(name: &str, title: &str, mask: &Mask) -> Figure {
 
 /// What sizes a mask of half-width h allows: cells of 2R_max/h see every contact, cells of d_min/√2 hold one disc.
 fn reaches(masks: &[(&str, f64)]) -> Table {
-    let rows = masks.iter().map(|&(name, half)| {
-        let ratio = |penetration: f64| half * (1.0 - penetration) / SQRT_2;
-        vec![
-            name.into(),
-            Cell::Number(2.0 / half, 3),
-            Cell::Number(ratio(0.0), 3),
-            Cell::Number(ratio(0.1), 3),
-        ]
-    });
-    Table {
-        name: "reach".into(),
-        title: "What a mask can see".into(),
-        columns: [
-            "mask",
-            "narrowest cell (R_max)",
-            "largest R_max/R_min, discs just touching",
-            "largest R_max/R_min, penetration up to 0.1",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    let ratio = |half: f64, penetration: f64| half * (1.0 - penetration) / SQRT_2;
+    Rows::of(masks)
+        .text("mask", |(name, _)| *name)
+        .number("narrowest cell (R_max)", 3, |(_, half)| 2.0 / half)
+        .number("largest R_max/R_min, discs just touching", 3, |(_, half)| ratio(*half, 0.0))
+        .number("largest R_max/R_min, penetration up to 0.1", 3, |(_, half)| ratio(*half, 0.1))
+        .table("reach", "What a mask can see")
 }

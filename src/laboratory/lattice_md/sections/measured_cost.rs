@@ -2,7 +2,7 @@
 
 use crate::laboratory::lattice_md::study::density_cost::CEILING;
 use crate::laboratory::lattice_md::study::measured_cost::{MeasuredCost, OCCUPANCY, PARTICLES, Sample};
-use crate::report::figure::{Axis, Band, Chart, Figure, Point, Series, Style};
+use crate::report::figure::{Axis, Band, Chart, Figure, Series, Style};
 use crate::report::{Part, Section};
 
 /// What came out.
@@ -45,30 +45,24 @@ fn answer(data: &MeasuredCost) -> String {
     )
 }
 
-fn series(
-    data: &MeasuredCost,
-    samples: &[Sample],
-    point: impl Fn(&Sample) -> (f64, f64, f64),
-) -> Vec<Series> {
-    let of_variant = |variant: usize| {
-        let of_variant = samples.iter().filter(|sample| sample.variant == variant);
-        let points = of_variant.map(|sample| {
-            let (x, y, best) = point(sample);
-            Point { x, y, spread: Some([y.min(best), y.max(best)]) }
+fn series(data: &MeasuredCost, samples: &[Sample], point: impl Fn(&Sample) -> [f64; 3]) -> Vec<Series> {
+    let of_variant = |(hue, variant): (usize, &Variant)| {
+        let points = samples.iter().filter(|sample| sample.variant == hue).map(|sample| {
+            let [x, y, best] = point(sample);
+            (x, y, [y.min(best), y.max(best)])
         });
-        Series::new(data.variants[variant].name, Style::Joined, variant, points)
+        Series::new(variant.name, Style::Joined, hue, points)
     };
-    (0..data.variants.len()).map(of_variant).collect()
+    data.variants.iter().enumerate().map(of_variant).collect()
 }
 
 fn over_particles(data: &MeasuredCost) -> Figure {
+    let point = |sample: &Sample| [sample.particles as f64, 1e6 * sample.seconds, 1e6 * sample.best];
     Chart::of(
         Axis::logarithmic("number of particles NP", None),
         Axis::logarithmic("time of a step", Some("µs")),
     )
-    .with(series(data, &data.over_particles, |sample| {
-        (sample.particles as f64, 1e6 * sample.seconds, 1e6 * sample.best)
-    }))
+    .with(series(data, &data.over_particles, point))
     .figure("figure_3_measured", "Time of a step over the number of particles, measured")
     .caption(format!("ρ = {OCCUPANCY} on cells as wide as the radius. Points: the median repeat; bars reach to the processor time of the best \
                       one."))
@@ -76,13 +70,12 @@ fn over_particles(data: &MeasuredCost) -> Figure {
 
 fn over_density(data: &MeasuredCost) -> Figure {
     let each = |sample: &Sample, seconds: f64| 1e9 * seconds / sample.particles as f64;
+    let point = |sample: &Sample| [sample.occupancy, each(sample, sample.seconds), each(sample, sample.best)];
     Chart::of(
         Axis::linear("occupancy ρ = NP/LMAX", None).between([0.0, 0.35]),
         Axis::logarithmic("time of a particle and step", Some("ns")),
     )
-    .with(series(data, &data.over_density, |sample| {
-        (sample.occupancy, each(sample, sample.seconds), each(sample, sample.best))
-    }))
+    .with(series(data, &data.over_density, point))
     .band(Band::of_x("out of reach", [CEILING, 0.35]))
     .figure("figure_4_measured", "Time of a particle and step over the density, measured")
     .caption(format!("About {PARTICLES} discs. Hatched: occupancies that discs on cells as wide as their radius cannot reach. Points: the median \

@@ -1,7 +1,7 @@
 //! The misprints of the contact law as a reader wants them.
 
 use crate::laboratory::lattice_md::study::misprints::{CoulombRatio, Energy, Finding, Misprints, Right};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Style};
 use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 
 /// What came out.
@@ -89,7 +89,7 @@ fn table(data: &Misprints) -> Table {
         .text("as printed", |finding| finding.printed)
         .text("as it runs", |finding| finding.ours)
         .text("what shows it", |finding| finding.quantity)
-        .text("with", |finding| finding.setting.as_str())
+        .text("with", |finding| &finding.setting)
         .text("right", |finding| right(finding.right))
         .cell("printed gives", |finding| number(finding.by_printed))
         .cell("ours gives", |finding| number(finding.by_ours))
@@ -100,58 +100,34 @@ fn table(data: &Misprints) -> Table {
                values given.")
 }
 
-fn chart(x: Axis, y: Axis, series: Vec<Series>) -> Picture {
-    Picture::Chart(Chart::of(x, y).with(series))
-}
-
-fn series(name: &str, style: Style, hue: usize, points: impl Iterator<Item = Point>) -> Series {
-    Series::new(name, style, hue, points)
-}
-
 fn energies(data: &Misprints) -> Figure {
-    let curve = |name, style, hue, energy: fn(&Energy) -> f64| {
-        series(name, style, hue, data.head_on.iter().map(|at| Point::at(at.time, energy(at))))
-    };
-    Figure {
-        name: "head_on_energy".into(),
-        title: "Energy through a frictionless head-on collision".into(),
-        caption: "Kinetic and elastic energy of two discs of radius and mass 1. With the sign of (14) as printed the damping feeds energy in.".into(),
-        picture: chart(
-            Axis::linear("time", Some("reduced")),
-            Axis::linear("energy", Some("reduced")),
-            vec![
-                curve("(14) as printed", Style::Dashed, 1, |at| at.printed),
-                curve("ours, undamped", Style::Line, 2, |at| at.undamped),
-                curve("ours", Style::Line, 0, |at| at.ours),
-            ],
-        ),
-    }
+    let curve = |energy: fn(&Energy) -> f64| data.head_on.iter().map(move |at| (at.time, energy(at)));
+    Chart::of(Axis::linear("time", Some("reduced")), Axis::linear("energy", Some("reduced")))
+        .series("(14) as printed", Style::Dashed, 1, curve(|at| at.printed))
+        .series("ours, undamped", Style::Line, 2, curve(|at| at.undamped))
+        .series("ours", Style::Line, 0, curve(|at| at.ours))
+        .figure("head_on_energy", "Energy through a frictionless head-on collision")
+        .caption("Kinetic and elastic energy of two discs of radius and mass 1. With the sign of (14) as printed the damping feeds energy in.")
 }
 
 fn ratios(data: &Misprints) -> Figure {
-    let curve = |name, style, hue, ratio: fn(&CoulombRatio) -> f64| {
-        series(name, style, hue, data.sliding.iter().map(|at| Point::at(at.slip, ratio(at))))
-    };
-    Figure {
-        name: "coulomb_ratio".into(),
-        title: "Shear force over its Coulomb bound, by slip velocity".into(),
-        caption: "Two discs in contact, one sliding past the other. (15) as printed has a bound for one direction only; for the other the two \
-                  curves are one.".into(),
-        picture: chart(
-            Axis::linear("slip velocity", Some("reduced")),
-            Axis::linear("shear force over its bound μ|F|", None),
-            vec![
-                curve("ours", Style::Line, 0, |at| at.ours),
-                curve("(15) as printed", Style::Dashed, 1, |at| at.printed),
-            ],
-        ),
-    }
+    let curve = |ratio: fn(&CoulombRatio) -> f64| data.sliding.iter().map(move |at| (at.slip, ratio(at)));
+    Chart::of(
+        Axis::linear("slip velocity", Some("reduced")),
+        Axis::linear("shear force over its bound μ|F|", None),
+    )
+    .series("ours", Style::Line, 0, curve(|at| at.ours))
+    .series("(15) as printed", Style::Dashed, 1, curve(|at| at.printed))
+    .figure("coulomb_ratio", "Shear force over its Coulomb bound, by slip velocity")
+    .caption("Two discs in contact, one sliding past the other. (15) as printed has a bound for one direction only; for the other the two curves \
+              are one.")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::laboratory::lattice_md::study::misprints::misprints;
+    use crate::report::figure::Picture;
 
     #[test]
     fn the_verdict_follows_from_the_values() {

@@ -2,9 +2,9 @@
 
 use crate::laboratory::lattice_md::study::pipe_flow::{FANO_BIN, MAP_BIN, PipeFlow};
 use crate::report;
-use crate::report::figure::{Axis, Chart, Drawing, Figure, Guide, Map, Picture, Point, Series, Shape, Style, Tint};
+use crate::report::figure::{Axis, Chart, Drawing, Figure, Guide, Map, Picture, Series, Shape, Style, Tint};
 use crate::report::section::{Film, Frame};
-use crate::report::{Cell, Rows, Section, Table, Verdict};
+use crate::report::{Rows, Section, Table, Verdict};
 use stripmine_physics::number::{counted, range};
 use stripmine_physics::observe::waves::Directions;
 use stripmine_physics::particles::{Kind, Particle, Particles};
@@ -74,7 +74,6 @@ pub fn section(showing: Showing, flows: &[PipeFlow]) -> Section {
         .figures(figures)
         .tables([table(flows)])
         .film(film(showing, first))
-        .again(format!("stripmine reproduce --only {}", showing.name))
         .seeds(flows.iter().map(|flow| flow.seed))
 }
 
@@ -119,15 +118,14 @@ fn piece(flow: &PipeFlow) -> Figure {
         (shapes.filter(inside).collect(), half_height(particles))
     });
     Picture::Drawing(Drawing {
-            window: [[0.0, -1.1 * half], [length, 1.1 * half]],
-            width: 1200.0,
-            shapes,
-            shades: Some((-SPIN, SPIN, "rim speed ΩR (m/s)".into())),
-            guide: guide(),
-        })
-        .figure("figure_5", format!("A stretch of {length:.1} m of the pipe at the end"))
-        .caption("Grey discs make the walls; the shade of a grain is the speed of its rim, counter-clockwise positive. Gravity pulls to the \
-                  right.")
+        window: [[0.0, -1.1 * half], [length, 1.1 * half]],
+        width: 1200.0,
+        shapes,
+        shades: Some((-SPIN, SPIN, "rim speed ΩR (m/s)".into())),
+        guide: guide(),
+    })
+    .figure("figure_5", format!("A stretch of {length:.1} m of the pipe at the end"))
+    .caption("Grey discs make the walls; the shade of a grain is the speed of its rim, counter-clockwise positive. Gravity pulls to the right.")
 }
 
 /// Figure 6: the whole pipe again and again, one snapshot below the other.
@@ -149,15 +147,15 @@ fn snapshots(showing: Showing, flow: &PipeFlow) -> Figure {
     }
     let below = -(shown.len() as f64 - 0.4) * pitch;
     Picture::Drawing(Drawing {
-            window: [[-left, below], [1.01 * flow.length, 0.6 * pitch]],
-            width: 1200.0,
-            shapes,
-            shades: None,
-            guide: guide(),
-        })
-        .figure("figure_6", "Snapshots of the pipe: crowds of grains drift and dissolve")
-        .caption("One below the other, the earliest on top; gravity pulls to the right, what leaves on the right comes in on the left. Every \
-                  grain is a dot.")
+        window: [[-left, below], [1.01 * flow.length, 0.6 * pitch]],
+        width: 1200.0,
+        shapes,
+        shades: None,
+        guide: guide(),
+    })
+    .figure("figure_6", "Snapshots of the pipe: crowds of grains drift and dissolve")
+    .caption("One below the other, the earliest on top; gravity pulls to the right, what leaves on the right comes in on the left. Every grain \
+              is a dot.")
 }
 
 /// Metres, and gravity along the pipe, which lies.
@@ -189,44 +187,33 @@ fn map(flow: &PipeFlow) -> Figure {
         })
         .collect();
     let look = flow.times.get(1).copied().unwrap_or(1.0);
-    let axis = |label: &str, unit: Option<&str>, end: f64| Axis {
-        limits: Some([0.0, end]),
-        ..Axis::linear(label, unit)
-    };
     Picture::Map(Map {
-            x: axis("place along the pipe, the way grains fall", Some("m"), flow.length),
-            y: axis("time", Some("s"), look * (rows.len() * stride) as f64),
-            value: Axis::linear("density, relative to the mean", None),
-            rows,
-        })
-        .figure("density_map", "Density along the pipe over time")
-        .caption(format!(
-            "Grains in bins of {MAP_BIN:.0} mean radii, relative to their mean. Bands that lean to the left run against gravity."
-        ))
+        x: Axis::linear("place along the pipe, the way grains fall", Some("m")).between([0.0, flow.length]),
+        y: Axis::linear("time", Some("s")).between([0.0, look * (rows.len() * stride) as f64]),
+        value: Axis::linear("density, relative to the mean", None),
+        rows,
+    })
+    .figure("density_map", "Density along the pipe over time")
+    .caption(format!("Grains in bins of {MAP_BIN:.0} mean radii, relative to their mean. Bands that lean to the left run against gravity."))
 }
 
 /// The Fano factor of every run over time.
 fn over_time(flows: &[PipeFlow]) -> Figure {
-    let series = flows.iter().enumerate().map(|(hue, flow)| {
-        let stride = flow.times.len().div_ceil(2 * ROWS);
-        let looks = flow.times.iter().zip(&flow.fano).step_by(stride);
-        Series::new(
-            format!("seed {}", flow.seed),
-            Style::Line,
-            hue,
-            looks.map(|(&time, &fano)| Point::at(time, fano)),
-        )
+    let runs = flows.iter().enumerate().map(|(hue, flow)| {
+        let looks = flow.times.iter().zip(&flow.fano).step_by(flow.times.len().div_ceil(2 * ROWS));
+        Series::new(format!("seed {}", flow.seed), Style::Line, hue, looks.map(|(&time, &fano)| (time, fano)))
     });
     let end = flows.iter().filter_map(|flow| flow.times.last()).copied().fold(0.0, f64::max);
-    let limit = Series::new("waves above this", Style::Dashed, flows.len(), [Point::at(0.0, 1.0), Point::at(end, 1.0)]);
     Chart::of(Axis::linear("time", Some("s")), Axis::logarithmic("Fano factor", None))
-        .with(series.chain([limit]))
+        .with(runs)
+        .series("waves above this", Style::Dashed, flows.len(), [(0.0, 1.0), (end, 1.0)])
         .figure("fano", "Variance over mean of the grains in a bin, over time")
         .caption(format!("Bins of {FANO_BIN:.0} mean radii."))
 }
 
 fn table(flows: &[PipeFlow]) -> Table {
-    Rows::of(flows.iter())
+    let overrides = flows[0].overrides.iter().map(|text| format!(", {text}")).collect::<String>();
+    Rows::of(flows)
         .count("seed", |flow| flow.seed)
         .number("Fano at the start", 2, |flow| flow.fano[0])
         .number("Fano late", 2, |flow| flow.late(&flow.fano))
@@ -236,16 +223,11 @@ fn table(flows: &[PipeFlow]) -> Table {
         .number("power against gravity (%)", 0, |flow| 100.0 * flow.directions.back)
         .number("standing (%)", 0, |flow| 100.0 * flow.directions.standing)
         .number("with gravity (%)", 0, |flow| 100.0 * flow.directions.forth)
-        .cell("deepest penetration, where beyond the warned", |flow| if flow.deepest > 0.0 { Cell::Number(flow.deepest, 3) } else { Cell::Nothing })
-        .text("final state (CRC-32)", |flow| flow.checksum.as_str())
-        .table(
-            "runs",
-            format!(
-            "Runs of {}{}",
-            flows[0].scene,
-            flows[0].overrides.iter().map(|text| format!(", {text}")).collect::<String>()
-        ),
-        )
+        .number("deepest penetration, where beyond the warned", 3, |flow| {
+            (flow.deepest > 0.0).then_some(flow.deepest)
+        })
+        .text("final state (CRC-32)", |flow| &flow.checksum)
+        .table("runs", format!("Runs of {}{overrides}", flows[0].scene))
         .note(format!(
             "{} grains; late is the mean over the second half of the run, whose spectral power at wavelengths from 80 mean radii on is divided \
              by the way it runs.",

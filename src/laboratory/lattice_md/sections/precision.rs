@@ -79,7 +79,7 @@ fn named(rival: &Divergence) -> String {
 
 /// Points that a logarithmic axis can show.
 fn above_zero(x: &[f64], y: &[f64]) -> Vec<Point> {
-    x.iter().zip(y).filter(|(_, y)| **y > 0.0).map(|(&x, &y)| Point::at(x, y)).collect()
+    x.iter().zip(y).filter(|(_, y)| **y > 0.0).map(|(&x, &y)| (x, y)).collect()
 }
 
 fn force_figure(errors: &[ForceError]) -> Figure {

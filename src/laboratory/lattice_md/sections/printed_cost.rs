@@ -92,11 +92,7 @@ fn against_the_clock(data: &PrintedCost) -> Figure {
     let mut series = vec![];
     for (hue, fitted) in data.fitted.iter().enumerate() {
         let each = |timed: &Timed, ns: f64| ns / (timed.nop as f64 * timed.n as f64);
-        let points = over_n(data, fitted.part).map(|timed| Point {
-            x: timed.n as f64,
-            y: each(timed, timed.ns),
-            spread: Some(timed.quartiles.map(|ns| each(timed, ns))),
-        });
+        let points = over_n(data, fitted.part).map(|timed| (timed.n as f64, each(timed, timed.ns), timed.quartiles.map(|ns| each(timed, ns))));
         series.push(Series::new(fitted.part, Style::Points, hue, points));
         let line = over_n(data, fitted.part).filter(|timed| timed.n <= fitted.holds_to).map(|timed| {
             let n = timed.n as f64;
@@ -124,7 +120,7 @@ fn prices_drawn(data: &PrintedCost) -> Figure {
             format!("{} {}", at + 1, price.way.name),
             Style::Points,
             at,
-            [Point { x: (at + 1) as f64, y: price.ns, spread: Some(price.ends) }],
+            [((at + 1) as f64, price.ns, price.ends)],
         )
     });
     let ways = data.prices.len() as f64;

@@ -62,7 +62,7 @@ fn figure(data: &Threads, packing_fraction: f64) -> Figure {
             hue,
             data.scenes.iter().filter(|scene| scene.packing_fraction == packing_fraction).map(|scene| {
                 let [lowest, median, highest] = middle(variants(scene)[hue]);
-                Point { x: scene.particles as f64, y: median, spread: Some([lowest, highest]) }
+                (scene.particles as f64, median, [lowest, highest])
             }),
         )
     });
@@ -94,6 +94,6 @@ fn table(data: &Threads) -> Table {
         title: "Million particle-steps a second".into(),
         columns: columns.map(str::to_owned).collect(),
         rows: rows.collect(),
-        notes: vec!["Rates are medians over the rounds; a ratio is the median of the rounds' ratios.".into()],
+        notes: vec!["Rates are medians over the rounds; a ratio is the median of the rounds' ratios."],
     }
 }

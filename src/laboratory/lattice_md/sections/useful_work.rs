@@ -39,7 +39,7 @@ fn figure(data: &UsefulWork) -> Figure {
             data.shares
                 .iter()
                 .filter(|share| value(share) > 0.0)
-                .map(|share| Point::at(share.figures.occupancy, 100.0 * value(share))),
+                .map(|share| (share.figures.occupancy, 100.0 * value(share))),
         )
     };
     Chart::of(

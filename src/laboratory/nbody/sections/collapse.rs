@@ -1,9 +1,7 @@
 //! A cold sphere that falls in on itself.
 
 use crate::laboratory::nbody::study::collapse::{BODIES, Bound, Collapse, LATE, Moment};
-use crate::report::figure::{
-    Axis, Chart, Drawing, Figure, Guide, Picture, Point, Series, Shape, Style, Tint,
-};
+use crate::report::figure::{Axis, Chart, Drawing, Figure, Guide, Picture, Series, Shape, Style, Tint};
 use crate::report::section::{Film, Frame};
 use crate::report::{Part, Section, Verdict};
 use stripmine_physics::number::in_tens;
@@ -47,9 +45,8 @@ pub fn section(data: &Collapse) -> Section {
             in_tens(error, 2),
             in_tens(momentum, 1)
         )])
-        .figures(
-            [0.0, FREE_FALL, 3.0].into_iter().filter_map(|time| picture(data, time)).chain([course(data)]),
-        )
+        .figures([0.0, FREE_FALL, 3.0].into_iter().filter_map(|time| picture(data, time)))
+        .figures([course(data)])
         .film(film(data))
         .seeds([1])
 }
@@ -85,7 +82,7 @@ fn picture(data: &Collapse, time: f64) -> Option<Figure> {
 
 fn course(data: &Collapse) -> Figure {
     let series = |name: &str, hue, of: fn(&Moment) -> f64| {
-        Series::new(name, Style::Line, hue, data.moments.iter().map(|it| Point::at(it.time, of(it))))
+        Series::new(name, Style::Line, hue, data.moments.iter().map(|it| (it.time, of(it))))
     };
     Chart::of(Axis::linear("time", Some("√(R³/GM)")), Axis::linear("ratio, or radius over R", None))
         .with([
@@ -93,9 +90,7 @@ fn course(data: &Collapse) -> Figure {
             series("radius of half the mass", 1, |it| it.half_mass_radius),
         ])
         .figure("course", "Virial ratio and radius of half the mass")
-        .caption(
-            "Of all bodies: those that are thrown out keep the ratio above 0.5, which it is in equilibrium.",
-        )
+        .caption("Of all bodies: those that are thrown out keep the ratio above 0.5, which it is in equilibrium.")
 }
 
 fn film(data: &Collapse) -> Film {

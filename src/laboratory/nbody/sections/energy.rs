@@ -1,9 +1,10 @@
 //! The energy of an orbit.
 
 use crate::laboratory::nbody::study::energy::{Energies, KNOWN, STEPS};
-use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 use stripmine_physics::method::nbody::schemes::SchemeName;
+use stripmine_physics::method::nbody::starts::ORBIT;
 use stripmine_physics::number::in_tens;
 use stripmine_physics::words::Words;
 
@@ -69,89 +70,73 @@ fn schemes(data: &Energies) -> Vec<&'static str> {
 }
 
 fn cost(data: &Energies) -> Figure {
-    let series = schemes(data).into_iter().enumerate().filter_map(|(hue, scheme)| {
+    let series = schemes(data).into_iter().enumerate().map(|(hue, scheme)| {
         let of = data.errors.iter().filter(|it| it.scheme == scheme);
-        let mut points: Vec<Point> = of
-            .filter_map(|it| Some(Point::at(it.evaluations, it.error.filter(|error| *error > 0.0)?)))
-            .collect();
-        points.sort_by(|a, b| a.x.total_cmp(&b.x));
-        (!points.is_empty()).then(|| Series::new(scheme, Style::Joined, hue, points))
+        let of = of.filter_map(|it| Some((it.evaluations, it.error.filter(|error| *error > 0.0)?)));
+        let mut points: Vec<_> = of.collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Series::new(scheme, Style::Joined, hue, points)
     });
     Chart::of(
         Axis::logarithmic("evaluations of the forces an orbit", None),
         Axis::logarithmic("largest |ΔE/E|", None),
     )
-    .with(series)
+    .with(series.filter(|series| !series.points.is_empty()))
     .figure("error-over-cost", "Energy error over cost: two bodies, e = 0.5, 100 orbits")
     .caption("Largest error on the way. Schemes that lost the orbit are not drawn at those steps.")
 }
 
 fn lost(data: &Energies) -> Figure {
-    let series = schemes(data).into_iter().enumerate().filter_map(|(hue, scheme)| {
+    let series = schemes(data).into_iter().enumerate().map(|(hue, scheme)| {
         let of = data.edges.iter().filter(|it| it.scheme == scheme);
-        let points: Vec<Point> =
-            of.filter_map(|it| Some(Point::at(it.eccentricity, it.steps? as f64))).collect();
-        (!points.is_empty()).then(|| Series::new(scheme, Style::Joined, hue, points))
+        let points = of.filter_map(|it| Some((it.eccentricity, it.steps? as f64)));
+        Series::new(scheme, Style::Joined, hue, points)
     });
     Chart::of(Axis::linear("eccentricity", None), Axis::logarithmic("steps of an orbit", None))
-        .with(series)
+        .with(series.filter(|series| !series.points.is_empty()))
         .figure("orbits-lost", "Fewest steps that keep an orbit for 100 turns")
         .caption("Kept: the energy stays within half of itself. Both schemes of Euler are off by more at every step of the table.")
 }
 
 fn table(data: &Energies) -> Table {
-    let of =
-        |scheme: &str, steps: u64| data.errors.iter().find(|it| it.scheme == scheme && it.steps == steps);
-    let rows = schemes(data).into_iter().map(|scheme| {
-        let known = KNOWN.iter().find(|(name, _)| name.word() == scheme).map(|(_, errors)| *errors);
-        let mut row = vec![Cell::Text(scheme.into())];
-        for (column, steps) in STEPS.into_iter().enumerate() {
-            let error = of(scheme, steps).and_then(|it| it.error);
-            row.push(Cell::Text(error.map_or("lost".into(), |error| format!("{error:.1e}"))));
-            row.push(Cell::Text(known.map_or(String::new(), |known| match known[column] {
-                known if known.is_finite() => format!("{known:.1e}"),
-                _ => "rounding".into(),
-            })));
-        }
-        // Between the shortest steps whose errors are no rounding.
-        let errors = STEPS.iter().filter_map(|&steps| of(scheme, steps).and_then(|it| it.error));
+    let of = |scheme: &str, steps: u64| {
+        data.errors.iter().find(|it| it.scheme == scheme && it.steps == steps).and_then(|it| it.error)
+    };
+    let known = |scheme: &str, place: usize| {
+        let known = KNOWN.iter().find(|(name, _)| name.word() == scheme);
+        known.map_or(String::new(), |(_, errors)| match errors[place] {
+            known if known.is_finite() => format!("{known:.1e}"),
+            _ => "rounding".into(),
+        })
+    };
+    // Between the shortest steps whose errors are no rounding.
+    let order = |scheme: &str| {
+        let errors = STEPS.iter().filter_map(|&steps| of(scheme, steps));
         let errors: Vec<f64> = errors.filter(|error| (ROUNDING..0.5).contains(error)).collect();
-        row.push(match errors.as_slice() {
+        match errors.as_slice() {
             [.., a, b] => Cell::Number((a / b).log2() / 2.0, 2),
-            _ => Cell::Text(String::new()),
-        });
-        row
-    });
-    let mut columns = vec!["scheme".to_owned()];
-    for steps in STEPS {
-        columns.extend([format!("{steps} steps"), "known".to_owned()]);
+            _ => Cell::from(""),
+        }
+    };
+    let mut rows = Rows::of(schemes(data)).text("scheme", |scheme| *scheme);
+    for (place, steps) in STEPS.into_iter().enumerate() {
+        rows = rows
+            .text(format!("{steps} steps"), |scheme| {
+                of(scheme, steps).map_or("lost".into(), |error| format!("{error:.1e}"))
+            })
+            .text("known", |scheme| known(scheme, place));
     }
-    columns.push("order".to_owned());
-    Table {
-        name: "errors".into(),
-        title: "Largest |ΔE/E| along 100 orbits, by steps of an orbit".into(),
-        columns,
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    rows.cell("order", |scheme| order(scheme))
+        .table("errors", "Largest |ΔE/E| along 100 orbits, by steps of an orbit")
 }
 
 fn damped(data: &Energies) -> Table {
-    let rows = data.damped.iter().map(|it| {
-        let friction = -it.damping.ln() * it.steps as f64 / stripmine_physics::method::nbody::starts::ORBIT;
-        vec![
-            Cell::Count(it.steps),
-            Cell::Number(friction, 4),
-            it.energy.map_or(Cell::Text("lost".into()), |energy| Cell::Number(energy, 3)),
-        ]
-    });
-    Table {
-        name: "damped".into(),
-        title: "The source's scheme with a damping of 0.9999, after ten orbits".into(),
-        columns: ["steps of an orbit", "friction −ln(damping)/dt", "energy over that of the start"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
-        notes: vec!["A bound orbit that loses energy shrinks: its energy grows in magnitude.".into()],
-    }
+    Rows::of(&data.damped)
+        .count("steps of an orbit", |it| it.steps)
+        .number("friction −ln(damping)/dt", 4, |it| -it.damping.ln() * it.steps as f64 / ORBIT)
+        .cell("energy over that of the start", |it| {
+            it.energy.map_or(Cell::from("lost"), |energy| Cell::Number(energy, 3))
+        })
+        .table("damped", "The source's scheme with a damping of 0.9999, after ten orbits")
+        .note("A bound orbit that loses energy shrinks: its energy grows in magnitude.")
 }

@@ -1,7 +1,7 @@
 //! Interactions a second.
 
-use crate::laboratory::nbody::study::rates::Rates;
-use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
+use crate::laboratory::nbody::study::rates::{Rate, Rates};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::{Part, Rows, Section, Table, Verdict};
 use stripmine_physics::number::{counted, in_tens};
 
@@ -44,22 +44,11 @@ pub fn section(data: &Rates) -> Section {
 }
 
 fn figure(data: &Rates) -> Figure {
-    let mut series: Vec<Series> = vec![];
     // An error of 0 has no place on a logarithmic axis.
     let (seen, exact): (Vec<_>, Vec<_>) = data.rates.iter().partition(|it| it.error[0] > 0.0);
-    for it in seen {
-        let name = format!("{}, {}", it.precision, it.arithmetic);
-        let point = Point::at(it.rates[0], it.error[0]);
-        match series.iter_mut().find(|series| series.name == name) {
-            Some(series) => series.points.push(point),
-            None => {
-                let hue = series.len();
-                series.push(Series::new(name, Style::Points, hue, [point]));
-            }
-        }
-    }
+    let named = |it: &Rate| (format!("{}, {}", it.precision, it.arithmetic), (it.rates[0], it.error[0]));
     Chart::of(Axis::linear("directed interactions", Some("10⁹/s")), Axis::logarithmic("force error", None))
-        .with(series)
+        .with(Series::by_name(Style::Points, seen.into_iter().map(named)))
         .figure("error-over-rate", "Error of the forces over speed, one thread")
         .caption(format!(
             "A point for each number of bodies. Largest error of an acceleration over the largest acceleration. Errors of 0 have no place on \

@@ -39,18 +39,18 @@ pub fn map(name: &str, data: &Stability) -> Figure {
             format!("theory: {}", limit.name),
             if limit.beyond == Beyond::Unstable { Style::Line } else { Style::Dashed },
             place,
-            shown(data, limit.points.iter().map(|&(x, y)| Point::at(x, y))),
+            shown(data, limit.points.iter().map(|&(x, y)| (x, y))),
         )
     });
     let ends = [data.steps[0], data.steps[data.steps.len() - 1]];
     let marks = data.marks.iter().map(|(at, what)| {
-        Series::new(what.clone(), Style::Dashed, INK, ends.map(|step| Point::at(*at, step)).to_vec())
+        Series::new(what.clone(), Style::Dashed, INK, ends.map(|step| (*at, step)).to_vec())
     });
     let own = Series::new(
         "the scene's own step",
         Style::Dashed,
         2,
-        [data.values[0], data.values[data.values.len() - 1]].map(|x| Point::at(x, data.step)).to_vec(),
+        [data.values[0], data.values[data.values.len() - 1]].map(|x| (x, data.step)).to_vec(),
     );
     let all = classes.chain(edges).chain(limits).chain(marks).chain([own]);
     let unit = (!data.parameter.unit.is_empty()).then_some(data.parameter.unit);
@@ -79,7 +79,7 @@ fn of_class(data: &Stability, class: Class) -> Series {
     let mut points = vec![];
     for (value, cells) in data.values.iter().zip(&data.map) {
         let own = data.steps.iter().zip(cells).filter(|(_, cell)| cell.class == class);
-        points.extend(own.map(|(step, _)| Point::at(*value, *step)));
+        points.extend(own.map(|(step, _)| (*value, *step)));
     }
     Series::new(class.name(), Style::Points, hue(class), points)
 }

@@ -60,7 +60,7 @@ fn axis_of_error(measure: Measure, unit: &str) -> Axis {
 
 /// A point of a run that came to its end, with the spread of nothing: costs lie along x, and bars stand on y.
 fn point(run: &Run, measure: Measure, cost: impl Fn(&Run) -> Option<f64>) -> Option<Point> {
-    Some(Point::at(cost(run)?, run.error(measure)?)).filter(|point| point.y > 0.0)
+    Some((cost(run)?, run.error(measure)?)).filter(|point| point.y > 0.0)
 }
 
 /// A series for each way that `is_shown`: one hue a scheme, or a cost.
@@ -86,7 +86,7 @@ fn broken(data: &WorkPrecision, is_shown: impl Fn(&Way) -> bool, shown: &[Series
     let highest = shown.iter().flat_map(|series| &series.points).map(|point| point.y).reduce(f64::max)?;
     let broken = data.runs.iter().filter(|run| run.outcome.is_err() && is_shown(&data.ways[run.way]));
     let mut points: Vec<Point> = broken
-        .filter_map(|run| Some(Point::at(data.ways[run.way].each? / run.step, 4.0 * highest)))
+        .filter_map(|run| Some((data.ways[run.way].each? / run.step, 4.0 * highest)))
         .collect();
     points.sort_by(|a, b| a.x.total_cmp(&b.x));
     Some(Series::new("failed: see the table", Style::Points, INK, points))
@@ -96,7 +96,7 @@ fn broken(data: &WorkPrecision, is_shown: impl Fn(&Way) -> bool, shown: &[Series
 fn level(name: &str, y: f64, shown: &[Series]) -> Option<Series> {
     let x = || shown.iter().flat_map(|series| &series.points).map(|point| point.x);
     let ends = [x().reduce(f64::min)?, x().reduce(f64::max)?];
-    let points = ends.map(|x| Point::at(x, y)).to_vec();
+    let points = ends.map(|x| (x, y)).to_vec();
     (y > 0.0).then(|| Series::new(name, Style::Dashed, INK, points))
 }
 
@@ -219,7 +219,7 @@ fn clocks(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
 fn growth(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
     let grown = &data.growth;
     let over_time = |values: &[f64]| {
-        let points = grown.times.iter().zip(values).map(|(&time, &value)| Point::at(time, value));
+        let points = grown.times.iter().zip(values).map(|(&time, &value)| (time, value));
         points.filter(|point| point.y > 0.0).collect::<Vec<_>>()
     };
     let rate = grown.rate.map_or("No exponential growth is seen".to_owned(), |rate| {
@@ -257,7 +257,7 @@ fn outcomes(file: &str, name: &str, data: &WorkPrecision, collision: &Collision)
                 .errors
                 .iter()
                 .filter(|error| error.choice == label)
-                .map(|error| Point::at(error.step, value(error)))
+                .map(|error| (error.step, value(error)))
                 .filter(|point| point.y > 0.0),
         )
     };
@@ -295,7 +295,7 @@ fn outcome_over_cost(
         }
         let of_a_step = median(of_a_step.into_iter());
         let errors = collision.errors.iter().filter(|error| error.choice == way.label);
-        let points = errors.map(|error| Point::at(of_a_step / error.step, error.spread[which]));
+        let points = errors.map(|error| (of_a_step / error.step, error.spread[which]));
         all.push(Series::new(
             way.scheme.clone(),
             Style::Joined,
@@ -335,7 +335,7 @@ fn means(file: &str, name: &str, data: &WorkPrecision, all: &Observables) -> Opt
             });
             let points = own.map(|it| {
                 let [size, bar] = [100.0 * it.difference, 100.0 * it.bar];
-                Point { x: it.step, y: size, spread: Some([size - bar, size + bar]) }
+                (it.step, size, [size - bar, size + bar])
             });
             series.push(Series::new(
                 format!("{}{said}", way.scheme),
