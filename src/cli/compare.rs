@@ -174,6 +174,8 @@ fn text(scene: &str, comparison: &Comparison) -> String {
             .text("particle", |look| look.particle.map_or(String::new(), |id| id.to_string()))
             .count("in one only", |look| look.unmatched)
             .table("comparison", answer)
-            .note("Largest differences over all particles; the particle is that of the largest of positions."),
+            .note(
+                "Largest differences over all particles; the particle is that of the largest of positions.",
+            ),
     )
 }

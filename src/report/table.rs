@@ -66,6 +66,13 @@ impl From<u64> for Cell {
     }
 }
 
+/// Nothing where there is none.
+impl<T: Into<Cell>> From<Option<T>> for Cell {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Cell::Nothing, Into::into)
+    }
+}
+
 /// Digits in groups of three, set apart by thin blanks.
 fn grouped(digits: &str) -> String {
     let (sign, digits) = digits.split_at(usize::from(digits.starts_with('-')));

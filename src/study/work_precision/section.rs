@@ -33,7 +33,9 @@ fn answer(scenes: &[(String, WorkPrecision)]) -> String {
             format!("In {name} nothing is as accurate as the scene's own way and cheaper.")
         }
         (None, ..) => {
-            format!("In none of the {decided} scenes that are decided is anything as accurate as the scene's own way and cheaper.")
+            format!(
+                "In none of the {decided} scenes that are decided is anything as accurate as the scene's own way and cheaper."
+            )
         }
         (Some((name, best)), all, _) => {
             let begin = match all {

@@ -29,9 +29,8 @@ pub fn section(data: &Accuracy) -> Section {
     let fitted = order(data, "baoab");
     let said = match fitted {
         Some(order) => format!("By BAOAB the error falls with the step to the power {order:.1}."),
-        None => {
-            "The order of BAOAB's error is not seen: it is lost in the scatter at all steps but a few.".to_owned()
-        }
+        None => "The order of BAOAB's error is not seen: it is lost in the scatter at all steps but a few."
+            .to_owned(),
     };
     // Smaller beyond the bars of both.
     let is_smaller = source.value.abs() - ours.value.abs() > ours.bar.hypot(source.bar);

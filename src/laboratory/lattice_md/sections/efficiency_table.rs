@@ -5,7 +5,7 @@ use crate::laboratory::lattice_md::study::efficiency_table::{
     EfficiencyTable, SOURCES_PARTS, SectionRow, TextCount,
 };
 use crate::report;
-use crate::report::{Cell, Rows, Section, Table, Verdict};
+use crate::report::{Rows, Section, Table, Verdict};
 use stripmine_kernels::printed::EQUATIONS;
 use stripmine_physics::method::lattice_md::Part;
 use stripmine_physics::number::significant;
@@ -128,15 +128,14 @@ fn parts(data: &EfficiencyTable) -> Table {
     let sums = [&data.printed, &data.ours]
         .map(|text| (Some(text.parts.iter().map(|row| row.counted).sum()), Some(text.clocks)));
     let sum = ("step", Some(data.source.iter().map(|row| row.nop).sum()), Some(data.source_clocks), sums);
-    let count = |count: Option<u64>| count.map_or(Cell::Nothing, Cell::Count);
     let each = |clocks: f64| clocks / data.particles as f64;
     let assumed = (!data.assumed.is_empty())
         .then(|| format!("Assumed numbers of this machine: {}.", data.assumed.join(", ")));
     Rows::of(parts.chain([sum]))
         .text("part", |(part, ..)| *part)
-        .cell("printed in 1993", |(_, nop, ..)| count(*nop))
-        .cell("printed text, counted", |(.., [(nop, _), _])| count(*nop))
-        .cell("ours, counted", |(.., [_, (nop, _)])| count(*nop))
+        .cell("printed in 1993", |(_, nop, ..)| *nop)
+        .cell("printed text, counted", |(.., [(nop, _), _])| *nop)
+        .cell("ours, counted", |(.., [_, (nop, _)])| *nop)
         .number("clocks printed", 0, |(_, _, clocks, _)| *clocks)
         .number("clocks, printed text", 0, |(.., [(_, clocks), _])| *clocks)
         .number("clocks, ours", 0, |(.., [_, (_, clocks)])| *clocks)

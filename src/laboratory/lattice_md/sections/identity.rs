@@ -20,7 +20,9 @@ pub fn section(data: &Identity) -> Section {
                of the presets.");
     Section::new("identity", "Lattice and neighbour lists give the same", Part::Physics)
         .asks("Do the lattice and neighbour lists give the same motion?")
-        .expects("BP93, section 4: no differences in the results compared to simulations with neighbour lists.")
+        .expects(
+            "BP93, section 4: no differences in the results compared to simulations with neighbour lists.",
+        )
         .answers(format!(
             "{equal} of {} states along {} are the same to the last bit: positions, velocities and spins.",
             states.count(),

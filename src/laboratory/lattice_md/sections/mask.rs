@@ -1,7 +1,7 @@
 //! The neighbourhood as the source draws it.
 
 use crate::report::figure::{Drawing, Figure, Picture, Shape, Tint};
-use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
+use crate::report::{Part, Rows, Section, Table, Verdict};
 use std::f64::consts::SQRT_2;
 use stripmine_kernels::mask::Mask;
 

@@ -1,7 +1,9 @@
 //! Figures 3 and 4 of the source, measured on a host.
 
 use crate::laboratory::lattice_md::study::density_cost::CEILING;
-use crate::laboratory::lattice_md::study::measured_cost::{MeasuredCost, OCCUPANCY, PARTICLES, Sample};
+use crate::laboratory::lattice_md::study::measured_cost::{
+    MeasuredCost, OCCUPANCY, PARTICLES, Sample, Variant,
+};
 use crate::report::figure::{Axis, Band, Chart, Figure, Series, Style};
 use crate::report::{Part, Section};
 

@@ -4,7 +4,7 @@ use crate::laboratory::lattice_md::study::precision::energy::{self, EnergyCase, 
 use crate::laboratory::lattice_md::study::precision::forces::ForceError;
 use crate::laboratory::lattice_md::study::precision::trajectories::{self, Divergence};
 use crate::laboratory::lattice_md::study::precision::{EQUILIBRATION, PACKING_FRACTIONS, Precisions, SEEDS};
-use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::{Cell, Part, Rows, Section, Table};
 use crate::statistics::Spread;
 use stripmine_physics::number::{in_tens, range};
@@ -16,18 +16,15 @@ pub fn section(data: &Precisions) -> Section {
         .expects("The source used 64 bits only; single precision rounds to 6e-8 of a number.")
         .answers(answer(data))
         .details([details(data)])
-        .figures(
-            vec![force_figure(&data.forces)]
-                .into_iter()
-                .chain(steps().map(|dt| energy_figure(&data.energies, dt)))
-                .chain([trajectory_figure(&data.trajectories)]),
-        )
+        .figures([force_figure(&data.forces)])
+        .figures(steps().map(|dt| energy_figure(&data.energies, dt)))
+        .figures([trajectory_figure(&data.trajectories)])
         .tables([
             force_table(&data.forces),
             energy_table(&data.energies),
             trajectory_table(&data.trajectories),
         ])
-        .seeds(SEEDS.to_vec())
+        .seeds(SEEDS)
 }
 
 /// The root of the mean square error of a way's forces in the smallest and the largest of the dense boxes.
@@ -78,25 +75,16 @@ fn named(rival: &Divergence) -> String {
 }
 
 /// Points that a logarithmic axis can show.
-fn above_zero(x: &[f64], y: &[f64]) -> Vec<Point> {
-    x.iter().zip(y).filter(|(_, y)| **y > 0.0).map(|(&x, &y)| (x, y)).collect()
+fn above_zero(x: &[f64], y: &[f64]) -> impl Iterator<Item = (f64, f64)> {
+    x.iter().copied().zip(y.iter().copied()).filter(|(_, y)| *y > 0.0)
 }
 
 fn force_figure(errors: &[ForceError]) -> Figure {
-    let dense: Vec<&ForceError> = errors
+    let dense = errors
         .iter()
-        .filter(|e| e.packing_fraction == PACKING_FRACTIONS[0] && e.variant.precision != "f64")
-        .collect();
-    let mut series: Vec<Series> = Vec::new();
-    for error in dense {
-        let known = series.iter().position(|series| series.name == error.variant.name);
-        let at = known.unwrap_or(series.len());
-        if known.is_none() {
-            let name = error.variant.name.into();
-            series.push(Series::new(name, Style::Joined, at, []));
-        }
-        series[at].points.push(Point::at(error.side, error.rms));
-    }
+        .filter(|error| error.packing_fraction == PACKING_FRACTIONS[0] && error.variant.precision != "f64");
+    let series =
+        Series::by_name(Style::Joined, dense.map(|error| (error.variant.name, (error.side, error.rms))));
     Chart::of(
         Axis::logarithmic("side of the box", Some("diameters")),
         Axis::logarithmic("relative error of a force", None),
@@ -172,24 +160,24 @@ fn trajectory_figure(rivals: &[Divergence]) -> Figure {
 }
 
 /// A number whose size says more than its digits.
-fn scientific(value: f64) -> Cell {
-    Cell::Text(format!("{value:.1e}"))
+fn scientific(value: f64) -> String {
+    format!("{value:.1e}")
 }
 
-fn with_error(spread: &Spread) -> Cell {
+fn with_error(spread: &Spread) -> String {
     let error = spread.error.map_or(String::new(), |error| format!(" ± {error:.1e}"));
-    Cell::Text(format!("{:.1e}{error}", spread.mean))
+    format!("{:.1e}{error}", spread.mean)
 }
 
 fn force_table(errors: &[ForceError]) -> Table {
-    Rows::of(errors.iter())
+    Rows::of(errors)
         .number("packing fraction", 2, |error| error.packing_fraction)
         .count("discs", |error| error.particles)
         .number("side (diameters)", 0, |error| error.side)
         .number("contacts a disc", 3, |error| error.contacts)
         .text("variant", |error| error.variant.name)
-        .cell("rms error", |error| scientific(error.rms))
-        .cell("largest error", |error| scientific(error.largest))
+        .text("rms error", |error| scientific(error.rms))
+        .text("largest error", |error| scientific(error.largest))
         .table("forces", "Errors of the forces on one configuration")
         .note(format!("The bench scene after {EQUILIBRATION} steps; errors of a disc's force, over the root of the mean square of all forces, \
                        against the fast engine in f64."))
@@ -197,13 +185,13 @@ fn force_table(errors: &[ForceError]) -> Table {
 
 fn energy_table(cases: &[EnergyCase]) -> Table {
     let steps = Cell::Count(energy::STEPS).for_reading();
-    Rows::of(cases.iter())
+    Rows::of(cases)
         .text("integrator", |case| case.stepping.name)
         .number("dt", 4, |case| case.stepping.dt)
         .text("precision", |case| case.precision)
-        .cell("largest deviation", |case| with_error(&case.largest))
-        .cell("deviation at the end", |case| with_error(&case.last))
-        .cell("drift", |case| with_error(&case.drift))
+        .text("largest deviation", |case| with_error(&case.largest))
+        .text("deviation at the end", |case| with_error(&case.last))
+        .text("drift", |case| with_error(&case.drift))
         .table("energy", format!("The energy over {steps} undamped steps"))
         .note(format!(
             "Relative to the energy at the first look, after {} steps; looks are {} steps apart. Drift: the change over {steps} steps by the \
@@ -215,35 +203,28 @@ fn energy_table(cases: &[EnergyCase]) -> Table {
 }
 
 fn trajectory_table(rivals: &[Divergence]) -> Table {
-    let rows = rivals.iter().map(|rival| {
-        let lost = rival.distance.iter().position(|&distance| distance >= trajectories::LOST);
-        let error = rival.rate.error.map_or(String::new(), |error| format!(" ± {error:.3}"));
-        vec![
-            Cell::Number(rival.packing_fraction, 2),
-            Cell::Text(named(rival)),
-            rival.distance.first().map_or(Cell::Nothing, |&distance| scientific(distance)),
-            Cell::Text(format!("{:.3}{error}", rival.rate.mean)),
-            lost.map_or(Cell::Nothing, |look| Cell::Number(rival.times[look], 1)),
-        ]
-    });
-    Table {
-        name: "trajectories".into(),
-        title: "How fast trajectories part from those of the fast engine in f64".into(),
-        columns: [
-            "packing fraction".to_owned(),
-            "variant".to_owned(),
-            format!("distance after {} steps (diameters)", trajectories::LOOK),
-            "rate of growth (1/time)".to_owned(),
-            format!("time until {} diameters", trajectories::LOST),
-        ]
-        .to_vec(),
-        rows: rows.collect(),
-        notes: vec![format!(
+    let lost = |rival: &Divergence| {
+        let look = rival.distance.iter().position(|&distance| distance >= trajectories::LOST)?;
+        Some(rival.times[look])
+    };
+    let rate = |rate: &Spread| {
+        let error = rate.error.map_or(String::new(), |error| format!(" ± {error:.3}"));
+        format!("{:.3}{error}", rate.mean)
+    };
+    Rows::of(rivals)
+        .number("packing fraction", 2, |rival| rival.packing_fraction)
+        .text("variant", |rival| named(rival))
+        .cell(format!("distance after {} steps (diameters)", trajectories::LOOK), |rival| {
+            rival.distance.first().map(|&distance| scientific(distance))
+        })
+        .text("rate of growth (1/time)", |rival| rate(&rival.rate))
+        .number(format!("time until {} diameters", trajectories::LOST), 1, |rival| lost(rival))
+        .table("trajectories", "How fast trajectories part from those of the fast engine in f64")
+        .note(format!(
             "Rate: least squares through the logarithm of the distance, from {} times its first value to {} diameters; mean over {} seeds with \
              its standard error. Programs and the fast engine differ in f64 in the order of their sums only: the growth is the gas's own.",
             trajectories::PARTED,
             trajectories::LOST,
             SEEDS.len()
-        )],
-    }
+        ))
 }

@@ -4,8 +4,8 @@ use crate::laboratory::lattice_md::study::density_cost::CEILING;
 use crate::laboratory::lattice_md::study::printed_cost::{
     CELLS, Fitted, HOLDS, OCCUPANCY, PrintedCost, Timed,
 };
-use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
-use crate::report::{Cell, Part, Rows, Section, Table};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::{Part, Rows, Section, Table};
 
 /// What came out.
 pub fn section(data: &PrintedCost) -> Section {
@@ -89,23 +89,20 @@ fn over_n<'d>(data: &'d PrintedCost, part: &'d str) -> impl Iterator<Item = &'d 
 }
 
 fn against_the_clock(data: &PrintedCost) -> Figure {
-    let mut series = vec![];
-    for (hue, fitted) in data.fitted.iter().enumerate() {
+    let curves = data.fitted.iter().enumerate().flat_map(|(hue, fitted)| {
+        let timed = || over_n(data, fitted.part);
         let each = |timed: &Timed, ns: f64| ns / (timed.nop as f64 * timed.n as f64);
-        let points = over_n(data, fitted.part).map(|timed| (timed.n as f64, each(timed, timed.ns), timed.quartiles.map(|ns| each(timed, ns))));
-        series.push(Series::new(fitted.part, Style::Points, hue, points));
-        let line = over_n(data, fitted.part).filter(|timed| timed.n <= fitted.holds_to).map(|timed| {
-            let n = timed.n as f64;
-            Point::at(n, fitted.period_ns[1] * (n + fitted.depth[1]) / n)
-        });
+        let measured = timed().map(|it| (it.n as f64, each(it, it.ns), it.quartiles.map(|ns| each(it, ns))));
+        let lengths = timed().map(|it| it.n).filter(|n| *n <= fitted.holds_to).map(|n| n as f64);
+        let line = lengths.map(|n| (n, fitted.period_ns[1] * (n + fitted.depth[1]) / n));
         let name = format!("{:.2} ns, D = {:.0}", fitted.period_ns[1], fitted.depth[1]);
-        series.push(Series::new(name, Style::Line, hue, line));
-    }
+        [Series::new(fitted.part, Style::Points, hue, measured), Series::new(name, Style::Line, hue, line)]
+    });
     Chart::of(
         Axis::logarithmic("length of the vectors n", None),
         Axis::logarithmic("time an element and operation", Some("ns")),
     )
-    .with(series)
+    .with(curves)
     .figure("against_the_clock", "Time an element and operation of the printed text, eager")
     .caption(format!(
         "ρ = {OCCUPANCY}. Points: median and quartiles. Lines: NOP·(n + D) with its clock period and D, as far as it holds within {:.0} % \
@@ -115,20 +112,16 @@ fn against_the_clock(data: &PrintedCost) -> Figure {
 }
 
 fn prices_drawn(data: &PrintedCost) -> Figure {
-    let series = data.prices.iter().enumerate().map(|(at, price)| {
-        Series::new(
-            format!("{} {}", at + 1, price.way.name),
-            Style::Points,
-            at,
-            [((at + 1) as f64, price.ns, price.ends)],
-        )
+    let ways = data.prices.iter().enumerate().map(|(at, price)| {
+        let point = ((at + 1) as f64, price.ns, price.ends);
+        Series::new(format!("{} {}", at + 1, price.way.name), Style::Points, at, [point])
     });
-    let ways = data.prices.len() as f64;
+    let last = data.prices.len() as f64;
     Chart::of(
-        Axis::linear("step of the development", None).between([0.5, ways + 0.5]),
+        Axis::linear("step of the development", None).between([0.5, last + 0.5]),
         Axis::logarithmic("processor time a disc and step", Some("ns")),
     )
-    .with(series)
+    .with(ways)
     .figure("price_of_faithfulness", "One scene from the CRAY's way to today's")
     .caption(format!(
         "{} discs at packing fraction {:.2}, one thread, {}. Median, lowest and highest of {} rounds.",
@@ -136,14 +129,10 @@ fn prices_drawn(data: &PrintedCost) -> Figure {
     ))
 }
 
-fn headings(words: &[&str]) -> Vec<String> {
-    words.iter().map(|&word| word.to_owned()).collect()
-}
-
 fn fits(data: &PrintedCost) -> Table {
     Rows::of(&data.fitted)
         .text("part", |fitted| fitted.part)
-        .text("NOP", |fitted| fitted.nop)
+        .count("NOP", |fitted| fitted.nop)
         .number("clock period (ns)", 3, |fitted| fitted.period_ns[1])
         .number("lowest", 3, |fitted| fitted.period_ns[0])
         .number("highest", 3, |fitted| fitted.period_ns[2])
@@ -163,63 +152,30 @@ fn densities(data: &PrintedCost) -> Table {
     occupancies.sort_by(f64::total_cmp);
     occupancies.dedup();
     let at = |occupancy: f64, part: &str| {
-        data.timed
-            .iter()
-            .filter(|timed| timed.occupancy == occupancy && timed.part == part)
-            .min_by_key(|timed| {
-                timed.n.abs_diff(if part == "forces" { CELLS } else { (occupancy * CELLS as f64) as usize })
-            })
-            .map_or(Cell::Nothing, |timed| Cell::Number(timed.ns / 1e3, 2))
+        let n = if part == "forces" { CELLS } else { (occupancy * CELLS as f64) as usize };
+        let of = data.timed.iter().filter(|timed| timed.occupancy == occupancy && timed.part == part);
+        of.min_by_key(|timed| timed.n.abs_diff(n)).map(|timed| timed.ns / 1e3)
     };
-    let rows = occupancies.iter().map(|&occupancy| {
-        let mut cells = vec![Cell::Number(occupancy, 2)];
-        cells.extend(data.fitted.iter().map(|fitted| at(occupancy, fitted.part)));
-        cells.push(if occupancy > CEILING { "no packing of discs" } else { "" }.into());
-        cells
-    });
-    let mut columns = vec!["occupancy ρ".to_owned()];
-    columns.extend(data.fitted.iter().map(|fitted| format!("{} (µs)", fitted.part)));
-    columns.push("reachable".to_owned());
-    Table {
-        name: "densities".into(),
-        title: format!("The eager step over the occupancy, on {CELLS} cells"),
-        columns,
-        rows: rows.collect(),
-        notes: vec!["The forces take as long whatever the occupancy: the source's n is LMAX.".to_owned()],
+    let mut rows = Rows::of(occupancies).number("occupancy ρ", 2, |occupancy| *occupancy);
+    for fitted in &data.fitted {
+        rows = rows.number(format!("{} (µs)", fitted.part), 2, |occupancy| at(*occupancy, fitted.part));
     }
+    rows.text("reachable", |occupancy| if *occupancy > CEILING { "no packing of discs" } else { "" })
+        .table("densities", format!("The eager step over the occupancy, on {CELLS} cells"))
+        .note("The forces take as long whatever the occupancy: the source's n is LMAX.")
 }
 
 fn prices(data: &PrintedCost) -> Table {
     let first = data.prices.first().map_or(1.0, |price| price.ns);
-    let mut before = first;
-    let rows = data.prices.iter().enumerate().map(|(at, price)| {
-        let gain = before / price.ns;
-        before = price.ns;
-        vec![
-            Cell::Count(at as u64 + 1),
-            price.way.name.into(),
-            Cell::Number(price.ns, 1),
-            Cell::Number(price.ends[0], 1),
-            Cell::Number(price.ends[1], 1),
-            Cell::Number(gain, 2),
-            Cell::Number(first / price.ns, 1),
-            price.way.change.into(),
-        ]
-    });
-    Table {
-        name: "prices".into(),
-        title: "What each step of the development made of one scene".to_owned(),
-        columns: headings(&[
-            "step",
-            "way",
-            "ns a disc and step",
-            "lowest",
-            "highest",
-            "times faster than the one before",
-            "times faster than the first",
-            "what changes",
-        ]),
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    let before = std::iter::once(first).chain(data.prices.iter().map(|price| price.ns));
+    Rows::of(data.prices.iter().zip(before).enumerate())
+        .count("step", |(at, _)| at + 1)
+        .text("way", |(_, (price, _))| price.way.name)
+        .number("ns a disc and step", 1, |(_, (price, _))| price.ns)
+        .number("lowest", 1, |(_, (price, _))| price.ends[0])
+        .number("highest", 1, |(_, (price, _))| price.ends[1])
+        .number("times faster than the one before", 2, |(_, (price, before))| before / price.ns)
+        .number("times faster than the first", 1, |(_, (price, _))| first / price.ns)
+        .text("what changes", |(_, (price, _))| price.way.change)
+        .table("prices", "What each step of the development made of one scene")
 }

@@ -1,8 +1,8 @@
 //! What more threads give.
 
 use crate::laboratory::lattice_md::study::threads::{Scaling, Threads};
-use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::{Cell, Part, Rows, Section, Table};
 
 /// How threads are used, in the order of a row.
 const VARIANTS: [&str; 3] = ["one thread", "all threads on one scene", "a scene on each thread"];
@@ -56,44 +56,28 @@ fn middle(rates: &[f64]) -> [f64; 3] {
 
 fn figure(data: &Threads, packing_fraction: f64) -> Figure {
     let series = VARIANTS.into_iter().enumerate().map(|(hue, name)| {
-        Series::new(
-            name,
-            Style::Joined,
-            hue,
-            data.scenes.iter().filter(|scene| scene.packing_fraction == packing_fraction).map(|scene| {
-                let [lowest, median, highest] = middle(variants(scene)[hue]);
-                (scene.particles as f64, median, [lowest, highest])
-            }),
-        )
+        let of = data.scenes.iter().filter(|scene| scene.packing_fraction == packing_fraction);
+        let points = of.map(|scene| {
+            let [lowest, median, highest] = middle(variants(scene)[hue]);
+            (scene.particles as f64, median, [lowest, highest])
+        });
+        Series::new(name, Style::Joined, hue, points)
     });
+    let title = format!("Rate over the number of discs at packing fraction {packing_fraction}");
     Chart::of(Axis::logarithmic("discs", None), Axis::logarithmic("rate", Some("million particle-steps/s")))
         .with(series)
-        .figure(
-            format!("threads_{packing_fraction}"),
-            format!("Rate over the number of discs at packing fraction {packing_fraction}"),
-        )
+        .figure(format!("threads_{packing_fraction}"), title)
         .caption("Medians of rounds in which the three take turns, in wall time; bars from the lowest to the highest.")
 }
 
 fn table(data: &Threads) -> Table {
-    let rows = data.scenes.iter().map(|scene| {
-        let mut row = vec![Cell::Number(scene.particles as f64, 0), Cell::Number(scene.packing_fraction, 2)];
-        row.extend(variants(scene).map(|rates| Cell::Number(middle(rates)[1], 1)));
-        row.extend(
-            [scene.speedup(), scene.ceiling(), scene.efficiency()].map(|ratio| Cell::Number(ratio, 2)),
-        );
-        row
-    });
-    let columns = ["discs", "packing fraction"].into_iter().chain(VARIANTS).chain([
-        "speed-up",
-        "speed-up of scenes side by side",
-        "reached of that",
-    ]);
-    Table {
-        name: "threads".into(),
-        title: "Million particle-steps a second".into(),
-        columns: columns.map(str::to_owned).collect(),
-        rows: rows.collect(),
-        notes: vec!["Rates are medians over the rounds; a ratio is the median of the rounds' ratios."],
-    }
+    Rows::of(&data.scenes)
+        .number("discs", 0, |scene| scene.particles as f64)
+        .number("packing fraction", 2, |scene| scene.packing_fraction)
+        .cells(VARIANTS, |scene| variants(scene).map(|rates| Cell::Number(middle(rates)[1], 1)))
+        .number("speed-up", 2, |scene| scene.speedup())
+        .number("speed-up of scenes side by side", 2, |scene| scene.ceiling())
+        .number("reached of that", 2, |scene| scene.efficiency())
+        .table("threads", "Million particle-steps a second")
+        .note("Rates are medians over the rounds; a ratio is the median of the rounds' ratios.")
 }

@@ -90,7 +90,9 @@ fn course(data: &Collapse) -> Figure {
             series("radius of half the mass", 1, |it| it.half_mass_radius),
         ])
         .figure("course", "Virial ratio and radius of half the mass")
-        .caption("Of all bodies: those that are thrown out keep the ratio above 0.5, which it is in equilibrium.")
+        .caption(
+            "Of all bodies: those that are thrown out keep the ratio above 0.5, which it is in equilibrium.",
+        )
 }
 
 fn film(data: &Collapse) -> Film {

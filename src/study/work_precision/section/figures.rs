@@ -3,7 +3,7 @@
 use super::super::conclusions::short;
 use super::super::dataset::{Run, Way, WorkPrecision};
 use super::super::measures::Measure;
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Picture, Series, Style};
 use crate::statistics::median;
 use crate::study::collision::{Collision, OUTCOMES, OutcomeError};
 use crate::study::growth::COMPARABLE;
@@ -59,8 +59,8 @@ fn axis_of_error(measure: Measure, unit: &str) -> Axis {
 }
 
 /// A point of a run that came to its end, with the spread of nothing: costs lie along x, and bars stand on y.
-fn point(run: &Run, measure: Measure, cost: impl Fn(&Run) -> Option<f64>) -> Option<Point> {
-    Some((cost(run)?, run.error(measure)?)).filter(|point| point.y > 0.0)
+fn point(run: &Run, measure: Measure, cost: impl Fn(&Run) -> Option<f64>) -> Option<(f64, f64)> {
+    Some((cost(run)?, run.error(measure)?)).filter(|(_, error)| *error > 0.0)
 }
 
 /// A series for each way that `is_shown`: one hue a scheme, or a cost.
@@ -75,8 +75,8 @@ fn series<'d>(
     let shown = data.ways.iter().enumerate().filter(move |(_, way)| is_shown(way));
     shown.filter_map(move |(at, way)| {
         let own = data.runs.iter().filter(|run| run.way == at);
-        let mut points: Vec<Point> = own.filter_map(|run| point(run, measure, cost)).collect();
-        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        let mut points: Vec<_> = own.filter_map(|run| point(run, measure, cost)).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
         (!points.is_empty()).then(|| Series::new(name(way), Style::Joined, hue(way), points))
     })
 }
@@ -85,10 +85,9 @@ fn series<'d>(
 fn broken(data: &WorkPrecision, is_shown: impl Fn(&Way) -> bool, shown: &[Series]) -> Option<Series> {
     let highest = shown.iter().flat_map(|series| &series.points).map(|point| point.y).reduce(f64::max)?;
     let broken = data.runs.iter().filter(|run| run.outcome.is_err() && is_shown(&data.ways[run.way]));
-    let mut points: Vec<Point> = broken
-        .filter_map(|run| Some((data.ways[run.way].each? / run.step, 4.0 * highest)))
-        .collect();
-    points.sort_by(|a, b| a.x.total_cmp(&b.x));
+    let points = broken.filter_map(|run| Some((data.ways[run.way].each? / run.step, 4.0 * highest)));
+    let mut points: Vec<_> = points.collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
     Some(Series::new("failed: see the table", Style::Points, INK, points))
 }
 
@@ -96,8 +95,7 @@ fn broken(data: &WorkPrecision, is_shown: impl Fn(&Way) -> bool, shown: &[Series
 fn level(name: &str, y: f64, shown: &[Series]) -> Option<Series> {
     let x = || shown.iter().flat_map(|series| &series.points).map(|point| point.x);
     let ends = [x().reduce(f64::min)?, x().reduce(f64::max)?];
-    let points = ends.map(|x| (x, y)).to_vec();
-    (y > 0.0).then(|| Series::new(name, Style::Dashed, INK, points))
+    (y > 0.0).then(|| Series::new(name, Style::Dashed, INK, ends.map(|x| (x, y))))
 }
 
 /// Error over cost, for every scheme and precision with the scene's own search and execution.
@@ -123,16 +121,14 @@ fn diagram(file: &str, name: &str, data: &WorkPrecision, measure: Measure) -> Op
         broken(data, is_shown, &all),
     ];
     all.extend(more.into_iter().flatten());
+    let (of, error) = match measure {
+        Measure::Position => ("position", "error"),
+        _ => ("energy", "error of the energy"),
+    };
     Some(
         Chart::of(axis_of_cost(), axis_of_error(measure, &data.unit))
             .with(all)
-            .figure(
-                format!("{file}_{}", if measure == Measure::Position { "position" } else { "energy" }),
-                format!(
-                    "{name}: {} over cost",
-                    if measure == Measure::Position { "error" } else { "error of the energy" }
-                ),
-            )
+            .figure(format!("{file}_{of}"), format!("{name}: {error} over cost"))
             .caption(format!(
                 "{} particles over a time of {}; the scene's own step is {}, along each line it doubles from point to point. Cost: the median of \
                  the repeats, which differ by {:.0} % in the middle; search and execution as the scene has them ({}). The front is over all ways \
@@ -157,7 +153,7 @@ fn spread(data: &WorkPrecision) -> f64 {
 
 fn front_of(data: &WorkPrecision, measure: Measure) -> Option<Series> {
     let (_, places) = data.fronts.iter().find(|(of, _)| *of == measure)?;
-    let points = places.iter().filter_map(|&place| point(&data.runs[place], measure, Run::cost)).collect();
+    let points = places.iter().filter_map(|&place| point(&data.runs[place], measure, Run::cost));
     Some(Series::new("Pareto front", Style::Line, INK, points))
 }
 
@@ -199,8 +195,7 @@ fn clocks(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
         |way| way.label.clone(),
         move |way| place(schemes(), &way.scheme),
         |run| run.clocks,
-    )
-    .collect();
+    );
     Some(
         Chart::of(
             Axis::logarithmic("cost of a unit of simulated time", Some("clock periods")),
@@ -218,24 +213,20 @@ fn clocks(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
 /// How a disturbance and the error of the scene's own step grow.
 fn growth(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
     let grown = &data.growth;
-    let over_time = |values: &[f64]| {
-        let points = grown.times.iter().zip(values).map(|(&time, &value)| (time, value));
-        points.filter(|point| point.y > 0.0).collect::<Vec<_>>()
+    let over_time = |values: &[f64]| -> Vec<(f64, f64)> {
+        let points = grown.times.iter().copied().zip(values.iter().copied());
+        points.filter(|(_, distance)| *distance > 0.0).collect()
     };
     let rate = grown.rate.map_or("No exponential growth is seen".to_owned(), |rate| {
         format!("The distance grows as exp({} t)", short(rate))
     });
+    let disturbed = format!("start disturbed by 1e-9 {}", data.unit);
     Some(
         Chart::of(
             Axis::linear("time", Some("reduced")),
             Axis::logarithmic("distance, RMS", Some(&data.unit)),
         )
-        .series(
-            format!("start disturbed by 1e-9 {}", data.unit),
-            Style::Line,
-            0,
-            over_time(&grown.separation),
-        )
+        .series(disturbed, Style::Line, 0, over_time(&grown.separation))
         .series("half the step", Style::Dashed, 1, over_time(&grown.error))
         .figure(format!("{file}_growth"), format!("{name}: how long trajectories are comparable"))
         .caption(format!("{rate}; compared is a time of {}.", short(data.duration))),
@@ -249,17 +240,9 @@ fn outcomes(file: &str, name: &str, data: &WorkPrecision, collision: &Collision)
     let mut labels: Vec<&str> = collision.errors.iter().map(|error| error.choice.as_str()).collect();
     labels.dedup();
     let of = |label: &str, style, what: &str, value: fn(&OutcomeError) -> f64| {
-        Series::new(
-            format!("{}, {what}", scheme(label)),
-            style,
-            place(schemes(), scheme(label)),
-            collision
-                .errors
-                .iter()
-                .filter(|error| error.choice == label)
-                .map(|error| (error.step, value(error)))
-                .filter(|point| point.y > 0.0),
-        )
+        let own = collision.errors.iter().filter(|error| error.choice == label);
+        let points = own.map(|error| (error.step, value(error))).filter(|(_, error)| *error > 0.0);
+        Series::new(format!("{}, {what}", scheme(label)), style, place(schemes(), scheme(label)), points)
     };
     let spread = labels.iter().map(|label| of(label, Style::Joined, "RMS", |error| error.spread[0]));
     let mean = labels.iter().map(|label| of(label, Style::Dashed, "mean", |error| error.mean[0]));
@@ -296,12 +279,8 @@ fn outcome_over_cost(
         let of_a_step = median(of_a_step.into_iter());
         let errors = collision.errors.iter().filter(|error| error.choice == way.label);
         let points = errors.map(|error| (of_a_step / error.step, error.spread[which]));
-        all.push(Series::new(
-            way.scheme.clone(),
-            Style::Joined,
-            place(schemes(), &way.scheme),
-            points.filter(|point| point.y > 0.0),
-        ));
+        let points = points.filter(|(_, error)| *error > 0.0);
+        all.push(Series::new(&way.scheme, Style::Joined, place(schemes(), &way.scheme), points));
     }
     all.retain(|series| !series.points.is_empty());
     let (outcome, unit) = (OUTCOMES[which], [None, Some("rad")][which]);
@@ -337,12 +316,8 @@ fn means(file: &str, name: &str, data: &WorkPrecision, all: &Observables) -> Opt
                 let [size, bar] = [100.0 * it.difference, 100.0 * it.bar];
                 (it.step, size, [size - bar, size + bar])
             });
-            series.push(Series::new(
-                format!("{}{said}", way.scheme),
-                Style::Points,
-                place(schemes(), &way.scheme),
-                points,
-            ));
+            let hue = place(schemes(), &way.scheme);
+            series.push(Series::new(format!("{}{said}", way.scheme), Style::Points, hue, points));
         }
     }
     Some(
