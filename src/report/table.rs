@@ -193,7 +193,7 @@ mod tests {
             .count("times", |(_, times, _)| *times)
             .number("share", 2, |(.., share)| *share)
             .cells([1, 2].map(|power| format!("to {power}")), |(_, times, _)| {
-                [1, 2].map(|power| (times.pow(power) as u64))
+                [1, 2].map(|power| times.pow(power) as u64)
             })
             .table("items", "Items")
             .note("none");

@@ -238,6 +238,7 @@ fn course(values: &[f64]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::Cell;
 
     #[test]
     fn a_course_goes_from_the_smallest_to_the_largest() {
