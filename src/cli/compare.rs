@@ -165,7 +165,7 @@ fn text(scene: &str, comparison: &Comparison) -> String {
     let has_events = looks.iter().any(|look| look.events > 0);
     let unit = if has_events { "events" } else { "steps" };
     terminal::render(
-        &Rows::of(looks.iter())
+        &Rows::of(looks)
             .count(unit, |look| if has_events { look.events } else { look.steps })
             .number("time", 6, |look| look.time)
             .text("same bits", |look| if look.same_bits { "yes" } else { "no" })

@@ -105,7 +105,7 @@ impl Programs {
     }
 
     fn operations_table(&self) -> Table {
-        Rows::of(self.counted.iter())
+        Rows::of(&self.counted)
             .text("part", |it| it.part)
             .text("section", |it| it.section)
             .text("n is", |it| it.length)
@@ -117,8 +117,8 @@ impl Programs {
     }
 
     fn clocks_table(&self) -> Table {
-        Rows::of(self.clocks.iter())
-            .text("machine", |it| it.machine.clone())
+        Rows::of(&self.clocks)
+            .text("machine", |it| &it.machine)
             .text("clock", |it| it.clock)
             .number("clock periods", 0, |it| it.clocks)
             .number("ms", 3, |it| 1e3 * it.seconds)

@@ -208,8 +208,7 @@ fn density(last: &Frame, slices: &[(f64, Vec<f64>)]) -> Option<Figure> {
     let rows = slices.iter().step_by(stride).map(|(_, counts)| counts.iter().map(|it| it / mean).collect());
     let [width, height] = last.cell;
     let (side, way) = if width > height { (0, "x") } else { (1, "y") };
-    let axis =
-        |label: &str, limits| Axis { limits: Some(limits), ..Axis::linear(label, Some("the scene's unit")) };
+    let axis = |label: &str, ends| Axis::linear(label, Some("the scene's unit")).between(ends);
     Some(
         Picture::Map(Map {
             x: axis(way, [last.origin[side], last.origin[side] + last.cell[side]]),

@@ -38,10 +38,7 @@ pub fn section(showing: Showing, flows: &[PipeFlow]) -> Section {
     let mean = |share: fn(&Directions) -> f64| {
         100.0 * flows.iter().map(|flow| share(&flow.directions)).sum::<f64>() / flows.len() as f64
     };
-    let mut figures = vec![map(first), over_time(flows)];
-    if !first.frames.is_empty() {
-        figures.splice(0..0, [piece(first), snapshots(showing, first)]);
-    }
+    let seen = (!first.frames.is_empty()).then(|| [piece(first), snapshots(showing, first)]);
     let [back, forth, standing] = [
         mean(|directions| directions.back),
         mean(|directions| directions.forth),
@@ -71,7 +68,8 @@ pub fn section(showing: Showing, flows: &[PipeFlow]) -> Section {
             first.late(&first.strongest_mode),
             first.late(&first.flow),
         )])
-        .figures(figures)
+        .figures(seen.into_iter().flatten())
+        .figures([map(first), over_time(flows)])
         .tables([table(flows)])
         .film(film(showing, first))
         .seeds(flows.iter().map(|flow| flow.seed))
