@@ -7,16 +7,11 @@
 //! Draw what came out:
 //!
 //! ```
-//! use stripmine::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style, svg};
+//! use stripmine::report::figure::{Axis, Chart, Style, svg};
 //!
-//! let points = (1..=10).map(|n| Point::at(f64::from(n), f64::from(n * n))).collect();
-//! let picture = Picture::Chart(Chart {
-//!     x: Axis::logarithmic("particles", None),
-//!     y: Axis::logarithmic("time", Some("ms")),
-//!     series: vec![Series { name: "all pairs".into(), style: Style::Joined, hue: 0, points }],
-//!     bands: vec![],
-//! });
-//! let figure = Figure { name: "cost".into(), title: "Cost".into(), caption: String::new(), picture };
+//! let figure = Chart::of(Axis::logarithmic("particles", None), Axis::logarithmic("time", Some("ms")))
+//!     .series("all pairs", Style::Joined, 0, (1..=10).map(|n| (f64::from(n), f64::from(n * n))))
+//!     .figure("cost", "Cost");
 //! assert!(svg(&figure)?.contains("time (ms)"));
 //! # Ok::<(), stripmine::report::figure::FigureError>(())
 //! ```

@@ -1,7 +1,7 @@
 //! `stripmine compare`: two ways to run one scene, beside each other.
 
 use crate::console::{Common, Failure, print, print_json};
-use crate::report::table::{Cell, Table};
+use crate::report::Rows;
 use crate::report::terminal;
 use clap::Args;
 use serde::Serialize;
@@ -163,27 +163,19 @@ fn text(scene: &str, comparison: &Comparison) -> String {
         }
     };
     let has_events = looks.iter().any(|look| look.events > 0);
-    let rows = looks.iter().map(|look| {
-        vec![
-            Cell::Count(if has_events { look.events } else { look.steps }),
-            Cell::Number(look.time, 6),
-            Cell::Text(if look.same_bits { "yes".into() } else { "no".into() }),
-            Cell::Text(significant(look.position, 2)),
-            Cell::Text(significant(look.velocity, 2)),
-            Cell::Text(look.particle.map_or(String::new(), |id| id.to_string())),
-            Cell::Count(look.unmatched as u64),
-        ]
-    });
     let unit = if has_events { "events" } else { "steps" };
-    let columns = [unit, "time", "same bits", "position", "velocity", "particle", "in one only"];
-    terminal::render(&Table {
-        name: "comparison".into(),
-        title: answer,
-        columns: columns.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        notes: vec![
-            "Largest differences over all particles; the particle is that of the largest of positions."
-                .into(),
-        ],
-    })
+    terminal::render(
+        &Rows::of(looks)
+            .count(unit, |look| if has_events { look.events } else { look.steps })
+            .number("time", 6, |look| look.time)
+            .text("same bits", |look| if look.same_bits { "yes" } else { "no" })
+            .text("position", |look| significant(look.position, 2))
+            .text("velocity", |look| significant(look.velocity, 2))
+            .text("particle", |look| look.particle.map_or(String::new(), |id| id.to_string()))
+            .count("in one only", |look| look.unmatched)
+            .table("comparison", answer)
+            .note(
+                "Largest differences over all particles; the particle is that of the largest of positions.",
+            ),
+    )
 }

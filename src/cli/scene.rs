@@ -4,7 +4,7 @@ use crate::console::{Common, Failure, print, print_json, warn};
 use crate::laboratory::programs::Programs;
 use crate::model::machine::MachineModel;
 use crate::model::machines;
-use crate::report::table::{Cell, Table};
+use crate::report::table::{Rows, Table};
 use crate::report::terminal;
 use crate::study::StudyError;
 use clap::{Args, Subcommand};
@@ -91,13 +91,11 @@ fn list(common: &Common, methods: Methods) -> Result<(), Failure> {
     if common.json {
         return print_json(&lines.collect::<Vec<_>>());
     }
-    let table = Table {
-        name: "presets".into(),
-        title: "Presets".to_owned(),
-        columns: ["name", "what it shows"].map(str::to_owned).to_vec(),
-        rows: lines.map(|line| vec![line.name.into(), line.title.into()]).collect(),
-        notes: vec!["stripmine scene show NAME prints a preset to start from.".to_owned()],
-    };
+    let table = Rows::of(lines)
+        .text("name", |line| line.name)
+        .text("what it shows", |line| line.title)
+        .table("presets", "Presets")
+        .note("stripmine scene show NAME prints a preset to start from.");
     print(&terminal::render(&table))
 }
 
@@ -118,17 +116,16 @@ pub(super) fn presets(methods: Methods) -> impl Iterator<Item = &'static Preset>
 }
 
 fn table(name: &str, facts: &[Fact], prepared: &Prepared) -> Table {
-    let rows = facts.iter().filter_map(|fact| fact.words.as_ref());
     let chosen = prepared.choices.iter().map(|choice| format!("chosen: {choice}"));
     let left_out = prepared.left_out.iter().map(|what| format!("left out: {what}"));
     let limits = prepared.step_limits.iter().map(|limit| format!("{}: {}", limit.name, limit.why));
-    Table {
-        name: "scene".into(),
-        title: format!("{}: scene is valid", quoted::path(name.as_ref())),
-        columns: ["of the scene", "value"].map(str::to_owned).to_vec(),
-        rows: rows.map(|(label, words)| vec![Cell::from(*label), Cell::Text(words.clone())]).collect(),
-        notes: chosen.chain(left_out).chain(limits).collect(),
-    }
+    Rows::of(facts.iter().filter_map(|fact| fact.words.as_ref()))
+        .text("of the scene", |(label, _)| *label)
+        .text("value", |(_, words)| words)
+        .table("scene", format!("{}: scene is valid", quoted::path(name.as_ref())))
+        .notes(chosen)
+        .notes(left_out)
+        .notes(limits)
 }
 
 fn check(name: &str, overrides: &[String], common: &Common, methods: Methods) -> Result<(), Failure> {
@@ -250,18 +247,18 @@ fn keys(name: Option<&str>, common: &Common, methods: Methods) -> Result<(), Fai
     let tables: Vec<String> = sections
         .map(|(section, holds)| {
             let title = if section.is_empty() { holds.to_owned() } else { format!("[{section}]: {holds}") };
-            let row = |line: &KeyLine| {
-                let with = match line.used_with.as_slice() {
-                    [] => String::new(),
-                    choices => format!(" Used with {}.", choices.join(", ")),
-                };
-                let default = line.default.unwrap_or("required");
-                let meaning = format!("{}{with}", line.meaning);
-                [line.key, &line.r#type, line.unit, default, &meaning].map(Cell::from).to_vec()
+            let with = |line: &KeyLine| match line.used_with.as_slice() {
+                [] => String::new(),
+                choices => format!(" Used with {}.", choices.join(", ")),
             };
-            let rows = lines.iter().filter(|line| line.section == section).map(row).collect();
-            let columns = ["key", "value", "unit", "default", "meaning"].map(str::to_owned).to_vec();
-            terminal::render(&Table { name: "keys".into(), title, columns, rows, notes: Vec::new() })
+            let table = Rows::of(lines.iter().filter(|line| line.section == section))
+                .text("key", |line| line.key)
+                .text("value", |line| &line.r#type)
+                .text("unit", |line| line.unit)
+                .text("default", |line| line.default.unwrap_or("required"))
+                .text("meaning", |line| format!("{}{}", line.meaning, with(line)))
+                .table("keys", title);
+            terminal::render(&table)
         })
         .collect();
     print(&tables.join("\n"))

@@ -4,7 +4,7 @@ use crate::console::Failure;
 use crate::model::clock::{Clock, Work};
 use crate::model::machine::MachineModel;
 use crate::model::machines;
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::{Cell, Part, Rows, Section, Table};
 use crate::results::Made;
 use serde::Serialize;
 use stripmine_kernels::isa::{OpClass, OpCounts};
@@ -105,44 +105,24 @@ impl Programs {
     }
 
     fn operations_table(&self) -> Table {
-        let rows = self.counted.iter().map(|it| {
-            vec![
-                Cell::Text(it.part.into()),
-                Cell::Text(it.section.into()),
-                Cell::Text(it.length.into()),
-                Cell::Count(it.n as u64),
-                Cell::Count(it.operations),
-                Cell::Count(it.computing),
-                Cell::Count(it.divisions_and_roots),
-            ]
-        });
-        let columns =
-            ["part", "section", "n is", "n", "operations (NOP)", "of them computing", "divisions and roots"];
-        Table {
-            name: "operations".into(),
-            title: format!("{}: whole-array operations of a step", self.scene),
-            columns: columns.map(str::to_owned).to_vec(),
-            rows: rows.collect(),
-            notes: vec![],
-        }
+        Rows::of(&self.counted)
+            .text("part", |it| it.part)
+            .text("section", |it| it.section)
+            .text("n is", |it| it.length)
+            .count("n", |it| it.n)
+            .count("operations (NOP)", |it| it.operations)
+            .count("of them computing", |it| it.computing)
+            .count("divisions and roots", |it| it.divisions_and_roots)
+            .table("operations", format!("{}: whole-array operations of a step", self.scene))
     }
 
     fn clocks_table(&self) -> Table {
-        let rows = self.clocks.iter().map(|it| {
-            vec![
-                Cell::Text(it.machine.clone()),
-                Cell::Text(it.clock.into()),
-                Cell::Number(it.clocks, 0),
-                Cell::Number(1e3 * it.seconds, 3),
-            ]
-        });
-        Table {
-            name: "clocks".into(),
-            title: format!("{}: what a step of them takes", self.scene),
-            columns: ["machine", "clock", "clock periods", "ms"].map(str::to_owned).to_vec(),
-            rows: rows.collect(),
-            notes: vec![],
-        }
+        Rows::of(&self.clocks)
+            .text("machine", |it| &it.machine)
+            .text("clock", |it| it.clock)
+            .number("clock periods", 0, |it| it.clocks)
+            .number("ms", 3, |it| 1e3 * it.seconds)
+            .table("clocks", format!("{}: what a step of them takes", self.scene))
     }
 }
 
@@ -196,24 +176,14 @@ pub fn made(
         let numbered = move |table: Table| Table { name: format!("{}-{}", table.name, at + 1), ..table };
         counted.tables().into_iter().map(numbered)
     });
-    let section = Section {
-        name: name.to_owned(),
-        title: title.to_owned(),
-        part: Part::Machine,
-        question: question.to_owned(),
-        expected: expected.to_owned(),
-        answer: said.next().unwrap_or_default(),
-        details: said.collect(),
-        verdict: Verdict::Measured,
-        again: format!("stripmine reproduce --only {name}"),
-        figures: vec![],
-        tables: tables.collect(),
-        excerpt,
-        film: None,
-        seeds: vec![1],
-        depends_on_host: false,
-        provenance: None,
-    };
+    let section = Section::new(name, title, Part::Machine)
+        .asks(question)
+        .expects(expected)
+        .answers(said.next().unwrap_or_default())
+        .details(said)
+        .tables(tables)
+        .excerpt(excerpt)
+        .seeds([1]);
     let data: Vec<&Programs> = all.iter().map(|(counted, _)| counted).collect();
     Made::new(section, &data)
 }

@@ -10,4 +10,4 @@ pub mod table;
 pub mod terminal;
 
 pub use section::{Part, Section, Verdict};
-pub use table::{Cell, Table};
+pub use table::{Cell, Rows, Table};

@@ -38,9 +38,98 @@ pub struct Section {
     pub seeds: Vec<u64>,
     /// Whether anything in it depends on the host (times), and is therefore not the same everywhere.
     pub depends_on_host: bool,
-    /// How and where it was made; known once it is written.
+    /// How and where it was made; known once it is written. No author of a section says it.
     #[serde(skip)]
     pub provenance: Option<Provenance>,
+}
+
+/// How a section is put together: its name, then what is asked, expected and answered, then its blocks. Pages order the blocks by
+/// their kind.
+impl Section {
+    /// A section that has only its name so far. `stripmine reproduce` makes it again, unless it says otherwise.
+    pub fn new(name: &str, title: impl Into<String>, part: Part) -> Section {
+        Section {
+            name: name.to_owned(),
+            title: title.into(),
+            part,
+            question: String::new(),
+            expected: String::new(),
+            answer: String::new(),
+            details: vec![],
+            verdict: Verdict::Measured,
+            again: format!("stripmine reproduce --only {name}"),
+            figures: vec![],
+            tables: vec![],
+            excerpt: None,
+            film: None,
+            seeds: vec![],
+            depends_on_host: false,
+            provenance: None,
+        }
+    }
+
+    /// What is asked.
+    pub fn asks(self, question: impl Into<String>) -> Section {
+        Section { question: question.into(), ..self }
+    }
+
+    /// What is expected, and who says so.
+    pub fn expects(self, expected: impl Into<String>) -> Section {
+        Section { expected: expected.into(), ..self }
+    }
+
+    /// What came out.
+    pub fn answers(self, answer: impl Into<String>) -> Section {
+        Section { answer: answer.into(), ..self }
+    }
+
+    /// What to think of the answer. Without one it is measured.
+    pub fn verdict(self, verdict: Verdict) -> Section {
+        Section { verdict, ..self }
+    }
+
+    /// The command that makes it again, where this is not `reproduce`.
+    pub fn again(self, command: impl Into<String>) -> Section {
+        Section { again: command.into(), ..self }
+    }
+
+    /// Seeds of its random numbers.
+    pub fn seeds(self, seeds: impl IntoIterator<Item = u64>) -> Section {
+        Section { seeds: seeds.into_iter().collect(), ..self }
+    }
+
+    /// It has times, which are of the host alone.
+    pub fn depends_on_host(self) -> Section {
+        Section { depends_on_host: true, ..self }
+    }
+
+    /// With further paragraphs.
+    pub fn details(mut self, paragraphs: impl IntoIterator<Item = impl Into<String>>) -> Section {
+        self.details.extend(paragraphs.into_iter().map(Into::into));
+        self
+    }
+
+    /// With further pictures.
+    pub fn figures(mut self, figures: impl IntoIterator<Item = Figure>) -> Section {
+        self.figures.extend(figures);
+        self
+    }
+
+    /// With further tables.
+    pub fn tables(mut self, tables: impl IntoIterator<Item = Table>) -> Section {
+        self.tables.extend(tables);
+        self
+    }
+
+    /// With lines of a program's text, after a line that says what they are.
+    pub fn excerpt(self, excerpt: Option<(String, String)>) -> Section {
+        Section { excerpt, ..self }
+    }
+
+    /// With a film.
+    pub fn film(self, film: impl Into<Option<Film>>) -> Section {
+        Section { film: film.into(), ..self }
+    }
 }
 
 impl Section {

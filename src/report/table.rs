@@ -54,9 +54,22 @@ impl From<&str> for Cell {
     }
 }
 
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Cell::Text(text)
+    }
+}
+
 impl From<u64> for Cell {
     fn from(count: u64) -> Self {
         Cell::Count(count)
+    }
+}
+
+/// Nothing where there is none.
+impl<T: Into<Cell>> From<Option<T>> for Cell {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Cell::Nothing, Into::into)
     }
 }
 
@@ -88,6 +101,77 @@ pub struct Table {
     pub notes: Vec<String>,
 }
 
+impl Table {
+    /// With a note more.
+    pub fn note(self, note: impl Into<String>) -> Table {
+        self.notes([note])
+    }
+
+    /// With further notes.
+    pub fn notes(mut self, notes: impl IntoIterator<Item = impl Into<String>>) -> Table {
+        self.notes.extend(notes.into_iter().map(Into::into));
+        self
+    }
+}
+
+/// A table while its columns are added. Each is its heading, and what its cell is of an item; an item is a row.
+#[derive(Debug)]
+pub struct Rows<T> {
+    columns: Vec<String>,
+    rows: Vec<(T, Vec<Cell>)>,
+}
+
+impl<T> Rows<T> {
+    /// A row for each item, without columns so far.
+    pub fn of(items: impl IntoIterator<Item = T>) -> Rows<T> {
+        Rows { columns: vec![], rows: items.into_iter().map(|item| (item, vec![])).collect() }
+    }
+
+    /// A column of words.
+    pub fn text<W: Into<String>>(self, heading: impl Into<String>, of: impl Fn(&T) -> W) -> Rows<T> {
+        self.cell(heading, |item| Cell::Text(of(item).into()))
+    }
+
+    /// A column of counts.
+    pub fn count<C: TryInto<u64>>(self, heading: impl Into<String>, of: impl Fn(&T) -> C) -> Rows<T> {
+        self.cell(heading, |item| of(item).try_into().map_or(Cell::Nothing, Cell::Count))
+    }
+
+    /// A column of numbers with so many decimals; an item may have none.
+    pub fn number<N: Into<Option<f64>>>(
+        self,
+        heading: impl Into<String>,
+        decimals: usize,
+        of: impl Fn(&T) -> N,
+    ) -> Rows<T> {
+        self.cell(heading, |item| of(item).into().map_or(Cell::Nothing, |it| Cell::Number(it, decimals)))
+    }
+
+    /// A column of any cells.
+    pub fn cell<C: Into<Cell>>(self, heading: impl Into<String>, of: impl Fn(&T) -> C) -> Rows<T> {
+        self.cells([heading], |item| [of(item)])
+    }
+
+    /// Several columns, whose number the data have.
+    pub fn cells<C: Into<Cell>, R: IntoIterator<Item = C>>(
+        mut self,
+        headings: impl IntoIterator<Item = impl Into<String>>,
+        of: impl Fn(&T) -> R,
+    ) -> Rows<T> {
+        self.columns.extend(headings.into_iter().map(Into::into));
+        for (item, cells) in &mut self.rows {
+            cells.extend(of(item).into_iter().map(Into::into));
+        }
+        self
+    }
+
+    /// The table.
+    pub fn table(self, name: impl Into<String>, title: impl Into<String>) -> Table {
+        let rows = self.rows.into_iter().map(|(_, cells)| cells).collect();
+        Table { name: name.into(), title: title.into(), columns: self.columns, rows, notes: vec![] }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,5 +183,26 @@ mod tests {
         assert_eq!(Cell::Count(999).for_reading(), "999");
         assert_eq!(Cell::Number(0.1 + 0.2, 1).for_machines(), "0.30000000000000004");
         assert_eq!(Cell::Nothing.for_machines(), "");
+    }
+
+    #[test]
+    fn a_column_is_its_heading_and_its_cells() {
+        let items = [("a", 1usize, Some(0.5)), ("b", 2, None)];
+        let table = Rows::of(&items)
+            .text("name", |(name, ..)| *name)
+            .count("times", |(_, times, _)| *times)
+            .number("share", 2, |(.., share)| *share)
+            .cells([1, 2].map(|power| format!("to {power}")), |(_, times, _)| {
+                [1, 2].map(|power| times.pow(power) as u64)
+            })
+            .table("items", "Items")
+            .note("none");
+        assert_eq!(table.columns, ["name", "times", "share", "to 1", "to 2"]);
+        let first = [Cell::from("a"), Cell::Count(1), Cell::Number(0.5, 2), Cell::Count(1), Cell::Count(1)];
+        assert_eq!(table.rows[0], first);
+        assert_eq!(table.rows[1][2..], [Cell::Nothing, Cell::Count(2), Cell::Count(4)]);
+        assert_eq!(table.notes, ["none"]);
+        // Without rows the headings stay.
+        assert_eq!(Rows::of([0u64; 0]).count("n", |n| *n).table("", "").columns, ["n"]);
     }
 }

@@ -14,7 +14,6 @@ pub mod rivals;
 pub mod stability;
 mod state;
 mod subject;
-mod tables;
 mod trial;
 pub mod work_precision;
 

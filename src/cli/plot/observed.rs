@@ -1,7 +1,7 @@
 //! The observables of a run: `thermo.csv` as charts, and a line for each in the terminal.
 
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::table::{Cell, Table};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::table::{Rows, Table};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use stripmine_physics::io::{FileError, regular_file};
@@ -193,43 +193,31 @@ impl Observed {
         let names: Vec<String> = columns.iter().map(|&column| quoted(&self.columns[column])).collect();
         let every = self.rows.len().div_ceil(POINTS);
         let time = self.time();
-        let series = columns.iter().zip(&names).enumerate().map(|(hue, (&column, name))| Series {
-            name: name.replace('_', " "),
-            style: Style::Line,
-            hue,
-            points: self.rows.iter().step_by(every).map(|row| Point::at(row[time], row[column])).collect(),
+        let series = columns.iter().zip(&names).enumerate().map(|(hue, (&column, name))| {
+            let points = self.rows.iter().step_by(every).map(|row| (row[time], row[column]));
+            Series::new(name.replace('_', " "), Style::Line, hue, points)
         });
-        let label = if names.len() == 1 { names[0].replace('_', " ") } else { "value".to_owned() };
-        Figure {
-            name: names.join("-").replace('_', "-"),
-            title: names.iter().map(|name| name.replace('_', " ")).collect::<Vec<_>>().join(", "),
-            caption: "Of thermo.csv.".into(),
-            picture: Picture::Chart(Chart {
-                x: Axis::linear("time", Some("the scene's unit")),
-                y: Axis::linear(&label, (!unit.is_empty()).then_some(unit)),
-                series: series.collect(),
-                bands: vec![],
-            }),
-        }
+        let words: Vec<String> = names.iter().map(|name| name.replace('_', " ")).collect();
+        let label = if let [name] = words.as_slice() { name } else { "value" };
+        Chart::of(
+            Axis::linear("time", Some("the scene's unit")),
+            Axis::linear(label, (!unit.is_empty()).then_some(unit)),
+        )
+        .with(series)
+        .figure(names.join("-").replace('_', "-"), words.join(", "))
+        .caption("Of thermo.csv.")
     }
 
     /// Every column in a line: first, last, and its course.
     pub(super) fn small(&self, wanted: &[Wanted], out: &Path) -> Table {
-        let rows = wanted.iter().map(|it| {
-            let values: Vec<f64> = self.column(it.column).collect();
-            let text = |value: Option<&f64>| {
-                Cell::Text(value.map_or(String::new(), |value| significant(*value, DIGITS)))
-            };
-            vec![
-                Cell::Text(quoted(&self.columns[it.column])),
-                text(values.first()),
-                text(values.last()),
-                Cell::Text(course(&values)),
-            ]
-        });
-        let columns = ["quantity", "first", "last", "course"].map(str::to_owned).to_vec();
-        let notes = vec![format!("pictures in {}", quoted::path(out))];
-        Table { name: "plot".into(), title: "The run".into(), columns, rows: rows.collect(), notes }
+        let number = |value: Option<f64>| value.map_or(String::new(), |value| significant(value, DIGITS));
+        Rows::of(wanted)
+            .text("quantity", |it| quoted(&self.columns[it.column]))
+            .text("first", |it| number(self.column(it.column).next()))
+            .text("last", |it| number(self.column(it.column).last()))
+            .text("course", |it| course(&self.column(it.column).collect::<Vec<_>>()))
+            .table("plot", "The run")
+            .note(format!("pictures in {}", quoted::path(out)))
     }
 }
 
@@ -250,6 +238,7 @@ fn course(values: &[f64]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::Cell;
 
     #[test]
     fn a_course_goes_from_the_smallest_to_the_largest() {

@@ -160,24 +160,21 @@ fn state(frame: &Frame, scene: Option<&toml::Table>, traces: &[[f64; 3]], view: 
         title.push_str(&format!("; one of {every} is shown"));
     }
     let traced = if traces.is_empty() { "" } else { " Small: where they were in earlier frames." };
-    Figure {
-        name: if view == View::AlongY { "last-state-side" } else { "last-state" }.into(),
-        title,
-        caption: format!("Shade: speed.{traced}"),
-        picture: Picture::Drawing(Drawing {
-            window,
-            width: pixels,
-            shapes: walls.chain(earlier).chain(shapes).collect(),
-            shades: Some((0.0, fastest, "speed (the scene's unit)".into())),
-            guide: Some(Guide {
-                unit: String::new(),
-                gravity: scene
-                    .and_then(gravity)
-                    .filter(|_| view == View::Plane)
-                    .map(|[a, b]| if lies { [-b, a] } else { [a, b] }),
-            }),
+    Picture::Drawing(Drawing {
+        window,
+        width: pixels,
+        shapes: walls.chain(earlier).chain(shapes).collect(),
+        shades: Some((0.0, fastest, "speed (the scene's unit)".into())),
+        guide: Some(Guide {
+            unit: String::new(),
+            gravity: scene
+                .and_then(gravity)
+                .filter(|_| view == View::Plane)
+                .map(|[a, b]| if lies { [-b, a] } else { [a, b] }),
         }),
-    }
+    })
+    .figure(if view == View::AlongY { "last-state-side" } else { "last-state" }, title)
+    .caption(format!("Shade: speed.{traced}"))
 }
 
 /// Grains in slices across a long box, from its lower or left end; none where no side is much the longest.
@@ -211,17 +208,15 @@ fn density(last: &Frame, slices: &[(f64, Vec<f64>)]) -> Option<Figure> {
     let rows = slices.iter().step_by(stride).map(|(_, counts)| counts.iter().map(|it| it / mean).collect());
     let [width, height] = last.cell;
     let (side, way) = if width > height { (0, "x") } else { (1, "y") };
-    let axis =
-        |label: &str, limits| Axis { limits: Some(limits), ..Axis::linear(label, Some("the scene's unit")) };
-    Some(Figure {
-        name: "density-map".into(),
-        title: "Density along the box over time".into(),
-        caption: format!("Grains in {bins} slices across the box, over their mean."),
-        picture: Picture::Map(Map {
+    let axis = |label: &str, ends| Axis::linear(label, Some("the scene's unit")).between(ends);
+    Some(
+        Picture::Map(Map {
             x: axis(way, [last.origin[side], last.origin[side] + last.cell[side]]),
             y: axis("time", [*begun, *ended]),
             value: Axis::linear("density, relative to the mean", None),
             rows: rows.collect(),
-        }),
-    })
+        })
+        .figure("density-map", "Density along the box over time")
+        .caption(format!("Grains in {bins} slices across the box, over their mean.")),
+    )
 }

@@ -1,5 +1,6 @@
 //! Curves and points over two axes.
 
+use super::picture::{Figure, Picture};
 use serde::{Deserialize, Serialize};
 
 /// A chart. A point that an axis cannot show (zero or less on a logarithmic one, not finite) must not be in it.
@@ -13,6 +14,41 @@ pub struct Chart {
     pub series: Vec<Series>,
     /// Parts of the plane that mean something.
     pub bands: Vec<Band>,
+}
+
+impl Chart {
+    /// A chart over two axes, with nothing on it so far.
+    pub fn of(x: Axis, y: Axis) -> Chart {
+        Chart { x, y, series: vec![], bands: vec![] }
+    }
+
+    /// With a series more.
+    pub fn series(
+        self,
+        name: impl Into<String>,
+        style: Style,
+        hue: usize,
+        points: impl IntoIterator<Item = impl Into<Point>>,
+    ) -> Chart {
+        self.with([Series::new(name, style, hue, points)])
+    }
+
+    /// With further series.
+    pub fn with(mut self, series: impl IntoIterator<Item = Series>) -> Chart {
+        self.series.extend(series);
+        self
+    }
+
+    /// With a part of the plane that means something.
+    pub fn band(mut self, band: Band) -> Chart {
+        self.bands.push(band);
+        self
+    }
+
+    /// As a figure without a caption.
+    pub fn figure(self, name: impl Into<String>, title: impl Into<String>) -> Figure {
+        Picture::Chart(self).figure(name, title)
+    }
 }
 
 /// An axis.
@@ -37,6 +73,11 @@ impl Axis {
     /// A logarithmic axis that fits its data.
     pub fn logarithmic(label: &str, unit: Option<&str>) -> Axis {
         Axis { scale: Scale::Logarithmic, ..Axis::linear(label, unit) }
+    }
+
+    /// With these ends, whatever its data.
+    pub fn between(self, ends: [f64; 2]) -> Axis {
+        Axis { limits: Some(ends), ..self }
     }
 
     /// Label and unit as one text.
@@ -70,6 +111,34 @@ pub struct Series {
     pub points: Vec<Point>,
 }
 
+impl Series {
+    /// A series of points.
+    pub fn new(
+        name: impl Into<String>,
+        style: Style,
+        hue: usize,
+        points: impl IntoIterator<Item = impl Into<Point>>,
+    ) -> Series {
+        Series { name: name.into(), style, hue, points: points.into_iter().map(Into::into).collect() }
+    }
+
+    /// A series for each name that points bear, in the order in which names occur.
+    pub fn by_name(
+        style: Style,
+        points: impl IntoIterator<Item = (impl Into<String>, impl Into<Point>)>,
+    ) -> Vec<Series> {
+        let mut all: Vec<Series> = vec![];
+        for (name, point) in points {
+            let (name, hue) = (name.into(), all.len());
+            match all.iter_mut().find(|known| known.name == name) {
+                Some(known) => known.points.push(point.into()),
+                None => all.push(Series::new(name, style, hue, [point])),
+            }
+        }
+        all
+    }
+}
+
 /// How a series is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Style {
@@ -100,6 +169,19 @@ impl Point {
     /// A point without spread.
     pub fn at(x: f64, y: f64) -> Point {
         Point { x, y, spread: None }
+    }
+}
+
+impl From<(f64, f64)> for Point {
+    fn from((x, y): (f64, f64)) -> Point {
+        Point::at(x, y)
+    }
+}
+
+/// With its spread.
+impl From<(f64, f64, [f64; 2])> for Point {
+    fn from((x, y, spread): (f64, f64, [f64; 2])) -> Point {
+        Point { x, y, spread: Some(spread) }
     }
 }
 

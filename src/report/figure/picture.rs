@@ -28,3 +28,17 @@ pub enum Picture {
     /// Things where they are.
     Drawing(Drawing),
 }
+
+impl Picture {
+    /// As a figure without a caption.
+    pub fn figure(self, name: impl Into<String>, title: impl Into<String>) -> Figure {
+        Figure { name: name.into(), title: title.into(), caption: String::new(), picture: self }
+    }
+}
+
+impl Figure {
+    /// With what a reader must also know.
+    pub fn caption(self, caption: impl Into<String>) -> Figure {
+        Figure { caption: caption.into(), ..self }
+    }
+}

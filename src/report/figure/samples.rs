@@ -1,6 +1,6 @@
 //! A figure of each kind, for the tests of everything that draws.
 
-use super::{Axis, Band, Chart, Drawing, Figure, Guide, Map, Picture, Point, Series, Shape, Style, Tint};
+use super::{Axis, Band, Chart, Drawing, Figure, Guide, Map, Picture, Series, Shape, Style, Tint};
 
 /// All of them.
 pub fn all() -> Vec<Figure> {
@@ -8,16 +8,7 @@ pub fn all() -> Vec<Figure> {
 }
 
 fn figure(name: &str, title: &str, picture: Picture) -> Figure {
-    Figure {
-        name: name.into(),
-        title: title.into(),
-        caption: "What a reader must also know.".into(),
-        picture,
-    }
-}
-
-fn series(name: &str, style: Style, hue: usize, points: Vec<Point>) -> Series {
-    Series { name: name.into(), style, hue, points }
+    picture.figure(name, title).caption("What a reader must also know.")
 }
 
 /// Models and measurements over decades, and a band.
@@ -27,49 +18,43 @@ pub fn logarithmic() -> Figure {
     let time = |kind: usize, length: f64| {
         [2e-8 * (length + 120.0), 1.1e-8 * (length + 14.0), 1.4e-9 * (length + 40.0)][kind]
     };
-    let mut all = Vec::new();
-    for kind in 0..3 {
-        let curve = (0..=60).map(|i| 10f64.powf(f64::from(i) * 0.1)).map(|x| Point::at(x, time(kind, x)));
-        all.push(series(models[kind], Style::Line, kind, curve.collect()));
+    let all = (0..3).flat_map(|kind| {
+        let curve = (0..=60).map(|i| 10f64.powf(f64::from(i) * 0.1)).map(|x| (x, time(kind, x)));
         let dots = (0..12).map(|i| 10f64.powf(0.2 + 0.5 * f64::from(i))).filter(|x| *x < 1e6).map(|x| {
             let y = time(kind, x) * [0.8, 1.15, 1.3, 0.95][x as usize % 4];
-            Point { spread: Some([y * 0.6, y * 1.7]), ..Point::at(x, y) }
+            (x, y, [y * 0.6, y * 1.7])
         });
-        all.push(series(measured[kind], Style::Points, kind, dots.collect()));
-    }
-    let picture = Chart {
-        x: Axis::logarithmic("Vector length", None),
-        y: Axis::logarithmic("Time of a vector instruction", Some("s")),
-        series: all,
-        bands: vec![
-            Band::of_x("beyond the caches", [2e5, f64::INFINITY]),
-            Band::of_y("within 15 %", [0.85, 1.15]),
-        ],
-    };
+        [
+            Series::new(models[kind], Style::Line, kind, curve),
+            Series::new(measured[kind], Style::Points, kind, dots),
+        ]
+    });
+    let chart = Chart::of(
+        Axis::logarithmic("Vector length", None),
+        Axis::logarithmic("Time of a vector instruction", Some("s")),
+    )
+    .with(all)
+    .band(Band::of_x("beyond the caches", [2e5, f64::INFINITY]))
+    .band(Band::of_y("within 15 %", [0.85, 1.15]));
     figure(
         "logarithmic",
         "Time of a vector instruction by its length: models and measurements",
-        Picture::Chart(picture),
+        Picture::Chart(chart),
     )
 }
 
 /// Three curves over linear axes.
 pub fn linear() -> Figure {
     let grid = |count: u32| (0..=count).map(move |i| 0.9 * f64::from(i) / f64::from(count));
-    let friction = grid(90).map(|x| Point::at(x, (6.0 * x).sin() * 20.0 + 22.0 * x)).collect();
-    let rival = grid(90).map(|x| Point::at(x, 18.0 * x * x - 4.0)).collect();
-    let seen = grid(14).map(|x| Point::at(x, (6.0 * x).sin() * 18.0 + 24.0 * x)).collect();
-    let picture = Chart {
-        x: Axis::linear("Packing fraction ν", None),
-        y: Axis::linear("Flow", Some("kg/s")),
-        series: vec![
-            series("with friction", Style::Line, 0, friction),
-            series("what a neighbour list would need", Style::Dashed, 1, rival),
-            series("seen", Style::Joined, 2, seen),
-        ],
-        bands: vec![Band::of_x("no configuration is denser", [0.84, 0.9])],
-    };
-    figure("linear", "Flow through the pipe", Picture::Chart(picture))
+    let friction = grid(90).map(|x| (x, (6.0 * x).sin() * 20.0 + 22.0 * x));
+    let rival = grid(90).map(|x| (x, 18.0 * x * x - 4.0));
+    let seen = grid(14).map(|x| (x, (6.0 * x).sin() * 18.0 + 24.0 * x));
+    let chart = Chart::of(Axis::linear("Packing fraction ν", None), Axis::linear("Flow", Some("kg/s")))
+        .series("with friction", Style::Line, 0, friction)
+        .series("what a neighbour list would need", Style::Dashed, 1, rival)
+        .series("seen", Style::Joined, 2, seen)
+        .band(Band::of_x("no configuration is denser", [0.84, 0.9]));
+    figure("linear", "Flow through the pipe", Picture::Chart(chart))
 }
 
 /// Density waves.

@@ -2,8 +2,8 @@
 
 use super::{Contest, Rival, rivals};
 use crate::console::Failure;
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::{Part, Rows, Section, Table, Verdict};
 use crate::results::Made;
 use crate::statistics::median;
 
@@ -27,6 +27,11 @@ fn ratio(contest: &Contest) -> f64 {
     median(contest.ratios.iter().copied())
 }
 
+/// The lowest or the highest ratio over the rounds.
+fn end(contest: &Contest, start: f64, pick: fn(f64, f64) -> f64) -> f64 {
+    contest.ratios.iter().copied().fold(start, pick)
+}
+
 /// The lowest and the highest ratio of the contests of an aim; none if there are none.
 fn ratios_of(data: &[Rival], (system, way, _): &(&str, &str, f64)) -> Option<[f64; 2]> {
     let contests = data.iter().flat_map(|rival| &rival.contests);
@@ -40,28 +45,17 @@ fn ratios_of(data: &[Rival], (system, way, _): &(&str, &str, f64)) -> Option<[f6
 fn section(data: &[Rival]) -> Section {
     let met = |aim: &&(&str, &str, f64)| ratios_of(data, aim).is_some_and(|[low, _]| low >= aim.2);
     let aims = AIMS.iter().map(|aim| format!("{} {} {:.1}", aim.0, aim.1, aim.2));
-    Section {
-        name: NAME.into(),
-        title: "Beside other programs".into(),
-        part: Part::Host,
-        question: "How many times as fast as other programs is ours, on the same system and one core?".into(),
-        expected: format!(
+    Section::new(NAME, "Beside other programs", Part::Host)
+        .asks("How many times as fast as other programs is ours, on the same system and one core?")
+        .expects(format!(
             "Our aims, times as fast: {}. For granular discs none is stated.",
             aims.collect::<Vec<_>>().join(", ")
-        ),
-        answer: answer(data),
-        details: details(data),
-        verdict: Verdict::aim(AIMS.iter().all(|aim| met(&aim))),
-        again: format!("stripmine reproduce --only {NAME}"),
-        figures: vec![figure(data)],
-        tables: vec![contests(data), same(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![],
-        // Shipped: what is said is of the host that it names, wherever it is read.
-        depends_on_host: false,
-        provenance: None,
-    }
+        ))
+        .answers(answer(data))
+        .verdict(Verdict::aim(AIMS.iter().all(|aim| met(&aim))))
+        .details(details(data))
+        .figures([figure(data)])
+        .tables([contests(data), same(data)])
 }
 
 /// The range of the ratios of every system.
@@ -112,91 +106,48 @@ fn details(data: &[Rival]) -> Vec<String> {
 
 /// Ratios of the granular contests over the packing fraction; the others have no such axis and stand in the table.
 fn figure(data: &[Rival]) -> Figure {
-    let mut series: Vec<Series> = vec![];
-    for it in data.iter().flat_map(|rival| &rival.contests) {
-        let Some(fraction) = it.system.split("packing fraction ").nth(1).and_then(|text| text.parse().ok())
-        else {
-            continue;
-        };
+    let contests = data.iter().flat_map(|rival| &rival.contests);
+    let points = contests.filter_map(|it| {
+        let fraction: f64 = it.system.split("packing fraction ").nth(1)?.parse().ok()?;
         let name = format!("{}, {} discs", it.way.trim_end_matches(" velocity-verlet"), it.particles);
-        let spread = it
-            .ratios
-            .iter()
-            .fold([f64::INFINITY, 0.0f64], |[low, high], &ratio| [low.min(ratio), high.max(ratio)]);
-        let point = Point { x: fraction, y: ratio(it), spread: Some(spread) };
-        match series.iter_mut().find(|known| known.name == name) {
-            Some(known) => known.points.push(point),
-            None => {
-                let hue = series.len();
-                series.push(Series { name, style: Style::Joined, hue, points: vec![point] });
-            }
-        }
-    }
+        let ends = [end(it, f64::INFINITY, f64::min), end(it, 0.0, f64::max)];
+        Some((name, (fraction, ratio(it), ends)))
+    });
+    let mut series = Series::by_name(Style::Joined, points);
     for known in &mut series {
         known.points.sort_by(|a, b| a.x.total_cmp(&b.x));
     }
-    Figure {
-        name: "ratio-over-packing".into(),
-        title: "Granular discs: ours over LAMMPS, one core".into(),
-        caption: "Particle-steps a second of processor time, ours over theirs; medians and range over the rounds. At 1 both are as fast."
-            .into(),
-        picture: Picture::Chart(Chart {
-            x: Axis { limits: Some([0.0, 0.9]), ..Axis::linear("packing fraction", None) },
-            y: Axis::logarithmic("times as fast as LAMMPS", None),
-            series,
-            bands: vec![],
-        }),
-    }
+    Chart::of(
+        Axis::linear("packing fraction", None).between([0.0, 0.9]),
+        Axis::logarithmic("times as fast as LAMMPS", None),
+    )
+    .with(series)
+    .figure("ratio-over-packing", "Granular discs: ours over LAMMPS, one core")
+    .caption("Particle-steps a second of processor time, ours over theirs; medians and range over the rounds. At 1 both are as fast.")
 }
 
 fn contests(data: &[Rival]) -> Table {
-    let mut rows = vec![];
-    for rival in data {
-        for it in &rival.contests {
-            let middle = |rates: &[f64]| Cell::Number(median(rates.iter().copied()), 2);
-            let end = |pick: fn(f64, f64) -> f64| it.ratios.iter().copied().reduce(pick).unwrap_or(f64::NAN);
-            rows.push(vec![
-                Cell::Text(rival.rival.clone()),
-                Cell::Text(it.system.clone()),
-                Cell::Count(it.particles),
-                Cell::Text(it.way.clone()),
-                middle(&it.ours),
-                middle(&it.theirs),
-                Cell::Number(ratio(it), 2),
-                Cell::Number(end(f64::min), 2),
-                Cell::Number(end(f64::max), 2),
-            ]);
-        }
-    }
-    let columns =
-        ["beside", "system", "particles", "our way", "ours", "theirs", "ratio", "lowest", "highest"];
-    Table {
-        name: "contests".into(),
-        title: "Rates of both, medians over the rounds".into(),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows,
-        notes: vec!["Units are those named with each program above.".into()],
-    }
+    let middle = |rates: &[f64]| median(rates.iter().copied());
+    Rows::of(data.iter().flat_map(|rival| rival.contests.iter().map(move |it| (rival, it))))
+        .text("beside", |(rival, _)| &rival.rival)
+        .text("system", |(_, it)| &it.system)
+        .count("particles", |(_, it)| it.particles)
+        .text("our way", |(_, it)| &it.way)
+        .number("ours", 2, |(_, it)| middle(&it.ours))
+        .number("theirs", 2, |(_, it)| middle(&it.theirs))
+        .number("ratio", 2, |(_, it)| ratio(it))
+        .number("lowest", 2, |(_, it)| end(it, f64::NAN, f64::min))
+        .number("highest", 2, |(_, it)| end(it, f64::NAN, f64::max))
+        .table("contests", "Rates of both, medians over the rounds")
+        .note("Units are those named with each program above.")
 }
 
 fn same(data: &[Rival]) -> Table {
-    let rows = data.iter().flat_map(|rival| {
-        rival.same.iter().map(|it| {
-            let of = |value: f64| Cell::Text(format!("{value:.6}"));
-            vec![
-                Cell::Text(rival.rival.clone()),
-                Cell::Text(it.what.clone()),
-                of(it.ours),
-                of(it.theirs),
-                Cell::Text(format!("{:.1e}", it.within)),
-            ]
-        })
-    });
-    Table {
-        name: "same-physics".into(),
-        title: "That both compute the same".into(),
-        columns: ["beside", "quantity", "ours", "theirs", "may differ by"].map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    Rows::of(data.iter().flat_map(|rival| rival.same.iter().map(move |it| (rival, it))))
+        .text("beside", |(rival, _)| &rival.rival)
+        .text("quantity", |(_, it)| &it.what)
+        .text("ours", |(_, it)| format!("{:.6}", it.ours))
+        .text("theirs", |(_, it)| format!("{:.6}", it.theirs))
+        .text("may differ by", |(_, it)| format!("{:.1e}", it.within))
+        .table("same-physics", "That both compute the same")
 }

@@ -6,7 +6,7 @@ mod tables;
 use super::conclusions::{WORTH, as_good, multiple, sentences};
 use super::dataset::WorkPrecision;
 use crate::console::Failure;
-use crate::report::{Part, Section, Verdict, csv};
+use crate::report::{Part, Section, csv};
 use crate::results::Made;
 use stripmine_physics::number::counted;
 
@@ -70,24 +70,16 @@ pub fn made(scenes: &[(String, WorkPrecision)], again: String) -> Result<Made, F
     let mut seeds: Vec<u64> = scenes.iter().flat_map(|(_, data)| data.seeds.clone()).collect();
     seeds.sort_unstable();
     seeds.dedup();
-    let section = Section {
-        name: NAME.into(),
-        title: "Speed against accuracy".into(),
-        part: Part::Host,
-        question: "Which integrator, step and precision is the cheapest for a wished accuracy?".into(),
-        expected: "The sources state a scheme and a step, and no error.".into(),
-        answer: answer(scenes),
-        details: said.collect(),
-        verdict: Verdict::Measured,
-        again,
-        figures: scenes.iter().flat_map(|(name, data)| figures::of(name, data)).collect(),
-        tables: tables::of(scenes),
-        excerpt: None,
-        film: None,
-        seeds,
-        depends_on_host: true,
-        provenance: None,
-    };
+    let section = Section::new(NAME, "Speed against accuracy", Part::Host)
+        .asks("Which integrator, step and precision is the cheapest for a wished accuracy?")
+        .expects("The sources state a scheme and a step, and no error.")
+        .answers(answer(scenes))
+        .details(said)
+        .figures(scenes.iter().flat_map(|(name, data)| figures::of(name, data)))
+        .tables(tables::of(scenes))
+        .again(again)
+        .seeds(seeds)
+        .depends_on_host();
     let all: serde_json::Map<String, serde_json::Value> = scenes
         .iter()
         .map(|(name, data)| Ok((name.clone(), serde_json::to_value(data)?)))

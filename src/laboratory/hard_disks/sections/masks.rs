@@ -1,8 +1,8 @@
 //! The source's comparison of masks.
 
 use crate::laboratory::hard_disks::study::masks::{Cost, Masks, TERMS};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 
 /// The formula fits where it is off by no more than this factor anywhere.
 const FITS: f64 = 1.25;
@@ -26,15 +26,11 @@ pub fn section(data: &Masks) -> Section {
     let dilutest = data.best.iter().min_by(|a, b| a.0.total_cmp(&b.0));
     let dense_wants_the_smallest =
         densest.is_some_and(|it| it.1 == "min") && dilutest.is_some_and(|it| it.1 != "min");
-    Section {
-        name: "hard-disks-masks".into(),
-        title: "Hard discs: which mask".into(),
-        part: Part::Host,
-        question: "Which mask makes a collision the cheapest, and does the program choose it?".into(),
-        expected: "ISO99, section 4: dense systems want the smallest mask, dilute ones a larger one, which is filled less often; its formula \
-                   of the cost."
-            .into(),
-        answer: format!(
+    Section::new("hard-disks-masks", "Hard discs: which mask", Part::Host)
+        .asks("Which mask makes a collision the cheapest, and does the program choose it?")
+        .expects("ISO99, section 4: dense systems want the smallest mask, dilute ones a larger one, which is filled less often; its formula of \
+                  the cost.")
+        .answers(format!(
             "{} Cheapest: {}; what `mask = \"auto\"` chooses costs at most {:.0} % more.",
             farthest.map_or(String::new(), |cost| format!(
                 "The source's formula of the cost is off by up to {:.1} times, at ν = {} with {}.",
@@ -42,93 +38,66 @@ pub fn section(data: &Masks) -> Section {
                 cost.packing_fraction,
                 cost.mask
             )),
-            data.best.iter().map(|(nu, best, _)| format!("{best} at ν = {nu}")).collect::<Vec<_>>().join(", "),
+            data.best
+                .iter()
+                .map(|(nu, best, _)| format!("{best} at ν = {nu}"))
+                .collect::<Vec<_>>()
+                .join(", "),
             100.0 * worst,
-        ),
-        details: vec![format!(
-            "With four constants fitted, the formula is off by {:.0} % over all masks and densities (root of the mean square).",
-            100.0 * data.error
-        )],
-        verdict: Verdict::of_claims(&[
+        ))
+        .verdict(Verdict::of_claims(&[
             dense_wants_the_smallest,
             farthest.is_none_or(|cost| off(&cost) < FITS),
-        ]),
-        again: "stripmine reproduce --only hard-disks-masks".into(),
-        figures: vec![figure(data)],
-        tables: vec![table(data), constants(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![1],
-        depends_on_host: true,
-        provenance: None,
-    }
+        ]))
+        .details([format!(
+            "With four constants fitted, the formula is off by {:.0} % over all masks and densities (root of the mean square).",
+            100.0 * data.error
+        )])
+        .figures([figure(data)])
+        .tables([table(data), constants(data)])
+        .seeds([1])
+        .depends_on_host()
 }
 
 fn figure(data: &Masks) -> Figure {
-    let mut series = vec![];
-    for (hue, (packing_fraction, ..)) in data.best.iter().enumerate() {
-        let own = || data.costs.iter().filter(|cost| cost.packing_fraction == *packing_fraction);
-        let drawn = |name: String, style, of: fn(&Cost) -> f64| Series {
-            name,
-            style,
-            hue,
-            points: own().map(|cost| Point::at(cost.places as f64, 1e6 * of(cost))).collect(),
+    let curves = data.best.iter().enumerate().flat_map(|(hue, (packing_fraction, ..))| {
+        let drawn = |name: String, style, of: fn(&Cost) -> f64| {
+            let own = data.costs.iter().filter(|cost| cost.packing_fraction == *packing_fraction);
+            Series::new(name, style, hue, own.map(|cost| (cost.places as f64, 1e6 * of(cost))))
         };
-        series.push(drawn(format!("ν = {packing_fraction}"), Style::Points, |cost| cost.seconds));
-        series.push(drawn(format!("ν = {packing_fraction}, formula"), Style::Dashed, |cost| cost.fitted));
-    }
-    Figure {
-        name: "masks".into(),
-        title: "The cost of a collision over the mask".into(),
-        caption: format!(
-            "{} discs, the source's way, one thread; medians of rounds in which the masks take turns.",
-            Cell::Number(data.discs as f64, 0).for_reading()
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("places of the mask", None),
-            y: Axis::logarithmic("processor time of a collision", Some("µs")),
-            series,
-            bands: vec![],
-        }),
-    }
+        [
+            drawn(format!("ν = {packing_fraction}"), Style::Points, |cost| cost.seconds),
+            drawn(format!("ν = {packing_fraction}, formula"), Style::Dashed, |cost| cost.fitted),
+        ]
+    });
+    Chart::of(
+        Axis::logarithmic("places of the mask", None),
+        Axis::logarithmic("processor time of a collision", Some("µs")),
+    )
+    .with(curves)
+    .figure("masks", "The cost of a collision over the mask")
+    .caption(format!(
+        "{} discs, the source's way, one thread; medians of rounds in which the masks take turns.",
+        Cell::Number(data.discs as f64, 0).for_reading()
+    ))
 }
 
 fn table(data: &Masks) -> Table {
-    let rows = data.costs.iter().map(|cost| {
-        vec![
-            Cell::Number(cost.packing_fraction, 2),
-            Cell::Text(cost.mask.into()),
-            Cell::Count(cost.places as u64),
-            Cell::Number(1e6 * cost.seconds, 2),
-            Cell::Number(1e6 * cost.fitted, 2),
-            Cell::Number(1e3 * cost.fillings, 3),
-        ]
-    });
-    let columns =
-        ["ν", "mask", "places", "collision (µs)", "by the formula (µs)", "fillings in a thousand collisions"];
-    Table {
-        name: "masks".into(),
-        title: "Processor time of a collision".into(),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    Rows::of(&data.costs)
+        .number("ν", 2, |cost| cost.packing_fraction)
+        .text("mask", |cost| cost.mask)
+        .count("places", |cost| cost.places)
+        .number("collision (µs)", 2, |cost| 1e6 * cost.seconds)
+        .number("by the formula (µs)", 2, |cost| 1e6 * cost.fitted)
+        .number("fillings in a thousand collisions", 3, |cost| 1e3 * cost.fillings)
+        .table("masks", "Processor time of a collision")
 }
 
 fn constants(data: &Masks) -> Table {
-    let rows = TERMS
-        .iter()
-        .zip(data.constants)
-        .map(|(term, constant)| vec![Cell::from(*term), Cell::Number(1e9 * constant, 2)]);
-    Table {
-        name: "constants".into(),
-        title: "The source's formula of the cost, fitted".into(),
-        columns: vec!["of what".into(), "nanoseconds".into()],
-        rows: rows.collect(),
-        notes: vec![
-            "The source's k_MVS, k_CBT and k_UPDATE grow alike with the collisions and are the first constant here, for nothing in \
-             these runs sets them apart; 2 k_PP N_g is the second; k_EEPGM is the third and, for the predictions, the fourth."
-                .into(),
-        ],
-    }
+    Rows::of(TERMS.into_iter().zip(data.constants))
+        .text("of what", |(term, _)| *term)
+        .number("nanoseconds", 2, |(_, constant)| 1e9 * constant)
+        .table("constants", "The source's formula of the cost, fitted")
+        .note("The source's k_MVS, k_CBT and k_UPDATE grow alike with the collisions and are the first constant here, for nothing in these runs \
+               sets them apart; 2 k_PP N_g is the second; k_EEPGM is the third and, for the predictions, the fourth.")
 }

@@ -1,8 +1,8 @@
 //! The error of Z over its cost.
 
 use crate::laboratory::hard_disks::study::precision::{KNOWN_TO, Precision, STATE, Way};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::{Part, Rows, Section, Table};
 
 /// What came out.
 pub fn section(data: &Precision) -> Section {
@@ -16,33 +16,23 @@ pub fn section(data: &Precision) -> Section {
             format!("{:.2} % in {:.1} s with {} discs", 100.0 * look.error, look.seconds, way.discs)
         })
     };
-    Section {
-        name: "hard-disks-precision".into(),
-        title: "Hard discs: error of Z against processor time".into(),
-        part: Part::Host,
-        question: "What does an accuracy of the pressure cost in processor time?".into(),
-        expected: format!(
-            "Z = {known} at ν = {packing}, known to {} %. A method without a time step has two errors of a mean: chance, which falls as one \
-             over the root of the time, and the finite number of discs.",
+    Section::new("hard-disks-precision", "Hard discs: error of Z against processor time", Part::Host)
+        .asks("What does an accuracy of the pressure cost in processor time?")
+        .expects(format!(
+            "Z = {known} at ν = {packing}, known to {} %. A method without a time step has two errors of a mean: chance, which falls as one over \
+             the root of the time, and the finite number of discs.",
             100.0 * KNOWN_TO
-        ),
-        answer: format!(
+        ))
+        .answers(format!(
             "The fast engine comes to {}, the source's way to {}; Z itself is known to {} % only.",
             said("fast"),
             said("reference"),
             100.0 * KNOWN_TO
-        ),
-        details: vec![],
-        verdict: Verdict::Measured,
-        again: "stripmine reproduce --only hard-disks-precision".into(),
-        figures: vec![figure(data)],
-        tables: vec![table(data)],
-        excerpt: None,
-        film: None,
-        seeds: (1..=data.seeds).collect(),
-        depends_on_host: true,
-        provenance: None,
-    }
+        ))
+        .figures([figure(data)])
+        .tables([table(data)])
+        .seeds(1..=data.seeds)
+        .depends_on_host()
 }
 
 fn named(way: &Way) -> String {
@@ -50,65 +40,30 @@ fn named(way: &Way) -> String {
 }
 
 fn figure(data: &Precision) -> Figure {
-    let series = data.ways.iter().enumerate().map(|(hue, way)| Series {
-        name: named(way),
-        style: if way.engine == "fast" { Style::Joined } else { Style::Dashed },
-        hue: hue / 2,
-        points: way.looks.iter().map(|look| Point::at(look.seconds, look.error)).collect(),
+    let ways = data.ways.iter().enumerate().map(|(hue, way)| {
+        let style = if way.engine == "fast" { Style::Joined } else { Style::Dashed };
+        Series::new(named(way), style, hue / 2, way.looks.iter().map(|look| (look.seconds, look.error)))
     });
-    let mut series: Vec<Series> = series.collect();
     let seconds = || data.ways.iter().flat_map(|way| way.looks.iter().map(|look| look.seconds));
     let ends = [seconds().fold(f64::INFINITY, f64::min), seconds().fold(0.0, f64::max)];
-    series.push(Series {
-        name: "to this Z is known".into(),
-        style: Style::Line,
-        hue: 6,
-        points: ends.map(|at| Point::at(at, KNOWN_TO)).to_vec(),
-    });
-    Figure {
-        name: "error-over-cost".into(),
-        title: "Few discs soon err by their number, many by chance".into(),
-        caption: format!(
+    Chart::of(Axis::logarithmic("processor time", Some("s")), Axis::logarithmic("relative error of Z", None))
+        .with(ways)
+        .series("to this Z is known", Style::Line, 6, ends.map(|at| (at, KNOWN_TO)))
+        .figure("error-over-cost", "Few discs soon err by their number, many by chance")
+        .caption(format!(
             "Root mean square of the errors of {} seeds; processor time of one run.",
             data.seeds
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("processor time", Some("s")),
-            y: Axis::logarithmic("relative error of Z", None),
-            series,
-            bands: vec![],
-        }),
-    }
+        ))
 }
 
 fn table(data: &Precision) -> Table {
-    let rows = data.ways.iter().flat_map(|way| {
-        way.looks.iter().map(move |look| {
-            vec![
-                Cell::Text(named(way)),
-                Cell::Count(look.collisions),
-                Cell::Number(look.seconds, 3),
-                Cell::Number(1e-6 * way.rate, 3),
-                Cell::Number(100.0 * look.error, 3),
-                Cell::Number(100.0 * look.bias[0], 3),
-                Cell::Number(100.0 * look.bias[1], 3),
-            ]
-        })
-    });
-    let columns = [
-        "engine and discs",
-        "collisions",
-        "processor time (s)",
-        "million collisions/s",
-        "error of Z (%)",
-        "mean error (%)",
-        "its standard error (%)",
-    ];
-    Table {
-        name: "precision".into(),
-        title: "Errors of Z after growing numbers of collisions".into(),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    Rows::of(data.ways.iter().flat_map(|way| way.looks.iter().map(move |look| (way, look))))
+        .text("engine and discs", |(way, _)| named(way))
+        .count("collisions", |(_, look)| look.collisions)
+        .number("processor time (s)", 3, |(_, look)| look.seconds)
+        .number("million collisions/s", 3, |(way, _)| 1e-6 * way.rate)
+        .number("error of Z (%)", 3, |(_, look)| 100.0 * look.error)
+        .number("mean error (%)", 3, |(_, look)| 100.0 * look.bias[0])
+        .number("its standard error (%)", 3, |(_, look)| 100.0 * look.bias[1])
+        .table("precision", "Errors of Z after growing numbers of collisions")
 }

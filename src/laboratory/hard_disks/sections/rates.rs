@@ -1,8 +1,8 @@
 //! Collisions a second of both engines.
 
 use crate::laboratory::hard_disks::study::rates::{ENGINES, Rate, Rates};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 
 /// Million collisions a second of the source's program, with 2500 discs and with 2 500 000: the best over the densities.
 const SOURCE: [(f64, f64); 2] = [(2500.0, 0.128), (2_500_000.0, 0.058)];
@@ -20,31 +20,22 @@ pub fn section(data: &Rates) -> Section {
         });
         1e-6 * of.map(Rate::median).fold(0.0, f64::max)
     };
-    Section {
-        name: "hard-disks-rates".into(),
-        title: "Hard discs: collisions a second".into(),
-        part: Part::Host,
-        question: "How many collisions a second?".into(),
-        expected: "ISO99: 0.128 million a second with 2500 discs and 0.058 million with 2 500 000, on an Alpha of 600 MHz. Our aim: at least \
-                   5.5 million with 2500 discs at ν ≥ 0.5, and 1 million by the source's way."
-            .into(),
-        answer: format!(
+    Section::new("hard-disks-rates", "Hard discs: collisions a second", Part::Host)
+        .asks("How many collisions a second?")
+        .expects("ISO99: 0.128 million a second with 2500 discs and 0.058 million with 2 500 000, on an Alpha of 600 MHz. Our aim: at least 5.5 \
+                  million with 2500 discs at ν ≥ 0.5, and 1 million by the source's way.")
+        .answers(format!(
             "One thread, {}: at best {:.2} million collisions a second by lists of each disc's own, {:.2} million the source's way.",
             data.instruction_set,
             best(ENGINES[0]),
             best(ENGINES[1])
-        ),
-        details: vec!["Both engines find the same collisions, to the bit.".into()],
-        verdict: Verdict::aim(aimed(ENGINES[0]) >= 5.5 && aimed(ENGINES[1]) >= 1.0),
-        again: "stripmine reproduce --only hard-disks-rates".into(),
-        figures: vec![figure(data)],
-        tables: vec![table(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![1],
-        depends_on_host: true,
-        provenance: None,
-    }
+        ))
+        .verdict(Verdict::aim(aimed(ENGINES[0]) >= 5.5 && aimed(ENGINES[1]) >= 1.0))
+        .details(["Both engines find the same collisions, to the bit."])
+        .figures([figure(data)])
+        .tables([table(data)])
+        .seeds([1])
+        .depends_on_host()
 }
 
 fn sizes(data: &Rates) -> Vec<usize> {
@@ -68,64 +59,43 @@ fn figure(data: &Rates) -> Figure {
                 let (low, high) = rate.rates.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &rate| {
                     (low.min(1e-6 * rate), high.max(1e-6 * rate))
                 });
-                Point { x: rate.packing_fraction, y: 1e-6 * rate.median(), spread: Some([low, high]) }
+                (rate.packing_fraction, 1e-6 * rate.median(), [low, high])
             });
-            series.push(Series {
-                name: format!("{engine}, {} discs", Cell::Number(first.discs as f64, 0).for_reading()),
-                style: if number == 0 { Style::Joined } else { Style::Dashed },
-                hue: place,
-                points: points.collect(),
-            });
+            series.push(Series::new(
+                format!("{engine}, {} discs", Cell::Number(first.discs as f64, 0).for_reading()),
+                if number == 0 { Style::Joined } else { Style::Dashed },
+                place,
+                points,
+            ));
         }
     }
-    Figure {
-        name: "rates".into(),
-        title: "Collisions a second of processor time".into(),
-        caption: format!(
-            "Medians of rounds in which the engines take turns, {}, one thread; bars from the lowest to the highest.",
-            data.instruction_set
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::linear("packing fraction ν", None),
-            y: Axis::logarithmic("rate", Some("million collisions/s")),
-            series,
-            bands: vec![],
-        }),
-    }
+    Chart::of(
+        Axis::linear("packing fraction ν", None),
+        Axis::logarithmic("rate", Some("million collisions/s")),
+    )
+    .with(series)
+    .figure("rates", "Collisions a second of processor time")
+    .caption(format!(
+        "Medians of rounds in which the engines take turns, {}, one thread; bars from the lowest to the highest.",
+        data.instruction_set
+    ))
 }
 
 fn table(data: &Rates) -> Table {
-    let rows = data.rates.chunks_exact(ENGINES.len()).map(|pair| {
-        let [fast, reference] = [&pair[0], &pair[1]];
+    let of_source = |fast: &Rate| {
         let known = SOURCE.iter().find(|(discs, _)| (fast.discs as f64 / discs - 1.0).abs() < 0.1);
-        vec![
-            Cell::Number(fast.discs as f64, 0),
-            Cell::Number(fast.packing_fraction, 2),
-            Cell::Number(1e-6 * fast.median(), 3),
-            Cell::Number(1e-6 * reference.median(), 3),
-            Cell::Text(reference.mask.clone().unwrap_or_default()),
-            Cell::Number(fast.median() / reference.median(), 1),
-            known.map_or(Cell::Nothing, |(_, rate)| Cell::Number(1e-6 * fast.median() / rate, 0)),
-            Cell::Number(1e-6 * fast.bytes as f64, 0),
-            Cell::Number(1e-6 * reference.bytes as f64, 0),
-        ]
-    });
-    let columns = [
-        "discs",
-        "ν",
-        "fast (million/s)",
-        "the source's way (million/s)",
-        "its mask",
-        "fast over it",
-        "fast over the source's machine",
-        "memory, fast (MB)",
-        "memory, the source's way (MB)",
-    ];
-    Table {
-        name: "rates".into(),
-        title: "Million collisions a second of processor time".into(),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        notes: vec!["Memory as `scene check` foresees it for a run.".into()],
-    }
+        known.map(|(_, rate)| 1e-6 * fast.median() / rate)
+    };
+    Rows::of(data.rates.chunks_exact(ENGINES.len()).map(|pair| [&pair[0], &pair[1]]))
+        .number("discs", 0, |[fast, _]| fast.discs as f64)
+        .number("ν", 2, |[fast, _]| fast.packing_fraction)
+        .number("fast (million/s)", 3, |[fast, _]| 1e-6 * fast.median())
+        .number("the source's way (million/s)", 3, |[_, reference]| 1e-6 * reference.median())
+        .text("its mask", |[_, reference]| reference.mask.clone().unwrap_or_default())
+        .number("fast over it", 1, |[fast, reference]| fast.median() / reference.median())
+        .number("fast over the source's machine", 0, |[fast, _]| of_source(fast))
+        .number("memory, fast (MB)", 0, |[fast, _]| 1e-6 * fast.bytes as f64)
+        .number("memory, the source's way (MB)", 0, |[_, reference]| 1e-6 * reference.bytes as f64)
+        .table("rates", "Million collisions a second of processor time")
+        .note("Memory as `scene check` foresees it for a run.")
 }

@@ -1,10 +1,8 @@
 //! Order, free times and speeds on both sides of melting.
 
 use crate::laboratory::hard_disks::study::structure::{Structure, Structures};
-use crate::report::figure::{
-    Axis, Chart, Drawing, Figure, Guide, Picture, Point, Series, Shape, Style, Tint,
-};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Drawing, Figure, Guide, Picture, Series, Shape, Style, Tint};
+use crate::report::{Part, Rows, Section, Table, Verdict};
 
 /// Free times over their mean that are drawn; longer ones are too few.
 const LONGEST: f64 = 5.0;
@@ -26,17 +24,13 @@ pub fn section(data: &Structures) -> Section {
     let is_maxwell = data.structures.iter().all(|it| it.maxwell[1] > 0.001);
     let largest = gas.free_times.iter().zip(&data.dilute).map(|(seen, theory)| (seen - theory).abs());
     let largest = largest.fold(0.0, f64::max);
-    Section {
-        name: "hard-disks-structure".into(),
-        title: "Hard discs: melting, free times and speeds".into(),
-        part: Part::Physics,
-        question: "At which density does a crystal of hard discs melt, and how long do discs fly?".into(),
-        expected: "Simulations of a million discs find a fluid below a packing fraction of 0.700, fluid and hexatic phase beside each other \
-                   up to 0.716, and a crystal above 0.720. A dilute gas has the free times of its Maxwell velocities."
-            .into(),
-        answer: format!(
-            "{} densities {} melting: from a crystal of {} discs the global order |Ψ₆| falls to {:.2} at {}, is {:.2} at {} and stays at \
-             {:.2} at {}.",
+    Section::new("hard-disks-structure", "Hard discs: melting, free times and speeds", Part::Physics)
+        .asks("At which density does a crystal of hard discs melt, and how long do discs fly?")
+        .expects("Simulations of a million discs find a fluid below a packing fraction of 0.700, fluid and hexatic phase beside each other up to \
+                  0.716, and a crystal above 0.720. A dilute gas has the free times of its Maxwell velocities.")
+        .answers(format!(
+            "{} densities {} melting: from a crystal of {} discs the global order |Ψ₆| falls to {:.2} at {}, is {:.2} at {} and stays at {:.2} \
+             at {}.",
             data.structures.len() - 1,
             if is_located { "locate" } else { "bracket and do not locate" },
             data.discs,
@@ -46,26 +40,18 @@ pub fn section(data: &Structures) -> Section {
             between.packing_fraction,
             crystal.order[0],
             crystal.packing_fraction,
-        ),
-        details: vec![format!(
-            "Free times at 0.02 differ from theory by at most {largest:.3} of a density of about 1. Discs that start equally fast have \
-             Maxwell's velocities at the end, p = {:.2} to {:.2}.",
+        ))
+        .verdict(Verdict::of_claims(&[is_ordered, is_located, is_maxwell, largest < 0.05]))
+        .details([format!(
+            "Free times at 0.02 differ from theory by at most {largest:.3} of a density of about 1. Discs that start equally fast have Maxwell's \
+             velocities at the end, p = {:.2} to {:.2}.",
             data.structures.iter().map(|it| it.maxwell[1]).fold(1.0, f64::min),
             data.structures.iter().map(|it| it.maxwell[1]).fold(0.0, f64::max),
-        )],
-        verdict: Verdict::of_claims(&[is_ordered, is_located, is_maxwell, largest < 0.05]),
-        again: "stripmine reproduce --only hard-disks-structure".into(),
-        figures: std::iter::once(correlation(data))
-            .chain([free_times(data)])
-            .chain(data.structures.iter().skip(1).map(picture))
-            .collect(),
-        tables: vec![table(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![1],
-        depends_on_host: false,
-        provenance: None,
-    }
+        )])
+        .figures([correlation(data), free_times(data)])
+        .figures(data.structures.iter().skip(1).map(picture))
+        .tables([table(data)])
+        .seeds([1])
 }
 
 fn named(it: &Structure) -> String {
@@ -73,58 +59,37 @@ fn named(it: &Structure) -> String {
 }
 
 fn correlation(data: &Structures) -> Figure {
-    let series = data.structures.iter().enumerate().map(|(hue, it)| Series {
-        name: named(it),
-        style: Style::Line,
-        hue,
-        points: data.distances.iter().zip(&it.correlation).map(|(&x, &y)| Point::at(x, y)).collect(),
+    let curves = data.structures.iter().enumerate().map(|(hue, it)| {
+        let points = data.distances.iter().zip(&it.correlation).map(|(&x, &y)| (x, y));
+        Series::new(named(it), Style::Line, hue, points)
     });
-    let contacts = data.structures.iter().map(|it| Point::at(1.0, it.contact));
-    let contacts = Series {
-        name: "at contact, by the virial".into(),
-        style: Style::Points,
-        hue: 6,
-        points: contacts.collect(),
-    };
-    Figure {
-        name: "pair-correlation".into(),
-        title: "Pair correlation on both sides of melting".into(),
-        caption: format!(
-            "Means of {} looks; the points at contact follow from the pressure, (Z − 1)/(2 ν).",
-            data.looks
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::linear("distance of the centres over the diameter", None),
-            y: Axis::linear("pair correlation g", None),
-            series: series.chain([contacts]).collect(),
-            bands: vec![],
-        }),
-    }
+    let contacts = data.structures.iter().map(|it| (1.0, it.contact));
+    Chart::of(
+        Axis::linear("distance of the centres over the diameter", None),
+        Axis::linear("pair correlation g", None),
+    )
+    .with(curves)
+    .series("at contact, by the virial", Style::Points, 6, contacts)
+    .figure("pair-correlation", "Pair correlation on both sides of melting")
+    .caption(format!(
+        "Means of {} looks; the points at contact follow from the pressure, (Z − 1)/(2 ν).",
+        data.looks
+    ))
 }
 
 fn free_times(data: &Structures) -> Figure {
-    let series = data.structures.iter().enumerate().map(|(hue, it)| Series {
-        name: named(it),
-        style: Style::Steps,
-        hue,
-        points: (0..data.times.len())
-            .filter(|&bin| data.times[bin] < LONGEST)
-            .map(|bin| Point::at(data.times[bin], it.free_times[bin] / data.dilute[bin]))
-            .collect(),
+    let curves = data.structures.iter().enumerate().map(|(hue, it)| {
+        let bins = (0..data.times.len()).filter(|&bin| data.times[bin] < LONGEST);
+        let points = bins.map(|bin| (data.times[bin], it.free_times[bin] / data.dilute[bin]));
+        Series::new(named(it), Style::Steps, hue, points)
     });
-    Figure {
-        name: "free-times".into(),
-        title: "Time between two collisions of a disc".into(),
-        caption: "Probability density of the free time over what the Maxwell velocities of a dilute gas give. In a crystal long free \
-                  times are rare."
-            .into(),
-        picture: Picture::Chart(Chart {
-            x: Axis::linear("free time over its mean", None),
-            y: Axis::linear("density over that of a dilute gas", None),
-            series: series.collect(),
-            bands: vec![],
-        }),
-    }
+    Chart::of(
+        Axis::linear("free time over its mean", None),
+        Axis::linear("density over that of a dilute gas", None),
+    )
+    .with(curves)
+    .figure("free-times", "Time between two collisions of a disc")
+    .caption("Probability density of the free time over what the Maxwell velocities of a dilute gas give. In a crystal long free times are rare.")
 }
 
 fn picture(it: &Structure) -> Figure {
@@ -136,51 +101,32 @@ fn picture(it: &Structure) -> Figure {
         radius: 0.5,
         tint: Tint::Shade(0.5 * (along + 1.0)),
     });
-    Figure {
-        name: format!("discs-{}", it.packing_fraction.to_string().replace('.', "-")),
-        title: format!("Discs at a packing fraction of {}", it.packing_fraction),
-        caption: "A part of the box. Shade: the bonds of a disc to its six nearest, ψ₆, along the mean of all. 1 is a crystal in line with the whole."
-            .into(),
-        picture: Picture::Drawing(Drawing {
-            window: [[0.0; 2], sides],
-            width: 640.0,
-            shapes: shapes.collect(),
-            shades: Some((-1.0, 1.0, "ψ₆ along the mean of all".into())),
-            guide: Some(Guide { unit: "diameters".into(), gravity: None }),
-        }),
-    }
+    Picture::Drawing(Drawing {
+        window: [[0.0; 2], sides],
+        width: 640.0,
+        shapes: shapes.collect(),
+        shades: Some((-1.0, 1.0, "ψ₆ along the mean of all".into())),
+        guide: Some(Guide { unit: "diameters".into(), gravity: None }),
+    })
+    .figure(
+        format!("discs-{}", it.packing_fraction.to_string().replace('.', "-")),
+        format!("Discs at a packing fraction of {}", it.packing_fraction),
+    )
+    .caption("A part of the box. Shade: the bonds of a disc to its six nearest, ψ₆, along the mean of all. 1 is a crystal in line with the \
+              whole.")
 }
 
 fn table(data: &Structures) -> Table {
-    let rows = data.structures.iter().map(|it| {
-        vec![
-            Cell::Number(it.packing_fraction, 2),
-            Cell::Number(it.order[0], 3),
-            Cell::Number(it.order[1], 3),
-            Cell::Number(it.contact, 3),
-            Cell::Number(it.correlation[0], 3),
-            Cell::Number(it.free[0], 5),
-            Cell::Number(it.free[1], 5),
-            Cell::Text(format!("{:.1e}", it.maxwell[0])),
-            Cell::Number(it.maxwell[1], 3),
-        ]
-    });
-    let columns = [
-        "ν",
-        "|Ψ₆| of all",
-        "mean |ψ₆|",
-        "g at contact, by the virial",
-        "g from 1.00 to 1.02",
-        "mean free time",
-        "mean free path",
-        "p of Maxwell at the start",
-        "p at the end",
-    ];
-    Table {
-        name: "structure".into(),
-        title: "Order, free times and velocities (diameter = m = kT = 1)".into(),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        notes: vec!["p: the probability by Kolmogorov and Smirnov; all discs start equally fast.".into()],
-    }
+    Rows::of(&data.structures)
+        .number("ν", 2, |it| it.packing_fraction)
+        .number("|Ψ₆| of all", 3, |it| it.order[0])
+        .number("mean |ψ₆|", 3, |it| it.order[1])
+        .number("g at contact, by the virial", 3, |it| it.contact)
+        .number("g from 1.00 to 1.02", 3, |it| it.correlation[0])
+        .number("mean free time", 5, |it| it.free[0])
+        .number("mean free path", 5, |it| it.free[1])
+        .text("p of Maxwell at the start", |it| format!("{:.1e}", it.maxwell[0]))
+        .number("p at the end", 3, |it| it.maxwell[1])
+        .table("structure", "Order, free times and velocities (diameter = m = kT = 1)")
+        .note("p: the probability by Kolmogorov and Smirnov; all discs start equally fast.")
 }

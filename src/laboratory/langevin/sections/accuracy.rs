@@ -3,8 +3,8 @@
 use super::point;
 use crate::laboratory::langevin::study::Mean;
 use crate::laboratory::langevin::study::accuracy::{Accuracy, Fluid};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::{Part, Rows, Section, Table, Verdict};
 use crate::statistics::slope;
 
 /// Errors that an order is fitted through, at least.
@@ -35,37 +35,27 @@ pub fn section(data: &Accuracy) -> Section {
     // Smaller beyond the bars of both.
     let is_smaller = source.value.abs() - ours.value.abs() > ours.bar.hypot(source.bar);
     let with_bar = |mean: Mean| format!("{:+.4} ± {:.4}", mean.value, mean.bar);
-    Section {
-        name: "langevin-accuracy".into(),
-        title: "Langevin: the error of the step".into(),
-        part: Part::Physics,
-        question: "How far off are averages over positions for a given step, by either scheme?".into(),
-        expected: "Leimkuhler and Matthews: by BAOAB the error is of order dt² and far smaller than by velocity Verlet with noise in the \
-                   acceleration."
-            .into(),
-        answer: format!(
+    Section::new("langevin-accuracy", "Langevin: the error of the step", Part::Physics)
+        .asks("How far off are averages over positions for a given step, by either scheme?")
+        .expects("Leimkuhler and Matthews: by BAOAB the error is of order dt² and far smaller than by velocity Verlet with noise in the \
+                  acceleration.")
+        .answers(format!(
             "{said} At dt = 0.01 the energy of the pairs is off by {} by BAOAB and by {} by the source's scheme, of {:.4} a particle.",
             with_bar(ours),
             with_bar(source),
             data.limit.value
-        ),
-        details: vec![],
-        verdict: Verdict::of_claims(&[
+        ))
+        .verdict(Verdict::of_claims(&[
             is_smaller,
             fitted.is_some_and(|order| (order - 2.0).abs() < ORDER_WITHIN),
-        ]),
-        again: "stripmine reproduce --only langevin-accuracy".into(),
-        figures: vec![
+        ]))
+        .figures([
             figure(data, "error-over-step", "time step", |it| it.dt),
             figure(data, "error-over-cost", "wall time of a unit of time", |it| it.cost),
-        ],
-        tables: vec![table(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![1],
-        depends_on_host: true,
-        provenance: None,
-    }
+        ])
+        .tables([table(data)])
+        .seeds([1])
+        .depends_on_host()
 }
 
 fn error(data: &Accuracy, it: &Fluid) -> Mean {
@@ -77,61 +67,36 @@ fn figure(data: &Accuracy, name: &str, axis: &str, x: fn(&Fluid) -> f64) -> Figu
     let series = ["stochastic", "baoab"].into_iter().enumerate().map(|(hue, scheme)| {
         let of = data.fluids.iter().filter(|it| it.scheme == scheme && it.is_whole);
         let mut points: Vec<_> = of.map(|it| point(x(it), error(data, it))).collect();
-        points.sort_by(|a, b| a.x.total_cmp(&b.x));
-        Series { name: scheme.into(), style: Style::Joined, hue, points }
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Series::new(scheme, Style::Joined, hue, points)
     });
     let unit = if name.ends_with("cost") { "s" } else { "reduced" };
-    Figure {
-        name: name.into(),
-        title: format!("Energy of the pairs: error over the {}", if unit == "s" { "cost" } else { "step" }),
-        caption: format!(
-            "{} Lennard-Jones particles, density 0.7, kT = 1; a time of {} at each point. Bars hold the mean in 95 of 100 studies; the \
-             energy at short steps itself is known to ± {:.4}.",
+    Chart::of(Axis::linear(axis, Some(unit)), Axis::linear("error of the energy a particle", Some("ε")))
+        .with(series)
+        .figure(
+            name,
+            format!("Energy of the pairs: error over the {}", if unit == "s" { "cost" } else { "step" }),
+        )
+        .caption(format!(
+            "{} Lennard-Jones particles, density 0.7, kT = 1; a time of {} at each point. Bars hold the mean in 95 of 100 studies; the energy at \
+             short steps itself is known to ± {:.4}.",
             data.particles, data.time, data.limit.bar
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::linear(axis, Some(unit)),
-            y: Axis::linear("error of the energy a particle", Some("ε")),
-            series: series.collect(),
-            bands: vec![],
-        }),
-    }
+        ))
 }
 
 fn table(data: &Accuracy) -> Table {
-    let rows = data.fluids.iter().map(|it| {
-        vec![
-            Cell::Text(it.scheme.into()),
-            Cell::Number(it.dt, 4),
-            Cell::Number(it.potential.value, 4),
-            Cell::Number(it.potential.bar, 4),
-            Cell::Number(it.pressure.value, 4),
-            Cell::Number(it.pressure.bar, 4),
-            Cell::Number(it.temperature.value, 4),
-            Cell::Number(it.temperature.bar, 4),
-            Cell::Number(1e3 * it.cost, 1),
-        ]
-    });
-    let columns = [
-        "scheme",
-        "dt",
-        "energy",
-        "± (95 %)",
-        "pressure",
-        "± (95 %)",
-        "temperature",
-        "± (95 %)",
-        "ms a unit of time",
-    ];
-    Table {
-        name: "accuracy".into(),
-        title: "Energy of the pairs a particle, pressure and temperature".into(),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        notes: vec![
-            "Errors from the scatter of 20 parts of each run. Two runs at a time shared the machine.".into(),
-        ],
-    }
+    Rows::of(&data.fluids)
+        .text("scheme", |it| it.scheme)
+        .number("dt", 4, |it| it.dt)
+        .number("energy", 4, |it| it.potential.value)
+        .number("± (95 %)", 4, |it| it.potential.bar)
+        .number("pressure", 4, |it| it.pressure.value)
+        .number("± (95 %)", 4, |it| it.pressure.bar)
+        .number("temperature", 4, |it| it.temperature.value)
+        .number("± (95 %)", 4, |it| it.temperature.bar)
+        .number("ms a unit of time", 1, |it| 1e3 * it.cost)
+        .table("accuracy", "Energy of the pairs a particle, pressure and temperature")
+        .note("Errors from the scatter of 20 parts of each run. Two runs at a time shared the machine.")
 }
 
 #[cfg(test)]

@@ -6,10 +6,9 @@ pub mod losses;
 pub mod sectors;
 
 use super::study::Mean;
-use crate::report::figure::Point;
 
 /// A mean with its bar, as a point.
-fn point(x: f64, mean: Mean) -> Point {
+fn point(x: f64, mean: Mean) -> (f64, f64, [f64; 2]) {
     let Mean { value, bar } = mean;
-    Point { x, y: value, spread: Some([value - bar, value + bar]) }
+    (x, value, [value - bar, value + bar])
 }

@@ -1,8 +1,8 @@
 //! Wall time over the number of sectors.
 
 use crate::laboratory::langevin::study::sectors::{Fluid, Row, SEARCHES, SOURCE, Sectors, THREADS};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 
 /// Two threads help where they are at least so many times as fast as one.
 const HELPS: f64 = 1.2;
@@ -77,31 +77,22 @@ pub fn section(data: &Sectors) -> Section {
         )
     });
     let [one, two] = lists.map_or([f64::NAN; 2], |row| row.seconds);
-    Section {
-        name: "langevin-sectors".into(),
-        title: "Langevin: wall time over the number of sectors".into(),
-        part: Part::Host,
-        question: "How does the time of a step depend on the number of sectors, and do two threads help?".into(),
-        expected: "LAN17: 100 steps of 40 000 particles take 1008 s with 3 sectors along a side, as 1/d² up to 20, and 4 s from 100 on; two \
-                   threads are 1.92 times as fast as one with 3 sectors and do not help at the best d."
-            .into(),
-        answer: format!("{opposite}{sought}"),
-        details: vec![format!(
+    Section::new("langevin-sectors", "Langevin: wall time over the number of sectors", Part::Host)
+        .asks("How does the time of a step depend on the number of sectors, and do two threads help?")
+        .expects("LAN17: 100 steps of 40 000 particles take 1008 s with 3 sectors along a side, as 1/d² up to 20, and 4 s from 100 on; two \
+                  threads are 1.92 times as fast as one with 3 sectors and do not help at the best d.")
+        .answers(format!("{opposite}{sought}"))
+        .verdict(Verdict::of_claims(&claims))
+        .details([format!(
             "{falling}{floored}Neighbour lists take {one:.3} s on one thread and {two:.3} s on two, which are {:.2} times as fast. Where the \
              search is left open it takes at most {:.0} % longer than the best of all.",
             one / two,
             100.0 * data.fluids.iter().filter_map(loss).fold(0.0, f64::max)
-        )],
-        verdict: Verdict::of_claims(&claims),
-        again: "stripmine reproduce --only langevin-sectors".into(),
-        figures: vec![figure(data)],
-        tables: vec![table(data), searches(data), phases(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![1],
-        depends_on_host: true,
-        provenance: None,
-    }
+        )])
+        .figures([figure(data)])
+        .tables([table(data), searches(data), phases(data)])
+        .seeds([1])
+        .depends_on_host()
 }
 
 /// By how much `auto` is slower than the best, relative to it.
@@ -119,102 +110,61 @@ fn loss(fluid: &Fluid) -> Option<f64> {
 }
 
 fn searches(data: &Sectors) -> Table {
-    let rows = data.fluids.iter().map(|fluid| {
-        let begin = [Cell::Text(fluid.law.into()), Cell::Number(fluid.density, 2)];
-        let times = fluid.seconds.iter().map(|it| it.map_or(Cell::Nothing, |it| Cell::Number(1e6 * it, 1)));
-        let end = [
-            Cell::Text(fluid.auto.clone()),
-            loss(fluid).map_or(Cell::Nothing, |it| Cell::Number(100.0 * it, 0)),
-        ];
-        begin.into_iter().chain(times).chain(end).collect()
-    });
-    let names = SEARCHES.iter().map(|(name, _)| format!("{name} (µs)"));
-    let columns = ["pairs", "density N σ²/A"].map(str::to_owned).into_iter().chain(names);
-    Table {
-        name: "searches".into(),
-        title: "A step of 4000 particles by every search, on one thread".into(),
-        columns: columns.chain(["auto takes", "slower than the best (%)"].map(str::to_owned)).collect(),
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    let microseconds = |it: &Option<f64>| it.map_or(Cell::Nothing, |it| Cell::Number(1e6 * it, 1));
+    Rows::of(&data.fluids)
+        .text("pairs", |fluid| fluid.law)
+        .number("density N σ²/A", 2, |fluid| fluid.density)
+        .cells(SEARCHES.map(|(name, _)| format!("{name} (µs)")), |fluid| {
+            fluid.seconds.iter().map(microseconds)
+        })
+        .text("auto takes", |fluid| &fluid.auto)
+        .number("slower than the best (%)", 0, |fluid| loss(fluid).map(|it| 100.0 * it))
+        .table("searches", "A step of 4000 particles by every search, on one thread")
 }
 
 fn figure(data: &Sectors) -> Figure {
-    let mut series = vec![];
-    for (which, threads) in THREADS.into_iter().enumerate() {
+    let of_sectors = || data.rows.iter().filter_map(|row| Some((row.per_side? as f64, row)));
+    let threads = THREADS.into_iter().enumerate().flat_map(|(which, threads)| {
         let name = if threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") };
-        let of_sectors = || data.rows.iter().filter_map(|row| Some((row.per_side? as f64, row)));
-        let ours = of_sectors().map(|(count, row)| Point::at(count, row.seconds[which]));
-        let source = of_sectors().filter_map(|(count, row)| Some(Point::at(count, row.source?[which])));
-        series.push(Series { name: name.clone(), style: Style::Joined, hue: which, points: ours.collect() });
-        series.push(Series {
-            name: format!("source, {name}"),
-            style: Style::Points,
-            hue: which + 2,
-            points: source.collect(),
-        });
-    }
-    if let Some(lists) = data.rows.iter().find(|row| row.per_side.is_none()) {
-        let points = [3.0, 800.0].map(|count| Point::at(count, lists.seconds[0]));
-        series.push(Series {
-            name: "lists, 1 thread".into(),
-            style: Style::Dashed,
-            hue: 6,
-            points: points.to_vec(),
-        });
-    }
-    Figure {
-        name: "wall-time".into(),
-        title: "Wall time of 100 steps".into(),
-        caption: format!("{} particles. With 3 sectors along a side every pair is tried.", data.particles),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("sectors along a side", None),
-            y: Axis::logarithmic("wall time of 100 steps", Some("s")),
-            series,
-            bands: vec![],
-        }),
-    }
+        let ours = of_sectors().map(|(count, row)| (count, row.seconds[which]));
+        let source = of_sectors().filter_map(|(count, row)| Some((count, row.source?[which])));
+        let source = Series::new(format!("source, {name}"), Style::Points, which + 2, source);
+        [Series::new(name, Style::Joined, which, ours), source]
+    });
+    let lists = data.rows.iter().find(|row| row.per_side.is_none()).map(|lists| {
+        let level = [3.0, 800.0].map(|count| (count, lists.seconds[0]));
+        Series::new("lists, 1 thread", Style::Dashed, 6, level)
+    });
+    Chart::of(
+        Axis::logarithmic("sectors along a side", None),
+        Axis::logarithmic("wall time of 100 steps", Some("s")),
+    )
+    .with(threads)
+    .with(lists)
+    .figure("wall-time", "Wall time of 100 steps")
+    .caption(format!("{} particles. With 3 sectors along a side every pair is tried.", data.particles))
 }
 
 fn table(data: &Sectors) -> Table {
-    let rows = data.rows.iter().map(|row| {
-        let source =
-            |which: usize| row.source.map_or(Cell::Text(String::new()), |it| Cell::Number(it[which], 1));
-        vec![
-            Cell::Text(row.per_side.map_or("lists".to_owned(), |count| count.to_string())),
-            Cell::Number(row.seconds[0], 4),
-            Cell::Number(row.seconds[1], 4),
-            Cell::Number(row.seconds[0] / row.seconds[1], 2),
-            source(0),
-            source(1),
-        ]
-    });
-    let columns = ["sectors", "1 thread (s)", "2 threads (s)", "ratio", "source, 1 (s)", "source, 2 (s)"];
-    Table {
-        name: "wall-time".into(),
-        title: "Wall time of 100 steps".into(),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        notes: vec!["Medians of alternating repeats; fewer steps where they are long.".into()],
-    }
+    let source = |row: &Row, which: usize| row.source.map_or(Cell::from(""), |it| Cell::Number(it[which], 1));
+    Rows::of(&data.rows)
+        .text("sectors", |row| row.per_side.map_or("lists".to_owned(), |count| count.to_string()))
+        .number("1 thread (s)", 4, |row| row.seconds[0])
+        .number("2 threads (s)", 4, |row| row.seconds[1])
+        .number("ratio", 2, |row| row.seconds[0] / row.seconds[1])
+        .cell("source, 1 (s)", |row| source(row, 0))
+        .cell("source, 2 (s)", |row| source(row, 1))
+        .table("wall-time", "Wall time of 100 steps")
+        .note("Medians of alternating repeats; fewer steps where they are long.")
 }
 
 fn phases(data: &Sectors) -> Table {
-    let rows = data
-        .phases
-        .iter()
-        .map(|(name, seconds)| vec![Cell::Text(name.clone()), Cell::Number(1e3 * seconds, 2)]);
-    Table {
-        name: "phases".into(),
-        title: "Where the time goes: 100 steps by lists on one thread".into(),
-        columns: ["part", "time (ms)"].map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        notes: vec![
-            "correct_predict holds velocities, positions, noise and wrapping; index the lists and their order. The source: writing \
-             3.8 s, ordering 0.41, velocities 0.08, boundary 0.03, noise 0.03."
-                .into(),
-        ],
-    }
+    Rows::of(&data.phases)
+        .text("part", |(name, _)| *name)
+        .number("time (ms)", 2, |(_, seconds)| 1e3 * **seconds)
+        .table("phases", "Where the time goes: 100 steps by lists on one thread")
+        .note("correct_predict holds velocities, positions, noise and wrapping; index the lists and their order. The source: writing 3.8 s, \
+               ordering 0.41, velocities 0.08, boundary 0.03, noise 0.03.")
 }
 
 #[cfg(test)]

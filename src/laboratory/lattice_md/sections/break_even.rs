@@ -2,8 +2,8 @@
 
 use crate::laboratory::lattice_md::study::break_even::{Atlas, Named, Sheet};
 use crate::laboratory::lattice_md::study::density_cost::CEILING;
-use crate::report::figure::{Axis, Band, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Band, Chart, Figure, Series, Style};
+use crate::report::{Part, Rows, Section, Table, Verdict};
 use crate::statistics::median;
 
 /// A lead below this is a draw in the words.
@@ -13,26 +13,18 @@ const DRAW: f64 = 1.1;
 pub fn section(data: &Atlas, again: &str) -> Section {
     let named = data.named();
     let wins = data.sheets.iter().map(|sheet| format!("Cheapest, {}: {}", sheet.title, wins(sheet)));
-    Section {
-        name: "atlas".into(),
-        title: "Who wins where: the break-even atlas".into(),
-        part: Part::Host,
-        question: "Which method is the cheapest for which number of particles and density, and does the model of a host know it?".into(),
-        expected: "BP93, section 3: on a vector machine the lattice wins for many particles and dense packings, scalar neighbour lists for \
-                   few. Our aim: what the model names as the cheapest costs at most a tenth more than what is."
-            .into(),
-        answer: model(data, &named),
-        details: wins.map(|wins| format!("{wins}.")).collect(),
-        verdict: Verdict::aim(named.iter().all(|it| it.dearer <= DRAW)),
-        again: again.into(),
-        figures: data.sheets.iter().map(figure).collect(),
-        tables: vec![wrong(&named), places(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![1],
-        depends_on_host: true,
-        provenance: None,
-    }
+    Section::new("atlas", "Who wins where: the break-even atlas", Part::Host)
+        .asks("Which method is the cheapest for which number of particles and density, and does the model of a host know it?")
+        .expects("BP93, section 3: on a vector machine the lattice wins for many particles and dense packings, scalar neighbour lists for few. \
+                  Our aim: what the model names as the cheapest costs at most a tenth more than what is.")
+        .answers(model(data, &named))
+        .verdict(Verdict::aim(named.iter().all(|it| it.dearer <= DRAW)))
+        .details(wins.map(|wins| format!("{wins}.")))
+        .figures(data.sheets.iter().map(figure))
+        .tables([wrong(&named), places(data)])
+        .again(again)
+        .seeds([1])
+        .depends_on_host()
 }
 
 /// How often the model names the cheapest method beside one that always names the same, and what it costs where it is wrong.
@@ -49,8 +41,7 @@ fn model(data: &Atlas, named: &[Named]) -> String {
     );
     let Some(worst) = wrong.iter().max_by(|a, b| a.dearer.total_cmp(&b.dearer)) else { return begin + "." };
     format!(
-        "{begin}. Where the model is wrong its choice costs {:.0} % more in the median, and at most {:.0} % ({} for {} with {} discs at \
-         ρ = {}).",
+        "{begin}. Where the model is wrong its choice costs {:.0} % more in the median, and at most {:.0} % ({} for {} with {} discs at ρ = {}).",
         100.0 * (median(wrong.iter().map(|it| it.dearer)) - 1.0),
         100.0 * (worst.dearer - 1.0),
         worst.named,
@@ -62,24 +53,13 @@ fn model(data: &Atlas, named: &[Named]) -> String {
 
 /// Where the model names another method than the cheapest.
 fn wrong(named: &[Named]) -> Table {
-    let rows = named.iter().filter(|it| it.named != it.cheapest).map(|it| {
-        vec![
-            Cell::Number(it.occupancy, 2),
-            Cell::Count(it.particles as u64),
-            Cell::Text(it.named.clone()),
-            Cell::Text(it.cheapest.clone()),
-            Cell::Number(100.0 * (it.dearer - 1.0), 0),
-        ]
-    });
-    Table {
-        name: "wrong_winners".into(),
-        title: "Where the model of a host names another method than the cheapest".into(),
-        columns: ["occupancy ρ", "NP", "named by the model", "cheapest as measured", "costs more (%)"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    Rows::of(named.iter().filter(|it| it.named != it.cheapest))
+        .number("occupancy ρ", 2, |it| it.occupancy)
+        .count("NP", |it| it.particles)
+        .text("named by the model", |it| &it.named)
+        .text("cheapest as measured", |it| &it.cheapest)
+        .number("costs more (%)", 0, |it| 100.0 * (it.dearer - 1.0))
+        .table("wrong_winners", "Where the model of a host names another method than the cheapest")
 }
 
 /// At how many places each method wins.
@@ -95,8 +75,7 @@ fn wins(sheet: &Sheet) -> String {
 fn figure(sheet: &Sheet) -> Figure {
     let series = sheet.methods.iter().enumerate().map(|(hue, name)| {
         let won = sheet.places.iter().filter(|place| place.winner().is_some_and(|(winner, _)| winner == hue));
-        let points = won.map(|place| Point::at(place.occupancy, place.particles as f64)).collect();
-        Series { name: name.clone(), style: Style::Points, hue, points }
+        Series::new(name, Style::Points, hue, won.map(|place| (place.occupancy, place.particles as f64)))
     });
     let narrow =
         sheet.places.iter().filter(|place| place.winner().is_some_and(|(_, lead)| lead < DRAW)).count();
@@ -105,56 +84,35 @@ fn figure(sheet: &Sheet) -> Figure {
     } else {
         "Not measured. Candidates and contacts a disc as in a run of about a thousand discs of the same density."
     };
-    Figure {
-        name: sheet.name.clone(),
-        title: format!("The cheapest method: {}", sheet.title),
-        caption: format!(
-            "{}: {estimated} At {narrow} of {} places the next method costs less than a tenth more. Hatched: occupancies that \
-             discs on cells as wide as their radius cannot reach.",
-            sheet.title,
-            sheet.places.len()
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis { limits: Some([0.0, 0.35]), ..Axis::linear("occupancy ρ = NP/LMAX", None) },
-            y: Axis { limits: Some([50.0, 100_000.0]), ..Axis::logarithmic("number of particles NP", None) },
-            series: series.filter(|series| !series.points.is_empty()).collect(),
-            bands: vec![Band::of_x("out of reach", [CEILING, 0.35])],
-        }),
-    }
+    Chart::of(
+        Axis::linear("occupancy ρ = NP/LMAX", None).between([0.0, 0.35]),
+        Axis::logarithmic("number of particles NP", None).between([50.0, 100_000.0]),
+    )
+    .with(series.filter(|series| !series.points.is_empty()))
+    .band(Band::of_x("out of reach", [CEILING, 0.35]))
+    .figure(sheet.name.clone(), format!("The cheapest method: {}", sheet.title))
+    .caption(format!(
+        "{}: {estimated} At {narrow} of {} places the next method costs less than a tenth more. Hatched: occupancies that discs on cells as wide \
+         as their radius cannot reach.",
+        sheet.title,
+        sheet.places.len()
+    ))
 }
 
 fn places(data: &Atlas) -> Table {
-    let rows = data.sheets.iter().flat_map(|sheet| {
-        sheet.places.iter().filter_map(move |place| {
-            let (winner, lead) = place.winner()?;
-            Some(vec![
-                Cell::Text(sheet.title.clone()),
-                Cell::Number(place.occupancy, 2),
-                Cell::Count(place.particles as u64),
-                Cell::Text(sheet.methods.get(winner)?.clone()),
-                Cell::Number(lead, 2),
-                Cell::Number(place.costs[winner] / place.particles as f64, 1),
-                Cell::Text(sheet.unit.to_owned()),
-            ])
-        })
-    });
-    Table {
-        name: "atlas".into(),
-        title: "The cheapest method at each place".into(),
-        columns: [
-            "machine",
-            "occupancy ρ",
-            "NP",
-            "cheapest",
-            "the next costs (times)",
-            "a disc and step",
-            "unit",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    let won = data
+        .sheets
+        .iter()
+        .flat_map(|sheet| sheet.places.iter().filter_map(move |place| Some((sheet, place, place.winner()?))));
+    Rows::of(won)
+        .text("machine", |(sheet, ..)| &sheet.title)
+        .number("occupancy ρ", 2, |(_, place, _)| place.occupancy)
+        .count("NP", |(_, place, _)| place.particles)
+        .text("cheapest", |(sheet, _, (winner, _))| &sheet.methods[*winner])
+        .number("the next costs (times)", 2, |(.., (_, lead))| *lead)
+        .number("a disc and step", 1, |(_, place, (winner, _))| place.costs[*winner] / place.particles as f64)
+        .text("unit", |(sheet, ..)| sheet.unit)
+        .table("atlas", "The cheapest method at each place")
 }
 
 #[cfg(test)]
@@ -184,8 +142,8 @@ mod tests {
             section(&Atlas { model, lists: vec![], fast_lists: vec![], sheets: sheets.clone() }, "").answer
         };
         let shipped = answer(Calibrated::Shipped);
-        let begin = "By the shipped model of A CPU the cheapest method is named at 2 of 3 places measured on this host; one that \
-                     always names lists is right at 2. Where the model is wrong";
+        let begin = "By the shipped model of A CPU the cheapest method is named at 2 of 3 places measured on this host; one that always names \
+                     lists is right at 2. Where the model is wrong";
         assert!(shipped.starts_with(begin), "{shipped}");
         assert!(answer(Calibrated::Before).starts_with("By the model of A CPU from a host file the"));
         assert!(

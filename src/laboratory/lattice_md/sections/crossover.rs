@@ -1,8 +1,8 @@
 //! Where the lattice overtakes its rivals.
 
 use crate::laboratory::lattice_md::study::crossover::{Crossover, METHODS, Sample};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::{Cell, Part, Rows, Section, Table};
 
 /// What came out.
 pub fn section(data: &Crossover) -> Section {
@@ -14,27 +14,21 @@ pub fn section(data: &Crossover) -> Section {
         };
         format!("{} with {} discs {at}", crossing.precision, count(crossing.particles))
     });
-    Section {
-        name: "crossover".into(),
-        title: "Lattice, neighbour lists and sectors, each as fast as it goes".into(),
-        part: Part::Host,
-        question: "From which density on is the lattice faster than neighbour lists and sectors, each as fast as it goes?".into(),
-        expected: "BP93 expects the vector method to pay where discs are dense.".into(),
-        answer: format!("Packing fraction from which on the lattice is the fastest: {}.", named.collect::<Vec<_>>().join("; ")),
-        details: vec![format!(
+    Section::new("crossover", "Lattice, neighbour lists and sectors, each as fast as it goes", Part::Host)
+        .asks("From which density on is the lattice faster than neighbour lists and sectors, each as fast as it goes?")
+        .expects("BP93 expects the vector method to pay where discs are dense.")
+        .answers(format!(
+            "Packing fraction from which on the lattice is the fastest: {}.",
+            named.collect::<Vec<_>>().join("; ")
+        ))
+        .details([format!(
             "Whole steps with friction, velocity Verlet, one thread, {}, moving discs.",
             data.instruction_set
-        )],
-        verdict: Verdict::Measured,
-        again: "stripmine reproduce --only crossover".into(),
-        figures: groups(data).into_iter().map(|group| figure(data, group)).collect(),
-        tables: vec![rates(data), phases(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![1],
-        depends_on_host: true,
-        provenance: None,
-    }
+        )])
+        .figures(groups(data).into_iter().map(|group| figure(data, group)))
+        .tables([rates(data), phases(data)])
+        .seeds([1])
+        .depends_on_host()
 }
 
 fn count(particles: usize) -> String {
@@ -56,90 +50,56 @@ fn of<'a>(
 }
 
 fn figure(data: &Crossover, group: (&'static str, usize)) -> Figure {
-    let series = METHODS.into_iter().enumerate().map(|(hue, method)| Series {
-        name: method.into(),
-        style: Style::Joined,
-        hue,
-        points: of(data, group)
-            .filter(|sample| sample.method == method)
-            .map(|sample| {
-                let (best, median) = (1e-6 * sample.rate, 1e-6 * sample.median);
-                Point {
-                    x: sample.packing_fraction,
-                    y: best,
-                    spread: Some([best.min(median), best.max(median)]),
-                }
-            })
-            .collect(),
+    let series = METHODS.into_iter().enumerate().map(|(hue, method)| {
+        let points = of(data, group).filter(|sample| sample.method == method).map(|sample| {
+            let (best, median) = (1e-6 * sample.rate, 1e-6 * sample.median);
+            (sample.packing_fraction, best, [best.min(median), best.max(median)])
+        });
+        Series::new(method, Style::Joined, hue, points)
     });
     let (precision, particles) = group;
-    Figure {
-        name: format!("crossover_{precision}_{particles}"),
-        title: format!("Rate over the packing fraction, {precision}, {} discs", count(particles)),
-        caption: "Points: best repeat in processor time; bars reach to the median in wall time.".into(),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("packing fraction", None),
-            y: Axis::logarithmic("rate", Some("million particle-steps/s")),
-            series: series.collect(),
-            bands: vec![],
-        }),
-    }
+    let title = format!("Rate over the packing fraction, {precision}, {} discs", count(particles));
+    Chart::of(
+        Axis::logarithmic("packing fraction", None),
+        Axis::logarithmic("rate", Some("million particle-steps/s")),
+    )
+    .with(series)
+    .figure(format!("crossover_{precision}_{particles}"), title)
+    .caption("Points: best repeat in processor time; bars reach to the median in wall time.")
 }
 
 fn rates(data: &Crossover) -> Table {
-    let mut rows = vec![];
-    for group in groups(data) {
+    let places = groups(data).into_iter().flat_map(|group| {
         let mut fractions: Vec<f64> = of(data, group).map(|sample| sample.packing_fraction).collect();
         fractions.dedup();
-        for phi in fractions {
-            let at = || of(data, group).filter(move |sample| sample.packing_fraction == phi);
-            let rate = |method: &str| {
-                at().find(|sample| sample.method == method).map_or(f64::NAN, |s| 1e-6 * s.rate)
-            };
-            let contacts = at().map(|sample| sample.contacts).next().unwrap_or(f64::NAN);
-            let mut row =
-                vec![Cell::Text(group.0.into()), Cell::Number(group.1 as f64, 0), Cell::Number(phi, 2)];
-            row.extend(METHODS.map(|method| Cell::Number(rate(method), 1)));
-            row.push(Cell::Number(contacts, 3));
-            rows.push(row);
-        }
+        fractions.into_iter().map(move |phi| (group, phi))
+    });
+    let at = |(group, phi): ((&'static str, usize), f64)| {
+        of(data, group).filter(move |sample| sample.packing_fraction == phi)
+    };
+    let mut rows = Rows::of(places)
+        .text("precision", |((precision, _), _)| *precision)
+        .number("discs", 0, |((_, particles), _)| *particles as f64)
+        .number("packing fraction", 2, |(_, phi)| *phi);
+    for method in METHODS {
+        rows = rows.number(method, 1, |place| {
+            at(*place).find(|sample| sample.method == method).map_or(f64::NAN, |sample| 1e-6 * sample.rate)
+        });
     }
-    Table {
-        name: "rates".into(),
-        title: "Million particle-steps a second of processor time".into(),
-        columns: ["precision", "discs", "packing fraction"]
-            .into_iter()
-            .chain(METHODS)
-            .chain(["contacts a disc"])
-            .map(str::to_owned)
-            .collect(),
-        rows,
-        notes: vec!["The best repeat. All three share state, law and integrator.".into()],
-    }
+    rows.number("contacts a disc", 3, |place| at(*place).next().map_or(f64::NAN, |sample| sample.contacts))
+        .table("rates", "Million particle-steps a second of processor time")
+        .note("The best repeat. All three share state, law and integrator.")
 }
 
 fn phases(data: &Crossover) -> Table {
-    let names: Vec<&str> =
-        data.samples.first().map(|s| s.phases.keys().copied().collect()).unwrap_or_default();
-    let rows = data.samples.iter().map(|sample| {
-        let mut row = vec![
-            Cell::Text(sample.precision.into()),
-            Cell::Number(sample.particles as f64, 0),
-            Cell::Number(sample.packing_fraction, 2),
-            Cell::Text(sample.method.into()),
-        ];
-        row.extend(names.iter().map(|name| Cell::Number(sample.phases.get(name).copied().unwrap_or(0.0), 2)));
-        row
-    });
-    Table {
-        name: "phases".into(),
-        title: "Nanoseconds a particle and step in each phase".into(),
-        columns: ["precision", "discs", "packing fraction", "method"]
-            .into_iter()
-            .chain(names.iter().copied())
-            .map(str::to_owned)
-            .collect(),
-        rows: rows.collect(),
-        notes: vec![],
+    let names = data.samples.first().into_iter().flat_map(|sample| sample.phases.keys());
+    let mut rows = Rows::of(&data.samples)
+        .text("precision", |sample| sample.precision)
+        .number("discs", 0, |sample| sample.particles as f64)
+        .number("packing fraction", 2, |sample| sample.packing_fraction)
+        .text("method", |sample| sample.method);
+    for name in names {
+        rows = rows.number(*name, 2, |sample| sample.phases.get(name).copied().unwrap_or(0.0));
     }
+    rows.table("phases", "Nanoseconds a particle and step in each phase")
 }

@@ -1,8 +1,8 @@
 //! Figures 3 and 4 of the source, by the model.
 
 use crate::laboratory::lattice_md::study::density_cost::{CEILING, Curve, DensityCost};
-use crate::report::figure::{Axis, Band, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Band, Chart, Figure, Series, Style};
+use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 use crate::statistics;
 
 /// What came out.
@@ -26,38 +26,31 @@ pub fn section(data: &DensityCost) -> Section {
     ];
     let differences = differ.zip(power).map_or(String::new(), |(differ, power)| {
         format!(
-            " A particle's share by the lists {} on the density, up to {differ:.2} times at the same NP (by the source not at all), and \
-             the NP from which the lattice wins falls as ρ to the power {power:.1} (by the source −1).",
+            " A particle's share by the lists {} on the density, up to {differ:.2} times at the same NP (by the source not at all), and the NP \
+             from which the lattice wins falls as ρ to the power {power:.1} (by the source −1).",
             if differ < ALIKE { "hardly depends" } else { "depends" }
         )
     });
-    Section {
-        name: "cost".into(),
-        title: "Cost over particles and density (figures 3 and 4)".into(),
-        part: Part::Machine,
-        question: "From how many particles on is a vector step shorter than one by scalar neighbour lists?".into(),
-        expected: "BP93, figures 3 and 4: with D = 20 a vector step is nearly as long for few particles as for many, scalar neighbour lists \
-                   rise with the square of their number; a particle's share falls with the density for the lattice and does not depend on \
-                   it for the lists; the NP from which the lattice wins grows as 1/ρ."
-            .into(),
-        answer: format!("The vector step is the shorter one from NP = {} on.{differences}", crossings.join(", ")),
-        details: vec![format!(
-            "Counted operations in the source's formula: the vector step rises by at most {:.1} % from the emptiest to the fullest lattice, \
-             the lists at last with NP to the power {:.2}. The source prints no formula for its lists: theirs is counted from ours in the \
-             same way, every scalar operation at D periods.",
+    Section::new("cost", "Cost over particles and density (figures 3 and 4)", Part::Machine)
+        .asks("From how many particles on is a vector step shorter than one by scalar neighbour lists?")
+        .expects("BP93, figures 3 and 4: with D = 20 a vector step is nearly as long for few particles as for many, scalar neighbour lists rise \
+                  with the square of their number; a particle's share falls with the density for the lattice and does not depend on it for the \
+                  lists; the NP from which the lattice wins grows as 1/ρ.")
+        .answers(format!(
+            "The vector step is the shorter one from NP = {} on.{differences}",
+            crossings.join(", ")
+        ))
+        .verdict(Verdict::of_claims(&claims))
+        .details([format!(
+            "Counted operations in the source's formula: the vector step rises by at most {:.1} % from the emptiest to the fullest lattice, the \
+             lists at last with NP to the power {:.2}. The source prints no formula for its lists: theirs is counted from ours in the same way, \
+             every scalar operation at D periods.",
             100.0 * (data.vector.iter().filter_map(rise).fold(1.0, f64::max) - 1.0),
             slope(&data.list).unwrap_or(f64::NAN),
-        )],
-        verdict: Verdict::of_claims(&claims),
-        again: "stripmine reproduce --only cost".into(),
-        figures: vec![figure_3(data), figure_4(data), over_density(data)],
-        tables: vec![lists(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![1],
-        depends_on_host: false,
-        provenance: None,
-    }
+        )])
+        .figures([figure_3(data), figure_4(data), over_density(data)])
+        .tables([lists(data)])
+        .seeds([1])
 }
 
 /// Costs that differ by less than this factor are alike.
@@ -120,131 +113,96 @@ fn crossing(vector: &Curve, list: &Curve) -> Option<f64> {
     })
 }
 
-fn points(curve: &Curve, each: bool, printed: bool) -> Vec<Point> {
+fn points(curve: &Curve, each: bool, printed: bool) -> Vec<(f64, f64)> {
     let costs = curve.costs.iter().filter_map(|cost| {
         let clocks = if printed { cost.printed? } else { cost.counted };
-        Some(Point::at(cost.particles as f64, if each { clocks / cost.particles as f64 } else { clocks }))
+        Some((cost.particles as f64, if each { clocks / cost.particles as f64 } else { clocks }))
     });
     costs.collect()
 }
 
 fn figure_3(data: &DensityCost) -> Figure {
-    let mut series = vec![];
-    for (hue, curve) in data.vector.iter().enumerate() {
+    let vector = data.vector.iter().enumerate().map(|(hue, curve)| {
         let cells = rounded(curve.cells.unwrap_or(0) as f64);
-        series.push(Series {
-            name: format!("vector, LMAX = {cells}"),
-            style: Style::Line,
-            hue,
-            points: points(curve, false, false),
-        });
-    }
-    series.push(Series {
-        name: "neighbour lists, scalar".into(),
-        style: Style::Dashed,
-        hue: data.vector.len(),
-        points: points(&data.list, false, false),
+        Series::new(format!("vector, LMAX = {cells}"), Style::Line, hue, points(curve, false, false))
     });
-    Figure {
-        name: "figure_3".into(),
-        title: "Clock periods of a step over the number of particles".into(),
-        caption: format!(
-            "Model: {}, counted operations. A vector curve ends where its lattice is full: ρ = {CEILING:.3}, touching discs \
-             in hexagonal order on cells as wide as the radius.",
-            data.machine
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("number of particles NP", None),
-            y: Axis::logarithmic("time of a step", Some("clock periods")),
-            series,
-            bands: vec![],
-        }),
-    }
+    let lists = points(&data.list, false, false);
+    Chart::of(
+        Axis::logarithmic("number of particles NP", None),
+        Axis::logarithmic("time of a step", Some("clock periods")),
+    )
+    .with(vector)
+    .series("neighbour lists, scalar", Style::Dashed, data.vector.len(), lists)
+    .figure("figure_3", "Clock periods of a step over the number of particles")
+    .caption(format!(
+        "Model: {}, counted operations. A vector curve ends where its lattice is full: ρ = {CEILING:.3}, touching discs in hexagonal order on \
+         cells as wide as the radius.",
+        data.machine
+    ))
 }
 
 fn figure_4(data: &DensityCost) -> Figure {
     let named = |curve: &Curve| format!("ρ = {:.2}", curve.occupancy.unwrap_or(f64::NAN));
-    let vector = data.densities.iter().enumerate().map(|(hue, curve)| Series {
-        name: if curve.reachable { named(curve) } else { format!("{}, out of reach", named(curve)) },
-        style: if curve.reachable { Style::Line } else { Style::Points },
-        hue,
-        points: points(curve, true, false),
+    let vector = data.densities.iter().enumerate().map(|(hue, curve)| {
+        let (reach, style) =
+            if curve.reachable { ("", Style::Line) } else { (", out of reach", Style::Points) };
+        Series::new(format!("{}{reach}", named(curve)), style, hue, points(curve, true, false))
     });
     // The lists of the thinnest and of the densest are the farthest apart.
     let last = data.list_densities.len().saturating_sub(1);
     let ends = data.list_densities.iter().enumerate().filter(|(i, _)| *i == 0 || *i == last);
-    let lists = ends.map(|(hue, curve)| Series {
-        name: format!("lists, {}", named(curve)),
-        style: Style::Dashed,
-        hue,
-        points: points(curve, true, false),
+    let lists = ends.map(|(hue, curve)| {
+        Series::new(format!("lists, {}", named(curve)), Style::Dashed, hue, points(curve, true, false))
     });
-    Figure {
-        name: "figure_4".into(),
-        title: "Clock periods of a particle and step over the number of particles".into(),
-        caption: format!(
-            "Model: {}, counted operations. Lines: vector algorithm; dashed: scalar neighbour lists; points: occupancies that \
-             discs on cells as wide as their radius cannot reach (above {CEILING:.3}).",
-            data.machine
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("number of particles NP", None),
-            y: Axis::logarithmic("time of a particle and step", Some("clock periods")),
-            series: vector.chain(lists).collect(),
-            bands: vec![],
-        }),
-    }
+    Chart::of(
+        Axis::logarithmic("number of particles NP", None),
+        Axis::logarithmic("time of a particle and step", Some("clock periods")),
+    )
+    .with(vector)
+    .with(lists)
+    .figure("figure_4", "Clock periods of a particle and step over the number of particles")
+    .caption(format!(
+        "Model: {}, counted operations. Lines: vector algorithm; dashed: scalar neighbour lists; points: occupancies that discs on cells as wide \
+         as their radius cannot reach (above {CEILING:.3}).",
+        data.machine
+    ))
 }
 
 fn over_density(data: &DensityCost) -> Figure {
-    let last = |curve: &Curve, printed: bool| {
-        let point = *points(curve, true, printed).last()?;
-        Some(Point::at(curve.occupancy?, point.y))
+    // Of the most particles that a density has.
+    let last = |curve: &Curve, printed| Some((curve.occupancy?, points(curve, true, printed).last()?.1));
+    let over = |curves, printed| {
+        let curves: &[Curve] = curves;
+        curves.iter().filter_map(move |curve| last(curve, printed))
     };
-    let curve = |curves: &[Curve], printed| curves.iter().filter_map(|curve| last(curve, printed)).collect();
     let largest = data.densities.iter().flat_map(|curve| &curve.costs).map(|cost| cost.particles).max();
-    let series = |name: &str, style, hue, points| Series { name: name.into(), style, hue, points };
-    Figure {
-        name: "figure_4_density".into(),
-        title: "Clock periods of a particle and step over the density".into(),
-        caption: format!(
-            "NP = {}. Hatched: occupancies that discs on cells as wide as their radius cannot reach.",
-            rounded(largest.unwrap_or(0) as f64)
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis { limits: Some([0.0, 0.55]), ..Axis::linear("occupancy ρ = NP/LMAX", None) },
-            y: Axis::logarithmic("time of a particle and step", Some("clock periods")),
-            series: vec![
-                series("vector, counted", Style::Joined, 0, curve(&data.densities, false)),
-                series("vector, as printed", Style::Dashed, 1, curve(&data.densities, true)),
-                series("lists, scalar", Style::Joined, 2, curve(&data.list_densities, false)),
-            ],
-            bands: vec![Band::of_x("out of reach", [CEILING, 0.55])],
-        }),
-    }
+    Chart::of(
+        Axis::linear("occupancy ρ = NP/LMAX", None).between([0.0, 0.55]),
+        Axis::logarithmic("time of a particle and step", Some("clock periods")),
+    )
+    .series("vector, counted", Style::Joined, 0, over(&data.densities, false))
+    .series("vector, as printed", Style::Dashed, 1, over(&data.densities, true))
+    .series("lists, scalar", Style::Joined, 2, over(&data.list_densities, false))
+    .band(Band::of_x("out of reach", [CEILING, 0.55]))
+    .figure("figure_4_density", "Clock periods of a particle and step over the density")
+    .caption(format!(
+        "NP = {}. Hatched: occupancies that discs on cells as wide as their radius cannot reach.",
+        rounded(largest.unwrap_or(0) as f64)
+    ))
 }
 
 fn lists(data: &DensityCost) -> Table {
-    let rows = data.lists.iter().map(|figures| {
-        [figures.occupancy, figures.candidates, figures.contacts, figures.steps_a_list]
-            .iter()
-            .zip([2, 2, 3, 1])
-            .map(|(&value, decimals)| Cell::Number(value, decimals))
-            .collect()
-    });
-    Table {
-        name: "lists".into(),
-        title: "What the lists hold".into(),
-        columns: ["occupancy ρ", "candidates a disc", "contacts a disc", "steps a list serves"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
-        notes: vec![format!(
-            "Measured in the bench scene with 1024 discs over 1000 steps; each pair is in both lists. Making the lists tests \
-             NP(NP − 1)/2 pairs with the law's own {} operations for distance and contact.",
+    Rows::of(&data.lists)
+        .number("occupancy ρ", 2, |figures| figures.occupancy)
+        .number("candidates a disc", 2, |figures| figures.candidates)
+        .number("contacts a disc", 3, |figures| figures.contacts)
+        .number("steps a list serves", 1, |figures| figures.steps_a_list)
+        .table("lists", "What the lists hold")
+        .note(format!(
+            "Measured in the bench scene with 1024 discs over 1000 steps; each pair is in both lists. Making the lists tests NP(NP − 1)/2 pairs \
+             with the law's own {} operations for distance and contact.",
             data.test_operations
-        )],
-    }
+        ))
 }
 
 #[cfg(test)]

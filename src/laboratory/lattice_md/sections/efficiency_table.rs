@@ -5,34 +5,21 @@ use crate::laboratory::lattice_md::study::efficiency_table::{
     EfficiencyTable, SOURCES_PARTS, SectionRow, TextCount,
 };
 use crate::report;
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Rows, Section, Table, Verdict};
 use stripmine_kernels::printed::EQUATIONS;
 use stripmine_physics::method::lattice_md::Part;
 use stripmine_physics::number::significant;
 
 /// What came out.
 pub fn section(data: &EfficiencyTable) -> Section {
-    Section {
-        name: "table".into(),
-        title: "The efficiency table".into(),
-        part: report::Part::Machine,
-        question: "How many vector operations and clock periods does a step take?".into(),
-        expected: "BP93, section 3, counts 59, 12, 1656 = 24·69 and 54 operations for predictor, index, forces and corrector, each at \
-                   NOP·(n + D) clock periods with D = 20. It prints no program and no rule of counting."
-            .into(),
-        answer: answer(data),
-        details: details(data),
-        // The same four numbers by one rule: no less would be the source's table.
-        verdict: Verdict::reproduced(data.conventions.all_exact > 0),
-        again: "stripmine reproduce --only table".into(),
-        figures: vec![],
-        tables: tables(data),
-        excerpt: None,
-        film: None,
-        seeds: vec![],
-        depends_on_host: false,
-        provenance: None,
-    }
+    Section::new("table", "The efficiency table", report::Part::Machine)
+        .asks("How many vector operations and clock periods does a step take?")
+        .expects("BP93, section 3, counts 59, 12, 1656 = 24·69 and 54 operations for predictor, index, forces and corrector, each at NOP·(n + D) \
+                  clock periods with D = 20. It prints no program and no rule of counting.")
+        .answers(answer(data))
+        .verdict(Verdict::reproduced(data.conventions.all_exact > 0))
+        .details(details(data))
+        .tables(tables(data))
 }
 
 /// The tables of the dataset: the source's own beside both texts, and the ways of counting.
@@ -79,8 +66,8 @@ fn answer(data: &EfficiencyTable) -> String {
         many => format!("{many} give all four"),
     };
     format!(
-        "The source's own program, written as it is printed and counted with every load and store, has {} operations where 59, 12, \
-         1656 and 54 are printed. Of {} ways of counting it {all}, and none more than {}{nearest}.",
+        "The source's own program, written as it is printed and counted with every load and store, has {} operations where 59, 12, 1656 and 54 \
+         are printed. Of {} ways of counting it {all}, and none more than {}{nearest}.",
         counted.join(", "),
         data.conventions.tried,
         data.conventions.most_exact
@@ -95,25 +82,25 @@ fn details(data: &EfficiencyTable) -> Vec<String> {
     vec![
         format!(
             "One by one, ways of counting that give the printed number: {} for the predictor's 59, {} for the index's 12, {} for the 69 of a \
-             place of the mask, {} for the corrector's 54. 1656 is 24·69, so the source counts nothing outside the loop over the places. A place as printed has {place} \
-             operations with its shifted copies; with its three sums stored it has 69.",
+             place of the mask, {} for the corrector's 54. 1656 is 24·69, so the source counts nothing outside the loop over the places. A place \
+             as printed has {place} operations with its shifted copies; with its three sums stored it has 69.",
             ways(exact[0]),
             ways(exact[1]),
             ways(exact[2]),
             ways(exact[3])
         ),
         format!(
-            "Periodic sides: with a halo, which is what runs here, an image is shifted once a cell and side ({} operations beside the \
-             source's parts copy Index and Test into the halo). Shifts that wrap would need no halo and the nearest image at every place: \
-             {} operations a place and side, {} a step for one periodic side.",
+            "Periodic sides: with a halo, which is what runs here, an image is shifted once a cell and side ({} operations beside the source's \
+             parts copy Index and Test into the halo). Shifts that wrap would need no halo and the nearest image at every place: {} operations a \
+             place and side, {} a step for one periodic side.",
             data.printed.of(Part::Halo),
             data.conventions.nearest_image,
             24 * data.conventions.nearest_image
         ),
         format!(
-            "Clock periods of a step by NOP·(n + D) on {}, at NP = {} and LMAX = {}: {:.0} as printed, {:.0} by the printed text ({:.0} \
-             without the parts that the source does not count), {:.0} by ours. Our text counts its halo, its checks and scaled \
-             derivatives; that its sum is near the printed one is two differences that cancel.",
+            "Clock periods of a step by NOP·(n + D) on {}, at NP = {} and LMAX = {}: {:.0} as printed, {:.0} by the printed text ({:.0} without \
+             the parts that the source does not count), {:.0} by ours. Our text counts its halo, its checks and scaled derivatives; that its sum \
+             is near the printed one is two differences that cancel.",
             data.machine,
             data.particles,
             data.cells,
@@ -125,55 +112,44 @@ fn details(data: &EfficiencyTable) -> Vec<String> {
     ]
 }
 
-fn headings(words: &[&str]) -> Vec<String> {
-    words.iter().map(|&word| word.to_owned()).collect()
-}
-
 fn parts(data: &EfficiencyTable) -> Table {
     let clocks = |text: &TextCount, part: Part| -> f64 {
         text.parts.iter().filter(|row| row.part == part.name()).map(|row| row.clocks).sum()
     };
-    let counted = |count: u64| if count == 0 { Cell::Nothing } else { Cell::Count(count) };
-    let periods = |clocks: f64| if clocks == 0.0 { Cell::Nothing } else { Cell::Number(clocks, 0) };
-    let mut rows: Vec<Vec<Cell>> = vec![];
-    for &part in Part::ALL {
+    // The source's numbers, where it has any, and what is counted in the printed text and in ours.
+    let parts = Part::ALL.iter().map(|&part| {
         let source = data.source.iter().find(|row| row.part == part.name());
-        let [printed, ours] = [&data.printed, &data.ours].map(|text| (text.of(part), clocks(text, part)));
-        if source.is_none() && printed.0 + ours.0 == 0 {
-            continue;
-        }
-        rows.push(vec![
-            part.name().into(),
-            source.map_or(Cell::Nothing, |row| Cell::Count(row.nop)),
-            counted(printed.0),
-            counted(ours.0),
-            source.map_or(Cell::Nothing, |row| Cell::Number(row.clocks, 0)),
-            periods(printed.1),
-            periods(ours.1),
-        ]);
-    }
-    let sum = |text: &TextCount| Cell::Count(text.parts.iter().map(|row| row.counted).sum());
-    rows.push(vec![
-        "step".into(),
-        Cell::Count(data.source.iter().map(|row| row.nop).sum()),
-        sum(&data.printed),
-        sum(&data.ours),
-        Cell::Number(data.source_clocks, 0),
-        Cell::Number(data.printed.clocks, 0),
-        Cell::Number(data.ours.clocks, 0),
-    ]);
+        let texts = [&data.printed, &data.ours].map(|text| (text.of(part), clocks(text, part)));
+        let texts = texts.map(|(nop, clocks)| ((nop > 0).then_some(nop), (clocks != 0.0).then_some(clocks)));
+        (part.name(), source.map(|row| row.nop), source.map(|row| row.clocks), texts)
+    });
+    let parts =
+        parts.filter(|(_, source, _, texts)| source.is_some() || texts.iter().any(|(nop, _)| nop.is_some()));
+    let sums = [&data.printed, &data.ours]
+        .map(|text| (Some(text.parts.iter().map(|row| row.counted).sum()), Some(text.clocks)));
+    let sum = ("step", Some(data.source.iter().map(|row| row.nop).sum()), Some(data.source_clocks), sums);
     let each = |clocks: f64| clocks / data.particles as f64;
-    let mut notes = vec![
-        format!(
-            "NP = {} discs, LMAX = {} cells, occupancy {:.4}; a count of 1 is one vector instruction over n elements, loads, stores, \
-             gathers and shifted copies among them. The source counts the lattice vectors nowhere, and nothing returns discs into a \
-             periodic box or repeats the halo: these rows are beside its equations.",
+    let assumed = (!data.assumed.is_empty())
+        .then(|| format!("Assumed numbers of this machine: {}.", data.assumed.join(", ")));
+    Rows::of(parts.chain([sum]))
+        .text("part", |(part, ..)| *part)
+        .cell("printed in 1993", |(_, nop, ..)| *nop)
+        .cell("printed text, counted", |(.., [(nop, _), _])| *nop)
+        .cell("ours, counted", |(.., [_, (nop, _)])| *nop)
+        .number("clocks printed", 0, |(_, _, clocks, _)| *clocks)
+        .number("clocks, printed text", 0, |(.., [(_, clocks), _])| *clocks)
+        .number("clocks, ours", 0, |(.., [_, (_, clocks)])| *clocks)
+        .table("efficiency_table", "Operations and clock periods of one step (BP93, section 3)")
+        .note(format!(
+            "NP = {} discs, LMAX = {} cells, occupancy {:.4}; a count of 1 is one vector instruction over n elements, loads, stores, gathers and \
+             shifted copies among them. The source counts the lattice vectors nowhere, and nothing returns discs into a periodic box or repeats \
+             the halo: these rows are beside its equations.",
             data.particles, data.cells, data.occupancy
-        ),
-        format!(
-            "Clock periods by NOP·(n + D) on: {}. A disc and step: printed {:.0}, the printed text {:.0}, ours {:.0}; the operations of \
-             the printed text on a scalar machine (n·D) {:.0}: the vector machine is {:.1} times faster. At {} ns a clock period a step \
-             takes {:.4} s by the printed count, {:.4} s by the printed text, {:.4} s by ours.",
+        ))
+        .note(format!(
+            "Clock periods by NOP·(n + D) on: {}. A disc and step: printed {:.0}, the printed text {:.0}, ours {:.0}; the operations of the \
+             printed text on a scalar machine (n·D) {:.0}: the vector machine is {:.1} times faster. At {} ns a clock period a step takes {:.4} \
+             s by the printed count, {:.4} s by the printed text, {:.4} s by ours.",
             data.machine,
             each(data.source_clocks),
             each(data.printed.clocks),
@@ -184,26 +160,8 @@ fn parts(data: &EfficiencyTable) -> Table {
             data.source_clocks * data.clock_period_ns * 1e-9,
             data.printed.clocks * data.clock_period_ns * 1e-9,
             data.ours.clocks * data.clock_period_ns * 1e-9
-        ),
-    ];
-    if !data.assumed.is_empty() {
-        notes.push(format!("Assumed numbers of this machine: {}.", data.assumed.join(", ")));
-    }
-    Table {
-        name: "efficiency_table".into(),
-        title: "Operations and clock periods of one step (BP93, section 3)".to_owned(),
-        columns: headings(&[
-            "part",
-            "printed in 1993",
-            "printed text, counted",
-            "ours, counted",
-            "clocks printed",
-            "clocks, printed text",
-            "clocks, ours",
-        ]),
-        rows,
-        notes,
-    }
+        ))
+        .notes(assumed)
 }
 
 /// What of a way of counting is off, in words.
@@ -220,167 +178,85 @@ fn residual(counted: &Counted) -> String {
 }
 
 fn conventions(data: &EfficiencyTable) -> Table {
-    let yes = |is: bool| Cell::from(if is { "yes" } else { "no" });
-    let row = |counted: &Counted| {
-        let way = counted.convention;
-        let mut cells = vec![
-            Cell::Count(way.gear_values as u64),
-            yes(way.scaled),
-            yes(way.angle),
-            yes(way.folded),
-            yes(way.loads),
-            yes(way.stores),
-            yes(way.gathers),
-            yes(way.shifts),
-            yes(way.gravity),
-        ];
-        cells.extend(counted.counts.map(Cell::Count));
-        cells.push(Cell::Number(100.0 * counted.worst, 1));
-        cells.push(residual(counted).as_str().into());
-        cells
-    };
-    let mut rows: Vec<Vec<Cell>> = data.conventions.nearest.iter().map(row).collect();
-    rows.push(row(&data.conventions.everything));
+    let yes = |is: bool| if is { "yes" } else { "no" };
     let printed = PRINTED.map(|count| count.to_string());
-    Table {
-        name: "conventions".into(),
-        title: "Ways of counting the printed text, and what each makes of the four parts".to_owned(),
-        columns: headings(&[
-            "Gear values",
-            "scaled",
-            "with angle",
-            "constants folded",
-            "loads",
-            "stores",
-            "gathers, scatters",
-            "shifts",
-            "gravity",
-            "predictor",
-            "index",
-            "a place",
-            "corrector",
-            "largest difference (%)",
-            "what the source's number lacks or has beyond it",
-        ]),
-        rows,
-        notes: vec![format!(
-            "Printed: {}. {} ways, every combination of the first nine columns, counted on recorded programs; shown are the nearest to \
-             all four, then those that give the most of them exactly, last the printed text with all that it executes. Changes between \
-             numbers and index vectors are counted by none: a word of a CRAY is both. Stores of a place are those of its three sums.",
+    Rows::of(data.conventions.nearest.iter().chain([&data.conventions.everything]))
+        .count("Gear values", |it| it.convention.gear_values)
+        .text("scaled", |it| yes(it.convention.scaled))
+        .text("with angle", |it| yes(it.convention.angle))
+        .text("constants folded", |it| yes(it.convention.folded))
+        .text("loads", |it| yes(it.convention.loads))
+        .text("stores", |it| yes(it.convention.stores))
+        .text("gathers, scatters", |it| yes(it.convention.gathers))
+        .text("shifts", |it| yes(it.convention.shifts))
+        .text("gravity", |it| yes(it.convention.gravity))
+        .cells(["predictor", "index", "a place", "corrector"], |it| it.counts)
+        .number("largest difference (%)", 1, |it| 100.0 * it.worst)
+        .text("what the source's number lacks or has beyond it", |it| residual(it))
+        .table("conventions", "Ways of counting the printed text, and what each makes of the four parts")
+        .note(format!(
+            "Printed: {}. {} ways, every combination of the first nine columns, counted on recorded programs; shown are the nearest to all four, \
+             then those that give the most of them exactly, last the printed text with all that it executes. Changes between numbers and index \
+             vectors are counted by none: a word of a CRAY is both. Stores of a place are those of its three sums.",
             printed.join(", "),
             data.conventions.tried
-        )],
-    }
+        ))
 }
 
 fn sections_of(name: &str, title: &str, sections: &[SectionRow]) -> Table {
     let equation = |section: &str| {
         EQUATIONS.iter().find(|(known, _)| *known == section).map_or("", |(_, meaning)| *meaning)
     };
-    let mut rows: Vec<Vec<Cell>> = sections
-        .iter()
-        .map(|row| {
-            vec![
-                row.section.into(),
-                equation(row.section).into(),
-                row.in_a_place.into(),
-                row.shifts_in_a_place.into(),
-                row.once.into(),
-                Cell::Number(100.0 * row.share, 1),
-            ]
-        })
-        .collect();
-    let sum = |value: fn(&SectionRow) -> u64| Cell::Count(sections.iter().map(value).sum());
-    rows.push(vec![
-        "forces".into(),
-        "".into(),
-        sum(|row| row.in_a_place),
-        sum(|row| row.shifts_in_a_place),
-        sum(|row| row.once),
-        Cell::Number(100.0, 1),
-    ]);
-    Table {
-        name: name.into(),
-        title: title.to_owned(),
-        columns: headings(&[
-            "section",
-            "what it is",
-            "operations of a place",
-            "of these shifted copies",
-            "operations once a cell",
-            "share of the forces (%)",
-        ]),
-        rows,
-        notes: vec![],
-    }
+    let sum = |value: fn(&SectionRow) -> u64| sections.iter().map(value).sum();
+    let forces = SectionRow {
+        section: "forces",
+        in_a_place: sum(|row| row.in_a_place),
+        shifts_in_a_place: sum(|row| row.shifts_in_a_place),
+        once: sum(|row| row.once),
+        share: 1.0,
+    };
+    Rows::of(sections.iter().chain([&forces]))
+        .text("section", |row| row.section)
+        .text("what it is", |row| equation(row.section))
+        .count("operations of a place", |row| row.in_a_place)
+        .count("of these shifted copies", |row| row.shifts_in_a_place)
+        .count("operations once a cell", |row| row.once)
+        .number("share of the forces (%)", 1, |row| 100.0 * row.share)
+        .table(name, title)
 }
 
 fn lengths(data: &EfficiencyTable) -> Table {
-    let rows = [("printed", &data.printed), ("ours", &data.ours)].into_iter().flat_map(|(name, text)| {
-        text.parts.iter().map(move |row| {
-            vec![
-                name.into(),
-                row.part.into(),
-                row.counted.into(),
-                row.computing.into(),
-                row.moving.into(),
-                row.length.into(),
-                row.n.into(),
-                Cell::Number(row.clocks, 0),
-            ]
-        })
-    });
-    Table {
-        name: "vector_lengths".into(),
-        title: "Operations by the length of their vectors".to_owned(),
-        columns: headings(&["text", "part", "NOP", "computing", "moving data", "n is", "n", "clocks"]),
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    let texts = [("printed", &data.printed), ("ours", &data.ours)].into_iter();
+    Rows::of(texts.flat_map(|(name, text)| text.parts.iter().map(move |row| (name, row))))
+        .text("text", |(name, _)| *name)
+        .text("part", |(_, row)| row.part)
+        .count("NOP", |(_, row)| row.counted)
+        .count("computing", |(_, row)| row.computing)
+        .count("moving data", |(_, row)| row.moving)
+        .text("n is", |(_, row)| row.length)
+        .count("n", |(_, row)| row.n)
+        .number("clocks", 0, |(_, row)| row.clocks)
+        .table("vector_lengths", "Operations by the length of their vectors")
 }
 
 fn classes(data: &EfficiencyTable) -> Table {
     let shown = |at: &usize| data.classes.iter().any(|row| row.parts[*at] != [0, 0]);
-    let parts: Vec<usize> = (0..Part::ALL.len()).filter(shown).collect();
-    let mut columns = vec!["class".to_owned()];
-    for name in parts.iter().map(|&at| Part::ALL[at].name()).chain(["step"]) {
-        columns.extend(["printed", "ours"].map(|text| format!("{name}, {text}")));
+    let both = |name: &str| ["printed", "ours"].map(|text| format!("{name}, {text}"));
+    let mut rows = Rows::of(&data.classes).text("class", |row| row.class);
+    for at in (0..Part::ALL.len()).filter(shown) {
+        rows = rows.cells(both(Part::ALL[at].name()), |row| row.parts[at]);
     }
-    let rows = data.classes.iter().map(|row| {
-        let mut cells = vec![row.class.into()];
-        cells.extend(parts.iter().flat_map(|&at| row.parts[at]).chain(row.total).map(Cell::Count));
-        cells
-    });
-    Table {
-        name: "operation_classes".into(),
-        title: "Counted operations by class".to_owned(),
-        columns,
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    rows.cells(both("step"), |row| row.total).table("operation_classes", "Counted operations by class")
 }
 
 fn savings(data: &EfficiencyTable) -> Table {
-    let mut columns = vec!["scene".to_owned()];
     let shown = |at: &usize| data.savings.iter().any(|row| row.parts[*at] != 0);
-    let parts: Vec<usize> = (0..Part::ALL.len()).filter(shown).collect();
-    columns.extend(parts.iter().map(|&at| format!("NOP {}", Part::ALL[at].name())));
-    columns.extend(["clocks a step".to_owned(), "relative".to_owned()]);
-    let rows = data.savings.iter().map(|row| {
-        let mut cells = vec![row.variant.into()];
-        cells.extend(parts.iter().map(|&at| Cell::Count(row.parts[at])));
-        cells.extend([Cell::Number(row.clocks, 0), Cell::Number(row.relative, 3)]);
-        cells
-    });
-    Table {
-        name: "savings".into(),
-        title: "What a simpler scene saves".to_owned(),
-        columns,
-        rows: rows.collect(),
-        notes: vec![
-            "No friction, no rotation: no spin, no torque, no angle. Equal discs: radius and mass are numbers, not \
-             vectors."
-                .to_owned(),
-        ],
+    let mut rows = Rows::of(&data.savings).text("scene", |row| row.variant);
+    for at in (0..Part::ALL.len()).filter(shown) {
+        rows = rows.count(format!("NOP {}", Part::ALL[at].name()), |row| row.parts[at]);
     }
+    rows.number("clocks a step", 0, |row| row.clocks)
+        .number("relative", 3, |row| row.relative)
+        .table("savings", "What a simpler scene saves")
+        .note("No friction, no rotation: no spin, no torque, no angle. Equal discs: radius and mass are numbers, not vectors.")
 }

@@ -2,7 +2,7 @@
 
 use crate::laboratory::lattice_md::study::host_ladder::HostLadder;
 use crate::laboratory::lattice_md::study::ladder::Ladder;
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::{Part, Rows, Section, Table};
 use stripmine_physics::method::lattice_md::Phase;
 use stripmine_physics::number::significant;
 
@@ -32,24 +32,13 @@ pub fn section(ladders: &[Ladder]) -> Section {
             others.collect::<Vec<_>>().join(", ")
         )
     });
-    Section {
-        name: "ladder".into(),
-        title: "What each refinement of the clock adds".into(),
-        part: Part::Machine,
-        question: "How many clock periods does a step take by finer clocks than the source's?".into(),
-        expected: "BP93 charges n + D for every operation and no chaining.".into(),
-        answer: chained.unwrap_or_default(),
-        details: vec![format!("With memory ports as well: {}.", said.collect::<Vec<_>>().join("; "))],
-        verdict: Verdict::Measured,
-        again: "stripmine table --ladder --machine cray-y-mp-el".into(),
-        figures: vec![],
-        tables: ladders.iter().enumerate().map(|(at, data)| numbered(at, rungs(data))).collect(),
-        excerpt: None,
-        film: None,
-        seeds: vec![],
-        depends_on_host: false,
-        provenance: None,
-    }
+    Section::new("ladder", "What each refinement of the clock adds", Part::Machine)
+        .asks("How many clock periods does a step take by finer clocks than the source's?")
+        .expects("BP93 charges n + D for every operation and no chaining.")
+        .answers(chained.unwrap_or_default())
+        .details([format!("With memory ports as well: {}.", said.collect::<Vec<_>>().join("; "))])
+        .tables(ladders.iter().enumerate().map(|(at, data)| numbered(at, rungs(data))))
+        .again("stripmine table --ladder --machine cray-y-mp-el")
 }
 
 fn numbered(at: usize, table: Table) -> Table {
@@ -62,88 +51,51 @@ pub fn tables(data: &Ladder) -> Vec<Table> {
 }
 
 fn rungs(data: &Ladder) -> Table {
-    let mut columns = vec!["clock".to_owned()];
-    columns.extend(data.parts.iter().map(|&part| part.to_owned()));
-    columns.extend([
-        "step".to_owned(),
-        "of the rung before".to_owned(),
-        "a disc".to_owned(),
-        "ms".to_owned(),
-    ]);
-    let rows = data.rungs.iter().map(|rung| {
-        let mut cells = vec![rung.clock.into()];
-        cells.extend(rung.parts.iter().map(|&clocks| Cell::Number(clocks, 0)));
-        cells.extend([
-            Cell::Number(rung.clocks, 0),
-            rung.relative.map_or(Cell::Nothing, |relative| Cell::Number(relative, 3)),
-            Cell::Number(rung.clocks / data.particles as f64, 0),
-            Cell::Number(1e3 * rung.seconds, 3),
-        ]);
-        cells
-    });
-    let mut notes: Vec<String> =
-        data.rungs.iter().map(|rung| format!("{}: {}", rung.clock, rung.meaning)).collect();
-    notes.push(format!(
-        "NP = {} discs on LMAX = {} cells; {} ns a clock period. Of the last rung {:.1} % depend on assumed start-ups.",
-        data.particles,
-        data.cells,
-        significant(data.clock_period_ns, 4),
-        100.0 * data.assumed_share
-    ));
-    if !data.assumed.is_empty() {
-        notes.push(format!("Assumed numbers of this machine: {}.", data.assumed.join(", ")));
+    let mut rows = Rows::of(&data.rungs).text("clock", |rung| rung.clock);
+    for (place, part) in data.parts.iter().enumerate() {
+        rows = rows.number(*part, 0, |rung| rung.parts[place]);
     }
-    Table {
-        name: "ladder".into(),
-        title: format!("Clock periods of one step by every clock: {}", data.machine),
-        columns,
-        rows: rows.collect(),
-        notes,
-    }
+    let assumed = (!data.assumed.is_empty())
+        .then(|| format!("Assumed numbers of this machine: {}.", data.assumed.join(", ")));
+    rows.number("step", 0, |rung| rung.clocks)
+        .number("of the rung before", 3, |rung| rung.relative)
+        .number("a disc", 0, |rung| rung.clocks / data.particles as f64)
+        .number("ms", 3, |rung| 1e3 * rung.seconds)
+        .table("ladder", format!("Clock periods of one step by every clock: {}", data.machine))
+        .notes(data.rungs.iter().map(|rung| format!("{}: {}", rung.clock, rung.meaning)))
+        .note(format!(
+            "NP = {} discs on LMAX = {} cells; {} ns a clock period. Of the last rung {:.1} % depend on assumed start-ups.",
+            data.particles,
+            data.cells,
+            significant(data.clock_period_ns, 4),
+            100.0 * data.assumed_share
+        ))
+        .notes(assumed)
 }
 
 fn convoys(data: &Ladder) -> Table {
-    let rows = data.convoys.iter().map(|row| {
-        let count = |number: usize| Cell::Count(number as u64);
-        vec![row.part.into(), count(row.instructions), count(row.chained), count(row.with_ports)]
-    });
-    Table {
-        name: "convoys".into(),
-        title: "Convoys: instructions that run at once".into(),
-        columns: ["part", "instructions", "convoys, memory never busy", "convoys with memory ports"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
-        notes: vec![
-            "Instructions include the steps of operations that the machine has to put together. Nothing is said where the \
-             machine's file names no functional units: then every instruction runs alone."
-                .to_owned(),
-        ],
-    }
+    Rows::of(&data.convoys)
+        .text("part", |row| row.part)
+        .count("instructions", |row| row.instructions)
+        .count("convoys, memory never busy", |row| row.chained)
+        .count("convoys with memory ports", |row| row.with_ports)
+        .table("convoys", "Convoys: instructions that run at once")
+        .note("Instructions include the steps of operations that the machine has to put together. Nothing is said where the machine's file names \
+               no functional units: then every instruction runs alone.")
 }
 
 /// The table of a host.
 pub fn of_host(data: &HostLadder) -> Table {
-    let mut columns = vec!["model".to_owned()];
-    columns.extend(Phase::ALL.iter().map(|phase| format!("{} (µs)", phase.name())));
-    columns.extend(["step (µs)".to_owned(), "a disc (ns)".to_owned()]);
-    let rows = data.rungs.iter().map(|rung| {
-        let mut cells = vec![rung.name.into()];
-        cells.extend(rung.phases.iter().map(|ns| Cell::Number(1e-3 * ns, 2)));
-        cells.extend([Cell::Number(1e-3 * rung.ns, 2), Cell::Number(rung.ns / data.particles as f64, 1)]);
-        cells
-    });
-    let mut notes: Vec<String> =
-        data.rungs.iter().map(|rung| format!("{}: {}", rung.name, rung.meaning)).collect();
-    notes.push(format!(
-        "NP = {} discs on LMAX = {} cells, double precision, one thread.",
-        data.particles, data.cells
-    ));
-    Table {
-        name: "host_ladder".into(),
-        title: format!("One step by {}", data.model),
-        columns,
-        rows: rows.collect(),
-        notes,
+    let mut rows = Rows::of(&data.rungs).text("model", |rung| rung.name);
+    for (place, phase) in Phase::ALL.iter().enumerate() {
+        rows = rows.number(format!("{} (µs)", phase.name()), 2, |rung| 1e-3 * rung.phases[place]);
     }
+    rows.number("step (µs)", 2, |rung| 1e-3 * rung.ns)
+        .number("a disc (ns)", 1, |rung| rung.ns / data.particles as f64)
+        .table("host_ladder", format!("One step by {}", data.model))
+        .notes(data.rungs.iter().map(|rung| format!("{}: {}", rung.name, rung.meaning)))
+        .note(format!(
+            "NP = {} discs on LMAX = {} cells, double precision, one thread.",
+            data.particles, data.cells
+        ))
 }

@@ -1,6 +1,6 @@
 //! The vector instructions of a step, as text.
 
-use crate::report::{Part, Section, Verdict};
+use crate::report::{Part, Section};
 
 /// One program of a part, as text.
 #[derive(Clone, Debug)]
@@ -30,27 +30,14 @@ pub fn section(parts: &[PartListing]) -> Section {
         let lines = place.get(1).map_or(String::new(), |lines| format!("{FIRST_PLACE}{lines}"));
         ("The printed text, place 1 of the mask, each line below its equation:".to_owned(), lines)
     });
-    Section {
-        name: "listing".into(),
-        title: "The vector instructions".into(),
-        part: Part::Machine,
-        question: "Which vector instructions does a step consist of?".into(),
-        expected: "BP93 gives the algorithm in vector notation and prints no code.".into(),
-        answer: format!(
-            "Vector instructions of the source's own text, written as printed: {}; of ours: {}. A section of the printed text is named by \
-             its equation; box and halo are beside them.",
+    Section::new("listing", "The vector instructions", Part::Machine)
+        .asks("Which vector instructions does a step consist of?")
+        .expects("BP93 gives the algorithm in vector notation and prints no code.")
+        .answers(format!(
+            "Vector instructions of the source's own text, written as printed: {}; of ours: {}. A section of the printed text is named by its \
+             equation; box and halo are beside them.",
             of(true),
             of(false)
-        ),
-        details: vec![],
-        verdict: Verdict::Measured,
-        again: "stripmine reproduce --only listing".into(),
-        figures: vec![],
-        tables: vec![],
-        excerpt,
-        film: None,
-        seeds: vec![],
-        depends_on_host: false,
-        provenance: None,
-    }
+        ))
+        .excerpt(excerpt)
 }

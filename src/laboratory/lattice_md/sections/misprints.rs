@@ -1,29 +1,20 @@
 //! The misprints of the contact law as a reader wants them.
 
 use crate::laboratory::lattice_md::study::misprints::{CoulombRatio, Energy, Finding, Misprints, Right};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Style};
+use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &Misprints) -> Section {
-    Section {
-        name: "misprints".into(),
-        title: "What the misprints of the contact law do".into(),
-        part: Part::Physics,
-        question: "Which equations of the contact law cannot be right as printed?".into(),
-        expected: expected(data),
-        answer: answer(data),
-        details: vec![details(data)],
-        verdict: verdict(data),
-        again: "stripmine reproduce --only misprints".into(),
-        figures: vec![energies(data), ratios(data)],
-        tables: vec![table(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![data.seed],
-        depends_on_host: false,
-        provenance: None,
-    }
+    Section::new("misprints", "What the misprints of the contact law do", Part::Physics)
+        .asks("Which equations of the contact law cannot be right as printed?")
+        .expects(expected(data))
+        .answers(answer(data))
+        .verdict(verdict(data))
+        .details([details(data)])
+        .figures([energies(data), ratios(data)])
+        .tables([table(data)])
+        .seeds([data.seed])
 }
 
 /// Reproduced where every misprint is seen to fail and ours holds.
@@ -93,92 +84,50 @@ fn right(right: Right) -> String {
 }
 
 fn table(data: &Misprints) -> Table {
-    let rows = data.findings.iter().map(|finding| {
-        vec![
-            finding.equation.into(),
-            finding.printed.into(),
-            finding.ours.into(),
-            finding.quantity.into(),
-            finding.setting.as_str().into(),
-            Cell::Text(right(finding.right)),
-            number(finding.by_printed),
-            number(finding.by_ours),
-        ]
-    });
-    Table {
-        name: "misprints".into(),
-        title: "Equations that do not work as printed".into(),
-        columns: ["equation", "as printed", "as it runs", "what shows it", "with", "right", "printed gives", "ours gives"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
-        notes: vec![
-            "Where a vector is printed beside a scalar, its component along n (14) or s (16) is taken: else there is \
-             nothing to compute. n points from disc j to disc i, s = (−n_y, n_x), ξ is the depth of the contact, Ω an \
-             angular velocity."
-                .into(),
-            "Units: radius and mass of the discs, those of random pairs being about so; and a time in which the law's \
-             parameters have the values given."
-                .into(),
-        ],
-    }
-}
-
-fn chart(x: Axis, y: Axis, series: Vec<Series>) -> Picture {
-    Picture::Chart(Chart { x, y, series, bands: vec![] })
-}
-
-fn series(name: &str, style: Style, hue: usize, points: impl Iterator<Item = Point>) -> Series {
-    Series { name: name.into(), style, hue, points: points.collect() }
+    Rows::of(&data.findings)
+        .text("equation", |finding| finding.equation)
+        .text("as printed", |finding| finding.printed)
+        .text("as it runs", |finding| finding.ours)
+        .text("what shows it", |finding| finding.quantity)
+        .text("with", |finding| &finding.setting)
+        .text("right", |finding| right(finding.right))
+        .cell("printed gives", |finding| number(finding.by_printed))
+        .cell("ours gives", |finding| number(finding.by_ours))
+        .table("misprints", "Equations that do not work as printed")
+        .note("Where a vector is printed beside a scalar, its component along n (14) or s (16) is taken: else there is nothing to compute. n \
+               points from disc j to disc i, s = (−n_y, n_x), ξ is the depth of the contact, Ω an angular velocity.")
+        .note("Units: radius and mass of the discs, those of random pairs being about so; and a time in which the law's parameters have the \
+               values given.")
 }
 
 fn energies(data: &Misprints) -> Figure {
-    let curve = |name, style, hue, energy: fn(&Energy) -> f64| {
-        series(name, style, hue, data.head_on.iter().map(|at| Point::at(at.time, energy(at))))
-    };
-    Figure {
-        name: "head_on_energy".into(),
-        title: "Energy through a frictionless head-on collision".into(),
-        caption: "Kinetic and elastic energy of two discs of radius and mass 1. With the sign of (14) as printed the \
-                  damping feeds energy in."
-            .into(),
-        picture: chart(
-            Axis::linear("time", Some("reduced")),
-            Axis::linear("energy", Some("reduced")),
-            vec![
-                curve("(14) as printed", Style::Dashed, 1, |at| at.printed),
-                curve("ours, undamped", Style::Line, 2, |at| at.undamped),
-                curve("ours", Style::Line, 0, |at| at.ours),
-            ],
-        ),
-    }
+    let curve = |energy: fn(&Energy) -> f64| data.head_on.iter().map(move |at| (at.time, energy(at)));
+    Chart::of(Axis::linear("time", Some("reduced")), Axis::linear("energy", Some("reduced")))
+        .series("(14) as printed", Style::Dashed, 1, curve(|at| at.printed))
+        .series("ours, undamped", Style::Line, 2, curve(|at| at.undamped))
+        .series("ours", Style::Line, 0, curve(|at| at.ours))
+        .figure("head_on_energy", "Energy through a frictionless head-on collision")
+        .caption("Kinetic and elastic energy of two discs of radius and mass 1. With the sign of (14) as printed the damping feeds energy in.")
 }
 
 fn ratios(data: &Misprints) -> Figure {
-    let curve = |name, style, hue, ratio: fn(&CoulombRatio) -> f64| {
-        series(name, style, hue, data.sliding.iter().map(|at| Point::at(at.slip, ratio(at))))
-    };
-    Figure {
-        name: "coulomb_ratio".into(),
-        title: "Shear force over its Coulomb bound, by slip velocity".into(),
-        caption: "Two discs in contact, one sliding past the other. (15) as printed has a bound for one \
-                  direction only; for the other the two curves are one."
-            .into(),
-        picture: chart(
-            Axis::linear("slip velocity", Some("reduced")),
-            Axis::linear("shear force over its bound μ|F|", None),
-            vec![
-                curve("ours", Style::Line, 0, |at| at.ours),
-                curve("(15) as printed", Style::Dashed, 1, |at| at.printed),
-            ],
-        ),
-    }
+    let curve = |ratio: fn(&CoulombRatio) -> f64| data.sliding.iter().map(move |at| (at.slip, ratio(at)));
+    Chart::of(
+        Axis::linear("slip velocity", Some("reduced")),
+        Axis::linear("shear force over its bound μ|F|", None),
+    )
+    .series("ours", Style::Line, 0, curve(|at| at.ours))
+    .series("(15) as printed", Style::Dashed, 1, curve(|at| at.printed))
+    .figure("coulomb_ratio", "Shear force over its Coulomb bound, by slip velocity")
+    .caption("Two discs in contact, one sliding past the other. (15) as printed has a bound for one direction only; for the other the two curves \
+              are one.")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::laboratory::lattice_md::study::misprints::misprints;
+    use crate::report::figure::Picture;
 
     #[test]
     fn the_verdict_follows_from_the_values() {

@@ -2,11 +2,9 @@
 
 use crate::laboratory::lattice_md::study::pipe_flow::{FANO_BIN, MAP_BIN, PipeFlow};
 use crate::report;
-use crate::report::figure::{
-    Axis, Chart, Drawing, Figure, Guide, Map, Picture, Point, Series, Shape, Style, Tint,
-};
+use crate::report::figure::{Axis, Chart, Drawing, Figure, Guide, Map, Picture, Series, Shape, Style, Tint};
 use crate::report::section::{Film, Frame};
-use crate::report::{Cell, Section, Table, Verdict};
+use crate::report::{Rows, Section, Table, Verdict};
 use stripmine_physics::number::{counted, range};
 use stripmine_physics::observe::waves::Directions;
 use stripmine_physics::particles::{Kind, Particle, Particles};
@@ -40,10 +38,7 @@ pub fn section(showing: Showing, flows: &[PipeFlow]) -> Section {
     let mean = |share: fn(&Directions) -> f64| {
         100.0 * flows.iter().map(|flow| share(&flow.directions)).sum::<f64>() / flows.len() as f64
     };
-    let mut figures = vec![map(first), over_time(flows)];
-    if !first.frames.is_empty() {
-        figures.splice(0..0, [piece(first), snapshots(showing, first)]);
-    }
+    let seen = (!first.frames.is_empty()).then(|| [piece(first), snapshots(showing, first)]);
     let [back, forth, standing] = [
         mean(|directions| directions.back),
         mean(|directions| directions.forth),
@@ -60,32 +55,24 @@ pub fn section(showing: Showing, flows: &[PipeFlow]) -> Section {
         "{}: {back:.0} % of the late spectral power runs against gravity, {forth:.0} % with it.",
         if ways { "Waves run both ways" } else { "Hardly a wave runs both ways" },
     );
-    Section {
-        name: showing.name.into(),
-        title: showing.title.into(),
-        part: report::Part::Physics,
-        question: showing.question.into(),
-        expected: "BP93, section 4, figures 5 and 6: grains fall through a rough vertical pipe; started evenly spread they form density \
-                   waves that move both ways."
-            .into(),
-        answer: if showing.asks_ways { format!("{both} {fano}") } else { format!("{fano} {both}") },
-        details: vec![format!(
-            "Of the late spectral power {standing:.0} % stands. The strongest Fourier mode grows from {:.3} to {:.2}; the mean velocity is \
-             {:.3} m/s.",
+    Section::new(showing.name, showing.title, report::Part::Physics)
+        .asks(showing.question)
+        .expects("BP93, section 4, figures 5 and 6: grains fall through a rough vertical pipe; started evenly spread they form density waves \
+                  that move both ways.")
+        .answers(if showing.asks_ways { format!("{both} {fano}") } else { format!("{fano} {both}") })
+        .verdict(Verdict::of_claims(&[waves == flows.len(), ways]))
+        .details([format!(
+            "Of the late spectral power {standing:.0} % stands. The strongest Fourier mode grows from {:.3} to {:.2}; the mean velocity is {:.3} \
+             m/s.",
             first.strongest_mode[0],
             first.late(&first.strongest_mode),
             first.late(&first.flow),
-        )],
-        verdict: Verdict::of_claims(&[waves == flows.len(), ways]),
-        again: format!("stripmine reproduce --only {}", showing.name),
-        figures,
-        tables: vec![table(flows)],
-        excerpt: None,
-        film: film(showing, first),
-        seeds: flows.iter().map(|flow| flow.seed).collect(),
-        depends_on_host: false,
-        provenance: None,
-    }
+        )])
+        .figures(seen.into_iter().flatten())
+        .figures([map(first), over_time(flows)])
+        .tables([table(flows)])
+        .film(film(showing, first))
+        .seeds(flows.iter().map(|flow| flow.seed))
 }
 
 /// Surface speeds (m/s) between the shades' ends: spin times radius.
@@ -128,20 +115,15 @@ fn piece(flow: &PipeFlow) -> Figure {
         };
         (shapes.filter(inside).collect(), half_height(particles))
     });
-    Figure {
-        name: "figure_5".into(),
-        title: format!("A stretch of {length:.1} m of the pipe at the end"),
-        caption: "Grey discs make the walls; the shade of a grain is the speed of its rim, counter-clockwise positive. \
-                  Gravity pulls to the right."
-            .into(),
-        picture: Picture::Drawing(Drawing {
-            window: [[0.0, -1.1 * half], [length, 1.1 * half]],
-            width: 1200.0,
-            shapes,
-            shades: Some((-SPIN, SPIN, "rim speed ΩR (m/s)".into())),
-            guide: guide(),
-        }),
-    }
+    Picture::Drawing(Drawing {
+        window: [[0.0, -1.1 * half], [length, 1.1 * half]],
+        width: 1200.0,
+        shapes,
+        shades: Some((-SPIN, SPIN, "rim speed ΩR (m/s)".into())),
+        guide: guide(),
+    })
+    .figure("figure_5", format!("A stretch of {length:.1} m of the pipe at the end"))
+    .caption("Grey discs make the walls; the shade of a grain is the speed of its rim, counter-clockwise positive. Gravity pulls to the right.")
 }
 
 /// Figure 6: the whole pipe again and again, one snapshot below the other.
@@ -162,20 +144,16 @@ fn snapshots(showing: Showing, flow: &PipeFlow) -> Figure {
         shapes.extend(grains.map(|disc| shape(disc, [0.0, down], Tint::Hue(0))));
     }
     let below = -(shown.len() as f64 - 0.4) * pitch;
-    Figure {
-        name: "figure_6".into(),
-        title: "Snapshots of the pipe: crowds of grains drift and dissolve".into(),
-        caption: "One below the other, the earliest on top; gravity pulls to the right, what leaves on the right comes in on \
-                  the left. Every grain is a dot."
-            .into(),
-        picture: Picture::Drawing(Drawing {
-            window: [[-left, below], [1.01 * flow.length, 0.6 * pitch]],
-            width: 1200.0,
-            shapes,
-            shades: None,
-            guide: guide(),
-        }),
-    }
+    Picture::Drawing(Drawing {
+        window: [[-left, below], [1.01 * flow.length, 0.6 * pitch]],
+        width: 1200.0,
+        shapes,
+        shades: None,
+        guide: guide(),
+    })
+    .figure("figure_6", "Snapshots of the pipe: crowds of grains drift and dissolve")
+    .caption("One below the other, the earliest on top; gravity pulls to the right, what leaves on the right comes in on the left. Every grain \
+              is a dot.")
 }
 
 /// Metres, and gravity along the pipe, which lies.
@@ -207,103 +185,52 @@ fn map(flow: &PipeFlow) -> Figure {
         })
         .collect();
     let look = flow.times.get(1).copied().unwrap_or(1.0);
-    let axis = |label: &str, unit: Option<&str>, end: f64| Axis {
-        limits: Some([0.0, end]),
-        ..Axis::linear(label, unit)
-    };
-    Figure {
-        name: "density_map".into(),
-        title: "Density along the pipe over time".into(),
-        caption: format!(
-            "Grains in bins of {MAP_BIN:.0} mean radii, relative to their mean. Bands that lean to the left run against \
-             gravity."
-        ),
-        picture: Picture::Map(Map {
-            x: axis("place along the pipe, the way grains fall", Some("m"), flow.length),
-            y: axis("time", Some("s"), look * (rows.len() * stride) as f64),
-            value: Axis::linear("density, relative to the mean", None),
-            rows,
-        }),
-    }
+    Picture::Map(Map {
+        x: Axis::linear("place along the pipe, the way grains fall", Some("m")).between([0.0, flow.length]),
+        y: Axis::linear("time", Some("s")).between([0.0, look * (rows.len() * stride) as f64]),
+        value: Axis::linear("density, relative to the mean", None),
+        rows,
+    })
+    .figure("density_map", "Density along the pipe over time")
+    .caption(format!("Grains in bins of {MAP_BIN:.0} mean radii, relative to their mean. Bands that lean to the left run against gravity."))
 }
 
 /// The Fano factor of every run over time.
 fn over_time(flows: &[PipeFlow]) -> Figure {
-    let series = flows.iter().enumerate().map(|(hue, flow)| {
-        let stride = flow.times.len().div_ceil(2 * ROWS);
-        let looks = flow.times.iter().zip(&flow.fano).step_by(stride);
-        Series {
-            name: format!("seed {}", flow.seed),
-            style: Style::Line,
-            hue,
-            points: looks.map(|(&time, &fano)| Point::at(time, fano)).collect(),
-        }
+    let runs = flows.iter().enumerate().map(|(hue, flow)| {
+        let looks = flow.times.iter().zip(&flow.fano).step_by(flow.times.len().div_ceil(2 * ROWS));
+        Series::new(format!("seed {}", flow.seed), Style::Line, hue, looks.map(|(&time, &fano)| (time, fano)))
     });
     let end = flows.iter().filter_map(|flow| flow.times.last()).copied().fold(0.0, f64::max);
-    let limit = Series {
-        name: "waves above this".into(),
-        style: Style::Dashed,
-        hue: flows.len(),
-        points: vec![Point::at(0.0, 1.0), Point::at(end, 1.0)],
-    };
-    Figure {
-        name: "fano".into(),
-        title: "Variance over mean of the grains in a bin, over time".into(),
-        caption: format!("Bins of {FANO_BIN:.0} mean radii."),
-        picture: Picture::Chart(Chart {
-            x: Axis::linear("time", Some("s")),
-            y: Axis::logarithmic("Fano factor", None),
-            series: series.chain([limit]).collect(),
-            bands: vec![],
-        }),
-    }
+    Chart::of(Axis::linear("time", Some("s")), Axis::logarithmic("Fano factor", None))
+        .with(runs)
+        .series("waves above this", Style::Dashed, flows.len(), [(0.0, 1.0), (end, 1.0)])
+        .figure("fano", "Variance over mean of the grains in a bin, over time")
+        .caption(format!("Bins of {FANO_BIN:.0} mean radii."))
 }
 
 fn table(flows: &[PipeFlow]) -> Table {
-    let rows = flows.iter().map(|flow| {
-        vec![
-            Cell::Count(flow.seed),
-            Cell::Number(flow.fano[0], 2),
-            Cell::Number(flow.late(&flow.fano), 2),
-            Cell::Number(flow.strongest_mode[0], 3),
-            Cell::Number(flow.late(&flow.strongest_mode), 3),
-            Cell::Number(flow.late(&flow.flow), 3),
-            Cell::Number(100.0 * flow.directions.back, 0),
-            Cell::Number(100.0 * flow.directions.standing, 0),
-            Cell::Number(100.0 * flow.directions.forth, 0),
-            if flow.deepest > 0.0 { Cell::Number(flow.deepest, 3) } else { Cell::Nothing },
-            flow.checksum.as_str().into(),
-        ]
-    });
-    Table {
-        name: "runs".into(),
-        title: format!(
-            "Runs of {}{}",
-            flows[0].scene,
-            flows[0].overrides.iter().map(|text| format!(", {text}")).collect::<String>()
-        ),
-        columns: [
-            "seed",
-            "Fano at the start",
-            "Fano late",
-            "mode at the start",
-            "mode late",
-            "mean velocity late (m/s)",
-            "power against gravity (%)",
-            "standing (%)",
-            "with gravity (%)",
-            "deepest penetration, where beyond the warned",
-            "final state (CRC-32)",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-        notes: vec![format!(
-            "{} grains; late is the mean over the second half of the run, whose spectral power at wavelengths from 80 mean \
-             radii on is divided by the way it runs.",
+    let overrides = flows[0].overrides.iter().map(|text| format!(", {text}")).collect::<String>();
+    Rows::of(flows)
+        .count("seed", |flow| flow.seed)
+        .number("Fano at the start", 2, |flow| flow.fano[0])
+        .number("Fano late", 2, |flow| flow.late(&flow.fano))
+        .number("mode at the start", 3, |flow| flow.strongest_mode[0])
+        .number("mode late", 3, |flow| flow.late(&flow.strongest_mode))
+        .number("mean velocity late (m/s)", 3, |flow| flow.late(&flow.flow))
+        .number("power against gravity (%)", 0, |flow| 100.0 * flow.directions.back)
+        .number("standing (%)", 0, |flow| 100.0 * flow.directions.standing)
+        .number("with gravity (%)", 0, |flow| 100.0 * flow.directions.forth)
+        .number("deepest penetration, where beyond the warned", 3, |flow| {
+            (flow.deepest > 0.0).then_some(flow.deepest)
+        })
+        .text("final state (CRC-32)", |flow| &flow.checksum)
+        .table("runs", format!("Runs of {}{overrides}", flows[0].scene))
+        .note(format!(
+            "{} grains; late is the mean over the second half of the run, whose spectral power at wavelengths from 80 mean radii on is divided \
+             by the way it runs.",
             flows[0].grains
-        )],
-    }
+        ))
 }
 
 /// A tenth of a millimetre, or of a millimetre a second: more digits are not visible.

@@ -4,39 +4,27 @@ use crate::laboratory::lattice_md::study::precision::energy::{self, EnergyCase, 
 use crate::laboratory::lattice_md::study::precision::forces::ForceError;
 use crate::laboratory::lattice_md::study::precision::trajectories::{self, Divergence};
 use crate::laboratory::lattice_md::study::precision::{EQUILIBRATION, PACKING_FRACTIONS, Precisions, SEEDS};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::{Cell, Part, Rows, Section, Table};
 use crate::statistics::Spread;
 use stripmine_physics::number::{in_tens, range};
 
 /// What came out.
 pub fn section(data: &Precisions) -> Section {
-    Section {
-        name: "precision".into(),
-        title: "What single precision costs".into(),
-        part: Part::Physics,
-        question: "What do fewer digits than 64 bits cost in forces, energy and trajectories?".into(),
-        expected: "The source used 64 bits only; single precision rounds to 6e-8 of a number.".into(),
-        answer: answer(data),
-        details: vec![details(data)],
-        verdict: Verdict::Measured,
-        again: "stripmine reproduce --only precision".into(),
-        figures: vec![force_figure(&data.forces)]
-            .into_iter()
-            .chain(steps().map(|dt| energy_figure(&data.energies, dt)))
-            .chain([trajectory_figure(&data.trajectories)])
-            .collect(),
-        tables: vec![
+    Section::new("precision", "What single precision costs", Part::Physics)
+        .asks("What do fewer digits than 64 bits cost in forces, energy and trajectories?")
+        .expects("The source used 64 bits only; single precision rounds to 6e-8 of a number.")
+        .answers(answer(data))
+        .details([details(data)])
+        .figures([force_figure(&data.forces)])
+        .figures(steps().map(|dt| energy_figure(&data.energies, dt)))
+        .figures([trajectory_figure(&data.trajectories)])
+        .tables([
             force_table(&data.forces),
             energy_table(&data.energies),
             trajectory_table(&data.trajectories),
-        ],
-        excerpt: None,
-        film: None,
-        seeds: SEEDS.to_vec(),
-        depends_on_host: false,
-        provenance: None,
-    }
+        ])
+        .seeds(SEEDS)
 }
 
 /// The root of the mean square error of a way's forces in the smallest and the largest of the dense boxes.
@@ -69,10 +57,9 @@ fn details(data: &Precisions) -> String {
         dense().map(|rival| format!("{:.3} ({})", rival.rate.mean, named(rival))).collect();
     let absolute = range(over_boxes(data, "mixed, programs, absolute"), 2);
     format!(
-        "Errors are roots of mean squares at packing fraction {}, of the fast engine; programs in mixed precision whose positions count \
-         from the corner of the box have {absolute}. Over {} undamped steps of {} with dt = {} the energy strays by \
-         {}. Trajectories part from those in f64 at the rates {} in a unit of time, which is the chaos of the gas itself: digits only \
-         set where it starts.",
+        "Errors are roots of mean squares at packing fraction {}, of the fast engine; programs in mixed precision whose positions count from the \
+         corner of the box have {absolute}. Over {} undamped steps of {} with dt = {} the energy strays by {}. Trajectories part from those in \
+         f64 at the rates {} in a unit of time, which is the chaos of the gas itself: digits only set where it starts.",
         PACKING_FRACTIONS[0],
         Cell::Count(energy::STEPS).for_reading(),
         stepping.name,
@@ -88,41 +75,29 @@ fn named(rival: &Divergence) -> String {
 }
 
 /// Points that a logarithmic axis can show.
-fn above_zero(x: &[f64], y: &[f64]) -> Vec<Point> {
-    x.iter().zip(y).filter(|(_, y)| **y > 0.0).map(|(&x, &y)| Point::at(x, y)).collect()
+fn above_zero(x: &[f64], y: &[f64]) -> impl Iterator<Item = (f64, f64)> {
+    x.iter().copied().zip(y.iter().copied()).filter(|(_, y)| *y > 0.0)
 }
 
 fn force_figure(errors: &[ForceError]) -> Figure {
-    let dense: Vec<&ForceError> = errors
+    let dense = errors
         .iter()
-        .filter(|e| e.packing_fraction == PACKING_FRACTIONS[0] && e.variant.precision != "f64")
-        .collect();
-    let mut series: Vec<Series> = Vec::new();
-    for error in dense {
-        let known = series.iter().position(|series| series.name == error.variant.name);
-        let at = known.unwrap_or(series.len());
-        if known.is_none() {
-            let name = error.variant.name.into();
-            series.push(Series { name, style: Style::Joined, hue: at, points: vec![] });
-        }
-        series[at].points.push(Point::at(error.side, error.rms));
-    }
-    Figure {
-        name: "force_error".into(),
-        title: "Error of the forces over the size of the box".into(),
-        caption: format!(
-            "Packing fraction {}. Root of the mean square error over that of the forces; held against the fast engine in \
-             f64. The fast engine keeps positions from the cell's centre, as programs do in f32. In mixed precision \
-             programs keep them in f64 from the box's corner and take the difference with the cell in f64; absolute ones are from the corner in f32. Ways that are equally good lie upon each other: the last of the legend is in front.",
-            PACKING_FRACTIONS[0]
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("side of the box", Some("diameters")),
-            y: Axis::logarithmic("relative error of a force", None),
-            series,
-            bands: vec![],
-        }),
-    }
+        .filter(|error| error.packing_fraction == PACKING_FRACTIONS[0] && error.variant.precision != "f64");
+    let series =
+        Series::by_name(Style::Joined, dense.map(|error| (error.variant.name, (error.side, error.rms))));
+    Chart::of(
+        Axis::logarithmic("side of the box", Some("diameters")),
+        Axis::logarithmic("relative error of a force", None),
+    )
+    .with(series)
+    .figure("force_error", "Error of the forces over the size of the box")
+    .caption(format!(
+        "Packing fraction {}. Root of the mean square error over that of the forces; held against the fast engine in f64. The fast engine keeps \
+         positions from the cell's centre, as programs do in f32. In mixed precision programs keep them in f64 from the box's corner and take \
+         the difference with the cell in f64; absolute ones are from the corner in f32. Ways that are equally good lie upon each other: the last \
+         of the legend is in front.",
+        PACKING_FRACTIONS[0]
+    ))
 }
 
 /// The time steps that were tried, each once.
@@ -133,29 +108,30 @@ fn steps() -> impl Iterator<Item = f64> {
 }
 
 fn energy_figure(cases: &[EnergyCase], dt: f64) -> Figure {
-    let series = cases.iter().filter(|case| case.stepping.dt == dt).map(|case| Series {
-        name: format!("{}, {}", case.stepping.name, case.precision),
-        style: if case.stepping.gear_values.is_some() { Style::Dashed } else { Style::Line },
-        hue: energy::PRECISIONS.iter().position(|&precision| precision == case.precision).unwrap_or(0),
-        points: above_zero(&case.times, &case.deviation),
+    let series = cases.iter().filter(|case| case.stepping.dt == dt).map(|case| {
+        Series::new(
+            format!("{}, {}", case.stepping.name, case.precision),
+            if case.stepping.gear_values.is_some() { Style::Dashed } else { Style::Line },
+            energy::PRECISIONS.iter().position(|&precision| precision == case.precision).unwrap_or(0),
+            above_zero(&case.times, &case.deviation),
+        )
     });
-    Figure {
-        name: format!("energy_dt_{}", dt.to_string().replace('.', "_")),
-        title: format!("How far the energy strays, dt = {dt}"),
-        caption: format!(
-            "Packing fraction {}, about {} discs without damping and friction, fast engine. Root of the mean square, over \
-             {} seeds and the looks of a window, of the energy's relative deviation from its first value.",
-            energy::PACKING_FRACTION,
-            energy::PARTICLES,
-            SEEDS.len()
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("time", Some("reduced")),
-            y: Axis::logarithmic("relative deviation of the energy", None),
-            series: series.collect(),
-            bands: vec![],
-        }),
-    }
+    Chart::of(
+        Axis::logarithmic("time", Some("reduced")),
+        Axis::logarithmic("relative deviation of the energy", None),
+    )
+    .with(series)
+    .figure(
+        format!("energy_dt_{}", dt.to_string().replace('.', "_")),
+        format!("How far the energy strays, dt = {dt}"),
+    )
+    .caption(format!(
+        "Packing fraction {}, about {} discs without damping and friction, fast engine. Root of the mean square, over {} seeds and the looks of \
+         a window, of the energy's relative deviation from its first value.",
+        energy::PACKING_FRACTION,
+        energy::PARTICLES,
+        SEEDS.len()
+    ))
 }
 
 fn trajectory_figure(rivals: &[Divergence]) -> Figure {
@@ -163,135 +139,92 @@ fn trajectory_figure(rivals: &[Divergence]) -> Figure {
         let variant = (rival.precision, rival.engine);
         trajectories::RIVALS.iter().position(|&other| other == variant).unwrap_or(0)
     };
-    let series = rivals.iter().map(|rival| Series {
-        name: format!("{}, packing fraction {}", named(rival), rival.packing_fraction),
-        style: if rival.packing_fraction == PACKING_FRACTIONS[0] { Style::Line } else { Style::Dashed },
-        hue: hue(rival),
-        points: above_zero(&rival.times, &rival.distance),
+    let series = rivals.iter().map(|rival| {
+        Series::new(
+            format!("{}, packing fraction {}", named(rival), rival.packing_fraction),
+            if rival.packing_fraction == PACKING_FRACTIONS[0] { Style::Line } else { Style::Dashed },
+            hue(rival),
+            above_zero(&rival.times, &rival.distance),
+        )
     });
-    Figure {
-        name: "trajectories".into(),
-        title: "How far trajectories run apart".into(),
-        caption: format!(
-            "Distance between a disc and its twin in the fast engine in f64: root of the mean square over about {} discs \
-             and {} seeds. Velocity Verlet, dt = {}. A straight line is exponential growth.",
+    Chart::of(Axis::linear("time", Some("reduced")), Axis::logarithmic("distance", Some("diameters")))
+        .with(series)
+        .figure("trajectories", "How far trajectories run apart")
+        .caption(format!(
+            "Distance between a disc and its twin in the fast engine in f64: root of the mean square over about {} discs and {} seeds. Velocity \
+             Verlet, dt = {}. A straight line is exponential growth.",
             trajectories::PARTICLES,
             SEEDS.len(),
             trajectories::DT
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::linear("time", Some("reduced")),
-            y: Axis::logarithmic("distance", Some("diameters")),
-            series: series.collect(),
-            bands: vec![],
-        }),
-    }
+        ))
 }
 
 /// A number whose size says more than its digits.
-fn scientific(value: f64) -> Cell {
-    Cell::Text(format!("{value:.1e}"))
+fn scientific(value: f64) -> String {
+    format!("{value:.1e}")
 }
 
-fn with_error(spread: &Spread) -> Cell {
+fn with_error(spread: &Spread) -> String {
     let error = spread.error.map_or(String::new(), |error| format!(" ± {error:.1e}"));
-    Cell::Text(format!("{:.1e}{error}", spread.mean))
+    format!("{:.1e}{error}", spread.mean)
 }
 
 fn force_table(errors: &[ForceError]) -> Table {
-    let rows = errors.iter().map(|error| {
-        vec![
-            Cell::Number(error.packing_fraction, 2),
-            Cell::Count(error.particles as u64),
-            Cell::Number(error.side, 0),
-            Cell::Number(error.contacts, 3),
-            error.variant.name.into(),
-            scientific(error.rms),
-            scientific(error.largest),
-        ]
-    });
-    Table {
-        name: "forces".into(),
-        title: "Errors of the forces on one configuration".into(),
-        columns: [
-            "packing fraction",
-            "discs",
-            "side (diameters)",
-            "contacts a disc",
-            "variant",
-            "rms error",
-            "largest error",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-        notes: vec![format!(
-            "The bench scene after {EQUILIBRATION} steps; errors of a disc's force, over the root of the mean square of all \
-             forces, against the fast engine in f64."
-        )],
-    }
+    Rows::of(errors)
+        .number("packing fraction", 2, |error| error.packing_fraction)
+        .count("discs", |error| error.particles)
+        .number("side (diameters)", 0, |error| error.side)
+        .number("contacts a disc", 3, |error| error.contacts)
+        .text("variant", |error| error.variant.name)
+        .text("rms error", |error| scientific(error.rms))
+        .text("largest error", |error| scientific(error.largest))
+        .table("forces", "Errors of the forces on one configuration")
+        .note(format!("The bench scene after {EQUILIBRATION} steps; errors of a disc's force, over the root of the mean square of all forces, \
+                       against the fast engine in f64."))
 }
 
 fn energy_table(cases: &[EnergyCase]) -> Table {
-    let rows = cases.iter().map(|case| {
-        vec![
-            case.stepping.name.into(),
-            Cell::Number(case.stepping.dt, 4),
-            case.precision.into(),
-            with_error(&case.largest),
-            with_error(&case.last),
-            with_error(&case.drift),
-        ]
-    });
     let steps = Cell::Count(energy::STEPS).for_reading();
-    Table {
-        name: "energy".into(),
-        title: format!("The energy over {steps} undamped steps"),
-        columns: ["integrator", "dt", "precision", "largest deviation", "deviation at the end", "drift"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
-        notes: vec![format!(
-            "Relative to the energy at the first look, after {} steps; looks are {} steps apart. Drift: the change over {steps} \
-             steps by the straight line of least squares. Means over {} seeds with their standard errors.",
+    Rows::of(cases)
+        .text("integrator", |case| case.stepping.name)
+        .number("dt", 4, |case| case.stepping.dt)
+        .text("precision", |case| case.precision)
+        .text("largest deviation", |case| with_error(&case.largest))
+        .text("deviation at the end", |case| with_error(&case.last))
+        .text("drift", |case| with_error(&case.drift))
+        .table("energy", format!("The energy over {steps} undamped steps"))
+        .note(format!(
+            "Relative to the energy at the first look, after {} steps; looks are {} steps apart. Drift: the change over {steps} steps by the \
+             straight line of least squares. Means over {} seeds with their standard errors.",
             energy::SETTLING,
             energy::LOOK,
             SEEDS.len()
-        )],
-    }
+        ))
 }
 
 fn trajectory_table(rivals: &[Divergence]) -> Table {
-    let rows = rivals.iter().map(|rival| {
-        let lost = rival.distance.iter().position(|&distance| distance >= trajectories::LOST);
-        let error = rival.rate.error.map_or(String::new(), |error| format!(" ± {error:.3}"));
-        vec![
-            Cell::Number(rival.packing_fraction, 2),
-            Cell::Text(named(rival)),
-            rival.distance.first().map_or(Cell::Nothing, |&distance| scientific(distance)),
-            Cell::Text(format!("{:.3}{error}", rival.rate.mean)),
-            lost.map_or(Cell::Nothing, |look| Cell::Number(rival.times[look], 1)),
-        ]
-    });
-    Table {
-        name: "trajectories".into(),
-        title: "How fast trajectories part from those of the fast engine in f64".into(),
-        columns: [
-            "packing fraction".to_owned(),
-            "variant".to_owned(),
-            format!("distance after {} steps (diameters)", trajectories::LOOK),
-            "rate of growth (1/time)".to_owned(),
-            format!("time until {} diameters", trajectories::LOST),
-        ]
-        .to_vec(),
-        rows: rows.collect(),
-        notes: vec![format!(
-            "Rate: least squares through the logarithm of the distance, from {} times its first value to {} diameters; mean \
-             over {} seeds with its standard error. Programs and the fast engine differ in f64 in the order of their sums only: the \
-             growth is the gas's own.",
+    let lost = |rival: &Divergence| {
+        let look = rival.distance.iter().position(|&distance| distance >= trajectories::LOST)?;
+        Some(rival.times[look])
+    };
+    let rate = |rate: &Spread| {
+        let error = rate.error.map_or(String::new(), |error| format!(" ± {error:.3}"));
+        format!("{:.3}{error}", rate.mean)
+    };
+    Rows::of(rivals)
+        .number("packing fraction", 2, |rival| rival.packing_fraction)
+        .text("variant", |rival| named(rival))
+        .cell(format!("distance after {} steps (diameters)", trajectories::LOOK), |rival| {
+            rival.distance.first().map(|&distance| scientific(distance))
+        })
+        .text("rate of growth (1/time)", |rival| rate(&rival.rate))
+        .number(format!("time until {} diameters", trajectories::LOST), 1, |rival| lost(rival))
+        .table("trajectories", "How fast trajectories part from those of the fast engine in f64")
+        .note(format!(
+            "Rate: least squares through the logarithm of the distance, from {} times its first value to {} diameters; mean over {} seeds with \
+             its standard error. Programs and the fast engine differ in f64 in the order of their sums only: the growth is the gas's own.",
             trajectories::PARTED,
             trajectories::LOST,
             SEEDS.len()
-        )],
-    }
+        ))
 }

@@ -1,8 +1,8 @@
 //! What more threads give.
 
 use crate::laboratory::lattice_md::study::threads::{Scaling, Threads};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::{Cell, Part, Rows, Section, Table};
 
 /// How threads are used, in the order of a row.
 const VARIANTS: [&str; 3] = ["one thread", "all threads on one scene", "a scene on each thread"];
@@ -22,27 +22,18 @@ pub fn section(data: &Threads) -> Section {
             scene.ceiling()
         )
     });
-    Section {
-        name: "threads".into(),
-        title: "What threads give, and what the machine has to give".into(),
-        part: Part::Host,
-        question: "How much faster are several threads, and how much faster can they be on this machine?".into(),
-        expected: "No source says: BP93's machine had one processor. The ceiling is what scenes side by side reach, one a thread.".into(),
-        answer: format!("{}.", named.collect::<Vec<_>>().join("; ")),
-        details: vec![format!(
+    Section::new("threads", "What threads give, and what the machine has to give", Part::Host)
+        .asks("How much faster are several threads, and how much faster can they be on this machine?")
+        .expects("No source says: BP93's machine had one processor. The ceiling is what scenes side by side reach, one a thread.")
+        .answers(format!("{}.", named.collect::<Vec<_>>().join("; ")))
+        .details([format!(
             "Fast lattice, f64, whole steps with friction, {}, {} threads. Every scene has the same bits on any number of threads.",
             data.instruction_set, data.threads
-        )],
-        verdict: Verdict::Measured,
-        again: "stripmine reproduce --only threads".into(),
-        figures: packing_fractions(data).into_iter().map(|phi| figure(data, phi)).collect(),
-        tables: vec![table(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![1],
-        depends_on_host: true,
-        provenance: None,
-    }
+        )])
+        .figures(packing_fractions(data).into_iter().map(|phi| figure(data, phi)))
+        .tables([table(data)])
+        .seeds([1])
+        .depends_on_host()
 }
 
 fn count(scene: &Scaling) -> String {
@@ -64,53 +55,29 @@ fn middle(rates: &[f64]) -> [f64; 3] {
 }
 
 fn figure(data: &Threads, packing_fraction: f64) -> Figure {
-    let series = VARIANTS.into_iter().enumerate().map(|(hue, name)| Series {
-        name: name.into(),
-        style: Style::Joined,
-        hue,
-        points: data
-            .scenes
-            .iter()
-            .filter(|scene| scene.packing_fraction == packing_fraction)
-            .map(|scene| {
-                let [lowest, median, highest] = middle(variants(scene)[hue]);
-                Point { x: scene.particles as f64, y: median, spread: Some([lowest, highest]) }
-            })
-            .collect(),
+    let series = VARIANTS.into_iter().enumerate().map(|(hue, name)| {
+        let of = data.scenes.iter().filter(|scene| scene.packing_fraction == packing_fraction);
+        let points = of.map(|scene| {
+            let [lowest, median, highest] = middle(variants(scene)[hue]);
+            (scene.particles as f64, median, [lowest, highest])
+        });
+        Series::new(name, Style::Joined, hue, points)
     });
-    Figure {
-        name: format!("threads_{packing_fraction}"),
-        title: format!("Rate over the number of discs at packing fraction {packing_fraction}"),
-        caption: "Medians of rounds in which the three take turns, in wall time; bars from the lowest to the highest."
-            .into(),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("discs", None),
-            y: Axis::logarithmic("rate", Some("million particle-steps/s")),
-            series: series.collect(),
-            bands: vec![],
-        }),
-    }
+    let title = format!("Rate over the number of discs at packing fraction {packing_fraction}");
+    Chart::of(Axis::logarithmic("discs", None), Axis::logarithmic("rate", Some("million particle-steps/s")))
+        .with(series)
+        .figure(format!("threads_{packing_fraction}"), title)
+        .caption("Medians of rounds in which the three take turns, in wall time; bars from the lowest to the highest.")
 }
 
 fn table(data: &Threads) -> Table {
-    let rows = data.scenes.iter().map(|scene| {
-        let mut row = vec![Cell::Number(scene.particles as f64, 0), Cell::Number(scene.packing_fraction, 2)];
-        row.extend(variants(scene).map(|rates| Cell::Number(middle(rates)[1], 1)));
-        row.extend(
-            [scene.speedup(), scene.ceiling(), scene.efficiency()].map(|ratio| Cell::Number(ratio, 2)),
-        );
-        row
-    });
-    let columns = ["discs", "packing fraction"].into_iter().chain(VARIANTS).chain([
-        "speed-up",
-        "speed-up of scenes side by side",
-        "reached of that",
-    ]);
-    Table {
-        name: "threads".into(),
-        title: "Million particle-steps a second".into(),
-        columns: columns.map(str::to_owned).collect(),
-        rows: rows.collect(),
-        notes: vec!["Rates are medians over the rounds; a ratio is the median of the rounds' ratios.".into()],
-    }
+    Rows::of(&data.scenes)
+        .number("discs", 0, |scene| scene.particles as f64)
+        .number("packing fraction", 2, |scene| scene.packing_fraction)
+        .cells(VARIANTS, |scene| variants(scene).map(|rates| Cell::Number(middle(rates)[1], 1)))
+        .number("speed-up", 2, |scene| scene.speedup())
+        .number("speed-up of scenes side by side", 2, |scene| scene.ceiling())
+        .number("reached of that", 2, |scene| scene.efficiency())
+        .table("threads", "Million particle-steps a second")
+        .note("Rates are medians over the rounds; a ratio is the median of the rounds' ratios.")
 }

@@ -1,9 +1,7 @@
 //! A cold sphere that falls in on itself.
 
 use crate::laboratory::nbody::study::collapse::{BODIES, Bound, Collapse, LATE, Moment};
-use crate::report::figure::{
-    Axis, Chart, Drawing, Figure, Guide, Picture, Point, Series, Shape, Style, Tint,
-};
+use crate::report::figure::{Axis, Chart, Drawing, Figure, Guide, Picture, Series, Shape, Style, Tint};
 use crate::report::section::{Film, Frame};
 use crate::report::{Part, Section, Verdict};
 use stripmine_physics::number::in_tens;
@@ -32,40 +30,25 @@ pub fn section(data: &Collapse) -> Section {
     let momentum = data.moments.iter().map(|it| it.momentum).fold(0.0, f64::max);
     let claims = [(time / FREE_FALL - 1.0).abs() < 0.1, (virial - 0.5).abs() < WITHIN];
     let within = if claims[1] { "" } else { ", not" };
-    Section {
-        name: "nbody-collapse".into(),
-        title: "Bodies: a cold sphere collapses".into(),
-        part: Part::Physics,
-        question: "Does a uniform sphere of bodies at rest collapse and come to equilibrium as theory says?"
-            .into(),
-        expected: format!(
-            "It falls in within π/√8 = {FREE_FALL:.2} √(R³/GM), and what stays bound comes to the virial ratio 0.5."
-        ),
-        answer: format!(
+    Section::new("nbody-collapse", "Bodies: a cold sphere collapses", Part::Physics)
+        .asks("Does a uniform sphere of bodies at rest collapse and come to equilibrium as theory says?")
+        .expects(format!("It falls in within π/√8 = {FREE_FALL:.2} √(R³/GM), and what stays bound comes to the virial ratio 0.5."))
+        .answers(format!(
             "After a time of {LATE} the {:.0} % of {BODIES} bodies that stay bound have a virial ratio of {virial:.3}{within} 0.5 to {WITHIN}; \
              the fall ends at {time:.2}, by theory at {FREE_FALL:.2}.",
             100.0 * share
-        ),
-        details: vec![format!(
-            "With Clausius' virial Σ r·F of the softened forces in the place of the potential energy the ratio is {clausius:.3}. At the \
-             closest, half of the mass is within {radius:.3}. The energy is off by at most {}, the momentum by {}.",
+        ))
+        .verdict(Verdict::of_claims(&claims))
+        .details([format!(
+            "With Clausius' virial Σ r·F of the softened forces in the place of the potential energy the ratio is {clausius:.3}. At the closest, \
+             half of the mass is within {radius:.3}. The energy is off by at most {}, the momentum by {}.",
             in_tens(error, 2),
             in_tens(momentum, 1)
-        )],
-        verdict: Verdict::of_claims(&claims),
-        again: "stripmine reproduce --only nbody-collapse".into(),
-        figures: [0.0, FREE_FALL, 3.0]
-            .into_iter()
-            .filter_map(|time| picture(data, time))
-            .chain([course(data)])
-            .collect(),
-        tables: vec![],
-        excerpt: None,
-        film: Some(film(data)),
-        seeds: vec![1],
-        depends_on_host: false,
-        provenance: None,
-    }
+        )])
+        .figures([0.0, FREE_FALL, 3.0].into_iter().filter_map(|time| picture(data, time)))
+        .figures([course(data)])
+        .film(film(data))
+        .seeds([1])
 }
 
 fn shown(centre: [f64; 2]) -> bool {
@@ -81,43 +64,35 @@ fn picture(data: &Collapse, time: f64) -> Option<Figure> {
         radius: RADIUS,
         tint: Tint::Shade((speed / FASTEST).min(1.0)),
     });
-    Some(Figure {
-        name: format!("bodies-{}", format!("{:.1}", moment.time).replace('.', "-")),
-        title: format!("Bodies at a time of {:.2}", moment.time),
-        caption: format!("{} of {BODIES} bodies, seen along z; shade: speed.", moment.bodies.len()),
-        picture: Picture::Drawing(Drawing {
+    Some(
+        Picture::Drawing(Drawing {
             window: [[-WINDOW; 2], [WINDOW; 2]],
             width: 420.0,
             shapes: shapes.collect(),
             shades: Some((0.0, FASTEST, "speed (√(GM/R))".into())),
             guide: Some(Guide { unit: "R".into(), gravity: None }),
-        }),
-    })
+        })
+        .figure(
+            format!("bodies-{}", format!("{:.1}", moment.time).replace('.', "-")),
+            format!("Bodies at a time of {:.2}", moment.time),
+        )
+        .caption(format!("{} of {BODIES} bodies, seen along z; shade: speed.", moment.bodies.len())),
+    )
 }
 
 fn course(data: &Collapse) -> Figure {
-    let series = |name: &str, hue, of: fn(&Moment) -> f64| Series {
-        name: name.into(),
-        style: Style::Line,
-        hue,
-        points: data.moments.iter().map(|it| Point::at(it.time, of(it))).collect(),
+    let series = |name: &str, hue, of: fn(&Moment) -> f64| {
+        Series::new(name, Style::Line, hue, data.moments.iter().map(|it| (it.time, of(it))))
     };
-    Figure {
-        name: "course".into(),
-        title: "Virial ratio and radius of half the mass".into(),
-        caption:
-            "Of all bodies: those that are thrown out keep the ratio above 0.5, which it is in equilibrium."
-                .into(),
-        picture: Picture::Chart(Chart {
-            x: Axis::linear("time", Some("√(R³/GM)")),
-            y: Axis::linear("ratio, or radius over R", None),
-            series: vec![
-                series("kinetic over potential energy", 0, |it| it.virial_ratio),
-                series("radius of half the mass", 1, |it| it.half_mass_radius),
-            ],
-            bands: vec![],
-        }),
-    }
+    Chart::of(Axis::linear("time", Some("√(R³/GM)")), Axis::linear("ratio, or radius over R", None))
+        .with([
+            series("kinetic over potential energy", 0, |it| it.virial_ratio),
+            series("radius of half the mass", 1, |it| it.half_mass_radius),
+        ])
+        .figure("course", "Virial ratio and radius of half the mass")
+        .caption(
+            "Of all bodies: those that are thrown out keep the ratio above 0.5, which it is in equilibrium.",
+        )
 }
 
 fn film(data: &Collapse) -> Film {

@@ -1,9 +1,10 @@
 //! The energy of an orbit.
 
 use crate::laboratory::nbody::study::energy::{Energies, KNOWN, STEPS};
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
-use crate::report::{Cell, Part, Section, Table, Verdict};
+use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
 use stripmine_physics::method::nbody::schemes::SchemeName;
+use stripmine_physics::method::nbody::starts::ORBIT;
 use stripmine_physics::number::in_tens;
 use stripmine_physics::words::Words;
 
@@ -28,18 +29,16 @@ pub fn section(data: &Energies) -> Section {
         let said = own.map(|it| it.error.map_or("lost".to_owned(), |error| in_tens(error, 2)));
         said.collect::<Vec<_>>().join(", ")
     };
-    Section {
-        name: "nbody-energy".into(),
-        title: "Bodies: what integrators do to an orbit".into(),
-        part: Part::Physics,
-        question: "How well does each integrator keep the energy of an orbit, and what do the source's missing ½ and its damping do?".into(),
-        expected: format!(
-            "The largest |ΔE/E| of {} schemes along 100 orbits of eccentricity 0.5, as other programs have it. PWP says that its scheme \
-             keeps the conservation laws and that damping makes orbits stable; the specification calls both wrong.",
+    Section::new("nbody-energy", "Bodies: what integrators do to an orbit", Part::Physics)
+        .asks("How well does each integrator keep the energy of an orbit, and what do the source's missing ½ and its damping do?")
+        .expects(format!(
+            "The largest |ΔE/E| of {} schemes along 100 orbits of eccentricity 0.5, as other programs have it. PWP says that its scheme keeps \
+             the conservation laws and that damping makes orbits stable; the specification calls both wrong.",
             KNOWN.len()
-        ),
-        answer: format!("Every error is {least:.2} to {most:.2} times the known one."),
-        details: vec![
+        ))
+        .answers(format!("Every error is {least:.2} to {most:.2} times the known one."))
+        .verdict(Verdict::reproduced(least > 0.5 && most < 2.0))
+        .details([
             format!(
                 "The source's scheme has errors of {} (from the longest step to the shortest); with the ½ that it lacks, {}. The largest \
                  momentum on the way is {}.",
@@ -48,24 +47,16 @@ pub fn section(data: &Energies) -> Section {
                 in_tens(momentum, 1),
             ),
             format!(
-                "Damping acts once a step, so what it does depends on the step: 0.9999 makes the orbit's energy {} times as large in ten \
-                 orbits of {} steps, and {} times in ten of {}.",
+                "Damping acts once a step, so what it does depends on the step: 0.9999 makes the orbit's energy {} times as large in ten orbits \
+                 of {} steps, and {} times in ten of {}.",
                 times(long.energy),
                 long.steps,
                 times(short.energy),
                 short.steps
             ),
-        ],
-        verdict: Verdict::reproduced(least > 0.5 && most < 2.0),
-        again: "stripmine reproduce --only nbody-energy".into(),
-        figures: vec![cost(data), lost(data)],
-        tables: vec![table(data), damped(data)],
-        excerpt: None,
-        film: None,
-        seeds: vec![],
-        depends_on_host: false,
-        provenance: None,
-    }
+        ])
+        .figures([cost(data), lost(data)])
+        .tables([table(data), damped(data)])
 }
 
 fn schemes(data: &Energies) -> Vec<&'static str> {
@@ -79,100 +70,73 @@ fn schemes(data: &Energies) -> Vec<&'static str> {
 }
 
 fn cost(data: &Energies) -> Figure {
-    let series = schemes(data).into_iter().enumerate().filter_map(|(hue, scheme)| {
+    let series = schemes(data).into_iter().enumerate().map(|(hue, scheme)| {
         let of = data.errors.iter().filter(|it| it.scheme == scheme);
-        let mut points: Vec<Point> = of
-            .filter_map(|it| Some(Point::at(it.evaluations, it.error.filter(|error| *error > 0.0)?)))
-            .collect();
-        points.sort_by(|a, b| a.x.total_cmp(&b.x));
-        (!points.is_empty()).then(|| Series { name: scheme.into(), style: Style::Joined, hue, points })
+        let of = of.filter_map(|it| Some((it.evaluations, it.error.filter(|error| *error > 0.0)?)));
+        let mut points: Vec<_> = of.collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Series::new(scheme, Style::Joined, hue, points)
     });
-    Figure {
-        name: "error-over-cost".into(),
-        title: "Energy error over cost: two bodies, e = 0.5, 100 orbits".into(),
-        caption: "Largest error on the way. Schemes that lost the orbit are not drawn at those steps.".into(),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("evaluations of the forces an orbit", None),
-            y: Axis::logarithmic("largest |ΔE/E|", None),
-            series: series.collect(),
-            bands: vec![],
-        }),
-    }
+    Chart::of(
+        Axis::logarithmic("evaluations of the forces an orbit", None),
+        Axis::logarithmic("largest |ΔE/E|", None),
+    )
+    .with(series.filter(|series| !series.points.is_empty()))
+    .figure("error-over-cost", "Energy error over cost: two bodies, e = 0.5, 100 orbits")
+    .caption("Largest error on the way. Schemes that lost the orbit are not drawn at those steps.")
 }
 
 fn lost(data: &Energies) -> Figure {
-    let series = schemes(data).into_iter().enumerate().filter_map(|(hue, scheme)| {
+    let series = schemes(data).into_iter().enumerate().map(|(hue, scheme)| {
         let of = data.edges.iter().filter(|it| it.scheme == scheme);
-        let points: Vec<Point> =
-            of.filter_map(|it| Some(Point::at(it.eccentricity, it.steps? as f64))).collect();
-        (!points.is_empty()).then(|| Series { name: scheme.into(), style: Style::Joined, hue, points })
+        let points = of.filter_map(|it| Some((it.eccentricity, it.steps? as f64)));
+        Series::new(scheme, Style::Joined, hue, points)
     });
-    Figure {
-        name: "orbits-lost".into(),
-        title: "Fewest steps that keep an orbit for 100 turns".into(),
-        caption: "Kept: the energy stays within half of itself. Both schemes of Euler are off by more at every step of the table.".into(),
-        picture: Picture::Chart(Chart {
-            x: Axis::linear("eccentricity", None),
-            y: Axis::logarithmic("steps of an orbit", None),
-            series: series.collect(),
-            bands: vec![],
-        }),
-    }
+    Chart::of(Axis::linear("eccentricity", None), Axis::logarithmic("steps of an orbit", None))
+        .with(series.filter(|series| !series.points.is_empty()))
+        .figure("orbits-lost", "Fewest steps that keep an orbit for 100 turns")
+        .caption("Kept: the energy stays within half of itself. Both schemes of Euler are off by more at every step of the table.")
 }
 
 fn table(data: &Energies) -> Table {
-    let of =
-        |scheme: &str, steps: u64| data.errors.iter().find(|it| it.scheme == scheme && it.steps == steps);
-    let rows = schemes(data).into_iter().map(|scheme| {
-        let known = KNOWN.iter().find(|(name, _)| name.word() == scheme).map(|(_, errors)| *errors);
-        let mut row = vec![Cell::Text(scheme.into())];
-        for (column, steps) in STEPS.into_iter().enumerate() {
-            let error = of(scheme, steps).and_then(|it| it.error);
-            row.push(Cell::Text(error.map_or("lost".into(), |error| format!("{error:.1e}"))));
-            row.push(Cell::Text(known.map_or(String::new(), |known| match known[column] {
-                known if known.is_finite() => format!("{known:.1e}"),
-                _ => "rounding".into(),
-            })));
-        }
-        // Between the shortest steps whose errors are no rounding.
-        let errors = STEPS.iter().filter_map(|&steps| of(scheme, steps).and_then(|it| it.error));
+    let of = |scheme: &str, steps: u64| {
+        data.errors.iter().find(|it| it.scheme == scheme && it.steps == steps).and_then(|it| it.error)
+    };
+    let known = |scheme: &str, place: usize| {
+        let known = KNOWN.iter().find(|(name, _)| name.word() == scheme);
+        known.map_or(String::new(), |(_, errors)| match errors[place] {
+            known if known.is_finite() => format!("{known:.1e}"),
+            _ => "rounding".into(),
+        })
+    };
+    // Between the shortest steps whose errors are no rounding.
+    let order = |scheme: &str| {
+        let errors = STEPS.iter().filter_map(|&steps| of(scheme, steps));
         let errors: Vec<f64> = errors.filter(|error| (ROUNDING..0.5).contains(error)).collect();
-        row.push(match errors.as_slice() {
+        match errors.as_slice() {
             [.., a, b] => Cell::Number((a / b).log2() / 2.0, 2),
-            _ => Cell::Text(String::new()),
-        });
-        row
-    });
-    let mut columns = vec!["scheme".to_owned()];
-    for steps in STEPS {
-        columns.extend([format!("{steps} steps"), "known".to_owned()]);
+            _ => Cell::from(""),
+        }
+    };
+    let mut rows = Rows::of(schemes(data)).text("scheme", |scheme| *scheme);
+    for (place, steps) in STEPS.into_iter().enumerate() {
+        rows = rows
+            .text(format!("{steps} steps"), |scheme| {
+                of(scheme, steps).map_or("lost".into(), |error| format!("{error:.1e}"))
+            })
+            .text("known", |scheme| known(scheme, place));
     }
-    columns.push("order".to_owned());
-    Table {
-        name: "errors".into(),
-        title: "Largest |ΔE/E| along 100 orbits, by steps of an orbit".into(),
-        columns,
-        rows: rows.collect(),
-        notes: vec![],
-    }
+    rows.cell("order", |scheme| order(scheme))
+        .table("errors", "Largest |ΔE/E| along 100 orbits, by steps of an orbit")
 }
 
 fn damped(data: &Energies) -> Table {
-    let rows = data.damped.iter().map(|it| {
-        let friction = -it.damping.ln() * it.steps as f64 / stripmine_physics::method::nbody::starts::ORBIT;
-        vec![
-            Cell::Count(it.steps),
-            Cell::Number(friction, 4),
-            it.energy.map_or(Cell::Text("lost".into()), |energy| Cell::Number(energy, 3)),
-        ]
-    });
-    Table {
-        name: "damped".into(),
-        title: "The source's scheme with a damping of 0.9999, after ten orbits".into(),
-        columns: ["steps of an orbit", "friction −ln(damping)/dt", "energy over that of the start"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
-        notes: vec!["A bound orbit that loses energy shrinks: its energy grows in magnitude.".into()],
-    }
+    Rows::of(&data.damped)
+        .count("steps of an orbit", |it| it.steps)
+        .number("friction −ln(damping)/dt", 4, |it| -it.damping.ln() * it.steps as f64 / ORBIT)
+        .cell("energy over that of the start", |it| {
+            it.energy.map_or(Cell::from("lost"), |energy| Cell::Number(energy, 3))
+        })
+        .table("damped", "The source's scheme with a damping of 0.9999, after ten orbits")
+        .note("A bound orbit that loses energy shrinks: its energy grows in magnitude.")
 }

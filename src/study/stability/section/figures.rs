@@ -2,7 +2,7 @@
 
 use super::super::dataset::{Stability, over_seeds};
 use super::super::outcome::Class;
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
 use crate::study::work_precision::conclusions::short;
 use stripmine_physics::method::Beyond;
 
@@ -30,68 +30,46 @@ fn hue(class: Class) -> usize {
 pub fn map(name: &str, data: &Stability) -> Figure {
     let classes = Class::ALL.into_iter().map(|class| of_class(data, class));
     let edges = [("edge of what works", Style::Line), ("edge of what comes to an end", Style::Dashed)];
-    let edges = edges.into_iter().enumerate().map(|(which, (name, style))| Series {
-        name: name.into(),
-        style,
-        hue: INK,
-        points: edge(data, which),
+    let edges = edges.into_iter().enumerate();
+    let edges = edges.map(|(which, (name, style))| Series::new(name, style, INK, edge(data, which)));
+    let [low, high] = [data.steps[0], data.steps[data.steps.len() - 1]];
+    let limits = data.limits.iter().enumerate().map(|(place, limit)| {
+        let style = if limit.beyond == Beyond::Unstable { Style::Line } else { Style::Dashed };
+        let shown = limit.points.iter().copied().filter(|(_, step)| low <= *step && *step <= high);
+        Series::new(format!("theory: {}", limit.name), style, place, shown)
     });
-    let limits = data.limits.iter().enumerate().map(|(place, limit)| Series {
-        name: format!("theory: {}", limit.name),
-        style: if limit.beyond == Beyond::Unstable { Style::Line } else { Style::Dashed },
-        hue: place,
-        points: shown(data, limit.points.iter().map(|&(x, y)| Point::at(x, y))),
-    });
-    let ends = [data.steps[0], data.steps[data.steps.len() - 1]];
-    let marks = data.marks.iter().map(|(at, what)| Series {
-        name: what.clone(),
-        style: Style::Dashed,
-        hue: INK,
-        points: ends.map(|step| Point::at(*at, step)).to_vec(),
-    });
-    let own = Series {
-        name: "the scene's own step".into(),
-        style: Style::Dashed,
-        hue: 2,
-        points: [data.values[0], data.values[data.values.len() - 1]]
-            .map(|x| Point::at(x, data.step))
-            .to_vec(),
-    };
+    let marks = data.marks.iter();
+    let marks =
+        marks.map(|(at, what)| Series::new(what, Style::Dashed, INK, [low, high].map(|step| (*at, step))));
+    let ends = [data.values[0], data.values[data.values.len() - 1]];
+    let own = Series::new("the scene's own step", Style::Dashed, 2, ends.map(|value| (value, data.step)));
     let all = classes.chain(edges).chain(limits).chain(marks).chain([own]);
     let unit = (!data.parameter.unit.is_empty()).then_some(data.parameter.unit);
     let x = match data.parameter.is_logarithmic {
         true => Axis::logarithmic(data.parameter.label, unit),
         false => Axis::linear(data.parameter.label, unit),
     };
-    Figure {
-        name: format!("{}_stability", name.replace('-', "_")),
-        title: format!("{name}: where it works, over the step and the {}", data.parameter.label),
-        caption: format!(
-            "{} × {} runs of a time of {}, {}; bisected edges from {} seeds, bars from the lowest to the highest. The scene's own step \
-             is {}.",
+    let title = format!("{name}: where it works, over the step and the {}", data.parameter.label);
+    Chart::of(x, Axis::logarithmic("step", Some("reduced")))
+        .with(all.filter(|series| !series.points.is_empty()))
+        .figure(format!("{}_stability", name.replace('-', "_")), title)
+        .caption(format!(
+            "{} × {} runs of a time of {}, {}; bisected edges from {} seeds, bars from the lowest to the highest. The scene's own step is {}.",
             data.values.len(),
             data.steps.len(),
             short(data.duration),
             data.way,
             data.seeds.len(),
             short(data.step)
-        ),
-        picture: Picture::Chart(Chart {
-            x,
-            y: Axis::logarithmic("step", Some("reduced")),
-            series: all.filter(|series| !series.points.is_empty()).collect(),
-            bands: vec![],
-        }),
-    }
+        ))
 }
 
 fn of_class(data: &Stability, class: Class) -> Series {
-    let mut points = vec![];
-    for (value, cells) in data.values.iter().zip(&data.map) {
+    let places = data.values.iter().zip(&data.map).flat_map(|(value, cells)| {
         let own = data.steps.iter().zip(cells).filter(|(_, cell)| cell.class == class);
-        points.extend(own.map(|(step, _)| Point::at(*value, *step)));
-    }
-    Series { name: class.name().into(), style: Style::Points, hue: hue(class), points }
+        own.map(|(step, _)| (*value, *step))
+    });
+    Series::new(class.name(), Style::Points, hue(class), places)
 }
 
 /// The edge of what works (0) or of what comes to an end (1).
@@ -101,10 +79,4 @@ fn edge(data: &Stability, which: usize) -> Vec<Point> {
         Some(Point { x: value, y: middle, spread: (which == 0).then_some([low, high]) })
     });
     at.collect()
-}
-
-/// Points within the steps of the map.
-fn shown(data: &Stability, points: impl Iterator<Item = Point>) -> Vec<Point> {
-    let [low, high] = [data.steps[0], data.steps[data.steps.len() - 1]];
-    points.filter(|point| low <= point.y && point.y <= high).collect()
 }

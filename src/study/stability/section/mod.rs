@@ -7,7 +7,7 @@ use super::conclusions::{of_theory, sentences};
 use super::dataset::Stability;
 use super::outcome::Class;
 use crate::console::Failure;
-use crate::report::{Part, Section, Verdict, csv};
+use crate::report::{Part, Section, csv};
 use crate::results::Made;
 use stripmine_physics::number::{counted, range};
 
@@ -50,25 +50,16 @@ fn answer(maps: &[(String, Stability)]) -> String {
 /// If the dataset is none that JSON can hold.
 pub fn made(maps: &[(String, Stability)], again: String) -> Result<Made, Failure> {
     let said = maps.iter().map(|(name, data)| format!("`{name}`: {}", sentences(data).join(" ")));
-    let section = Section {
-        name: NAME.into(),
-        title: "Where the method works".into(),
-        part: Part::Physics,
-        question: "From which step on does a method fail, how, and does theory or the program say so beforehand?".into(),
-        expected: "The sources state a step, and not how far it is from one that fails. Theory names steps beyond which errors grow.".into(),
-        answer: answer(maps),
-        details: said.collect(),
-        verdict: Verdict::Measured,
-        again,
-        figures: maps.iter().map(|(name, data)| figures::map(name, data)).collect(),
-        tables: tables::of(maps),
-        excerpt: None,
-        film: None,
-        seeds: maps.first().map_or(vec![], |(_, data)| data.seeds.clone()),
-        // The time of the runs is as long as the time that is given allows.
-        depends_on_host: true,
-        provenance: None,
-    };
+    let section = Section::new(NAME, "Where the method works", Part::Physics)
+        .asks("From which step on does a method fail, how, and does theory or the program say so beforehand?")
+        .expects("The sources state a step, and not how far it is from one that fails. Theory names steps beyond which errors grow.")
+        .answers(answer(maps))
+        .details(said)
+        .figures(maps.iter().map(|(name, data)| figures::map(name, data)))
+        .tables(tables::of(maps))
+        .again(again)
+        .seeds(maps.first().map_or(vec![], |(_, data)| data.seeds.clone()))
+        .depends_on_host();
     let all: serde_json::Map<String, serde_json::Value> = maps
         .iter()
         .map(|(name, data)| Ok((name.clone(), serde_json::to_value(data)?)))

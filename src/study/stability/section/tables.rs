@@ -3,8 +3,7 @@
 use super::super::boundary::Edge;
 use super::super::dataset::{Stability, over_seeds};
 use super::super::outcome::{Class, Foreseen};
-use crate::report::{Cell, Table};
-use crate::study::tables::{table, text};
+use crate::report::{Cell, Rows, Table};
 
 type Maps = [(String, Stability)];
 
@@ -14,160 +13,109 @@ pub fn of(maps: &Maps) -> Vec<Table> {
 }
 
 /// Edges as multiples of the scene's own step: the middle, the lowest and the highest over the seeds.
-fn multiples(data: &Stability, edges: &[Edge]) -> [Cell; 2] {
+fn multiples(data: &Stability, edges: &[Edge]) -> (Cell, Option<String>) {
     let Some([middle, low, high]) = over_seeds(edges) else {
         let word = match edges {
             [Edge::Above, ..] if edges.iter().all(|edge| *edge == Edge::Above) => "above the map",
             [Edge::Below, ..] if edges.iter().all(|edge| *edge == Edge::Below) => "below the map",
             _ => "not in every seed",
         };
-        return [text(word), Cell::Nothing];
+        return (Cell::from(word), None);
     };
     let range = format!("{:.2} to {:.2}", low / data.step, high / data.step);
-    [Cell::Number(middle / data.step, 2), text(range)]
+    (Cell::Number(middle / data.step, 2), Some(range))
 }
 
 fn schemes(maps: &Maps) -> Table {
-    let rows = maps.iter().flat_map(|(name, data)| {
-        data.schemes.iter().map(move |scheme| {
-            let [works, range] = multiples(data, &scheme.edges.works);
-            let [ends, _] = multiples(data, &scheme.edges.ends);
-            let theory = scheme.theory;
-            vec![
-                text(name),
-                text(&scheme.scheme),
-                works,
-                range,
-                ends,
-                theory.map_or(Cell::Nothing, |(step, _)| Cell::Number(step / data.step, 2)),
-                theory.map_or(Cell::Nothing, |(_, what)| text(what)),
-                scheme.first.map_or(Cell::Nothing, |class| text(class.name())),
-            ]
+    let schemes =
+        maps.iter().flat_map(|(name, data)| data.schemes.iter().map(move |scheme| (name, data, scheme)));
+    Rows::of(schemes)
+        .text("scene", |(name, ..)| *name)
+        .text("integrator", |(.., scheme)| &scheme.scheme)
+        .cell("works up to (own steps)", |(_, data, scheme)| multiples(data, &scheme.edges.works).0)
+        .cell("over the seeds", |(_, data, scheme)| multiples(data, &scheme.edges.works).1)
+        .cell("ends up to (own steps)", |(_, data, scheme)| multiples(data, &scheme.edges.ends).0)
+        .number("theory: errors grow beyond (own steps)", 2, |(_, data, scheme)| {
+            scheme.theory.map(|(step, _)| step / data.step)
         })
-    });
-    table(
-        "integrators",
-        "The largest step of each integrator, at the scene's own values",
-        &[
-            "scene",
-            "integrator",
-            "works up to (own steps)",
-            "over the seeds",
-            "ends up to (own steps)",
-            "theory: errors grow beyond (own steps)",
-            "by",
-            "what comes first beyond",
-        ],
-        rows.collect(),
-        &[
-            "Works: the run comes to an end, its energy is off by at most 10 % of what passed through, and its means are those of runs \
-             with the smallest step: by at most 5 %, or by what chance alone exceeds once in a thousand runs. What is off by more is \
-             confirmed by another seed.",
-        ],
-    )
+        .cell("by", |(.., scheme)| scheme.theory.map(|(_, what)| what))
+        .cell("what comes first beyond", |(.., scheme)| scheme.first.map(Class::name))
+        .table("integrators", "The largest step of each integrator, at the scene's own values")
+        .note("Works: the run comes to an end, its energy is off by at most 10 % of what passed through, and its means are those of runs with \
+               the smallest step: by at most 5 %, or by what chance alone exceeds once in a thousand runs. What is off by more is confirmed by \
+               another seed.")
 }
 
 fn said(maps: &Maps) -> Table {
-    let mut rows = vec![];
-    for (name, data) in maps {
-        for class in Class::ALL {
-            let said = data.said(|it| it == class);
-            if said.all == 0 || class == Class::Refused {
-                continue;
-            }
-            let count = |count: usize| Cell::Number(count as f64, 0);
-            rows.push(vec![
-                text(name),
-                text(class.name()),
-                count(said.all),
-                count(said.refused),
-                count(said.warned_before),
-                count(said.warned_by_run),
-                if class.ends() { count(said.unsaid()) } else { Cell::Nothing },
-            ]);
-        }
-    }
-    table(
-        "said",
-        "What the program says of it",
-        &[
-            "scene",
-            "what becomes of it",
-            "places",
-            "refused before",
-            "warned of before",
-            "warned of by the run",
-            "nothing said",
-        ],
-        rows,
-        &[
-            "Maps try what the check of a scene refuses, to see what would have become of it. A run that is stopped says so itself.",
-        ],
-    )
+    let classes = maps
+        .iter()
+        .flat_map(|(name, data)| Class::ALL.map(|class| (name, class, data.said(|it| it == class))));
+    let counted = classes.filter(|(_, class, said)| said.all > 0 && *class != Class::Refused);
+    Rows::of(counted)
+        .text("scene", |(name, ..)| *name)
+        .text("what becomes of it", |(_, class, _)| class.name())
+        .number("places", 0, |(.., said)| said.all as f64)
+        .number("refused before", 0, |(.., said)| said.refused as f64)
+        .number("warned of before", 0, |(.., said)| said.warned_before as f64)
+        .number("warned of by the run", 0, |(.., said)| said.warned_by_run as f64)
+        .number("nothing said", 0, |(_, class, said)| class.ends().then(|| said.unsaid() as f64))
+        .table("said", "What the program says of it")
+        .note("Maps try what the check of a scene refuses, to see what would have become of it. A run that is stopped says so itself.")
 }
 
 /// Every place of every map, for a file.
 pub fn cells(maps: &Maps) -> Table {
-    let mut rows = vec![];
-    for (name, data) in maps {
-        for (value, cells) in data.values.iter().zip(&data.map) {
-            for (step, cell) in data.steps.iter().zip(cells) {
-                let foreseen = match cell.foreseen {
-                    Foreseen::Nothing => "nothing",
-                    Foreseen::Warned => "warned",
-                    Foreseen::Refused => "refused",
-                };
-                rows.push(vec![
-                    text(name),
-                    text(data.parameter.name),
-                    text(format!("{value:e}")),
-                    text(format!("{step:e}")),
-                    text(cell.class.name()),
-                    text(foreseen),
-                    text(cell.warned.join(" ")),
-                    text(&cell.what),
-                ]);
-            }
-        }
-    }
-    let columns = ["scene", "parameter", "value", "step", "class", "foreseen", "warned_by_run", "what"];
-    table("cells", "Every place", &columns, rows, &[])
+    let cells = maps.iter().flat_map(|(name, data)| {
+        let rows = data.values.iter().zip(&data.map);
+        rows.flat_map(move |(value, cells)| {
+            data.steps.iter().zip(cells).map(move |(step, cell)| (name, data, value, step, cell))
+        })
+    });
+    let foreseen = |foreseen: Foreseen| match foreseen {
+        Foreseen::Nothing => "nothing",
+        Foreseen::Warned => "warned",
+        Foreseen::Refused => "refused",
+    };
+    Rows::of(cells)
+        .text("scene", |(name, ..)| *name)
+        .text("parameter", |(_, data, ..)| data.parameter.name)
+        .text("value", |(_, _, value, ..)| format!("{value:e}"))
+        .text("step", |(.., step, _)| format!("{step:e}"))
+        .text("class", |(.., cell)| cell.class.name())
+        .text("foreseen", |(.., cell)| foreseen(cell.foreseen))
+        .text("warned_by_run", |(.., cell)| cell.warned.join(" "))
+        .text("what", |(.., cell)| &cell.what)
+        .table("cells", "Every place")
 }
 
 /// Every edge of every seed, for a file.
 pub fn boundaries(maps: &Maps) -> Table {
-    let mut rows = vec![];
-    for (name, data) in maps {
-        for (value, boundary) in data.values.iter().zip(&data.boundaries) {
-            for (what, edges) in [("works", &boundary.works), ("ends", &boundary.ends)] {
-                for (seed, edge) in data.seeds.iter().zip(edges) {
-                    let ends = match edge {
-                        Edge::Below => ["".to_owned(), format!("{:e}", data.steps[0])],
-                        Edge::Between(ends) => ends.map(|end| format!("{end:e}")),
-                        Edge::Above => [format!("{:e}", data.steps[data.steps.len() - 1]), String::new()],
-                    };
-                    let [low, high] = ends.map(text);
-                    rows.push(vec![
-                        text(name),
-                        text(data.parameter.name),
-                        text(format!("{value:e}")),
-                        text(what),
-                        Cell::Number(*seed as f64, 0),
-                        low,
-                        high,
-                    ]);
-                }
-            }
-        }
-    }
-    let columns = [
-        "scene",
-        "parameter",
-        "value",
-        "edge",
-        "seed",
-        "largest_step_that_does",
-        "smallest_step_that_does_not",
-    ];
-    table("edges", "Every edge", &columns, rows, &[])
+    let edges = maps.iter().flat_map(|(name, data)| {
+        let boundaries = data.values.iter().zip(&data.boundaries);
+        boundaries.flat_map(move |(value, boundary)| {
+            let kinds = [("works", &boundary.works), ("ends", &boundary.ends)];
+            kinds.into_iter().flat_map(move |(kind, edges)| {
+                data.seeds.iter().zip(edges).map(move |(seed, edge)| (name, data, value, kind, seed, edge))
+            })
+        })
+    });
+    let does = |data: &Stability, edge: &Edge| match edge {
+        Edge::Below => String::new(),
+        Edge::Between([low, _]) => format!("{low:e}"),
+        Edge::Above => format!("{:e}", data.steps[data.steps.len() - 1]),
+    };
+    let does_not = |data: &Stability, edge: &Edge| match edge {
+        Edge::Below => format!("{:e}", data.steps[0]),
+        Edge::Between([_, high]) => format!("{high:e}"),
+        Edge::Above => String::new(),
+    };
+    Rows::of(edges)
+        .text("scene", |(name, ..)| *name)
+        .text("parameter", |(_, data, ..)| data.parameter.name)
+        .text("value", |(_, _, value, ..)| format!("{value:e}"))
+        .text("edge", |(.., kind, _, _)| *kind)
+        .number("seed", 0, |(.., seed, _)| **seed as f64)
+        .text("largest_step_that_does", |(_, data, .., edge)| does(data, edge))
+        .text("smallest_step_that_does_not", |(_, data, .., edge)| does_not(data, edge))
+        .table("edges", "Every edge")
 }

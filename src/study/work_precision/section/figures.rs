@@ -3,7 +3,7 @@
 use super::super::conclusions::short;
 use super::super::dataset::{Run, Way, WorkPrecision};
 use super::super::measures::Measure;
-use crate::report::figure::{Axis, Chart, Figure, Picture, Point, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Picture, Series, Style};
 use crate::statistics::median;
 use crate::study::collision::{Collision, OUTCOMES, OutcomeError};
 use crate::study::growth::COMPARABLE;
@@ -59,8 +59,8 @@ fn axis_of_error(measure: Measure, unit: &str) -> Axis {
 }
 
 /// A point of a run that came to its end, with the spread of nothing: costs lie along x, and bars stand on y.
-fn point(run: &Run, measure: Measure, cost: impl Fn(&Run) -> Option<f64>) -> Option<Point> {
-    Some(Point::at(cost(run)?, run.error(measure)?)).filter(|point| point.y > 0.0)
+fn point(run: &Run, measure: Measure, cost: impl Fn(&Run) -> Option<f64>) -> Option<(f64, f64)> {
+    Some((cost(run)?, run.error(measure)?)).filter(|(_, error)| *error > 0.0)
 }
 
 /// A series for each way that `is_shown`: one hue a scheme, or a cost.
@@ -75,9 +75,9 @@ fn series<'d>(
     let shown = data.ways.iter().enumerate().filter(move |(_, way)| is_shown(way));
     shown.filter_map(move |(at, way)| {
         let own = data.runs.iter().filter(|run| run.way == at);
-        let mut points: Vec<Point> = own.filter_map(|run| point(run, measure, cost)).collect();
-        points.sort_by(|a, b| a.x.total_cmp(&b.x));
-        (!points.is_empty()).then(|| Series { name: name(way), style: Style::Joined, hue: hue(way), points })
+        let mut points: Vec<_> = own.filter_map(|run| point(run, measure, cost)).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        (!points.is_empty()).then(|| Series::new(name(way), Style::Joined, hue(way), points))
     })
 }
 
@@ -85,19 +85,17 @@ fn series<'d>(
 fn broken(data: &WorkPrecision, is_shown: impl Fn(&Way) -> bool, shown: &[Series]) -> Option<Series> {
     let highest = shown.iter().flat_map(|series| &series.points).map(|point| point.y).reduce(f64::max)?;
     let broken = data.runs.iter().filter(|run| run.outcome.is_err() && is_shown(&data.ways[run.way]));
-    let mut points: Vec<Point> = broken
-        .filter_map(|run| Some(Point::at(data.ways[run.way].each? / run.step, 4.0 * highest)))
-        .collect();
-    points.sort_by(|a, b| a.x.total_cmp(&b.x));
-    Some(Series { name: "failed: see the table".into(), style: Style::Points, hue: INK, points })
+    let points = broken.filter_map(|run| Some((data.ways[run.way].each? / run.step, 4.0 * highest)));
+    let mut points: Vec<_> = points.collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Some(Series::new("failed: see the table", Style::Points, INK, points))
 }
 
 /// A horizontal line across what is shown.
 fn level(name: &str, y: f64, shown: &[Series]) -> Option<Series> {
     let x = || shown.iter().flat_map(|series| &series.points).map(|point| point.x);
     let ends = [x().reduce(f64::min)?, x().reduce(f64::max)?];
-    let points = ends.map(|x| Point::at(x, y)).to_vec();
-    (y > 0.0).then(|| Series { name: name.into(), style: Style::Dashed, hue: INK, points })
+    (y > 0.0).then(|| Series::new(name, Style::Dashed, INK, ends.map(|x| (x, y))))
 }
 
 /// Error over cost, for every scheme and precision with the scene's own search and execution.
@@ -123,29 +121,25 @@ fn diagram(file: &str, name: &str, data: &WorkPrecision, measure: Measure) -> Op
         broken(data, is_shown, &all),
     ];
     all.extend(more.into_iter().flatten());
-    Some(Figure {
-        name: format!("{file}_{}", if measure == Measure::Position { "position" } else { "energy" }),
-        title: format!(
-            "{name}: {} over cost",
-            if measure == Measure::Position { "error" } else { "error of the energy" }
-        ),
-        caption: format!(
-            "{} particles over a time of {}; the scene's own step is {}, along each line it doubles from point to point. Cost: the \
-             median of the repeats, which differ by {:.0} % in the middle; search and execution as the scene has them ({}). The front is over \
-             all ways to run it against which nothing speaks.",
-            data.particles,
-            short(data.duration),
-            short(data.step),
-            100.0 * spread(data),
-            data.ways.iter().find(|way| way.is_primary).map_or("", |way| &way.cost)
-        ),
-        picture: Picture::Chart(Chart {
-            x: axis_of_cost(),
-            y: axis_of_error(measure, &data.unit),
-            series: all,
-            bands: vec![],
-        }),
-    })
+    let (of, error) = match measure {
+        Measure::Position => ("position", "error"),
+        _ => ("energy", "error of the energy"),
+    };
+    Some(
+        Chart::of(axis_of_cost(), axis_of_error(measure, &data.unit))
+            .with(all)
+            .figure(format!("{file}_{of}"), format!("{name}: {error} over cost"))
+            .caption(format!(
+                "{} particles over a time of {}; the scene's own step is {}, along each line it doubles from point to point. Cost: the median of \
+                 the repeats, which differ by {:.0} % in the middle; search and execution as the scene has them ({}). The front is over all ways \
+                 to run it against which nothing speaks.",
+                data.particles,
+                short(data.duration),
+                short(data.step),
+                100.0 * spread(data),
+                data.ways.iter().find(|way| way.is_primary).map_or("", |way| &way.cost)
+            )),
+    )
 }
 
 /// By how much the repeats of a run differ, in parts of the shortest: the median over the runs.
@@ -159,8 +153,8 @@ fn spread(data: &WorkPrecision) -> f64 {
 
 fn front_of(data: &WorkPrecision, measure: Measure) -> Option<Series> {
     let (_, places) = data.fronts.iter().find(|(of, _)| *of == measure)?;
-    let points = places.iter().filter_map(|&place| point(&data.runs[place], measure, Run::cost)).collect();
-    Some(Series { name: "Pareto front".into(), style: Style::Line, hue: INK, points })
+    let points = places.iter().filter_map(|&place| point(&data.runs[place], measure, Run::cost));
+    Some(Series::new("Pareto front", Style::Line, INK, points))
 }
 
 /// The same for every search and execution, in the scene's own scheme and precision.
@@ -176,20 +170,15 @@ fn costs(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
         Run::cost,
     )
     .collect();
-    (all.len() > 1).then(|| Figure {
-        name: format!("{file}_searches"),
-        title: format!("{name}: the same error, found in other ways"),
-        caption: format!(
-            "The scene's own integrator and precision ({}) with every search and execution: errors are equal but for rounding, \
-             costs are not.",
-            data.own
-        ),
-        picture: Picture::Chart(Chart {
-            x: axis_of_cost(),
-            y: axis_of_error(Measure::Position, &data.unit),
-            series: all,
-            bands: vec![],
-        }),
+    (all.len() > 1).then(|| {
+        Chart::of(axis_of_cost(), axis_of_error(Measure::Position, &data.unit))
+            .with(all)
+            .figure(format!("{file}_searches"), format!("{name}: the same error, found in other ways"))
+            .caption(format!(
+                "The scene's own integrator and precision ({}) with every search and execution: errors are equal but for rounding, costs are \
+                 not.",
+                data.own
+            ))
     })
 }
 
@@ -206,58 +195,42 @@ fn clocks(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
         |way| way.label.clone(),
         move |way| place(schemes(), &way.scheme),
         |run| run.clocks,
+    );
+    Some(
+        Chart::of(
+            Axis::logarithmic("cost of a unit of simulated time", Some("clock periods")),
+            axis_of_error(Measure::Position, &data.unit),
+        )
+        .with(all)
+        .figure(format!("{file}_clocks"), format!("{name}: error over clock periods"))
+        .caption(format!(
+            "By the paper's clock of {machine}, n + D for each operation counted. Ways whose work depends on the data are not in it: they have \
+             no fixed program to count. Executions of one program have the same clock periods."
+        )),
     )
-    .collect();
-    Some(Figure {
-        name: format!("{file}_clocks"),
-        title: format!("{name}: error over clock periods"),
-        caption: format!(
-            "By the paper's clock of {machine}, n + D for each operation counted. Ways whose work depends on the data are not in it: \
-             they have no fixed program to count. Executions of one program have the same clock periods."
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("cost of a unit of simulated time", Some("clock periods")),
-            y: axis_of_error(Measure::Position, &data.unit),
-            series: all,
-            bands: vec![],
-        }),
-    })
 }
 
 /// How a disturbance and the error of the scene's own step grow.
 fn growth(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
     let grown = &data.growth;
-    let over_time = |values: &[f64]| {
-        let points = grown.times.iter().zip(values).map(|(&time, &value)| Point::at(time, value));
-        points.filter(|point| point.y > 0.0).collect::<Vec<_>>()
+    let over_time = |values: &[f64]| -> Vec<(f64, f64)> {
+        let points = grown.times.iter().copied().zip(values.iter().copied());
+        points.filter(|(_, distance)| *distance > 0.0).collect()
     };
     let rate = grown.rate.map_or("No exponential growth is seen".to_owned(), |rate| {
         format!("The distance grows as exp({} t)", short(rate))
     });
-    Some(Figure {
-        name: format!("{file}_growth"),
-        title: format!("{name}: how long trajectories are comparable"),
-        caption: format!("{rate}; compared is a time of {}.", short(data.duration)),
-        picture: Picture::Chart(Chart {
-            x: Axis::linear("time", Some("reduced")),
-            y: Axis::logarithmic("distance, RMS", Some(&data.unit)),
-            series: vec![
-                Series {
-                    name: format!("start disturbed by 1e-9 {}", data.unit),
-                    style: Style::Line,
-                    hue: 0,
-                    points: over_time(&grown.separation),
-                },
-                Series {
-                    name: "half the step".into(),
-                    style: Style::Dashed,
-                    hue: 1,
-                    points: over_time(&grown.error),
-                },
-            ],
-            bands: vec![],
-        }),
-    })
+    let disturbed = format!("start disturbed by 1e-9 {}", data.unit);
+    Some(
+        Chart::of(
+            Axis::linear("time", Some("reduced")),
+            Axis::logarithmic("distance, RMS", Some(&data.unit)),
+        )
+        .series(disturbed, Style::Line, 0, over_time(&grown.separation))
+        .series("half the step", Style::Dashed, 1, over_time(&grown.error))
+        .figure(format!("{file}_growth"), format!("{name}: how long trajectories are comparable"))
+        .caption(format!("{rate}; compared is a time of {}.", short(data.duration))),
+    )
 }
 
 /// Errors of what comes out of a collision over the step.
@@ -266,34 +239,25 @@ fn outcomes(file: &str, name: &str, data: &WorkPrecision, collision: &Collision)
     let schemes = || data.ways.iter().map(|way| way.scheme.clone());
     let mut labels: Vec<&str> = collision.errors.iter().map(|error| error.choice.as_str()).collect();
     labels.dedup();
-    let of = |label: &str, style, what: &str, value: fn(&OutcomeError) -> f64| Series {
-        name: format!("{}, {what}", scheme(label)),
-        style,
-        hue: place(schemes(), scheme(label)),
-        points: collision
-            .errors
-            .iter()
-            .filter(|error| error.choice == label)
-            .map(|error| Point::at(error.step, value(error)))
-            .filter(|point| point.y > 0.0)
-            .collect(),
+    let of = |label: &str, style, what: &str, value: fn(&OutcomeError) -> f64| {
+        let own = collision.errors.iter().filter(|error| error.choice == label);
+        let points = own.map(|error| (error.step, value(error))).filter(|(_, error)| *error > 0.0);
+        Series::new(format!("{}, {what}", scheme(label)), style, place(schemes(), scheme(label)), points)
     };
     let spread = labels.iter().map(|label| of(label, Style::Joined, "RMS", |error| error.spread[0]));
     let mean = labels.iter().map(|label| of(label, Style::Dashed, "mean", |error| error.mean[0]));
-    Some(Figure {
-        name: format!("{file}_{}", OUTCOMES[0]),
-        title: format!("{name}: error of the restitution over the step"),
-        caption: format!(
+    Some(
+        Chart::of(
+            Axis::logarithmic("step", Some("reduced")),
+            Axis::logarithmic("error of the restitution", None),
+        )
+        .with(spread.chain(mean))
+        .figure(format!("{file}_{}", OUTCOMES[0]), format!("{name}: error of the restitution over the step"))
+        .caption(format!(
             "{} starts, each a part of a step later than the one before: root of the mean square over them, and the mean.",
             collision.phases
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("step", Some("reduced")),
-            y: Axis::logarithmic("error of the restitution", None),
-            series: spread.chain(mean).collect(),
-            bands: vec![],
-        }),
-    })
+        )),
+    )
 }
 
 /// Errors of what comes out of a collision over the cost, by the processor time that a step of the same way takes.
@@ -314,31 +278,21 @@ fn outcome_over_cost(
         }
         let of_a_step = median(of_a_step.into_iter());
         let errors = collision.errors.iter().filter(|error| error.choice == way.label);
-        let points = errors.map(|error| Point::at(of_a_step / error.step, error.spread[which]));
-        all.push(Series {
-            name: way.scheme.clone(),
-            style: Style::Joined,
-            hue: place(schemes(), &way.scheme),
-            points: points.filter(|point| point.y > 0.0).collect(),
-        });
+        let points = errors.map(|error| (of_a_step / error.step, error.spread[which]));
+        let points = points.filter(|(_, error)| *error > 0.0);
+        all.push(Series::new(&way.scheme, Style::Joined, place(schemes(), &way.scheme), points));
     }
     all.retain(|series| !series.points.is_empty());
     let (outcome, unit) = (OUTCOMES[which], [None, Some("rad")][which]);
-    Some(Figure {
-        name: format!("{file}_{outcome}_cost"),
-        title: format!("{name}: error of the {outcome} over the cost"),
-        caption: format!(
-            "Root of the mean square over {} starts, each a part of a step later than the one before. The cost is that of the \
-             scene's steps.",
-            collision.phases
-        ),
-        picture: Picture::Chart(Chart {
-            x: axis_of_cost(),
-            y: Axis::logarithmic(&format!("error of the {outcome}"), unit),
-            series: all,
-            bands: vec![],
-        }),
-    })
+    Some(
+        Chart::of(axis_of_cost(), Axis::logarithmic(&format!("error of the {outcome}"), unit))
+            .with(all)
+            .figure(format!("{file}_{outcome}_cost"), format!("{name}: error of the {outcome} over the cost"))
+            .caption(format!(
+                "Root of the mean square over {} starts, each a part of a step later than the one before. The cost is that of the scene's steps.",
+                collision.phases
+            )),
+    )
 }
 
 /// Differences of a mean over time: full where they count, hollow where the error bar reaches zero.
@@ -360,30 +314,21 @@ fn means(file: &str, name: &str, data: &WorkPrecision, all: &Observables) -> Opt
             });
             let points = own.map(|it| {
                 let [size, bar] = [100.0 * it.difference, 100.0 * it.bar];
-                Point { x: it.step, y: size, spread: Some([size - bar, size + bar]) }
+                (it.step, size, [size - bar, size + bar])
             });
-            series.push(Series {
-                name: format!("{}{said}", way.scheme),
-                style: Style::Points,
-                hue: place(schemes(), &way.scheme),
-                points: points.collect(),
-            });
+            let hue = place(schemes(), &way.scheme);
+            series.push(Series::new(format!("{}{said}", way.scheme), Style::Points, hue, points));
         }
     }
-    Some(Figure {
-        name: format!("{file}_means"),
-        title: format!("{name}: mean {observable}, off the reference's"),
-        caption: format!(
-            "Means over the second half of a time of {}, {} seeds; bars hold the difference in 95 of 100 studies. Hollow: no \
-             significant difference.",
-            short(all.duration),
-            data.seeds.len()
-        ),
-        picture: Picture::Chart(Chart {
-            x: Axis::logarithmic("step", Some("reduced")),
-            y: Axis::linear("difference", Some("%")),
-            series,
-            bands: vec![],
-        }),
-    })
+    Some(
+        Chart::of(Axis::logarithmic("step", Some("reduced")), Axis::linear("difference", Some("%")))
+            .with(series)
+            .figure(format!("{file}_means"), format!("{name}: mean {observable}, off the reference's"))
+            .caption(format!(
+                "Means over the second half of a time of {}, {} seeds; bars hold the difference in 95 of 100 studies. Hollow: no significant \
+                 difference.",
+                short(all.duration),
+                data.seeds.len()
+            )),
+    )
 }

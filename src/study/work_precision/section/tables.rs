@@ -1,12 +1,12 @@
 //! The tables over all scenes.
 
+use super::super::Errors;
 use super::super::conclusions::{multiple, short, wishes as wishes_of};
-use super::super::dataset::WorkPrecision;
+use super::super::dataset::{Run, WorkPrecision};
 use super::super::measures::Measure;
-use crate::report::{Cell, Table};
+use crate::report::{Rows, Table};
 use crate::study::growth::EndedBy;
 use crate::study::orders::Fitted;
-use crate::study::tables::{table, text};
 
 type Scenes = [(String, WorkPrecision)];
 
@@ -24,106 +24,80 @@ pub fn of(scenes: &Scenes) -> Vec<Table> {
     all.into_iter().filter(|table| !table.rows.is_empty()).collect()
 }
 
-fn number(value: Option<f64>, decimals: usize) -> Cell {
-    value.map_or(Cell::Nothing, |value| Cell::Number(value, decimals))
-}
-
 fn wishes(scenes: &Scenes) -> Table {
-    let rows = scenes.iter().flat_map(|(name, data)| {
-        wishes_of(data).into_iter().map(move |answer| match answer {
-            Ok(it) => vec![
-                text(name),
-                text(format!("{:.0e}", it.wish)),
-                text(&data.ways[it.run.way].label),
-                text(multiple(it.run.power)),
-                text(it.run.error(Measure::Position).map_or(String::new(), short)),
-                number(it.run.cost().map(|cost| 1e3 * cost), 3),
-                number(it.of_own.map(|share| 100.0 * share), 0),
-            ],
-            Err(denied) => {
-                let begin = [text(name), text(format!("{:.0e}", denied.wish)), text(denied.why)];
-                begin.into_iter().chain([const { Cell::Nothing }; 4]).collect()
-            }
-        })
+    let answers = scenes.iter().flat_map(|(name, data)| {
+        let answers = wishes_of(data).into_iter().map(|answer| match answer {
+            Ok(it) => (it.wish, data.ways[it.run.way].label.clone(), Some(it)),
+            Err(denied) => (denied.wish, denied.why, None),
+        });
+        answers.map(move |(wish, said, found)| (name, wish, said, found))
     });
-    table(
-        "wishes",
-        "Which way and which step for which wish",
-        &[
-            "scene",
-            "error wished for, at most (radii; sizes of a system of bodies)",
-            "cheapest way",
-            "step",
-            "its error (the same)",
-            "cost of a unit of time (ms)",
-            "of the scene's own cost (%)",
-        ],
-        rows.collect(),
-        &[
-            "Errors of positions at the end of the time that is compared. A way: integrator, precision, search, execution. No way is \
-             named where too little happens in that time, nor one that theory, a check or a warning of its run speaks against.",
-        ],
-    )
+    Rows::of(answers)
+        .text("scene", |(name, ..)| *name)
+        .text("error wished for, at most (radii; sizes of a system of bodies)", |(_, wish, ..)| {
+            format!("{wish:.0e}")
+        })
+        .text("cheapest way", |(_, _, said, _)| said.clone())
+        .cell("step", |(.., found)| found.as_ref().map(|it| multiple(it.run.power)))
+        .cell("its error (the same)", |(.., found)| {
+            found.as_ref().map(|it| it.run.error(Measure::Position).map_or(String::new(), short))
+        })
+        .number("cost of a unit of time (ms)", 3, |(.., found)| {
+            found.as_ref().and_then(|it| Some(1e3 * it.run.cost()?))
+        })
+        .number("of the scene's own cost (%)", 0, |(.., found)| {
+            found.as_ref().and_then(|it| Some(100.0 * it.of_own?))
+        })
+        .table("wishes", "Which way and which step for which wish")
+        .note("Errors of positions at the end of the time that is compared. A way: integrator, precision, search, execution. No way is named \
+               where too little happens in that time, nor one that theory, a check or a warning of its run speaks against.")
 }
 
-fn fitted(fitted: Option<Fitted>) -> [Cell; 2] {
-    let range = |it: Fitted| text(format!("{} to {}", short(it.range[0]), short(it.range[1])));
-    [number(fitted.map(|it| it.order), 2), fitted.map_or(Cell::Nothing, range)]
+/// The steps that an order was fitted through.
+fn steps_of(fitted: Option<Fitted>) -> Option<String> {
+    fitted.map(|it| format!("{} to {}", short(it.range[0]), short(it.range[1])))
 }
 
 fn orders(scenes: &Scenes) -> Table {
-    let rows = scenes.iter().flat_map(|(name, data)| {
-        data.orders.iter().map(move |order| {
-            let [power, range] = fitted(order.fitted);
-            vec![
-                text(name),
-                text(&data.ways[order.way].scheme),
-                text(order.measure.name()),
-                power,
-                range,
-                number(order.theory.map(|(order, _)| order), 1),
-                order.theory.map_or(Cell::Nothing, |(_, why)| text(why)),
-            ]
-        })
-    });
-    table(
-        "orders",
-        "Orders of convergence, measured and by theory",
-        &["scene", "integrator", "error", "order", "steps of the fit", "theory", "what decides it"],
-        rows.collect(),
-        &[
-            "In the digits of the reference; fitted through the smallest steps whose error is at least three times the reference's \
-             own. No number: fewer than three such steps.",
-            "A single run scatters about its line: the error that the beginning and the end of a contact make depends on where in a \
-             step they fall (see the collision). Theory is of the root of the mean square over these phases.",
-        ],
-    )
+    let orders =
+        scenes.iter().flat_map(|(name, data)| data.orders.iter().map(move |order| (name, data, order)));
+    Rows::of(orders)
+        .text("scene", |(name, ..)| *name)
+        .text("integrator", |(_, data, order)| &data.ways[order.way].scheme)
+        .text("error", |(.., order)| order.measure.name())
+        .number("order", 2, |(.., order)| order.fitted.map(|it| it.order))
+        .cell("steps of the fit", |(.., order)| steps_of(order.fitted))
+        .number("theory", 1, |(.., order)| order.theory.map(|(order, _)| order))
+        .cell("what decides it", |(.., order)| order.theory.map(|(_, why)| why))
+        .table("orders", "Orders of convergence, measured and by theory")
+        .note("In the digits of the reference; fitted through the smallest steps whose error is at least three times the reference's own. No \
+               number: fewer than three such steps.")
+        .note("A single run scatters about its line: the error that the beginning and the end of a contact make depends on where in a step they \
+               fall (see the collision). Theory is of the root of the mean square over these phases.")
 }
 
 fn outcomes(scenes: &Scenes) -> Table {
-    let rows = scenes.iter().flat_map(|(name, data)| {
+    let orders = scenes.iter().flat_map(|(name, data)| {
         let orders = data.collision.iter().flat_map(|collision| &collision.orders);
-        orders.map(move |order| {
-            let scheme = data.ways.iter().find(|way| way.label == order.choice);
-            let ([spread, range], [mean, _]) = (fitted(order.spread), fitted(order.mean));
-            let scheme = scheme.map_or("", |way| &way.scheme);
-            vec![text(name), text(scheme), text(&order.outcome), spread, mean, range]
-        })
+        orders.map(move |order| (name, data, order))
     });
-    table(
-        "collision",
-        "One collision: how the error of what comes out falls",
-        &["scene", "integrator", "outcome", "order of the RMS", "order of the mean", "steps of the fit"],
-        rows.collect(),
-        &[
-            "Over starts shifted by parts of a step. Where a force sets in as ξ^s inside a step, the step errs by dt^(s+1) ζ(−s, phase), \
-             Hurwitz's zeta function: order 2.5 for the kink of ξ^1.5, order 1 for the jump of a damping force. Its mean over all phases \
-             is zero, so the mean falls faster than the root of the mean square, and a line through single runs lies somewhere between: \
-             velocity Verlet on one elastic collision was seen at 2.6 to 2.8.",
-            "Velocity Verlet's own error of second order does not show in the speed after an elastic collision: the energy that it keeps \
-             differs from the energy itself only while discs touch.",
-        ],
-    )
+    Rows::of(orders)
+        .text("scene", |(name, ..)| *name)
+        .text("integrator", |(_, data, order)| {
+            let way = data.ways.iter().find(|way| way.label == order.choice);
+            way.map_or("", |way| &way.scheme)
+        })
+        .text("outcome", |(.., order)| &order.outcome)
+        .number("order of the RMS", 2, |(.., order)| order.spread.map(|it| it.order))
+        .number("order of the mean", 2, |(.., order)| order.mean.map(|it| it.order))
+        .cell("steps of the fit", |(.., order)| steps_of(order.spread))
+        .table("collision", "One collision: how the error of what comes out falls")
+        .note("Over starts shifted by parts of a step. Where a force sets in as ξ^s inside a step, the step errs by dt^(s+1) ζ(−s, phase), \
+               Hurwitz's zeta function: order 2.5 for the kink of ξ^1.5, order 1 for the jump of a damping force. Its mean over all phases is \
+               zero, so the mean falls faster than the root of the mean square, and a line through single runs lies somewhere between: velocity \
+               Verlet on one elastic collision was seen at 2.6 to 2.8.")
+        .note("Velocity Verlet's own error of second order does not show in the speed after an elastic collision: the energy that it keeps \
+               differs from the energy itself only while discs touch.")
 }
 
 /// Means over time of the scene's own ways.
@@ -137,124 +111,81 @@ pub fn all_means(scenes: &Scenes) -> Table {
 }
 
 fn compared(name: &str, scenes: &Scenes, is_shown: fn(&WorkPrecision, &str) -> bool) -> Table {
-    let rows = scenes.iter().flat_map(|(name, data)| {
+    let shown = scenes.iter().flat_map(|(name, data)| {
         let all = data.observables.iter().flat_map(|all| &all.comparisons);
-        all.filter(|it| is_shown(data, &it.choice)).map(move |it| {
-            vec![
-                text(name),
-                text(&it.observable),
-                text(&it.choice),
-                text(short(it.step)),
-                Cell::Number(100.0 * it.difference, 2),
-                Cell::Number(100.0 * it.bar, 2),
-                text(if it.reaches_zero() { "no: the bar reaches zero" } else { "yes" }),
-            ]
-        })
+        all.filter(|it| is_shown(data, &it.choice)).map(move |it| (name, it))
     });
-    table(
-        name,
-        "Means over time of the scene's own way beside the reference's",
-        &["scene", "mean of", "way", "step", "difference (%)", "bar, 95 % (%)", "significant"],
-        rows.collect(),
-        &[
-            "Paired by seed; one bar in twenty misses zero by chance. The density profile: root of the mean square over bins along \
-             both sides of the box. All other ways: `all_means.csv`.",
-        ],
-    )
+    Rows::of(shown)
+        .text("scene", |(name, _)| *name)
+        .text("mean of", |(_, it)| &it.observable)
+        .text("way", |(_, it)| &it.choice)
+        .text("step", |(_, it)| short(it.step))
+        .number("difference (%)", 2, |(_, it)| 100.0 * it.difference)
+        .number("bar, 95 % (%)", 2, |(_, it)| 100.0 * it.bar)
+        .text("significant", |(_, it)| if it.reaches_zero() { "no: the bar reaches zero" } else { "yes" })
+        .table(name, "Means over time of the scene's own way beside the reference's")
+        .note("Paired by seed; one bar in twenty misses zero by chance. The density profile: root of the mean square over bins along both sides \
+               of the box. All other ways: `all_means.csv`.")
 }
 
 /// Every error with the scene's own step.
 fn errors(scenes: &Scenes) -> Table {
-    let rows = scenes.iter().flat_map(|(name, data)| {
+    let own = scenes.iter().flat_map(|(name, data)| {
         let own = data.runs.iter().filter(|run| run.power == 0 && data.ways[run.way].is_primary);
-        own.map(move |run| {
-            let way = &data.ways[run.way];
-            let mut row = vec![text(name), text(&way.scheme), text(&way.digits)];
-            row.extend(
-                Measure::ALL.map(|measure| run.error(measure).map_or(Cell::Nothing, |it| text(short(it)))),
-            );
-            row.push(number(run.cost().map(|cost| 1e3 * cost), 3));
-            row
-        })
+        own.map(move |run| (name, &data.ways[run.way], run))
     });
-    let columns: Vec<&str> = ["scene", "integrator", "precision"]
-        .into_iter()
-        .chain(Measure::ALL.map(Measure::name))
-        .chain(["cost of a unit of time (ms)"])
-        .collect();
-    table(
-        "errors",
-        "Every error with the scene's own step",
-        &columns,
-        rows.collect(),
-        &["Angular momentum has no meaning in a box with periodic sides. Every run: `runs.csv`."],
-    )
+    let mut rows = Rows::of(own)
+        .text("scene", |(name, ..)| *name)
+        .text("integrator", |(_, way, _)| &way.scheme)
+        .text("precision", |(_, way, _)| &way.digits);
+    for measure in Measure::ALL {
+        rows = rows.cell(measure.name(), |(.., run)| run.error(measure).map(short));
+    }
+    rows.number("cost of a unit of time (ms)", 3, |(.., run)| run.cost().map(|cost| 1e3 * cost))
+        .table("errors", "Every error with the scene's own step")
+        .note("Angular momentum has no meaning in a box with periodic sides. Every run: `runs.csv`.")
 }
 
 fn references(scenes: &Scenes) -> Table {
-    let rows = scenes.iter().map(|(name, data)| {
-        let ended_by = match data.growth.ended_by {
-            EndedBy::Growth => "the error of four times the step comes to a tenth of a radius",
-            EndedBy::Scene => "the scene ends",
-            EndedBy::Budget => "more would take too long",
-        };
-        let of = |errors: &super::super::Errors| {
-            text(errors.get(&Measure::Position).map_or("–".to_owned(), |error| short(*error)))
-        };
-        vec![
-            text(name),
-            data.growth.rate.map_or(Cell::Nothing, |rate| text(short(rate))),
-            text(short(data.growth.window)),
-            text(ended_by),
-            text(short(data.duration)),
-            text(format!("{} {}", short(data.encounters.each), data.encounters.name())),
-            text(&data.reference.ways[0]),
-            text(short(data.reference.step)),
-            of(&data.reference.halving),
-            of(&data.reference.second),
-            text(match data.plan.left_out.as_slice() {
-                [] => "nothing".to_owned(),
-                left_out => left_out.join("; "),
-            }),
-        ]
-    });
-    table(
-        "references",
-        "What is compared, and how sure the reference is",
-        &[
-            "scene",
-            "growth of a disturbance (1/time)",
-            "comparable up to (time)",
-            "because",
-            "compared (time)",
-            "in that time, for a particle",
-            "reference",
-            "its step",
-            "off by twice the step ",
-            "off by another integrator ",
-            "left out",
-        ],
-        rows.collect(),
-        &[],
-    )
+    let ended_by = |ended_by: &EndedBy| match ended_by {
+        EndedBy::Growth => "the error of four times the step comes to a tenth of a radius",
+        EndedBy::Scene => "the scene ends",
+        EndedBy::Budget => "more would take too long",
+    };
+    let of = |errors: &Errors| errors.get(&Measure::Position).map_or("–".to_owned(), |error| short(*error));
+    Rows::of(scenes)
+        .text("scene", |(name, _)| name)
+        .cell("growth of a disturbance (1/time)", |(_, data)| data.growth.rate.map(short))
+        .text("comparable up to (time)", |(_, data)| short(data.growth.window))
+        .text("because", |(_, data)| ended_by(&data.growth.ended_by))
+        .text("compared (time)", |(_, data)| short(data.duration))
+        .text("in that time, for a particle", |(_, data)| {
+            format!("{} {}", short(data.encounters.each), data.encounters.name())
+        })
+        .text("reference", |(_, data)| &data.reference.ways[0])
+        .text("its step", |(_, data)| short(data.reference.step))
+        .text("off by twice the step ", |(_, data)| of(&data.reference.halving))
+        .text("off by another integrator ", |(_, data)| of(&data.reference.second))
+        .text("left out", |(_, data)| match data.plan.left_out.as_slice() {
+            [] => "nothing".to_owned(),
+            left_out => left_out.join("; "),
+        })
+        .table("references", "What is compared, and how sure the reference is")
 }
 
 fn failed(scenes: &Scenes) -> Table {
-    let rows = scenes.iter().flat_map(|(name, data)| {
-        let refused = refused(data).into_iter();
-        let refused = refused.map(move |(what, why)| vec![text(name), text(what), text("any"), text(why)]);
-        let failed = broken(data).into_iter();
-        let failed =
-            failed.map(move |(what, step, why)| vec![text(name), text(what), text(short(step)), text(why)]);
-        refused.chain(failed)
+    let failed = scenes.iter().flat_map(|(name, data)| {
+        let refused = refused(data).into_iter().map(|(what, why)| (what, None, why));
+        let failed = broken(data).into_iter().map(|(what, step, why)| (what, Some(step), why));
+        refused.chain(failed).map(move |(what, step, why)| (name, what, step, why))
     });
-    table(
-        "failed",
-        "What failed, and why",
-        &["scene", "way", "step", "why"],
-        rows.collect(),
-        &["Larger steps than one that failed were not tried."],
-    )
+    Rows::of(failed)
+        .text("scene", |(name, ..)| *name)
+        .text("way", |(_, what, ..)| what.clone())
+        .text("step", |(_, _, step, _)| step.map_or("any".to_owned(), short))
+        .text("why", |(.., why)| *why)
+        .table("failed", "What failed, and why")
+        .note("Larger steps than one that failed were not tried.")
 }
 
 /// Ways that the scene is refused in, and why; those that are refused in every scheme and precision as one.
@@ -294,29 +225,22 @@ fn broken(data: &WorkPrecision) -> Vec<(String, f64, &str)> {
 
 /// Every run of every scene, for programs.
 pub fn runs(scenes: &Scenes) -> Table {
-    let measures = Measure::ALL.map(Measure::name);
-    let rows = scenes.iter().flat_map(|(name, data)| {
-        data.runs.iter().map(move |run| {
-            let mut row = vec![text(name), text(&data.ways[run.way].label), Cell::Number(run.step, 0)];
-            row.extend(Measure::ALL.map(|measure| number(run.error(measure), 0)));
-            let ends = [f64::min, f64::max].map(|end| run.costs.iter().copied().reduce(end));
-            row.extend([run.cost(), ends[0], ends[1], run.clocks].map(|value| number(value, 0)));
-            row.push(run.outcome.as_ref().err().map_or(Cell::Nothing, text));
-            row.push(if run.is_sound() { Cell::Nothing } else { text(run.objections.join("; ")) });
-            row
-        })
-    });
-    let columns: Vec<&str> = ["scene", "way", "step"]
-        .into_iter()
-        .chain(measures)
-        .chain([
-            "cost (s)",
-            "least cost (s)",
-            "largest cost (s)",
-            "clock periods",
-            "failed",
-            "what speaks against it",
-        ])
-        .collect();
-    table("runs", "Every run", &columns, rows.collect(), &[])
+    let runs = scenes
+        .iter()
+        .flat_map(|(name, data)| data.runs.iter().map(move |run| (name, &data.ways[run.way], run)));
+    let end = |run: &Run, pick: fn(f64, f64) -> f64| run.costs.iter().copied().reduce(pick);
+    let mut rows = Rows::of(runs)
+        .text("scene", |(name, ..)| *name)
+        .text("way", |(_, way, _)| &way.label)
+        .number("step", 0, |(.., run)| run.step);
+    for measure in Measure::ALL {
+        rows = rows.number(measure.name(), 0, |(.., run)| run.error(measure));
+    }
+    rows.number("cost (s)", 0, |(.., run)| run.cost())
+        .number("least cost (s)", 0, |(.., run)| end(run, f64::min))
+        .number("largest cost (s)", 0, |(.., run)| end(run, f64::max))
+        .number("clock periods", 0, |(.., run)| run.clocks)
+        .cell("failed", |(.., run)| run.outcome.as_ref().err().map(String::as_str))
+        .cell("what speaks against it", |(.., run)| (!run.is_sound()).then(|| run.objections.join("; ")))
+        .table("runs", "Every run")
 }
