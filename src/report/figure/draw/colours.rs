@@ -39,6 +39,14 @@ impl Shades {
         style::level((measured - self.ends[0]) / (self.ends[1] - self.ends[0]), self.signed())
     }
 
+    /// The value in the middle of those of a level.
+    pub fn value(&self, level: u8) -> f64 {
+        let signed = self.signed();
+        let place = f64::from(level - style::levels(signed).start()) / f64::from(style::SHADES - 1);
+        let measured = self.ends[0] + place * (self.ends[1] - self.ends[0]);
+        if self.scale == Scale::Linear { measured } else { libm::pow(10.0, measured) }
+    }
+
     /// The colours, for the library.
     pub fn map(&self) -> ColorMap {
         let signed = self.signed();

@@ -1,15 +1,18 @@
 //! Maps: the library's axes and colour bar, and cells that are merged where neighbours have one colour.
 
+use super::super::xml::escaped;
 use super::super::{Fault, Map, style};
 use super::axis::Span;
 use super::colours::Shades;
 use super::frame::{Frame, colour};
+use super::series::group;
 use super::words;
 use kuva::plot::Heatmap;
 use kuva::prelude::Plot;
 use kuva::render::layout::ComputedLayout;
 use kuva::render::render::{PathData, Primitive, Scene, TextAnchor};
 use std::fmt::Write;
+use stripmine_physics::number::significant;
 
 /// From the colour bar's heading to the bar (pixels).
 const TO_BAR: f64 = 9.0;
@@ -30,7 +33,7 @@ pub fn scene(title: &str, map: &Map) -> Result<Scene, Fault> {
     });
     drawn.scene.elements.retain(|it| !matches!(it, Primitive::RectBatch { .. }));
     let cells = cells(map, &shades, &drawn.places);
-    drawn.behind(cells);
+    drawn.fill(&x, &y, &format!(" data-value=\"{}\"", escaped(&heading)), cells);
     let (x, y) = (drawn.places.width - drawn.places.colorbar_x_inset - TO_BAR, drawn.places.margin_top);
     let mut heading =
         words::line([x, y + drawn.places.plot_height() / 2.0], TextAnchor::Middle, style::LABEL, &heading);
@@ -62,13 +65,13 @@ fn cells(map: &Map, shades: &Shades, places: &ComputedLayout) -> Vec<Primitive> 
     let [x, y] = [places.margin_left, places.margin_top + 0.5 * down];
     let transform = format!("translate({x:.2} {y:.2}) scale({across:.6} {down:.6})");
     let crisp = Some("shape-rendering=\"crispEdges\"".to_owned());
-    let group = Primitive::GroupStart { transform: Some(transform), title: None, extra_attrs: crisp };
+    let start = Primitive::GroupStart { transform: Some(transform), title: None, extra_attrs: crisp };
     let levels = 0..=*style::levels(true).end();
-    let painted = levels.zip(paths).filter(|(_, (path, _))| !path.is_empty()).map(|(level, (d, _))| {
+    let painted = levels.zip(paths).filter(|(_, (path, _))| !path.is_empty()).flat_map(|(level, (d, _))| {
         let stroke = colour(style::shade(level));
         let path =
             PathData { d, fill: None, stroke, stroke_width: 1.0, opacity: None, stroke_dasharray: None };
-        Primitive::Path(Box::new(path))
+        group(Some(significant(shades.value(level), 3)), None, vec![Primitive::Path(Box::new(path))])
     });
-    std::iter::once(group).chain(painted).chain([Primitive::GroupEnd]).collect()
+    std::iter::once(start).chain(painted).chain([Primitive::GroupEnd]).collect()
 }
