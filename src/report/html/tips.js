@@ -72,7 +72,9 @@ for (const plane of document.querySelectorAll(".picture [data-x]")) {
     title.remove();
   }
   const series = value ? [] : [...plane.querySelectorAll("[data-name]:not(:has(> rect))")].map(seriesOf);
-  const points = series.flatMap((of) => (of.marked ? of.places : []).map((place) => ({ of, place })));
+  // What was measured, or lines where nothing was.
+  const marked = series.filter((of) => of.marked);
+  const points = (marked.length ? marked : series).flatMap((of) => of.places.map((place) => ({ of, place })));
 
   const show = (lines, place, ringed) => {
     const at = new DOMPoint(place.x, place.y).matrixTransform(plane.getScreenCTM());
@@ -80,8 +82,10 @@ for (const plane of document.querySelectorAll(".picture [data-x]")) {
     ring.hidden = !ringed;
     tip.replaceChildren(...lines.map((line, i) => Object.assign(element(i ? "div" : "strong"), { textContent: line })));
     // Beside the place, on the side where there is more room.
+    const within = (at, length, whole) => Math.max(Math.min(at, whole - length - 4), 4);
     const left = at.x < innerWidth / 2 ? at.x + 14 : at.x - 14 - tip.offsetWidth;
-    tip.style.translate = `${Math.max(left, 4)}px ${Math.min(Math.max(at.y - 20, 4), innerHeight - tip.offsetHeight - 4)}px`;
+    const [right, down] = [within(left, tip.offsetWidth, innerWidth), within(at.y - 20, tip.offsetHeight, innerHeight)];
+    tip.style.translate = `${right}px ${down}px`;
     ring.style.translate = `${at.x}px ${at.y}px`;
   };
   const values = (place) => [`${x.heading}: ${valueAt(x, place.x)}`, `${y.heading}: ${valueAt(y, place.y)}`];

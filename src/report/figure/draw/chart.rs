@@ -1,7 +1,7 @@
 //! Charts.
 
 use super::super::look::{grounds, looks};
-use super::super::style::{self, Colour};
+use super::super::style::Colour;
 use super::super::{Along, Band, Chart, Fault, Scale};
 use super::axis::Span;
 use super::frame::{Frame, colour};
