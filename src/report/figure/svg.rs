@@ -50,7 +50,9 @@ pub(super) fn written(figure: &Figure, scene: &Scene) -> Result<String, FigureEr
 fn lines(text: &mut String, marks: &[Primitive]) {
     let mut paths: Vec<(String, String)> = vec![];
     for mark in marks {
-        let Primitive::Line { x1, y1, x2, y2, stroke, stroke_width, stroke_dasharray } = mark else { continue };
+        let Primitive::Line { x1, y1, x2, y2, stroke, stroke_width, stroke_dasharray } = mark else {
+            continue;
+        };
         let look = outline(stroke, *stroke_width, stroke_dasharray.as_deref());
         let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(|end| tenths(*end));
         let to = match (x1 == x2, y1 == y2) {
@@ -119,7 +121,8 @@ fn element(text: &mut String, it: &Primitive) -> Result<(), Fault> {
             .try_for_each(|i| writeln!(text, "<rect{}{}/>", at([x[i], y[i], w[i], h[i]]), filled(&fills[i]))),
         Primitive::Path(path) => {
             let PathData { d, fill, stroke, stroke_width, stroke_dasharray, .. } = &**path;
-            let look = filled(fill.as_ref().unwrap_or(&Color::None))
+            // Without a filling of its own it has that of what it stands in: none on the plane of a chart; and a straight line has none.
+            let look = fill.as_ref().map_or(String::new(), filled)
                 + &outline(stroke, *stroke_width, stroke_dasharray.as_deref());
             writeln!(text, "<path{look} d=\"{d}\"/>")
         }

@@ -5,6 +5,9 @@ use std::fmt::Write;
 /// Farther from the corner nothing is drawn (pixels); readers count in small numbers.
 const FARTHEST: f64 = 1e6;
 
+/// What can be seen of a line's place (pixels).
+const SEEN: f64 = 0.05;
+
 /// Words with the signs that mean something in XML spelled out; those it has no place for are blanks.
 pub fn escaped(words: &str) -> String {
     let mut all = String::new();
@@ -48,6 +51,29 @@ pub fn through(places: &[[f64; 2]]) -> String {
     path
 }
 
+/// The places of a line without those that its straight pieces pass by no farther than can be seen.
+pub fn bends(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let [first, .., last] = places else { return places.to_vec() };
+    let [right, down] = [last[0] - first[0], last[1] - first[1]];
+    let length = right.hypot(down);
+    // How far a place lies from the piece between both ends; from one of them where they are the same.
+    let off = |[x, y]: [f64; 2]| {
+        let [x, y] = [x - first[0], y - first[1]];
+        if length > 0.0 { (right * y - down * x).abs() / length } else { x.hypot(y) }
+    };
+    let within = &places[1..places.len() - 1];
+    let farthest = (1..).zip(within).max_by(|a, b| off(*a.1).total_cmp(&off(*b.1)));
+    match farthest {
+        Some((at, &place)) if off(place) > SEEN || off(place).is_nan() => {
+            let mut all = bends(&places[..=at]);
+            all.pop();
+            all.extend(bends(&places[at..]));
+            all
+        }
+        _ => vec![*first, *last],
+    }
+}
+
 /// A number of hundredths, without what says nothing.
 fn hundredths(number: i64) -> String {
     let text = format!("{:.2}", number as f64 / 100.0);
@@ -67,6 +93,15 @@ mod tests {
     fn numbers_are_short() {
         let written = [50.120000000000005, 0.0, -0.26, 500.0, 0.04].map(tenths);
         assert_eq!(written, ["50.1", "0", "-.3", "500", "0"]);
+    }
+
+    #[test]
+    fn lines_keep_their_bends() {
+        let straight: Vec<[f64; 2]> = (0..9).map(|i| [f64::from(i), 2.0 * f64::from(i)]).collect();
+        assert_eq!(bends(&straight), [[0.0, 0.0], [8.0, 16.0]]);
+        let bent = [&straight[..], &[[9.0, 0.0], [10.0, -16.0]]].concat();
+        assert_eq!(bends(&bent), [[0.0, 0.0], [8.0, 16.0], [10.0, -16.0]]);
+        assert_eq!(bends(&[[1.0, 1.0], [5.0, 5.0], [1.0, 1.0]]).len(), 3);
     }
 
     #[test]

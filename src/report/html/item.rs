@@ -1,8 +1,8 @@
 //! One item of the page.
 
-use super::words::{badge, prose};
 use super::film;
 use super::inline::Inline;
+use super::words::{badge, prose};
 use crate::report::figure::{Figure, data_file};
 use crate::report::section::Film;
 use crate::report::{Cell, Section, Table};

@@ -16,12 +16,8 @@ use words::{badge, kind, prose, sign};
 const STYLE: &str = include_str!("page.css");
 
 /// Scripts, each of which may use those before it.
-const SCRIPTS: [&str; 4] = [
-    include_str!("page.js"),
-    include_str!("tips.js"),
-    include_str!("strips.js"),
-    include_str!("player.js"),
-];
+const SCRIPTS: [&str; 4] =
+    [include_str!("page.js"), include_str!("tips.js"), include_str!("strips.js"), include_str!("player.js")];
 
 /// The content policy for the browser: nothing that is not in the file itself.
 const POLICY: &str =
@@ -36,8 +32,7 @@ pub fn render(
     left_out: &[String],
     drawn: &dyn Fn(&Section, &Figure) -> String,
 ) -> String {
-    let pictures: Vec<Vec<Inline>> =
-        sections.iter().map(|section| item::pictures(section, drawn)).collect();
+    let pictures: Vec<Vec<Inline>> = sections.iter().map(|section| item::pictures(section, drawn)).collect();
     // Pictures share their markers: each is in the page once.
     let markers: BTreeSet<&str> = pictures.iter().flatten().flat_map(Inline::definitions).collect();
     let page = html! {

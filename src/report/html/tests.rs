@@ -24,8 +24,13 @@ fn section(name: &str) -> Section {
         picture,
     };
     let chart = Chart { x: axis(HOSTILE), y: axis(HOSTILE), series: vec![series], bands: vec![] };
-    let drawing =
-        Drawing { window: [[0.0; 2], [1.0; 2]], width: 100.0, shapes: vec![Shape::Line { ends: [[0.0; 2], [1.0; 2]] }], shades: None, guide: None };
+    let drawing = Drawing {
+        window: [[0.0; 2], [1.0; 2]],
+        width: 100.0,
+        shapes: vec![Shape::Line { ends: [[0.0; 2], [1.0; 2]] }],
+        shades: None,
+        guide: None,
+    };
     Section {
         name: name.to_owned(),
         title: format!("{name} {HOSTILE}"),

@@ -107,7 +107,11 @@ impl Drawn {
         let places = &self.places;
         let [left, right] = [places.margin_left, places.width - places.margin_right];
         let [top, bottom] = [places.margin_top, places.height - places.margin_bottom];
-        let axes = format!("data-x=\"{}\" data-y=\"{}\"", x.scale_between(left, right), y.scale_between(bottom, top));
+        let axes = format!(
+            "fill=\"none\" data-x=\"{}\" data-y=\"{}\"",
+            x.scale_between(left, right),
+            y.scale_between(bottom, top)
+        );
         let plane = Primitive::GroupStart { transform: None, title: None, extra_attrs: Some(axes + more) };
         let inside = |it: &Primitive| matches!(it, Primitive::ClipStart { .. });
         let at = self.scene.elements.iter().position(inside).map_or(0, |at| at + 1);

@@ -2,7 +2,7 @@
 
 use super::super::look::Look;
 use super::super::style::{self, Colour};
-use super::super::xml::through;
+use super::super::xml::{bends, through};
 use super::super::{Point, Series, Style};
 use super::axis::Span;
 use super::frame::colour;
@@ -25,7 +25,7 @@ pub fn curve(look: &Look, series: &Series, x: &Span, y: &Span, places: &Computed
         middles = steps(&middles);
     }
     let title = (!look.has_markers()).then(|| series.name.clone());
-    group(title, None, vec![path(through(&middles), look.colour, width(look), dash(look))])
+    group(title, None, vec![path(through(&bends(&middles)), look.colour, width(look), dash(look))])
 }
 
 /// The bars and markers of a series, with its name.
