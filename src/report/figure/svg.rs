@@ -76,6 +76,10 @@ fn words(text: &mut String, marks: &[Primitive]) {
     let mut before = String::new();
     for mark in marks {
         let Primitive::Text { x, y, content, size, anchor, rotate, color, .. } = mark else { continue };
+        // A mark of an axis without a number.
+        if content.is_empty() {
+            continue;
+        }
         let mut look = format!(" font-size=\"{size}\"");
         match anchor {
             TextAnchor::Start => {}

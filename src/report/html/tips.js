@@ -1,16 +1,17 @@
-// What a chart or a map says where the pointer is, or, by arrow keys, from point to point. All is read from the pictures: their
-// planes say where numbers lie, titles name what is drawn.
+// What a chart or a map says where the pointer is, or, by arrow keys, from point to point. All is read from the picture: its
+// plane says where numbers lie, titles name what is drawn.
 "use strict";
 
 const REACH = 30; // how far from a point its values are shown (pixels of the picture)
 const STRIDE = 10; // how far an arrow key goes on a map (pixels of the picture)
 
-const ring = element("div", "ring", document.body);
-const tip = element("div", "tip", document.body);
+const [ring, tip] = ["ring", "tip"].map((name) => element("div", name, document.body));
 tip.setAttribute("role", "status");
 const hide = () => (tip.hidden = ring.hidden = true);
 hide();
 document.addEventListener("scroll", hide, { capture: true, passive: true });
+
+const clamp = (number, low, high) => Math.max(Math.min(number, high), low);
 
 /** An axis as its plane states it. */
 function axisOf(text) {
@@ -26,7 +27,7 @@ function valueAt({ log, from, to, low, high }, place) {
     return log ? low * (high / low) ** part : low + part * (high - low);
   };
   const [value, step] = [at(place), Math.abs(at(place + 0.01) - at(place))];
-  return Math.abs(value) < step ? "0" : readable(value, Math.min(Math.max(Math.floor(Math.log10(Math.abs(value) / step)), 2), 5));
+  return Math.abs(value) < step ? "0" : readable(value, clamp(Math.floor(Math.log10(Math.abs(value) / step)), 2, 5));
 }
 
 /** The corners of a path that goes on in steps from its first. */
@@ -44,15 +45,14 @@ function corners(path) {
 /** The place on a piece of line that is nearest to another. */
 function nearestOn(a, b, { x, y }) {
   const [dx, dy] = [b.x - a.x, b.y - a.y];
-  const part = ((x - a.x) * dx + (y - a.y) * dy) / (dx * dx + dy * dy) || 0;
-  const along = Math.min(Math.max(part, 0), 1);
+  const along = clamp(((x - a.x) * dx + (y - a.y) * dy) / (dx * dx + dy * dy) || 0, 0, 1);
   return { x: a.x + along * dx, y: a.y + along * dy };
 }
 
-/** A series: its name, its places, whether they are marked, and the ends of their spreads by the place across. */
+/** A series: its name, its places, whether these are marked, and the ends of their spreads by the place across. */
 function seriesOf(group) {
   const marks = group.querySelector("[style] > path");
-  const [bars, curve] = [group.querySelector(":scope > path[d*=V]"), group.querySelector(":scope > path:not([d*=V])")];
+  const [bars, curve] = ["[d*=V]", ":not([d*=V])"].map((which) => group.querySelector(`:scope > path${which}`));
   const spreads = [...(bars?.getAttribute("d") ?? "").matchAll(/M(\S+) (\S+)h9m-4.5 0V([\d.-]+)m/g)];
   return {
     name: group.dataset.name,
@@ -64,8 +64,8 @@ function seriesOf(group) {
 
 for (const plane of document.querySelectorAll(".picture [data-x]")) {
   const svg = plane.closest(".picture > svg");
-  const [x, y] = [axisOf(plane.dataset.x), axisOf(plane.dataset.y)];
   const { value } = plane.dataset;
+  const [x, y] = [plane.dataset.x, plane.dataset.y].map(axisOf);
   // The browser's own tips would lie upon ours.
   for (const title of plane.querySelectorAll("title")) {
     title.parentElement.dataset.name = title.textContent;
@@ -75,17 +75,16 @@ for (const plane of document.querySelectorAll(".picture [data-x]")) {
   // What was measured, or lines where nothing was.
   const marked = series.filter((of) => of.marked);
   const points = (marked.length ? marked : series).flatMap((of) => of.places.map((place) => ({ of, place })));
+  const onScreen = (place) => new DOMPoint(place.x, place.y).matrixTransform(plane.getScreenCTM());
 
   const show = (lines, place, ringed) => {
-    const at = new DOMPoint(place.x, place.y).matrixTransform(plane.getScreenCTM());
-    tip.hidden = false;
-    ring.hidden = !ringed;
+    const at = onScreen(place);
+    [tip.hidden, ring.hidden] = [false, !ringed];
     tip.replaceChildren(...lines.map((line, i) => Object.assign(element(i ? "div" : "strong"), { textContent: line })));
     // Beside the place, on the side where there is more room.
-    const within = (at, length, whole) => Math.max(Math.min(at, whole - length - 4), 4);
     const left = at.x < innerWidth / 2 ? at.x + 14 : at.x - 14 - tip.offsetWidth;
-    const [right, down] = [within(left, tip.offsetWidth, innerWidth), within(at.y - 20, tip.offsetHeight, innerHeight)];
-    tip.style.translate = `${right}px ${down}px`;
+    const [right, down] = [innerWidth - tip.offsetWidth - 4, innerHeight - tip.offsetHeight - 4];
+    tip.style.translate = `${clamp(left, 4, right)}px ${clamp(at.y - 20, 4, down)}px`;
     ring.style.translate = `${at.x}px ${at.y}px`;
   };
   const values = (place) => [`${x.heading}: ${valueAt(x, place.x)}`, `${y.heading}: ${valueAt(y, place.y)}`];
@@ -94,41 +93,33 @@ for (const plane of document.querySelectorAll(".picture [data-x]")) {
     const ends = spread ? [`between ${spread.ends.map((end) => valueAt(y, end)).join(" and ")}`] : [];
     show([of.name, ...values(place), ...ends], place, true);
   };
-  const look = (place, target) => {
-    let best = { distance: REACH };
-    const offer = (of, at, distance) => distance < best.distance && (best = { of, place: at, distance });
-    const away = (at) => Math.hypot(at.x - place.x, at.y - place.y);
-    for (const of of series) {
-      // A marker before the line that runs past it: it is what was measured.
-      if (of.marked) of.places.forEach((at) => offer(of, at, away(at)));
-      else of.places.slice(1).forEach((end, i) => ((at) => offer(of, at, away(at) + 5))(nearestOn(of.places[i], end, place)));
-    }
+  const look = (at, target) => {
+    // A marker before the line that runs past it: it is what was measured.
+    const offers = series.flatMap((of) => {
+      const near = of.marked ? of.places : of.places.slice(1).map((end, i) => nearestOn(of.places[i], end, at));
+      return near.map((place) => ({ of, place, away: Math.hypot(place.x - at.x, place.y - at.y) + (of.marked ? 0 : 5) }));
+    });
+    const best = offers.reduce((best, each) => (each.away < best.away ? each : best), { away: REACH });
     const name = target?.closest("[data-name]")?.dataset.name;
     if (best.of) showPoint(best);
-    else if (value && name) show([`${value}: ${name}`, ...values(place)], place);
-    else if (name) show([name], place);
+    else if (name) show(value ? [`${value}: ${name}`, ...values(at)] : [name], at);
     else hide();
   };
+  const follow = ({ clientX, clientY, target }) =>
+    look(new DOMPoint(clientX, clientY).matrixTransform(plane.getScreenCTM().inverse()), target);
+  ["pointermove", "pointerdown"].forEach((what) => svg.addEventListener(what, follow));
+  ["pointerleave", "blur"].forEach((what) => svg.addEventListener(what, hide));
 
-  const follow = (event) => {
-    const toPlane = plane.getScreenCTM().inverse();
-    look(new DOMPoint(event.clientX, event.clientY).matrixTransform(toPlane), event.target);
-  };
-  svg.addEventListener("pointermove", follow);
-  svg.addEventListener("pointerdown", follow);
-  svg.addEventListener("pointerleave", hide);
-
-  let [at, place] = [-1, { x: (x.from + x.to) / 2, y: (y.from + y.to) / 2 }];
-  svg.addEventListener("blur", hide);
+  let [number, place] = [-1, { x: (x.from + x.to) / 2, y: (y.from + y.to) / 2 }];
   svg.addEventListener("keydown", (event) => {
-    const [right, down] = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowDown: [0, 1], ArrowUp: [0, -1] }[event.key] ?? [];
-    if (right === undefined) return;
+    const { key } = event;
+    if (!/^Arrow/.test(key)) return;
     event.preventDefault();
-    at = (at + right + down + points.length) % points.length;
-    if (points.length) return showPoint(points[at]);
-    const within = (number, { from, to }) => Math.min(Math.max(number, Math.min(from, to) + 1), Math.max(from, to) - 1);
-    place = { x: within(place.x + right * STRIDE, x), y: within(place.y + down * STRIDE, y) };
-    const screen = new DOMPoint(place.x, place.y).matrixTransform(plane.getScreenCTM());
-    look(place, document.elementFromPoint(screen.x, screen.y));
+    const [right, down] = [(key === "ArrowRight") - (key === "ArrowLeft"), (key === "ArrowDown") - (key === "ArrowUp")];
+    number = (Math.max(number, right + down < 0 ? 0 : -1) + right + down + points.length) % points.length;
+    if (points.length) return showPoint(points[number]);
+    place = { x: clamp(place.x + right * STRIDE, x.from + 1, x.to - 1), y: clamp(place.y + down * STRIDE, y.to + 1, y.from - 1) };
+    const at = onScreen(place);
+    look(place, document.elementFromPoint(at.x, at.y));
   });
 }

@@ -66,6 +66,7 @@ impl Legend {
     /// Adds the legend to a picture: right of the axes' upper right end, and down from there.
     pub fn add_to(&self, scene: &mut Scene, [right, mut top]: [f64; 2]) {
         let left = right + GAP;
+        let mut words_of_all = vec![];
         for entry in &self.entries {
             let middle = top + entry.height() / 2.0;
             match &entry.sample {
@@ -82,9 +83,10 @@ impl Legend {
                 }),
             }
             let at = [left + SAMPLE + TO_WORDS, top + font::DESCENT * style::LABEL];
-            words::block(&entry.lines, at, style::LABEL).for_each(|line| scene.add(line));
+            words_of_all.extend(words::block(&entry.lines, at, style::LABEL));
             top += entry.height() + BETWEEN;
         }
+        scene.elements.extend(words_of_all);
     }
 }
 
