@@ -7,7 +7,7 @@ use super::Made;
 use super::journal::is_journal;
 use crate::console::{Failure, to_json};
 use crate::provenance::{Provenance, built};
-use crate::report::figure::{self, Figure, png, svg};
+use crate::report::figure::{self, Figure, svg};
 use crate::report::{Section, csv, html, page};
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
@@ -262,7 +262,6 @@ fn files_of(made: &Made) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     }
     for figure in &section.figures {
         all.push((format!("{}.svg", figure.name), svg(figure)?.into_bytes()));
-        all.push((format!("{}.png", figure.name), png(figure)?));
     }
     all.extend(files.iter().map(|(name, text)| (name.clone(), text.clone().into_bytes())));
     all.push((SECTION.to_owned(), compact(section)?.into_bytes()));

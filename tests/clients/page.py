@@ -5,10 +5,10 @@
 Needs the package `playwright`, and Chromium: playwright's own, or one that is installed (CHROMIUM names another).
 Where one of them cannot be had, the check says SKIPPED and why, and exits with 0.
 
-Every chart and map must draw, answer the pointer and zoom; every legend must hide its series; every film must play,
-by the button and by the keyboard. Exits with 1 if one does not, if the page asks the network for anything, complains
-on the console, or is wider than the screen. With a folder, pictures of the page as wide, narrow, both in the dark, printed
-and without scripts are left there.
+Every picture must be seen, in both widths, in the dark, on paper and without scripts, and have colours; every chart and
+map must say values at the pointer and by the keyboard; every film must play, by the button and by the keyboard. Exits with 1
+if one does not, if the page asks the network for anything, complains on the console, or is wider than the screen. With a
+folder, pictures of the page as wide, narrow, both in the dark, printed and without scripts are left there.
 """
 
 import os
@@ -31,6 +31,28 @@ COLOURED = """canvas => {
     }
     return dots;
 }"""
+# What a reader may find wrong with a picture as it lies on the page, or nothing: all of it must be there, its ground light and
+# its words dark, none of them cut off, and every marker that it names defined.
+LACKING = """svg => {
+    const [box, ink] = [svg.getBoundingClientRect(), getComputedStyle(svg).fill];
+    const ground = svg.querySelector(":scope > rect");
+    if (box.width < 100 || box.height < 50 || !svg.checkVisibility()) return "is not to be seen";
+    if (ink !== "rgb(26, 26, 26)" || ground?.getAttribute("fill") !== "#ffffff") return "cannot be read";
+    for (const text of svg.querySelectorAll("text")) {
+        const at = text.getBoundingClientRect();
+        const beyond = Math.max(box.left - at.left, at.right - box.right, box.top - at.top, at.bottom - box.bottom);
+        if (beyond > 1) return `cuts off "${text.textContent}" by ${beyond.toFixed(1)} pixels`;
+    }
+    for (const [, name] of svg.innerHTML.matchAll(/url\\(#([^)]+)\\)/g)) {
+        if (!document.getElementById(name)) return `names a marker that is not there: ${name}`;
+    }
+}"""
+# Places on curves, marks and cells, in pixels of the window.
+MARKS = """svg => [...svg.querySelectorAll("[data-x] path")].flatMap(path => {
+    const length = path.getTotalLength();
+    const onScreen = part => path.getPointAtLength(part * length).matrixTransform(path.getScreenCTM());
+    return [0, 0.5, 1].map(onScreen).map(({ x, y }) => [x, y]);
+})"""
 
 
 class Wrong(Exception):
@@ -62,9 +84,7 @@ def open_page(browser, address, width, complaints, **options):
     page.on("pageerror", lambda error: complaints.append(f"script: {error}"))
 
     def requested(request):
-        # Files beside the page stand for pictures on paper and without scripts.
-        beside = request.url.startswith(address.rsplit("/", 1)[0]) and request.url.endswith(".svg")
-        if request.url != address and not beside and not request.url.startswith(("data:", "blob:")):
+        if request.url != address and not request.url.startswith(("data:", "blob:")):
             complaints.append(f"asks for {request.url}")
 
     page.on("request", requested)
@@ -76,58 +96,37 @@ def name_of(picture):
     return picture.evaluate("picture => picture.closest('figure').id")
 
 
-def dots_of(picture):
-    return picture.query_selector("canvas:not(.legend canvas)").evaluate(COLOURED)
+def shown(page):
+    """The tip's lines, if there is one."""
+    tip = page.query_selector(".tip:not([hidden])")
+    return tip.inner_text().splitlines() if tip else []
 
 
-def read_out(page, picture):
-    """What the pointer reads somewhere on a plane."""
-    box = picture.query_selector(".u-over").bounding_box()
-    # Coarsely first; a chart of few points needs a closer look.
-    for down, right in [(i / n, j / n) for n in (12, 24) for i in range(1, n) for j in range(1, n)]:
-        page.mouse.move(box["x"] + right * box["width"], box["y"] + down * box["height"])
-        shown = picture.query_selector(".read-out:not([hidden])")
-        # A band's line has no axis; a point's or a cell's read-out has one.
-        if shown and len(shown.query_selector_all("div")) >= 2:
-            return shown.inner_text().splitlines()
-    return []
-
-
-def check_plane(page, picture):
-    """A chart or a map: pointer, zoom by dragging, all of it again."""
-    over = picture.query_selector(".u-over")
-    over.scroll_into_view_if_needed()
-    lines = read_out(page, picture)
+def check_tips(page, svg):
+    """A chart or a map says values at the pointer, none away from it, and values by the keyboard."""
+    svg.scroll_into_view_if_needed()
+    page.wait_for_timeout(50)
+    lines = []
+    window = page.viewport_size
+    for x, y in svg.evaluate(MARKS):
+        if 0 <= x < window["width"] and 0 <= y < window["height"]:
+            page.mouse.move(x, y)
+            lines = shown(page)
+            # A band's tip has no values; a point's or a cell's has one for each axis.
+            if len(lines) >= 3:
+                break
     demand(len(lines) >= 3, "the pointer reads nothing")
-    before = picture.query_selector("canvas").evaluate("canvas => canvas.toDataURL()")
-    changed = lambda: picture.query_selector("canvas").evaluate("canvas => canvas.toDataURL()") != before
-    box = over.bounding_box()
-    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.2 * box["height"])
-    page.mouse.down()
-    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"], steps=4)
-    page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.7 * box["height"], steps=4)
-    page.mouse.up()
-    page.wait_for_timeout(100)
-    demand(changed(), "dragging does not zoom")
-    page.mouse.dblclick(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
-    page.wait_for_timeout(100)
-    demand(not changed(), "a double click does not show all again")
-    return " | ".join(lines)
-
-
-def check_legend(page, picture):
-    """Hiding every series leaves no colour on the chart; showing them again brings all of it back."""
-    before = dots_of(picture)
-    buttons = picture.query_selector_all(".legend button")
-    demand(buttons, "no legend")
+    demand(not any("NaN" in line or "undefined" in line for line in lines), f"the tip says {lines}")
+    beyond = page.evaluate("""() => { const at = document.querySelector(".tip").getBoundingClientRect();
+        return at.left < 0 || at.right > innerWidth || at.top < 0 || at.bottom > innerHeight; }""")
+    demand(not beyond, "the tip lies beyond the window")
     page.mouse.move(0, 0)
-    for expected in ("false", "true"):
-        for button in buttons:
-            button.click()
-            demand(button.get_attribute("aria-pressed") == expected, "a legend's button does not say its state")
-        page.wait_for_timeout(100)
-        dots = dots_of(picture)
-        demand(dots == (before if expected == "true" else 0), f"legend pressed {expected}: {dots} of {before} dots")
+    demand(not shown(page), "the tip stays where nothing is")
+    svg.focus()
+    page.keyboard.press("ArrowRight")
+    demand(len(shown(page)) >= 3, "the keyboard reads nothing")
+    svg.evaluate("svg => svg.blur()")
+    return " | ".join(lines)
 
 
 def check_film(page, picture):
@@ -157,28 +156,24 @@ def check_film(page, picture):
 
 
 def check_pictures(page):
-    """A line for every picture, and how many of them failed."""
+    """A line for every picture that answers, and how many of them failed."""
     failures = 0
-    for picture in page.query_selector_all(".picture"):
-        kind = picture.get_attribute("data-kind")
-        words = []
-        try:
-            if kind == "film":
-                words.append(check_film(page, picture))
-            else:
-                words.append(check_plane(page, picture))
-            # A film of grains that do not spin yet begins in grey.
-            dots = dots_of(picture)
-            demand(dots >= FEWEST_DOTS, f"drew {dots} coloured dots")
-            if kind == "chart":
-                check_legend(page, picture)
-        except Wrong as complaint:
-            failures += 1
-            words.append(f"FAILED: {complaint}")
-        except AttributeError:
-            failures += 1
-            words.append("FAILED: did not draw")
-        print(f"  {kind} {name_of(picture)}: {'; '.join(words)}", flush=True)
+    for kind, selector in (("chart", ".picture > svg[tabindex]"), ("film", ".film")):
+        for picture in page.query_selector_all(selector):
+            try:
+                if kind == "film":
+                    words = check_film(page, picture)
+                    dots = picture.query_selector("canvas").evaluate(COLOURED)
+                    demand(dots >= FEWEST_DOTS, f"drew {dots} coloured dots")
+                else:
+                    words = check_tips(page, picture)
+            except Wrong as complaint:
+                failures += 1
+                words = f"FAILED: {complaint}"
+            except AttributeError:
+                failures += 1
+                words = "FAILED: did not draw"
+            print(f"  {kind} {name_of(picture)}: {words}", flush=True)
     return failures
 
 
@@ -187,19 +182,17 @@ def widest(page):
     return page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
 
 
-def unread(page):
-    """How many charts and maps do not show their files, where they stand for what a script draws."""
-    missing = 0
-    for picture in page.query_selector_all(".picture:not([data-kind=film])"):
-        picture.scroll_into_view_if_needed()
-        file = picture.query_selector("img.on-paper")
-        for _ in range(50):
-            shown = file and file.evaluate("it => it.complete && it.naturalWidth > 0 && it.height > 0")
-            if shown:
-                break
-            page.wait_for_timeout(100)
-        missing += not shown
-    return missing
+def look(page, how, complaints, on_screen=True):
+    """Every picture is there and can be read; nothing lies beyond the screen."""
+    pictures = page.query_selector_all(".picture > svg")
+    if not pictures:
+        complaints.append(f"{how}: no pictures")
+    for picture in pictures:
+        if lacking := picture.evaluate(LACKING):
+            complaints.append(f"{how}: {name_of(picture)} {lacking}")
+    beyond = widest(page)
+    if on_screen and beyond > 0:
+        complaints.append(f"{how}: {beyond} pixels wider than the screen")
 
 
 def keep(page, folder, name):
@@ -218,24 +211,21 @@ def check(browser, path, folder):
         astray = page.evaluate("""() => [...document.querySelectorAll('a[href^="#"]')]
             .map(link => link.getAttribute('href').slice(1)).filter(id => !document.getElementById(id))""")
         complaints.extend(f"a link leads nowhere: #{name}" for name in astray)
-        beyond = widest(page)
-        if beyond > 0:
-            complaints.append(f"{name}: {beyond} pixels wider than the screen")
+        look(page, name, complaints)
         print(f"{name} ({width} pixels):")
         failures += check_pictures(page)
         dark = open_page(browser, address, width, complaints, color_scheme="dark")
         dark.wait_for_timeout(300)
         keep(dark, folder, f"{name}-dark")
+        look(dark, f"{name}, in the dark", complaints)
+        plain = open_page(browser, address, width, complaints, java_script_enabled=False)
+        keep(plain, folder, f"{name}-without-scripts")
+        look(plain, f"{name}, without scripts", complaints)
     page = open_page(browser, address, WIDTHS["wide"], complaints)
     if folder:
         page.pdf(path=folder / "printed.pdf", format="A4", prefer_css_page_size=True)
     page.emulate_media(media="print")
-    if lacking := unread(page):
-        complaints.append(f"{lacking} pictures are missing on paper")
-    plain = open_page(browser, address, WIDTHS["wide"], complaints, java_script_enabled=False)
-    keep(plain, folder, "without-scripts")
-    if lacking := unread(plain):
-        complaints.append(f"{lacking} pictures are missing without scripts")
+    look(page, "on paper", complaints, on_screen=False)
     complaints = list(dict.fromkeys(complaints))
     for complaint in complaints:
         print(f"FAILED: {complaint}")

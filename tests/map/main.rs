@@ -40,7 +40,7 @@ const DEPENDENCIES: [(&str, &[&str]); 2] = [
 ];
 
 /// Circles of files that there are, each with the reason.
-const KNOWN_CIRCLES: [(&[&str], &str); 7] = [
+const KNOWN_CIRCLES: [(&[&str], &str); 6] = [
     (
         &["kernels/src/backend/dispatch.rs", "kernels/src/backend/precision.rs"],
         "a precision says which programs are compiled for it, and work is dispatched by precision",
@@ -70,10 +70,6 @@ const KNOWN_CIRCLES: [(&[&str], &str); 7] = [
     (
         &["src/console/failure.rs", "src/console/output.rs"],
         "output that cannot be written is a failure, and a failure is written by the output's rules",
-    ),
-    (
-        &["src/report/figure/draw/chart.rs", "src/report/figure/draw/legend.rs"],
-        "a chart has a legend, which is laid out by the chart's measures",
     ),
 ];
 

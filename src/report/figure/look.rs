@@ -1,7 +1,7 @@
-//! How the series of a chart look, wherever they are drawn.
+//! How the series and bands of a chart look, on it and in its legend.
 
 use super::style::{self, Colour, Marker};
-use super::{Chart, Series, Style};
+use super::{Along, Chart, Series, Style};
 
 /// How a series looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +53,19 @@ pub fn looks(chart: &Chart) -> Vec<Look> {
         }
     };
     chart.series.iter().enumerate().map(look).collect()
+}
+
+/// The colours of a chart's bands: of those along y, one upon another, the first is the lightest; those along x are grey.
+pub fn grounds(chart: &Chart) -> impl Iterator<Item = Colour> {
+    let mut before = 0;
+    chart.bands.iter().map(move |band| match band.along {
+        Along::X => style::STILL,
+        Along::Y => {
+            let colour = style::GROUNDS[before.min(style::GROUNDS.len() - 1)];
+            before += 1;
+            colour
+        }
+    })
 }
 
 fn has_markers(style: Style) -> bool {

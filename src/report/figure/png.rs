@@ -28,7 +28,7 @@ pub fn png(figure: &Figure) -> Result<Vec<u8>, FigureError> {
         return Err(too_large());
     }
     let drawn = |problem: String| Fault::Drawing { problem }.of(&figure.name);
-    let tree = tree(&svg::written(figure, &scene)).map_err(drawn)?;
+    let tree = tree(&svg::written(figure, &scene)?).map_err(drawn)?;
     let mut picture = Pixmap::new(across as u32, down as u32).ok_or_else(too_large)?;
     let dots = style::DOTS as f32;
     resvg::render(&tree, Transform::from_scale(dots, dots), &mut picture.as_mut());

@@ -3,7 +3,21 @@
 use super::quantised::Quantised;
 use crate::report::figure::style;
 use crate::report::section::{Film, Frame};
+use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
+
+/// Data in the page, where no script or style can be made of them: in JSON, `<` stands in strings only.
+pub fn embedded(id: &str, data: &Value) -> Markup {
+    let text = data.to_string().replace('<', "\\u003c");
+    html! { script type="application/json" id=[Some(id).filter(|id| !id.is_empty())] { (PreEscaped(text)) } }
+}
+
+/// The colours of magnitudes, and those of signed quantities, from the lowest to the highest.
+pub fn shades() -> Value {
+    let colours =
+        |signed| style::levels(signed).map(|level| style::shade(level).to_string()).collect::<Vec<_>>();
+    json!([colours(false), colours(true)])
+}
 
 /// Windows longer than this many times their width are cut into strips.
 const LONG: f64 = 6.0;
@@ -97,6 +111,14 @@ mod tests {
         let x = read(&data(&film)["x"]);
         assert_eq!(x.len(), 6);
         assert!(x[2].is_nan() && x[5].is_finite());
+    }
+
+    #[test]
+    fn data_cannot_end_their_element() {
+        let text = embedded("x", &json!({ "name": "</script><script>alert(1)</script>", "less": "a<b" }))
+            .into_string();
+        assert_eq!(text.matches("</script").count(), 1, "{text}");
+        assert!(text.contains("\\u003c/script>"));
     }
 
     #[test]

@@ -1,17 +1,23 @@
 //! One item of the page.
 
+use super::film;
+use super::inline::Inline;
 use super::words::{badge, prose};
-use super::{data, film};
-use crate::report::figure::{Figure, Picture, data_file};
+use crate::report::figure::{Figure, data_file};
 use crate::report::section::Film;
 use crate::report::{Cell, Section, Table};
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 /// Pictures of an item that the page shows; further ones are linked.
 const FIGURES: usize = 6;
 
+/// The pictures of an item that the page shows.
+pub fn pictures(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) -> Vec<Inline> {
+    section.figures.iter().take(FIGURES).map(|each| Inline::new(&drawn(section, each))).collect()
+}
+
 /// The item with everything that belongs to it.
-pub fn render(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) -> Markup {
+pub fn render(section: &Section, pictures: &[Inline]) -> Markup {
     let name = section.name.as_str();
     html! {
         section id=(name) aria-labelledby={ (name) "-title" } {
@@ -27,8 +33,8 @@ pub fn render(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) ->
             @for paragraph in &section.details {
                 p { (prose(paragraph)) }
             }
-            @for each in section.figures.iter().take(FIGURES) {
-                (figure(section, each, drawn))
+            @for (each, picture) in section.figures.iter().zip(pictures) {
+                (figure(section, each, picture))
             }
             @if section.figures.len() > FIGURES {
                 p.note {
@@ -58,30 +64,19 @@ pub fn render(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) ->
 }
 
 /// A figure: its picture, and below it what a reader must know.
-fn figure(section: &Section, figure: &Figure, drawn: &dyn Fn(&Section, &Figure) -> String) -> Markup {
-    let svg = drawn(section, figure);
-    // What stands before the element itself belongs to a file of its own.
-    let svg = PreEscaped(svg.find("<svg").map_or("", |start| &svg[start..]));
-    let file = format!("{}/{}.svg", section.folder(), figure.name);
-    // Charts and maps are drawn by a script from their data: the page carries no picture twice. The file is read where no script
-    // runs, and on paper.
-    let instead = html! { img.on-paper loading="lazy" src=(file) alt=(figure.title); };
-    let label = format!("{}. {}", figure.title, figure.caption);
+fn figure(section: &Section, figure: &Figure, picture: &Inline) -> Markup {
+    let id = format!("{}-{}", section.name, figure.name);
+    let caption = format!("{id}-caption");
+    let (folder, data) = (section.folder(), data_file(figure));
     html! {
-        figure id={ (section.name) "-" (figure.name) } {
-            @match &figure.picture {
-                Picture::Drawing(_) => div.drawing role="img" aria-label=(label) { (svg) },
-                Picture::Chart(chart) => (live("chart", &label, &data::chart(chart), &instead)),
-                Picture::Map(map) => (live("map", &label, &data::map(map), &instead)),
-            }
-            figcaption {
-                (heading(&figure.title)) " " (prose(&figure.caption))
-                @let folder = section.folder();
-                @if let Some(file) = data_file(figure) {
-                    " " a href={ (folder) "/" (file) } { "Data (CSV)" } ","
+        figure id=(id) {
+            div.picture { (picture.element(&caption, data.is_some())) }
+            figcaption id=(caption) {
+                (heading(&figure.title)) " " (prose(&figure.caption)) " "
+                @if let Some(file) = data {
+                    a href={ (folder) "/" (file) } { "Data (CSV)" } ", "
                 }
-                " " a href={ (folder) "/" (figure.name) ".svg" } { "SVG" } ", "
-                a href={ (folder) "/" (figure.name) ".png" } { "PNG" } "."
+                a href={ (folder) "/" (figure.name) ".svg" } { "SVG" } "."
             }
         }
     }
@@ -93,21 +88,14 @@ fn heading(title: &str) -> Markup {
     html! { strong { (title) @if !ends_itself { "." } } }
 }
 
-/// A picture that a script draws from its data, and what stands for it where no script runs.
-fn live(kind: &str, label: &str, data: &serde_json::Value, instead: &Markup) -> Markup {
-    html! {
-        div.picture data-kind=(kind) data-label=(label) {
-            (data::embedded("", data))
-            (instead)
-        }
-    }
-}
-
 fn moving(section: &Section, shown: &Film) -> Markup {
     let instead = html! { noscript { p { "The film needs JavaScript. Its frames are in the folder " (folder(&section.folder())) "." } } };
     html! {
         figure id={ (section.name) "-film" } {
-            (live("film", &shown.title, &film::data(shown), &instead))
+            div.film data-label=(shown.title) {
+                (film::embedded("", &film::data(shown)))
+                (instead)
+            }
             figcaption { (heading(&shown.title)) }
         }
     }

@@ -1,49 +1,40 @@
 //! The page of a reproduction as one HTML file: charts to hover over, films to play, nothing fetched from anywhere.
 
-mod data;
 mod film;
+mod inline;
 mod item;
-mod look;
 mod quantised;
 mod words;
 
 use super::figure::Figure;
 use super::{Part, Section, Verdict};
+use inline::Inline;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::collections::BTreeSet;
 use words::{badge, kind, prose, sign};
 
-/// uPlot, the charting library: its version is in its first line, its licence beside it.
-const UPLOT: &str = include_str!("uplot/uPlot.iife.min.js");
-const UPLOT_LICENCE: &str = include_str!("uplot/LICENSE");
-
-/// Style sheets, in the order of the cascade.
-const STYLES: [&str; 2] = [include_str!("uplot/uPlot.min.css"), include_str!("page.css")];
+const STYLE: &str = include_str!("page.css");
 
 /// Scripts, each of which may use those before it.
-const SCRIPTS: [&str; 8] = [
-    UPLOT,
-    include_str!("page.js"),
-    include_str!("ticks.js"),
-    include_str!("plane.js"),
-    include_str!("charts.js"),
-    include_str!("maps.js"),
-    include_str!("strips.js"),
-    include_str!("player.js"),
-];
+const SCRIPTS: [&str; 4] =
+    [include_str!("page.js"), include_str!("tips.js"), include_str!("strips.js"), include_str!("player.js")];
 
 /// The content policy for the browser: nothing that is not in the file itself.
 const POLICY: &str =
-    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src 'self' file: data:";
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 
 /// What stands near the beginning of every such page and of no other.
 pub const MARK: &str = "<title>Stripmine: what came out</title>";
 
-/// The page. `left_out` names items that another version of the program made. `drawn` gives the SVG of a drawing.
+/// The page. `left_out` names items that another version of the program made. `drawn` gives the SVG of a figure.
 pub fn render(
     sections: &[Section],
     left_out: &[String],
     drawn: &dyn Fn(&Section, &Figure) -> String,
 ) -> String {
+    let pictures: Vec<Vec<Inline>> = sections.iter().map(|section| item::pictures(section, drawn)).collect();
+    // Pictures share their markers: each is in the page once.
+    let markers: BTreeSet<&str> = pictures.iter().flatten().flat_map(Inline::definitions).collect();
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -53,24 +44,25 @@ pub fn render(
                 meta http-equiv="Content-Security-Policy" content=(POLICY);
                 (PreEscaped(MARK))
                 link rel="icon" href="data:,";
-                @for style in STYLES {
-                    style { (PreEscaped(style)) }
-                }
+                style { (PreEscaped(STYLE)) }
             }
             body {
                 a.skip href="#summary" { "To the summary" }
                 (contents(sections))
+                svg.markers aria-hidden="true" {
+                    @for marker in markers { (PreEscaped(marker)) }
+                }
                 main {
                     (summary(sections))
-                    @for section in sections {
-                        (item::render(section, drawn))
+                    @for (section, pictures) in sections.iter().zip(&pictures) {
+                        (item::render(section, pictures))
                     }
                     @if !left_out.is_empty() {
                         p.note { "Left out, for another version of the program made them: " (left_out.join(", ")) "." }
                     }
                     (footer())
                 }
-                (data::embedded("shades", &data::shades()))
+                (film::embedded("shades", &film::shades()))
                 @for script in SCRIPTS {
                     script { (PreEscaped(script)) }
                 }
@@ -171,17 +163,13 @@ fn tally(sections: &[Section]) -> String {
     }
 }
 
-/// What is the same everywhere, and whose charts these are.
+/// What is the same everywhere.
 fn footer() -> Markup {
     html! {
         footer {
             p {
                 "What depends on the host lies under " code { "host/" } "; everything else but the pages themselves and the files "
                 code { "provenance.json" } " is the same everywhere, byte by byte."
-            }
-            details {
-                summary { "Charts are drawn with uPlot, under the MIT licence." }
-                pre { (UPLOT_LICENCE) }
             }
         }
     }

@@ -1,30 +1,5 @@
-// What all pictures of the page share: colours, numbers as people read them, data from Rust; and what the page itself
-// does.
+// What the page itself does, and numbers as people read them.
 "use strict";
-
-/** The colours of magnitudes, and those of signed quantities, from the lowest to the highest. */
-const [MAGNITUDES, SIGNED] = JSON.parse(document.getElementById("shades").textContent);
-
-/** The colours of shades between two ends: 0 in the middle has a colour of its own. */
-const shadesOf = ([low, high]) => (low < 0 && low === -high ? SIGNED : MAGNITUDES);
-
-/** The number of the shade of a value between two ends. */
-function shadeOf(value, [low, high]) {
-  const place = high > low ? (value - low) / (high - low) : 0.5;
-  return Math.round(Math.min(Math.max(place, 0), 1) * (MAGNITUDES.length - 1));
-}
-
-/** The numbers of a `Quantised` of Rust; NaN where there is none. */
-function numbers({ low, high, bytes, codes }) {
-  const all = Uint8Array.from(atob(codes), (letter) => letter.charCodeAt(0));
-  const out = new Float64Array(all.length / bytes);
-  const highest = 256 ** bytes - 2;
-  for (let i = 0; i < out.length; i++) {
-    const code = bytes === 1 ? all[i] : all[2 * i] + 256 * all[2 * i + 1];
-    out[i] = code > highest ? NaN : low + (code / highest) * (high - low);
-  }
-  return out;
-}
 
 /** Ten to a whole power, with raised digits. */
 const powerOfTen = (exponent) =>
@@ -45,51 +20,12 @@ function readable(value, digits = 4) {
   return (rounded < 0 ? "−" : "") + grouped + (fraction ? "." + fraction : "");
 }
 
-/** A number with its unit. */
-const withUnit = (value, unit) => readable(value) + (unit ? "\u202f" + unit : "");
-
-/** An axis's label with its unit. */
-const heading = ({ label, unit }) => (unit ? `${label} (${unit})` : label);
-
 /** A new element with a class, inside another. */
 function element(kind, className, parent) {
   const made = document.createElement(kind);
   if (className) made.className = className;
   if (parent) parent.append(made);
   return made;
-}
-
-/** A drawing surface of a size in pixels of the page, sharp on screens with finer dots. */
-function sizeCanvas(canvas, width, height, dots = window.devicePixelRatio || 1) {
-  canvas.width = Math.round(width * dots);
-  canvas.height = Math.round(height * dots);
-  canvas.style.width = width + "px";
-  canvas.style.height = height + "px";
-  const ctx = canvas.getContext("2d");
-  ctx.setTransform(dots, 0, 0, dots, 0, 0);
-  return ctx;
-}
-
-/** A bar that says what the colours mean. */
-function colourBar(parent, { label, unit, log, ends }) {
-  const bar = element("div", "colour-bar", parent);
-  element("span", "", bar).textContent = heading({ label, unit }) + (log ? ", logarithmic:" : ":");
-  element("span", "", bar).textContent = readable(ends[0], 3);
-  element("span", "shades", bar).style.background = `linear-gradient(to right, ${shadesOf(ends).join(", ")})`;
-  element("span", "", bar).textContent = readable(ends[1], 3);
-}
-
-/** Makes the pictures of a kind. Where that fails, the drawing for readers without scripts is shown. */
-function pictures(kind, make) {
-  for (const holder of document.querySelectorAll(`.picture[data-kind="${kind}"]`)) {
-    try {
-      make(holder, JSON.parse(holder.querySelector("script").textContent));
-    } catch (error) {
-      console.error(holder.dataset.label, error);
-      holder.querySelectorAll(":scope > div").forEach((part) => part.remove());
-      holder.querySelector(".on-paper")?.classList.add("instead");
-    }
-  }
 }
 
 for (const button of document.querySelectorAll("[data-copy]")) {

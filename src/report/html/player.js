@@ -11,6 +11,15 @@ function timesAsText(times) {
   return times.map((time) => `t = ${time.toFixed(most)}\u202fs`);
 }
 
+/** A bar that says what the colours mean. */
+function colourBar(parent, { label, ends }) {
+  const bar = element("div", "colour-bar", parent);
+  element("span", "", bar).textContent = label + ":";
+  element("span", "", bar).textContent = readable(ends[0], 3);
+  element("span", "shades", bar).style.background = `linear-gradient(to right, ${shadesOf(ends).join(", ")})`;
+  element("span", "", bar).textContent = readable(ends[1], 3);
+}
+
 /** The buttons and sliders of a player. */
 function filmControls(player, film) {
   const controls = element("div", "controls", player);
@@ -28,9 +37,13 @@ function filmControls(player, film) {
   return { button, slider, time, speed };
 }
 
-pictures("film", (holder, film) => {
+for (const holder of document.querySelectorAll(".film")) {
+  const film = JSON.parse(holder.querySelector("script").textContent);
   const last = film.times.length - 1;
-  if (last < 0) return void (element("p", "", holder).textContent = "The film has no frames.");
+  if (last < 0) {
+    element("p", "", holder).textContent = "The film has no frames.";
+    continue;
+  }
   const player = element("div", "player", holder);
   player.tabIndex = 0;
   player.setAttribute("role", "group");
@@ -103,4 +116,4 @@ pictures("film", (holder, film) => {
   window.addEventListener("afterprint", fitScreen);
   fitScreen();
   play(false);
-});
+}

@@ -51,7 +51,7 @@ impl Quantised {
 }
 
 /// The lowest and the highest of some numbers; none if there are none.
-pub fn ends(numbers: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+fn ends(numbers: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     numbers.fold(None, |ends, number| match ends {
         None => Some([number; 2]),
         Some([low, high]) => Some([low.min(number), high.max(number)]),
@@ -62,7 +62,7 @@ pub fn ends(numbers: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
 pub mod tests {
     use super::*;
 
-    /// What the scripts read: the twin of `numbers` in `page.js`.
+    /// What the scripts read: the twin of `numbers` in `strips.js`.
     pub fn read(quantised: &Quantised) -> Vec<f64> {
         let Quantised { low, high, bytes, codes } = quantised;
         let codes = STANDARD.decode(codes).unwrap();

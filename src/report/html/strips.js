@@ -2,6 +2,41 @@
 // lines of a text.
 "use strict";
 
+/** The colours of magnitudes, and those of signed quantities, from the lowest to the highest. */
+const [MAGNITUDES, SIGNED] = JSON.parse(document.getElementById("shades").textContent);
+
+/** The colours of shades between two ends: 0 in the middle has a colour of its own. */
+const shadesOf = ([low, high]) => (low < 0 && low === -high ? SIGNED : MAGNITUDES);
+
+/** The number of the shade of a value between two ends. */
+function shadeOf(value, [low, high]) {
+  const place = high > low ? (value - low) / (high - low) : 0.5;
+  return Math.round(Math.min(Math.max(place, 0), 1) * (MAGNITUDES.length - 1));
+}
+
+/** The numbers of a `Quantised` of Rust; NaN where there is none. */
+function numbers({ low, high, bytes, codes }) {
+  const all = Uint8Array.from(atob(codes), (letter) => letter.charCodeAt(0));
+  const out = new Float64Array(all.length / bytes);
+  const highest = 256 ** bytes - 2;
+  for (let i = 0; i < out.length; i++) {
+    const code = bytes === 1 ? all[i] : all[2 * i] + 256 * all[2 * i + 1];
+    out[i] = code > highest ? NaN : low + (code / highest) * (high - low);
+  }
+  return out;
+}
+
+/** A drawing surface of a size in pixels of the page, sharp on screens with finer dots. */
+function sizeCanvas(canvas, width, height, dots = window.devicePixelRatio || 1) {
+  canvas.width = Math.round(width * dots);
+  canvas.height = Math.round(height * dots);
+  canvas.style.width = width + "px";
+  canvas.style.height = height + "px";
+  const ctx = canvas.getContext("2d");
+  ctx.setTransform(dots, 0, 0, dots, 0, 0);
+  return ctx;
+}
+
 const GUTTER = 64; // room for the place where a strip begins (pixels)
 const LOWEST_STRIP = 34; // a strip lower than this shows no discs
 const MOST_STRIPS = 16;

@@ -1,5 +1,6 @@
 //! Where numbers lie on an axis, and how they are written there.
 
+use super::super::xml::escaped;
 use super::super::{Axis, Fault, Scale};
 use kuva::prelude::TickFormat;
 use std::sync::Arc;
@@ -53,6 +54,14 @@ impl Span {
     /// What the library is given for a value.
     pub fn number(&self, value: f64) -> f64 {
         value * libm::pow(10.0, f64::from(self.power))
+    }
+
+    /// Where its numbers lie between two places of a picture, for who reads values from it: the scale, the places of its ends,
+    /// its ends, and its heading.
+    pub fn scale_between(&self, low: f64, high: f64) -> String {
+        let scale = if self.is_logarithmic() { "log" } else { "linear" };
+        let [first, last] = self.ends.map(|end| end / self.number(1.0));
+        format!("{scale} {low:.2} {high:.2} {first:.6e} {last:.6e} {}", escaped(&self.heading))
     }
 
     /// Whether values have equal ratios at equal distances.

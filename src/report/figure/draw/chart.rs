@@ -1,16 +1,17 @@
 //! Charts.
 
-use super::super::look::looks;
-use super::super::style::{self, Colour};
+use super::super::look::{grounds, looks};
+use super::super::style::Colour;
 use super::super::{Along, Band, Chart, Fault, Scale};
 use super::axis::Span;
 use super::frame::{Frame, colour};
 use super::legend::Legend;
-use super::series;
+use super::{marker, series};
 use kuva::plot::LinePlot;
 use kuva::prelude::Plot;
 use kuva::render::layout::ComputedLayout;
 use kuva::render::render::{Primitive, Scene};
+use std::collections::BTreeSet;
 
 /// Draws a chart.
 pub fn scene(title: &str, chart: &Chart) -> Result<Scene, Fault> {
@@ -26,37 +27,26 @@ pub fn scene(title: &str, chart: &Chart) -> Result<Scene, Fault> {
     let legend = Legend::new(chart);
     let looks = looks(chart);
     let drawn = || chart.series.iter().zip(&looks);
-    let curves = drawn().filter_map(|(series, look)| series::curve(look, series, &x, &y));
-    // The library opens the window between the axes' ends for plots only.
-    let curves = std::iter::once(Plot::Line(LinePlot::new())).chain(curves).collect();
     let frame = Frame { title, x: &x, y: &y, right: Some(legend.width()), height: legend.height() };
-    let mut picture = frame.draw(curves, |asked| asked);
+    // The library opens the window between the axes' ends for plots only.
+    let mut picture = frame.draw(vec![Plot::Line(LinePlot::new())], |asked| asked);
+    let places = &picture.places;
     let areas = chart.bands.iter().zip(grounds(chart));
-    let areas = areas.filter_map(|(band, ground)| area(band, ground, &x, &y, &picture.places)).collect();
-    picture.behind(areas);
-    let of = |(series, look)| series::points(look, series, &x, &y, &picture.places);
-    let points = drawn().flat_map(of).collect();
-    picture.in_front(points);
+    let areas = areas.flat_map(|(band, ground)| area(band, ground, &x, &y, places));
+    // Curves below, markers on top, whichever series they belong to.
+    let curves = drawn().flat_map(|(series, look)| series::curve(look, series, &x, &y, places));
+    let points = drawn().flat_map(|(series, look)| series::points(look, series, &x, &y, places));
+    let things = areas.chain(curves).chain(points).collect();
+    picture.fill(&x, &y, "", things);
+    let markers: BTreeSet<String> = looks.iter().map(marker::definition).collect();
+    picture.scene.defs.extend(markers);
     let places = &picture.places;
     legend.add_to(&mut picture.scene, [places.width - places.margin_right, places.margin_top]);
     Ok(picture.scene)
 }
 
-/// The colours of a chart's bands: of those along y, one upon another, the first is the lightest; those along x are grey.
-pub fn grounds(chart: &Chart) -> impl Iterator<Item = Colour> {
-    let mut before = 0;
-    chart.bands.iter().map(move |band| match band.along {
-        Along::X => style::STILL,
-        Along::Y => {
-            let colour = style::GROUNDS[before.min(style::GROUNDS.len() - 1)];
-            before += 1;
-            colour
-        }
-    })
-}
-
-/// What of a band can be seen.
-fn area(band: &Band, ground: Colour, x: &Span, y: &Span, places: &ComputedLayout) -> Option<Primitive> {
+/// What of a band can be seen, with its meaning.
+fn area(band: &Band, ground: Colour, x: &Span, y: &Span, places: &ComputedLayout) -> Vec<Primitive> {
     let [left, right] = [places.margin_left, places.width - places.margin_right];
     let [top, bottom] = [places.margin_top, places.height - places.margin_bottom];
     // What a logarithmic axis has no place for lies beyond its lower end.
@@ -70,14 +60,11 @@ fn area(band: &Band, ground: Colour, x: &Span, y: &Span, places: &ComputedLayout
         }
     };
     let (width, height) = (right - left, bottom - top);
-    (width > 0.0 && height > 0.0).then(|| Primitive::Rect {
-        x: left,
-        y: top,
-        width,
-        height,
-        fill: colour(ground),
-        stroke: None,
-        stroke_width: None,
-        opacity: None,
-    })
+    if width <= 0.0 || height <= 0.0 {
+        return vec![];
+    }
+    let (fill, x, y) = (colour(ground), left, top);
+    let ground =
+        Primitive::Rect { x, y, width, height, fill, stroke: None, stroke_width: None, opacity: None };
+    series::group(Some(band.label.clone()), None, vec![ground])
 }

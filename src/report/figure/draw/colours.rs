@@ -2,9 +2,44 @@
 
 use super::super::{Axis, Fault, Scale, style};
 use super::axis::{ends, linear};
-use kuva::plot::colormap::ColorMap;
 use kuva::prelude::TickFormat;
+use kuva::render::color::Color;
+use std::fmt::Write;
 use std::sync::Arc;
+
+/// Which way a colour bar goes from its lowest to its highest shade.
+#[derive(Clone, Copy)]
+pub enum Way {
+    /// To the right.
+    Right,
+    /// Up.
+    Up,
+}
+
+/// A colour bar's filling, and its definition, which has the same name in every picture.
+pub struct Filling {
+    /// What names it.
+    pub fill: Color,
+    /// What it is.
+    pub definition: String,
+}
+
+/// All shades of magnitudes, or of signed quantities.
+pub fn shades(signed: bool, way: Way) -> Filling {
+    const STOPS: u8 = 16;
+    let (name, ends) = match way {
+        Way::Right => (format!("shades{}", u8::from(signed)), ""),
+        Way::Up => (format!("shades{}-up", u8::from(signed)), " x2=\"0\" y1=\"1\""),
+    };
+    let mut definition = format!("<linearGradient id=\"{name}\"{ends}>");
+    for stop in 0..=STOPS {
+        let place = f64::from(stop) / f64::from(STOPS);
+        let shade = style::shade(style::level(place, signed));
+        let _ = write!(definition, "<stop offset=\"{place}\" stop-color=\"{shade}\"/>");
+    }
+    definition.push_str("</linearGradient>");
+    Filling { fill: Color::Css(format!("url(#{name})").into()), definition }
+}
 
 /// A range of numbers and the colours that stand for them.
 #[derive(Clone, Debug)]
@@ -39,10 +74,12 @@ impl Shades {
         style::level((measured - self.ends[0]) / (self.ends[1] - self.ends[0]), self.signed())
     }
 
-    /// The colours, for the library.
-    pub fn map(&self) -> ColorMap {
+    /// The value in the middle of those of a level.
+    pub fn value(&self, level: u8) -> f64 {
         let signed = self.signed();
-        ColorMap::Custom(Arc::new(move |place| style::shade(style::level(place, signed)).to_string()))
+        let place = f64::from(level - style::levels(signed).start()) / f64::from(style::SHADES - 1);
+        let measured = self.ends[0] + place * (self.ends[1] - self.ends[0]);
+        if self.scale == Scale::Linear { measured } else { libm::pow(10.0, measured) }
     }
 
     /// How numbers are written along the colours.

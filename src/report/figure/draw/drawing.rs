@@ -2,6 +2,7 @@
 
 use super::super::style::{self, Colour};
 use super::super::{Drawing, Shape, Tint, font};
+use super::colours::{Way, shades};
 use super::frame::{colour as paint, theme};
 use super::guide;
 use super::words::{self, Title};
@@ -20,6 +21,10 @@ const LINE: f64 = 1.3;
 /// Width of a disc's outline, in radii; and its bounds in pixels.
 const RIM: f64 = 0.08;
 const RIMS: [f64; 2] = [0.4, 1.2];
+/// Discs of no more than this radius have no outline (pixels).
+const SMALL: f64 = 2.4;
+/// Height of the rows in which dots are put in order (tenths of a pixel).
+const ROW: i64 = 120;
 
 /// Draws things. Words and lines grow with a drawing that is wider than usual: it will be seen scaled down.
 pub fn scene(title: &str, drawing: &Drawing) -> Scene {
@@ -67,18 +72,10 @@ fn colour_bar(scene: &mut Scene, ends: [f64; 2], what: &str, zoom: f64, top: f64
     let width = (scene.width - 2.0 * zoom * (style::MARGIN + GAP)).min(BAR * zoom);
     let left = (scene.width - width) / 2.0;
     let height = THICKNESS * zoom;
-    let levels: Vec<u8> = style::levels(style::is_signed(ends)).collect();
-    let step: f64 = width / levels.len() as f64;
-    let start = |i: usize| left + i as f64 * step;
-    scene.add(Primitive::RectBatch {
-        x: (0..levels.len()).map(start).collect(),
-        y: vec![top; levels.len()],
-        // Each reaches below the next, which hides seams.
-        w: (0..levels.len()).map(|i| (1.5 * step).min(left + width - start(i))).collect(),
-        h: vec![height; levels.len()],
-        fills: levels.into_iter().map(|level| paint(style::shade(level))).collect(),
-    });
-    scene.add(rectangle([left, top], [width, height], None, Some(LINE * zoom)));
+    let shades = shades(style::is_signed(ends), Way::Right);
+    scene.defs.push(shades.definition);
+    let (fill, stroke, stroke_width) = (shades.fill, Some(paint(style::INK)), Some(LINE * zoom));
+    scene.add(Primitive::Rect { x: left, y: top, width, height, fill, stroke, stroke_width, opacity: None });
     let size = style::LABEL * zoom;
     let numbers = top + height + size * 1.2;
     for part in [0.0, 0.5, 1.0] {
@@ -167,23 +164,18 @@ impl View<'_> {
     /// Filled discs; which of them is in front makes no difference. Those of one colour and size are the round ends of the
     /// shortest lines of that width, a sixth of what circles take; outlines are larger discs behind all of them.
     fn dots<'b>(&self, scene: &mut Scene, discs: impl Iterator<Item = &'b Shape>) {
-        // The path, and where it has come to (tenths of a pixel); outlines first.
-        let mut paths: BTreeMap<Dots, (String, [i64; 2])> = BTreeMap::new();
+        // Their middles (tenths of a pixel); outlines first.
+        let mut alike: BTreeMap<Dots, Vec<[i64; 2]>> = BTreeMap::new();
         let tenths = |pixels: f64| (10.0 * pixels).round() as i64;
         for shape in discs {
             let Shape::Disc { centre, radius, tint } = shape else { continue };
             let (Some(fill), radius) = (self.colour(*tint), radius.abs() * self.scale) else { continue };
-            let [x, y] = self.place(*centre).map(tenths);
-            // An outline would hide a disc of a few pixels.
-            let rim = if radius > 4.0 * RIMS[0] * self.zoom { self.rim(radius) } else { 0.0 };
+            let middle = self.place(*centre).map(tenths);
             let mut dot = |front: bool, Colour(red, green, blue): Colour, diameter: f64| {
-                let alike = (front, [red, green, blue], tenths(diameter));
-                let (path, at) = paths.entry(alike).or_default();
-                let start = if path.is_empty() { 'M' } else { 'm' };
-                // Some viewers show nothing of a line without a length.
-                let _ = write!(path, "{start}{} {}h1", x - at[0], y - at[1]);
-                *at = [x + 1, y];
+                alike.entry((front, [red, green, blue], tenths(diameter))).or_default().push(middle);
             };
+            // An outline would hide a disc of a few pixels.
+            let rim = if radius > SMALL * self.zoom { self.rim(radius) } else { 0.0 };
             if rim > 0.0 {
                 dot(false, style::INK, 2.0 * radius + rim);
             }
@@ -192,7 +184,16 @@ impl View<'_> {
         let round = Some("stroke-linecap=\"round\"".to_owned());
         let tenths = Some("scale(.1)".to_owned());
         scene.add(Primitive::GroupStart { transform: tenths, title: None, extra_attrs: round });
-        for ((_, [red, green, blue], diameter), (d, _)) in paths {
+        for ((_, [red, green, blue], diameter), mut middles) in alike {
+            // Near ones follow each other, which makes the steps between them short.
+            middles.sort_by_key(|[x, y]| (y.div_euclid(ROW), *x));
+            let (mut d, mut at) = (String::new(), [0, 0]);
+            for [x, y] in middles {
+                let start = if d.is_empty() { 'M' } else { 'm' };
+                // Some viewers show nothing of a line without a length.
+                let _ = write!(d, "{start}{} {}h1", x - at[0], y - at[1]);
+                at = [x + 1, y];
+            }
             let (stroke, stroke_width) = (Color::Rgb(red, green, blue), diameter as f64);
             let path =
                 PathData { d, fill: None, stroke, stroke_width, opacity: None, stroke_dasharray: None };

@@ -46,6 +46,8 @@ impl Frame<'_> {
             .with_force_margins_y(title.bottom(), bottom);
         let places = ComputedLayout::from_layout(&asked);
         let mut scene = render_multiple(plots, asked);
+        // Names of windows, which have none in our files.
+        scene.defs.clear();
         title.primitives().for_each(|words| scene.add(words));
         Drawn { scene, places }
     }
@@ -100,18 +102,21 @@ pub struct Drawn {
 }
 
 impl Drawn {
-    /// Adds something within the axes' ends, behind all that is there.
-    pub fn behind(&mut self, primitives: Vec<Primitive>) {
+    /// Puts things on the plane between the axes' ends, and says where numbers lie on it. `more` are further attributes.
+    pub fn fill(&mut self, x: &Span, y: &Span, more: &str, things: Vec<Primitive>) {
+        let places = &self.places;
+        let [left, right] = [places.margin_left, places.width - places.margin_right];
+        let [top, bottom] = [places.margin_top, places.height - places.margin_bottom];
+        let axes = format!(
+            "fill=\"none\" data-x=\"{}\" data-y=\"{}\"",
+            x.scale_between(left, right),
+            y.scale_between(bottom, top)
+        );
+        let plane = Primitive::GroupStart { transform: None, title: None, extra_attrs: Some(axes + more) };
         let inside = |it: &Primitive| matches!(it, Primitive::ClipStart { .. });
         let at = self.scene.elements.iter().position(inside).map_or(0, |at| at + 1);
-        self.scene.elements.splice(at..at, primitives);
-    }
-
-    /// Adds something within the axes' ends, in front of the curves.
-    pub fn in_front(&mut self, primitives: Vec<Primitive>) {
-        let ends = |it: &Primitive| matches!(it, Primitive::ClipEnd);
-        let at = self.scene.elements.iter().position(ends).unwrap_or(self.scene.elements.len());
-        self.scene.elements.splice(at..at, primitives);
+        let all = std::iter::once(plane).chain(things).chain([Primitive::GroupEnd]);
+        self.scene.elements.splice(at..at, all);
     }
 }
 

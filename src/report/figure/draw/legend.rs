@@ -1,10 +1,10 @@
 //! What the curves, markers and grounds of a chart mean, to the right of it. The library's own legends show a line or a
 //! marker, not both.
 
-use super::super::look::{Look, looks};
+use super::super::look::{Look, grounds, looks};
 use super::super::{Chart, font, style};
 use super::frame::colour;
-use super::{chart, series, words};
+use super::{series, words};
 use kuva::render::render::{Primitive, Scene};
 
 /// From the chart to the legend.
@@ -42,7 +42,7 @@ impl Legend {
         };
         let series = chart.series.iter().zip(looks(chart)).filter(|(series, _)| !series.points.is_empty());
         let series = series.filter_map(|(series, look)| entry(Sample::Series(look), &series.name));
-        let bands = chart.bands.iter().zip(chart::grounds(chart));
+        let bands = chart.bands.iter().zip(grounds(chart));
         let bands = bands.filter_map(|(band, colour)| entry(Sample::Band(colour), &band.label));
         Legend { entries: series.chain(bands).collect() }
     }
@@ -66,6 +66,7 @@ impl Legend {
     /// Adds the legend to a picture: right of the axes' upper right end, and down from there.
     pub fn add_to(&self, scene: &mut Scene, [right, mut top]: [f64; 2]) {
         let left = right + GAP;
+        let mut words_of_all = vec![];
         for entry in &self.entries {
             let middle = top + entry.height() / 2.0;
             match &entry.sample {
@@ -82,9 +83,10 @@ impl Legend {
                 }),
             }
             let at = [left + SAMPLE + TO_WORDS, top + font::DESCENT * style::LABEL];
-            words::block(&entry.lines, at, style::LABEL).for_each(|line| scene.add(line));
+            words_of_all.extend(words::block(&entry.lines, at, style::LABEL));
             top += entry.height() + BETWEEN;
         }
+        scene.elements.extend(words_of_all);
     }
 }
 

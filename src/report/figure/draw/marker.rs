@@ -2,39 +2,38 @@
 
 use super::super::look::Look;
 use super::super::style::{self, Marker};
-use super::frame::colour;
-use kuva::render::render::{PathData, Primitive};
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::fmt::Write;
 
-/// Markers at places (pixels), one upon another. A hollow one distinguishes series of the same hue; both have a rim, so that markers
-/// upon each other can be counted.
-pub fn markers(look: &Look, places: &[[f64; 2]]) -> impl Iterator<Item = Primitive> {
+/// The marker of a look among the definitions of a picture. Its name says how it looks: pictures on one page that use a name mean
+/// the same marker. A hollow one distinguishes series of the same hue; both have a rim, so that markers upon each other can be
+/// counted.
+pub fn definition(look: &Look) -> String {
     let [fill, rim] = if look.hollow { [style::PAPER, look.colour] } else { [look.colour, style::PAPER] };
     let width = if look.hollow { 2.0 } else { 0.8 };
-    let (fill, stroke, corners) = (colour(fill), colour(rim), corners(look.marker));
-    places.iter().map(move |&[x, y]| {
-        let mut d = String::new();
-        if corners.is_empty() {
-            let r = style::MARKER;
-            let _ =
-                write!(d, "M{:.1} {y:.1}a{r} {r} 0 1 0 {} 0a{r} {r} 0 1 0 {} 0z", x - r, 2.0 * r, -2.0 * r);
-        }
-        for (i, [right, below]) in corners.iter().enumerate() {
-            let [x, y] = [x + right * style::MARKER, y + below * style::MARKER];
-            let _ = write!(d, "{}{x:.1} {y:.1}", if i == 0 { "M" } else { "L" });
+    let mut d = String::new();
+    let corners = corners(look.marker);
+    if corners.is_empty() {
+        let r = style::MARKER;
+        let _ = write!(d, "M-{r} 0a{r} {r} 0 1 0 {} 0a{r} {r} 0 1 0 -{} 0z", 2.0 * r, 2.0 * r);
+    } else {
+        for (i, corner) in corners.iter().enumerate() {
+            let [right, below] = corner.map(|reach| reach * style::MARKER);
+            let _ = write!(d, "{}{right:.1} {below:.1}", if i == 0 { "M" } else { "L" });
         }
         d.push('z');
-        let (fill, stroke, stroke_width) = (Some(fill.clone()), stroke.clone(), width);
-        Primitive::Path(Box::new(PathData {
-            d,
-            fill,
-            stroke,
-            stroke_width,
-            opacity: None,
-            stroke_dasharray: None,
-        }))
-    })
+    }
+    format!(
+        "<marker id=\"{}\" markerUnits=\"userSpaceOnUse\" overflow=\"visible\"><path fill=\"{fill}\" stroke=\"{rim}\" \
+         stroke-width=\"{width}\" d=\"{d}\"/></marker>",
+        name(look)
+    )
+}
+
+/// The name of a look's marker.
+pub fn name(look: &Look) -> String {
+    let hollow = if look.hollow { "-hollow" } else { "" };
+    format!("m{}-{}{hollow}", look.marker as u8, look.colour.to_string().trim_start_matches('#'))
 }
 
 /// The corners of a shape about a point, for a marker of radius one; none for the disc. They look equally large.

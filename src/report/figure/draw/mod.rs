@@ -1,6 +1,6 @@
-//! Figures as scenes of the plotting library, `kuva`: it has axes, grids, curves, markers, bars, colour bars and the
-//! file's format. What it has not is drawn here, with its primitives: hollow markers and those with
-//! rims, legends that show line and marker, maps of many cells in few bytes, things where they are.
+//! Figures as scenes of the plotting library, `kuva`: it has axes, their marks and grids, and colour bars. The rest is drawn
+//! here, with its primitives: curves and markers that name their series, legends that show line and marker, maps of many cells in few
+//! bytes, things where they are.
 
 mod axis;
 mod chart;
@@ -13,8 +13,6 @@ mod map;
 mod marker;
 mod series;
 mod words;
-
-pub use axis::ends;
 
 use super::check::check;
 use super::{Figure, FigureError, Picture};

@@ -1,14 +1,13 @@
-//! Series over two axes: curves by the library, bars and markers in front of them.
+//! Series over two axes: curves, bars and markers.
 
 use super::super::look::Look;
-use super::super::style;
-use super::super::{Series, Style};
+use super::super::style::{self, Colour};
+use super::super::xml::{bends, through};
+use super::super::{Point, Series, Style};
 use super::axis::Span;
 use super::frame::colour;
-use super::marker::markers;
-use kuva::plot::LinePlot;
-use kuva::plot::line::LineStyle;
-use kuva::prelude::Plot;
+use super::marker;
+use kuva::render::color::Color;
 use kuva::render::layout::ComputedLayout;
 use kuva::render::render::{PathData, Primitive};
 use std::fmt::Write;
@@ -16,69 +15,85 @@ use std::fmt::Write;
 /// Half the width of the ends of an error bar (pixels).
 const CAP: f64 = 4.5;
 
-/// The curve of a series, if it has one.
-pub fn curve(look: &Look, series: &Series, x: &Span, y: &Span) -> Option<Plot> {
-    let places: Vec<_> = series.points.iter().map(|point| (x.number(point.x), y.number(point.y))).collect();
-    if look.style == Style::Points || places.len() < 2 {
-        return None;
+/// The curve of a series, if it has one. It bears the series' name where no markers do.
+pub fn curve(look: &Look, series: &Series, x: &Span, y: &Span, places: &ComputedLayout) -> Vec<Primitive> {
+    if look.style == Style::Points || series.points.len() < 2 {
+        return vec![];
     }
-    let places = if look.style == Style::Steps { steps(&places) } else { places };
-    let line =
-        LinePlot::new().with_data(places).with_color(look.colour.to_string()).with_stroke_width(width(look));
-    Some(Plot::Line(match dash(look) {
-        Some(dash) => line.with_line_style(LineStyle::Custom(dash)),
-        None => line,
-    }))
+    let mut middles = middles(&series.points, x, y, places);
+    if look.style == Style::Steps {
+        middles = steps(&middles);
+    }
+    let title = (!look.has_markers()).then(|| series.name.clone());
+    group(title, None, vec![path(through(&bends(&middles)), look.colour, width(look), dash(look))])
 }
 
-/// The bars and markers of a series.
+/// The bars and markers of a series, with its name.
 pub fn points(look: &Look, series: &Series, x: &Span, y: &Span, places: &ComputedLayout) -> Vec<Primitive> {
-    let place = |across: f64, up: f64| [places.map_x(x.number(across)), places.map_y(y.number(up))];
     let mut bars = String::new();
     for (point, ends) in series.points.iter().filter_map(|point| Some((point, point.spread?))) {
-        let [[middle, low], [_, high]] = ends.map(|end| place(point.x, end));
-        let [left, cap] = [middle - CAP, 2.0 * CAP];
-        let _ = write!(
-            bars,
-            "M{left:.1} {low:.1}h{cap}M{left:.1} {high:.1}h{cap}M{middle:.1} {low:.1}V{high:.1}"
-        );
+        let [low, high] = ends.map(|end| places.map_y(y.number(end)));
+        let (left, cap) = (places.map_x(x.number(point.x)) - CAP, 2.0 * CAP);
+        // The page's script reads both ends here.
+        let _ = write!(bars, "M{left:.2} {low:.2}h{cap}m-{CAP} 0V{high:.2}m-{CAP} 0h{cap}");
     }
     let mut all = Vec::new();
     if !bars.is_empty() {
-        all.push(path(bars, look, 0.7 * style::CURVE, None));
+        all.push(path(bars, look.colour, 0.7 * style::CURVE, None));
     }
     // One point is no line, but it must be seen.
     if look.has_markers() || series.points.len() == 1 {
         let within = |ends: [f64; 2], number: f64| (ends[0]..=ends[1]).contains(&number);
-        let shown = series.points.iter();
-        let shown = shown.filter(|it| within(x.ends, x.number(it.x)) && within(y.ends, y.number(it.y)));
-        all.extend(markers(look, &shown.map(|it| place(it.x, it.y)).collect::<Vec<_>>()));
+        let shown = |it: &&Point| within(x.ends, x.number(it.x)) && within(y.ends, y.number(it.y));
+        let shown: Vec<Point> = series.points.iter().filter(shown).copied().collect();
+        if !shown.is_empty() {
+            all.extend(marked("marker", look, unseen(through(&middles(&shown, x, y, places)))));
+        }
     }
-    all
+    if all.is_empty() { all } else { group(Some(series.name.clone()), None, all) }
 }
 
 /// A sample for a legend, from a place to the right.
 pub fn sample(look: &Look, [left, y]: [f64; 2], length: f64) -> Vec<Primitive> {
-    let mut all = Vec::new();
-    if look.style != Style::Points {
-        all.push(path(format!("M{left:.1} {y:.1}h{length}"), look, width(look), dash(look)));
-    }
-    if look.has_markers() {
-        all.extend(markers(look, &[[left + length / 2.0, y]]));
-    }
-    all
+    let half = length / 2.0;
+    let d = format!("M{left:.1} {y:.1}h{half}h{half}");
+    let line = match look.style {
+        Style::Points => unseen(d),
+        _ => path(d, look.colour, width(look), dash(look)),
+    };
+    if look.has_markers() { marked("marker-mid", look, line) } else { vec![line] }
 }
 
-fn path(d: String, look: &Look, stroke_width: f64, stroke_dasharray: Option<String>) -> Primitive {
-    let stroke = colour(look.colour);
-    Primitive::Path(Box::new(PathData {
-        d,
-        fill: None,
-        stroke,
-        stroke_width,
-        opacity: None,
-        stroke_dasharray,
-    }))
+fn middles(points: &[Point], x: &Span, y: &Span, places: &ComputedLayout) -> Vec<[f64; 2]> {
+    points.iter().map(|it| [places.map_x(x.number(it.x)), places.map_y(y.number(it.y))]).collect()
+}
+
+/// Things that belong together, with a name for who points at them.
+pub fn group(title: Option<String>, extra_attrs: Option<String>, of: Vec<Primitive>) -> Vec<Primitive> {
+    if title.is_none() && extra_attrs.is_none() {
+        return of;
+    }
+    let start = Primitive::GroupStart { transform: None, title, extra_attrs };
+    std::iter::once(start).chain(of).chain([Primitive::GroupEnd]).collect()
+}
+
+/// A line whose corners, or those in its middle alone, have markers.
+fn marked(property: &str, look: &Look, line: Primitive) -> Vec<Primitive> {
+    group(None, Some(format!("style=\"{property}:url(#{})\"", marker::name(look))), vec![line])
+}
+
+/// A line of which only the markers are seen.
+fn unseen(d: String) -> Primitive {
+    stroke(d, Color::None, 0.0, None)
+}
+
+fn path(d: String, of: Colour, width: f64, dash: Option<String>) -> Primitive {
+    stroke(d, colour(of), width, dash)
+}
+
+fn stroke(d: String, stroke: Color, stroke_width: f64, stroke_dasharray: Option<String>) -> Primitive {
+    let path = PathData { d, fill: None, stroke, stroke_width, opacity: None, stroke_dasharray };
+    Primitive::Path(Box::new(path))
 }
 
 fn width(look: &Look) -> f64 {
@@ -92,14 +107,14 @@ fn dash(look: &Look) -> Option<String> {
 
 /// The outline of a histogram whose bins have these middles: each bin reaches halfway to its neighbours, the outermost are
 /// as wide on the outside as on the inside.
-fn steps(middles: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let edges: Vec<f64> = middles.windows(2).map(|pair| 0.5 * (pair[0].0 + pair[1].0)).collect();
+fn steps(middles: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let edges: Vec<f64> = middles.windows(2).map(|pair| 0.5 * (pair[0][0] + pair[1][0])).collect();
     let beyond = |inside: f64, middle: f64| 2.0 * middle - inside;
-    let outline = middles.iter().enumerate().flat_map(|(i, &(x, y))| {
+    let outline = middles.iter().enumerate().flat_map(|(i, &[x, y])| {
         let [before, after] = [i.checked_sub(1), Some(i)].map(|i| i.and_then(|i| edges.get(i)).copied());
         let left = before.or(after.map(|edge| beyond(edge, x))).unwrap_or(x);
         let right = after.or(before.map(|edge| beyond(edge, x))).unwrap_or(x);
-        [(left, y), (right, y)]
+        [[left, y], [right, y]]
     });
     outline.collect()
 }
@@ -110,8 +125,8 @@ mod tests {
 
     #[test]
     fn bins_reach_halfway_to_their_neighbours() {
-        let outline = steps(&[(0.0, 1.0), (2.0, 3.0), (4.0, 2.0)]);
-        assert_eq!(outline, [(-1.0, 1.0), (1.0, 1.0), (1.0, 3.0), (3.0, 3.0), (3.0, 2.0), (5.0, 2.0)]);
-        assert_eq!(steps(&[(1.0, 2.0)]), [(1.0, 2.0), (1.0, 2.0)]);
+        let outline = steps(&[[0.0, 1.0], [2.0, 3.0], [4.0, 2.0]]);
+        assert_eq!(outline, [[-1.0, 1.0], [1.0, 1.0], [1.0, 3.0], [3.0, 3.0], [3.0, 2.0], [5.0, 2.0]]);
+        assert_eq!(steps(&[[1.0, 2.0]]), [[1.0, 2.0], [1.0, 2.0]]);
     }
 }

@@ -1,0 +1,45 @@
+//! A picture's file as a part of a page.
+
+use maud::{Markup, PreEscaped, html};
+
+/// Where a page is narrower than such a picture, it scrolls rather than become too small to be read (pixels).
+const WIDE: f64 = 700.0;
+
+/// A picture cut to its parts.
+pub struct Inline {
+    size: String,
+    definitions: String,
+    body: String,
+}
+
+impl Inline {
+    /// The parts of a picture as our files have it: an element a line. Title and description are left out, for they stand below the
+    /// picture, and a browser would show the title wherever one points. A picture that is not there is empty.
+    pub fn new(svg: &str) -> Inline {
+        let between = |start: &str, end: &str| {
+            svg.split_once(start).and_then(|(_, rest)| rest.split_once(end)).map_or("", |(part, _)| part)
+        };
+        let body = svg.split_once("</desc>\n").map_or("", |(_, rest)| rest);
+        let body = body.split_once("</defs>\n").map_or(body, |(_, rest)| rest);
+        Inline {
+            size: between("viewBox=\"", "\"").to_owned(),
+            definitions: between("<defs>\n", "</defs>").to_owned(),
+            body: body.trim_end().trim_end_matches("</svg>").to_owned(),
+        }
+    }
+
+    /// What it uses by name, each in a line.
+    pub fn definitions(&self) -> impl Iterator<Item = &str> {
+        self.definitions.lines()
+    }
+
+    /// The picture, which an element of the page describes; `is_read` if the page's script tells values of it.
+    pub fn element(&self, described_by: &str, is_read: bool) -> Markup {
+        let width: f64 = self.size.split(' ').nth(2).and_then(|width| width.parse().ok()).unwrap_or(0.0);
+        html! {
+            svg.wide[width >= WIDE] viewBox=(self.size) width=(width) role="img" aria-labelledby=(described_by) tabindex=[is_read.then_some(0)] {
+                (PreEscaped(&self.body))
+            }
+        }
+    }
+}
