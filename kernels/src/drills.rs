@@ -19,9 +19,6 @@ pub const ROUNDS: [usize; 2] = [36, 8];
 /// How far the operand of [`Kind::Shifted`] lies: no whole number of registers.
 const SHIFT: usize = 5;
 
-/// Passes after which the mixture begins again, as a law does at every place of the mask.
-const PERIOD: usize = 61;
-
 /// What is drilled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -37,7 +34,7 @@ pub enum Kind {
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Kind; 30] = [
+    pub const ALL: [Kind; 29] = [
         Kind::Plain(Op::Add),
         Kind::Plain(Op::Subtract),
         Kind::Plain(Op::Multiply),
@@ -66,14 +63,8 @@ impl Kind {
         Kind::Convert(Op::Load),
         Kind::Convert(Op::Store),
         Kind::Convert(Op::Gather),
-        Kind::Plain(Op::Load),
         Kind::Shifted,
     ];
-
-    /// Whether it is one of those that tell the levels of memory from each other: operands in place, from afar, written over, stored.
-    pub fn moves(self) -> bool {
-        matches!(self, Kind::Plain(Op::Add | Op::Absolute | Op::Store) | Kind::Shifted)
-    }
 
     /// The name of the pass, as outlines give it.
     pub fn name(self) -> String {
@@ -157,16 +148,8 @@ impl<M: Machine> Registers<M> {
                 Op::FromIndex => v[i] = m.index_numbers(index[few]),
                 Op::Store => m.store(Slot::<M::Lane>::new(WRITTEN[i]), v[i]),
                 Op::Gather => v[i] = m.gather(own, index[few], v[next]),
-                // What was there before a store, read after it: no operand of its readers, which is what makes a load a
-                // pass. What the store takes is taken off again.
-                Op::Load => {
-                    let slot = Slot::<M::Lane>::new(WRITTEN[i]);
-                    let before = m.load(slot);
-                    m.store(slot, v[i]);
-                    v[i] = before;
-                }
                 // Drilled by the other kinds.
-                Op::Scatter | Op::LoadShifted | Op::Widen => {}
+                Op::Load | Op::Scatter | Op::LoadShifted | Op::Widen => {}
             },
             Kind::Index(Op::Load) => index[few] = m.load_index(Slot::new(Array::Index)),
             Kind::Index(Op::Store) => m.store_index(Slot::new(Array::DiscCell), index[few]),
@@ -220,42 +203,6 @@ unsafe impl<L: Element, O: Element> Text for Drill<L, O> {
     }
 }
 
-/// Executions of cheap kinds in turns: what a pass takes where the next one is another.
-#[derive(Clone, Copy)]
-struct Mixture<L, O> {
-    passes: usize,
-    precisions: PhantomData<(L, O)>,
-}
-
-// SAFETY: the slots depend on the number of passes only.
-unsafe impl<L: Element, O: Element> Text for Mixture<L, O> {
-    type Lane = L;
-
-    #[inline(always)]
-    fn body<M: Machine<Lane = L>>(&self, m: M) {
-        let mut registers = Registers::new(m);
-        let mut state = 1_u32;
-        for round in 0..self.passes {
-            if round % PERIOD == 0 {
-                state = 1;
-            }
-            // Numerical Recipes' generator; its high bits are the good ones.
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            let kind = match state >> 29 {
-                0 | 1 => Kind::Plain(Op::Multiply),
-                2 => Kind::Plain(Op::Subtract),
-                3 => Kind::Plain(Op::Minimum),
-                4 => Kind::Plain(Op::LessThan),
-                5 => Kind::Plain(Op::Select),
-                6 => Kind::Plain(Op::Maximum),
-                _ => Kind::Shifted,
-            };
-            registers.round::<O>(m, kind, round);
-        }
-        registers.end(m);
-    }
-}
-
 /// Lanes that are drilled, with the other precision that they are converted from and to. Drills are compiled here, once.
 pub trait Drilled: Precision {
     /// The other precision.
@@ -263,9 +210,6 @@ pub trait Drilled: Precision {
 
     /// A long and a short drill of a kind.
     fn drill(kind: Kind) -> [Box<dyn Runnable>; 2];
-
-    /// A mixture of `passes` passes.
-    fn mixture(passes: usize) -> Box<dyn Runnable>;
 }
 
 macro_rules! drilled {
@@ -277,10 +221,6 @@ macro_rules! drilled {
                 ROUNDS.map(|rounds| -> Box<dyn Runnable> {
                     Box::new(Program::new(Drill::<$lane, $other> { kind, rounds, precisions: PhantomData }))
                 })
-            }
-
-            fn mixture(passes: usize) -> Box<dyn Runnable> {
-                Box::new(Program::new(Mixture::<$lane, $other> { passes, precisions: PhantomData }))
             }
         }
     )*};
@@ -323,11 +263,6 @@ impl<L: Element, O: Element> Arrays<L, O> {
             through: index(Array::HaloSource),
             written_index: WRITTEN_INDEX.map(|array| AlignedColumn::filled(array as usize, 1, n)),
         }
-    }
-
-    /// How many arrays there are.
-    pub fn count(&self) -> usize {
-        self.read.len() + self.written.len() + self.others.len() + 2 + self.written_index.len()
     }
 
     /// The arrays bound to their slots.
