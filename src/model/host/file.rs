@@ -1,7 +1,7 @@
 //! Host files: what `calibrate` writes, as TOML.
 
 use super::model::HostModel;
-use crate::model::machine_file::{LONGEST, NAMED, Position};
+use crate::model::machine_file::{LONGEST, Position};
 use std::path::Path;
 use stripmine_physics::io::{FileError, regular_file};
 use stripmine_physics::quoted::{message, one_line, quoted};
@@ -32,43 +32,25 @@ pub enum HostFileError {
     /// A file that cannot be read.
     #[error(transparent)]
     Read(#[from] FileError),
-    /// Entries that cannot be, the first of them, a line each.
-    #[error("{}", lines(file, entries, *more))]
+    /// An entry that cannot be, the first of them.
+    #[error("host file `{}`{}: `{}` {}", quoted(file), at(*position), one_line(entry), one_line(what))]
     Content {
         /// Name of the file.
         file: String,
-        /// Every one of them.
-        entries: Vec<BadEntry>,
-        /// How many more there are.
-        more: usize,
+        /// Where.
+        position: Option<Position>,
+        /// The entry.
+        entry: String,
+        /// What is wrong.
+        what: String,
     },
 }
 
 /// Above every number of a host file: with larger ones a sum of all that a step does might not be finite.
 const MOST: f64 = 1e15;
 
-/// An entry of a host file that cannot be.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BadEntry {
-    /// Where.
-    pub position: Option<Position>,
-    /// The entry.
-    pub entry: String,
-    /// What is wrong.
-    pub what: String,
-}
-
-fn lines(file: &str, entries: &[BadEntry], more: usize) -> String {
-    let file = quoted(file);
-    let line = |bad: &BadEntry| {
-        let at = bad.position.map_or(String::new(), |at| format!(", {at}"));
-        format!("host file `{file}`{at}: `{}` {}", one_line(&bad.entry), one_line(&bad.what))
-    };
-    let mut lines: Vec<String> = entries.iter().map(line).collect();
-    if more > 0 {
-        lines.push(format!("host file `{file}`: {more} more"));
-    }
-    lines.join("\n")
+fn at(position: Option<Position>) -> String {
+    position.map_or(String::new(), |position| format!(", {position}"))
 }
 
 impl HostModel {
@@ -92,17 +74,18 @@ impl HostModel {
     /// Reads a host file's text; `file` is the name that errors give it.
     ///
     /// # Errors
-    /// [`HostFileError`]: the grammar's first defect, or every entry that cannot be.
+    /// [`HostFileError`]: the grammar's first defect, or the first entry that cannot be.
     pub fn parse(file: &str, text: &str) -> Result<HostModel, HostFileError> {
         let model: HostModel = toml::from_str(text).map_err(|cause| {
             // A file of another format has entries of other names: its format is the mistake.
             let syntax = HostFileError::Syntax { file: file.to_owned(), cause: Box::new(cause) };
-            other_format(text).map_or(syntax, |defect| content(file, text, vec![defect]))
+            other_format(text).map_or(syntax, |defect| content(file, text, defect))
         })?;
         let mut defects = model.defects();
         let written = text.parse::<toml::Table>().map(toml::Value::Table);
         written.iter().for_each(|value| wrong_numbers(value, String::new(), &mut defects));
-        if defects.is_empty() { Ok(model) } else { Err(content(file, text, defects)) }
+        let first = defects.into_iter().next();
+        first.map_or(Ok(model), |defect| Err(content(file, text, defect)))
     }
 
     /// The text of its file.
@@ -141,8 +124,8 @@ const HEADING: &str = "\
 # the samples, under whatever else the machine was doing.
 #
 # run               a run of a program in addition to its passes, and of a compiled loop
-# lanes.*.passes    an operation of the interpreter: [an element, a pass in addition], from drills of that operation on short vectors
-# lanes.*.loops     an operation of a class of an element of a compiled loop, fitted to the programs of the lattice method
+# lanes.*           an element of a pass of the interpreter by the class of its operation, and the start of a pass; an operation of a
+#                   class of an element of a compiled loop: fitted to the programs of the lattice method on drill scenes
 # levels            a byte, by how many bytes are gone over before it is met again, fitted to the same programs
 # rates             work whose amount depends on the data: a step, disc, cell, candidate, contact, disc whose lists are rebuilt, entry of
 #                   these; and how many times as long with each number of discs
@@ -165,12 +148,8 @@ fn readable(value: &mut toml::Value) {
     }
 }
 
-fn content(file: &str, text: &str, defects: Vec<(String, String)>) -> HostFileError {
-    let more = defects.len().saturating_sub(NAMED);
-    let placed =
-        |(entry, what): (String, String)| BadEntry { position: Position::of(text, &entry), entry, what };
-    let entries = defects.into_iter().take(NAMED).map(placed).collect();
-    HostFileError::Content { file: file.to_owned(), entries, more }
+fn content(file: &str, text: &str, (entry, what): (String, String)) -> HostFileError {
+    HostFileError::Content { file: file.to_owned(), position: Position::of(text, &entry), entry, what }
 }
 
 fn wrong_format(found: i64) -> (String, String) {
@@ -232,8 +211,7 @@ impl Reported for HostFileError {
                 FilePlace { file: file.clone(), line: Some(*line), column: None }
             }
             HostFileError::Syntax { file, .. } => FilePlace { file: file.clone(), line: None, column: None },
-            HostFileError::Content { file, entries, .. } => {
-                let position = entries.first().and_then(|entry| entry.position);
+            HostFileError::Content { file, position, .. } => {
                 let (line, column) = (position.map(|at| at.line), position.map(|at| at.column));
                 FilePlace { file: file.clone(), line, column }
             }
@@ -259,8 +237,8 @@ mod tests {
             HostModel::parse("bad.toml", &text.replacen(old, new, 1)).unwrap_err().to_string()
         };
         for (old, new, expected) in [
-            ("begin = ", "begin = -", "`begin` is -"),
-            ("begin = ", "begins = ", "unknown field `begins`"),
+            ("bind = ", "bind = -", "`bind` is -"),
+            ("bind = ", "binds = ", "unknown field `binds`"),
             ("footprint", "footprints", "unknown field `footprints`"),
             ("footprint = ", "footprint = 1e12 #", "`levels.footprint` must be positive and rise"),
             ("format = 14", "format = 15", "`format` is 15"),

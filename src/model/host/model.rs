@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
-use stripmine_kernels::isa::{Op, OpClass};
+use stripmine_kernels::isa::OpClass;
 
 /// Why there is no prediction.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -103,9 +103,6 @@ pub struct HostModel {
     pub bind: f64,
     /// Nanoseconds of a run of a program in addition to its passes, and of a compiled loop.
     pub run: [f64; 2],
-    /// How long a pass of a program takes to begin, as a share of what it takes in a drill of nothing but that pass: the
-    /// processor looks ahead from one to the next.
-    pub begin: f64,
     /// The levels of memory, nearest first.
     pub levels: Vec<Level>,
     /// Costs by the element type of the lanes.
@@ -152,22 +149,23 @@ impl HostModel {
         let lane = self.lane(outlines)?;
         let footprints: Vec<f64> = self.levels.iter().map(|level| level.footprint).collect();
         let bytes = around.bytes(outlines, (n, execution), lane.register_bytes, &footprints);
-        let waiting = |of: fn(&Level) -> f64| -> f64 {
-            bytes.iter().zip(&self.levels).map(|(bytes, level)| bytes * of(level)).sum()
+        let [run, of_loop] = self.run;
+        let (run, level): (f64, fn(&Level) -> f64) = match execution {
+            Execution::Chained => (of_loop, |level| level.chained),
+            _ => (run, |level| level.interpreted),
         };
-        if execution == Execution::Chained {
-            return Ok(self.run[1] + n as f64 * lane.chained(outlines)? + waiting(|level| level.chained));
-        }
-        let [start, computing] = lane.interpreted(outlines, (n, execution))?;
-        Ok(self.run[0] + self.begin * start + computing + waiting(|level| level.interpreted))
+        let waiting: f64 = bytes.iter().zip(&self.levels).map(|(bytes, at)| bytes * level(at)).sum();
+        Ok(run + lane.operations(outlines, (n, execution))? + waiting)
     }
 
     /// The trivial baseline: operations times elements, each at the cost of a sum in the first-level cache (ns).
     pub fn baseline(&self, outlines: &Outlines, n: usize, execution: Execution) -> f64 {
-        let each = self.lanes.get(outlines.lane).and_then(|lane| match execution {
-            Execution::Chained => lane.loops.get(OpClass::Add.name()).copied(),
-            _ => lane.passes.get(Op::Add.mnemonic()).map(|[element, _]| *element),
+        let lane = self.lanes.get(outlines.lane);
+        let classes = lane.map(|lane| match execution {
+            Execution::Chained => &lane.chained,
+            _ => &lane.interpreted,
         });
+        let each = classes.and_then(|classes| classes.get(OpClass::Add.name())).copied();
         let operations: usize =
             outlines.instructions.iter().map(|outline| outline.operations().count()).sum();
         each.unwrap_or(0.0) * (operations * n) as f64
@@ -183,20 +181,19 @@ impl HostModel {
 mod tests {
     use super::*;
     use stripmine_kernels::backend::tape::{Outline, Place, Reference};
-    use stripmine_kernels::isa::Array;
+    use stripmine_kernels::isa::{Array, Op};
 
     /// A host on which a pass takes 10 ns to begin and 0.5 an element, a run 100, a loop 7, and a byte 0.25 or 0.125.
     fn host() -> HostModel {
         let lane = LaneCosts {
             register_bytes: [8.0, 1.0, 4.0],
             lanes: 1,
-            passes: BTreeMap::from([("add".to_owned(), [0.5, 10.0])]),
-            loops: BTreeMap::from([("add".to_owned(), 0.375)]),
-            ..LaneCosts::default()
+            start: 10.0,
+            interpreted: BTreeMap::from([("add".to_owned(), 0.5)]),
+            chained: BTreeMap::from([("add".to_owned(), 0.375)]),
         };
         HostModel {
             measured: Measured { shortest: 8, longest: 1000, ..Measured::default() },
-            begin: 1.0,
             run: [100.0, 7.0],
             levels: vec![Level { footprint: 64.0, interpreted: 0.25, chained: 0.125 }],
             lanes: BTreeMap::from([("f64".to_owned(), lane)]),

@@ -2,10 +2,12 @@
 
 use crate::model::host::{Amounts, HostModel, Measured};
 use crate::report::{Cell, Table};
+use std::collections::BTreeMap;
+use stripmine_kernels::isa::OpClass;
 
 /// The tables of a host model.
 pub fn tables(model: &HostModel) -> Vec<Table> {
-    vec![operations(model), loops(model), levels(model), rates(model)]
+    vec![operations(model), levels(model), rates(model)]
 }
 
 fn table(name: &str, title: String, columns: &[&str], rows: Vec<Vec<Cell>>, notes: Vec<String>) -> Table {
@@ -18,44 +20,39 @@ fn named(names: &[&str], numbers: impl IntoIterator<Item = (f64, usize)>) -> Vec
     names.chain(numbers.into_iter().map(|(number, decimals)| Cell::Number(number, decimals))).collect()
 }
 
-/// Operations of the interpreter, with Hockney's pair.
 fn operations(model: &HostModel) -> Table {
-    let of = |(lane, op, [element, start]): (&str, &str, [f64; 2])| {
-        let least = element.max(1e-4);
-        named(&[lane, op], [(element, 4), (start, 1), (1e3 / least, 0), (start / least, 0)])
-    };
-    let all = model.lanes.iter().flat_map(|(lane, costs)| {
-        costs.passes.iter().map(move |(op, cost)| (lane.as_str(), op.as_str(), *cost))
-    });
-    let Measured { state, seconds, spread, disagreement, shortest, longest, .. } = &model.measured;
-    let notes = vec![format!(
-        "Passes over vectors in the first-level cache: t = t0 + n tau. Vectors of {shortest} to {longest} elements. Measured in \
-         {seconds:.0} s on a machine that was {state}: half of the samples lie within {:.1} % of the middle, the two halves of the \
-         measurement differ by {:.1} %.",
-        100.0 * spread,
-        100.0 * disagreement
-    )];
-    let columns = ["lanes", "operation", "tau (ns)", "t0 (ns)", "r_inf (million/s)", "n_half"];
-    let title = format!("Operations of {}, {}", model.title, model.instruction_set);
-    table("operations", title, &columns, all.map(of).collect(), notes)
-}
-
-fn loops(model: &HostModel) -> Table {
     let rows = model.lanes.iter().flat_map(|(lane, costs)| {
-        costs.loops.iter().map(move |(class, &ns)| named(&[lane, class], [(ns, 4)]))
+        OpClass::ALL.iter().filter_map(move |class| {
+            let of = |classes: &BTreeMap<String, f64>| classes.get(class.name()).copied();
+            let both = [of(&costs.interpreted), of(&costs.chained)];
+            let cell = |ns: Option<f64>| ns.map_or(Cell::Nothing, |ns| Cell::Number(ns, 4));
+            let names = [lane.as_str(), class.name()].map(Cell::from);
+            both.iter().any(Option::is_some).then(|| names.into_iter().chain(both.map(cell)).collect())
+        })
     });
-    let [run, of_loop] = model.run;
-    let [interpreted, chained] = model.measured.residuals;
-    let notes = vec![format!(
-        "Fitted, with the levels and starts, to the programs of the lattice method, which deviate from it by {:.0} % (the median; \
-         interpreted by {:.0} %). A run takes {of_loop:.1} ns in addition (interpreted {run:.1} ns). In the interpreter a pass among \
-         others takes {:.2} times as long to begin as in a drill of nothing but itself.",
-        100.0 * chained,
-        100.0 * interpreted,
-        model.begin,
-    )];
-    let columns = ["lanes", "operations of the class", "ns an element"];
-    table("loops", "Compiled loops, by classes of operations".into(), &columns, rows.collect(), notes)
+    let Measured { state, seconds, spread, disagreement, shortest, longest, residuals } = &model.measured;
+    let starts = model.lanes.iter().map(|(lane, costs)| format!("{:.1} ns on {lane} lanes", costs.start));
+    let notes = vec![
+        format!(
+            "Vectors of {shortest} to {longest} elements. Measured in {seconds:.0} s on a machine that was {state}: half of the samples \
+             lie within {:.1} % of the middle, the two halves of the measurement differ by {:.1} %.",
+            100.0 * spread,
+            100.0 * disagreement
+        ),
+        format!(
+            "Fitted, with the levels, to the programs of the lattice method, which deviate by {:.0} % (the median; compiled loops by \
+             {:.0} %): what their times do not tell apart is charged to one of the classes. A run takes {:.0} ns in addition (a compiled \
+             loop {:.0} ns), a pass {} to begin.",
+            100.0 * residuals[0],
+            100.0 * residuals[1],
+            model.run[0],
+            model.run[1],
+            starts.collect::<Vec<_>>().join(", "),
+        ),
+    ];
+    let columns = ["lanes", "class", "interpreted (ns an element)", "chained (ns an element)"];
+    let title = format!("Operations of {}, {}", model.title, model.instruction_set);
+    table("operations", title, &columns, rows.collect(), notes)
 }
 
 fn levels(model: &HostModel) -> Table {

@@ -1,7 +1,7 @@
 //! Predicted against measured: the errors, the worst cases, measured over predicted.
 
 use crate::laboratory::lattice_md::study::model_validation::{
-    Calibrated, Case, Errors, ModelValidation, PHASES, PHASES_OF_DATA, STEP, STEPS, STEPS_OF_DATA, STRANGERS,
+    Calibrated, Errors, ModelValidation, PHASES, PHASES_OF_DATA, STEP, STEPS, STEPS_OF_DATA, STRANGERS,
 };
 use crate::report::figure::{Axis, Band, Chart, Figure, Picture, Point, Series, Style};
 use crate::report::{Cell, Part, Section, Table, Verdict};
@@ -73,7 +73,7 @@ fn said(errors: &Errors) -> String {
 
 /// Errors by group, and the worst cases.
 pub fn tables(data: &ModelValidation) -> Vec<Table> {
-    vec![errors(data), worst(data), cases(data)]
+    vec![errors(data), worst(data)]
 }
 
 fn headings(words: &[&str]) -> Vec<String> {
@@ -133,37 +133,20 @@ fn errors(data: &ModelValidation) -> Table {
     }
 }
 
-fn row(case: &Case) -> Vec<Cell> {
-    let half = |at: usize| case.halves.map_or(Cell::Nothing, |halves| Cell::Number(halves[at], 0));
-    vec![
-        Cell::Text(case.name()),
-        Cell::Number(case.predicted, 0),
-        Cell::Number(case.measured, 0),
-        half(0),
-        half(1),
-        Cell::Number(100.0 * (case.predicted / case.measured - 1.0), 1),
-    ]
-}
-
-const CASE: [&str; 6] =
-    ["case", "predicted (ns)", "measured (ns)", "one half (ns)", "other half (ns)", "error (%)"];
-
 fn worst(data: &ModelValidation) -> Table {
+    let rows = data.worst().into_iter().take(NAMED).map(|case| {
+        vec![
+            Cell::Text(case.name()),
+            Cell::Number(case.predicted, 0),
+            Cell::Number(case.measured, 0),
+            Cell::Number(100.0 * (case.predicted / case.measured - 1.0), 1),
+        ]
+    });
     Table {
         name: "worst".into(),
         title: "The worst cases".into(),
-        columns: headings(&CASE),
-        rows: data.worst().into_iter().take(NAMED).map(row).collect(),
-        notes: vec![],
-    }
-}
-
-fn cases(data: &ModelValidation) -> Table {
-    Table {
-        name: "cases".into(),
-        title: "Every case".into(),
-        columns: headings(&CASE),
-        rows: data.cases.iter().map(row).collect(),
+        columns: headings(&["case", "predicted (ns)", "measured (ns)", "error (%)"]),
+        rows: rows.collect(),
         notes: vec![],
     }
 }

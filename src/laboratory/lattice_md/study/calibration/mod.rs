@@ -1,21 +1,19 @@
-//! How long do this host's operations take? Small programs run through the same interpreter and the same compiled code
-//! as the method's, timed over vectors of 8 to 4 million elements, and a host model fitted to the times.
+//! How long do this host's operations take? The programs of drill scenes, of up to 4 million cells, are timed in every execution, and
+//! a host model is fitted to the times.
 
-mod drills;
 mod fit;
 mod programs;
 mod scenes;
 
 use super::samples::Samples;
-use crate::model::host::{FORMAT, HostModel, Measured};
+use crate::model::host::{FORMAT, HostModel, LaneCosts, Level, Measured};
 use crate::statistics::median;
-use drills::{Lane, NEAR, SHORTEST_VECTOR};
-use programs::{Fitted, Programs, Ran};
+use programs::{FOOTPRINTS, Fitted, LANES, LONGEST, Programs, Ran};
 use scenes::Scenes;
 use std::time::{Duration, Instant};
-use stripmine_kernels::InstructionSet;
-use stripmine_kernels::drills::{Arrays, LONGEST};
+use stripmine_kernels::backend::tape::register_shape;
 use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::throughput::MeasurementError;
 
 /// How much is measured.
@@ -42,6 +40,8 @@ pub enum CalibrationError {
     Measurement(#[from] MeasurementError),
 }
 
+/// Shortest vectors: of fewer elements nothing but the start of a pass counts.
+const SHORTEST: usize = 8;
 /// Seconds that fitting takes about, which are kept back.
 const FITTING: f64 = 5.0;
 /// The share of the time that the drill scenes of work that depends on the data take.
@@ -73,8 +73,8 @@ struct Calibration {
     begun: Instant,
     /// Sweeps done.
     sweeps: usize,
-    lanes: [Lane; 2],
-    long: Arrays<f64, f32>,
+    /// Bytes of an element in a register of each file and the lanes of a hardware register, of the lanes' types.
+    shapes: [([f64; 3], usize); LANES.len()],
     programs: Programs,
     scenes: Scenes,
     binding: Samples,
@@ -88,8 +88,7 @@ impl Calibration {
             set,
             begun: Instant::now(),
             sweeps: 0,
-            lanes: [Lane::new::<f64>(set)?, Lane::new::<f32>(set)?],
-            long: Arrays::new(LONGEST),
+            shapes: [register_shape::<f64>(set)?, register_shape::<f32>(set)?],
             programs: Programs::new()?,
             scenes: Scenes::new()?,
             binding: Samples::default(),
@@ -102,7 +101,8 @@ impl Calibration {
         let (begun, mut of_scenes) = (self.begun, Duration::ZERO);
         let done = || (begun.elapsed().as_secs_f64() / time.as_secs_f64()).min(1.0);
         loop {
-            self.sweep();
+            self.programs.sweep(self.set, self.sweeps, &mut self.binding);
+            self.sweeps += 1;
             progress(done());
             if of_scenes < begun.elapsed().mul_f64(SCENES) {
                 let start = Instant::now();
@@ -116,33 +116,34 @@ impl Calibration {
         }
     }
 
-    /// One sample of every point.
-    fn sweep(&mut self) {
-        let Calibration { set, sweeps, lanes: [wide, narrow], long, programs, binding, .. } = self;
-        // At other addresses each time: whether rows conflict in the first-level cache depends on these.
-        wide.sweep(&Arrays::<f64, f32>::new(NEAR).memory(), *set);
-        narrow.sweep(&Arrays::<f32, f64>::new(NEAR).memory(), *set);
-        // Bytes are bytes: one precision says what they take.
-        wide.sweep_long(&long.memory(), *set, *sweeps);
-        programs.sweep(*set, *sweeps, binding);
-        *sweeps += 1;
-    }
-
     /// The model fitted to what was measured.
     fn model(self) -> HostModel {
-        let Calibration { title, set, begun, mut lanes, programs, scenes, binding, .. } = self;
-        lanes.iter_mut().for_each(Lane::fit);
-        let ran: Vec<Ran> = programs.ran().chain(lanes[0].ran()).collect();
-        let Fitted { run, begin, levels, residuals } = programs::fit(&ran, &mut lanes);
-        let samples = || lanes.iter().flat_map(Lane::samples).chain(programs.samples());
-        let spread = middle(samples().map(Samples::spread));
-        let disagreement = middle(samples().map(Samples::disagreement));
+        let Calibration { title, set, begun, shapes, programs, scenes, binding, .. } = self;
+        let ran: Vec<Ran> = programs.ran().collect();
+        let fitted = |chained: bool| {
+            let alike = ran.iter().filter(|ran| (ran.execution == Execution::Chained) == chained);
+            programs::fit(alike, &shapes)
+        };
+        let [interpreted, chained] = [fitted(false), fitted(true)];
+        let levels = FOOTPRINTS.into_iter().zip(interpreted.levels.into_iter().zip(chained.levels));
+        let both = |of: fn(&Fitted) -> f64| [&interpreted, &chained].map(of);
+        let (run, residuals) = (both(|fitted| fitted.run), both(|fitted| fitted.residual));
+        let lanes = shapes.into_iter().zip(interpreted.lanes.into_iter().zip(chained.lanes));
+        let lanes = lanes.map(|((register_bytes, lanes), ((interpreted, start), (chained, _)))| LaneCosts {
+            register_bytes,
+            lanes,
+            start,
+            interpreted,
+            chained,
+        });
+        let spread = middle(programs.samples().map(Samples::spread));
+        let disagreement = middle(programs.samples().map(Samples::disagreement));
         let measured = Measured {
             state: Measured::state_of(spread, disagreement),
             seconds: begun.elapsed().as_secs_f64(),
             spread,
             disagreement,
-            shortest: SHORTEST_VECTOR,
+            shortest: SHORTEST,
             longest: LONGEST,
             residuals,
         };
@@ -153,9 +154,10 @@ impl Calibration {
             measured,
             bind: binding.middle(),
             run,
-            begin,
-            levels,
-            lanes: lanes.into_iter().map(|lane| (lane.name.to_owned(), lane.costs)).collect(),
+            levels: levels
+                .map(|(footprint, (interpreted, chained))| Level { footprint, interpreted, chained })
+                .collect(),
+            lanes: LANES.map(str::to_owned).into_iter().zip(lanes).collect(),
             rates: scenes.rates(),
         }
     }

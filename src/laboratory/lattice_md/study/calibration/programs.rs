@@ -1,12 +1,12 @@
 //! The programs of a step on drill scenes of many sizes, one after the other, by the interpreter and as compiled loops; and what of
 //! the model is fitted to them.
 
-use super::drills::Lane;
 use super::fit::{Row, suited};
 use crate::laboratory::lattice_md::study::phase_times::Run;
 use crate::laboratory::lattice_md::study::samples::Samples;
-use crate::model::host::{Around, Level, class_counts};
+use crate::model::host::{Around, class_counts, starts};
 use crate::statistics::median;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::rc::Rc;
 use stripmine_kernels::backend::Precision;
@@ -17,6 +17,9 @@ use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::lattice_md::{Arrays, Discs, Lengths, Model, StepProgram, model, programs};
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::scene;
+
+/// Cells of the largest drill scene, about.
+pub(super) const LONGEST: usize = 4_000_000;
 
 /// NP and ρ of the drill scenes: lattices of 600 to 400 000 cells, some with many discs and some with few.
 const SCENES: [(usize, f64); 12] = [
@@ -33,6 +36,9 @@ const SCENES: [(usize, f64); 12] = [
     (8200, 0.06),
     (24_000, 0.06),
 ];
+
+/// A scene as large as vectors may be, in one precision.
+const LARGEST: (usize, f64) = (30_000, 30_000.0 / LONGEST as f64);
 
 /// The scene of the models that leave something out of the bench scene's, or have something more, so that more programs are drilled.
 const VARIED: (usize, f64) = (300, 0.13);
@@ -68,19 +74,23 @@ const INTERPRETED_ELEMENTS: usize = 20_000;
 const LOOP_ELEMENTS: usize = 100_000;
 const MOST: usize = 8;
 
-/// The interpreter is slow: it takes part in every n-th sweep, by the number of elements of the vectors.
+/// Vectors of so many elements take part in every n-th sweep only: the longest would take most of the time.
 fn turn(elements: usize) -> usize {
     match elements {
-        0..=10_000 => 1,
-        10_001..=30_000 => 2,
-        30_001..=100_000 => 4,
-        _ => 8,
+        0..=30_000 => 1,
+        30_001..=100_000 => 2,
+        100_001..=1_000_000 => 6,
+        _ => 64,
     }
 }
 
+/// The element types of lanes.
+pub(super) const LANES: [&str; 2] = ["f64", "f32"];
+
 /// Footprints of the levels: about those of caches, and beyond.
 const KIB: f64 = 1024.0;
-const FOOTPRINTS: [f64; 5] = [32.0 * KIB, 256.0 * KIB, 2048.0 * KIB, 16_384.0 * KIB, 131_072.0 * KIB];
+pub(super) const FOOTPRINTS: [f64; 5] =
+    [32.0 * KIB, 256.0 * KIB, 2048.0 * KIB, 16_384.0 * KIB, 131_072.0 * KIB];
 
 /// Arrays of either precision.
 trait Laid {
@@ -134,16 +144,18 @@ impl Step {
         })
     }
 
-    /// One more sample of the programs one after the other, as in a step, by every execution whose turn it is.
+    /// One more sample of the programs one after the other, as in a step, by every execution, where it is their turn.
     fn sweep(&mut self, set: InstructionSet, number: usize) {
         let longest = self.ranges.iter().map(ExactSizeIterator::len).max().unwrap_or(1).max(1);
+        if !number.is_multiple_of(turn(longest)) {
+            return;
+        }
         self.arrays.elsewhere();
         let memory = self.arrays.memory();
         for (execution, samples) in EXECUTIONS.into_iter().zip(&mut self.samples) {
             let elements = match execution {
                 Execution::Chained => LOOP_ELEMENTS,
-                _ if number.is_multiple_of(turn(longest)) => INTERPRETED_ELEMENTS,
-                _ => continue,
+                _ => INTERPRETED_ELEMENTS,
             };
             Samples::take_in_turns(samples, (elements / longest).clamp(1, MOST), |at| {
                 let outcome = self.programs[at].program.run(&memory, self.ranges[at].clone(), execution, set);
@@ -173,12 +185,12 @@ impl Step {
 
 /// A program as it was run.
 pub(super) struct Ran {
-    pub(super) outlines: Rc<Outlines>,
-    pub(super) n: usize,
+    outlines: Rc<Outlines>,
+    n: usize,
     pub(super) execution: Execution,
-    pub(super) around: Rc<Around>,
+    around: Rc<Around>,
     /// Nanoseconds that it took.
-    pub(super) ns: f64,
+    ns: f64,
 }
 
 /// Every program to be measured, and the arrays they run on.
@@ -187,11 +199,13 @@ pub(super) struct Programs(Vec<Step>);
 impl Programs {
     /// Lays out the drill scenes.
     pub(super) fn new() -> Result<Programs, MeasurementError> {
-        let scenes = SCENES.iter().map(|&place| (place, (|_| ()) as fn(&mut Model)));
-        let all = VARIANTS.iter().map(|&change| (VARIED, change)).chain(scenes);
+        let as_it_is: fn(&mut Model) = |_| ();
+        let varied = VARIANTS.map(|change| (VARIED, change));
+        let all = SCENES.map(|place| (place, as_it_is)).into_iter().chain(varied);
         let of =
             |(place, change)| ["f64", "f32", "mixed"].map(|precision| Step::new(place, precision, change));
-        all.flat_map(of).collect::<Result<_, _>>().map(Programs)
+        let largest = Step::new(LARGEST, "f32", as_it_is);
+        all.flat_map(of).chain([largest]).collect::<Result<_, _>>().map(Programs)
     }
 
     /// One more sample of all, and of the binding of their arrays.
@@ -213,60 +227,49 @@ impl Programs {
     }
 }
 
-/// What is fitted to programs.
+/// A run, the classes of operations and the start of a pass of both lanes, and a byte of every level.
+const CLASSES: usize = OpClass::ALL.len();
+const UNKNOWN: usize = 1 + 2 * (CLASSES + 1) + FOOTPRINTS.len();
+
+/// What suits some runs best.
 pub(super) struct Fitted {
-    pub(super) run: [f64; 2],
-    pub(super) begin: f64,
-    pub(super) levels: Vec<Level>,
-    /// Median deviation of the interpreter's runs and of the loops'.
-    pub(super) residuals: [f64; 2],
+    /// Nanoseconds of a run.
+    pub(super) run: f64,
+    /// Of both lanes: an operation of each class, and the start of a pass.
+    pub(super) lanes: [(BTreeMap<String, f64>, f64); 2],
+    /// A byte of each level.
+    pub(super) levels: [f64; FOOTPRINTS.len()],
+    /// Median deviation.
+    pub(super) residual: f64,
 }
 
-/// A run, the share of a drill that a pass takes to begin, and a byte of every level.
-const INTERPRETED: usize = 2 + FOOTPRINTS.len();
-/// A run, the classes of operations of both lanes, and a byte of every level.
-const CLASSES: usize = OpClass::ALL.len();
-const CHAINED: usize = 1 + 2 * CLASSES + FOOTPRINTS.len();
-
-/// Fits levels and starts to what was run, and the lanes' classes of operations of loops.
-pub(super) fn fit(ran: &[Ran], lanes: &mut [Lane; 2]) -> Fitted {
-    let (mut interpreted, mut chained) = (vec![], vec![]);
-    for &Ran { ref outlines, n, execution, ref around, ns } in ran {
-        let lane = lanes.iter().position(|lane| lane.name == outlines.lane);
-        let Some(lane) = lane.filter(|_| n > 0 && ns.is_finite() && ns > 0.0) else { continue };
-        let costs = &lanes[lane].costs;
-        let bytes = around.bytes(outlines, (n, execution), costs.register_bytes, &FOOTPRINTS);
-        if execution == Execution::Chained {
-            let mut features = [0.0; CHAINED];
-            features[0] = 1.0;
-            let (classes, levels) = features[1..].split_at_mut(2 * CLASSES);
-            classes[lane * CLASSES..][..CLASSES]
-                .copy_from_slice(&class_counts(outlines).map(|count| count * n as f64));
-            levels.copy_from_slice(&bytes);
-            chained.push(Row { features, known: 0.0, ns });
-        } else if let Ok([start, known]) = costs.interpreted(outlines, (n, execution)) {
-            let mut features = [1.0; INTERPRETED];
-            features[1] = start;
-            features[2..].copy_from_slice(&bytes);
-            interpreted.push(Row { features, known, ns });
-        }
-    }
-    let (passes, loops) = (suited(&interpreted), suited(&chained));
-    for (lane, costs) in lanes.iter_mut().zip(loops[1..].chunks(CLASSES)) {
+/// Fits what programs took, interpreted or as loops.
+pub(super) fn fit<'a>(ran: impl Iterator<Item = &'a Ran>, shapes: &[([f64; 3], usize); 2]) -> Fitted {
+    let row = |&Ran { ref outlines, n, execution, ref around, ns }: &Ran| {
+        let lane = usize::from(outlines.lane != LANES[0]);
+        let (register_bytes, lanes) = shapes[lane];
+        let mut features = [0.0; UNKNOWN];
+        features[0] = 1.0;
+        let of_lane = &mut features[1 + lane * (CLASSES + 1)..][..=CLASSES];
+        let counts = class_counts(outlines, execution).into_iter().map(|count| count * n as f64);
+        let paid = counts.chain([starts(outlines, (n, execution), lanes)]);
+        of_lane.iter_mut().zip(paid).for_each(|(feature, paid)| *feature = paid);
+        let bytes = around.bytes(outlines, (n, execution), register_bytes, &FOOTPRINTS);
+        features[1 + 2 * (CLASSES + 1)..].copy_from_slice(&bytes);
+        Row { features, ns }
+    };
+    let rows: Vec<Row<UNKNOWN>> = ran.filter(|ran| ran.n > 0 && ran.ns.is_finite()).map(row).collect();
+    let costs = suited(&rows);
+    let of_lane = |lane: usize| {
+        let costs = &costs[1 + lane * (CLASSES + 1)..];
         let named = OpClass::ALL.iter().zip(costs).filter(|(_, cost)| **cost > 0.0);
-        lane.costs.loops = named.map(|(class, &cost)| (class.name().to_owned(), cost)).collect();
-    }
-    let levels = FOOTPRINTS.into_iter().zip(&passes[2..]).zip(&loops[1 + 2 * CLASSES..]);
+        (named.map(|(class, &cost)| (class.name().to_owned(), cost)).collect(), costs[CLASSES])
+    };
     Fitted {
-        run: [passes[0], loops[0]],
-        begin: passes[1],
-        levels: levels
-            .map(|((footprint, &interpreted), &chained)| Level { footprint, interpreted, chained })
-            .collect(),
-        residuals: [
-            median(interpreted.iter().map(|row| row.deviation(&passes))),
-            median(chained.iter().map(|row| row.deviation(&loops))),
-        ],
+        run: costs[0],
+        lanes: [0, 1].map(of_lane),
+        levels: std::array::from_fn(|at| costs[1 + 2 * (CLASSES + 1) + at]),
+        residual: median(rows.iter().map(|row| row.deviation(&costs))),
     }
 }
 

@@ -124,7 +124,6 @@ const ROUNDS: usize = 12;
 fn fitted(all: &[Vec<Vec<Done>>]) -> (Vec<Units>, Vec<f64>) {
     let row = |(amounts, ns): &Done, slower: f64| Row {
         features: amounts.values().map(|amount| slower * amount),
-        known: 0.0,
         ns: *ns,
     };
     let mut slower = vec![1.0; all.first().map_or(0, Vec::len)];
@@ -184,7 +183,7 @@ mod tests {
             for (slower, expected) in slower.iter().zip([1.0, 1.2, 1.2]) {
                 let amounts = Amounts { discs: 1000.0, contacts: 700.0, ..Amounts::default() };
                 let known = factor * expected * (2.0 * 1000.0 + 5.0 * 700.0);
-                let row = Row { features: amounts.values(), known: 0.0, ns: known };
+                let row = Row { features: amounts.values(), ns: known };
                 assert!((slower * row.said(&units) / known - 1.0).abs() < 0.02, "{units:?}");
             }
         }
