@@ -124,8 +124,8 @@ const HEADING: &str = "\
 # the samples, under whatever else the machine was doing.
 #
 # run               a run of a program in addition to its passes, and of a compiled loop
-# lanes.*           an element of a pass of the interpreter by the class of its operation, and the start of a pass; an operation of a
-#                   class of an element of a compiled loop: fitted to the programs of the lattice method on drill scenes
+# lanes.*           an operation of an element, interpreted and in a compiled loop: `add` any of them, the others in addition; the start of
+#                   a pass of the interpreter; fitted to the programs of the lattice method on drill scenes
 # levels            a byte, by how many bytes are gone over before it is met again, fitted to the same programs
 # rates             work whose amount depends on the data: a step, disc, cell, candidate, contact, disc whose lists are rebuilt, entry of
 #                   these; and how many times as long with each number of discs

@@ -5,7 +5,7 @@ use super::model::OutOfRange;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::Execution;
-use stripmine_kernels::backend::tape::Outlines;
+use stripmine_kernels::backend::tape::{Outline, Outlines};
 use stripmine_kernels::isa::OpClass;
 
 /// The costs on lanes of one precision.
@@ -18,9 +18,9 @@ pub struct LaneCosts {
     pub lanes: usize,
     /// Nanoseconds that a pass of the interpreter takes to begin.
     pub start: f64,
-    /// Nanoseconds an element of a pass of the interpreter, by the class of its operation.
+    /// Nanoseconds that an operation takes an element of a pass of the interpreter: `add` any of them, the others in addition.
     pub interpreted: BTreeMap<String, f64>,
-    /// Nanoseconds that an operation of a class adds to an element of a compiled loop.
+    /// The same of an element of a compiled loop.
     pub chained: BTreeMap<String, f64>,
 }
 
@@ -61,24 +61,18 @@ pub fn starts(outlines: &Outlines, (n, execution): (usize, Execution), lanes: us
     outlines.passes.len() as f64 * strips(n, execution).map(of_strip).sum::<f64>()
 }
 
-/// Operations of each class of an element.
+/// Operations of an element: all of them as sums, and once more those that take longer than a sum by their class.
 pub fn class_counts(outlines: &Outlines, execution: Execution) -> OfClass {
     let mut counts = [0.0; OpClass::ALL.len()];
-    let is_loop = execution == Execution::Chained;
-    for outline in if is_loop { &outlines.instructions } else { &outlines.passes } {
-        for op in outline.operations() {
-            // Cheap classes share the same units: one number for all of them.
-            let class = match op.class() {
-                OpClass::Multiply | OpClass::Compare | OpClass::Logical => OpClass::Add,
-                OpClass::Shift | OpClass::Load if is_loop => OpClass::Add,
-                OpClass::Shift => OpClass::Load,
-                class => class,
-            };
+    let all = if execution == Execution::Chained { &outlines.instructions } else { &outlines.passes };
+    for op in all.iter().flat_map(Outline::operations) {
+        counts[OpClass::Add as usize] += 1.0;
+        let class = op.class();
+        if matches!(
+            class,
+            OpClass::Divide | OpClass::SquareRoot | OpClass::Convert | OpClass::Gather | OpClass::Scatter
+        ) {
             counts[class as usize] += 1.0;
-        }
-        // Operands that a pass has in arrays lie across lines.
-        if !is_loop && outline.computes() {
-            counts[OpClass::Load as usize] += outline.array_operands() as f64;
         }
     }
     counts
@@ -87,13 +81,11 @@ pub fn class_counts(outlines: &Outlines, execution: Execution) -> OfClass {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stripmine_kernels::backend::tape::{Outline, Place, Reference};
-    use stripmine_kernels::isa::{Array, Op};
+    use stripmine_kernels::isa::Op;
 
     #[test]
     fn a_program_is_charged_by_its_classes_and_by_how_often_its_passes_begin() {
-        let x = Place::Memory(Reference { array: Array::X, element: "f64", shift: 0 });
-        let of = |op| Outline { op, converts: false, reads: vec![x], writes: None };
+        let of = |op| Outline { op, converts: false, reads: vec![], writes: None };
         let (passes, instructions) =
             (vec![of(Op::Add), of(Op::Divide)], vec![of(Op::Load), of(Op::Multiply)]);
         let program = Outlines { lane: "f64", instructions, passes, registers: [0; 3] };
@@ -101,7 +93,7 @@ mod tests {
         let lane = LaneCosts {
             lanes: 4,
             start: 10.0,
-            interpreted: costs(&[("add", 0.5), ("divide", 2.0), ("load", 0.25)]),
+            interpreted: costs(&[("add", 0.5), ("divide", 2.0)]),
             chained: costs(&[("add", 0.125)]),
             ..LaneCosts::default()
         };

@@ -41,7 +41,7 @@ fn operations(model: &HostModel) -> Table {
         ),
         format!(
             "Fitted, with the levels, to the programs of the lattice method, which deviate by {:.0} % (the median; compiled loops by \
-             {:.0} %): what their times do not tell apart is charged to one of the classes. A run takes {:.0} ns in addition (a compiled \
+             {:.0} %). `add` is any operation, what the others take is in addition to it. A run takes {:.0} ns in addition (a compiled \
              loop {:.0} ns), a pass {} to begin.",
             100.0 * residuals[0],
             100.0 * residuals[1],
