@@ -40,7 +40,6 @@
 //! ```
 
 pub mod backend;
-pub mod drills;
 pub mod flight;
 pub mod integrator;
 pub mod isa;

@@ -1,16 +1,14 @@
 //! Host files: what `calibrate` writes, as TOML.
 
-use super::levels::Transfer;
 use super::model::HostModel;
-use super::rates::PhaseRate;
-use crate::model::machine_file::{LONGEST, NAMED, Position};
+use crate::model::machine_file::{LONGEST, Position};
 use std::path::Path;
 use stripmine_physics::io::{FileError, regular_file};
 use stripmine_physics::quoted::{message, one_line, quoted};
 use stripmine_physics::reported::{Class, FilePlace, Reported};
 
 /// The version of the file format that this program reads.
-pub const FORMAT: u32 = 13;
+pub const FORMAT: u32 = 14;
 
 /// Why a host file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -34,46 +32,25 @@ pub enum HostFileError {
     /// A file that cannot be read.
     #[error(transparent)]
     Read(#[from] FileError),
-    /// Entries that cannot be, the first of them, a line each.
-    #[error("{}", lines(file, entries, *more))]
+    /// An entry that cannot be, the first of them.
+    #[error("host file `{}`{}: `{}` {}", quoted(file), at(*position), one_line(entry), one_line(what))]
     Content {
         /// Name of the file.
         file: String,
-        /// Every one of them.
-        entries: Vec<BadEntry>,
-        /// How many more there are.
-        more: usize,
+        /// Where.
+        position: Option<Position>,
+        /// The entry.
+        entry: String,
+        /// What is wrong.
+        what: String,
     },
 }
 
 /// Above every number of a host file: with larger ones a sum of all that a step does might not be finite.
 const MOST: f64 = 1e15;
-/// Lanes of a register, and elements of a vector, that a host may have.
-const COUNTS: [(std::ops::RangeInclusive<usize>, &str); 2] =
-    [(1..=65_536, "a whole number from 1 to 65536"), (1..=1 << 40, "a whole number from 1 to 2^40")];
 
-/// An entry of a host file that cannot be.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BadEntry {
-    /// Where.
-    pub position: Option<Position>,
-    /// The entry.
-    pub entry: String,
-    /// What is wrong.
-    pub what: String,
-}
-
-fn lines(file: &str, entries: &[BadEntry], more: usize) -> String {
-    let file = quoted(file);
-    let line = |bad: &BadEntry| {
-        let at = bad.position.map_or(String::new(), |at| format!(", {at}"));
-        format!("host file `{file}`{at}: `{}` {}", one_line(&bad.entry), one_line(&bad.what))
-    };
-    let mut lines: Vec<String> = entries.iter().map(line).collect();
-    if more > 0 {
-        lines.push(format!("host file `{file}`: {more} more"));
-    }
-    lines.join("\n")
+fn at(position: Option<Position>) -> String {
+    position.map_or(String::new(), |position| format!(", {position}"))
 }
 
 impl HostModel {
@@ -97,20 +74,18 @@ impl HostModel {
     /// Reads a host file's text; `file` is the name that errors give it.
     ///
     /// # Errors
-    /// [`HostFileError`]: the grammar's first defect, or every entry that cannot be.
+    /// [`HostFileError`]: the grammar's first defect, or the first entry that cannot be.
     pub fn parse(file: &str, text: &str) -> Result<HostModel, HostFileError> {
         let model: HostModel = toml::from_str(text).map_err(|cause| {
             // A file of another format has entries of other names: its format is the mistake.
             let syntax = HostFileError::Syntax { file: file.to_owned(), cause: Box::new(cause) };
-            other_format(text).map_or(syntax, |defect| content(file, text, vec![defect]))
+            other_format(text).map_or(syntax, |defect| content(file, text, defect))
         })?;
         let mut defects = model.defects();
-        if defects.is_empty() {
-            // Once more for every entry, so that no number is left unchecked.
-            let written = text.parse::<toml::Table>().map(toml::Value::Table);
-            written.iter().for_each(|value| infinite(value, String::new(), &mut defects));
-        }
-        if defects.is_empty() { Ok(model) } else { Err(content(file, text, defects)) }
+        let written = text.parse::<toml::Table>().map(toml::Value::Table);
+        written.iter().for_each(|value| wrong_numbers(value, String::new(), &mut defects));
+        let first = defects.into_iter().next();
+        first.map_or(Ok(model), |defect| Err(content(file, text, defect)))
     }
 
     /// The text of its file.
@@ -121,72 +96,23 @@ impl HostModel {
         HEADING.to_owned() + &toml::to_string(&value).unwrap_or_default()
     }
 
-    /// The entries that cannot be, and why.
+    /// What cannot be of entries together, and why.
     fn defects(&self) -> Vec<(String, String)> {
         let mut defects = vec![];
         if self.format != FORMAT {
             defects.push(wrong_format(self.format.into()));
         }
-        let lanes = self.lanes.iter().flat_map(|(lane, costs)| {
-            let passes = costs.passes.iter().flat_map(move |(op, cost)| {
-                [("element", cost.element.value), ("start", cost.start.value)]
-                    .map(|(what, value)| (format!("lanes.{lane}.passes.{op}: {what}"), value))
-            });
-            passes.chain([(format!("lanes.{lane}.array_operand"), costs.array_operand)])
-        });
-        let levels = self.levels.iter().flat_map(|level| {
-            [level.passes, level.loops].into_iter().flat_map(
-                |Transfer { fetch, fetch_array, write_back, first, line }| {
-                    [fetch, fetch_array, write_back, first, line]
-                },
-            )
-        });
-        let rates = self.rates.iter().flat_map(|(method, rates)| {
-            let of = |phase: &PhaseRate| {
-                let units = phase.ns.values().flat_map(|units| units.values());
-                phase.slower.iter().chain(units).copied().collect::<Vec<_>>()
-            };
-            rates.phases.values().flat_map(of).map(move |value| (format!("rates.{method}"), value))
-        });
-        let classes = self.loops.classes.iter().flat_map(|(lane, classes)| {
-            classes.iter().map(move |(class, &ns)| (format!("loops.classes.{lane}.{class}"), ns))
-        });
-        let rest = [
-            ("operand", self.operand),
-            ("begin", self.begin),
-            ("bind", self.bind),
-            ("run", self.run),
-            ("clock", self.clock),
-            ("loops.overlap", self.loops.overlap),
-            ("measured.spread", self.measured.spread),
-            ("loops.start", self.loops.start.value),
-            ("loops.left", self.loops.left.value),
-        ];
-        let rest = rest.map(|(entry, value)| (entry.to_owned(), value));
-        let levels = levels.map(|value| ("levels".to_owned(), value));
-        for (entry, value) in rest.into_iter().chain(levels).chain(lanes).chain(classes).chain(rates) {
-            if !(0.0..=MOST).contains(&value) {
-                defects.push((entry, format!("is {value}, but must be from 0 to {MOST:e}")));
-            }
-        }
-        for level in &self.levels {
-            if level.capacity.is_some_and(|capacity| capacity <= 0.0) {
-                let what = format!("is {}, but must be positive", level.capacity.unwrap_or(0.0));
-                defects.push(("levels.capacity".to_owned(), what));
-            }
-        }
-        let [lanes, lengths] = &COUNTS;
-        let widths =
-            self.lanes.iter().map(|(lane, costs)| (format!("lanes.{lane}.lanes"), costs.lanes, lanes));
-        let measured = [("shortest", self.measured.shortest), ("longest", self.measured.longest)];
-        let measured = measured.map(|(name, length)| (format!("measured.{name}"), length, lengths));
-        for (entry, count, (range, words)) in widths.chain(measured) {
-            if !range.contains(&count) {
-                defects.push((entry, format!("is {count}, but must be {words}")));
-            }
-        }
         if self.levels.is_empty() || self.lanes.is_empty() {
             defects.push(("levels".to_owned(), "with `lanes` must not be empty".to_owned()));
+        }
+        let footprints: Vec<f64> = self.levels.iter().map(|level| level.footprint).collect();
+        let discs = self.rates.iter().map(|(name, rates)| (format!("rates.{name}.discs"), &rates.discs));
+        for (entry, points) in discs.chain([("levels.footprint".to_owned(), &footprints)]) {
+            if points.first().is_some_and(|&first| first <= 0.0)
+                || points.windows(2).any(|two| two[0] >= two[1])
+            {
+                defects.push((entry, "must be positive and rise".to_owned()));
+            }
         }
         defects
     }
@@ -194,15 +120,15 @@ impl HostModel {
 
 /// What stands above the numbers.
 const HEADING: &str = "\
-# What a host takes, as `stripmine calibrate` has measured it. Times are in nanoseconds, capacities in bytes; a pair is a number and half
-# the width of its 95 % interval. What counts is the middle of the samples, under whatever else the machine was doing.
+# What a host takes, as `stripmine calibrate` has measured it. Times are in nanoseconds, footprints in bytes. What counts is the middle of
+# the samples, under whatever else the machine was doing.
 #
-# lanes.*.passes    of each operation of the interpreter: [[an element, ±], [a pass, ±]], from drills of that operation on short vectors
-# lanes.*.change    how long a pass takes to begin after one of another kind, by the number of passes of a program
-# levels            up to which reuse distance a level serves, and what it adds: a byte fetched, a byte of an array fetched, a byte
-#                   written back, the first byte of an array, a line that an index leads to; fitted to long passes and whole programs
-# loops             compiled loops: an operation of a class of an element, fitted to the programs of the lattice method
-# rates             work whose amount depends on the data: a unit of it, and how many times as long with each number of discs
+# run               a run of a program in addition to its passes, and of a compiled loop
+# lanes.*           an operation of an element, interpreted and in a compiled loop: `add` any of them, the others in addition; the start of
+#                   a pass of the interpreter; fitted to the programs of the lattice method on drill scenes
+# levels            a byte, by how many bytes are gone over before it is met again, fitted to the same programs
+# rates             work whose amount depends on the data: a step, disc, cell, candidate, contact, disc whose lists are rebuilt, entry of
+#                   these; and how many times as long with each number of discs
 ";
 
 /// Digits that a number is written with.
@@ -222,12 +148,8 @@ fn readable(value: &mut toml::Value) {
     }
 }
 
-fn content(file: &str, text: &str, defects: Vec<(String, String)>) -> HostFileError {
-    let more = defects.len().saturating_sub(NAMED);
-    let placed =
-        |(entry, what): (String, String)| BadEntry { position: Position::of(text, &entry), entry, what };
-    let entries = defects.into_iter().take(NAMED).map(placed).collect();
-    HostFileError::Content { file: file.to_owned(), entries, more }
+fn content(file: &str, text: &str, (entry, what): (String, String)) -> HostFileError {
+    HostFileError::Content { file: file.to_owned(), position: Position::of(text, &entry), entry, what }
 }
 
 fn wrong_format(found: i64) -> (String, String) {
@@ -241,24 +163,28 @@ fn other_format(text: &str) -> Option<(String, String)> {
     (found != i64::from(FORMAT)).then(|| wrong_format(found))
 }
 
-/// Every number below an entry that is not finite, or too large.
-fn infinite(value: &toml::Value, entry: String, found: &mut Vec<(String, String)>) {
+/// Every number below an entry that cannot be.
+fn wrong_numbers(value: &toml::Value, entry: String, found: &mut Vec<(String, String)>) {
     let below = |name: &str| if entry.is_empty() { name.to_owned() } else { format!("{entry}.{name}") };
-    match value {
-        toml::Value::Float(number) if !(-MOST..=MOST).contains(number) => {
-            let number = number.abs();
-            found.push((
-                entry,
-                format!("is {}, but must be finite and at most {MOST:e}", number.to_string().to_lowercase()),
-            ));
-        }
+    let number = match value {
+        toml::Value::Float(number) => *number,
+        toml::Value::Integer(number) => *number as f64,
         toml::Value::Table(table) => {
-            table.iter().for_each(|(name, value)| infinite(value, below(name), found));
+            return table.iter().for_each(|(name, value)| wrong_numbers(value, below(name), found));
         }
         toml::Value::Array(items) => {
-            items.iter().for_each(|value| infinite(value, entry.clone(), found));
+            return items.iter().for_each(|value| wrong_numbers(value, entry.clone(), found));
         }
-        _ => {}
+        _ => return,
+    };
+    let (range, words) = match entry.rsplit('.').next() {
+        // Lanes of a register, and elements of a vector.
+        Some("lanes") => (1.0..=65_536.0, "a whole number from 1 to 65536".to_owned()),
+        Some("shortest" | "longest") => (1.0..=2_f64.powi(40), "a whole number from 1 to 2^40".to_owned()),
+        _ => (0.0..=MOST, format!("from 0 to {MOST:e}")),
+    };
+    if !range.contains(&number) {
+        found.push((entry, format!("is {number}, but must be {words}")));
     }
 }
 
@@ -285,8 +211,7 @@ impl Reported for HostFileError {
                 FilePlace { file: file.clone(), line: Some(*line), column: None }
             }
             HostFileError::Syntax { file, .. } => FilePlace { file: file.clone(), line: None, column: None },
-            HostFileError::Content { file, entries, .. } => {
-                let position = entries.first().and_then(|entry| entry.position);
+            HostFileError::Content { file, position, .. } => {
                 let (line, column) = (position.map(|at| at.line), position.map(|at| at.column));
                 FilePlace { file: file.clone(), line, column }
             }
@@ -312,12 +237,13 @@ mod tests {
             HostModel::parse("bad.toml", &text.replacen(old, new, 1)).unwrap_err().to_string()
         };
         for (old, new, expected) in [
-            ("run = ", "run = -", "`run` is -"),
-            ("run = ", "runs = ", "unknown field `runs`"),
-            ("overlap", "overlapp", "unknown field `overlapp`"),
-            ("format = 13", "format = 14", "`format` is 14"),
-            ("format = 13", "format = 12\npace = 1.0", "`format` is 12, but this program reads 13"),
-            ("format = 13\n", "", "missing field `format`"),
+            ("bind = ", "bind = -", "`bind` is -"),
+            ("bind = ", "binds = ", "unknown field `binds`"),
+            ("footprint", "footprints", "unknown field `footprints`"),
+            ("footprint = ", "footprint = 1e12 #", "`levels.footprint` must be positive and rise"),
+            ("format = 14", "format = 15", "`format` is 15"),
+            ("format = 14", "format = 13\npace = 1.0", "`format` is 13, but this program reads 14"),
+            ("format = 14\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
             assert!(said.contains(expected) && said.contains("line "), "{said}");

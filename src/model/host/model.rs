@@ -1,41 +1,65 @@
 //! A host: all that is known of it, and what a program takes there.
 
-use super::cost::OutOfRange;
 use super::lane::LaneCosts;
-use super::levels::{Level, Surroundings};
-use super::loops::{LoopCosts, overlapped};
+use super::levels::{Around, Level};
 use super::rates::Rates;
-use super::reuse::{Touch, touched_arrays, touches};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
-use stripmine_kernels::isa::Op;
+use stripmine_kernels::isa::OpClass;
+
+/// Why there is no prediction.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum OutOfRange {
+    /// Vectors longer or shorter than those that were measured.
+    #[error(
+        "vectors of {n} elements lie outside the calibrated range of {shortest} to {longest}: calibrate on them, or ask \
+         for another number of particles"
+    )]
+    Length {
+        /// Elements asked for.
+        n: usize,
+        /// Shortest vectors.
+        shortest: usize,
+        /// Longest vectors.
+        longest: usize,
+    },
+    /// More or fewer discs than those that were measured.
+    #[error(
+        "{discs} discs lie outside the calibrated range of {fewest} to {most}: ask for another number of particles"
+    )]
+    Discs {
+        /// Discs asked for.
+        discs: f64,
+        /// Fewest discs.
+        fewest: f64,
+        /// Most discs.
+        most: f64,
+    },
+    /// An execution, precision or program that was not measured.
+    #[error("{0} was not calibrated")]
+    NotMeasured(String),
+}
 
 /// How the numbers were measured.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Measured {
     /// In which state the machine was: quiet, or how noisy.
     pub state: String,
     /// Seconds that it took.
     pub seconds: f64,
-    /// Samples of a number, the median.
-    pub samples: f64,
-    /// Smallest step of the clock seen (ns).
-    pub timer: f64,
     /// Median, over all points, of half the range of the middle half of the samples, as a share.
     pub spread: f64,
-    /// Median, over all points, of how much lower the lowest tenth of the samples is than the middle, as a share.
-    pub low: f64,
     /// Median, over all points, of how far the two halves of the measurement differ.
     pub disagreement: f64,
     /// Shortest vectors.
     pub shortest: usize,
     /// Longest vectors.
     pub longest: usize,
-    /// Median deviation of the fitted passes from the measured ones.
-    pub residual: f64,
+    /// Median deviation of the programs from the model that was fitted to them: interpreted, and as compiled loops.
+    pub residuals: [f64; 2],
 }
 
 impl Measured {
@@ -64,7 +88,7 @@ impl Measured {
 }
 
 /// A host.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HostModel {
     /// Version of the file format.
@@ -75,37 +99,24 @@ pub struct HostModel {
     pub instruction_set: String,
     /// How it was measured.
     pub measured: Measured,
-    /// Nanoseconds an element of a pass any of whose operands come from beyond the nearest level, in addition to what their
-    /// bytes take: e0.
-    pub operand: f64,
-    /// How long a pass of a program takes to begin, as a share of what it takes in a drill of nothing but that pass: the
-    /// processor looks ahead from one to the next.
-    pub begin: f64,
-    /// Nanoseconds to bind an array to a program's memory.
+    /// Nanoseconds to bind the arrays of a step to a part's programs.
     pub bind: f64,
-    /// Nanoseconds of a run of an interpreted program in addition to its passes.
-    pub run: f64,
-    /// Nanoseconds that timing a phase adds to it.
-    pub clock: f64,
-    /// The levels, nearest first.
+    /// Nanoseconds of a run of a program in addition to its passes, and of a compiled loop.
+    pub run: [f64; 2],
+    /// The levels of memory, nearest first.
     pub levels: Vec<Level>,
     /// Costs by the element type of the lanes.
     pub lanes: BTreeMap<String, LaneCosts>,
-    /// Compiled loops.
-    pub loops: LoopCosts,
     /// Work whose amount depends on the data, by method.
     pub rates: BTreeMap<String, Rates>,
 }
 
 impl HostModel {
-    /// The same host with every operand in the first-level cache, and no cost of starting programs and of binding arrays.
+    /// The same host where no byte takes time.
     #[must_use]
     pub fn in_cache(&self) -> HostModel {
-        let mut model = HostModel { operand: 0.0, bind: 0.0, run: 0.0, clock: 0.0, ..self.clone() };
-        for level in &mut model.levels {
-            *level = Level { name: level.name.clone(), capacity: level.capacity, ..Level::default() };
-        }
-        model
+        let near = |level: &Level| Level { footprint: level.footprint, ..Level::default() };
+        HostModel { levels: self.levels.iter().map(near).collect(), ..self.clone() }
     }
 
     /// Whether vectors of `n` elements lie within what was measured.
@@ -120,7 +131,7 @@ impl HostModel {
         Ok(())
     }
 
-    /// Nanoseconds of a run of a program over `n` elements.
+    /// Nanoseconds of a run of a program over `n` elements, among the arrays of a step.
     ///
     /// # Errors
     /// [`OutOfRange`] where nothing was measured that could say.
@@ -129,158 +140,92 @@ impl HostModel {
         outlines: &Outlines,
         n: usize,
         execution: Execution,
-        around: &Surroundings,
+        around: &Around,
     ) -> Result<f64, OutOfRange> {
         if n == 0 {
             return Ok(0.0);
         }
         self.admits(n)?;
-        match execution {
-            Execution::Eager => self.interpreted(outlines, n, None, around),
-            Execution::Strip(strip) => self.interpreted(outlines, n, Some(strip), around),
-            Execution::Chained => self.chained(outlines, n, around),
-        }
+        let lane = self.lane(outlines)?;
+        let footprints: Vec<f64> = self.levels.iter().map(|level| level.footprint).collect();
+        let bytes = around.bytes(outlines, (n, execution), lane.register_bytes, &footprints);
+        let [run, of_loop] = self.run;
+        let (run, level): (f64, fn(&Level) -> f64) = match execution {
+            Execution::Chained => (of_loop, |level| level.chained),
+            _ => (run, |level| level.interpreted),
+        };
+        let waiting: f64 = bytes.iter().zip(&self.levels).map(|(bytes, at)| bytes * level(at)).sum();
+        Ok(run + lane.operations(outlines, (n, execution))? + waiting)
     }
 
     /// The trivial baseline: operations times elements, each at the cost of a sum in the first-level cache (ns).
     pub fn baseline(&self, outlines: &Outlines, n: usize, execution: Execution) -> f64 {
-        let each = match execution {
-            Execution::Chained => self.loops.operation(outlines.lane),
-            _ => {
-                let add = self.lanes.get(outlines.lane).and_then(|lane| lane.passes.get(Op::Add.mnemonic()));
-                add.map_or(0.0, |cost| cost.element.value)
-            }
-        };
+        let lane = self.lanes.get(outlines.lane);
+        let classes = lane.map(|lane| match execution {
+            Execution::Chained => &lane.chained,
+            _ => &lane.interpreted,
+        });
+        let each = classes.and_then(|classes| classes.get(OpClass::Add.name())).copied();
         let operations: usize =
             outlines.instructions.iter().map(|outline| outline.operations().count()).sum();
-        each * (operations * n) as f64
+        each.unwrap_or(0.0) * (operations * n) as f64
     }
 
-    fn lane(&self, name: &str) -> Result<&LaneCosts, OutOfRange> {
-        self.lanes.get(name).ok_or_else(|| OutOfRange::NotMeasured(format!("precision {name}")))
-    }
-
-    fn interpreted(
-        &self,
-        outlines: &Outlines,
-        n: usize,
-        strips: Option<usize>,
-        around: &Surroundings,
-    ) -> Result<f64, OutOfRange> {
-        let strip = strips.map_or(n, |strip| strip.min(n));
-        let lane = self.lane(outlines.lane)?;
-        let touched = touches(outlines, lane.register_bytes);
-        let mut sum = self.run;
-        for (strips, length) in [(n / strip, strip), (1, n % strip)] {
-            if strips == 0 || length == 0 {
-                continue;
-            }
-            let near = lane.near(outlines, length, self.begin)?;
-            let wait: f64 = touched.iter().map(|touches| self.wait(touches, length, around)).sum();
-            sum += strips as f64 * (near + wait);
-        }
-        Ok(sum)
-    }
-
-    /// Nanoseconds that a pass over `n` elements waits for what it touches.
-    fn wait(&self, touches: &[Touch], n: usize, around: &Surroundings) -> f64 {
-        let wait = around.wait(&self.levels, touches, n as f64, |level| level.passes);
-        wait.sum() + wait.far * self.operand * n as f64
-    }
-
-    /// What each of some programs finds around it that are run one after the other, over vectors of these lengths.
-    ///
-    /// # Errors
-    /// [`OutOfRange`] for lanes that were not measured.
-    pub fn surroundings(
-        &self,
-        programs: &[(&Outlines, usize)],
-        execution: Execution,
-    ) -> Result<Vec<Surroundings>, OutOfRange> {
-        let mut registers = 0.0_f64;
-        for (outlines, n) in programs {
-            let length = match execution {
-                Execution::Eager => *n,
-                Execution::Strip(strip) => strip.min(*n),
-                Execution::Chained => 0,
-            };
-            registers = registers.max(self.lane(outlines.lane)?.register_extent(outlines, length));
-        }
-        Ok(Surroundings::of_cycle(programs, execution, registers))
-    }
-
-    fn chained(&self, outlines: &Outlines, n: usize, around: &Surroundings) -> Result<f64, OutOfRange> {
-        let [begin, computing] = self.loops.near(outlines, n, self.lane(outlines.lane)?.lanes)?;
-        let wait = around.wait(&self.levels, &touched_arrays(outlines), n as f64, |level| level.loops);
-        let parts = [computing, wait.streamed, wait.indexed];
-        Ok(begin + overlapped(self.loops.overlap, parts))
+    fn lane(&self, outlines: &Outlines) -> Result<&LaneCosts, OutOfRange> {
+        let unmeasured = || OutOfRange::NotMeasured(format!("precision {}", outlines.lane));
+        self.lanes.get(outlines.lane).ok_or_else(unmeasured)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::cost::{Estimate, PassCost};
     use super::*;
-    use stripmine_kernels::backend::tape::Outline;
+    use stripmine_kernels::backend::tape::{Outline, Place, Reference};
+    use stripmine_kernels::isa::{Array, Op};
 
-    /// A host on which a pass takes 10 ns to begin and 0.5 an element, and a run 100.
+    /// A host on which a pass takes 10 ns to begin and 0.5 an element, a run 100, a loop 7, and a byte 0.25 or 0.125.
     fn host() -> HostModel {
-        let of = |value: f64| Estimate { value, interval: 0.0 };
-        let add = PassCost { element: of(0.5), start: of(10.0) };
-        let lane =
-            LaneCosts { lanes: 1, passes: BTreeMap::from([("add".to_owned(), add)]), ..LaneCosts::default() };
+        let lane = LaneCosts {
+            register_bytes: [8.0, 1.0, 4.0],
+            lanes: 1,
+            start: 10.0,
+            interpreted: BTreeMap::from([("add".to_owned(), 0.5)]),
+            chained: BTreeMap::from([("add".to_owned(), 0.375)]),
+        };
         HostModel {
-            format: 0,
-            title: String::new(),
-            instruction_set: String::new(),
-            measured: Measured {
-                state: String::new(),
-                seconds: 1.0,
-                samples: 1.0,
-                timer: 1.0,
-                spread: 0.0,
-                low: 0.0,
-                disagreement: 0.0,
-                shortest: 8,
-                longest: 1000,
-                residual: 0.0,
-            },
-            operand: 0.0,
-            begin: 1.0,
-            bind: 0.0,
-            run: 100.0,
-            clock: 0.0,
-            levels: vec![Level::default()],
+            measured: Measured { shortest: 8, longest: 1000, ..Measured::default() },
+            run: [100.0, 7.0],
+            levels: vec![Level { footprint: 64.0, interpreted: 0.25, chained: 0.125 }],
             lanes: BTreeMap::from([("f64".to_owned(), lane)]),
-            loops: LoopCosts::default(),
-            rates: BTreeMap::new(),
+            ..HostModel::default()
         }
     }
 
+    /// `count` passes that read one array.
     fn sums(count: usize) -> Outlines {
-        let pass = Outline { op: Op::Add, converts: false, reads: vec![], writes: None };
-        Outlines { lane: "f64", instructions: vec![], passes: vec![pass; count], registers: [0; 3] }
+        let x = Place::Memory(Reference { array: Array::X, element: "f64", shift: 0 });
+        let pass = Outline { op: Op::Add, converts: false, reads: vec![x], writes: None };
+        let all = vec![pass; count];
+        Outlines { lane: "f64", instructions: all.clone(), passes: all, registers: [0; 3] }
     }
 
-    /// By hand: two passes over 100 elements at once, or in strips of 32 of which the last has 4.
+    /// By hand: two passes over 100 elements at once, in strips of 32 of which the last has 4, and as a loop.
     #[test]
-    fn every_strip_begins_and_the_last_is_charged_what_is_left() {
-        let (host, around) = (host(), Surroundings::default());
-        let ns = |execution| host.program(&sums(2), 100, execution, &around);
-        assert_eq!(ns(Execution::Eager), Ok(100.0 + 2.0 * (10.0 + 50.0)));
-        assert_eq!(ns(Execution::Strip(32)), Ok(100.0 + 2.0 * (4.0 * 10.0 + 50.0)));
-        assert_eq!(ns(Execution::Strip(50)), Ok(100.0 + 2.0 * (2.0 * 10.0 + 50.0)));
-        assert_eq!(host.program(&sums(2), 0, Execution::Eager, &around), Ok(0.0));
-        assert!(matches!(
-            host.program(&sums(2), 1001, Execution::Eager, &around),
-            Err(OutOfRange::Length { n: 1001, .. })
-        ));
+    fn every_strip_begins_every_byte_counts_and_a_loop_meets_each_once() {
+        let around = Around::of_step(&[(&sums(1), 100)]);
+        let ns = |execution| host().program(&sums(2), 100, execution, &around);
+        let bytes = 0.25 * 2.0 * 800.0;
+        assert_eq!(ns(Execution::Eager), Ok(100.0 + 2.0 * (10.0 + 50.0) + bytes));
+        assert_eq!(ns(Execution::Strip(32)), Ok(100.0 + 2.0 * (4.0 * 10.0 + 50.0) + bytes));
+        assert_eq!(ns(Execution::Chained), Ok(7.0 + 100.0 * 2.0 * 0.375 + 0.125 * 800.0));
+        assert_eq!(host().in_cache().program(&sums(1), 100, Execution::Eager, &around), Ok(160.0));
+        assert_eq!(host().program(&sums(2), 0, Execution::Eager, &around), Ok(0.0));
+        let beyond = host().program(&sums(2), 1001, Execution::Eager, &around);
+        assert!(matches!(beyond, Err(OutOfRange::Length { n: 1001, .. })));
     }
 
     #[test]
     fn the_baseline_charges_every_operation_of_every_element() {
-        let instruction = Outline { op: Op::Add, converts: false, reads: vec![], writes: None };
-        let program = Outlines { instructions: vec![instruction; 3], ..sums(1) };
-        assert_eq!(host().baseline(&program, 40, Execution::Eager), 0.5 * 120.0);
+        assert_eq!(host().baseline(&sums(3), 40, Execution::Eager), 0.5 * 120.0);
     }
 }

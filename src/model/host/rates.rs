@@ -1,7 +1,8 @@
 //! Work whose amount depends on the data: a time for each disc, cell, candidate and contact, by the number of discs, for
 //! the level of memory depends on it.
 
-use super::cost::{OutOfRange, interpolated};
+use super::levels::shares;
+use super::model::OutOfRange;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -37,15 +38,10 @@ impl Amounts {
     /// Each amount with that of another.
     #[must_use]
     pub fn with(&self, other: &Amounts, mean: impl Fn(f64, f64) -> f64) -> Amounts {
-        Amounts {
-            steps: mean(self.steps, other.steps),
-            discs: mean(self.discs, other.discs),
-            cells: mean(self.cells, other.cells),
-            candidates: mean(self.candidates, other.candidates),
-            contacts: mean(self.contacts, other.contacts),
-            remade: mean(self.remade, other.remade),
-            relisted: mean(self.relisted, other.relisted),
-        }
+        let (ours, theirs) = (self.values(), other.values());
+        let [steps, discs, cells, candidates, contacts, remade, relisted] =
+            std::array::from_fn(|at| mean(ours[at], theirs[at]));
+        Amounts { steps, discs, cells, candidates, contacts, remade, relisted }
     }
 }
 
@@ -54,7 +50,7 @@ impl Amounts {
 #[serde(deny_unknown_fields)]
 pub struct Rates {
     /// Numbers of discs at which was measured.
-    pub discs: Vec<usize>,
+    pub discs: Vec<f64>,
     /// The phases by name; making lists is one of its own.
     pub phases: BTreeMap<String, PhaseRate>,
 }
@@ -65,8 +61,8 @@ pub struct Rates {
 pub struct PhaseRate {
     /// How many times as long everything takes with each number of discs: they lie farther away.
     pub slower: Vec<f64>,
-    /// Nanoseconds of each unit, by precision; units that cost nothing are left out.
-    pub ns: BTreeMap<String, BTreeMap<String, f64>>,
+    /// Nanoseconds of each unit in the order of [`Amounts::NAMES`], by precision.
+    pub ns: BTreeMap<String, [f64; Amounts::NAMES.len()]>,
 }
 
 /// The part of the phase `index` in which lists are made.
@@ -79,24 +75,15 @@ impl Rates {
     /// [`OutOfRange`] where the precision was not measured, or not so many discs.
     pub fn phase(&self, precision: &str, phase: &str, amounts: &Amounts) -> Result<f64, OutOfRange> {
         let (Some(&fewest), Some(&most)) = (self.discs.first(), self.discs.last()) else { return Ok(0.0) };
-        let discs = amounts.discs as usize;
-        if discs < fewest || discs > most {
-            return Err(OutOfRange::Discs { discs, fewest, most });
+        if !(fewest..=most).contains(&amounts.discs) {
+            return Err(OutOfRange::Discs { discs: amounts.discs, fewest, most });
         }
+        let by_discs = shares(&self.discs, amounts.discs);
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let of = |phase: &PhaseRate| {
-            let units = phase
-                .ns
-                .get(precision)
-                .ok_or_else(|| OutOfRange::NotMeasured(format!("precision {precision}")))?;
-            let slower: Vec<(f64, f64)> = self
-                .discs
-                .iter()
-                .zip(&phase.slower)
-                .map(|(&discs, &slower)| (discs as f64, slower))
-                .collect();
-            let each = Amounts::NAMES.iter().zip(amounts.values());
-            let sum: f64 = each.map(|(name, amount)| units.get(*name).copied().unwrap_or(0.0) * amount).sum();
-            Ok(interpolated(&slower, amounts.discs) * sum)
+            let unmeasured = || OutOfRange::NotMeasured(format!("precision {precision}"));
+            let units = phase.ns.get(precision).ok_or_else(unmeasured)?;
+            Ok(product(&by_discs, &phase.slower) * product(units, &amounts.values()))
         };
         let making = (phase == "index").then_some(MAKING);
         [Some(phase), making].into_iter().flatten().filter_map(|name| self.phases.get(name)).map(of).sum()
@@ -109,19 +96,19 @@ mod tests {
 
     #[test]
     fn discs_are_interpolated_and_beyond_the_ends_refused() {
-        let units = BTreeMap::from([("disc".to_owned(), 2.0)]);
-        let phase = PhaseRate { slower: vec![1.0, 3.0], ns: BTreeMap::from([("f64".to_owned(), units)]) };
-        let making = BTreeMap::from([("remade".to_owned(), 5.0)]);
-        let making = PhaseRate { slower: vec![1.0, 1.0], ns: BTreeMap::from([("f64".to_owned(), making)]) };
-        let phases = BTreeMap::from([("index".to_owned(), phase), (MAKING.to_owned(), making)]);
-        let rates = Rates { discs: vec![100, 10_000], phases };
+        let phase = |slower: [f64; 2], units: [f64; 7]| PhaseRate {
+            slower: slower.to_vec(),
+            ns: BTreeMap::from([("f64".to_owned(), units)]),
+        };
+        let index = phase([1.0, 3.0], [0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let making = phase([1.0, 1.0], [0.0, 0.0, 0.0, 0.0, 0.0, 5.0, 0.0]);
+        let phases = BTreeMap::from([("index".to_owned(), index), (MAKING.to_owned(), making)]);
+        let rates = Rates { discs: vec![100.0, 10_000.0], phases };
         let at = |discs| rates.phase("f64", "index", &Amounts { discs, remade: 10.0, ..Amounts::default() });
         assert!((at(1000.0).unwrap() - (2.0 * 2000.0 + 50.0)).abs() < 1e-9);
-        assert!(matches!(at(99.0), Err(OutOfRange::Discs { fewest: 100, most: 10_000, .. })));
-        assert!(matches!(
-            rates.phase("f16", "index", &Amounts { discs: 200.0, ..Amounts::default() }),
-            Err(OutOfRange::NotMeasured(_))
-        ));
-        assert_eq!(rates.phase("f64", "forces", &Amounts { discs: 200.0, ..Amounts::default() }), Ok(0.0));
+        assert!(matches!(at(99.0), Err(OutOfRange::Discs { fewest: 100.0, most: 10_000.0, .. })));
+        let some = Amounts { discs: 200.0, ..Amounts::default() };
+        assert!(matches!(rates.phase("f16", "index", &some), Err(OutOfRange::NotMeasured(_))));
+        assert_eq!(rates.phase("f64", "forces", &some), Ok(0.0));
     }
 }

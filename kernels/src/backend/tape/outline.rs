@@ -52,16 +52,6 @@ impl Outline {
         format!("{}{index}{convert}", self.op.mnemonic())
     }
 
-    /// Whether it computes on numbers, which may be operands from arrays, rather than moving them.
-    pub fn computes(&self) -> bool {
-        !self.op.class().moves_data()
-    }
-
-    /// Reads of arrays element by element.
-    pub fn array_operands(&self) -> usize {
-        self.reads.iter().filter(|place| matches!(place, Place::Memory(_))).count()
-    }
-
     fn of<L: Element>(instruction: &Instruction<L>) -> Outline {
         let mut reads = Vec::new();
         let mut copy = *instruction;

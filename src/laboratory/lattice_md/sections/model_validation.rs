@@ -1,11 +1,10 @@
-//! Predicted against measured: the histogram of errors, the worst cases, measured over predicted.
+//! Predicted against measured: the errors, the worst cases, measured over predicted.
 
 use crate::laboratory::lattice_md::study::model_validation::{
-    Calibrated, Case, Errors, ModelValidation, PHASES, PHASES_OF_DATA, STEPS, STEPS_OF_DATA, STRANGERS,
+    Calibrated, Errors, ModelValidation, PHASES, PHASES_OF_DATA, STEP, STEPS, STEPS_OF_DATA, STRANGERS,
 };
 use crate::report::figure::{Axis, Band, Chart, Figure, Picture, Point, Series, Style};
 use crate::report::{Cell, Part, Section, Table, Verdict};
-use stripmine_physics::method::lattice_md::Phase;
 
 /// How many of the worst cases are named.
 const NAMED: usize = 12;
@@ -43,14 +42,7 @@ pub fn section(data: &ModelValidation) -> Section {
                 "stripmine calibrate --out host.toml, then stripmine validate-model --host host.toml --out reports".into()
             }
         },
-        figures: executions(data)
-            .into_iter()
-            .map(|execution| over_predicted(data, execution))
-            .chain([
-                histogram(data, "histogram", "eager, strip-mined, chained", |case| !case.depends_on_data),
-                histogram(data, "histogram_of_data", "fast and lists", |case| case.depends_on_data),
-            ])
-            .collect(),
+        figures: vec![over_predicted(data), histogram(data)],
         tables: tables(data),
         excerpt: None,
         film: None,
@@ -69,8 +61,8 @@ fn said(errors: &Errors) -> String {
     let baseline = baseline_median.map_or(String::new(), |median| {
         format!("; time in proportion to operations errs by {:.0} %", 100.0 * median)
     });
-    let repeated = repeated.map_or(String::new(), |[median, _]| {
-        format!("; the measurement repeated differs from itself by {:.1} %", 100.0 * median)
+    let repeated = repeated.map_or(String::new(), |median| {
+        format!("; the halves of the measurement differ by {:.1} %", 100.0 * median)
     });
     format!(
         "{what}: median error {:.1} %, nine of ten below {:.1} % ({cases} cases{baseline}{repeated}).",
@@ -81,7 +73,7 @@ fn said(errors: &Errors) -> String {
 
 /// Errors by group, and the worst cases.
 pub fn tables(data: &ModelValidation) -> Vec<Table> {
-    vec![errors(data), worst(data), cases(data)]
+    vec![errors(data), worst(data)]
 }
 
 fn headings(words: &[&str]) -> Vec<String> {
@@ -90,18 +82,15 @@ fn headings(words: &[&str]) -> Vec<String> {
 
 fn errors(data: &ModelValidation) -> Table {
     let rows = data.errors.iter().map(|errors| {
-        let mut row = vec![
+        vec![
             Cell::Text(errors.what.clone()),
             Cell::Count(errors.cases as u64),
             percent(errors.median),
             percent(errors.ninth_tenth),
             percent(errors.worst),
-        ];
-        row.push(percent(errors.median_of_low));
-        row.extend(errors.within.map(|count| Cell::Count(count as u64)));
-        row.push(errors.baseline_median.map_or(Cell::Nothing, percent));
-        row.extend([0, 1].map(|at| errors.repeated.map_or(Cell::Nothing, |shares| percent(shares[at]))));
-        row
+            errors.baseline_median.map_or(Cell::Nothing, percent),
+            errors.repeated.map_or(Cell::Nothing, percent),
+        ]
     });
     let from = match data.calibrated {
         Calibrated::Shipped => {
@@ -116,15 +105,15 @@ fn errors(data: &ModelValidation) -> Table {
             data.host, data.instruction_set, data.state
         ),
         format!(
-            "Measured: the middle of the samples of {} rounds, as runs time themselves; beside it the error where the lowest tenth counts. \
-             Repeated: how far the rounds of even number and those of odd number lie apart. Baseline: operations times elements, at the \
-             cost of a sum in the cache.",
+            "Measured: the middle of the samples of {} rounds, as runs time themselves. Halves: how far every second sample and the \
+             others lie apart. Baseline: operations times elements, at the cost of a sum in the cache.",
             data.rounds
         ),
         "Fast and lists: predicted from the numbers of candidates and contacts that the run itself had.".to_owned(),
-        "The model cannot be right where branches depend on the data (a list's candidates are charged alike, near or far), where pages are \
-         large (its levels know no translation of addresses), where two threads share a core, and where the frequency of the core changes: \
-         what was calibrated at one is charged at the other."
+        "The model is a sum: start-ups, operations and bytes, none of which hides behind another. It cannot be right where computing and \
+         waiting overlap, where branches depend on the data (a list's candidates are charged alike, near or far), where what is met \
+         again is nearer than all that its program goes over, where pages are large (its levels know no translation of addresses), and \
+         where threads share a core or its frequency changes."
             .to_owned(),
     ];
     Table {
@@ -136,61 +125,28 @@ fn errors(data: &ModelValidation) -> Table {
             "median (%)",
             "90 % below (%)",
             "worst (%)",
-            "median of the lowest tenth (%)",
-            "within 5 %",
-            "10 %",
-            "15 %",
-            "25 %",
             "baseline (%)",
-            "repeated, median (%)",
-            "repeated, 90 % below (%)",
+            "halves differ (%)",
         ]),
         rows: rows.collect(),
         notes,
     }
 }
 
-fn row(case: &Case) -> Vec<Cell> {
-    let half = |at: usize| case.halves.map_or(Cell::Nothing, |halves| Cell::Number(halves[at], 0));
-    vec![
-        Cell::Text(case.name()),
-        Cell::Number(case.predicted, 0),
-        Cell::Number(case.measured, 0),
-        Cell::Number(case.quartiles[0], 0),
-        Cell::Number(case.quartiles[1], 0),
-        half(0),
-        half(1),
-        Cell::Number(100.0 * (case.predicted / case.measured - 1.0), 1),
-    ]
-}
-
-const CASE: [&str; 8] = [
-    "case",
-    "predicted (ns)",
-    "measured (ns)",
-    "lower quartile (ns)",
-    "upper quartile (ns)",
-    "even rounds (ns)",
-    "odd rounds (ns)",
-    "error (%)",
-];
-
 fn worst(data: &ModelValidation) -> Table {
+    let rows = data.worst().into_iter().take(NAMED).map(|case| {
+        vec![
+            Cell::Text(case.name()),
+            Cell::Number(case.predicted, 0),
+            Cell::Number(case.measured, 0),
+            Cell::Number(100.0 * (case.predicted / case.measured - 1.0), 1),
+        ]
+    });
     Table {
         name: "worst".into(),
         title: "The worst cases".into(),
-        columns: headings(&CASE),
-        rows: data.worst().into_iter().take(NAMED).map(row).collect(),
-        notes: vec![],
-    }
-}
-
-fn cases(data: &ModelValidation) -> Table {
-    Table {
-        name: "cases".into(),
-        title: "Every case".into(),
-        columns: headings(&CASE),
-        rows: data.cases.iter().map(row).collect(),
+        columns: headings(&["case", "predicted (ns)", "measured (ns)", "error (%)"]),
+        rows: rows.collect(),
         notes: vec![],
     }
 }
@@ -206,35 +162,21 @@ fn executions(data: &ModelValidation) -> Vec<&'static str> {
     names
 }
 
-/// One execution, phase by phase.
-fn over_predicted(data: &ModelValidation, execution: &str) -> Figure {
-    let series = Phase::ALL.iter().enumerate().map(|(hue, phase)| {
-        let cases = data
-            .cases
-            .iter()
-            .filter(|case| case.execution == execution && case.phase == phase.name() && case.measured > 0.0);
-        let points = cases.map(|case| {
-            let ratio = case.measured / case.predicted;
-            let spread = Some(case.quartiles.map(|quartile| quartile / case.predicted));
-            Point { x: 1e-3 * case.predicted, y: ratio, spread }
-        });
-        Series {
-            name: phase.name().replace('_', " and "),
-            style: Style::Points,
-            hue,
-            points: points.collect(),
-        }
+/// Phases and laws, by execution.
+fn over_predicted(data: &ModelValidation) -> Figure {
+    let series = executions(data).into_iter().enumerate().map(|(hue, execution)| {
+        let cases = data.cases.iter().filter(|case| case.execution == execution && case.phase != STEP);
+        let points = cases.map(|case| Point::at(1e-3 * case.predicted, case.measured / case.predicted));
+        Series { name: execution.into(), style: Style::Points, hue, points: points.collect() }
     });
     Figure {
-        name: format!("measured_over_predicted_{}", execution.replace([':', ' '], "_")),
-        title: format!("Measured over predicted, {execution}"),
-        caption: "Each point is a phase of a step of one run, the middle of the samples; bars span their quartiles. 1 is right. \
-                  Grounds: within 5 % and within 15 %."
-            .into(),
+        name: "measured_over_predicted".into(),
+        title: "Measured over predicted".into(),
+        caption: "Each point is a phase of a step of one run, or a program. 1 is right. Grounds: within 5 % and within 15 %.".into(),
         picture: Picture::Chart(Chart {
             x: Axis::logarithmic("predicted time", Some("µs")),
             y: Axis::logarithmic("measured over predicted", None),
-            series: series.filter(|series| !series.points.is_empty()).collect(),
+            series: series.collect(),
             bands: vec![
                 Band::of_y("within 15 %", [1.0 / 1.15, 1.15]),
                 Band::of_y("within 5 %", [1.0 / 1.05, 1.05]),
@@ -243,15 +185,13 @@ fn over_predicted(data: &ModelValidation, execution: &str) -> Figure {
     }
 }
 
-fn histogram(data: &ModelValidation, name: &str, what: &str, of: impl Fn(&Case) -> bool) -> Figure {
+fn histogram(data: &ModelValidation) -> Figure {
     const BIN: f64 = 2.5;
     const BINS: i32 = 14;
-    let executions = executions(data).into_iter().filter_map(|execution| {
-        let cases = data.cases.iter().filter(|case| case.execution == execution && of(case));
+    let kinds = [("eager, strip-mined, chained", false), ("fast and lists", true)];
+    let series = kinds.into_iter().enumerate().map(|(hue, (name, depends_on_data))| {
+        let cases = data.cases.iter().filter(|case| case.depends_on_data() == depends_on_data);
         let errors: Vec<f64> = cases.map(|case| 100.0 * (case.predicted / case.measured - 1.0)).collect();
-        (!errors.is_empty()).then_some((execution, errors))
-    });
-    let series = executions.enumerate().map(|(hue, (execution, errors))| {
         let points = (-BINS..=BINS).map(|bin| {
             let centre = BIN * f64::from(bin);
             // What lies beyond the ends is counted there.
@@ -259,11 +199,11 @@ fn histogram(data: &ModelValidation, name: &str, what: &str, of: impl Fn(&Case) 
             let count = errors.iter().filter(|&&error| (last(error) - centre).abs() <= 0.5 * BIN).count();
             Point::at(centre, count as f64)
         });
-        Series { name: execution.into(), style: Style::Steps, hue, points: points.collect() }
+        Series { name: name.into(), style: Style::Steps, hue, points: points.collect() }
     });
     Figure {
-        name: name.into(),
-        title: format!("Errors of the predictions: {what}"),
+        name: "histogram".into(),
+        title: "Errors of the predictions".into(),
         caption: "Cases in bins of 2.5 %; negative: predicted too short. The outermost bins hold all beyond."
             .into(),
         picture: Picture::Chart(Chart {

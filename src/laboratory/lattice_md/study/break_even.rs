@@ -213,7 +213,7 @@ pub fn atlas(
             progress(rounds.share((at + 1) as f64 / places));
         }
     }
-    let step = |times: &PhaseTimes| Phase::ALL.iter().map(|&phase| times.of(phase).middle).sum();
+    let step = |times: &PhaseTimes| Phase::ALL.iter().map(|&phase| times.of(phase)).sum();
     let place = |(particles, occupancy, variants): (usize, f64, Vec<PhaseTimes>)| Place {
         particles,
         occupancy,

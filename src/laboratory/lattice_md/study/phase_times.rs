@@ -134,19 +134,19 @@ impl PhaseTimes {
         self
     }
 
-    /// Nanoseconds of a phase a step: the middle of the samples, their lowest tenth and their quartiles, with lists rebuilt as often as
-    /// they were.
-    pub fn of(&self, phase: Phase) -> PhaseTime {
-        let making = if phase == Phase::Index { self.made * self.making().unwrap_or(0.0) } else { 0.0 };
-        let samples = &self.samples[phase as usize];
-        if samples.count() == 0 {
-            return PhaseTime { middle: making, low: making, quartiles: [making; 2] };
-        }
-        PhaseTime {
-            middle: making + samples.middle(),
-            low: making + samples.low(),
-            quartiles: samples.quartiles().map(|ns| making + ns),
-        }
+    /// Nanoseconds of a phase a step: the middle of the samples, with lists rebuilt as often as they were.
+    pub fn of(&self, phase: Phase) -> f64 {
+        self.rebuilding(phase) + self.upkeep(phase)
+    }
+
+    /// The same of every second sample, and of the others; none of fewer than two.
+    pub fn halves(&self, phase: Phase) -> Option<[f64; 2]> {
+        let halves = self.samples[phase as usize].halves()?;
+        Some(halves.map(|ns| self.rebuilding(phase) + ns))
+    }
+
+    fn rebuilding(&self, phase: Phase) -> f64 {
+        if phase == Phase::Index { self.made * self.making().unwrap_or(0.0) } else { 0.0 }
     }
 
     /// Nanoseconds of a phase without the rebuilding of lists: the middle of the samples.
@@ -159,17 +159,6 @@ impl PhaseTimes {
     pub fn making(&self) -> Option<f64> {
         (self.makings.count() > 0).then(|| self.makings.middle())
     }
-}
-
-/// What a phase takes (ns).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PhaseTime {
-    /// The middle of the samples.
-    pub middle: f64,
-    /// Their lowest tenth.
-    pub low: f64,
-    /// Their quartiles.
-    pub quartiles: [f64; 2],
 }
 
 /// Nanoseconds of a sample, about.

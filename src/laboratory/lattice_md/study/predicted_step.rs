@@ -1,6 +1,6 @@
-//! A step of the lattice method as the host model sees it: its programs, and the arrays between them.
+//! A step of the lattice method as the host model sees it: its programs, and the arrays that they go over.
 
-use crate::model::host::{HostModel, OutOfRange, Surroundings};
+use crate::model::host::{Around, HostModel, OutOfRange};
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
 use stripmine_physics::method::lattice_md::{Lengths, Part, Phase, StepProgram};
@@ -8,7 +8,7 @@ use stripmine_physics::method::lattice_md::{Lengths, Part, Phase, StepProgram};
 /// The programs of a step as the model sees them.
 pub struct Step {
     programs: Vec<(Part, Outlines, usize)>,
-    arrays: usize,
+    around: Around,
 }
 
 impl Step {
@@ -19,10 +19,8 @@ impl Step {
             .map(|step| (step.part, step.program.outlines(), lengths.range(step.length).len()))
             .collect();
         let cycle: Vec<(&Outlines, usize)> = programs.iter().map(|(_, outlines, n)| (outlines, *n)).collect();
-        let around = Surroundings::of_cycle(&cycle, Execution::Eager, 0.0);
-        let arrays =
-            around.iter().flat_map(Surroundings::arrays).collect::<std::collections::BTreeSet<_>>().len();
-        Step { programs, arrays }
+        let around = Around::of_step(&cycle);
+        Step { programs, around }
     }
 
     /// Nanoseconds of a phase, and the baseline's.
@@ -44,16 +42,10 @@ impl Step {
             Phase::CorrectPredict => &[],
         };
         // Every part binds all arrays of the step.
-        let mut sum = parts.len() as f64 * (host.clock + self.arrays as f64 * host.bind);
-        let mut baseline = 0.0;
-        let cycle: Vec<(&Outlines, usize)> =
-            self.programs.iter().map(|(_, outlines, n)| (outlines, *n)).collect();
-        let around = host.surroundings(&cycle, execution)?;
-        for ((part, outlines, n), around) in self.programs.iter().zip(&around) {
-            if parts.contains(part) {
-                sum += host.program(outlines, *n, execution, around)?;
-                baseline += host.baseline(outlines, *n, execution);
-            }
+        let [mut sum, mut baseline] = [parts.len() as f64 * host.bind, 0.0];
+        for (_, outlines, n) in self.programs.iter().filter(|(part, ..)| parts.contains(part)) {
+            sum += host.program(outlines, *n, execution, &self.around)?;
+            baseline += host.baseline(outlines, *n, execution);
         }
         Ok([sum, baseline])
     }

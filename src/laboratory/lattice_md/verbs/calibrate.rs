@@ -6,12 +6,12 @@ use crate::laboratory::lattice_md::study::calibration::{Effort, calibrate};
 use crate::report::terminal;
 use clap::Args;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use stripmine_kernels::InstructionSet;
+use stripmine_physics::io::replace::{folder_of, temporary, written_beside};
 use stripmine_physics::origin::host;
 use stripmine_physics::reported::{Class, FilePlace, Reported};
 use stripmine_physics::signals;
-use tempfile::NamedTempFile;
 
 /// Measures this host's operations and caches, in whatever state it is, and writes a host file that says which
 #[derive(Args)]
@@ -56,7 +56,7 @@ impl CalibrateVerb {
             return Err(Refusal::Exists(self.out.clone()).into());
         }
         // A place that cannot be written is found before minutes of measuring.
-        drop(self.beginning()?);
+        drop(temporary().tempfile_in(folder_of(&self.out)).map_err(self.failed())?);
         let bar = progress(common, "calibrate");
         let effort = Effort { seconds: self.seconds.into() };
         let model = calibrate(host(), InstructionSet::best(), effort, |share| {
@@ -76,23 +76,9 @@ impl CalibrateVerb {
         if common.json { print_json(&model) } else { print(&drawn) }
     }
 
-    /// A file without a name of its own yet, beside the one that is to be written.
-    fn beginning(&self) -> Result<NamedTempFile, Failure> {
-        let folder = self.out.parent().filter(|folder| !folder.as_os_str().is_empty());
-        let mut builder = tempfile::Builder::new();
-        #[cfg(unix)]
-        {
-            // As for any file: what the user's mask leaves of it.
-            use std::os::unix::fs::PermissionsExt;
-            builder.permissions(std::fs::Permissions::from_mode(0o666));
-        }
-        builder.tempfile_in(folder.unwrap_or(Path::new("."))).map_err(self.failed())
-    }
-
     /// Writes the whole file, or leaves what was there.
     fn write(&self, text: &str) -> Result<(), Failure> {
-        let mut file = self.beginning()?;
-        file.write_all(text.as_bytes()).and_then(|()| file.as_file().sync_all()).map_err(self.failed())?;
+        let file = written_beside(&self.out, |out| out.write_all(text.as_bytes())).map_err(self.failed())?;
         let placed = if self.force { file.persist(&self.out) } else { file.persist_noclobber(&self.out) };
         placed.map(drop).map_err(|refused| self.failed()(refused.error))
     }

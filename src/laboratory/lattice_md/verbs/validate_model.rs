@@ -111,7 +111,7 @@ impl ValidateModel {
             return print_json(&data);
         }
         let tables = sections::model_validation::tables(&data);
-        let drawn: Vec<String> = tables.iter().take(2).map(terminal::render).collect();
+        let drawn: Vec<String> = tables.iter().map(terminal::render).collect();
         print(&drawn.join("\n"))
     }
 

@@ -1,29 +1,19 @@
-//! How long do this host's operations take? Small programs run through the same interpreter and the same compiled code
-//! as the method's, timed over vectors of 8 to 4 million elements, and a host model fitted to the times.
+//! How long do this host's operations take? The programs of drill scenes, of up to 4 million cells, are timed in every execution, and
+//! a host model is fitted to the times.
 
-mod capacities;
 mod fit;
-mod large;
-mod levels;
-mod loops;
-mod passes;
-mod point;
+mod programs;
 mod scenes;
-mod step;
-mod variants;
 
 use super::samples::Samples;
-use crate::model::host::{FORMAT, HostModel, LoopCosts, Measured};
-use levels::{Levels, fit_levels};
-use loops::Loops;
-use passes::{Lane, NEAR, SHORTEST_VECTOR};
-use point::Charged;
+use crate::model::host::{FORMAT, HostModel, LaneCosts, Level, Measured};
+use crate::statistics::median;
+use programs::{FOOTPRINTS, Fitted, LANES, LONGEST, Programs, Ran};
 use scenes::Scenes;
 use std::time::{Duration, Instant};
-use stripmine_kernels::InstructionSet;
-use stripmine_kernels::drills::{Arrays, LONGEST};
+use stripmine_kernels::backend::tape::register_shape;
 use stripmine_kernels::isa::ProgramError;
-use stripmine_physics::method::lattice_md::{Phase, Timings};
+use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::throughput::MeasurementError;
 
 /// How much is measured.
@@ -50,9 +40,11 @@ pub enum CalibrationError {
     Measurement(#[from] MeasurementError),
 }
 
+/// Shortest vectors: of fewer elements nothing but the start of a pass counts.
+const SHORTEST: usize = 8;
 /// Seconds that fitting takes about, which are kept back.
 const FITTING: f64 = 5.0;
-/// The share of the time that the drill scenes take.
+/// The share of the time that the drill scenes of work that depends on the data take.
 const SCENES: f64 = 0.4;
 
 /// Measures this host, called `title`, on one thread, and fits its model: whatever else the machine is doing. `progress` gets the share
@@ -81,13 +73,11 @@ struct Calibration {
     begun: Instant,
     /// Sweeps done.
     sweeps: usize,
-    timer: f64,
-    lanes: [Lane; 2],
-    arrays: (Arrays<f64, f32>, Arrays<f32, f64>),
-    loops: Loops,
+    /// Bytes of an element in a register of each file and the lanes of a hardware register, of the lanes' types.
+    shapes: [([f64; 3], usize); LANES.len()],
+    programs: Programs,
     scenes: Scenes,
     binding: Samples,
-    clock: Samples,
 }
 
 impl Calibration {
@@ -98,13 +88,10 @@ impl Calibration {
             set,
             begun: Instant::now(),
             sweeps: 0,
-            timer: timer_resolution(),
-            lanes: [Lane::new::<f64>(set)?, Lane::new::<f32>(set)?],
-            arrays: (Arrays::new(LONGEST), Arrays::new(LONGEST)),
-            loops: Loops::new()?,
+            shapes: [register_shape::<f64>(set)?, register_shape::<f32>(set)?],
+            programs: Programs::new()?,
             scenes: Scenes::new()?,
             binding: Samples::default(),
-            clock: Samples::default(),
         })
     }
 
@@ -114,7 +101,8 @@ impl Calibration {
         let (begun, mut of_scenes) = (self.begun, Duration::ZERO);
         let done = || (begun.elapsed().as_secs_f64() / time.as_secs_f64()).min(1.0);
         loop {
-            self.sweep();
+            self.programs.sweep(self.set, self.sweeps, &mut self.binding);
+            self.sweeps += 1;
             progress(done());
             if of_scenes < begun.elapsed().mul_f64(SCENES) {
                 let start = Instant::now();
@@ -128,85 +116,54 @@ impl Calibration {
         }
     }
 
-    /// One sample of every point.
-    fn sweep(&mut self) {
-        let Calibration { set, sweeps, lanes, arrays, loops, binding, clock, .. } = self;
-        let mut timings = Timings::default();
-        clock.take(20_000.0, || timings.time(Phase::Predict, || ()));
-        binding.take(20_000.0, || _ = std::hint::black_box(arrays.0.memory()));
-        // At other addresses each time: whether rows conflict in the first-level cache depends on these.
-        let (mut wide, mut narrow) = (Arrays::<f64, f32>::new(NEAR), Arrays::<f32, f64>::new(NEAR));
-        let near = [wide.memory(), narrow.memory()];
-        let far = [arrays.0.memory(), arrays.1.memory()];
-        for (lane, (near, far)) in lanes.iter_mut().zip(near.iter().zip(&far)) {
-            lane.sweep([near, far], *set, *sweeps);
-        }
-        let in_register =
-            |name: &str| lanes.iter().find(|lane| lane.name == name).map_or(1, |lane| lane.costs.lanes);
-        loops.sweep(*set, &in_register, *sweeps);
-        *sweeps += 1;
-    }
-
     /// The model fitted to what was measured.
     fn model(self) -> HostModel {
-        let Calibration {
-            title, set, begun, timer, mut lanes, arrays, loops, scenes, binding, clock, ..
-        } = self;
-        lanes.iter_mut().for_each(Lane::fit);
-        // Half of the two looks at the clock lies between them.
-        let look = 0.5 * clock.middle();
-        let run = fit::median(lanes.iter().map(Lane::run));
-        let begin = loops.begin(&lanes, run);
-        let long = lanes.iter().flat_map(|lane| lane.long_passes(begin));
-        let large = loops.large(&lanes, look);
-        let costs = loops.costs(&lanes);
-        let passes: Vec<Charged> =
-            long.chain(large.iter().filter_map(|ran| ran.passes(&lanes, begin))).collect();
-        let compiled: Vec<Charged> = large.iter().filter_map(|ran| ran.compiled(&costs, &lanes)).collect();
-        let Levels { operand, levels, overlap, residual } = fit_levels(&passes, &compiled);
-        let samples = || lanes.iter().flat_map(Lane::samples).chain(loops.samples());
-        let spread = fit::median(samples().map(Samples::spread));
-        let disagreement = fit::median(samples().map(Samples::disagreement));
+        let Calibration { title, set, begun, shapes, programs, scenes, binding, .. } = self;
+        let ran: Vec<Ran> = programs.ran().collect();
+        let fitted = |chained: bool| {
+            let alike = ran.iter().filter(|ran| (ran.execution == Execution::Chained) == chained);
+            programs::fit(alike, &shapes)
+        };
+        let [interpreted, chained] = [fitted(false), fitted(true)];
+        let levels = FOOTPRINTS.into_iter().zip(interpreted.levels.into_iter().zip(chained.levels));
+        let both = |of: fn(&Fitted) -> f64| [&interpreted, &chained].map(of);
+        let (run, residuals) = (both(|fitted| fitted.run), both(|fitted| fitted.residual));
+        let lanes = shapes.into_iter().zip(interpreted.lanes.into_iter().zip(chained.lanes));
+        let lanes = lanes.map(|((register_bytes, lanes), ((interpreted, start), (chained, _)))| LaneCosts {
+            register_bytes,
+            lanes,
+            start,
+            interpreted,
+            chained,
+        });
+        let spread = middle(programs.samples().map(Samples::spread));
+        let disagreement = middle(programs.samples().map(Samples::disagreement));
         let measured = Measured {
             state: Measured::state_of(spread, disagreement),
             seconds: begun.elapsed().as_secs_f64(),
-            samples: fit::median(samples().map(|samples| samples.count() as f64)),
-            timer,
             spread,
-            low: fit::median(samples().map(|samples| 1.0 - samples.low() / samples.middle())),
             disagreement,
-            shortest: SHORTEST_VECTOR,
+            shortest: SHORTEST,
             longest: LONGEST,
-            residual,
+            residuals,
         };
         HostModel {
             format: FORMAT,
             title,
             instruction_set: set.name().to_owned(),
             measured,
-            operand,
-            begin,
-            bind: binding.middle() / arrays.0.count() as f64,
+            bind: binding.middle(),
             run,
-            clock: look,
-            levels,
-            loops: LoopCosts { overlap, ..costs },
-            lanes: lanes.into_iter().map(|lane| (lane.name.to_owned(), lane.costs)).collect(),
+            levels: levels
+                .map(|(footprint, (interpreted, chained))| Level { footprint, interpreted, chained })
+                .collect(),
+            lanes: LANES.map(str::to_owned).into_iter().zip(lanes).collect(),
             rates: scenes.rates(),
         }
     }
 }
 
-/// The smallest step of the clock that was seen (ns).
-fn timer_resolution() -> f64 {
-    let step = |_| {
-        let start = Instant::now();
-        loop {
-            let passed = start.elapsed().as_nanos();
-            if passed > 0 {
-                return passed as f64;
-            }
-        }
-    };
-    (0..200).map(step).fold(f64::INFINITY, f64::min)
+/// The middle one of those that are finite.
+fn middle(values: impl Iterator<Item = f64>) -> f64 {
+    median(values.filter(|value| value.is_finite())).max(0.0)
 }

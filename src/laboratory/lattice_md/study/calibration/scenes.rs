@@ -1,11 +1,11 @@
 //! Work whose amount depends on the data: the fast engine and the neighbour lists, on drill scenes of their own.
 
-use super::fit;
+use super::fit::{Row, suited};
 use crate::laboratory::lattice_md::study::phase_times::{
     FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampling, phase_times,
 };
 use crate::model::host::{Amounts, MAKING, PhaseRate, Rates};
-use crate::statistics::non_negative;
+use crate::statistics::median;
 use std::collections::BTreeMap;
 use std::time::Instant;
 use stripmine_physics::method::lattice_md::Checked;
@@ -13,7 +13,7 @@ use stripmine_physics::method::lattice_md::Phase;
 use stripmine_physics::method::throughput::MeasurementError;
 
 /// NP of the drill scenes: close enough to each other that no level of memory ends unseen between two of them.
-pub(super) const PARTICLES: [usize; 6] = [60, 220, 900, 3300, 11_000, 32_000];
+const PARTICLES: [usize; 6] = [60, 220, 900, 3300, 11_000, 32_000];
 /// ρ of the drill scenes, of every second NP these and of the others those; the first is sparse.
 const OCCUPANCIES: [[f64; 3]; 2] = [[0.05, 0.12, 0.26], [0.07, 0.17, 0.22]];
 const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
@@ -79,7 +79,7 @@ impl Scenes {
                 named.into_iter().filter_map(|(name, rate)| Some((name.to_owned(), rate??)))
             });
             let phases: BTreeMap<String, PhaseRate> = phases.collect();
-            (method.to_owned(), Rates { discs: PARTICLES.to_vec(), phases })
+            (method.to_owned(), Rates { discs: PARTICLES.map(|discs| discs as f64).to_vec(), phases })
         };
         ["fast", "fast, sparse", "fast lists", "lists"].map(of).into_iter().collect()
     }
@@ -107,13 +107,14 @@ fn rate(
         .collect();
     all.iter().flatten().flatten().next()?;
     let (units, slower) = fitted(&all);
-    let named = |units: Units| {
-        let each = Amounts::NAMES.into_iter().zip(units).filter(|(_, unit)| *unit > 0.0);
-        each.map(|(name, unit)| (name.to_owned(), unit)).collect()
-    };
-    let ns = PRECISIONS.iter().zip(units).map(|(precision, units)| ((*precision).to_owned(), named(units)));
-    Some(PhaseRate { slower, ns: ns.collect() })
+    let named = PRECISIONS.iter().zip(units).map(|(precision, units)| ((*precision).to_owned(), units));
+    Some(PhaseRate { slower, ns: named.collect() })
 }
+
+type Units = [f64; Amounts::NAMES.len()];
+
+/// Rounds in which the units and how much slower each number of discs is are fitted, one given the other.
+const ROUNDS: usize = 12;
 
 /// The units of every precision, and how much slower everything is with each number of discs, from the work of runs by precision and
 /// number of discs.
@@ -121,51 +122,32 @@ fn rate(
 /// How the units stand to each other is fitted to all of them together: of many discs alone there are too few steps with too few
 /// contacts to tell.
 fn fitted(all: &[Vec<Vec<Done>>]) -> (Vec<Units>, Vec<f64>) {
-    let sizes = all.first().map_or(0, Vec::len);
-    let mut slower = vec![1.0; sizes];
-    let mut units: Vec<Units> = vec![[0.0; Amounts::NAMES.len()]; all.len()];
+    let row = |(amounts, ns): &Done, slower: f64| Row {
+        features: amounts.values().map(|amount| slower * amount),
+        ns: *ns,
+    };
+    let mut slower = vec![1.0; all.first().map_or(0, Vec::len)];
+    let mut units: Vec<Units> = vec![];
     for _ in 0..ROUNDS {
-        for (units, by_size) in units.iter_mut().zip(all) {
-            let before = *units;
-            let rows = by_size.iter().zip(&slower).flat_map(|(alike, slower)| {
-                alike.iter().map(move |(amounts, ns)| {
-                    let said = slower * sum(amounts, &before);
-                    let weight = if said > 0.0 { trust(said / ns) } else { 1.0 };
-                    (amounts.values().map(|amount| weight * slower * amount / ns), weight)
-                })
-            });
-            *units = non_negative(&rows.collect::<Vec<_>>());
-        }
+        let rows = |by_size: &Vec<Vec<Done>>| -> Vec<Row<_>> {
+            let each = by_size.iter().zip(&slower);
+            each.flat_map(|(alike, &slower)| alike.iter().map(move |done| row(done, slower))).collect()
+        };
+        units = all.iter().map(|by_size| suited(&rows(by_size))).collect();
         let mut last = 1.0;
         for (size, slower) in slower.iter_mut().enumerate() {
-            let ratios = all.iter().zip(&units).flat_map(|(by_size, units)| {
-                by_size[size].iter().map(|(amounts, ns)| ns / sum(amounts, units))
-            });
-            let ratios: Vec<f64> = ratios.filter(|ratio| ratio.is_finite()).collect();
-            if !ratios.is_empty() {
-                last = fit::median(ratios.into_iter());
-            }
+            let ratio = |(by_size, units): (&Vec<Vec<Done>>, &Units)| -> Vec<f64> {
+                by_size[size].iter().map(|done| done.1 / row(done, 1.0).said(units)).collect()
+            };
+            let ratios = all.iter().zip(&units).flat_map(ratio).filter(|ratio| ratio.is_finite());
+            let ratio = median(ratios);
+            // Where nothing was measured everything is as slow as before.
+            last = if ratio.is_nan() { last } else { ratio };
             *slower = last;
         }
     }
     (units, slower)
 }
-
-type Units = [f64; Amounts::NAMES.len()];
-
-fn sum(amounts: &Amounts, units: &Units) -> f64 {
-    amounts.values().iter().zip(units).map(|(amount, unit)| amount * unit).sum()
-}
-
-/// The weight of a run by the ratio of its prediction to its time: what is far from the fit was disturbed, and a run that
-/// took too little time must not lower all others.
-fn trust(ratio: f64) -> f64 {
-    let far = ratio.max(f64::MIN_POSITIVE).ln().abs();
-    0.1 / (0.1 + far)
-}
-
-/// Rounds in which the units and how much slower each number of discs is are fitted, one given the other.
-const ROUNDS: usize = 40;
 
 /// The units that a phase can depend on: others would only fit the noise.
 fn charged(phase: Phase, amounts: &Amounts) -> Amounts {
@@ -201,7 +183,8 @@ mod tests {
             for (slower, expected) in slower.iter().zip([1.0, 1.2, 1.2]) {
                 let amounts = Amounts { discs: 1000.0, contacts: 700.0, ..Amounts::default() };
                 let known = factor * expected * (2.0 * 1000.0 + 5.0 * 700.0);
-                assert!((slower * sum(&amounts, &units) / known - 1.0).abs() < 0.02, "{units:?}");
+                let row = Row { features: amounts.values(), ns: known };
+                assert!((slower * row.said(&units) / known - 1.0).abs() < 0.02, "{units:?}");
             }
         }
     }

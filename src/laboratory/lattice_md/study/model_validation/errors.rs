@@ -1,8 +1,8 @@
 //! The cases of a validation, and how far off their predictions are.
 
 use super::EXECUTIONS;
+use crate::statistics::quantile;
 use serde::Serialize;
-use stripmine_physics::method::lattice_md::Phase;
 
 /// The name of a whole step among the phases.
 pub const STEP: &str = "step";
@@ -33,16 +33,10 @@ pub struct Case {
     pub predicted: f64,
     /// Measured: the middle of the samples (ns).
     pub measured: f64,
-    /// Their lowest tenth (ns).
-    pub low: f64,
-    /// Their quartiles (ns).
-    pub quartiles: [f64; 2],
-    /// The middles of the rounds of even and of odd number (ns); none of a single round.
+    /// The middles of every second sample and of the others (ns); none of a single sample.
     pub halves: Option<[f64; 2]>,
     /// Operations times elements, at the cost of a sum in the cache (ns); none where work depends on the data.
     pub baseline: Option<f64>,
-    /// Whether its work depends on the data.
-    pub depends_on_data: bool,
 }
 
 impl Case {
@@ -56,8 +50,6 @@ impl Case {
             phase: STEP,
             predicted: sum(&|case| case.predicted),
             measured: sum(&|case| case.measured),
-            low: sum(&|case| case.low),
-            quartiles: [0, 1].map(|at| sum(&|case| case.quartiles[at])),
             halves: halves.map(|all| [0, 1].map(|at: usize| all.iter().map(|halves| halves[at]).sum())),
             baseline: baselines.map(|all| all.iter().sum()),
             ..first.clone()
@@ -69,9 +61,9 @@ impl Case {
         (self.predicted / self.measured - 1.0).abs()
     }
 
-    /// The same of the lowest tenth.
-    pub fn error_of_low(&self) -> f64 {
-        (self.predicted / self.low - 1.0).abs()
+    /// Whether its work depends on the data.
+    pub fn depends_on_data(&self) -> bool {
+        self.baseline.is_none()
     }
 
     /// The error of the baseline.
@@ -79,7 +71,7 @@ impl Case {
         Some((self.baseline? / self.measured - 1.0).abs())
     }
 
-    /// How far the measurement repeated differs from itself.
+    /// How far the halves of the measurement differ.
     pub fn repeat_error(&self) -> Option<f64> {
         self.halves.map(|[even, odd]| even.max(odd) / even.min(odd) - 1.0)
     }
@@ -103,14 +95,10 @@ pub struct Errors {
     pub ninth_tenth: f64,
     /// The worst.
     pub worst: f64,
-    /// Cases within 5, 10, 15 and 25 %.
-    pub within: [usize; 4],
-    /// The median error where the lowest tenth of the samples counts.
-    pub median_of_low: f64,
     /// The median error of the baseline.
     pub baseline_median: Option<f64>,
-    /// How far the measurement repeated differs from itself: the median, and nine of ten.
-    pub repeated: Option<[f64; 2]>,
+    /// How far the halves of the measurement differ: the median.
+    pub repeated: Option<f64>,
 }
 
 impl Errors {
@@ -120,26 +108,16 @@ impl Errors {
             values.sort_by(f64::total_cmp);
             values
         };
-        let quantile = |sorted: &[f64], share: f64| {
-            let last = sorted.len().saturating_sub(1);
-            sorted.get((share * last as f64).round() as usize).copied().unwrap_or(f64::NAN)
-        };
         let errors = sorted(&|case| Some(case.error()));
-        let both = |of: &dyn Fn(&Case) -> Option<f64>| {
-            Some([0.5, 0.9].map(|share| quantile(&sorted(of), share))).filter(|shares| shares[0].is_finite())
-        };
+        let of_errors = |share| quantile(&errors, share).unwrap_or(f64::NAN);
         Errors {
             what,
             cases: cases.len(),
-            median: quantile(&errors, 0.5),
-            ninth_tenth: quantile(&errors, 0.9),
-            worst: quantile(&errors, 1.0),
-            within: [0.05, 0.1, 0.15, 0.25]
-                .map(|limit| errors.iter().filter(|&&error| error <= limit).count()),
-            median_of_low: quantile(&sorted(&|case| Some(case.error_of_low())), 0.5),
-            baseline_median: Some(quantile(&sorted(&Case::baseline_error), 0.5))
-                .filter(|median| median.is_finite()),
-            repeated: both(&Case::repeat_error),
+            median: of_errors(0.5),
+            ninth_tenth: of_errors(0.9),
+            worst: of_errors(1.0),
+            baseline_median: quantile(&sorted(&Case::baseline_error), 0.5),
+            repeated: quantile(&sorted(&Case::repeat_error), 0.5),
         }
     }
 }
@@ -154,23 +132,13 @@ pub(super) fn errors(cases: &[Case]) -> Vec<Errors> {
         }
     };
     let is_phase = |case: &Case| case.phase != STEP && case.phase != STRANGER;
-    group(STEPS, &|case| case.phase == STEP && !case.depends_on_data);
-    group(STEPS_OF_DATA, &|case| case.phase == STEP && case.depends_on_data);
-    group(PHASES, &|case| is_phase(case) && !case.depends_on_data);
-    group(PHASES_OF_DATA, &|case| is_phase(case) && case.depends_on_data);
+    group(STEPS, &|case| case.phase == STEP && !case.depends_on_data());
+    group(STEPS_OF_DATA, &|case| case.phase == STEP && case.depends_on_data());
+    group(PHASES, &|case| is_phase(case) && !case.depends_on_data());
+    group(PHASES_OF_DATA, &|case| is_phase(case) && case.depends_on_data());
     group(STRANGERS, &|case| case.phase == STRANGER);
     for (name, _) in EXECUTIONS {
         group(&format!("whole steps, {name}"), &|case| case.phase == STEP && case.execution == name);
-    }
-    for phase in Phase::ALL {
-        group(&format!("{} of programs", phase.name()), &|case| {
-            !case.depends_on_data && case.phase == phase.name()
-        });
-    }
-    for phase in Phase::ALL {
-        group(&format!("{} of fast and lists", phase.name()), &|case| {
-            case.depends_on_data && case.phase == phase.name()
-        });
     }
     errors
 }
@@ -186,11 +154,8 @@ mod tests {
             phase,
             predicted,
             measured: 100.0,
-            low: 80.0,
-            quartiles: [99.0, 101.0],
             halves: Some([if execution == "eager" { 102.0 } else { 150.0 }, 100.0]),
             baseline: (execution != "lists").then_some(50.0),
-            depends_on_data: execution == "lists",
         }
     }
 
@@ -206,18 +171,17 @@ mod tests {
         let errors = errors(&cases);
         let of = |what: &str| errors.iter().find(|errors| errors.what == what).unwrap();
         let programs = of(PHASES);
-        assert_eq!((programs.cases, programs.within), (3, [1, 2, 2, 2]));
+        assert_eq!(programs.cases, 3);
         assert!((programs.median - 0.08).abs() < 1e-9 && (programs.worst - 0.4).abs() < 1e-9);
-        assert!((programs.median_of_low - 0.275).abs() < 1e-9, "{}", programs.median_of_low);
         assert_eq!(programs.baseline_median, Some(0.5));
-        assert!((programs.repeated.unwrap()[0] - 0.02).abs() < 1e-9);
+        assert!((programs.repeated.unwrap() - 0.02).abs() < 1e-9);
         assert_eq!((of(PHASES_OF_DATA).baseline_median, of(STRANGERS).cases), (None, 1));
     }
 
     #[test]
     fn a_step_is_the_sum_of_its_phases() {
         let step = Case::step(&[case(102.0, "eager", "forces"), case(92.0, "eager", "index")]).unwrap();
-        assert_eq!((step.phase, step.predicted, step.measured, step.low), (STEP, 194.0, 200.0, 160.0));
+        assert_eq!((step.phase, step.predicted, step.measured), (STEP, 194.0, 200.0));
         assert_eq!((step.halves, step.baseline), (Some([204.0, 200.0]), Some(100.0)));
         assert!(Case::step(&[]).is_none());
     }

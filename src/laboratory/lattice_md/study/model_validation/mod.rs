@@ -4,7 +4,7 @@
 mod errors;
 mod strangers;
 
-pub use errors::{Case, Errors, PHASES, PHASES_OF_DATA, STEPS, STEPS_OF_DATA, STRANGERS};
+pub use errors::{Case, Errors, PHASES, PHASES_OF_DATA, STEP, STEPS, STEPS_OF_DATA, STRANGERS};
 
 use super::calibration::CalibrationError;
 use super::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampling, phase_times};
@@ -143,7 +143,7 @@ pub fn model_validation(
         let (mut rounds, mut done, all) = (effort.rounds.begin(), 0, scenes.len() as f64);
         while rounds.next().is_some() {
             for (at, scene) in scenes.iter_mut().enumerate() {
-                scene.measure(effort, done)?;
+                scene.measure(effort)?;
                 progress(0.9 * rounds.share((at + 1) as f64 / all));
             }
             done += 1;
@@ -178,12 +178,12 @@ fn runs(effort: &Effort) -> impl Iterator<Item = Run> {
     })
 }
 
-/// A run, and what was measured of it: rounds of even and of odd number apart.
+/// A run, and what was measured of it.
 struct Scene {
     run: Run,
     checked: Checked,
     step: Option<(Step, Execution)>,
-    halves: [Option<PhaseTimes>; 2],
+    times: Option<PhaseTimes>,
 }
 
 impl Scene {
@@ -195,7 +195,7 @@ impl Scene {
             let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
             (Step::new(&programs(&model, checked.scene.machine.precision), &lengths), execution)
         });
-        Ok(Scene { run, checked, step, halves: [None, None] })
+        Ok(Scene { run, checked, step, times: None })
     }
 
     /// Nanoseconds of every phase of programs, and the baseline's; none where work depends on the data.
@@ -209,7 +209,7 @@ impl Scene {
         ValidationError::OutOfRange { case: self.run.name(), cause }
     }
 
-    fn measure(&mut self, effort: &Effort, round: usize) -> Result<(), MeasurementError> {
+    fn measure(&mut self, effort: &Effort) -> Result<(), MeasurementError> {
         let sampling = Sampling {
             equilibration: match self.step {
                 Some(_) => WARMED,
@@ -220,42 +220,30 @@ impl Scene {
             // Lists are rebuilt every few steps only.
             least_steps: if self.run.has_lists() { 6 } else { 2 },
         };
-        let half = &mut self.halves[round % 2];
-        *half = Some(PhaseTimes::with(half.take(), phase_times(&self.checked, &sampling)?));
+        self.times = Some(PhaseTimes::with(self.times.take(), phase_times(&self.checked, &sampling)?));
         Ok(())
     }
 
     /// The phases and the whole step.
     fn cases(&self, host: &HostModel) -> Result<Vec<Case>, ValidationError> {
-        let Some(times) = self.halves.iter().flatten().cloned().reduce(PhaseTimes::joined) else {
-            return Ok(vec![]);
-        };
+        let Some(times) = &self.times else { return Ok(vec![]) };
         let predicted: Vec<(f64, Option<f64>)> = match self.programs(host)? {
             Some(all) => all.into_iter().map(|[ns, baseline]| (ns, Some(baseline))).collect(),
             None => {
-                let phases = rated(host, &self.run, &times).map_err(|cause| self.out(cause))?;
+                let phases = rated(host, &self.run, times).map_err(|cause| self.out(cause))?;
                 phases.into_iter().map(|ns| (ns, None)).collect()
             }
         };
         let Run { particles, occupancy, precision, execution } = self.run;
         let place = format!("{precision}, NP = {particles}, ρ = {occupancy}");
-        let phases = Phase::ALL.iter().zip(predicted).map(|(&phase, (predicted, baseline))| {
-            let measured = times.of(phase);
-            Case {
-                place: place.clone(),
-                execution,
-                phase: phase.name(),
-                predicted,
-                measured: measured.middle,
-                low: measured.low,
-                quartiles: measured.quartiles,
-                halves: match &self.halves {
-                    [Some(even), Some(odd)] => Some([even, odd].map(|half| half.of(phase).middle)),
-                    _ => None,
-                },
-                baseline,
-                depends_on_data: self.step.is_none(),
-            }
+        let phases = Phase::ALL.iter().zip(predicted).map(|(&phase, (predicted, baseline))| Case {
+            place: place.clone(),
+            execution,
+            phase: phase.name(),
+            predicted,
+            measured: times.of(phase),
+            halves: times.halves(phase),
+            baseline,
         });
         // Not every execution has every phase.
         let mut cases: Vec<Case> = phases.filter(|case| case.measured > 0.0).collect();

@@ -3,7 +3,7 @@
 use super::errors::{Case, STRANGER};
 use super::{EXECUTIONS, ValidationError};
 use crate::laboratory::lattice_md::study::samples::Samples;
-use crate::model::host::{HostModel, OutOfRange, Surroundings};
+use crate::model::host::{Around, HostModel, OutOfRange};
 use stripmine_kernels::backend::tape::Outlines;
 use stripmine_kernels::isa::{AlignedColumn, Array, Memory, Slot};
 use stripmine_kernels::law::gravity::Gravity;
@@ -76,10 +76,9 @@ impl Ran<'_> {
         }
         let outlines: Outlines = program.outlines();
         let out = |cause: OutOfRange| ValidationError::OutOfRange { case: name.to_owned(), cause };
+        let around = Around::of_step(&[(&outlines, n)]);
         let mut cases = vec![];
         for (execution, how) in EXECUTIONS.iter().filter_map(|(name, how)| Some((*name, (*how)?))) {
-            let around = host.surroundings(&[(&outlines, n)], how).map_err(out)?;
-            let around: Surroundings = around.into_iter().next().unwrap_or_default();
             let predicted = host.program(&outlines, n, how, &around).map_err(out)?;
             let mut samples = Samples::default();
             for _ in 0..SAMPLES {
@@ -94,11 +93,8 @@ impl Ran<'_> {
                 phase: STRANGER,
                 predicted,
                 measured: samples.middle(),
-                low: samples.low(),
-                quartiles: samples.quartiles(),
                 halves: samples.halves(),
                 baseline: Some(host.baseline(&outlines, n, how)),
-                depends_on_data: false,
             });
         }
         Ok(cases)
