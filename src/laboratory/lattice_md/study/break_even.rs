@@ -237,7 +237,7 @@ fn run(particles: usize, occupancy: f64, (name, _): &(&'static str, Option<Execu
 
 /// What fast lists have to do in a step, in a run of about a thousand discs.
 fn fast_list_amounts(occupancy: f64) -> Result<Amounts, MeasurementError> {
-    let checked = run(1000, occupancy, &(FAST_LISTS, None)).scene(&[])?;
+    let checked = run(1000, occupancy, &(FAST_LISTS, None)).scene(std::convert::identity)?;
     let sampling = Sampling { equilibration: 200, repeats: 2, particle_steps: 300_000, least_steps: 100 };
     Ok(phase_times(&checked, &sampling)?.amounts)
 }
@@ -250,7 +250,7 @@ fn predict(
     variant: &(&'static str, Option<Execution>),
 ) -> Result<f64, AtlasError> {
     let run = run(particles, figures.occupancy, variant);
-    let checked = run.scene(&[])?;
+    let checked = run.scene(std::convert::identity)?;
     let (model, discs) = (model(&checked), checked.particles.grain_count());
     let lengths = Lengths::new(&model, discs, checked.particles.len());
     if let Some(execution) = variant.1 {
@@ -291,7 +291,7 @@ fn measure(
     occupancy: f64,
     variant: &(&'static str, Option<Execution>),
 ) -> Result<PhaseTimes, MeasurementError> {
-    let checked = run(particles, occupancy, variant).scene(&[])?;
+    let checked = run(particles, occupancy, variant).scene(std::convert::identity)?;
     let equilibration = (100_000 / particles).clamp(3, 30);
     let sampling = Sampling { equilibration, repeats: 1, particle_steps: 5_000, least_steps: 3 };
     phase_times(&checked, &sampling)

@@ -29,14 +29,6 @@ pub use crate::study::StudyError;
 use stripmine_physics::method::lattice_md::Document;
 use stripmine_physics::method::throughput::{MeasurementError, TimedRun};
 
-/// The override that has a step executed: by the fast engine, or by programs in some execution.
-fn executed(execution: &str) -> String {
-    match execution {
-        "fast" => "machine.engine=fast".to_owned(),
-        _ => format!("machine.execution=\"{execution}\""),
-    }
-}
-
 /// A scene of discs that runs, and is timed again and again: `equilibration` steps first, then repeats of `steps`.
 ///
 /// # Errors

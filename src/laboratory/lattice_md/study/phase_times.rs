@@ -1,6 +1,5 @@
 //! How long is each phase of a step, and how much was there to do? Runs of the bench scene, timed phase by phase.
 
-use super::executed;
 use super::samples::Samples;
 use crate::model::host::Amounts;
 use std::f64::consts::PI;
@@ -8,10 +7,12 @@ use std::time::Instant;
 use stripmine_kernels::ledger::Length;
 use stripmine_physics::method::Failure;
 use stripmine_physics::method::lattice_md::Lengths;
+use stripmine_physics::method::lattice_md::keys::{CELL_EDGE, ENGINE, EXECUTION, SEARCH};
 use stripmine_physics::method::lattice_md::{Checked, Document};
 use stripmine_physics::method::lattice_md::{Engine, Phase};
 use stripmine_physics::method::lattice_md::{assemble, model};
 use stripmine_physics::method::throughput::MeasurementError;
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, PRECISION};
 
 /// A run of the bench scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,25 +43,22 @@ impl Run {
     ///
     /// # Errors
     /// [`MeasurementError::Scene`] if there is no such scene.
-    pub fn scene(&self, further: &[&str]) -> Result<Checked, MeasurementError> {
-        let mut overrides = vec![
-            format!("particles.count={}", self.particles),
-            format!("particles.packing_fraction={}", PI * self.occupancy),
-            format!("machine.precision=\"{}\"", self.precision),
-        ];
-        let by = if self.has_lists() { "neighbor-list" } else { "lattice" };
-        overrides.push(format!("search.by={by}"));
-        overrides.push(executed(match self.execution {
-            FAST_LISTS => "fast",
-            LISTS => "chained",
-            execution => execution,
-        }));
-        if !self.has_lists() {
+    pub fn scene(&self, further: impl FnOnce(Overrides) -> Overrides) -> Result<Checked, MeasurementError> {
+        let overrides = Overrides::new()
+            .set(&COUNT, self.particles)
+            .set(&PACKING_FRACTION, PI * self.occupancy)
+            .set(&PRECISION, self.precision);
+        let overrides = match self.execution {
+            FAST | FAST_LISTS => overrides.set(&ENGINE, "fast"),
+            LISTS => overrides.set(&EXECUTION, "chained"),
+            execution => overrides.set(&EXECUTION, execution),
+        };
+        let overrides = match self.has_lists() {
+            true => overrides.set(&SEARCH, "neighbor-list"),
             // As the source has it; the largest cell that the geometry allows would need fewer.
-            overrides.push("search.cell_edge=0.5".to_owned());
-        }
-        overrides.extend(further.iter().map(|&text| text.to_owned()));
-        Ok(Document::load("bench", &overrides)?.check()?)
+            false => overrides.set(&SEARCH, "lattice").set(&CELL_EDGE, 0.5),
+        };
+        Ok(Document::load("bench", &further(overrides))?.check()?)
     }
 
     /// The name that a host model gives the rates of this run's method, if its work depends on the data: a lattice with few discs

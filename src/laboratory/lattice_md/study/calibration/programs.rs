@@ -16,7 +16,7 @@ use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::lattice_md::{Arrays, Discs, Lengths, Model, StepProgram, model, programs};
 use stripmine_physics::method::throughput::MeasurementError;
-use stripmine_physics::scene;
+use stripmine_physics::scene::{self, Overrides, SEED, TEMPERATURE};
 
 /// Cells of the largest drill scene, about.
 pub(super) const LONGEST: usize = 4_000_000;
@@ -58,7 +58,9 @@ const VARIANTS: [fn(&mut Model); 3] = [
 ];
 
 /// Discs at rest: no drill depends on what the one before has left.
-const AT_REST: [&str; 2] = ["particles.temperature=0", "particles.seed=7"];
+fn at_rest(scene: Overrides) -> Overrides {
+    scene.set(&TEMPERATURE, 0.0).set(&SEED, 7_u64)
+}
 
 /// How they are executed; strips whose registers lie in the first and in the second level, and of which none leaves elements over.
 const EXECUTIONS: [Execution; 5] = [
@@ -126,7 +128,7 @@ impl Step {
         precision: &'static str,
         change: fn(&mut Model),
     ) -> Result<Step, MeasurementError> {
-        let checked = Run { particles, occupancy, precision, execution: "chained" }.scene(&AT_REST)?;
+        let checked = Run { particles, occupancy, precision, execution: "chained" }.scene(at_rest)?;
         let mut model = model(&checked);
         change(&mut model);
         let (discs, precision) = (&checked.particles, checked.scene.machine.precision);

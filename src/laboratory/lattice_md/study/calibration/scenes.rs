@@ -11,6 +11,7 @@ use std::time::Instant;
 use stripmine_physics::method::lattice_md::Checked;
 use stripmine_physics::method::lattice_md::Phase;
 use stripmine_physics::method::throughput::MeasurementError;
+use stripmine_physics::scene::SEED;
 
 /// NP of the drill scenes: close enough to each other that no level of memory ends unseen between two of them.
 const PARTICLES: [usize; 6] = [60, 220, 900, 3300, 11_000, 32_000];
@@ -40,7 +41,7 @@ impl Scenes {
                 for precision in PRECISIONS {
                     for execution in [FAST, FAST_LISTS, LISTS] {
                         let run = Run { particles, occupancy, precision, execution };
-                        scenes.push((run, run.scene(&["particles.seed=11"])?, None));
+                        scenes.push((run, run.scene(|scene| scene.set(&SEED, 11_u64))?, None));
                     }
                 }
             }

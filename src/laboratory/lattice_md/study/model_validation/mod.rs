@@ -188,7 +188,7 @@ struct Scene {
 
 impl Scene {
     fn new(run: Run) -> Result<Scene, MeasurementError> {
-        let checked = run.scene(&[])?;
+        let checked = run.scene(std::convert::identity)?;
         let named = EXECUTIONS.iter().find(|(name, _)| *name == run.execution);
         let step = named.and_then(|(_, execution)| *execution).map(|execution| {
             let model = model(&checked);
