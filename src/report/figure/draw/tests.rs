@@ -42,7 +42,7 @@ fn marked(figure: &Figure) -> Vec<[f64; 2]> {
             match node {
                 Node::Group(group) => of(group, all),
                 // Only markers are moved to where they are.
-                Node::Path(path) if !path.abs_transform().is_identity() => {
+                Node::Path(path) if path.abs_transform().tx > 1.0 => {
                     let at = path.abs_transform();
                     all.push([at.tx, at.ty].map(f64::from));
                 }
