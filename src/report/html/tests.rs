@@ -102,7 +102,8 @@ fn the_fixed_parts_cannot_end_their_elements() {
 
 #[test]
 fn nothing_is_fetched() {
-    let page = page();
+    // What pictures name in the page itself.
+    let page = page().replace("url(#", "");
     for attribute in
         ["src=", "srcset=", "action=", "poster=", "@import", "url(", "fetch(", "XMLHttpRequest", "import("]
     {

@@ -41,8 +41,8 @@ fn marked(figure: &Figure) -> Vec<[f64; 2]> {
         for node in group.children() {
             match node {
                 Node::Group(group) => of(group, all),
-                // No other path has both a filling and an edge.
-                Node::Path(path) if path.fill().is_some() && path.stroke().is_some() => {
+                // Only markers are moved to where they are.
+                Node::Path(path) if path.abs_transform().tx > 1.0 => {
                     let at = path.abs_transform();
                     all.push([at.tx, at.ty].map(f64::from));
                 }
