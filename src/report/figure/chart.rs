@@ -217,3 +217,17 @@ pub enum Along {
     /// The vertical one.
     Y,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_of_a_name_are_one_series() {
+        let series =
+            Series::by_name(Style::Points, [("b", (0.0, 1.0)), ("a", (1.0, 2.0)), ("b", (2.0, 3.0))]);
+        let [b, a] = series.as_slice() else { panic!("{series:?}") };
+        assert_eq!((b.name.as_str(), b.hue, a.name.as_str(), a.hue), ("b", 0, "a", 1));
+        assert_eq!(b.points, [Point::at(0.0, 1.0), Point::at(2.0, 3.0)]);
+    }
+}
