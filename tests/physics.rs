@@ -3,7 +3,8 @@
 
 mod support;
 
-use stripmine_kernels::law::granular::Contact;
+use stripmine_kernels::law::granular::{Contact, ContactArm};
+use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::io::checkpoint::Column;
 use stripmine_physics::method::lattice_md::Engine;
@@ -321,6 +322,44 @@ fn oblique(contact: Contact, normal: f64, shear: f64) -> ([f64; 2], [f64; 2], Pa
     let [px, py] =
         [0, 1].map(|axis| MASSES[0] * (after.all()[0].velocity[axis] - before.all()[0].velocity[axis]));
     ([px * n[0] + py * n[1], py * n[0] - px * n[1]], [slip(before.all()), slip(after.all())], after)
+}
+
+/// Oblique collisions with a linear spring are those of LAMMPS's `gran/hooke`: places, velocities and spins, after steps 25 times as
+/// long as its.
+#[test]
+fn linear_contacts_are_those_of_lammps() {
+    let table = include_str!("rivals/linear_contacts.csv").lines().filter(|line| !line.starts_with('#'));
+    let contact = Contact {
+        spring: Spring::Linear,
+        stiffness: 187.0,
+        normal_damping: 0.7,
+        shear_damping: 20.0,
+        friction: 0.3,
+        cohesionless: false,
+        arm: ContactArm::Radius,
+    };
+    let (mut rows, mut turned) = (0, 0.0_f64);
+    for row in table.skip(1) {
+        let row: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let discs = [1, 2].map(|id| {
+            let &[radius, mass, x, y, vx, vy, omega] = &row[12 * (id - 1)..][..7] else { panic!("{row:?}") };
+            Particle { omega, ..grain(id as u32, [x, y], [vx, vy], radius, mass) }
+        });
+        let (mut model, particles) = arena([16, 16], true, &discs);
+        (model.contact, model.friction, model.dt) = (contact, true, 0.0005);
+        let mut collision = lattice(&(model, particles));
+        advance(collision.as_mut(), 5000);
+        for (disc, before) in collision.particles().all().iter().zip(&discs) {
+            let after = &row[12 * (disc.id as usize - 1) + 7..][..5];
+            let ours = [disc.position, disc.velocity].map(|[x, y, _]| [x, y]).concat();
+            for (ours, theirs) in ours.iter().chain([&disc.omega]).zip(after) {
+                assert!((ours - theirs).abs() < 2e-4, "{ours} {theirs} of {after:?}");
+            }
+            turned = turned.max((disc.omega - before.omega).abs());
+        }
+        rows += 1;
+    }
+    assert!(rows == 16 && turned > 0.1, "{rows} {turned}");
 }
 
 #[test]

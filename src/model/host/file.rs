@@ -239,7 +239,7 @@ mod tests {
         for (old, new, expected) in [
             ("bind = ", "bind = -", "`bind` is -"),
             ("bind = ", "binds = ", "unknown field `binds`"),
-            ("footprint", "footprints", "unknown field `footprints`"),
+            ("footprint = ", "footprints = ", "unknown field `footprints`"),
             ("footprint = ", "footprint = 1e12 #", "`levels.footprint` must be positive and rise"),
             ("format = 14", "format = 15", "`format` is 15"),
             ("format = 14", "format = 13\npace = 1.0", "`format` is 13, but this program reads 14"),
