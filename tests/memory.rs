@@ -4,19 +4,17 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// The most memory that a process had at one time (bytes), once it has ended well.
-#[expect(clippy::zombie_processes, reason = "it is waited for below, by what says how much it took")]
+/// The most memory that a process had at one time (bytes), once it has ended well. Asked of a small process that begins it: one that a
+/// large process begins is said to have had as much as that at least.
 fn peak(arguments: &[String]) -> u64 {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_stripmine"));
-    let child = command.args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    let (mut status, mut usage) = (0, std::mem::MaybeUninit::<libc::rusage>::zeroed());
-    // SAFETY: both are there to be written, and zeros are an `rusage`.
-    let (ended, usage) = unsafe {
-        let ended = libc::wait4(child.id() as libc::pid_t, &raw mut status, 0, usage.as_mut_ptr());
-        (ended, usage.assume_init())
-    };
-    assert!(ended > 0 && status == 0, "{arguments:?} ends with {status}");
-    usage.ru_maxrss as u64 * 1024
+    const ASK: &str = "import resource as r, subprocess as s, sys; \
+                       code = s.call(sys.argv[1:], stdout=s.DEVNULL, stderr=s.DEVNULL); \
+                       print(r.getrusage(r.RUSAGE_CHILDREN).ru_maxrss); sys.exit(code)";
+    let mut command = Command::new("python3");
+    command.args(["-I", "-S", "-c", ASK, env!("CARGO_BIN_EXE_stripmine")]).args(arguments);
+    let output = command.output().expect("there is a Python");
+    assert!(output.status.success(), "{arguments:?} ends with {:?}", output.status);
+    String::from_utf8(output.stdout).unwrap().trim().parse::<u64>().unwrap() * 1024
 }
 
 /// Bytes of a frame of a hundred thousand particles.

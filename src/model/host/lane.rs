@@ -1,7 +1,7 @@
 //! Operations on lanes of one precision, by their class.
 
 use super::levels::strips;
-use super::model::OutOfRange;
+use super::out_of_range::OutOfRange;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::Execution;

@@ -6,10 +6,12 @@ mod file;
 mod lane;
 mod levels;
 mod model;
+mod out_of_range;
 mod rates;
 
 pub use file::{FORMAT, HostFileError, default_model};
 pub use lane::{LaneCosts, class_counts, starts};
 pub use levels::{Around, Level};
-pub use model::{HostModel, Measured, OutOfRange};
+pub use model::{HostModel, Measured};
+pub use out_of_range::OutOfRange;
 pub use rates::{Amounts, MAKING, PhaseRate, Rates};

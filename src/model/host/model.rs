@@ -2,45 +2,13 @@
 
 use super::lane::LaneCosts;
 use super::levels::{Around, Level};
+use super::out_of_range::OutOfRange;
 use super::rates::Rates;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
 use stripmine_kernels::isa::OpClass;
-
-/// Why there is no prediction.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum OutOfRange {
-    /// Vectors longer or shorter than those that were measured.
-    #[error(
-        "vectors of {n} elements lie outside the calibrated range of {shortest} to {longest}: calibrate on them, or ask \
-         for another number of particles"
-    )]
-    Length {
-        /// Elements asked for.
-        n: usize,
-        /// Shortest vectors.
-        shortest: usize,
-        /// Longest vectors.
-        longest: usize,
-    },
-    /// More or fewer discs than those that were measured.
-    #[error(
-        "{discs} discs lie outside the calibrated range of {fewest} to {most}: ask for another number of particles"
-    )]
-    Discs {
-        /// Discs asked for.
-        discs: f64,
-        /// Fewest discs.
-        fewest: f64,
-        /// Most discs.
-        most: f64,
-    },
-    /// An execution, precision or program that was not measured.
-    #[error("{0} was not calibrated")]
-    NotMeasured(String),
-}
 
 /// How the numbers were measured.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

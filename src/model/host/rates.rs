@@ -2,7 +2,7 @@
 //! the level of memory depends on it.
 
 use super::levels::shares;
-use super::model::OutOfRange;
+use super::out_of_range::OutOfRange;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -1,6 +1,5 @@
 //! Curves and points over two axes.
 
-use super::picture::{Figure, Picture};
 use serde::{Deserialize, Serialize};
 
 /// A chart. A point that an axis cannot show (zero or less on a logarithmic one, not finite) must not be in it.
@@ -43,11 +42,6 @@ impl Chart {
     pub fn band(mut self, band: Band) -> Chart {
         self.bands.push(band);
         self
-    }
-
-    /// As a figure without a caption.
-    pub fn figure(self, name: impl Into<String>, title: impl Into<String>) -> Figure {
-        Picture::Chart(self).figure(name, title)
     }
 }
 

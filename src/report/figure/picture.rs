@@ -36,6 +36,13 @@ impl Picture {
     }
 }
 
+impl Chart {
+    /// As a figure without a caption.
+    pub fn figure(self, name: impl Into<String>, title: impl Into<String>) -> Figure {
+        Picture::Chart(self).figure(name, title)
+    }
+}
+
 impl Figure {
     /// With what a reader must also know.
     pub fn caption(self, caption: impl Into<String>) -> Figure {

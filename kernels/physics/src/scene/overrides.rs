@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn values_come_back_as_they_were_set() {
         let velocities = vec![[0.1, -1e-300], [2.0, 1.0 / 3.0]];
-        for dt in [1.0, 0.1 + 0.2, 5e-324, 1e22, 123_456_789.0] {
+        for dt in [1.0, 0.1 + 0.2, 1e-9 / 3.0] {
             let overrides = Overrides::new()
                 .set(&DT, dt)
                 .set(&VELOCITIES, velocities.clone())
