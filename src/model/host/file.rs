@@ -76,14 +76,15 @@ impl HostModel {
     /// # Errors
     /// [`HostFileError`]: the grammar's first defect, or the first entry that cannot be.
     pub fn parse(file: &str, text: &str) -> Result<HostModel, HostFileError> {
+        let syntax = |cause| HostFileError::Syntax { file: file.to_owned(), cause: Box::new(cause) };
         let model: HostModel = toml::from_str(text).map_err(|cause| {
             // A file of another format has entries of other names: its format is the mistake.
-            let syntax = HostFileError::Syntax { file: file.to_owned(), cause: Box::new(cause) };
-            other_format(text).map_or(syntax, |defect| content(file, text, defect))
+            other_format(text).map_or(syntax(cause), |defect| content(file, text, defect))
         })?;
         let mut defects = model.defects();
-        let written = text.parse::<toml::Table>().map(toml::Value::Table);
-        written.iter().for_each(|value| wrong_numbers(value, String::new(), &mut defects));
+        // A whole number beyond 2^63 fits into an entry, but into no value of a table.
+        let written = text.parse::<toml::Table>().map_err(syntax)?;
+        wrong_numbers(&toml::Value::Table(written), String::new(), &mut defects);
         let first = defects.into_iter().next();
         first.map_or(Ok(model), |defect| Err(content(file, text, defect)))
     }
