@@ -75,7 +75,7 @@ const ROUNDED_UP: f64 = 1.0 + 1e-9;
 /// Begins at a time: over every cell of a box, or over those that hold a disc where there is no ceiling.
 ///
 /// # Errors
-/// [`EngineError`] if discs cannot be put into cells.
+/// An error of the engine if discs cannot be put into cells.
 pub fn begin(arena: Arena, discs: Vec<Disc>, mask: &Mask, time: f64) -> Result<Box<dyn Engine>, EngineError> {
     let smallest = discs.iter().map(|disc| disc.radius).fold(f64::INFINITY, f64::min);
     let sizes = Sizes::new(&arena.domain, smallest);
