@@ -1,15 +1,17 @@
 //! Work cut into parts, on the threads of the current `rayon` pool.
 //!
-//! `kernels/tests/waiting.rs` runs this code again and again, from outside of a pool and in it, and sees whether threads that wait awake
-//! ever wait for each other for ever.
+//! How threads wait for each other is in [`waiting`].
 //!
 //! Parts are called through a pointer, so that the pool's machinery is compiled once and not for every kind of work.
 
-use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
-use std::cell::{Cell, RefCell};
+mod pool;
+mod waiting;
+
+use std::cell::Cell;
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::AtomicU32;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use waiting::each;
 
 thread_local! {
     /// Whether this thread does all parts itself.
@@ -54,7 +56,7 @@ pub(crate) fn on_threads<T: Send, R: Send>(
     }
     let slots: Vec<Mutex<(Option<T>, Option<R>)>> =
         parts.into_iter().map(|part| Mutex::new((Some(part), None))).collect();
-    each(1, slots.len(), &|_, number| {
+    each(threads(), [1, slots.len()], &|_, number| {
         let mut slot = locked(&slots[number]);
         slot.1 = slot.0.take().map(&work);
     });
@@ -79,7 +81,7 @@ pub(crate) fn in_stages<T: Send, E: Send>(
     }
     let slots: Vec<Mutex<&mut T>> = parts.iter_mut().map(Mutex::new).collect();
     let failure = Mutex::new(None);
-    each(stages, slots.len(), &|stage, number| {
+    each(threads(), [stages, slots.len()], &|stage, number| {
         if let Err(cause) = work(&mut locked(&slots[number]), stage) {
             locked(&failure).get_or_insert(cause);
         }
@@ -92,97 +94,10 @@ fn locked<T>(slot: &Mutex<T>) -> MutexGuard<'_, T> {
     slot.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Every part once in every stage. A thread begins with a share that is always its own, so that what it worked on before
-/// is still in its cache, and then takes what others have left.
-///
-/// Who finds nothing left waits, awake, for those who are at their last parts: who falls asleep has to be woken for the
-/// next stage, or for the next call, and that takes longer. All that is waited for is being worked on, so that no
-/// thread waits for one that waits.
-fn each(stages: usize, parts: usize, work: &(dyn Fn(usize, usize) + Sync)) {
-    if parts <= 1 {
-        // Nothing to share: the others are left as they are.
-        (0..stages).for_each(|stage| (0..parts).for_each(|part| work(stage, part)));
-        return;
-    }
-    release();
-    let taken: Vec<AtomicBool> = (0..stages * parts).map(|_| AtomicBool::new(false)).collect();
-    let done: Vec<AtomicUsize> = (0..stages).map(|_| AtomicUsize::new(0)).collect();
-    let threads = self::threads();
-    (0..threads.min(parts)).into_par_iter().with_max_len(1).for_each(|_| {
-        let first = rayon::current_thread_index().unwrap_or(0) * parts / threads;
-        for (stage, done) in done.iter().enumerate() {
-            let own_first = (first..parts).chain(0..first);
-            own_first.filter(|&part| !taken[stage * parts + part].swap(true, Ordering::Relaxed)).for_each(
-                |part| {
-                    let _done = Done(done);
-                    work(stage, part);
-                },
-            );
-            wait_for(|| done.load(Ordering::Acquire) == parts);
-        }
-    });
-}
-
-/// Counts when it goes, even if that is because of a panic.
-struct Done<'a>(&'a AtomicUsize);
-
-impl Drop for Done<'_> {
-    #[inline]
-    fn drop(&mut self) {
-        self.0.fetch_add(1, Ordering::Release);
-    }
-}
-
-/// Stays awake until something holds.
-#[inline]
-fn wait_for(holds: impl Fn() -> bool) {
-    while !holds() {
-        std::thread::yield_now();
-    }
-}
-
-thread_local! {
-    /// Set when those that this thread keeps awake may go.
-    static KEPT: RefCell<Option<Arc<AtomicBool>>> = const { RefCell::new(None) };
-}
-
-/// Lets those go that this thread keeps awake: it needs them, or is done.
-#[inline]
-fn release() {
-    if let Some(kept) = KEPT.take() {
-        kept.store(true, Ordering::Release);
-    }
-}
-
-/// Releases when it goes, even if that is because of a panic.
-struct Release;
-
-impl Drop for Release {
-    #[inline]
-    fn drop(&mut self) {
-        release();
-    }
-}
-
 /// What `work` gives, done by one thread while the others wait for the next parts, awake: to be woken would take them
-/// longer than `work` takes. Once `work` has parts for them itself, they wait no longer; else a thread that waited for its
-/// parts to be taken, and kept others awake meanwhile, could wait for one that does the same.
+/// longer than `work` takes. Once `work` has parts for them itself, they wait no longer.
 pub fn keep_awake<R>(work: impl FnOnce() -> R) -> R {
-    let others = threads() - 1;
-    if others == 0 {
-        return work();
-    }
-    let kept = Arc::new(AtomicBool::new(false));
-    for _ in 0..others {
-        let kept = Arc::clone(&kept);
-        // Nothing waits for these: on a busy machine one may begin only when all is over, and finds that it may go.
-        rayon::spawn(move || wait_for(|| kept.load(Ordering::Acquire)));
-    }
-    // The threads that were kept awake already wait for this one now.
-    release();
-    KEPT.set(Some(kept));
-    let _release = Release;
-    work()
+    waiting::keep_awake(threads() - 1, work)
 }
 
 /// Entries of a column that one thread works on at a time, where an entry takes some nanoseconds: short columns are left to
@@ -262,6 +177,8 @@ pub(crate) fn pieces(range: Range<usize>, length: usize) -> impl Iterator<Item =
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     fn on<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)

@@ -56,6 +56,7 @@ fn wait_for(holds: impl Fn() -> bool) {
 
 thread_local! {
     /// Set when those that this thread keeps awake may go.
+    #[allow(clippy::missing_const_for_thread_local, reason = "loom's has no such form")]
     static KEPT: RefCell<Option<Arc<AtomicBool>>> = RefCell::new(None);
 }
 
