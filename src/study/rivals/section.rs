@@ -3,7 +3,7 @@
 use super::{Contest, Rival, rivals};
 use crate::console::Failure;
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Part, Rows, Section, Table, Verdict};
+use crate::report::{Rows, Section, Table, Verdict};
 use crate::results::Made;
 use crate::statistics::median;
 
@@ -45,7 +45,7 @@ fn ratios_of(data: &[Rival], (system, way, _): &(&str, &str, f64)) -> Option<[f6
 fn section(data: &[Rival]) -> Section {
     let met = |aim: &&(&str, &str, f64)| ratios_of(data, aim).is_some_and(|[low, _]| low >= aim.2);
     let aims = AIMS.iter().map(|aim| format!("{} {} {:.1}", aim.0, aim.1, aim.2));
-    Section::new(NAME, "Beside other programs", Part::Host)
+    Section::new(NAME, "Beside other programs")
         .asks("How many times as fast as other programs is ours, on the same system and one core?")
         .expects(format!(
             "Our aims, times as fast: {}. For granular discs none is stated.",

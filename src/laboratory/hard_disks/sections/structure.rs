@@ -2,7 +2,7 @@
 
 use crate::laboratory::hard_disks::study::structure::{Structure, Structures};
 use crate::report::figure::{Axis, Chart, Drawing, Figure, Guide, Picture, Series, Shape, Style, Tint};
-use crate::report::{Part, Rows, Section, Table, Verdict};
+use crate::report::{Rows, Section, Table, Verdict};
 
 /// Free times over their mean that are drawn; longer ones are too few.
 const LONGEST: f64 = 5.0;
@@ -24,7 +24,7 @@ pub fn section(data: &Structures) -> Section {
     let is_maxwell = data.structures.iter().all(|it| it.maxwell[1] > 0.001);
     let largest = gas.free_times.iter().zip(&data.dilute).map(|(seen, theory)| (seen - theory).abs());
     let largest = largest.fold(0.0, f64::max);
-    Section::new("hard-disks-structure", "Hard discs: melting, free times and speeds", Part::Physics)
+    Section::new("hard-disks-structure", "Hard discs: melting, free times and speeds")
         .asks("At which density does a crystal of hard discs melt, and how long do discs fly?")
         .expects("Simulations of a million discs find a fluid below a packing fraction of 0.700, fluid and hexatic phase beside each other up to \
                   0.716, and a crystal above 0.720. A dilute gas has the free times of its Maxwell velocities.")

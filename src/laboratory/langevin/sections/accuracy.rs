@@ -4,7 +4,7 @@ use super::point;
 use crate::laboratory::langevin::study::Mean;
 use crate::laboratory::langevin::study::accuracy::{Accuracy, Fluid};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Part, Rows, Section, Table, Verdict};
+use crate::report::{Rows, Section, Table, Verdict};
 use crate::statistics::slope;
 
 /// Errors that an order is fitted through, at least.
@@ -35,7 +35,7 @@ pub fn section(data: &Accuracy) -> Section {
     // Smaller beyond the bars of both.
     let is_smaller = source.value.abs() - ours.value.abs() > ours.bar.hypot(source.bar);
     let with_bar = |mean: Mean| format!("{:+.4} ± {:.4}", mean.value, mean.bar);
-    Section::new("langevin-accuracy", "Langevin: the error of the step", Part::Physics)
+    Section::new("langevin-accuracy", "Langevin: the error of the step")
         .asks("How far off are averages over positions for a given step, by either scheme?")
         .expects("Leimkuhler and Matthews: by BAOAB the error is of order dt² and far smaller than by velocity Verlet with noise in the \
                   acceleration.")

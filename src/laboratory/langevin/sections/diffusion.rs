@@ -3,7 +3,7 @@
 use super::point;
 use crate::laboratory::langevin::study::diffusion::{Diffusion, Followed, exact};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Part, Rows, Section, Table, Verdict};
+use crate::report::{Rows, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &Diffusion) -> Section {
@@ -18,7 +18,7 @@ pub fn section(data: &Diffusion) -> Section {
     let worst = data.heated.iter().filter(|it| it.scheme != "as-printed");
     let worst = worst.map(|it| ((it.temperature.value - 1.0) / it.temperature.bar).abs()).fold(0.0, f64::max);
     let least = data.systems.iter().map(|it| it.maxwell[0]).fold(1.0, f64::min);
-    Section::new("langevin-diffusion", "Langevin: displacements and velocities", Part::Physics)
+    Section::new("langevin-diffusion", "Langevin: displacements and velocities")
         .asks("Do free and interacting particles in a bath move as theory says, and where do the source's spike and broad velocities come from?")
         .expects("LAN17, figures 3 to 8: displacements grow as t² and then as 4 D t with D = kT/γ; the source shows a spike when the first \
                   particles leave the box, and broader velocities where particles interact.")

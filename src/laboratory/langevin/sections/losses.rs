@@ -2,7 +2,7 @@
 
 use crate::laboratory::langevin::study::losses::{Boundary, LossTable, Row, SCHEMES};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
+use crate::report::{Cell, Rows, Section, Table, Verdict};
 use stripmine_physics::number::range;
 use stripmine_physics::words::Words;
 
@@ -47,7 +47,7 @@ pub fn section(data: &LossTable) -> Section {
     let ratios = || data.boundaries.iter().map(|boundary| boundary.dt / boundary.bounds[0]);
     let (least, most) = (ratios().fold(f64::INFINITY, f64::min), ratios().fold(0.0, f64::max));
     let by_limit = || data.boundaries.iter().map(|boundary| boundary.dt / boundary.bounds[1]);
-    Section::new("langevin-losses", "Langevin: particles lost to a long step", Part::Physics)
+    Section::new("langevin-losses", "Langevin: particles lost to a long step")
         .asks("From which step on are particles lost, and does the source's bound on the step prevent it?")
         .expects("LAN17: of 40 000 particles 19 200 are lost in 100 steps of 1, 6393 of 0.1, 754 of 0.01 and none of 0.001; steps below √(2 m \
                   r_c/F) should do.")

@@ -2,7 +2,7 @@
 
 use crate::laboratory::langevin::study::sectors::{Fluid, Row, SEARCHES, SOURCE, Sectors, THREADS};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
+use crate::report::{Cell, Rows, Section, Table, Verdict};
 
 /// Two threads help where they are at least so many times as fast as one.
 const HELPS: f64 = 1.2;
@@ -77,7 +77,7 @@ pub fn section(data: &Sectors) -> Section {
         )
     });
     let [one, two] = lists.map_or([f64::NAN; 2], |row| row.seconds);
-    Section::new("langevin-sectors", "Langevin: wall time over the number of sectors", Part::Host)
+    Section::new("langevin-sectors", "Langevin: wall time over the number of sectors")
         .asks("How does the time of a step depend on the number of sectors, and do two threads help?")
         .expects("LAN17: 100 steps of 40 000 particles take 1008 s with 3 sectors along a side, as 1/d² up to 20, and 4 s from 100 on; two \
                   threads are 1.92 times as fast as one with 3 sectors and do not help at the best d.")

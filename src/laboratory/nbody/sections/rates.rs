@@ -2,7 +2,7 @@
 
 use crate::laboratory::nbody::study::rates::{Rate, Rates};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Part, Rows, Section, Table, Verdict};
+use crate::report::{Rows, Section, Table, Verdict};
 use stripmine_physics::number::{counted, in_tens};
 
 /// What came out.
@@ -21,7 +21,7 @@ pub fn section(data: &Rates) -> Section {
     };
     let largest = data.rates.last().map_or(0, |it| it.bodies);
     let scaling = data.rates.iter().filter(|it| it.bodies == largest).map(|it| it.rates[1] / it.rates[0]);
-    Section::new("nbody-rates", "Bodies: interactions a second", Part::Host)
+    Section::new("nbody-rates", "Bodies: interactions a second")
         .asks("How many interactions a second, at which error of the forces?")
         .expects("Our aim: 13·10⁹ directed interactions a second (N² counted) in single precision at a force error of 10⁻⁶, 5·10⁹ in double at \
                   4·10⁻¹⁵, on a core of 4.1 GHz with AVX-512. Best published kernels there: 7.3·10⁹ at 9·10⁻⁷ and 2.8·10⁹ at 2·10⁻¹⁵.")

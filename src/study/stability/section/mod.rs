@@ -7,7 +7,7 @@ use super::conclusions::{of_theory, sentences};
 use super::dataset::Stability;
 use super::outcome::Class;
 use crate::console::Failure;
-use crate::report::{Part, Section, csv};
+use crate::report::Section;
 use crate::results::Made;
 use stripmine_physics::number::{counted, range};
 
@@ -50,11 +50,12 @@ fn answer(maps: &[(String, Stability)]) -> String {
 /// If the dataset is none that JSON can hold.
 pub fn made(maps: &[(String, Stability)], again: String) -> Result<Made, Failure> {
     let said = maps.iter().map(|(name, data)| format!("`{name}`: {}", sentences(data).join(" ")));
-    let section = Section::new(NAME, "Where the method works", Part::Physics)
+    let section = Section::new(NAME, "Where the method works")
         .asks("From which step on does a method fail, how, and does theory or the program say so beforehand?")
         .expects("The sources state a step, and not how far it is from one that fails. Theory names steps beyond which errors grow.")
         .answers(answer(maps))
         .details(said)
+        .figures(figures::summary(maps))
         .figures(maps.iter().map(|(name, data)| figures::map(name, data)))
         .tables(tables::of(maps))
         .again(again)
@@ -65,11 +66,5 @@ pub fn made(maps: &[(String, Stability)], again: String) -> Result<Made, Failure
         .map(|(name, data)| Ok((name.clone(), serde_json::to_value(data)?)))
         .collect::<serde_json::Result<_>>()
         .map_err(|cause| Failure::writing("JSON")(cause.into()))?;
-    let mut made = Made::new(section, &all)?;
-    for table in [tables::cells(maps), tables::boundaries(maps)] {
-        let mut text = Vec::new();
-        csv::write(&table, &mut text).map_err(Failure::writing("CSV"))?;
-        made = made.with_file(&format!("{}.csv", table.name), String::from_utf8_lossy(&text).into_owned());
-    }
-    Ok(made)
+    Ok(Made::new(section, &all)?.with_tables([tables::cells(maps), tables::boundaries(maps)]))
 }
