@@ -115,28 +115,34 @@ impl Reproduce {
         folder: &Folder,
         asked: Vec<&'static Item>,
     ) -> Result<Vec<&'static Item>, Failure> {
-        let here = Provenance::here(common.command.clone(), 0.0);
-        let mut left = vec![];
-        for item in &asked {
-            let there = folder.provenance(item.name)?;
-            if !there.is_some_and(|there| there.is_of_the_command(&here)) {
-                left.push(*item);
-            }
-        }
-        let made = asked.len() - left.len();
-        if left.is_empty() || made == 0 || !self.only.is_empty() {
+        if !self.only.is_empty() {
             return Ok(asked);
         }
-        if !common.quiet {
+        let here = Provenance::here(common.command.clone(), 0.0);
+        let mut made = vec![];
+        for item in &asked {
+            let there = folder.provenance(item.name)?;
+            made.push(there.is_some_and(|there| there.is_of_the_command(&here)));
+        }
+        let number = asked.len();
+        let left = unfinished(asked, &made);
+        if left.len() < number && !common.quiet {
             say(format_args!(
-                "{} of {} made before by this command are kept; to make them again, remove {}",
-                made,
-                counted(asked.len(), "item", "items"),
+                "{} of {number} items made before by this command are kept; to make them again, remove {}",
+                number - left.len(),
                 quoted::path(&self.out)
             ));
         }
         Ok(left)
     }
+}
+
+/// What is left of a job that made some of its items; all of one that made none, or that came to its end.
+fn unfinished<T>(items: Vec<T>, made: &[bool]) -> Vec<T> {
+    if made.iter().all(|made| *made) {
+        return items;
+    }
+    items.into_iter().zip(made).filter(|(_, made)| !**made).map(|(item, _)| item).collect()
 }
 
 /// A time for a reader.
@@ -151,4 +157,22 @@ fn lasting(seconds: f64) -> String {
 /// Progress is counted in thousandths of an expected second.
 fn ticks(seconds: f64) -> u64 {
     (1000.0 * seconds) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_interrupted_goes_on_and_what_was_finished_begins_again() {
+        assert_eq!(unfinished(vec!["a", "b", "c"], &[true, false, true]), ["b"]);
+        for all in [true, false] {
+            assert_eq!(unfinished(vec!["a", "b"], &[all; 2]), ["a", "b"]);
+        }
+    }
+
+    #[test]
+    fn times_are_for_readers() {
+        assert_eq!([0.1, 42.4, 99.0, 121.0].map(lasting), ["a second", "42 s", "99 s", "3 min"]);
+    }
 }

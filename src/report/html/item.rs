@@ -176,7 +176,7 @@ fn again(section: &Section) -> Markup {
         div.again {
             h3 { "To get it again" }
             div.command {
-                code { (section.again) }
+                code tabindex="0" { (section.again) }
                 button type="button" data-copy="" { "Copy" }
             }
             p {

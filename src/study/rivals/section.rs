@@ -146,8 +146,8 @@ fn same(data: &[Rival]) -> Table {
     Rows::of(data.iter().flat_map(|rival| rival.same.iter().map(move |it| (rival, it))))
         .text("beside", |(rival, _)| &rival.rival)
         .text("quantity", |(_, it)| &it.what)
-        .text("ours", |(_, it)| format!("{:.6}", it.ours))
-        .text("theirs", |(_, it)| format!("{:.6}", it.theirs))
-        .text("may differ by", |(_, it)| format!("{:.1e}", it.within))
+        .number("ours", 6, |(_, it)| it.ours)
+        .number("theirs", 6, |(_, it)| it.theirs)
+        .short("may differ by", |(_, it)| it.within)
         .table("same-physics", "That both compute the same")
 }

@@ -91,7 +91,7 @@ fn table(data: &Fluids) -> Table {
         .number("± (95 %)", 4, |state| state.rate.bar)
         .number("ω known", 4, |state| state.known[1])
         .number("off (%)", 2, |state| 100.0 * state.off()[1])
-        .text("energy error", |state| format!("{:.1e}", state.energy_error))
+        .short("energy error", |state| state.energy_error)
         .table("fluid", "Compressibility and collisions of a disc in a unit of time (diameter = m = kT = 1)")
         .note("Errors from the scatter of 20 parts of each run.")
 }

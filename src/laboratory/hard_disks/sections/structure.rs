@@ -125,7 +125,7 @@ fn table(data: &Structures) -> Table {
         .number("g from 1.00 to 1.02", 3, |it| it.correlation[0])
         .number("mean free time", 5, |it| it.free[0])
         .number("mean free path", 5, |it| it.free[1])
-        .text("p of Maxwell at the start", |it| format!("{:.1e}", it.maxwell[0]))
+        .short("p of Maxwell at the start", |it| it.maxwell[0])
         .number("p at the end", 3, |it| it.maxwell[1])
         .table("structure", "Order, free times and velocities (diameter = m = kT = 1)")
         .note("p: the probability by Kolmogorov and Smirnov; all discs start equally fast.")

@@ -48,7 +48,7 @@ pub fn section(showing: Showing, flows: &[PipeFlow], control: &PipeFlow) -> Sect
     let ways = [beyond(|it| it.power * it.back), beyond(|it| it.power * it.forth)];
     let runs_both = ways.iter().all(|ratio| *ratio >= BEYOND_CONTROL);
     let fano = format!(
-        "The Fano factor (above 1 means waves) rises from {:.2} to {} in {waves} of {} of {lasting:.0} s.",
+        "The Fano factor (of waves above 1) rises from {:.2} to {} in {waves} of {} of {lasting:.0} s.",
         first.fano[0],
         range(late.iter().copied(), 3),
         counted(flows.len(), "run", "runs"),

@@ -65,8 +65,8 @@ fn table(data: &Rates) -> Table {
         .number("1 thread (10⁹/s)", 2, |it| it.rates[0])
         .number("2 threads (10⁹/s)", 2, |it| it.rates[1])
         .number("ratio", 2, |it| it.rates[1] / it.rates[0])
-        .text("force error", |it| format!("{:.1e}", it.error[0]))
-        .text("with rounded masses", |it| format!("{:.1e}", it.error[1]))
+        .short("force error", |it| it.error[0])
+        .short("with rounded masses", |it| it.error[1])
         .table("rates", "Directed interactions a second, N² counted")
         .note("Medians of alternating repeats; the time of a whole evaluation with all conversions. Force error: that of the kernel, for \
                positions as it sees them, of 512 bodies.")
@@ -77,7 +77,7 @@ fn conserving(data: &Rates) -> Table {
         .text("forces", |it| it.precision)
         .text("arithmetic", |it| it.arithmetic)
         .count("steps of a unit of time", |it| it.steps)
-        .text("|ΔE/E|", |it| format!("{:.1e}", it.error))
+        .short("|ΔE/E|", |it| it.error)
         .table(
             "conserving",
             "Energy error of a Plummer sphere of 1024 bodies after two units of time, leapfrog",

@@ -34,6 +34,10 @@ fn answer(maps: &[(String, Stability)]) -> String {
     };
     let silent = match wrong {
         0 => "No run comes to an end and is wrong.".to_owned(),
+        _ if unsaid == 0 => format!(
+            "The program says so of {}.",
+            counted(wrong, "run that comes to an end and is wrong", "runs that come to an end and are wrong")
+        ),
         _ => format!(
             "Of {} to an end and {} wrong the program says nothing of {:.1} %.",
             counted(wrong, "run that comes", "runs that come"),
