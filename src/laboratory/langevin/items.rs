@@ -46,7 +46,7 @@ fn displaced(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 }
 
 fn errors(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let time = if effort == Effort::Full { 1000.0 } else { 100.0 };
+    let time = if effort == Effort::Full { 800.0 } else { 100.0 };
     let data = accuracy::accuracy(time, progress)?;
     Made::new(sections::accuracy::section(&data), &data)
 }

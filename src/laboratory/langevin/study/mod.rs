@@ -8,4 +8,4 @@ pub mod sectors;
 pub use crate::statistics::Mean;
 
 /// Parts of a run, each a measurement; their scatter gives the error.
-const PARTS: usize = 20;
+pub const PARTS: usize = 20;
