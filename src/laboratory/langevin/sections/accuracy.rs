@@ -46,19 +46,26 @@ fn with_bar(mean: Mean) -> String {
 pub fn section(data: &Accuracy) -> Section {
     let fitted = order(data, "baoab");
     let said = match fitted {
-        Some(Mean { value, bar }) => format!("By BAOAB the error falls with the step to the power {value:.1} ± {bar:.1}"),
-        None => "The order of BAOAB's error is not seen: it stays within its scatter up to the longest step".to_owned(),
+        Some(Mean { value, bar }) => {
+            format!("By BAOAB the error falls with the step to the power {value:.1} ± {bar:.1}")
+        }
+        None => "The order of BAOAB's error is not seen: it stays within its scatter up to the longest step"
+            .to_owned(),
     };
     let of_source = match order(data, "stochastic") {
         Some(Mean { value, bar }) => format!("to the power {value:.1} ± {bar:.1}"),
         None => "with an order that is not seen".to_owned(),
     };
     // Smaller beyond the bars of both.
-    let is_smaller = |[ours, source]: [Mean; 2]| source.value.abs() - ours.value.abs() > ours.bar.hypot(source.bar);
+    let is_smaller =
+        |[ours, source]: [Mean; 2]| source.value.abs() - ours.value.abs() > ours.bar.hypot(source.bar);
     let errors = longest(data).map(|both| both.map(|it| error(data, it)));
     let compared = longest(data).map_or(String::new(), |both| {
         let [ours, source] = both.map(|it| with_bar(error(data, it)));
-        format!("At dt = {} the energy, {:.4}, is off by {ours} and by {source}.", both[0].dt, data.limit.value)
+        format!(
+            "At dt = {} the energy, {:.4}, is off by {ours} and by {source}.",
+            both[0].dt, data.limit.value
+        )
     });
     let kinetic = longest(data).map_or(String::new(), |[ours, source]| {
         format!(
@@ -187,7 +194,11 @@ mod tests {
     fn an_order_that_is_lost_in_the_scatter_is_not_reproduced() {
         let seen = section_of(100.0, 1e-5, 0.0);
         assert_eq!(seen.verdict, Verdict::Reproduced);
-        assert!(seen.answer.contains("to the power 2.0 ± 0.0, by the source's scheme to the power 2.0"), "{}", seen.answer);
+        assert!(
+            seen.answer.contains("to the power 2.0 ± 0.0, by the source's scheme to the power 2.0"),
+            "{}",
+            seen.answer
+        );
         let lost = section_of(1.0, 1e-3, 0.0);
         assert_eq!(lost.verdict, Verdict::Partly);
         assert!(lost.answer.starts_with("The order of BAOAB's error is not seen"), "{}", lost.answer);
@@ -197,7 +208,12 @@ mod tests {
     #[test]
     fn the_temperature_at_the_end_of_the_step_is_held_against_theory() {
         let cold = section_of(100.0, 1e-5, 0.0);
-        assert!(cold.details[0].contains("kT of 0.9600 ± 0.0000") && cold.details[0].contains("0.9600, 0.0 standard"), "{:?}", cold.details);
+        assert!(
+            cold.details[0].contains("kT of 0.9600 ± 0.0000")
+                && cold.details[0].contains("0.9600, 0.0 standard"),
+            "{:?}",
+            cold.details
+        );
         assert_eq!(section_of(100.0, 1e-5, 0.001).verdict, Verdict::Partly);
     }
 }

@@ -141,7 +141,8 @@ mod tests {
     #[test]
     fn a_dense_system_that_is_slowed_is_not_figure_6() {
         let section_of = |factor: f64| {
-            let systems = [(1000, 50.0, 1.0), (1000, 100.0, 1.0), (1000, 1000.0, 1.0), (40_000, 100.0, factor)];
+            let systems =
+                [(1000, 50.0, 1.0), (1000, 100.0, 1.0), (1000, 1000.0, 1.0), (40_000, 100.0, factor)];
             let systems = systems.map(|(count, side, factor)| followed(count, side, factor)).to_vec();
             section(&Diffusion { systems, free: followed(1000, 50.0, 1.0), heated: vec![] })
         };
@@ -155,7 +156,8 @@ mod tests {
     /// Enskog: four discs of diameter 0.1 in a unit of area collide so often that they diffuse at about 0.4 of kT/γ; thin ones do not.
     #[test]
     fn collisions_slow_what_is_dense() {
-        let [dense, thin] = [(40_000, 100.0), (1000, 1000.0)].map(|(count, side)| by_enskog(&followed(count, side, 1.0)));
+        let [dense, thin] =
+            [(40_000, 100.0), (1000, 1000.0)].map(|(count, side)| by_enskog(&followed(count, side, 1.0)));
         assert!((dense - 0.411).abs() < 0.005 && thin > 0.999, "{dense}, {thin}");
     }
 }

@@ -1,5 +1,6 @@
 //! Particles lost over the step.
 
+use super::readings;
 use crate::laboratory::langevin::study::losses::{Boundary, LossTable, Row, SCHEMES};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
@@ -46,14 +47,13 @@ pub fn section(data: &LossTable) -> Section {
     let falls = data.rows.windows(2).all(|pair| pair[0].lost[0] >= pair[1].lost[0]);
     let ratios = || data.boundaries.iter().map(|boundary| boundary.dt / boundary.bounds[0]);
     let (least, most) = (ratios().fold(f64::INFINITY, f64::min), ratios().fold(0.0, f64::max));
-    let by_limit = || data.boundaries.iter().map(|boundary| boundary.dt / boundary.bounds[1]);
     Section::new("langevin-losses", "Langevin: particles lost to a long step", Part::Physics)
-        .asks("From which step on are particles lost, and does the source's bound on the step prevent it?")
-        .expects("LAN17: of 40 000 particles 19 200 are lost in 100 steps of 1, 6393 of 0.1, 754 of 0.01 and none of 0.001; steps below √(2 m \
-                  r_c/F) should do.")
+        .asks("From which step on are particles lost?")
+        .expects("LAN17: of 40 000 particles 19 200 in 100 steps of 1, 6393 of 0.1, 754 of 0.01, none of 0.001; steps below √(2 m r_c/F) should do.")
         .answers(format!(
-            "{} The losses {} with the step, and the bound {}: the longest step without a loss is {} of it.",
+            "{} {} The losses {} with the step; the bound {}: the longest step without a loss is {} of it.",
             beside_the_source(data),
+            readings::nearest(&data.readings),
             if falls { "grow" } else { "do not grow" },
             if least >= 1.0 { "suffices" } else { "does not suffice" },
             range([least, most], 2),
@@ -64,14 +64,14 @@ pub fn section(data: &LossTable) -> Section {
             farthest(data).is_none_or(|(_, ratio)| ratio <= ALIKE),
             least >= 1.0,
         ]))
-        .details([format!(
-            "The boundary was found by bisection over four strengths and three temperatures. Beside the limit by the spring that a pair is in \
-             its hardest collisions it lies at {:.2} to {:.2}.",
-            by_limit().fold(f64::INFINITY, f64::min),
-            by_limit().fold(0.0, f64::max)
-        )])
+        .details([readings::what_cannot_be()])
         .figures([losses(data), boundaries(data)])
-        .tables([loss_table(data), boundary_table(data)])
+        .tables([
+            loss_table(data),
+            readings::counts(&data.readings),
+            readings::interactions(),
+            boundary_table(data),
+        ])
         .seeds([1])
 }
 
@@ -89,8 +89,7 @@ fn losses(data: &LossTable) -> Figure {
         .series("source", Style::Points, 6, seen(&|row| row.source))
         .figure("losses", "Particles lost in 100 steps")
         .caption(format!(
-            "Of {}. Steps without a loss are not drawn. In the source's table fewer are lost at long steps: no strength and temperature gave its \
-             counts.",
+            "Of {}. Steps without a loss are not drawn. The source loses fewer at long steps.",
             data.particles
         ))
 }
@@ -142,7 +141,8 @@ mod tests {
         let rows = [(1.0, 19_200), (0.1, 6393), (0.01, 754), (0.001, 0)].into_iter().zip(lost);
         let rows = rows.map(|((dt, source), lost)| Row { dt, lost: [lost; 2], source: Some(source) });
         let boundary = Boundary { strength: 1.0, temperature: 1.0, dt, bounds: [1.0, 1.0] };
-        section(&LossTable { particles: 40_000, rows: rows.collect(), boundaries: vec![boundary] })
+        let boundaries = vec![boundary];
+        section(&LossTable { particles: 40_000, rows: rows.collect(), boundaries, readings: vec![] })
     }
 
     #[test]

@@ -130,7 +130,18 @@ fn fluid(scheme: SchemeKind, dt: f64, time: f64) -> Result<Fluid, StudyError> {
     let [potential, pressure, temperature, at_end, configurational, curvature] =
         parts.map(|parts| Mean::of(&parts));
     let (scheme, is_whole) = (scheme.word(), done.is_ok());
-    Ok(Fluid { scheme, dt, potential, pressure, temperature, at_end, configurational, curvature, cost, is_whole })
+    Ok(Fluid {
+        scheme,
+        dt,
+        potential,
+        pressure,
+        temperature,
+        at_end,
+        configurational,
+        curvature,
+        cost,
+        is_whole,
+    })
 }
 
 /// m⟨v²⟩ a particle and dimension, by the velocities as they stand.

@@ -216,7 +216,7 @@ mod tests {
         };
         let particles = on_threads(threads, || {
             let mut running = Running::timed("langevin-report", &scene)?;
-            running.steps(20)?;
+            running.steps(6)?;
             Ok(running.simulation.particles())
         });
         let particles = particles.unwrap();
@@ -232,12 +232,15 @@ mod tests {
     /// do but for rounding; so do more and smaller ones, which threads share.
     #[test]
     fn sectors_of_every_size_give_the_same_bits_on_any_number_of_threads() {
-        let count = 6000;
+        let count = 5200;
         let (_, by_lists) = moved(count, None, 1);
-        for per_side in [3, 5, 20, 60, 300] {
+        for per_side in [3, 20, 300] {
             let (alone, places) = moved(count, Some(per_side), 1);
-            for threads in [2, 3, 5] {
-                assert!(moved(count, Some(per_side), threads).0 == alone, "{per_side} a side, {threads} threads");
+            for threads in [2, 3] {
+                assert!(
+                    moved(count, Some(per_side), threads).0 == alone,
+                    "{per_side} a side, {threads} threads"
+                );
             }
             let off = places.iter().zip(&by_lists).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
             let far = off.filter(|off| (1e-8..30.0).contains(off)).count();
