@@ -22,7 +22,7 @@ pub(super) const ITEMS: &[Item] = items! {
     "langevin-losses", [21.0, 21.0], false, lost, "Langevin: particles lost over the step";
     "langevin-sectors", [3.0, 30.0], true, cost, "Langevin: wall time over the number of sectors, and where it goes";
     "langevin-diffusion", [13.0, 13.0], false, displaced, "Langevin: mean square displacement, velocities, temperature";
-    "langevin-accuracy", [8.0, 93.0], false, errors, "Langevin: the error of the step in a Lennard-Jones fluid";
+    "langevin-accuracy", [10.0, 58.0], false, errors, "Langevin: the error of the step in a Lennard-Jones fluid";
     "langevin-programs", [1.0, 1.0], true, counted, "Langevin: the law as whole-array operations, counted and charged by clocks";
 };
 
@@ -46,7 +46,7 @@ fn displaced(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 }
 
 fn errors(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let time = if effort == Effort::Full { 800.0 } else { 100.0 };
+    let time = if effort == Effort::Full { 640.0 } else { 80.0 };
     let data = accuracy::accuracy(time, progress)?;
     Made::new(sections::accuracy::section(&data), &data)
 }

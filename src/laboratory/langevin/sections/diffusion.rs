@@ -54,12 +54,12 @@ pub fn section(data: &Diffusion) -> Section {
         .expects("LAN17, figures 3 to 8: 4 D t with D = kT/γ in the end, with 40 000 pairs too (figure 6); a spike; broader velocities with pairs.")
         .answers(format!(
             "With 40 000 particles the mean square displacement ends at {at_end:.3} of the free one{}; {early:.2} at a time of 0.1. The thinnest \
-             system is within {thin:.1} standard errors of it throughout.",
+             system is within {thin:.1} standard errors of it.",
             if is_similar { ", as in figure 6" } else { ", where figure 6 is \"similar\"" },
         ))
         .verdict(Verdict::of_claims(&[thin < 5.0, least > 0.001, is_similar]))
         .details([format!(
-            "Collisions explain it: with Enskog's friction beside γ theory has {:.3}. A shorter run, a larger γ or a smaller σ would hide it. The \
+            "Collisions explain it: with Enskog's friction beside γ theory has {:.3}. A shorter run, larger γ or smaller σ would hide it. The \
              spike is of wrapped positions. Velocities are Maxwell's (p ≥ {least:.2}). Friction as printed heats; the other schemes stay within \
              {worst:.1} bars.",
             by_enskog(dense)

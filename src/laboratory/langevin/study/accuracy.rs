@@ -37,6 +37,8 @@ pub struct Fluid {
     pub temperature: Mean,
     /// The same of the velocities at the end of the step.
     pub at_end: Mean,
+    /// What is observed less that, look by look: by baoab what the last half of the kick cools.
+    pub cooling: Mean,
     /// ⟨F²⟩/⟨∇²U⟩, which is kT where places are Boltzmann's.
     pub configurational: Mean,
     /// ⟨∇²U⟩ a particle and dimension (energy/length²).
@@ -48,11 +50,11 @@ pub struct Fluid {
 }
 
 impl Fluid {
-    /// What theory has for the temperature at the end of the step: kT − dt² kT⟨∇²U⟩/(4 m) by baoab, kT by the source's scheme (exact in
-    /// a harmonic trap).
+    /// By how much theory has the end of the step colder: dt² kT⟨∇²U⟩/(4 m) by baoab, nothing by the source's scheme, whose velocities
+    /// have kT there (exactly in a harmonic trap).
     pub fn foreseen(&self) -> Mean {
         let factor = if self.scheme == SchemeKind::Baoab.word() { 0.25 * self.dt * self.dt } else { 0.0 };
-        Mean { value: 1.0 - factor * self.curvature.value, bar: factor * self.curvature.bar }
+        Mean { value: factor * self.curvature.value, bar: factor * self.curvature.bar }
     }
 }
 
@@ -110,24 +112,25 @@ fn fluid(scheme: SchemeKind, dt: f64, time: f64) -> Result<Fluid, StudyError> {
     // The mesh melts within some units of time.
     let mut done = running.steps((50.0 / dt) as u64);
     let (looks, between) = ((LOOKS * time / PARTS as f64) as usize, (1.0 / (LOOKS * dt)).round() as u64);
-    let mut parts: [Vec<f64>; 6] = Default::default();
+    let mut parts: [Vec<f64>; 7] = Default::default();
     let mut cost = 0.0;
     for _ in 0..PARTS {
-        let mut sums = [0.0; 4];
+        let mut sums = [0.0; 5];
         for _ in 0..looks {
             let begun = Instant::now();
             done = done.and_then(|()| running.steps(between));
             cost += begun.elapsed().as_secs_f64() / (between as f64 * dt * (PARTS * looks) as f64);
             let [potential, pressure, temperature] =
                 running.observed(["potential", "pressure", "temperature"])?;
-            let seen = [potential / count, pressure, temperature, kinetic(&running.simulation.particles())];
+            let at_end = kinetic(&running.simulation.particles());
+            let seen = [potential / count, pressure, temperature, at_end, temperature - at_end];
             sums.iter_mut().zip(seen).for_each(|(sum, seen)| *sum += seen / looks as f64);
         }
         let [square, curvature] = forces(&running.simulation.particles(), &running.domain);
         let means = sums.into_iter().chain([square / curvature, curvature]);
         parts.iter_mut().zip(means).for_each(|(parts, mean)| parts.push(mean));
     }
-    let [potential, pressure, temperature, at_end, configurational, curvature] =
+    let [potential, pressure, temperature, at_end, cooling, configurational, curvature] =
         parts.map(|parts| Mean::of(&parts));
     let (scheme, is_whole) = (scheme.word(), done.is_ok());
     Ok(Fluid {
@@ -137,6 +140,7 @@ fn fluid(scheme: SchemeKind, dt: f64, time: f64) -> Result<Fluid, StudyError> {
         pressure,
         temperature,
         at_end,
+        cooling,
         configurational,
         curvature,
         cost,
