@@ -19,7 +19,7 @@ macro_rules! items {
 /// Every item, in the order of the page: name, seconds that it takes about (quick and in full), whether it is made
 /// where only little time is given (what is the same everywhere is made in full or not at all), and what makes it.
 pub(super) const ITEMS: &[Item] = items! {
-    "langevin-losses", [21.0, 21.0], false, lost, "Langevin: particles lost over the step";
+    "langevin-losses", [20.0, 20.0], false, lost, "Langevin: particles lost over the step";
     "langevin-sectors", [3.0, 30.0], true, cost, "Langevin: wall time over the number of sectors, and where it goes";
     "langevin-diffusion", [13.0, 13.0], false, displaced, "Langevin: mean square displacement, velocities, temperature";
     "langevin-accuracy", [10.0, 58.0], false, errors, "Langevin: the error of the step in a Lennard-Jones fluid";

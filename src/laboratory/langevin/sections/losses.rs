@@ -27,15 +27,15 @@ fn none_where_the_source_has_none(data: &LossTable) -> bool {
 /// How the losses differ from the source's.
 fn beside_the_source(data: &LossTable) -> String {
     let none = match none_where_the_source_has_none(data) {
-        true => "no particle is lost where the source loses none",
-        false => "particles are lost where the source loses none",
+        true => "none where it loses none",
+        false => "some where it loses none",
     };
     match farthest(data) {
         Some((row, ratio)) if ratio > ALIKE => format!(
             "At a step of {} {} particles are lost where the source loses {}, {ratio:.0} times as {}; {none}.",
             row.dt,
-            row.lost[0],
-            row.source.unwrap_or_default(),
+            Cell::Count(row.lost[0]).for_reading(),
+            Cell::Count(row.source.unwrap_or_default()).for_reading(),
             if Some(row.lost[0]) > row.source { "many" } else { "few" },
         ),
         _ => format!("At every step of the source the losses are within {ALIKE} times its own; {none}."),
@@ -49,9 +49,9 @@ pub fn section(data: &LossTable) -> Section {
     let (least, most) = (ratios().fold(f64::INFINITY, f64::min), ratios().fold(0.0, f64::max));
     Section::new("langevin-losses", "Langevin: particles lost to a long step", Part::Physics)
         .asks("From which step on are particles lost?")
-        .expects("LAN17: of 40 000 particles 19 200 in 100 steps of 1, 6393 of 0.1, 754 of 0.01, none of 0.001; steps below √(2 m r_c/F) should do.")
+        .expects("LAN17: of 40 000, 19 200 in 100 steps of 1, 6393 of 0.1, 754 of 0.01, none of 0.001; none below √(2 m r_c/F).")
         .answers(format!(
-            "{} {} The losses {} with the step; the bound {}: the longest step without a loss is {} of it.",
+            "{} {} The losses {} with the step; the bound {}: the longest step without loss is {} of it.",
             beside_the_source(data),
             readings::nearest(&data.readings),
             if falls { "grow" } else { "do not grow" },
@@ -149,7 +149,8 @@ mod tests {
     fn losses_that_are_not_the_sources_are_said_first_and_graded() {
         let ours = section_of([37_111, 34_738, 26_331, 0], 0.1);
         assert_eq!(ours.verdict, Verdict::Partly);
-        let begin = "At a step of 0.01 26331 particles are lost where the source loses 754, 35 times as many";
+        let begin =
+            "At a step of 0.01 26\u{202f}331 particles are lost where the source loses 754, 35 times as many";
         assert!(
             ours.answer.starts_with(begin) && ours.answer.contains("does not suffice"),
             "{}",
