@@ -48,13 +48,13 @@ pub fn section(data: &LossTable) -> Section {
     let ratios = || data.boundaries.iter().map(|boundary| boundary.dt / boundary.bounds[0]);
     let (least, most) = (ratios().fold(f64::INFINITY, f64::min), ratios().fold(0.0, f64::max));
     Section::new("langevin-losses", "Langevin: particles lost to a long step", Part::Physics)
-        .asks("From which step on are particles lost?")
+        .asks("When are particles lost?")
         .expects("LAN17: of 40 000, 19 200 in 100 steps of 1, 6393 of 0.1, 754 of 0.01, none of 0.001; none below √(2 m r_c/F).")
         .answers(format!(
-            "{} {} The losses {} with the step; the bound {}: the longest step without loss is {} of it.",
+            "{} {}{} The bound {}: the longest safe step is {} of it.",
             beside_the_source(data),
             readings::nearest(&data.readings),
-            if falls { "grow" } else { "do not grow" },
+            if falls { "" } else { " The losses do not grow with the step." },
             if least >= 1.0 { "suffices" } else { "does not suffice" },
             range([least, most], 2),
         ))

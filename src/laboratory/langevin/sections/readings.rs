@@ -26,7 +26,7 @@ pub(super) fn nearest(readings: &[Read]) -> String {
         return String::new();
     };
     format!(
-        "Of {} readings the nearest ({}) is up to {:.0} times off; seven fitted choices, a fourth of the density among them, {:.1} times.",
+        "Of {} readings the nearest ({}) is {:.0} times off; seven fitted choices, with a fourth of the density, {:.1} times.",
         of(false).count(),
         read.name,
         worst(read),
@@ -49,8 +49,7 @@ pub(super) fn what_cannot_be() -> String {
     let (_, counts) = SOURCE[0];
     let least = STEPS as f64 * near(left(counts), DIAMETER);
     format!(
-        "Its columns contradict its N, L and σ: the {} left, at random places, meet {} times in 100 steps of 1, not {}. Only its program would \
-         tell why.",
+        "Its columns contradict its N, L and σ: the {} left, at random, meet {} times in 100 steps of 1, not {}. Only its program tells why.",
         Cell::Count(left(counts) as u64).for_reading(),
         Cell::Count(least as u64).for_reading(),
         Cell::Count(counts[1]).for_reading()
@@ -132,8 +131,8 @@ mod tests {
         let readings =
             [read("first", false, 754, 30), read("second", false, 754, 40), read("fit", true, 754, 1)];
         let said = nearest(&readings);
-        assert!(said.starts_with("Of 2 readings the nearest (first) is up to 754 times off"), "{said}");
-        assert!(said.ends_with("among them, 754.0 times."), "{said}");
+        assert!(said.starts_with("Of 2 readings the nearest (first) is 754 times off"), "{said}");
+        assert!(said.ends_with("with a fourth of the density, 754.0 times."), "{said}");
         assert!((off(&readings[1], 1) - 40.0).abs() < 1e-9);
     }
 

@@ -264,8 +264,8 @@ impl Sectors {
             for row in row..row + 3 {
                 for column in column..column + 3 {
                     let sector = (row + count - 1) % count * count + (column + count - 1) % count;
-                    for other in starts[sector]..starts[sector + 1] {
-                        let there = all[other].place;
+                    let members = starts[sector]..starts[sector + 1];
+                    for (other, Particle { place: there, .. }) in members.clone().zip(&all[members]) {
                         let x = place[0] - (there[0] + offsets[column]);
                         let y = place[1] - (there[1] + offsets[row]);
                         let square = x * x + y * y;
