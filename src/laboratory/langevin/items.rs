@@ -31,7 +31,7 @@ pub(super) const ITEMS: &[Item] = &[
     Item::full(
         "langevin-accuracy",
         Beyond,
-        93.0,
+        58.0,
         errors,
         "Langevin: the error of the step in a Lennard-Jones fluid",
     ),
@@ -64,7 +64,7 @@ fn displaced(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 }
 
 fn errors(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let time = if effort == Effort::Full { 1000.0 } else { 100.0 };
+    let time = if effort == Effort::Full { 640.0 } else { 80.0 };
     let data = accuracy::accuracy(time, progress)?;
     Made::new(sections::accuracy::section(&data), &data)
 }
