@@ -32,8 +32,8 @@ impl Gain {
     }
 }
 
-/// What two threads give at every number of sectors, and first whether they do as the source's at the fewest and at the best number.
-fn of_threads(all: &[Gain], gains: &[Option<Gain>; 2]) -> String {
+/// Whether two threads do as the source's at the fewest and at the best number of sectors.
+fn of_threads(gains: &[Option<Gain>; 2]) -> String {
     let [Some(few), Some(best)] = gains else {
         return String::new();
     };
@@ -42,8 +42,16 @@ fn of_threads(all: &[Gain], gains: &[Option<Gain>; 2]) -> String {
         (true, false) => "At the best number of sectors two threads do the opposite of the source's",
         (false, _) => "At the fewest sectors two threads do the opposite of the source's",
     };
-    let all: Vec<String> = all.iter().map(Gain::in_words).collect();
-    format!("{begin}; speed over one thread by sectors a side, source in brackets: {}. ", all.join(", "))
+    format!(
+        "{begin}: they are {:.2} times as fast as one at the fewest (source {:.2}) and {:.2} at the best number (source {:.2}). ",
+        few.ours, few.source, best.ours, best.source
+    )
+}
+
+/// The same at every number of sectors.
+fn at_every_number(gains: &[Gain]) -> String {
+    let all: Vec<String> = gains.iter().map(Gain::in_words).collect();
+    format!("Two threads over one by sectors a side, source in brackets: {}. ", all.join(", "))
 }
 
 /// What came out.
@@ -84,10 +92,11 @@ pub fn section(data: &Sectors) -> Section {
     Section::new("langevin-sectors", "Langevin: wall time over the number of sectors")
         .asks("How does the time of a step depend on the number of sectors, and do two threads help?")
         .expects("LAN17: 1008 s with 3 sectors a side, as 1/d² up to 20, 4 s from 100 on; two threads help with 3 (1.92 times), not at the best d.")
-        .answers(format!("{}{sought}", of_threads(&all, &gains)))
+        .answers(format!("{}{sought}", of_threads(&gains)))
         .verdict(Verdict::of_claims(&claims))
         .details([format!(
-            "{falling}{floored}A search left open takes at most {:.0} % longer than the best.",
+            "{}{falling}{floored}A search left open takes at most {:.0} % longer than the best.",
+            at_every_number(&all),
             100.0 * data.fluids.iter().filter_map(loss).fold(0.0, f64::max)
         )])
         .figures([figure(data)])
@@ -189,7 +198,7 @@ mod tests {
     fn threads_that_do_the_opposite_are_said_first_and_sectors_are_not_lists() {
         let tenth = section_of(|_, source| source.map(|seconds| 0.1 * seconds), [0.04, 0.02]);
         assert_eq!(tenth.verdict, Verdict::Reproduced, "{}", tenth.answer);
-        assert!(tenth.answer.starts_with("Two threads do as in the source; "), "{}", tenth.answer);
+        assert!(tenth.answer.starts_with("Two threads do as in the source: "), "{}", tenth.answer);
         assert!(
             tenth.answer.contains("sectors are 10 times")
                 && tenth.answer.contains("which it has not, 100 times")
@@ -197,9 +206,14 @@ mod tests {
         // Two threads that help everywhere, also where the source's do not.
         let better = section_of(|_, [one, _]| [0.1 * one, 0.05 * one], [0.04, 0.02]);
         assert_eq!(better.verdict, Verdict::Partly);
-        let begin = "At the best number of sectors two threads do the opposite of the source's; speed over one thread by sectors a side, \
-                     source in brackets: 3: 2.00 (1.92), 5: 2.00 (1.55), ";
+        let begin = "At the best number of sectors two threads do the opposite of the source's: they are 2.00 times as fast as one at the \
+                     fewest (source 1.92) and 2.00 at the best number";
         assert!(better.answer.starts_with(begin), "{}", better.answer);
+        assert!(
+            better.details[0].contains("in brackets: 3: 2.00 (1.92), 5: 2.00 (1.55), "),
+            "{}",
+            better.details[0]
+        );
         let opposite = section_of(
             |count, [one, _]| [0.1 * one, if count < 100 { 0.1 * one } else { 0.07 * one }],
             [0.04, 0.02],
