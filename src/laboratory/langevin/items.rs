@@ -17,7 +17,7 @@ pub(super) const ITEMS: &[Item] = &[
     Item::quick(
         "langevin-sectors",
         Sources,
-        [3.0, 30.0],
+        [3.0, 40.0],
         cost,
         "Langevin: wall time over the number of sectors, and where it goes",
     ),

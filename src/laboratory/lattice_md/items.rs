@@ -54,7 +54,7 @@ pub(super) const ITEMS: &[Item] = &[
     Item::quick(
         "printed",
         Sources,
-        [6.0, 75.0],
+        [6.0, 50.0],
         printed,
         "The printed text run the CRAY's way: NOP·(n + D) against wall time, and what thirty years made of it",
     ),
@@ -152,7 +152,7 @@ fn useful_work(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
 fn printed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     // Short vectors for the line, up to the first cache; long ones for where it breaks.
     let short = [25, 49, 100, 170, 290, 500, 1000, 10_000, 100_000];
-    let long = [2000, 5000, 30_000, 300_000, 1_000_000, 3_000_000, 10_000_000];
+    let long = [2000, 5000, 30_000, 300_000, 1_000_000, 3_000_000];
     let effort = match effort {
         Effort::Quick => printed_cost::Effort {
             cells: short.to_vec(),

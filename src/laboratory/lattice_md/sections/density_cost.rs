@@ -32,9 +32,9 @@ pub fn section(data: &DensityCost) -> Section {
         )
     });
     Section::new("cost", "Cost over particles and density (figures 3 and 4)")
-        .asks("From how many particles on is a vector step shorter than one by scalar neighbour lists?")
-        .expects("BP93, figures 3 and 4, D = 20: a vector step is nearly flat over NP, scalar lists rise as NP²; a particle's share falls with the \
-                  density for the lattice, and does not depend on it for the lists; the NP from which the lattice wins grows as 1/ρ.")
+        .asks("When is a vector step shorter than one by scalar lists?")
+        .expects("BP93, figures 3 and 4: a vector step is nearly flat over NP, scalar lists rise as NP²; a particle's share falls with the density for \
+                  the lattice and not for the lists; the break-even NP grows as 1/ρ.")
         .answers(format!(
             "{differences}The vector step is the shorter one from NP = {} on.",
             crossings.join(", ")

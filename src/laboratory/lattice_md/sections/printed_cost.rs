@@ -80,7 +80,7 @@ fn details(data: &PrintedCost) -> Vec<String> {
         format!(
             "One thread, {}, double precision. Eager: every instruction is a pass over all elements. Discs stand one a cell at random places and \
              all but rest: an eager text has no branch, so its time does not depend on what moves. Fits by least squares of the relative \
-             differences; intervals are the range over four parts of the samples, each spread over the measurement.",
+             differences; intervals are the range over four parts of the samples and over fits that leave out one length, on this host in this process.",
             data.instruction_set
         ),
         format!(
