@@ -49,8 +49,8 @@ def begun(text):
 
 def rate(particles, skin, steps):
     side, wca = (particles / 4) ** 0.5, 2 ** (1 / 6) * 0.1
-    # A mesh of twice as many places, of which as many are taken as there are particles.
-    mesh = f"lattice sq {4.0}\ncreate_atoms 1 box\n"
+    # A mesh in the plane; some versions fill the box with two of them.
+    mesh = f"lattice sq {4.0}\nregion flat block 0 {side} 0 {side} -0.1 0.1 units box\ncreate_atoms 1 region flat\n"
     text = HEAD.format(side=side, cutoff=wca, sigma=0.1, skin=skin) + mesh + TAIL.format(seed=7, dt=0.001)
     machine = begun(text)
     count = machine.get_natoms()
@@ -63,7 +63,9 @@ def rate(particles, skin, steps):
 
 def fluid(steps, looks, seed):
     text = HEAD.format(side=40.0, cutoff=2.5, sigma=1.0, skin=0.3)
-    text += "region inside block 0 40 0 40 -0.1 0.1\ncreate_atoms 1 random 1120 11 inside overlap 0.9 maxtry 100000\n"
+    # A mesh of 32 by 35, which melts.
+    text += "lattice custom 0.7 a1 1.25 0 0 a2 0 1.142857142857 0 a3 0 0 1 basis 0 0 0\n"
+    text += "region flat block 0 39.9 0 39.9 -0.1 0.1 units box\ncreate_atoms 1 region flat\n"
     text += TAIL.format(seed=seed, dt=0.005) + "thermo_modify norm no\nthermo_style custom step temp\n"
     machine = begun(text)
     machine.command("run 10000")
