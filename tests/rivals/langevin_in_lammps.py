@@ -68,13 +68,14 @@ def fluid(steps, looks, seed):
     text += "region flat block 0 39.9 0 39.9 -0.1 0.1 units box\ncreate_atoms 1 region flat\n"
     text += TAIL.format(seed=seed, dt=0.005) + "thermo_modify norm no\nthermo_style custom step temp\n"
     machine = begun(text)
-    machine.command("run 10000")
-    # A hundred parts, each the mean over its looks.
+    # A hundred parts, each the mean over its looks, at whole multiples of its steps: between them there would be no mean, but 0.
+    part = steps * looks // 100
+    machine.command(f"run {part * -(-10_000 // part)}")
     machine.command("thermo_style custom step temp pe press")
-    machine.command(f"fix means all ave/time {steps} {looks // 100} {steps * looks // 100} c_thermo_pe c_thermo_press c_thermo_temp")
+    machine.command(f"fix means all ave/time {steps} {looks // 100} {part} c_thermo_pe c_thermo_press c_thermo_temp")
     means = {"pe": [], "press": [], "temp": []}
     for _ in range(100):
-        machine.command(f"run {steps * looks // 100}")
+        machine.command(f"run {part}")
         for at, values in enumerate(means.values()):
             values.append(machine.extract_fix("means", 0, 1, at))
     means["pe"] = [value / machine.get_natoms() for value in means["pe"]]
