@@ -7,7 +7,7 @@ use std::fmt::Write;
 pub const MARK: &str = "Written by `stripmine reproduce`; do not edit.";
 
 /// Letters of an item's table of conclusions that the page shows below a picture; a longer one is linked.
-const TABLE: usize = 800;
+const TABLE: usize = 560;
 /// Lines of a program's text that it shows.
 const LINES: usize = 8;
 /// Letters of a picture's caption that it shows, in whole sentences; the rest stands on the page with charts.

@@ -10,7 +10,7 @@ use maud::{Markup, html};
 use stripmine_physics::number::counted;
 
 /// Pictures of an item that the page shows; further ones are linked.
-const FIGURES: usize = 6;
+const FIGURES: usize = 4;
 
 /// The pictures of an item that the page shows.
 pub fn pictures(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) -> Vec<Inline> {

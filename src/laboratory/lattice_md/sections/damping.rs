@@ -19,8 +19,8 @@ pub fn section(data: &Damping) -> Section {
     let even = scan.first().is_some_and(|case| !waves(case)) && controls.iter().all(|case| !waves(case));
     Section::new("waves", "Density waves over dissipation")
         .asks("Does damping in contacts make the density waves?")
-        .expects("BP93, section 4: grains that start evenly spread form density waves. A Fano factor (variance over mean of the grains in a bin) \
-                  above 1 tells waves from none; weakly damped grains and an elastic gas must show none.")
+        .expects("BP93, section 4: grains that start evenly spread form density waves. There are waves where the Fano factor (variance over mean \
+                  of the grains in a bin) is above 1; weakly damped grains and an elastic gas must show none.")
         .answers(format!(
             "The Fano factor is {weakest:.2} at the weakest and {strongest:.2} at the strongest damping; controls: {}.",
             controls

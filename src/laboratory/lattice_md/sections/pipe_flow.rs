@@ -259,7 +259,7 @@ fn rounded(value: f64) -> f64 {
 }
 
 /// Frames of a film that a page can bear.
-const FRAMES: usize = 41;
+const FRAMES: usize = 31;
 
 /// The snapshots as a film; none without frames.
 fn film(showing: Showing, flow: &PipeFlow) -> Option<Film> {
