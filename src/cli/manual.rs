@@ -23,6 +23,13 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         ],
     ),
     (
+        "average",
+        &[
+            ("stripmine average pipe-small.run", "means with their errors"),
+            ("stripmine average a.run b.run --json", "two runs of one scene with seeds of their own, joined"),
+        ],
+    ),
+    (
         "plot",
         &[("stripmine plot pipe-small.run", "SVG and PNG in the run's folder, courses in the terminal")],
     ),

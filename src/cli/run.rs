@@ -100,7 +100,9 @@ fn text(summary: &Summary, folder: &Path) -> String {
     let done = Clock { steps, time, events }.done();
     let session = if from == Clock::default() { String::new() } else { format!(" (from {from} on)") };
     let time = significant(time, 9);
-    let mut text = format!("{done}, time {time}, in {seconds:.2} s{session}: {}\n", summary.in_words);
+    let mut text =
+        format!("{done}, time {time}, in {seconds:.2} s{session}\nat the end: {}\n", summary.in_words);
+    text.push_str(&summary.averages.to_string());
     for choice in &summary.choices {
         text.push_str(&format!("chosen: {choice}\n"));
     }

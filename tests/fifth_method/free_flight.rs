@@ -8,8 +8,9 @@ use stripmine_physics::domain::Domain;
 use stripmine_physics::io::checkpoint::Column;
 use stripmine_physics::memory::Foreseen;
 use stripmine_physics::method::{
-    Axis, Bench, BenchOption, Clock, Decides, Entry, Fact, Failure, Prepared, Purpose, Quantity, RunWarning,
-    SMALLEST_RADIUS, Schedule, Setting, Simulation, Snapshot, Startable, Takes, Trials, Until, compress,
+    Axis, Bench, BenchOption, Clock, Decides, Entry, Fact, Failure, Kind, Prepared, Purpose, Quantity,
+    RunWarning, SMALLEST_RADIUS, Schedule, Setting, Simulation, Snapshot, Startable, Takes, Trials, Until,
+    compress,
 };
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{
@@ -90,8 +91,8 @@ static VOCABULARY: Vocabulary = Vocabulary {
 };
 
 const QUANTITIES: &[Quantity] = &[
-    Quantity { name: "time", unit: "time", doc: "The time." },
-    Quantity { name: "kinetic", unit: "energy", doc: "Kinetic energy." },
+    Quantity { name: "time", unit: "time", kind: Kind::Time, doc: "The time." },
+    Quantity { name: "kinetic", unit: "energy", kind: Kind::Instant, doc: "Kinetic energy." },
 ];
 
 /// A scene of discs in free flight.

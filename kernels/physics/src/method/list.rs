@@ -20,6 +20,13 @@ pub fn method(methods: Methods, name: &str) -> Option<&'static Entry> {
     methods.iter().copied().find(|method| method.vocabulary.keys.method == name)
 }
 
+/// The method that observes just some columns, in their order, after the step.
+pub fn observer(methods: Methods, columns: &[String]) -> Option<&'static Entry> {
+    let names = |method: &Entry| method.quantities.iter().map(|quantity| quantity.name);
+    let is_its = |method: &&'static Entry| names(method).eq(columns.iter().skip(1).map(String::as_str));
+    methods.iter().copied().find(is_its)
+}
+
 /// The scene that is a preset's name or a file's path, with overrides `section.key=value`, ready to run; and its method.
 ///
 /// # Errors

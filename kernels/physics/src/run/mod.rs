@@ -2,6 +2,7 @@
 //! `scene.toml`, `thermo.csv`, `trajectory.xyz`, `summary.json`, `run.checkpoint`, a list of all this (`run.files`) and, on
 //! request, LAMMPS files and a row for each event (`events.csv`).
 
+mod finished;
 mod folder;
 pub mod forecast;
 mod frames;
@@ -10,6 +11,7 @@ mod identity;
 mod recorder;
 mod summary;
 
+pub use finished::{Finished, FinishedError, averages_of};
 pub use folder::FolderError;
 pub use identity::chosen_otherwise;
 pub use summary::Summary;
@@ -18,6 +20,7 @@ use crate::io::FileError;
 use crate::io::checkpoint::{CheckpointError, WriteError};
 use crate::io::growing_file::GrowingFileError;
 use crate::io::table_file::TableFileError;
+use crate::io::table_reader::TableError;
 use crate::method::{Clock, Failure, Prepared, Purpose, Quantity, Until};
 use crate::origin::Origin;
 use crate::quoted;
@@ -150,6 +153,9 @@ pub enum RunError {
     /// The table of observables.
     #[error(transparent)]
     Table(#[from] TableFileError),
+    /// The rows of earlier sessions.
+    #[error(transparent)]
+    Rows(#[from] TableError),
     /// The frames.
     #[error(transparent)]
     Frames(#[from] GrowingFileError),
@@ -167,6 +173,7 @@ impl Reported for RunError {
             | RunError::OtherVersion { .. } => Class::Usage,
             RunError::Foreign { .. } => Class::Checkpoint,
             RunError::Folder(error) => error.class(),
+            RunError::Rows(error) => error.class(),
             RunError::Checkpoint(error) if error.is_corrupt() => Class::Checkpoint,
             RunError::Table(error) if error.is_damage() => Class::Checkpoint,
             RunError::Frames(error) if error.is_damage() => Class::Checkpoint,
@@ -182,6 +189,7 @@ impl Reported for RunError {
         match self {
             RunError::Scene(errors) => Some(errors),
             RunError::Physics { failure, .. } | RunError::Start(failure) => Some(failure),
+            RunError::Rows(error) => Some(error),
             _ => None,
         }
     }
@@ -197,7 +205,7 @@ impl Reported for RunError {
                 Some(FilePlace::at(file))
             }
             RunError::File(error) => Some(FilePlace::at(&error.file)),
-            _ => None,
+            _ => self.passed_on()?.place(),
         }
     }
 
@@ -299,7 +307,8 @@ pub fn run(
         };
         if let Some(failure) = failed {
             let seconds = start.elapsed().as_secs_f64();
-            let summary = Summary::of(job, simulation.as_ref(), from, seconds, Some(&failure));
+            let averages = recorder.averages();
+            let summary = Summary::of(job, simulation.as_ref(), averages, from, seconds, Some(&failure));
             recorder.fail(simulation.as_ref(), summary)?;
             return Err(RunError::Physics { failure, snapshot: recorder.trajectory_path() });
         }
@@ -307,7 +316,7 @@ pub fn run(
         progress(done, all);
     }
     let seconds = start.elapsed().as_secs_f64();
-    let summary = Summary::of(job, simulation.as_ref(), from, seconds, None);
+    let summary = Summary::of(job, simulation.as_ref(), recorder.averages(), from, seconds, None);
     let summary = recorder.finish(simulation.as_ref(), summary)?;
     Ok(Ending::Done(Box::new(summary)))
 }

@@ -1,13 +1,16 @@
 //! The folder of a run: what is written when.
 
-use super::folder::{DATA, DCD, DUMP, EVENTS, RunFolder, SCENE, SUMMARY, TRAJECTORY};
+use super::finished::{LONGEST_SCENE, rows_of};
+use super::folder::{DATA, DCD, DUMP, EVENTS, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY};
 use super::growing::{Growing, Kept};
 use super::identity::{BITS, Identity, same_scene};
 use super::{Existing, Job, RunError, Summary};
+use crate::averages::{Averages, Rows};
 use crate::domain::Domain;
 use crate::io::checkpoint::{Checkpoint, Counter, Latest, NAME, read_latest};
 use crate::io::dcd::Positions;
 use crate::io::extxyz::Frame;
+use crate::io::table_reader::TableReader;
 use crate::io::{FileError, lammps, regular_file};
 use crate::method::{
     Clock, Every, Failure, FailureKind, Prepared, Quantity, Schedule, Simulation, Snapshot, Until,
@@ -17,9 +20,6 @@ use crate::scene::Output;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-
-/// Longer than any scene (bytes).
-const LONGEST_SCENE: u64 = 64 << 20;
 
 /// The counter of events in a checkpoint.
 const EVENT_COUNT: &str = "events";
@@ -36,6 +36,8 @@ pub(super) struct Recorder {
     /// When the next row, the next snapshot and the next checkpoint are due.
     due: [Option<Until>; 3],
     growing: Growing,
+    /// The rows of observables, those of earlier sessions among them.
+    rows: Rows,
     /// What was out of the ordinary, in the order of the run's sessions.
     notes: Vec<String>,
     /// Which of them are of this session.
@@ -119,6 +121,7 @@ impl Recorder {
             quantities,
             due,
             growing,
+            rows: Rows::new(quantities),
             notes,
             new_notes: 0,
             checkpointed: None,
@@ -179,7 +182,13 @@ impl Recorder {
         recorder.new_notes = recorder.notes.len() - said;
         recorder.checkpointed = (recorder.new_notes == 0).then_some(clock);
         recorder.write_scene()?;
+        recorder.rows = rows_of(TableReader::open(&recorder.folder.file(THERMO))?, quantities)?;
         Ok(recorder)
+    }
+
+    /// The averages over the rows so far.
+    pub(super) fn averages(&self) -> Averages {
+        Averages::of(&self.rows)
     }
 
     /// What this session found out of the ordinary when it began.
@@ -245,6 +254,7 @@ impl Recorder {
             return Ok(Some(overflow(clock, quantity.name, value)));
         }
         self.growing.thermo.append(clock.number(), &row)?;
+        self.rows.add(&row);
         Ok(None)
     }
 
