@@ -15,8 +15,8 @@ use stripmine_physics::method::{
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{
     self, Binding, DISC_RIVALS, DISCS, DT, DURATION, HEADING, KeySet, OUTPUT, Output, PLANAR_DOMAIN, Preset,
-    Read, Run, STEP, STEPPED_RUN, SceneErrors, Start, Values, Vocabulary, WallMotion, Write, bind_heading,
-    disagreements, too_many_steps,
+    Read, Run, STEP, STEPPED_RUN, SceneErrors, Start, TARGETED, Values, Vocabulary, WallMotion, Write,
+    bind_heading, disagreements, too_many_steps,
 };
 use stripmine_physics::start::{Stated, make, outside};
 
@@ -76,7 +76,7 @@ static TRIALS: Trials = Trials {
 static VOCABULARY: Vocabulary = Vocabulary {
     keys: KeySet {
         method: "free-flight",
-        groups: &[HEADING, PLANAR_DOMAIN, DISCS, STEP, STEPPED_RUN, OUTPUT],
+        groups: &[HEADING, PLANAR_DOMAIN, DISCS, STEP, STEPPED_RUN, TARGETED, OUTPUT],
         rivals: &[DISC_RIVALS, DURATION],
     },
     rules: &[disagreements, too_many_steps],
@@ -137,6 +137,7 @@ impl Flight {
         Prepared {
             scene: write.to_toml(&VOCABULARY.keys),
             schedule: Schedule::of_steps(&self.run),
+            target: self.run.target.clone(),
             output: self.output,
             domain: self.domain(),
             seed: self.start.seed(),

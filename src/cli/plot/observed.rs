@@ -4,11 +4,11 @@ use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::table::{Rows, Table};
 use std::collections::BTreeMap;
 use std::path::Path;
-use stripmine_physics::io::table_reader::{TableError, TableReader};
 use stripmine_physics::method::{Methods, observer};
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted::{self, quoted};
 use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::run::{TableError, TableReader};
 use stripmine_physics::words::suggestion;
 
 /// Curves of a picture: more cannot be told apart.

@@ -8,12 +8,15 @@ use serde::Serialize;
 
 /// Independent samples below which no mean is given: neither the cut nor the error can be relied on.
 pub const FEWEST_SAMPLES: f64 = 10.0;
+/// A run that is too short is said to need so many times what it would by its own estimate, which is a rough one.
+const MARGIN: f64 = 1.5;
 /// Bars hold the truth with this probability.
 pub const CONFIDENCE: f64 = 0.95;
-/// Halves of what is left that differ by so improbable a difference tell of a series that is still changing.
-const DRIFT: f64 = 0.999;
-/// Part of the variance that a straight line over time explains, above which a series with few samples is still changing.
-const TREND: f64 = 0.5;
+/// A series is still changing where its rank correlation with time is above this over √(samples − 1): one stationary series of
+/// a thousand is.
+const TREND: f64 = 3.3;
+/// The same, however few samples there are.
+const STRONG: f64 = 0.8;
 /// A series that varies by less than this part of its largest value does not vary: it is rounding.
 const ROUNDING: f64 = 1e-9;
 /// Student's t hardly changes beyond so many degrees of freedom.
@@ -108,13 +111,13 @@ pub fn estimated(series: &[f64], from: f64, spacing: f64) -> Outcome {
     let start = equilibrated(series);
     let kept = &series[start..];
     let estimate = of_stationary(kept, from + start as f64 * spacing, spacing);
-    let is_short = estimate.independent_samples < FEWEST_SAMPLES;
-    if is_short && trend(kept) > TREND || drifts(kept, &estimate) {
+    let limit = (TREND / (estimate.independent_samples - 1.0).max(0.0).sqrt()).min(STRONG);
+    if rank_correlation(kept).abs() > limit {
         return Outcome::Changing { first, last };
     }
-    if is_short {
+    if estimate.independent_samples < FEWEST_SAMPLES {
         let Estimate { equilibrated_at, span, independent_samples, .. } = estimate;
-        let enough_at = equilibrated_at + span * FEWEST_SAMPLES / independent_samples;
+        let enough_at = equilibrated_at + MARGIN * span * FEWEST_SAMPLES / independent_samples;
         return Outcome::TooShort { independent_samples, enough_at, estimate: Some(estimate) };
     }
     Outcome::Mean(estimate)
@@ -157,25 +160,27 @@ fn of_stationary(kept: &[f64], equilibrated_at: f64, spacing: f64) -> Estimate {
     }
 }
 
-/// The part of the variance that a straight line over time explains.
-fn trend(series: &[f64]) -> f64 {
-    let middle = 0.5 * (series.len() as f64 - 1.0);
-    let mean = mean(series);
-    let [mut times, mut both, mut squares] = [0.0; 3];
-    for (value, at) in series.iter().zip(0u32..) {
-        let (time, value) = (f64::from(at) - middle, value - mean);
-        times += time * time;
-        both += time * value;
-        squares += value * value;
+/// Spearman's rank correlation with time: 1 or −1 where a series only rises or falls, by whatever law.
+fn rank_correlation(series: &[f64]) -> f64 {
+    let mut order: Vec<usize> = (0..series.len()).collect();
+    order.sort_by(|&a, &b| series[a].total_cmp(&series[b]));
+    let mut ranks = vec![0.0; series.len()];
+    let mut below = 0;
+    // Equal values share the mean of their ranks.
+    for equal in order.chunk_by(|&a, &b| series[a] == series[b]) {
+        let rank = below as f64 + 0.5 * (equal.len() as f64 - 1.0);
+        equal.iter().for_each(|&at| ranks[at] = rank);
+        below += equal.len();
     }
-    both * both / (times * squares)
-}
-
-/// Whether the halves of a series differ by more than its error allows: their difference has twice the error of the mean.
-fn drifts(kept: &[f64], estimate: &Estimate) -> bool {
-    let (first, second) = kept.split_at(kept.len() / 2);
-    let error = estimate.bar / student(CONFIDENCE, whole(estimate.freedoms));
-    (mean(second) - mean(first)).abs() > 2.0 * student(DRIFT, whole(estimate.freedoms)) * error
+    let middle = 0.5 * (series.len() as f64 - 1.0);
+    let [mut times, mut both, mut squares] = [0.0; 3];
+    for (rank, at) in ranks.iter().zip(0u32..) {
+        let (time, rank) = (f64::from(at) - middle, rank - middle);
+        times += time * time;
+        both += time * rank;
+        squares += rank * rank;
+    }
+    if squares > 0.0 { both / (times * squares).sqrt() } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -211,6 +216,16 @@ mod tests {
         }
     }
 
+    /// By hand: ranks 1, 0, 2.5 and 2.5 of the times 0 to 3.
+    #[test]
+    fn ranks_are_correlated_with_time() {
+        assert!((rank_correlation(&[5.0, -1.0, 9.0, 9.0]) - 3.5 / (5.0_f64 * 4.5).sqrt()).abs() < 1e-15);
+        let cooling: Vec<f64> = (0..100).map(|at| (1.0 + f64::from(at)).powi(-2)).collect();
+        assert!((rank_correlation(&cooling) + 1.0).abs() < 1e-15);
+        assert_eq!(rank_correlation(&[2.0; 5]), 0.0);
+        assert!(matches!(estimated(&cooling, 0.0, 1.0), Outcome::Changing { .. }));
+    }
+
     #[test]
     fn what_has_no_mean_is_told_apart() {
         let line: Vec<f64> = (0..500).map(f64::from).collect();
@@ -224,7 +239,7 @@ mod tests {
         let slow = Noise::new(5).series(400, 0.98);
         match estimated(&slow, 0.0, 1.0) {
             Outcome::TooShort { independent_samples, enough_at, .. } => {
-                assert!(independent_samples < 10.0 && (400.0..4000.0).contains(&enough_at), "{enough_at}");
+                assert!(independent_samples < 10.0 && (400.0..6000.0).contains(&enough_at), "{enough_at}");
             }
             other => panic!("{other:?}"),
         }

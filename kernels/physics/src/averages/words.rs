@@ -48,7 +48,7 @@ impl fmt::Display for Averages {
 fn line(average: &Average, estimate: &Estimate) -> String {
     let samples = counted(estimate.independent_samples as u64, "independent sample", "independent samples");
     let name = match average.of {
-        "rate" => format!("{} a unit of time", average.quantity),
+        "rate" => format!("rate of {}", average.quantity),
         _ => average.quantity.to_owned(),
     };
     let unit = if average.unit.is_empty() { String::new() } else { format!(" {}", average.unit) };

@@ -10,7 +10,6 @@ pub mod lock;
 pub mod regular_file;
 pub mod replace;
 pub mod table_file;
-pub mod table_reader;
 
 use std::path::{Path, PathBuf};
 

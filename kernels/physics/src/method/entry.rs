@@ -7,7 +7,7 @@ use super::trials::Trials;
 use crate::domain::Domain;
 use crate::memory::Foreseen;
 use crate::particles::Particles;
-use crate::scene::{Output, SceneErrors, Values, Vocabulary, Warning};
+use crate::scene::{Output, SceneErrors, Target, Values, Vocabulary, Warning};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -269,6 +269,8 @@ pub struct Prepared {
     pub scene: String,
     /// How long it runs, and how often something is written.
     pub schedule: Schedule,
+    /// The mean that ends it before, when it is known well enough.
+    pub target: Option<Target>,
     /// Which files are written.
     pub output: Output,
     /// The box.

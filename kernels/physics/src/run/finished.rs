@@ -2,8 +2,8 @@
 
 use super::folder::{SCENE, THERMO};
 use super::identity::{first_difference, physics};
+use super::table::{TableError, TableReader};
 use crate::averages::{Averages, Rows, joined};
-use crate::io::table_reader::{TableError, TableReader};
 use crate::io::{FileError, regular_file};
 use crate::method::{Methods, Quantity, observer};
 use crate::quoted;

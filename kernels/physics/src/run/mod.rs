@@ -6,26 +6,29 @@ mod finished;
 mod folder;
 pub mod forecast;
 mod frames;
+mod goal;
 mod growing;
 mod identity;
 mod recorder;
 mod summary;
+mod table;
 
 pub use finished::{Finished, FinishedError, averages_of};
 pub use folder::FolderError;
 pub use identity::chosen_otherwise;
 pub use summary::Summary;
+pub use table::{TableError, TableReader};
 
 use crate::io::FileError;
 use crate::io::checkpoint::{CheckpointError, WriteError};
 use crate::io::growing_file::GrowingFileError;
 use crate::io::table_file::TableFileError;
-use crate::io::table_reader::TableError;
 use crate::method::{Clock, Failure, Prepared, Purpose, Quantity, Until};
+use crate::number::significant;
 use crate::origin::Origin;
 use crate::quoted;
 use crate::reported::{Class, FilePlace, Reported};
-use crate::scene::SceneErrors;
+use crate::scene::{SceneErrors, Target, Width};
 use crate::signals;
 use recorder::Recorder;
 use std::path::{Path, PathBuf};
@@ -133,6 +136,27 @@ pub enum RunError {
     /// The physics of the first moment, before anything was written.
     #[error(transparent)]
     Start(Failure),
+    /// The mean that should end the run is not known well enough at its latest end.
+    #[error(
+        "{bound} is over, and the mean of {} is {}, not to ± {} (95 %); what was found is in {}{}",
+        target.quantity,
+        error.map_or_else(|| "not known".to_owned(), |error| format!("known to ± {error}")),
+        target.error,
+        quoted::path(folder),
+        enough_at.map_or_else(String::new, |time| format!("\n  help: go on with --resume to about time {}", significant(time, 2)))
+    )]
+    Unreached {
+        /// The folder of the run.
+        folder: PathBuf,
+        /// What was asked for.
+        target: Target,
+        /// The latest end.
+        bound: Until,
+        /// The half width of the interval of 95 %, if there is a mean.
+        error: Option<Width>,
+        /// About when it would be reached (time), if anything tells.
+        enough_at: Option<f64>,
+    },
     /// A checkpoint that cannot be used.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
@@ -172,6 +196,7 @@ impl Reported for RunError {
             | RunError::OtherDiscs { .. }
             | RunError::OtherVersion { .. } => Class::Usage,
             RunError::Foreign { .. } => Class::Checkpoint,
+            RunError::Unreached { .. } => Class::Precondition,
             RunError::Folder(error) => error.class(),
             RunError::Rows(error) => error.class(),
             RunError::Checkpoint(error) if error.is_corrupt() => Class::Checkpoint,
@@ -200,7 +225,8 @@ impl Reported for RunError {
             | RunError::FewerSteps { folder, .. }
             | RunError::OtherDiscs { folder, .. }
             | RunError::OtherVersion { folder, .. }
-            | RunError::OtherScene { folder, .. } => Some(FilePlace::at(folder)),
+            | RunError::OtherScene { folder, .. }
+            | RunError::Unreached { folder, .. } => Some(FilePlace::at(folder)),
             RunError::Checkpoint(CheckpointError { file, .. }) | RunError::Foreign { file, .. } => {
                 Some(FilePlace::at(file))
             }
@@ -287,7 +313,7 @@ pub fn run(
     let from = simulation.clock();
     let mut strides = STRIDES;
     let start = Instant::now();
-    while !until.has_come(&simulation.clock()) {
+    while !(until.has_come(&simulation.clock()) || recorder.has_reached_its_goal()) {
         if interrupted.load(Ordering::Relaxed) {
             recorder.checkpoint(simulation.as_ref())?;
             return Ok(Ending::Interrupted { clock: simulation.clock() });
@@ -318,6 +344,16 @@ pub fn run(
     let seconds = start.elapsed().as_secs_f64();
     let summary = Summary::of(job, simulation.as_ref(), recorder.averages(), from, seconds, None);
     let summary = recorder.finish(simulation.as_ref(), summary)?;
+    if let Some((goal, known)) = recorder.missed_goal() {
+        let (target, bound) = (goal.target().clone(), until);
+        return Err(RunError::Unreached {
+            folder: folder.to_owned(),
+            target,
+            bound,
+            error: known.error,
+            enough_at: known.enough_at,
+        });
+    }
     Ok(Ending::Done(Box::new(summary)))
 }
 

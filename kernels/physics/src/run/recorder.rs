@@ -2,15 +2,16 @@
 
 use super::finished::{LONGEST_SCENE, rows_of};
 use super::folder::{DATA, DCD, DUMP, EVENTS, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY};
+use super::goal::{Goal, Known};
 use super::growing::{Growing, Kept};
 use super::identity::{BITS, Identity, same_scene};
+use super::table::TableReader;
 use super::{Existing, Job, RunError, Summary};
 use crate::averages::{Averages, Rows};
 use crate::domain::Domain;
 use crate::io::checkpoint::{Checkpoint, Counter, Latest, NAME, read_latest};
 use crate::io::dcd::Positions;
 use crate::io::extxyz::Frame;
-use crate::io::table_reader::TableReader;
 use crate::io::{FileError, lammps, regular_file};
 use crate::method::{
     Clock, Every, Failure, FailureKind, Prepared, Quantity, Schedule, Simulation, Snapshot, Until,
@@ -38,6 +39,8 @@ pub(super) struct Recorder {
     growing: Growing,
     /// The rows of observables, those of earlier sessions among them.
     rows: Rows,
+    /// The mean that ends the run, if one does.
+    goal: Option<Goal>,
     /// What was out of the ordinary, in the order of the run's sessions.
     notes: Vec<String>,
     /// Which of them are of this session.
@@ -122,6 +125,7 @@ impl Recorder {
             due,
             growing,
             rows: Rows::new(quantities),
+            goal: Goal::of(prepared, quantities),
             notes,
             new_notes: 0,
             checkpointed: None,
@@ -189,6 +193,18 @@ impl Recorder {
     /// The averages over the rows so far.
     pub(super) fn averages(&self) -> Averages {
         Averages::of(&self.rows)
+    }
+
+    /// Whether the mean that the run is to find is known well enough.
+    pub(super) fn has_reached_its_goal(&mut self) -> bool {
+        self.goal.as_mut().is_some_and(|goal| goal.is_reached(&self.rows))
+    }
+
+    /// The goal, and what is known at the end; none where there is no goal, or it is reached.
+    pub(super) fn missed_goal(&self) -> Option<(&Goal, Known)> {
+        let goal = self.goal.as_ref()?;
+        let known = goal.known(&self.rows);
+        (!known.is_enough).then_some((goal, known))
     }
 
     /// What this session found out of the ordinary when it began.

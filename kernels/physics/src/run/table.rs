@@ -1,6 +1,6 @@
 //! The table that a run has written, row by row.
 
-use super::{FileError, regular_file};
+use crate::io::{FileError, regular_file};
 use crate::quoted;
 use crate::reported::{Class, FilePlace, Reported};
 use std::fs::File;
