@@ -2,9 +2,11 @@
 
 use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
 use crate::report::terminal;
+use crate::study::history::{self, Record};
 use clap::{Arg, ArgAction, ArgMatches, Args, value_parser};
 use serde_json::Value;
 use std::collections::BTreeSet;
+use std::path::PathBuf;
 use stripmine_physics::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
 use stripmine_physics::method::{Bench, BenchOption, Entry, Methods, Takes};
 use stripmine_physics::number::counted;
@@ -18,6 +20,9 @@ pub(super) struct BenchVerb {
     /// Steps, or collisions, of each repeat; about a second's worth by default
     #[arg(long, visible_alias = "collisions", value_parser = count)]
     steps: Option<u64>,
+    /// Appends the measurement to this file as a line with date, commit and machine; `chart history` draws it
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
     /// Repeats
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
@@ -98,6 +103,8 @@ impl BenchVerb {
             return Err(Failure::NoSuchOption { bench: "bench", option: "what" });
         };
         let given = self.overrides(bench, matches, methods)?;
+        // Before anything takes its time.
+        self.record.as_deref().map_or(Ok(()), history::admits)?;
         let bar = progress(common, "bench");
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
         let result = self.measured(entry, bench, &given, show);
@@ -106,6 +113,9 @@ impl BenchVerb {
             MeasurementError::Scene(mistakes) => Failure::Options(in_options(mistakes, &given)),
             error => error.into(),
         })?;
+        if let Some(file) = &self.record {
+            history::append(file, &Record::of(&result, &common.command))?;
+        }
         if common.json { print_json(&result) } else { print(&(terminal::fitted(&text(&result)) + "\n")) }
     }
 

@@ -6,6 +6,7 @@ use crate::provenance::Provenance;
 use crate::results::Made;
 use crate::results::Progress;
 use crate::results::{Folder, Journal};
+use crate::study::history::{self, section as history_section};
 use crate::study::stability::{self, Over, stability};
 use crate::study::work_precision::{self, work_precision};
 use crate::study::{Subject, stability::section as map_section, work_precision::section as diagram_section};
@@ -46,6 +47,7 @@ pub(super) struct ChartVerb {
 enum Study {
     WorkPrecision(WorkPrecisionVerb),
     Stability(StabilityVerb),
+    History(HistoryVerb),
 }
 
 /// The error of a scene over its cost, for every way to run it and every step; which way for which wish
@@ -103,6 +105,16 @@ struct StabilityVerb {
     out: Option<PathBuf>,
 }
 
+/// Rates over time and host, of a file of `bench --record`
+#[derive(Args)]
+struct HistoryVerb {
+    /// The file
+    file: PathBuf,
+    /// Folder for data, tables and figures; the file's name with `.history` by default
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
 /// A part of a step within which edges can be found.
 fn part(text: &str) -> Result<f64, String> {
     let is_one = |part: &f64| (1e-6..=1.0).contains(part);
@@ -117,6 +129,7 @@ impl ChartVerb {
         match &self.what {
             Study::WorkPrecision(verb) => verb.run(common, methods),
             Study::Stability(verb) => verb.run(common, methods),
+            Study::History(verb) => verb.run(common),
         }
     }
 }
@@ -161,6 +174,35 @@ impl StabilityVerb {
     }
 }
 
+impl HistoryVerb {
+    fn run(&self, common: &Common) -> Result<(), Failure> {
+        let stem = self.file.file_stem().unwrap_or_default().to_string_lossy();
+        let out =
+            self.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.{}", history_section::NAME)));
+        let records = history::read(&self.file)?;
+        let folder = Folder::open(&out, &[history_section::NAME], true)?;
+        let made = history_section::made(&records, common.command.clone())?;
+        written(common, &folder, &made, Instant::now())
+    }
+}
+
+/// Writes what a study made, and says it.
+fn written(common: &Common, folder: &Folder, made: &Made, begun: Instant) -> Result<(), Failure> {
+    let provenance = Provenance::here(common.command.clone(), begun.elapsed().as_secs_f64());
+    let path = signals::whole(|| {
+        let path = folder.write(made, &provenance)?;
+        folder.write_page(&[made.section.name.as_str()]).map(|()| path)
+    })?;
+    clear_progress();
+    if !common.quiet {
+        say(format_args!("written: {}", quoted::path(&path)));
+    }
+    if common.json {
+        return print_json(&made.data);
+    }
+    print(&(made.section.paragraphs().collect::<Vec<_>>().join("\n\n") + "\n"))
+}
+
 /// Where a study's results go.
 struct Place<'p> {
     /// The study.
@@ -196,18 +238,6 @@ impl Place<'_> {
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
         let again = format!("stripmine chart {} {}", self.name, subject.arguments());
         let made = make(&journal, &show, stem, again)?;
-        let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
-        let path = signals::whole(|| {
-            let path = folder.write(&made, &provenance)?;
-            folder.write_page(&[self.name]).map(|()| path)
-        })?;
-        clear_progress();
-        if !common.quiet {
-            say(format_args!("written: {}", quoted::path(&path)));
-        }
-        if common.json {
-            return print_json(&made.data);
-        }
-        print(&(made.section.paragraphs().collect::<Vec<_>>().join("\n\n") + "\n"))
+        written(common, &folder, &made, start)
     }
 }

@@ -4,7 +4,7 @@ use crate::console::Failure;
 use crate::model::clock::{Clock, Work};
 use crate::model::machine::MachineModel;
 use crate::model::machines;
-use crate::report::{Cell, Part, Rows, Section, Table};
+use crate::report::{Cell, Rows, Section, Table, Verdict};
 use crate::results::Made;
 use serde::Serialize;
 use stripmine_kernels::isa::{OpClass, OpCounts};
@@ -176,9 +176,10 @@ pub fn made(
         let numbered = move |table: Table| Table { name: format!("{}-{}", table.name, at + 1), ..table };
         counted.tables().into_iter().map(numbered)
     });
-    let section = Section::new(name, title, Part::Machine)
+    let section = Section::new(name, title)
         .asks(question)
         .expects(expected)
+        .verdict(Verdict::Computed)
         .answers(said.next().unwrap_or_default())
         .details(said)
         .tables(tables)

@@ -1,18 +1,15 @@
 //! The page of a reproduction in Markdown, as a repository's site shows it.
 
-use super::{Part, Section, Verdict, markdown};
+use super::{Chapter, Section, Verdict, markdown};
 use std::fmt::Write;
 
 /// What stands near the beginning of every such page and of no other.
 pub const MARK: &str = "Written by `stripmine reproduce`; do not edit.";
 
-/// Tables and pictures of an item that the page shows; further ones are linked.
-const TABLES: usize = 1;
-const FIGURES: usize = 1;
+/// Letters of an item's table of conclusions that the page shows below a picture; a longer one is linked.
+const TABLE: usize = 800;
 /// Lines of a program's text that it shows.
 const LINES: usize = 8;
-/// Letters of an item's details that it shows; more stand on the page with charts.
-const DETAILS: usize = 200;
 /// Letters of a picture's caption that it shows, in whole sentences; the rest stands on the page with charts.
 const CAPTION: usize = 110;
 
@@ -26,20 +23,22 @@ pub fn render(sections: &[Section], left_out: &[String]) -> String {
     for verdict in Verdict::ALL {
         let _ = writeln!(page, "- **{}**: {}.", verdict.word(), verdict.meaning());
     }
-    for part in Part::ALL {
-        let of_part: Vec<&Section> = sections.iter().filter(|section| section.part == part).collect();
-        if of_part.is_empty() {
+    for chapter in Chapter::ALL {
+        let of_chapter: Vec<&Section> =
+            sections.iter().filter(|section| section.chapter == chapter).collect();
+        if of_chapter.is_empty() {
             continue;
         }
-        let _ = write!(page, "\n**{}**\n\n| item | answer | verdict |\n|---|---|---|\n", part.title());
-        for section in of_part {
-            let Section { title, answer, verdict, .. } = section;
-            let answer = answer.replace('|', "\\|");
-            let _ = writeln!(page, "| [{title}](#{}) | {answer} | {} |", anchor(title), verdict.word());
+        let _ = write!(page, "\n**{}**\n\n| item | verdict |\n|---|---|\n", chapter.title());
+        for Section { title, verdict, .. } in of_chapter {
+            let _ = writeln!(page, "| [{title}](#{}) | {} |", anchor(title), verdict.word());
         }
     }
-    for part in Part::ALL {
-        for section in sections.iter().filter(|section| section.part == part) {
+    for made in super::origins(sections) {
+        let _ = write!(page, "\n{made}\n");
+    }
+    for chapter in Chapter::ALL {
+        for section in sections.iter().filter(|section| section.chapter == chapter) {
             page.push_str(&item(section));
         }
     }
@@ -57,53 +56,32 @@ pub fn render(sections: &[Section], left_out: &[String]) -> String {
     page
 }
 
+/// The answer, the picture and the table of conclusions, then what was asked. All further words, pictures and tables stand on the page
+/// with charts.
 fn item(section: &Section) -> String {
-    let Section { title, question, expected, verdict, again, .. } = section;
+    let Section { name, title, question, expected, verdict, again, .. } = section;
     let folder = section.folder();
-    let mut text = format!("\n## {title}\n\n*Question:* {question}\n\n*Expected:* {expected}\n\n");
-    let _ = write!(text, "*Answer:* **{}**. ", verdict.word());
-    let _ = write!(text, "{}\n\n", section.answer);
-    let mut letters = 0;
-    let shown = section.details.iter().take_while(|detail| {
-        letters += detail.len();
-        letters <= DETAILS
-    });
-    let shown: Vec<&str> = shown.map(String::as_str).collect();
-    shown.iter().for_each(|detail| {
-        let _ = write!(text, "{detail}\n\n");
-    });
-    if shown.len() < section.details.len() {
-        let _ = write!(text, "More in words: [index.html](index.html#{}).\n\n", section.name);
-    }
-    for figure in section.figures.iter().take(FIGURES) {
+    let mut text = format!("\n## {title}\n\n**{}**: {}\n\n", verdict.word(), section.answer);
+    if let Some(figure) = section.figures.first() {
         let caption = beginning(&figure.caption, CAPTION);
         let _ = write!(text, "![{}]({folder}/{}.svg)\n\n{caption}\n\n", figure.title, figure.name);
     }
-    for table in section.tables.iter().take(TABLES) {
-        let _ = writeln!(text, "{}", markdown::render(table, &folder));
+    if let Some(table) = section.tables.first() {
+        let table = markdown::render(table, &folder);
+        if section.figures.is_empty() || table.len() <= TABLE {
+            let _ = writeln!(text, "{table}");
+        }
     }
-    let further = [
-        ("picture", section.figures.len().saturating_sub(FIGURES)),
-        ("table", section.tables.len().saturating_sub(TABLES)),
-    ];
-    let further: Vec<String> = further
-        .into_iter()
-        .filter(|(_, count)| *count > 0)
-        .map(|(what, count)| format!("{count} {what}{}", if count == 1 { "" } else { "s" }))
-        .collect();
-    let further =
-        if further.is_empty() { String::new() } else { format!(", with {} more", further.join(" and ")) };
     if let Some((what, lines)) = &section.excerpt {
         let lines: Vec<&str> = lines.lines().take(LINES).collect();
         let _ = write!(text, "{what}\n\n```text\n{}\n```\n\n", lines.join("\n"));
     }
     let seeds: Vec<_> = section.seeds.iter().map(u64::to_string).collect();
-    let seeds = if seeds.is_empty() { String::new() } else { format!(" Seeds {}.", seeds.join(", ")) };
-    let _ = write!(text, "*Again:* `{again}`. *Data:* [folder]({folder}/){further}.{seeds}");
-    if let Some(provenance) = &section.provenance {
-        let _ = write!(text, " {}", provenance.in_short(&format!("{folder}/provenance.json")));
-    }
-    text.push('\n');
+    let seeds = if seeds.is_empty() { String::new() } else { format!(", seeds {}", seeds.join(", ")) };
+    let _ = writeln!(
+        text,
+        "{question} *Expected:* {expected}\n\n`{again}`{seeds}; [all of it](index.html#{name}), [data]({folder}/)."
+    );
     text
 }
 

@@ -12,8 +12,8 @@ pub struct Section {
     pub name: String,
     /// What it is.
     pub title: String,
-    /// Which part of the report it belongs to.
-    pub part: Part,
+    /// Which chapter of the report it belongs to.
+    pub chapter: Chapter,
     /// What is asked.
     pub question: String,
     /// What is expected, and who says so: a source, theory, or our own aim.
@@ -47,11 +47,11 @@ pub struct Section {
 /// their kind.
 impl Section {
     /// A section that has only its name so far. `stripmine reproduce` makes it again, unless it says otherwise.
-    pub fn new(name: &str, title: impl Into<String>, part: Part) -> Section {
+    pub fn new(name: &str, title: impl Into<String>) -> Section {
         Section {
             name: name.to_owned(),
             title: title.into(),
-            part,
+            chapter: Chapter::Beyond,
             question: String::new(),
             expected: String::new(),
             answer: String::new(),
@@ -150,34 +150,34 @@ impl Section {
     }
 }
 
-/// A part of the report. Items stand in the order of the parts.
+/// A chapter of the report. Items stand in the order of the chapters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Part {
-    /// What the particles do.
-    Physics,
-    /// The vector machine: operations and clock periods, which are the same everywhere.
-    Machine,
-    /// Times on the host of the report.
+pub enum Chapter {
+    /// Tables, figures and claims of the sources.
+    Sources,
+    /// What the sources do not ask.
+    Beyond,
+    /// Times on the host of the report that no source has.
     Host,
 }
 
-impl Part {
+impl Chapter {
     /// All, in the order of the report.
-    pub const ALL: [Part; 3] = [Part::Physics, Part::Machine, Part::Host];
+    pub const ALL: [Chapter; 3] = [Chapter::Sources, Chapter::Beyond, Chapter::Host];
 
     /// Its heading.
     pub const fn title(self) -> &'static str {
         match self {
-            Part::Physics => "Physics",
-            Part::Machine => "The vector machine",
-            Part::Host => "This host",
+            Chapter::Sources => "What the sources contain",
+            Chapter::Beyond => "Beyond the sources",
+            Chapter::Host => "This host",
         }
     }
 }
 
 /// What to think of an item: the first three where a source or theory is the measure, the next two where an aim of our own is,
-/// the last where there is none.
+/// the last two where there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -191,19 +191,22 @@ pub enum Verdict {
     AimMet,
     /// It is missed.
     AimMissed,
-    /// There is nothing to compare with.
+    /// There is nothing to compare with: a measurement.
     Measured,
+    /// There is nothing to compare with: a count, or what a model says.
+    Computed,
 }
 
 impl Verdict {
     /// All of them.
-    pub const ALL: [Verdict; 6] = [
+    pub const ALL: [Verdict; 7] = [
         Verdict::Reproduced,
         Verdict::Partly,
         Verdict::NotReproduced,
         Verdict::AimMet,
         Verdict::AimMissed,
         Verdict::Measured,
+        Verdict::Computed,
     ];
 
     /// Of a source's or theory's statement that holds, or does not hold in all.
@@ -234,6 +237,7 @@ impl Verdict {
             Verdict::AimMet => "aim met",
             Verdict::AimMissed => "aim missed",
             Verdict::Measured => "measured",
+            Verdict::Computed => "computed",
         }
     }
 
@@ -246,6 +250,7 @@ impl Verdict {
             Verdict::AimMet => "no source says; our own aim, which the item states, is met",
             Verdict::AimMissed => "our own aim is missed, by as much as the item says",
             Verdict::Measured => "no source and no aim: a measurement",
+            Verdict::Computed => "no source and no aim: a count, or what a model says",
         }
     }
 }

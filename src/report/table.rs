@@ -1,6 +1,7 @@
 //! A table, before it is known where it will be read.
 
 use serde::{Deserialize, Serialize};
+use stripmine_physics::number::{in_tens, significant};
 
 /// What stands in a place of a table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -11,34 +12,46 @@ pub enum Cell {
     Count(u64),
     /// A measured or computed number, and the number of decimals that are shown.
     Number(f64, usize),
+    /// A number of any size, shown with two digits.
+    Short(f64),
+    /// A number with its error, which the table's note names, and the number of decimals that are shown.
+    WithError {
+        /// The number.
+        value: f64,
+        /// Its error.
+        error: f64,
+        /// Decimals of both.
+        decimals: usize,
+    },
+    /// The lowest and the highest of several numbers, and the number of decimals that are shown.
+    Range([f64; 2], usize),
     /// Nothing: the source has no such entry.
     Nothing,
 }
 
 impl Cell {
+    /// A number with its error; alone where it has none.
+    pub fn with_error(value: f64, error: Option<f64>, decimals: usize) -> Cell {
+        match error {
+            Some(error) => Cell::WithError { value, error, decimals },
+            None => Cell::Number(value, decimals),
+        }
+    }
+
     /// As a person reads it: thousands set apart.
     pub fn for_reading(&self) -> String {
         match self {
             Cell::Text(text) => text.clone(),
             Cell::Count(count) => grouped(&count.to_string()),
-            Cell::Number(value, decimals) => {
-                let text = format!("{value:.decimals$}");
-                match text.split_once('.') {
-                    Some((whole, fraction)) => format!("{}.{fraction}", grouped(whole)),
-                    None => grouped(&text),
-                }
+            Cell::Number(value, decimals) => decimal(*value, *decimals),
+            Cell::Short(value) => short(*value),
+            Cell::WithError { value, error, decimals } => {
+                format!("{} ± {}", decimal(*value, *decimals), decimal(*error, *decimals))
+            }
+            Cell::Range([lowest, highest], decimals) => {
+                format!("{} to {}", decimal(*lowest, *decimals), decimal(*highest, *decimals))
             }
             Cell::Nothing => "–".to_owned(),
-        }
-    }
-
-    /// As a program reads it: all digits, nothing else.
-    pub fn for_machines(&self) -> String {
-        match self {
-            Cell::Text(text) => text.clone(),
-            Cell::Count(count) => count.to_string(),
-            Cell::Number(value, _) => value.to_string(),
-            Cell::Nothing => String::new(),
         }
     }
 
@@ -70,6 +83,24 @@ impl From<u64> for Cell {
 impl<T: Into<Cell>> From<Option<T>> for Cell {
     fn from(value: Option<T>) -> Self {
         value.map_or(Cell::Nothing, Into::into)
+    }
+}
+
+/// With so many decimals, thousands set apart.
+fn decimal(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.split_once('.') {
+        Some((whole, fraction)) => format!("{}.{fraction}", grouped(whole)),
+        None => grouped(&text),
+    }
+}
+
+/// With two digits, in tens where it is small or large.
+fn short(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".to_owned(),
+        1e-2..1e4 => significant(value, 2),
+        _ => in_tens(value, 2),
     }
 }
 
@@ -147,6 +178,11 @@ impl<T> Rows<T> {
         self.cell(heading, |item| of(item).into().map_or(Cell::Nothing, |it| Cell::Number(it, decimals)))
     }
 
+    /// A column of numbers of any size, shown with two digits; an item may have none.
+    pub fn short<N: Into<Option<f64>>>(self, heading: impl Into<String>, of: impl Fn(&T) -> N) -> Rows<T> {
+        self.cell(heading, |item| of(item).into().map_or(Cell::Nothing, Cell::Short))
+    }
+
     /// A column of any cells.
     pub fn cell<C: Into<Cell>>(self, heading: impl Into<String>, of: impl Fn(&T) -> C) -> Rows<T> {
         self.cells([heading], |item| [of(item)])
@@ -177,12 +213,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_grouped_for_people_and_whole_for_machines() {
+    fn numbers_are_grouped_for_people() {
         assert_eq!(Cell::Number(1_234_567.891, 2).for_reading(), "1\u{202f}234\u{202f}567.89");
         assert_eq!(Cell::Number(-123_456.0, 0).for_reading(), "-123\u{202f}456");
         assert_eq!(Cell::Count(999).for_reading(), "999");
-        assert_eq!(Cell::Number(0.1 + 0.2, 1).for_machines(), "0.30000000000000004");
-        assert_eq!(Cell::Nothing.for_machines(), "");
+        let with_error = Cell::WithError { value: 1234.56, error: 0.26, decimals: 1 };
+        assert_eq!(with_error.for_reading(), "1\u{202f}234.6 ± 0.3");
+        assert_eq!(Cell::Range([0.18, 0.43], 2).for_reading(), "0.18 to 0.43");
+        assert_eq!(
+            [4.2e-4, 0.031, 12.0].map(|it| Cell::Short(it).for_reading()),
+            ["4.2·10⁻⁴", "0.031", "12"]
+        );
     }
 
     #[test]

@@ -195,8 +195,8 @@ impl Folder {
                 Known::Absent => {}
             }
         }
-        // Within a part, items stand as they are listed.
-        sections.sort_by_key(|section| section.part);
+        // Within a chapter, items stand as they are listed.
+        sections.sort_by_key(|section| section.chapter);
         // A picture that is gone leaves a gap in the page, and is there again with the item's next making.
         let drawn = |section: &Section, figure: &Figure| {
             let file = self.path.join(section.folder()).join(format!("{}.svg", figure.name));
@@ -213,28 +213,35 @@ impl Folder {
 
     /// The item's section, if the folder has it.
     fn read(&self, name: &str) -> Result<Known, Failure> {
-        let Some(folder) = Section::folders(name)
-            .map(|folder| self.path.join(folder))
-            .into_iter()
-            .find(|f| f.join(SECTION).exists())
-        else {
-            return Ok(Known::Absent);
-        };
-        let read = |file: &str| {
-            let path = folder.join(file);
-            regular_file::read(&path, LONGEST)
-                .map_err(FileError::at(&path, "reading"))
-                .map_err(FolderError::from)
-        };
-        let (section, provenance) = (read(SECTION)?, read(PROVENANCE)?);
-        let section = serde_json::from_slice::<Section>(&section);
-        Ok(match (section, serde_json::from_slice::<Provenance>(&provenance)) {
-            (Ok(section), Ok(provenance)) => {
+        let Some(folder) = self.item(name) else { return Ok(Known::Absent) };
+        let section = serde_json::from_slice::<Section>(&read(&folder.join(SECTION))?);
+        Ok(match (section, self.provenance(name)?) {
+            (Ok(section), Some(provenance)) => {
                 Known::There(Box::new(Section { provenance: Some(provenance), ..section }))
             }
             _ => Known::OfAnotherVersion,
         })
     }
+
+    /// How the folder's item of this name was made; none if it has no such item that this version of the program can read.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    pub fn provenance(&self, name: &str) -> Result<Option<Provenance>, Failure> {
+        let Some(folder) = self.item(name) else { return Ok(None) };
+        Ok(serde_json::from_slice(&read(&folder.join(PROVENANCE))?).ok())
+    }
+
+    /// The folder of an item that is there.
+    fn item(&self, name: &str) -> Option<PathBuf> {
+        let folders = Section::folders(name).map(|folder| self.path.join(folder));
+        folders.into_iter().find(|folder| folder.join(SECTION).exists())
+    }
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+    let bytes = regular_file::read(path, LONGEST).map_err(FileError::at(path, "reading"));
+    Ok(bytes.map_err(FolderError::from)?)
 }
 
 /// What a folder has of an item.
@@ -249,16 +256,21 @@ enum Known {
 
 /// The files of an item but its provenance, name and contents.
 fn files_of(made: &Made) -> Result<Vec<(String, Vec<u8>)>, Failure> {
-    let Made { section, data, files } = made;
+    let Made { section, data, tables, files } = made;
     let mut all = Vec::new();
     if !data.is_null() {
         all.push(("data.json".to_owned(), compact(data)?.into_bytes()));
     }
     let of_figures = section.figures.iter().filter_map(figure::data);
-    for table in section.tables.iter().cloned().chain(of_figures) {
+    let tables: Vec<_> = section.tables.iter().chain(tables).cloned().chain(of_figures).collect();
+    for table in &tables {
         let mut bytes = Vec::new();
-        csv::write(&table, &mut bytes).map_err(Failure::writing("CSV"))?;
+        csv::write(table, &mut bytes).map_err(Failure::writing("CSV"))?;
         all.push((format!("{}.csv", table.name), bytes));
+    }
+    if !tables.is_empty() {
+        let package = csv::package(&section.name, &section.title, &tables);
+        all.push(("datapackage.json".to_owned(), compact(&package)?.into_bytes()));
     }
     for figure in &section.figures {
         all.push((format!("{}.svg", figure.name), svg(figure)?.into_bytes()));

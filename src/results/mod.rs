@@ -13,7 +13,7 @@ pub use meter::Meter;
 pub(crate) use own_files::OwnFiles;
 
 use crate::console::Failure;
-use crate::report::Section;
+use crate::report::{Section, Table};
 use serde::Serialize;
 
 /// How much is done.
@@ -31,6 +31,8 @@ pub struct Made {
     pub section: Section,
     /// The dataset.
     pub data: serde_json::Value,
+    /// Tables for programs that the page does not show.
+    pub tables: Vec<Table>,
     /// Further files: name and contents.
     pub files: Vec<(String, String)>,
 }
@@ -42,7 +44,14 @@ impl Made {
     /// If the dataset is none that JSON can hold.
     pub fn new(section: Section, data: &impl Serialize) -> Result<Made, Failure> {
         let data = serde_json::to_value(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
-        Ok(Made { section, data, files: vec![] })
+        Ok(Made { section, data, tables: vec![], files: vec![] })
+    }
+
+    /// With tables for programs that the page does not show.
+    #[must_use]
+    pub fn with_tables(mut self, tables: impl IntoIterator<Item = Table>) -> Made {
+        self.tables.extend(tables);
+        self
     }
 
     /// With one more file.

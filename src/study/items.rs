@@ -1,38 +1,51 @@
 //! What `reproduce` makes of studies.
 
+use super::history::{section as history, shipped};
 use super::rivals::section as rivals;
 use super::stability::{self, Over, stability};
 use super::work_precision::{self, work_precision};
 use super::{Subject, stability::section as map_section, work_precision::section as diagram_section};
 use crate::console::Failure;
-use crate::results::{Effort, Journal, Made};
-use crate::results::{Item, Progress};
+use crate::report::Chapter;
+use crate::results::{Effort, Item, Journal, Made, Progress};
 use stripmine_physics::method::METHODS;
 
-/// Every item, in the order of the page.
+/// Every item, in the order of its chapter.
 pub const ITEMS: &[Item] = &[
-    Item {
-        name: diagram_section::NAME,
-        doc: "Speed against accuracy of four scenes: which integrator, step and precision for which wish",
-        seconds: [3.0, 50.0],
-        is_quick: true,
-        make: speed_against_accuracy,
-    },
-    Item {
-        name: map_section::NAME,
-        doc: "Where the method works: maps over the step and a second parameter, beside theory",
-        seconds: [8.0, 50.0],
-        is_quick: true,
-        make: where_it_works,
-    },
-    Item {
-        name: rivals::NAME,
-        doc: "LAMMPS and the crate particular on the same systems, as measured last",
-        seconds: [0.1, 0.1],
-        is_quick: true,
-        make: beside_others,
-    },
+    Item::quick(
+        diagram_section::NAME,
+        Chapter::Host,
+        [3.0, 55.0],
+        speed_against_accuracy,
+        "Speed against accuracy of four scenes: which integrator, step and precision for which wish",
+    ),
+    Item::quick(
+        map_section::NAME,
+        Chapter::Beyond,
+        [8.0, 50.0],
+        where_it_works,
+        "Where the method works: maps over the step and a second parameter, beside theory",
+    ),
+    Item::quick(
+        history::NAME,
+        Chapter::Host,
+        [0.1, 0.1],
+        over_time,
+        "Rates that `bench --record` measured, over time and host",
+    ),
+    Item::quick(
+        rivals::NAME,
+        Chapter::Host,
+        [0.1, 0.1],
+        beside_others,
+        "LAMMPS and the crate particular on the same systems, as measured last",
+    ),
 ];
+
+/// What was recorded.
+fn over_time(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+    history::made(&shipped()?, format!("stripmine reproduce --only {}", history::NAME))
+}
 
 /// What the scripts of the rivals measured.
 fn beside_others(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {

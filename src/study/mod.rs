@@ -6,6 +6,7 @@ mod collision;
 mod encounters;
 mod error;
 mod growth;
+pub mod history;
 mod items;
 mod observables;
 mod observed;

@@ -5,7 +5,7 @@ use super::{Choice, StudyError};
 use crate::results::Identity;
 use sha2::{Digest, Sha256};
 use stripmine_physics::method::{Every, Methods, Prepared, Setting, Trials, Until, prepare, vocabularies};
-use stripmine_physics::scene::{Overrides, SceneErrors, Values};
+use stripmine_physics::scene::{Overrides, SceneErrors, UNITS, Values};
 
 /// The form in which studies keep finished runs; another one whenever these hold other things.
 const JOURNALED: &str = "2";
@@ -109,6 +109,16 @@ impl Subject {
     /// The setting of the axis that decides the order, of a way to run it.
     pub fn theory(&self, setting: &Setting) -> Option<stripmine_physics::method::Theory> {
         (self.trials.theory)(&self.values, &self.prepared, setting)
+    }
+
+    /// The unit of a dimension, such as `1/time`, in the units that the scene names; none of a pure number.
+    pub fn unit(&self, dimension: &str) -> Option<String> {
+        let label = self.values.choice(&UNITS).unwrap_or_default();
+        match (dimension, label.as_str()) {
+            ("", _) => None,
+            (_, "SI") => Some(dimension.replace("time", "s").replace("length", "m").replace("force", "N")),
+            _ => Some(label),
+        }
     }
 
     /// What distances are measured in (length).

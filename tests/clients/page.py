@@ -5,7 +5,7 @@
 Needs the package `playwright`, and Chromium: playwright's own, or one that is installed (CHROMIUM names another).
 Where one of them cannot be had, the check says SKIPPED and why, and exits with 0.
 
-Every picture must be seen, in both widths, in the dark, on paper and without scripts, and have colours; every chart and
+Every picture must be seen, what is folded opened, in both widths, in the dark, on paper and without scripts, and have colours; every chart and
 map must say values at the pointer and by the keyboard; every film must play, by the button and by the keyboard. Exits with 1
 if one does not, if the page asks the network for anything, complains on the console, or is wider than the screen. With a
 folder, pictures of the page as wide, narrow, both in the dark, printed and without scripts are left there.
@@ -31,13 +31,15 @@ COLOURED = """canvas => {
     }
     return dots;
 }"""
-# What a reader may find wrong with a picture as it lies on the page, or nothing: all of it must be there, its ground light and
-# its words dark, none of them cut off, and every marker that it names defined.
+# What a reader may find wrong with a picture as it lies on the page, or nothing: all of it must be there, its words apart from its
+# ground and its ground that of the page, none of them cut off, and every marker that it names defined.
 LACKING = """svg => {
     const [box, ink] = [svg.getBoundingClientRect(), getComputedStyle(svg).fill];
-    const ground = svg.querySelector(":scope > rect");
+    const ground = getComputedStyle(svg.querySelector(":scope > rect")).fill;
     if (box.width < 100 || box.height < 50 || !svg.checkVisibility()) return "is not to be seen";
-    if (ink !== "rgb(26, 26, 26)" || ground?.getAttribute("fill") !== "#ffffff") return "cannot be read";
+    const light = colour => colour.match(/\\d+/g).slice(0, 3).map(Number).reduce((sum, part) => sum + part) / 765;
+    if (Math.abs(light(ink) - light(ground)) < 0.7) return "cannot be read";
+    if (Math.abs(light(ground) - light(getComputedStyle(document.body).backgroundColor)) > 0.1) return "glares";
     for (const text of svg.querySelectorAll("text")) {
         const at = text.getBoundingClientRect();
         const beyond = Math.max(box.left - at.left, at.right - box.right, box.top - at.top, at.bottom - box.bottom);
@@ -89,6 +91,8 @@ def open_page(browser, address, width, complaints, **options):
 
     page.on("request", requested)
     page.goto(address)
+    # What is folded is read as well.
+    page.evaluate("document.querySelectorAll('details').forEach(details => { details.open = true; })")
     return page
 
 
@@ -200,6 +204,21 @@ def keep(page, folder, name):
         page.screenshot(path=folder / f"{name}.png", full_page=True, timeout=SCREENSHOT)
 
 
+def accessible(page, how, complaints):
+    """What axe finds: a program that knows what readers with other senses and hands need."""
+    try:
+        from axe_playwright_python.sync_playwright import Axe
+    except ImportError:
+        print("axe: SKIPPED (no axe-playwright-python)")
+        return
+    # It is put into the page, whose policy lets no script in from elsewhere.
+    found = Axe().run(page).response["violations"]
+    for violation in found:
+        places = ", ".join(str(node["target"][0]) for node in violation["nodes"][:3])
+        complaints.append(f"{how}: axe: {violation['id']}: {violation['help']} ({len(violation['nodes'])}: {places})")
+    print(f"axe, {how}: {len(found)} violations")
+
+
 def check(browser, path, folder):
     address = path.resolve().as_uri()
     complaints = []
@@ -212,12 +231,14 @@ def check(browser, path, folder):
             .map(link => link.getAttribute('href').slice(1)).filter(id => !document.getElementById(id))""")
         complaints.extend(f"a link leads nowhere: #{name}" for name in astray)
         look(page, name, complaints)
+        accessible(page, name, complaints)
         print(f"{name} ({width} pixels):")
         failures += check_pictures(page)
         dark = open_page(browser, address, width, complaints, color_scheme="dark")
         dark.wait_for_timeout(300)
         keep(dark, folder, f"{name}-dark")
         look(dark, f"{name}, in the dark", complaints)
+        accessible(dark, f"{name}, in the dark", complaints)
         plain = open_page(browser, address, width, complaints, java_script_enabled=False)
         keep(plain, folder, f"{name}-without-scripts")
         look(plain, f"{name}, without scripts", complaints)

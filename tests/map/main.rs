@@ -3,6 +3,7 @@
 mod code;
 mod documents;
 mod graph;
+mod reports;
 mod tokens;
 
 use code::{Arrow, CRATES, Code, Crate};

@@ -5,27 +5,57 @@ use super::study::soft_hard::{Question, soft_hard};
 use super::study::{atmosphere, collapse, cooling, fluid, masks, precision, rates, structure};
 use super::verbs::question;
 use crate::console::Failure;
+use crate::report::Chapter::{Beyond, Host, Sources};
 use crate::results::{Effort, Item, Made, Progress};
 
-macro_rules! items {
-    ($($name:literal, $seconds:expr, $is_quick:literal, $make:ident, $doc:literal;)*) => {
-        &[$(Item { name: $name, doc: $doc, seconds: $seconds, is_quick: $is_quick, make: $make }),*]
-    };
-}
-
-/// Every item, in the order of the page: name, seconds that it takes about (quick and in full), whether it is made
-/// where only little time is given (what is the same everywhere is made in full or not at all), and what makes it.
-pub(super) const ITEMS: &[Item] = items! {
-    "hard-disks-fluid", [30.0, 30.0], false, pressure, "Hard discs: pressure and collision rate of the fluid";
-    "hard-disks-structure", [20.0, 20.0], false, melting, "Hard discs: order, free times and speeds on both sides of melting";
-    "hard-disks-rates", [4.0, 18.0], true, speed, "Hard discs: collisions a second, the fast engine and the source's";
-    "hard-disks-masks", [3.0, 20.0], true, comparison, "Hard discs: cost over mask and density, and the source's formula";
-    "hard-disks-cooling", [6.0, 6.0], false, haff, "Hard discs: Haff's law, and inelastic collapse";
-    "hard-disks-collapse", [24.0, 24.0], false, collapses, "Hard discs: inelastic collapse over restitution and number of discs";
-    "hard-disks-precision", [63.0, 63.0], false, error, "Hard discs: error of Z against processor time";
-    "hard-disks-atmosphere", [14.0, 14.0], false, open_system, "Hard discs above a hot floor, without a ceiling";
-    "soft-hard", [2.0, 12.0], true, limit, "Soft discs of growing stiffness against hard ones";
-};
+/// Every item, in the order of its chapter.
+pub(super) const ITEMS: &[Item] = &[
+    Item::full(
+        "hard-disks-fluid",
+        Sources,
+        30.0,
+        pressure,
+        "Hard discs: pressure and collision rate of the fluid",
+    ),
+    Item::full(
+        "hard-disks-structure",
+        Beyond,
+        20.0,
+        melting,
+        "Hard discs: order, free times and speeds on both sides of melting",
+    ),
+    Item::quick(
+        "hard-disks-rates",
+        Sources,
+        [4.0, 18.0],
+        speed,
+        "Hard discs: collisions a second, the fast engine and the source's",
+    ),
+    Item::quick(
+        "hard-disks-masks",
+        Sources,
+        [3.0, 20.0],
+        comparison,
+        "Hard discs: cost over mask and density, and the source's formula",
+    ),
+    Item::full("hard-disks-cooling", Beyond, 6.0, haff, "Hard discs: Haff's law, and inelastic collapse"),
+    Item::full(
+        "hard-disks-collapse",
+        Beyond,
+        24.0,
+        collapses,
+        "Hard discs: inelastic collapse over restitution and number of discs",
+    ),
+    Item::full("hard-disks-precision", Host, 63.0, error, "Hard discs: error of Z against processor time"),
+    Item::full(
+        "hard-disks-atmosphere",
+        Beyond,
+        14.0,
+        open_system,
+        "Hard discs above a hot floor, without a ceiling",
+    ),
+    Item::quick("soft-hard", Beyond, [2.0, 12.0], limit, "Soft discs of growing stiffness against hard ones"),
+];
 
 fn pressure(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let data = fluid::fluids(&fluid::Effort { discs: 10_000, collisions: 10_000_000 }, progress)?;

@@ -5,26 +5,44 @@ use super::study::{accuracy, diffusion, losses, sectors};
 use crate::console::Failure;
 use crate::laboratory::programs;
 use crate::laboratory::running::prepared;
+use crate::report::Chapter::{Beyond, Sources};
 use crate::results::{Effort, Item, Made, Progress};
 use stripmine_physics::method::langevin::keys::LAW;
 use stripmine_physics::method::langevin::options::PairLaw;
 use stripmine_physics::scene::Overrides;
 
-macro_rules! items {
-    ($($name:literal, $seconds:expr, $is_quick:literal, $make:ident, $doc:literal;)*) => {
-        &[$(Item { name: $name, doc: $doc, seconds: $seconds, is_quick: $is_quick, make: $make }),*]
-    };
-}
-
-/// Every item, in the order of the page: name, seconds that it takes about (quick and in full), whether it is made
-/// where only little time is given (what is the same everywhere is made in full or not at all), and what makes it.
-pub(super) const ITEMS: &[Item] = items! {
-    "langevin-losses", [21.0, 21.0], false, lost, "Langevin: particles lost over the step";
-    "langevin-sectors", [3.0, 30.0], true, cost, "Langevin: wall time over the number of sectors, and where it goes";
-    "langevin-diffusion", [13.0, 13.0], false, displaced, "Langevin: mean square displacement, velocities, temperature";
-    "langevin-accuracy", [8.0, 93.0], false, errors, "Langevin: the error of the step in a Lennard-Jones fluid";
-    "langevin-programs", [1.0, 1.0], true, counted, "Langevin: the law as whole-array operations, counted and charged by clocks";
-};
+/// Every item, in the order of its chapter.
+pub(super) const ITEMS: &[Item] = &[
+    Item::full("langevin-losses", Sources, 21.0, lost, "Langevin: particles lost over the step"),
+    Item::quick(
+        "langevin-sectors",
+        Sources,
+        [3.0, 40.0],
+        cost,
+        "Langevin: wall time over the number of sectors, and where it goes",
+    ),
+    Item::full(
+        "langevin-diffusion",
+        Sources,
+        13.0,
+        displaced,
+        "Langevin: mean square displacement, velocities, temperature",
+    ),
+    Item::full(
+        "langevin-accuracy",
+        Beyond,
+        58.0,
+        errors,
+        "Langevin: the error of the step in a Lennard-Jones fluid",
+    ),
+    Item::quick(
+        "langevin-programs",
+        Beyond,
+        [1.0, 1.0],
+        counted,
+        "Langevin: the law as whole-array operations, counted and charged by clocks",
+    ),
+];
 
 fn lost(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let data = losses::losses(40_000, progress)?;
@@ -46,7 +64,7 @@ fn displaced(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 }
 
 fn errors(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let time = if effort == Effort::Full { 1000.0 } else { 100.0 };
+    let time = if effort == Effort::Full { 640.0 } else { 80.0 };
     let data = accuracy::accuracy(time, progress)?;
     Made::new(sections::accuracy::section(&data), &data)
 }

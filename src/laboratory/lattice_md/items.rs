@@ -10,47 +10,108 @@ use super::study::{
     measured_cost, misprints, pipe_flow, precision, printed_cost, threads, useful_work,
 };
 use crate::console::Failure;
-use crate::model::host::default_model;
+use crate::model::host::{HostModel, default_model};
 use crate::model::machines;
+use crate::report::Chapter::{Beyond, Host, Sources};
 use crate::report::Section;
 use crate::results::{Effort, Item, Made, Meter, Progress};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
+use std::sync::OnceLock;
 use std::time::Duration;
 use stripmine_kernels::InstructionSet;
 use stripmine_physics::method::lattice_md::Part;
 use stripmine_physics::origin;
-use stripmine_physics::scene::{Overrides, PACKING_FRACTION};
+use stripmine_physics::scene::{Overrides, PACKING_FRACTION, STEPS};
 
-macro_rules! items {
-    ($($name:literal, $seconds:expr, $is_quick:literal, $make:ident, $doc:literal;)*) => {
-        &[$(Item { name: $name, doc: $doc, seconds: $seconds, is_quick: $is_quick, make: $make }),*]
-    };
-}
-
-/// Every item, in the order of the page: name, seconds that it takes about (quick and in full), whether it is made where only
-/// little time is given, and what makes it.
-pub(super) const ITEMS: &[Item] = items! {
-    "table", [0.1, 0.1], true, table, "BP93's efficiency table";
-    "ladder", [0.1, 0.1], true, ladder, "What each refinement of the clock adds, machine by machine";
-    "listing", [0.1, 0.1], true, listing, "The vector instructions of every part";
-    "mask", [0.1, 0.1], true, mask, "BP93, figure 2: the mask";
-    "misprints", [0.5, 0.5], true, misprints, "What the misprints of the contact law do";
-    "cost", [1.0, 1.0], true, cost, "BP93, figures 3 and 4: cost over particles and density, by the model";
-    "useful-work", [1.0, 1.0], true, useful_work, "Operations that act on real contacts, over the density";
-    "printed", [6.0, 75.0], true, printed, "The printed text run the CRAY's way: NOP·(n + D) against wall time, and what thirty years made of it";
-    "measured", [8.0, 17.0], true, measured, "The same, measured on this host";
-    "validation", [4.0, 32.0], true, validation, "The timing model of a host against wall time here";
-    "atlas", [44.0, 44.0], false, atlas, "Who wins where: occupancy, number of particles, method and machine";
-    "crossover", [4.0, 30.0], true, crossover, "Lattice, neighbour lists and sectors: which is the fastest at which density, on this host";
-    "threads", [3.0, 18.0], true, threads, "What more threads give, and what the machine has to give";
-    "identity", [3.0, 3.0], true, identity, "Lattice and neighbour lists: the same to the bit";
-    "precision", [26.0, 26.0], false, precision, "What single and mixed precision cost: forces, energy, trajectories";
-    "pipe-small", [3.0, 3.0], true, pipe_small, "BP93, figures 5 and 6, in two fifths of the pipe";
-    "pipe", [15.0, 15.0], false, pipe, "BP93, figures 5 and 6, in the whole pipe";
-    "pipe-thin", [13.0, 13.0], false, pipe_thin, "The whole pipe with fewer grains: waves both ways";
-    "waves", [14.0, 14.0], false, waves, "Density waves over dissipation, and controls without";
-};
+/// Every item, in the order of its chapter.
+pub(super) const ITEMS: &[Item] = &[
+    Item::quick("table", Sources, [0.1, 0.1], table, "BP93's efficiency table"),
+    Item::quick(
+        "ladder",
+        Beyond,
+        [0.1, 0.1],
+        ladder,
+        "What each refinement of the clock adds, machine by machine",
+    ),
+    Item::quick("listing", Sources, [0.1, 0.1], listing, "The vector instructions of every part"),
+    Item::quick("mask", Sources, [0.1, 0.1], mask, "BP93, figure 2: the mask"),
+    Item::quick("misprints", Sources, [0.5, 0.5], misprints, "What the misprints of the contact law do"),
+    Item::quick(
+        "cost",
+        Sources,
+        [1.0, 1.0],
+        cost,
+        "BP93, figures 3 and 4: cost over particles and density, by the model",
+    ),
+    Item::quick(
+        "useful-work",
+        Beyond,
+        [1.0, 1.0],
+        useful_work,
+        "Operations that act on real contacts, over the density",
+    ),
+    Item::quick(
+        "printed",
+        Sources,
+        [6.0, 50.0],
+        printed,
+        "The printed text run the CRAY's way: NOP·(n + D) against wall time, and what thirty years made of it",
+    ),
+    Item::quick("measured", Host, [8.0, 17.0], measured, "The same, measured on this host"),
+    Item::quick(
+        "validation",
+        Host,
+        [4.0, 32.0],
+        validation,
+        "The timing model of a host against wall time here",
+    ),
+    Item::full(
+        "atlas",
+        Host,
+        44.0,
+        atlas,
+        "Who wins where: occupancy, number of particles, method and machine",
+    ),
+    Item::quick(
+        "crossover",
+        Host,
+        [4.0, 30.0],
+        crossover,
+        "Lattice, neighbour lists and sectors: which is the fastest at which density, on this host",
+    ),
+    Item::quick(
+        "threads",
+        Host,
+        [3.0, 18.0],
+        threads,
+        "What more threads give, and what the machine has to give",
+    ),
+    Item::quick(
+        "identity",
+        Sources,
+        [3.0, 3.0],
+        identity,
+        "Lattice and neighbour lists: the same to the bit",
+    ),
+    Item::full(
+        "precision",
+        Beyond,
+        26.0,
+        precision,
+        "What single and mixed precision cost: forces, energy, trajectories",
+    ),
+    Item::quick(
+        "pipe-small",
+        Sources,
+        [3.0, 3.0],
+        pipe_small,
+        "BP93, figures 5 and 6, in two fifths of the pipe",
+    ),
+    Item::full("pipe", Sources, 15.0, pipe, "BP93, figures 5 and 6, in the whole pipe"),
+    Item::full("pipe-thin", Sources, 13.0, pipe_thin, "The whole pipe with fewer grains: waves both ways"),
+    Item::full("waves", Sources, 14.0, waves, "Density waves over dissipation, and controls without"),
+];
 
 fn table(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
     let data = efficiency_table::efficiency_table(&Question::default(), &machines::preset("paper")?)?;
@@ -62,11 +123,7 @@ fn ladder(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
         .into_iter()
         .map(|name| Ok(ladder::ladder(&Question::default(), &machines::preset(name)?)?))
         .collect::<Result<_, Failure>>()?;
-    let host = host_ladder::host_ladder(&Question::default(), &default_model()?, Calibrated::Shipped)?;
-    let mut section = sections::ladder::section(&ladders);
-    section.details.push(format!("The step of a host, term by term, is by {}.", host.model));
-    section.tables.push(sections::ladder::of_host(&host));
-    made(section, &serde_json::json!({ "machines": ladders, "host": host }))
+    made(sections::ladder::section(&ladders), &ladders)
 }
 
 fn listing(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
@@ -95,7 +152,7 @@ fn useful_work(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
 fn printed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     // Short vectors for the line, up to the first cache; long ones for where it breaks.
     let short = [25, 49, 100, 170, 290, 500, 1000, 10_000, 100_000];
-    let long = [2000, 5000, 30_000, 300_000, 1_000_000, 3_000_000, 10_000_000];
+    let long = [2000, 5000, 30_000, 300_000, 1_000_000, 3_000_000];
     let effort = match effort {
         Effort::Quick => printed_cost::Effort {
             cells: short.to_vec(),
@@ -145,7 +202,7 @@ fn precision(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 fn pipe_small(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let title = "Density waves in a short pipe (figures 5 and 6)";
     let question = "Do grains that fall through two fifths of the pipe form density waves?";
-    let showing = Showing { name: "pipe-small", title, question, asks_ways: false, from: 0.0, snapshots: 11 };
+    let showing = Showing { name: "pipe-small", title, question, asks_ways: false, from: 0.0, snapshots: 0 };
     pipes(showing, ("pipe-small", Overrides::new()), &[1], progress)
 }
 
@@ -185,17 +242,37 @@ fn validation(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     match effort {
         Effort::Quick => {
             let (host, runs) = (default_model()?, runs(vec![300], vec![0.2], Bound::of(2)));
-            let data = model_validation(&host, Calibrated::Shipped, &runs, progress)?;
-            made(sections::model_validation::section(&data), &data)
+            validated(&host, Calibrated::Shipped, &runs, &progress)
         }
         Effort::Full => {
-            let (effort, best) = (calibration::Effort { seconds: 25.0 }, InstructionSet::best());
-            let host = calibration::calibrate(origin::host(), best, effort, |share| progress(0.5 * share))?;
+            let host = this_host(&|share| progress(0.5 * share))?;
             let runs = runs(vec![150, 4000], vec![0.072, 0.24], bound(6, VALIDATION));
-            let data = model_validation(&host, Calibrated::Now, &runs, |share| progress(0.5 + 0.5 * share))?;
-            made(sections::model_validation::section(&data), &data)
+            validated(host, Calibrated::Now, &runs, &|share| progress(0.5 + 0.5 * share))
         }
     }
+}
+
+fn validated(
+    host: &HostModel,
+    calibrated: Calibrated,
+    runs: &model_validation::Effort,
+    progress: Progress<'_>,
+) -> Result<Made, Failure> {
+    let data = model_validation(host, calibrated, runs, progress)?;
+    let ladder = host_ladder::host_ladder(&Question::default(), host, calibrated)?;
+    let section = sections::model_validation::section(&data).tables([sections::ladder::of_host(&ladder)]);
+    made(section, &serde_json::json!({ "validation": data, "ladder": ladder }))
+}
+
+/// The model of this host, calibrated by the first item that asks for it.
+fn this_host(progress: Progress<'_>) -> Result<&'static HostModel, Failure> {
+    static MODEL: OnceLock<HostModel> = OnceLock::new();
+    if let Some(known) = MODEL.get() {
+        return Ok(known);
+    }
+    let (effort, best) = (calibration::Effort { seconds: 25.0 }, InstructionSet::best());
+    let model = calibration::calibrate(origin::host(), best, effort, progress)?;
+    Ok(MODEL.get_or_init(|| model))
 }
 
 /// Seconds that rounds of the validation and of the atlas may take in full, so that all that is said of this host's model takes
@@ -207,16 +284,15 @@ fn bound(most: usize, seconds: u64) -> Bound {
     Bound { most, within: Some(Duration::from_secs(seconds)) }
 }
 
-/// The machine of the source, the CRAY of the application, and the host whose model comes with the program, beside what is measured
-/// here.
+/// The machine of the source, the CRAY of the application, and this host, beside what is measured here.
 fn atlas(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let machines = [machines::preset("paper")?, machines::preset("cray-y-mp-el")?];
-    let host = default_model()?;
+    let host = this_host(&|_| {})?;
     let (measured, rounds): (&[usize], Bound) = match effort {
         Effort::Quick => (&[300], Bound::of(2)),
         Effort::Full => (&[100, 300, 1000, 3000, 10_000], bound(6, ATLAS)),
     };
-    let data = break_even::atlas(&machines, (&host, Calibrated::Shipped), measured, rounds, progress)?;
+    let data = break_even::atlas(&machines, (host, Calibrated::Now), measured, rounds, progress)?;
     made(sections::break_even::section(&data, "stripmine reproduce --only atlas"), &data)
 }
 
@@ -275,23 +351,36 @@ fn threads_effort(effort: Effort) -> threads::Effort {
     }
 }
 
-/// Runs of a scene with overrides, side by side; the first keeps its frames if snapshots are shown.
+/// Runs of a scene with overrides and a control without waves, side by side; the first keeps its frames if snapshots are shown.
 fn pipes(
     showing: Showing,
     (scene, overrides): (&'static str, Overrides),
     seeds: &[u64],
     progress: Progress<'_>,
 ) -> Result<Made, Failure> {
-    let meter = Meter::new(seeds.len() as f64, progress);
-    let flows = seeds.par_iter().map(|&seed| {
-        let keep_frames = seed == seeds[0] && showing.snapshots > 0;
-        let question = pipe_flow::Question { scene, overrides: overrides.clone(), seed, keep_frames };
+    let of = |overrides: &Overrides, seed: u64, keep_frames: bool| pipe_flow::Question {
+        scene,
+        overrides: overrides.clone(),
+        seed,
+        keep_frames,
+    };
+    let control = pipe_flow::elastic(&overrides).set(&STEPS, CONTROL);
+    let mut questions: Vec<_> =
+        seeds.iter().map(|&seed| of(&overrides, seed, seed == seeds[0] && showing.snapshots > 0)).collect();
+    questions.push(of(&control, seeds[0], false));
+    let meter = Meter::new(questions.len() as f64, progress);
+    let flows = questions.par_iter().map(|question| {
         let mut before = 0.0;
-        pipe_flow::pipe_flow(&question, |share| meter.add(share - std::mem::replace(&mut before, share)))
+        pipe_flow::pipe_flow(question, |share| meter.add(share - std::mem::replace(&mut before, share)))
     });
-    let flows: Vec<pipe_flow::PipeFlow> = flows.collect::<Result<_, _>>()?;
-    made(sections::pipe_flow::section(showing, &flows), &flows)
+    let mut flows: Vec<pipe_flow::PipeFlow> = flows.collect::<Result<_, _>>()?;
+    let control = flows.pop().into_iter().collect::<Vec<_>>();
+    let section = sections::pipe_flow::section(showing, &flows, &control[0]);
+    made(section, &serde_json::json!({ "runs": flows, "control": control[0] }))
 }
+
+/// Steps of the control: 2 s.
+const CONTROL: u64 = 40_000;
 
 /// The source's own text first, as a reader wants it; then ours.
 fn listings() -> Result<Made, Failure> {

@@ -5,24 +5,36 @@ use super::study::{collapse, energy, rates};
 use crate::console::Failure;
 use crate::laboratory::programs;
 use crate::laboratory::running::prepared;
+use crate::report::Chapter::{Beyond, Host, Sources};
 use crate::results::{Effort, Item, Made, Progress};
 use stripmine_physics::method::nbody::keys::COUNT;
 use stripmine_physics::scene::Overrides;
 
-macro_rules! items {
-    ($($name:literal, $seconds:expr, $is_quick:literal, $make:ident, $doc:literal;)*) => {
-        &[$(Item { name: $name, doc: $doc, seconds: $seconds, is_quick: $is_quick, make: $make }),*]
-    };
-}
-
-/// Every item, in the order of the page: name, seconds that it takes about (quick and in full), whether it is made
-/// where only little time is given (what is the same everywhere is made in full or not at all), and what makes it.
-pub(super) const ITEMS: &[Item] = items! {
-    "nbody-energy", [40.0, 40.0], false, orbits, "Bodies: energy error of every integrator over cost, and where orbits are lost";
-    "nbody-rates", [3.0, 20.0], true, speed, "Bodies: interactions a second and how exact forces are";
-    "nbody-collapse", [5.0, 5.0], false, fall, "Bodies: a cold sphere collapses, with a film";
-    "nbody-programs", [1.0, 1.0], true, counted, "Bodies: all pairs by cyclic shifts, counted and charged by clocks";
-};
+/// Every item, in the order of its chapter.
+pub(super) const ITEMS: &[Item] = &[
+    Item::full(
+        "nbody-energy",
+        Sources,
+        40.0,
+        orbits,
+        "Bodies: energy error of every integrator over cost, and where orbits are lost",
+    ),
+    Item::quick(
+        "nbody-rates",
+        Host,
+        [3.0, 20.0],
+        speed,
+        "Bodies: interactions a second and how exact forces are",
+    ),
+    Item::full("nbody-collapse", Beyond, 5.0, fall, "Bodies: a cold sphere collapses, with a film"),
+    Item::quick(
+        "nbody-programs",
+        Beyond,
+        [1.0, 1.0],
+        counted,
+        "Bodies: all pairs by cyclic shifts, counted and charged by clocks",
+    ),
+];
 
 fn orbits(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let data = energy::energies(progress)?;
@@ -39,7 +51,7 @@ fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 }
 
 fn fall(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let data = collapse::collapse(progress)?;
+    let data = collapse::collapses(progress)?;
     Made::new(sections::collapse::section(&data), &data)
 }
 

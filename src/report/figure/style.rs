@@ -33,6 +33,29 @@ pub const GROUNDS: [Colour; 2] = [Colour(236, 242, 247), Colour(212, 227, 239)];
 /// What does not move.
 pub const STILL: Colour = Colour(208, 208, 208);
 
+/// The last of the palette.
+const BLACK: Colour = Colour(0, 0, 0);
+
+/// What stands on dark paper for colours that were chosen for white.
+const DARK: [(Colour, Colour); 8] = [
+    (PAPER, Colour(24, 24, 26)),
+    (INK, Colour(228, 228, 226)),
+    (BLACK, Colour(255, 255, 255)),
+    (GRID, Colour(61, 61, 63)),
+    (HATCHING, Colour(154, 154, 154)),
+    (GROUNDS[0], Colour(32, 38, 44)),
+    (GROUNDS[1], Colour(42, 58, 71)),
+    (STILL, Colour(84, 84, 86)),
+];
+
+/// Rules of a style sheet for dark paper: below elements that `within` selects, or everywhere if it is empty.
+pub fn dark_rules(within: &str) -> String {
+    let rule = |attribute: &str, (light, dark): &(Colour, Colour)| {
+        format!("{within}[{attribute}=\"{light}\"]{{{attribute}:{dark}}}")
+    };
+    DARK.iter().flat_map(|pair| ["fill", "stroke"].map(|attribute| rule(attribute, pair))).collect()
+}
+
 /// Okabe and Ito's colours for every kind of colour vision, those that show best on white first. Their yellow is
 /// left out: on white it cannot be seen.
 const HUES: [Colour; 7] = [
@@ -42,7 +65,7 @@ const HUES: [Colour; 7] = [
     Colour(204, 121, 167),
     Colour(230, 159, 0),
     Colour(86, 180, 233),
-    Colour(0, 0, 0),
+    BLACK,
 ];
 
 /// A colour of the palette; beyond its end it begins again.

@@ -23,9 +23,11 @@ pub(super) fn written(figure: &Figure, scene: &Scene) -> Result<String, FigureEr
     let (width, height) = (scene.width.ceil(), scene.height.ceil());
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
-         role=\"img\" font-family=\"{}\" fill=\"{}\" stroke-linejoin=\"round\">\n<title>{}</title>\n<desc>{}</desc>\n",
+         role=\"img\" font-family=\"{}\" fill=\"{}\" stroke-linejoin=\"round\">\n\
+         <style>@media (prefers-color-scheme:dark){{{}}}</style>\n<title>{}</title>\n<desc>{}</desc>\n",
         style::FONTS,
         style::INK,
+        style::dark_rules(""),
         escaped(&figure.title),
         escaped(&figure.caption)
     );

@@ -7,6 +7,7 @@ use crate::report::figure::{Figure, data_file};
 use crate::report::section::Film;
 use crate::report::{Cell, Section, Table};
 use maud::{Markup, html};
+use stripmine_physics::number::counted;
 
 /// Pictures of an item that the page shows; further ones are linked.
 const FIGURES: usize = 6;
@@ -16,40 +17,19 @@ pub fn pictures(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) 
     section.figures.iter().take(FIGURES).map(|each| Inline::new(&drawn(section, each))).collect()
 }
 
-/// The item with everything that belongs to it.
+/// The item: the answer, the picture and the table of conclusions, what was asked; all else is folded.
 pub fn render(section: &Section, pictures: &[Inline]) -> Markup {
     let name = section.name.as_str();
+    let mut figures = section.figures.iter().zip(pictures);
+    let mut tables = section.tables.iter();
     html! {
         section id=(name) aria-labelledby={ (name) "-title" } {
             h2 id={ (name) "-title" } { a href={ "#" (name) } { (section.title) } }
-            dl.verdict {
-                dt { "Question" }
-                dd { (prose(&section.question)) }
-                dt { "Expected" }
-                dd { (prose(&section.expected)) }
-                dt { "Answer" }
-                dd { (badge(section.verdict)) " " (prose(&section.answer)) }
-            }
-            @for paragraph in &section.details {
-                p { (prose(paragraph)) }
-            }
-            @for (each, picture) in section.figures.iter().zip(pictures) {
+            p.answer { (badge(section.verdict)) " " (prose(&section.answer)) }
+            @if let Some((each, picture)) = figures.next() {
                 (figure(section, each, picture))
             }
-            @if section.figures.len() > FIGURES {
-                p.note {
-                    "Further pictures: "
-                    @for (at, each) in section.figures.iter().skip(FIGURES).enumerate() {
-                        @if at > 0 { "; " }
-                        a href={ (section.folder()) "/" (each.name) ".svg" } { (each.title) }
-                    }
-                    "."
-                }
-            }
-            @if let Some(shown) = &section.film {
-                (moving(section, shown))
-            }
-            @for each in &section.tables {
+            @if let Some(each) = tables.next() {
                 (table(each, &section.folder()))
             }
             @if let Some((what, lines)) = &section.excerpt {
@@ -58,9 +38,55 @@ pub fn render(section: &Section, pictures: &[Inline]) -> Markup {
                     pre tabindex="0" { (lines) }
                 }
             }
+            dl.verdict {
+                dt { "Question" }
+                dd { (prose(&section.question)) }
+                dt { "Expected" }
+                dd { (prose(&section.expected)) }
+            }
+            @if let Some(what) = folded(section) {
+                details {
+                    summary { "More: " (what) }
+                    @for paragraph in &section.details {
+                        p { (prose(paragraph)) }
+                    }
+                    @for (each, picture) in figures {
+                        (figure(section, each, picture))
+                    }
+                    @if section.figures.len() > FIGURES {
+                        p.note {
+                            "Further pictures: "
+                            @for (at, each) in section.figures.iter().skip(FIGURES).enumerate() {
+                                @if at > 0 { "; " }
+                                a href={ (section.folder()) "/" (each.name) ".svg" } { (each.title) }
+                            }
+                            "."
+                        }
+                    }
+                    @for each in tables {
+                        (table(each, &section.folder()))
+                    }
+                }
+            }
+            @if let Some(shown) = &section.film {
+                (moving(section, shown))
+            }
             (again(section))
         }
     }
+}
+
+/// What is folded, in words; none if nothing is.
+fn folded(section: &Section) -> Option<String> {
+    let words: usize = section.details.iter().map(|paragraph| paragraph.split_whitespace().count()).sum();
+    let what = [
+        (words, "word", "words"),
+        (section.figures.len().saturating_sub(1), "picture", "pictures"),
+        (section.tables.len().saturating_sub(1), "table", "tables"),
+    ];
+    let what = what.into_iter().filter(|(count, ..)| *count > 0);
+    let what: Vec<String> = what.map(|(count, one, many)| counted(count, one, many)).collect();
+    (!what.is_empty()).then(|| what.join(", "))
 }
 
 /// A figure: its picture, and below it what a reader must know.
@@ -150,7 +176,7 @@ fn again(section: &Section) -> Markup {
         div.again {
             h3 { "To get it again" }
             div.command {
-                code { (section.again) }
+                code tabindex="0" { (section.again) }
                 button type="button" data-copy="" { "Copy" }
             }
             p {

@@ -6,8 +6,8 @@ mod item;
 mod quantised;
 mod words;
 
-use super::figure::Figure;
-use super::{Part, Section, Verdict};
+use super::figure::{Figure, style};
+use super::{Chapter, Section, Verdict};
 use inline::Inline;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::collections::BTreeSet;
@@ -44,7 +44,7 @@ pub fn render(
                 meta http-equiv="Content-Security-Policy" content=(POLICY);
                 (PreEscaped(MARK))
                 link rel="icon" href="data:,";
-                style { (PreEscaped(STYLE)) }
+                style { (PreEscaped(STYLE)) (PreEscaped(on_dark_paper())) }
             }
             body {
                 a.skip href="#summary" { "To the summary" }
@@ -72,9 +72,14 @@ pub fn render(
     page.into_string()
 }
 
-/// The sections of a part.
-fn of(part: Part, sections: &[Section]) -> Vec<&Section> {
-    sections.iter().filter(|section| section.part == part).collect()
+/// Pictures where the reader's screen is dark.
+fn on_dark_paper() -> String {
+    format!("@media screen and (prefers-color-scheme:dark){{{}}}\n", style::dark_rules(".picture "))
+}
+
+/// The sections of a chapter.
+fn of(chapter: Chapter, sections: &[Section]) -> Vec<&Section> {
+    sections.iter().filter(|section| section.chapter == chapter).collect()
 }
 
 /// The list of items at the side of a wide screen.
@@ -82,9 +87,9 @@ fn contents(sections: &[Section]) -> Markup {
     html! {
         nav.contents aria-label="Contents" {
             p { a href="#summary" { "What came out" } }
-            @for (part, items) in Part::ALL.map(|part| (part, of(part, sections))) {
+            @for (chapter, items) in Chapter::ALL.map(|chapter| (chapter, of(chapter, sections))) {
                 @if !items.is_empty() {
-                    p { (part.title()) }
+                    p { (chapter.title()) }
                     ol {
                         @for section in items {
                             li {
@@ -112,6 +117,9 @@ fn summary(sections: &[Section]) -> Markup {
                 code { "stripmine reproduce" } "; each item names the command that makes it alone."
             }
             p { strong { (tally(sections)) } }
+            @for made in super::origins(sections) {
+                p.note { (made) }
+            }
             dl.verdicts {
                 @for verdict in Verdict::ALL {
                     dt { (badge(verdict)) }
@@ -119,11 +127,11 @@ fn summary(sections: &[Section]) -> Markup {
                 }
             }
         }
-        @for (part, items) in Part::ALL.map(|part| (part, of(part, sections))) {
+        @for (chapter, items) in Chapter::ALL.map(|chapter| (chapter, of(chapter, sections))) {
             @if !items.is_empty() {
-                div.scroll tabindex="0" role="region" aria-label={ "Summary: " (part.title()) } {
+                div.scroll tabindex="0" role="region" aria-label={ "Summary: " (chapter.title()) } {
                     table.summary {
-                        caption { (part.title()) }
+                        caption { (chapter.title()) }
                         thead {
                             tr {
                                 th scope="col" { "Item" }

@@ -55,3 +55,6 @@ const marker = new IntersectionObserver(
   { rootMargin: "-20% 0px -70% 0px" },
 );
 document.querySelectorAll("main > section, #summary").forEach((section) => marker.observe(section));
+
+// On paper nothing is folded.
+addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((details) => (details.open = true)));

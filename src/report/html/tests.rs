@@ -1,7 +1,7 @@
 //! The page as a whole.
 
 use super::*;
-use crate::provenance::Provenance;
+use crate::provenance::{Machine, Provenance};
 use crate::report::figure::{self, Axis, Chart, Drawing, Picture, Point, Series, Shape, Style};
 use crate::report::section::{Film, Frame};
 use crate::report::{Cell, Table};
@@ -34,7 +34,7 @@ fn section(name: &str) -> Section {
     Section {
         name: name.to_owned(),
         title: format!("{name} {HOSTILE}"),
-        part: Part::Physics,
+        chapter: Chapter::Sources,
         question: HOSTILE.to_owned(),
         expected: HOSTILE.to_owned(),
         answer: format!("`{HOSTILE}` {HOSTILE}"),
@@ -69,7 +69,15 @@ fn section(name: &str) -> Section {
                 target: "some-target".into(),
             },
             command: "some command".into(),
-            host: HOSTILE.into(),
+            machine: Machine {
+                processor: HOSTILE.into(),
+                cores: 2,
+                clock: None,
+                caches: vec![HOSTILE.into()],
+                governor: Some(HOSTILE.into()),
+                is_virtual: None,
+                compiler: HOSTILE.into(),
+            },
             threads: 2,
             instruction_set: "scalar".into(),
             seconds: 1.5,
@@ -135,8 +143,13 @@ fn an_item_names_its_numbers_command_seeds_data_and_origin() {
     assert!(page.contains("Seeds: 1993, 7."));
     assert!(page.contains("href=\"host/first/\""));
     assert!(page.contains(
-        "Made on 2026-11-24 in 1.5 s by <code>some command</code>, stripmine 1.2.3 of source commit 0123abc"
+        "Made on 2026-11-24 in 1.5 s with 2 threads by <code>some command</code>, source commit 0123abc with changes."
     ));
+    // Once at the head, with the machine.
+    assert_eq!(
+        page.matches("2 items made on 2026-11-24 by stripmine 1.2.3 of source commit 0123abc").count(),
+        1
+    );
     assert!(page.contains("in no commit"));
 }
 

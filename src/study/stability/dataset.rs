@@ -3,6 +3,7 @@
 use super::boundary::Edge;
 use super::outcome::{Cell, Class, Foreseen};
 use crate::statistics::median;
+use crate::study::Subject;
 use serde::Serialize;
 use stripmine_physics::method::{Beyond, Parameter};
 
@@ -13,6 +14,8 @@ pub struct Stability {
     pub scene: String,
     /// How it is run.
     pub way: String,
+    /// The unit of time.
+    pub time_unit: Option<String>,
     /// Its own step (time).
     pub step: f64,
     /// The time of each run (time).
@@ -50,16 +53,17 @@ pub struct Varied {
     pub name: &'static str,
     /// What it is.
     pub label: &'static str,
-    /// Its unit.
-    pub unit: &'static str,
+    /// Its unit; none of a pure number.
+    pub unit: Option<String>,
     /// Whether equal ratios lie at equal distances.
     pub is_logarithmic: bool,
 }
 
-impl From<&Parameter> for Varied {
-    fn from(parameter: &Parameter) -> Varied {
+impl Varied {
+    /// A parameter of a scene.
+    pub fn of(parameter: &Parameter, subject: &Subject) -> Varied {
         let Parameter { name, label, unit, is_logarithmic, .. } = *parameter;
-        Varied { name, label, unit, is_logarithmic }
+        Varied { name, label, unit: subject.unit(unit), is_logarithmic }
     }
 }
 

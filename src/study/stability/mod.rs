@@ -14,7 +14,7 @@ pub mod section;
 mod survey;
 
 pub use boundary::Edge;
-pub use dataset::{Boundary, Limit, Said, SchemeLimit, Stability, over_seeds};
+pub use dataset::{Boundary, Limit, Said, SchemeLimit, Stability, Varied, over_seeds};
 pub use outcome::{Cell, Class, Foreseen};
 
 use super::choice::Choice;
@@ -147,11 +147,12 @@ pub fn stability(
     Ok(Stability {
         scene: subject.arguments(),
         way: subject.own.label(),
+        time_unit: subject.unit("time"),
         step: subject.step,
         duration,
         left_out: (own_steps < 0.99 * subject.steps as f64)
             .then(|| format!("what comes after {own_steps:.0} of the scene's {} steps", subject.steps)),
-        parameter: parameter.into(),
+        parameter: Varied::of(parameter, subject),
         limits: limits(&survey, &values, own),
         marks: (parameter.marks)(&subject.values).into_iter().filter(|(at, _)| inside(*at, range)).collect(),
         values,

@@ -19,6 +19,8 @@ pub struct WorkPrecision {
     pub particles: usize,
     /// What distances are measured in.
     pub unit: String,
+    /// The unit of time.
+    pub time_unit: Option<String>,
     /// Its own step (time).
     pub step: f64,
     /// How it runs itself.

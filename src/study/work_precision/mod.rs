@@ -111,6 +111,7 @@ pub fn work_precision(
         scene: subject.arguments(),
         particles: subject.prepared.particles().grain_count(),
         unit: subject.trials.length.unit.to_owned(),
+        time_unit: subject.unit("time"),
         step: subject.step,
         own: subject.own.label(),
         duration: work.duration(),

@@ -6,7 +6,7 @@ mod tables;
 use super::conclusions::{WORTH, as_good, multiple, sentences};
 use super::dataset::WorkPrecision;
 use crate::console::Failure;
-use crate::report::{Part, Section, csv};
+use crate::report::Section;
 use crate::results::Made;
 use stripmine_physics::number::counted;
 
@@ -70,7 +70,7 @@ pub fn made(scenes: &[(String, WorkPrecision)], again: String) -> Result<Made, F
     let mut seeds: Vec<u64> = scenes.iter().flat_map(|(_, data)| data.seeds.clone()).collect();
     seeds.sort_unstable();
     seeds.dedup();
-    let section = Section::new(NAME, "Speed against accuracy", Part::Host)
+    let section = Section::new(NAME, "Speed against accuracy")
         .asks("Which integrator, step and precision is the cheapest for a wished accuracy?")
         .expects("The sources state a scheme and a step, and no error.")
         .answers(answer(scenes))
@@ -85,11 +85,5 @@ pub fn made(scenes: &[(String, WorkPrecision)], again: String) -> Result<Made, F
         .map(|(name, data)| Ok((name.clone(), serde_json::to_value(data)?)))
         .collect::<serde_json::Result<_>>()
         .map_err(|cause| Failure::writing("JSON")(cause.into()))?;
-    let mut made = Made::new(section, &all)?;
-    for table in [tables::runs(scenes), tables::all_means(scenes)] {
-        let mut text = Vec::new();
-        csv::write(&table, &mut text).map_err(Failure::writing("CSV"))?;
-        made = made.with_file(&format!("{}.csv", table.name), String::from_utf8_lossy(&text).into_owned());
-    }
-    Ok(made)
+    Ok(Made::new(section, &all)?.with_tables([tables::runs(scenes), tables::all_means(scenes)]))
 }

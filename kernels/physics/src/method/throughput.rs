@@ -69,6 +69,8 @@ pub struct Throughput {
     pub rate: f64,
     /// The rate: the median repeat.
     pub median_rate: f64,
+    /// The rate: the worst repeat.
+    pub lowest_rate: f64,
     /// Seconds of the best repeat in each phase.
     pub phases: BTreeMap<&'static str, f64>,
     /// Quantities at the start and at the end of the measurement, where the bench compares them.
@@ -196,7 +198,7 @@ impl TimedRun {
         self.repeats.sort_by(|a, b| a.wall.total_cmp(&b.wall));
         let after = self.simulation.observe();
         let TimedRun { bench, prepared, simulation, steps, before, compared, at_end, repeats } = self;
-        let (best, median) = (&repeats[0], &repeats[repeats.len() / 2]);
+        let [best, median, worst] = [0, repeats.len() / 2, repeats.len() - 1].map(|place| &repeats[place]);
         Throughput {
             what: bench.name,
             particles: prepared.particles().grain_count(),
@@ -211,6 +213,7 @@ impl TimedRun {
             rate_name: bench.rate,
             rate: best.work / best.wall,
             median_rate: median.work / median.wall,
+            lowest_rate: worst.work / worst.wall,
             phases: best.phases.clone(),
             compared: compared.into_iter().map(|(name, at)| (name, [before[at], after[at]])).collect(),
             at_end: at_end.into_iter().map(|(name, at)| (name, after[at])).collect(),

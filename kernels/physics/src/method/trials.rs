@@ -73,7 +73,7 @@ pub struct Parameter {
     pub name: &'static str,
     /// What it is, for an axis.
     pub label: &'static str,
-    /// Its unit, empty for pure numbers.
+    /// Its dimension, such as `1/time`, empty for pure numbers.
     pub unit: &'static str,
     /// The least and the largest value that it may have.
     pub bounds: [f64; 2],

@@ -34,9 +34,11 @@ pub fn strongest_mode(places: &[f64], length: f64, shortest: f64) -> f64 {
     (1..=(length / shortest) as usize).map(amplitude).fold(0.0, f64::max)
 }
 
-/// Which way waves run: shares of the spectral power at wavelengths from `shortest` on.
+/// Which way waves run: the spectral power at wavelengths from `shortest` on, and its shares.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Directions {
+    /// The mean over wavelengths and times of |Σ exp(ikx)|²/N: 1 where particles are independent.
+    pub power: f64,
     /// Of waves that run towards lower places.
     pub back: f64,
     /// Of what is the same all the time.
@@ -52,7 +54,8 @@ pub struct Directions {
 pub fn directions(looks: &[Vec<u32>], length: f64, shortest: f64) -> Directions {
     let (mut back, mut standing, mut forth) = (0.0, 0.0, 0.0);
     let times = looks.len();
-    for mode in 1..=(length / shortest) as usize {
+    let modes = (length / shortest) as usize;
+    for mode in 1..=modes {
         let amplitudes: Vec<[f64; 2]> =
             looks.iter().map(|counts| transform(mode, counts.iter().map(|&n| [f64::from(n), 0.0]))).collect();
         for frequency in 0..times {
@@ -67,7 +70,9 @@ pub fn directions(looks: &[Vec<u32>], length: f64, shortest: f64) -> Directions 
         }
     }
     let all = back + standing + forth;
-    Directions { back: back / all, standing: standing / all, forth: forth / all }
+    let particles = looks.first().map_or(0, |counts| counts.iter().sum::<u32>());
+    let power = all / (times * times * modes) as f64 / f64::from(particles);
+    Directions { power, back: back / all, standing: standing / all, forth: forth / all }
 }
 
 /// One component of the discrete Fourier transform.
@@ -94,7 +99,10 @@ mod tests {
     #[test]
     fn a_wave_runs_the_way_it_is_shifted() {
         for (shift, expected) in [(1, [0.0, 0.0, 1.0]), (-1, [1.0, 0.0, 0.0]), (0, [0.0, 1.0, 0.0])] {
-            let Directions { back, standing, forth } = directions(&wave(shift), 32.0, 8.0);
+            let Directions { power, back, standing, forth } = directions(&wave(shift), 32.0, 8.0);
+            // Of four wavelengths one has all of it: an amplitude of 8/2 in each of 32 bins.
+            let expected_power = (4.0_f64 * 32.0).powi(2) / 4.0 / 320.0;
+            assert!((power / expected_power - 1.0).abs() < 0.02, "{power} instead of {expected_power}");
             for (found, expected) in [back, standing, forth].into_iter().zip(expected) {
                 assert!((found - expected).abs() < 1e-2, "{shift}: {found} instead of {expected}");
             }

@@ -2,7 +2,7 @@
 
 use crate::laboratory::hard_disks::study::atmosphere::{Atmosphere, Profile};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Part, Rows, Section, Table, Verdict};
+use crate::report::{Rows, Section, Table, Verdict};
 use stripmine_physics::number::counted;
 
 /// What is this near to 1 is as the law has it.
@@ -12,7 +12,7 @@ const WITHIN: f64 = 0.03;
 pub fn section(data: &Atmosphere) -> Section {
     let dilute = &data.profiles[0];
     let agrees = [dilute.mean_height, dilute.temperature].iter().all(|ratio| (ratio - 1.0).abs() < WITHIN);
-    Section::new("hard-disks-atmosphere", "Hard discs: above a hot floor, without a ceiling", Part::Physics)
+    Section::new("hard-disks-atmosphere", "Hard discs: above a hot floor, without a ceiling")
         .asks("Does a gas above a hot floor, without a ceiling, follow the barometric law?")
         .expects("ISO99, section 3, has a system that is open above: discs under gravity over a source of energy. In the dilute limit the \
                   density falls with the height as exp(−m g y/kT).")

@@ -2,7 +2,7 @@
 
 use crate::laboratory::hard_disks::study::collapse::{Collapses, PACKING, Row, of_a_row};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
+use crate::report::{Cell, Rows, Section, Table, Verdict};
 
 /// The estimate for more than three discs holds where it is off by no more than this.
 const ESTIMATED: f64 = 0.02;
@@ -20,8 +20,7 @@ pub fn section(data: &Collapses) -> Section {
     };
     Section::new(
         "hard-disks-collapse",
-        "Hard discs: where the method fails, inelastic collapse",
-        Part::Physics,
+        "Hard discs: where the method fails, inelastic collapse"
     )
     .asks("At which restitution do collisions become infinitely many in a finite time?")
     .expects("Three discs in a row collapse where e < 7 − 4√3 = 0.0718; the more discs, the nearer to 1 (McNamara and Young 1992, Bernu and \

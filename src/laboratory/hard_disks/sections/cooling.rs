@@ -2,7 +2,7 @@
 
 use crate::laboratory::hard_disks::study::cooling::{Cooling, haff};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
+use crate::report::{Cell, Rows, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &Cooling) -> Section {
@@ -14,7 +14,7 @@ pub fn section(data: &Cooling) -> Section {
         .map(|fate| format!("e = {}", fate.restitution))
         .collect();
     let last = data.gases.first().and_then(|gas| gas.collisions.last()).copied().unwrap_or(0.0);
-    Section::new("hard-disks-cooling", "Hard discs: a granular gas cools", Part::Physics)
+    Section::new("hard-disks-cooling", "Hard discs: a granular gas cools")
         .asks("Does a granular gas cool by Haff's law, and what becomes of one that dissipates too much?")
         .expects("Haff: T = T₀/(1 + t/t₀)², t₀ = 4/((1 − e²) ω₀), as long as the gas is even. Too dissipative ones collapse: collisions without \
                   end in a finite time.")

@@ -2,7 +2,7 @@
 
 use crate::laboratory::hard_disks::study::fluid::{Fluids, Mean, State, henderson, luding};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
+use crate::report::{Cell, Rows, Section, Table, Verdict};
 use stripmine_physics::number::in_tens;
 
 /// By how much Z and the rate may be off what is known (relative).
@@ -16,7 +16,7 @@ pub fn section(data: &Fluids) -> Section {
     };
     let energy = data.states.iter().map(|state| state.energy_error.abs()).fold(0.0, f64::max);
     let agrees = data.states.iter().all(|state| state.off().iter().all(|off| off.abs() <= WITHIN));
-    Section::new("hard-disks-fluid", "Hard discs: the pressure of the fluid", Part::Physics)
+    Section::new("hard-disks-fluid", "Hard discs: the pressure of the fluid")
         .asks("Are the pressure and the collision rate of the hard-disc fluid right?")
         .expects("Z(ν) and the collision rate ω of two independent programs with 250 000 discs, good to about 0.1 %; Henderson's and Luding's \
                   equations of state.")
@@ -91,7 +91,7 @@ fn table(data: &Fluids) -> Table {
         .number("± (95 %)", 4, |state| state.rate.bar)
         .number("ω known", 4, |state| state.known[1])
         .number("off (%)", 2, |state| 100.0 * state.off()[1])
-        .text("energy error", |state| format!("{:.1e}", state.energy_error))
+        .short("energy error", |state| state.energy_error)
         .table("fluid", "Compressibility and collisions of a disc in a unit of time (diameter = m = kT = 1)")
         .note("Errors from the scatter of 20 parts of each run.")
 }

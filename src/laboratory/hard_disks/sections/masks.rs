@@ -2,7 +2,7 @@
 
 use crate::laboratory::hard_disks::study::masks::{Cost, Masks, TERMS};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
+use crate::report::{Cell, Rows, Section, Table, Verdict};
 
 /// The formula fits where it is off by no more than this factor anywhere.
 const FITS: f64 = 1.25;
@@ -26,7 +26,7 @@ pub fn section(data: &Masks) -> Section {
     let dilutest = data.best.iter().min_by(|a, b| a.0.total_cmp(&b.0));
     let dense_wants_the_smallest =
         densest.is_some_and(|it| it.1 == "min") && dilutest.is_some_and(|it| it.1 != "min");
-    Section::new("hard-disks-masks", "Hard discs: which mask", Part::Host)
+    Section::new("hard-disks-masks", "Hard discs: which mask")
         .asks("Which mask makes a collision the cheapest, and does the program choose it?")
         .expects("ISO99, section 4: dense systems want the smallest mask, dilute ones a larger one, which is filled less often; its formula of \
                   the cost.")

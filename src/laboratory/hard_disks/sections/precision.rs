@@ -2,7 +2,7 @@
 
 use crate::laboratory::hard_disks::study::precision::{KNOWN_TO, Precision, STATE, Way};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Part, Rows, Section, Table};
+use crate::report::{Rows, Section, Table};
 
 /// What came out.
 pub fn section(data: &Precision) -> Section {
@@ -16,7 +16,7 @@ pub fn section(data: &Precision) -> Section {
             format!("{:.2} % in {:.1} s with {} discs", 100.0 * look.error, look.seconds, way.discs)
         })
     };
-    Section::new("hard-disks-precision", "Hard discs: error of Z against processor time", Part::Host)
+    Section::new("hard-disks-precision", "Hard discs: error of Z against processor time")
         .asks("What does an accuracy of the pressure cost in processor time?")
         .expects(format!(
             "Z = {known} at ν = {packing}, known to {} %. A method without a time step has two errors of a mean: chance, which falls as one over \

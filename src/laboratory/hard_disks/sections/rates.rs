@@ -2,7 +2,7 @@
 
 use crate::laboratory::hard_disks::study::rates::{ENGINES, Rate, Rates};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
+use crate::report::{Cell, Rows, Section, Table, Verdict};
 
 /// Million collisions a second of the source's program, with 2500 discs and with 2 500 000: the best over the densities.
 const SOURCE: [(f64, f64); 2] = [(2500.0, 0.128), (2_500_000.0, 0.058)];
@@ -20,7 +20,7 @@ pub fn section(data: &Rates) -> Section {
         });
         1e-6 * of.map(Rate::median).fold(0.0, f64::max)
     };
-    Section::new("hard-disks-rates", "Hard discs: collisions a second", Part::Host)
+    Section::new("hard-disks-rates", "Hard discs: collisions a second")
         .asks("How many collisions a second?")
         .expects("ISO99: 0.128 million a second with 2500 discs and 0.058 million with 2 500 000, on an Alpha of 600 MHz. Our aim: at least 5.5 \
                   million with 2500 discs at ν ≥ 0.5, and 1 million by the source's way.")

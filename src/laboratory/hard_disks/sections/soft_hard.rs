@@ -2,7 +2,7 @@
 
 use crate::laboratory::hard_disks::study::soft_hard::{Mean, Model, SoftHard};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Part, Rows, Section, Table, Verdict};
+use crate::report::{Cell, Rows, Section, Table, Verdict};
 use stripmine_physics::number::in_tens;
 
 /// What came out.
@@ -16,7 +16,7 @@ pub fn section(data: &SoftHard, again: String) -> Section {
     let first = soft.first().map_or(f64::NAN, |model| off(model));
     let last = soft.last().map_or(f64::NAN, |model| off(model));
     let dearer = soft.last().map_or(f64::NAN, |model| model.cost) / hard.map_or(f64::NAN, |hard| hard.cost);
-    Section::new("soft-hard", "Soft against hard discs", Part::Physics)
+    Section::new("soft-hard", "Soft against hard discs")
         .asks("From which stiffness on do soft discs behave as hard ones, and what does that cost?")
         .expects("Hard discs are the limit of stiff ones; soft discs press as hard ones of their effective diameter do (Barker and Henderson).")
         .answers(format!(
@@ -95,7 +95,7 @@ fn cost(data: &SoftHard) -> Figure {
 
 fn table(data: &SoftHard) -> Table {
     Rows::of(&data.models)
-        .text("stiffness of a contact", |model| model.stiffness.map_or("hard".into(), |it| format!("{it:e}")))
+        .cell("stiffness of a contact", |model| model.stiffness.map_or(Cell::from("hard"), Cell::Short))
         .number("damping γ_N", 3, |model| model.damping)
         .number("step", 6, |model| model.step)
         .number("depth of a contact of kT (%)", 2, |model| 100.0 * model.depth)

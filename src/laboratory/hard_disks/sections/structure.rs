@@ -2,7 +2,7 @@
 
 use crate::laboratory::hard_disks::study::structure::{Structure, Structures};
 use crate::report::figure::{Axis, Chart, Drawing, Figure, Guide, Picture, Series, Shape, Style, Tint};
-use crate::report::{Part, Rows, Section, Table, Verdict};
+use crate::report::{Rows, Section, Table, Verdict};
 
 /// Free times over their mean that are drawn; longer ones are too few.
 const LONGEST: f64 = 5.0;
@@ -24,7 +24,7 @@ pub fn section(data: &Structures) -> Section {
     let is_maxwell = data.structures.iter().all(|it| it.maxwell[1] > 0.001);
     let largest = gas.free_times.iter().zip(&data.dilute).map(|(seen, theory)| (seen - theory).abs());
     let largest = largest.fold(0.0, f64::max);
-    Section::new("hard-disks-structure", "Hard discs: melting, free times and speeds", Part::Physics)
+    Section::new("hard-disks-structure", "Hard discs: melting, free times and speeds")
         .asks("At which density does a crystal of hard discs melt, and how long do discs fly?")
         .expects("Simulations of a million discs find a fluid below a packing fraction of 0.700, fluid and hexatic phase beside each other up to \
                   0.716, and a crystal above 0.720. A dilute gas has the free times of its Maxwell velocities.")
@@ -125,7 +125,7 @@ fn table(data: &Structures) -> Table {
         .number("g from 1.00 to 1.02", 3, |it| it.correlation[0])
         .number("mean free time", 5, |it| it.free[0])
         .number("mean free path", 5, |it| it.free[1])
-        .text("p of Maxwell at the start", |it| format!("{:.1e}", it.maxwell[0]))
+        .short("p of Maxwell at the start", |it| it.maxwell[0])
         .number("p at the end", 3, |it| it.maxwell[1])
         .table("structure", "Order, free times and velocities (diameter = m = kT = 1)")
         .note("p: the probability by Kolmogorov and Smirnov; all discs start equally fast.")

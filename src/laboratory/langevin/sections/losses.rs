@@ -1,8 +1,9 @@
 //! Particles lost over the step.
 
+use super::readings;
 use crate::laboratory::langevin::study::losses::{Boundary, LossTable, Row, SCHEMES};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
+use crate::report::{Cell, Rows, Section, Table, Verdict};
 use stripmine_physics::number::range;
 use stripmine_physics::words::Words;
 
@@ -26,15 +27,15 @@ fn none_where_the_source_has_none(data: &LossTable) -> bool {
 /// How the losses differ from the source's.
 fn beside_the_source(data: &LossTable) -> String {
     let none = match none_where_the_source_has_none(data) {
-        true => "no particle is lost where the source loses none",
-        false => "particles are lost where the source loses none",
+        true => "none where it loses none",
+        false => "some where it loses none",
     };
     match farthest(data) {
         Some((row, ratio)) if ratio > ALIKE => format!(
             "At a step of {} {} particles are lost where the source loses {}, {ratio:.0} times as {}; {none}.",
             row.dt,
-            row.lost[0],
-            row.source.unwrap_or_default(),
+            Cell::Count(row.lost[0]).for_reading(),
+            Cell::Count(row.source.unwrap_or_default()).for_reading(),
             if Some(row.lost[0]) > row.source { "many" } else { "few" },
         ),
         _ => format!("At every step of the source the losses are within {ALIKE} times its own; {none}."),
@@ -46,15 +47,14 @@ pub fn section(data: &LossTable) -> Section {
     let falls = data.rows.windows(2).all(|pair| pair[0].lost[0] >= pair[1].lost[0]);
     let ratios = || data.boundaries.iter().map(|boundary| boundary.dt / boundary.bounds[0]);
     let (least, most) = (ratios().fold(f64::INFINITY, f64::min), ratios().fold(0.0, f64::max));
-    let by_limit = || data.boundaries.iter().map(|boundary| boundary.dt / boundary.bounds[1]);
-    Section::new("langevin-losses", "Langevin: particles lost to a long step", Part::Physics)
-        .asks("From which step on are particles lost, and does the source's bound on the step prevent it?")
-        .expects("LAN17: of 40 000 particles 19 200 are lost in 100 steps of 1, 6393 of 0.1, 754 of 0.01 and none of 0.001; steps below √(2 m \
-                  r_c/F) should do.")
+    Section::new("langevin-losses", "Langevin: particles lost to a long step")
+        .asks("When are particles lost?")
+        .expects("LAN17: of 40 000, 19 200 in 100 steps of 1, 6393 of 0.1, 754 of 0.01, none of 0.001; none below √(2 m r_c/F).")
         .answers(format!(
-            "{} The losses {} with the step, and the bound {}: the longest step without a loss is {} of it.",
+            "{} {}{} The bound {}: the longest safe step is {} of it.",
             beside_the_source(data),
-            if falls { "grow" } else { "do not grow" },
+            readings::nearest(&data.readings),
+            if falls { "" } else { " The losses do not grow with the step." },
             if least >= 1.0 { "suffices" } else { "does not suffice" },
             range([least, most], 2),
         ))
@@ -64,14 +64,14 @@ pub fn section(data: &LossTable) -> Section {
             farthest(data).is_none_or(|(_, ratio)| ratio <= ALIKE),
             least >= 1.0,
         ]))
-        .details([format!(
-            "The boundary was found by bisection over four strengths and three temperatures. Beside the limit by the spring that a pair is in \
-             its hardest collisions it lies at {:.2} to {:.2}.",
-            by_limit().fold(f64::INFINITY, f64::min),
-            by_limit().fold(0.0, f64::max)
-        )])
+        .details([readings::what_cannot_be()])
         .figures([losses(data), boundaries(data)])
-        .tables([loss_table(data), boundary_table(data)])
+        .tables([
+            loss_table(data),
+            readings::counts(&data.readings),
+            readings::interactions(),
+            boundary_table(data),
+        ])
         .seeds([1])
 }
 
@@ -89,8 +89,7 @@ fn losses(data: &LossTable) -> Figure {
         .series("source", Style::Points, 6, seen(&|row| row.source))
         .figure("losses", "Particles lost in 100 steps")
         .caption(format!(
-            "Of {}. Steps without a loss are not drawn. In the source's table fewer are lost at long steps: no strength and temperature gave its \
-             counts.",
+            "Of {}. Steps without a loss are not drawn. The source loses fewer at long steps.",
             data.particles
         ))
 }
@@ -142,14 +141,16 @@ mod tests {
         let rows = [(1.0, 19_200), (0.1, 6393), (0.01, 754), (0.001, 0)].into_iter().zip(lost);
         let rows = rows.map(|((dt, source), lost)| Row { dt, lost: [lost; 2], source: Some(source) });
         let boundary = Boundary { strength: 1.0, temperature: 1.0, dt, bounds: [1.0, 1.0] };
-        section(&LossTable { particles: 40_000, rows: rows.collect(), boundaries: vec![boundary] })
+        let boundaries = vec![boundary];
+        section(&LossTable { particles: 40_000, rows: rows.collect(), boundaries, readings: vec![] })
     }
 
     #[test]
     fn losses_that_are_not_the_sources_are_said_first_and_graded() {
         let ours = section_of([37_111, 34_738, 26_331, 0], 0.1);
         assert_eq!(ours.verdict, Verdict::Partly);
-        let begin = "At a step of 0.01 26331 particles are lost where the source loses 754, 35 times as many";
+        let begin =
+            "At a step of 0.01 26\u{202f}331 particles are lost where the source loses 754, 35 times as many";
         assert!(
             ours.answer.starts_with(begin) && ours.answer.contains("does not suffice"),
             "{}",

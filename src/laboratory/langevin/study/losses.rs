@@ -1,5 +1,6 @@
 //! Particles that a long step throws out of the box: how many over the step, and from which step on.
 
+use super::readings::{READINGS, Read, SOURCE, STEPS, counted};
 use crate::laboratory::running::{Running, prepared};
 use crate::results::{Meter, Progress};
 use crate::study::StudyError;
@@ -9,14 +10,12 @@ use stripmine_physics::method::langevin::options::SchemeKind;
 use stripmine_physics::method::observed::UnknownName;
 use stripmine_physics::scene::{COUNT, DT, Overrides, SIDES, TEMPERATURE};
 
-/// The source's table: step, particles lost.
-pub const SOURCE: [(f64, u64); 4] = [(1.0, 19_200), (0.1, 6393), (0.01, 754), (0.001, 0)];
 /// Steps between the source's.
 const FINER: [f64; 5] = [0.03, 0.005, 0.004, 0.003, 0.002];
 /// The integrators compared.
 pub const SCHEMES: [SchemeKind; 2] = [SchemeKind::Stochastic, SchemeKind::Baoab];
-/// Steps of the source's runs.
-const STEPS: u64 = 100;
+/// One of so many particles is taken for the readings.
+pub const PART: u64 = 4;
 /// The boundary is known to this part of itself.
 const TOLERANCE: f64 = 0.05;
 
@@ -53,12 +52,14 @@ pub struct LossTable {
     pub rows: Vec<Row>,
     /// Boundaries.
     pub boundaries: Vec<Boundary>,
+    /// The source's loop by every reading of it.
+    pub readings: Vec<Read>,
 }
 
 fn overrides(particles: u64, dt: f64) -> Overrides {
     let side = (particles as f64 / 4.0).sqrt();
     let scene = Overrides::new().set(&COUNT, particles).set(&SIDES, [side; 2]);
-    scene.set(&DT, dt).set(&MOST_LOST, particles)
+    scene.set(&DT, dt)
 }
 
 /// Particles lost in the source's number of steps; all of them where none is left.
@@ -68,6 +69,23 @@ fn lost(particles: u64, overrides: &Overrides) -> Result<u64, StudyError> {
         Ok(()) => running.observed(["lost"])?[0] as u64,
         Err(_) => particles,
     })
+}
+
+/// The source's loop by every reading of it, on a part of the particles at the same density, counted for all.
+fn read(particles: u64, meter: &Meter<'_>) -> Result<Vec<Read>, StudyError> {
+    let steps = SOURCE.map(|(dt, _)| dt);
+    let cases: Vec<_> = READINGS.iter().flat_map(|reading| steps.map(|dt| (reading, dt))).collect();
+    let part = (particles / PART) as usize;
+    let counts = meter.each(&cases, |&(reading, dt)| {
+        Ok::<_, StudyError>(counted(reading, part, dt).map(|count| PART * count))
+    })?;
+    let read = READINGS.iter().zip(counts.chunks_exact(steps.len()));
+    let read = read.map(|(reading, counts)| Read {
+        name: reading.name,
+        is_fitted: reading.is_fitted,
+        counts: std::array::from_fn(|step| counts[step]),
+    });
+    Ok(read.collect())
 }
 
 /// Counts losses and looks for boundaries, of as many particles.
@@ -81,18 +99,21 @@ pub fn losses(particles: u64, progress: Progress<'_>) -> Result<LossTable, Study
         .into_iter()
         .flat_map(|strength| [0.1, 1.0, 10.0].map(|kt| (strength, kt)))
         .collect();
-    let meter = Meter::new((steps.len() + places.len()) as f64, progress);
+    let all = steps.len() + places.len() + SOURCE.len() * READINGS.len();
+    let meter = Meter::new(all as f64, progress);
     let rows = meter.each(&steps, |&dt| {
         let mut counts = [0; 2];
         for (count, scheme) in counts.iter_mut().zip(SCHEMES) {
-            *count = lost(particles, &overrides(particles, dt).set(&INTEGRATOR, scheme))?;
+            let scene = overrides(particles, dt).set(&INTEGRATOR, scheme).set(&MOST_LOST, particles);
+            *count = lost(particles, &scene)?;
         }
-        let source = SOURCE.iter().find(|(there, _)| *there == dt).map(|(_, lost)| *lost);
+        let source = SOURCE.iter().find(|(there, _)| *there == dt).map(|(_, [lost, _])| *lost);
         Ok::<_, StudyError>(Row { dt, lost: counts, source })
     })?;
     let boundaries =
         meter.each(&places, |&(strength, temperature)| boundary(particles, strength, temperature))?;
-    Ok(LossTable { particles, rows, boundaries })
+    let readings = read(particles, &meter)?;
+    Ok(LossTable { particles, rows, boundaries, readings })
 }
 
 fn boundary(particles: u64, strength: f64, temperature: f64) -> Result<Boundary, StudyError> {
@@ -109,7 +130,8 @@ fn boundary(particles: u64, strength: f64, temperature: f64) -> Result<Boundary,
     let (mut low, mut high) = (0.05 * bounds[1], 4.0 * bounds[1]);
     while high / low > 1.0 + TOLERANCE {
         let middle = (low * high).sqrt();
-        match lost(particles, &overrides(middle))? {
+        // The first loss ends it.
+        match lost(particles, &overrides(middle).set(&MOST_LOST, 0_u64))? {
             0 => low = middle,
             _ => high = middle,
         }

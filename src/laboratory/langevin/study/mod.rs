@@ -3,9 +3,10 @@
 pub mod accuracy;
 pub mod diffusion;
 pub mod losses;
+pub mod readings;
 pub mod sectors;
 
 pub use crate::statistics::Mean;
 
 /// Parts of a run, each a measurement; their scatter gives the error.
-const PARTS: usize = 20;
+pub const PARTS: usize = 20;

@@ -199,3 +199,52 @@ fn phases() -> Result<BTreeMap<String, f64>, StudyError> {
         Ok(phases)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stripmine_physics::particles::Particle;
+
+    /// Positions and velocities after some steps of so many particles in sectors, to the bit, and the positions.
+    fn moved(count: u64, per_side: Option<u64>, threads: usize) -> (Vec<[u64; 4]>, Vec<[f64; 2]>) {
+        // Dense, so that sums have many terms, whose order counts.
+        let side = (count as f64 / 0.7).sqrt();
+        let scene = Overrides::new().set(&COUNT, count).set(&SIDES, [side; 2]);
+        let scene = match per_side {
+            Some(per_side) => scene.set(&SEARCH, By::Sectors).set(&PER_SIDE, per_side),
+            None => scene.set(&SEARCH, By::NeighborList),
+        };
+        let particles = on_threads(threads, || {
+            let mut running = Running::timed("langevin-dense", &scene)?;
+            running.steps(6)?;
+            Ok(running.simulation.particles())
+        });
+        let particles = particles.unwrap();
+        let bits = |it: &Particle| {
+            let ([x, y], [u, v]) = (it.place(), it.planar_velocity());
+            [x, y, u, v].map(f64::to_bits)
+        };
+        let all = particles.all();
+        (all.iter().map(bits).collect(), all.iter().map(Particle::place).collect())
+    }
+
+    /// Few large sectors, whose pairs all threads find together, move particles to the same bits on any number of threads, and as lists
+    /// do but for rounding; so do more and smaller ones, which threads share.
+    #[test]
+    fn sectors_of_every_size_give_the_same_bits_on_any_number_of_threads() {
+        let count = 5200;
+        let (_, by_lists) = moved(count, None, 1);
+        for per_side in [3, 20, 34] {
+            let (alone, places) = moved(count, Some(per_side), 1);
+            for threads in [2, 3] {
+                assert!(
+                    moved(count, Some(per_side), threads).0 == alone,
+                    "{per_side} a side, {threads} threads"
+                );
+            }
+            let off = places.iter().zip(&by_lists).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
+            let far = off.filter(|off| (1e-8..30.0).contains(off)).count();
+            assert_eq!(far, 0, "{per_side} a side");
+        }
+    }
+}

@@ -3,7 +3,7 @@
 use crate::laboratory::lattice_md::study::break_even::{Atlas, Named, Sheet};
 use crate::laboratory::lattice_md::study::density_cost::CEILING;
 use crate::report::figure::{Axis, Band, Chart, Figure, Series, Style};
-use crate::report::{Part, Rows, Section, Table, Verdict};
+use crate::report::{Rows, Section, Table, Verdict};
 use crate::statistics::median;
 
 /// A lead below this is a draw in the words.
@@ -13,10 +13,10 @@ const DRAW: f64 = 1.1;
 pub fn section(data: &Atlas, again: &str) -> Section {
     let named = data.named();
     let wins = data.sheets.iter().map(|sheet| format!("Cheapest, {}: {}", sheet.title, wins(sheet)));
-    Section::new("atlas", "Who wins where: the break-even atlas", Part::Host)
+    Section::new("atlas", "Who wins where: the break-even atlas")
         .asks("Which method is the cheapest for which number of particles and density, and does the model of a host know it?")
-        .expects("BP93, section 3: on a vector machine the lattice wins for many particles and dense packings, scalar neighbour lists for few. \
-                  Our aim: what the model names as the cheapest costs at most a tenth more than what is.")
+        .expects("BP93, section 3: the lattice wins for many particles and dense packings, scalar lists for few. Our aim: what the model names as \
+                  the cheapest costs at most a tenth more than what is.")
         .answers(model(data, &named))
         .verdict(Verdict::aim(named.iter().all(|it| it.dearer <= DRAW)))
         .details(wins.map(|wins| format!("{wins}.")))
@@ -41,13 +41,9 @@ fn model(data: &Atlas, named: &[Named]) -> String {
     );
     let Some(worst) = wrong.iter().max_by(|a, b| a.dearer.total_cmp(&b.dearer)) else { return begin + "." };
     format!(
-        "{begin}. Where the model is wrong its choice costs {:.0} % more in the median, and at most {:.0} % ({} for {} with {} discs at ρ = {}).",
-        100.0 * (median(wrong.iter().map(|it| it.dearer)) - 1.0),
+        "{begin}. Where the model is wrong its choice costs at most {:.0} % more, {:.0} % in the median.",
         100.0 * (worst.dearer - 1.0),
-        worst.named,
-        worst.cheapest,
-        worst.particles,
-        worst.occupancy
+        100.0 * (median(wrong.iter().map(|it| it.dearer)) - 1.0),
     )
 }
 
@@ -72,10 +68,20 @@ fn wins(sheet: &Sheet) -> String {
     of_method.collect::<Vec<_>>().join(", ")
 }
 
+/// How far the next method is behind, in words, and from which of its costs over the cheapest's on.
+const LEADS: [(&str, f64); 3] =
+    [("by 2 times and more", 2.0), ("by a tenth to 2 times", DRAW), ("by less than a tenth", 1.0)];
+
 fn figure(sheet: &Sheet) -> Figure {
-    let series = sheet.methods.iter().enumerate().map(|(hue, name)| {
-        let won = sheet.places.iter().filter(|place| place.winner().is_some_and(|(winner, _)| winner == hue));
-        Series::new(name, Style::Points, hue, won.map(|place| (place.occupancy, place.particles as f64)))
+    let series = sheet.methods.iter().enumerate().flat_map(|(hue, name)| {
+        LEADS.iter().enumerate().map(move |(class, (words, least))| {
+            let below = if class == 0 { f64::INFINITY } else { LEADS[class - 1].1 };
+            let won = sheet.places.iter().filter(move |place| {
+                place.winner().is_some_and(|(winner, lead)| winner == hue && (*least..below).contains(&lead))
+            });
+            let points = won.map(|place| (place.occupancy, place.particles as f64));
+            Series::new(format!("{name}, {words}"), Style::Points, hue, points)
+        })
     });
     let narrow =
         sheet.places.iter().filter(|place| place.winner().is_some_and(|(_, lead)| lead < DRAW)).count();

@@ -2,7 +2,7 @@
 
 use crate::laboratory::lattice_md::study::crossover::{Crossover, METHODS, Sample};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Cell, Part, Rows, Section, Table};
+use crate::report::{Cell, Rows, Section, Table};
 
 /// What came out.
 pub fn section(data: &Crossover) -> Section {
@@ -14,7 +14,7 @@ pub fn section(data: &Crossover) -> Section {
         };
         format!("{} with {} discs {at}", crossing.precision, count(crossing.particles))
     });
-    Section::new("crossover", "Lattice, neighbour lists and sectors, each as fast as it goes", Part::Host)
+    Section::new("crossover", "Lattice, neighbour lists and sectors, each as fast as it goes")
         .asks("From which density on is the lattice faster than neighbour lists and sectors, each as fast as it goes?")
         .expects("BP93 expects the vector method to pay where discs are dense.")
         .answers(format!(

@@ -2,7 +2,7 @@
 
 use crate::laboratory::lattice_md::study::damping::{Case, Damping};
 use crate::report::figure::{Axis, Chart, Figure, Style};
-use crate::report::{Part, Rows, Section, Table, Verdict};
+use crate::report::{Cell, Rows, Section, Table, Verdict};
 use crate::statistics::Spread;
 
 /// The Fano factor above which there are waves.
@@ -17,7 +17,7 @@ pub fn section(data: &Damping) -> Section {
     let controls: Vec<&Case> = data.cases.iter().filter(|case| case.overrides.len() > 1).collect();
     let found = scan.last().is_some_and(|case| waves(case));
     let even = scan.first().is_some_and(|case| !waves(case)) && controls.iter().all(|case| !waves(case));
-    Section::new("waves", "Density waves over dissipation", Part::Physics)
+    Section::new("waves", "Density waves over dissipation")
         .asks("Does damping in contacts make the density waves?")
         .expects("BP93, section 4: grains that start evenly spread form density waves. A Fano factor (variance over mean of the grains in a bin) \
                   above 1 tells waves from none; weakly damped grains and an elastic gas must show none.")
@@ -54,18 +54,15 @@ fn figure(scan: &[&Case]) -> Figure {
 }
 
 fn table(data: &Damping) -> Table {
-    let with_error = |spread: &Spread, decimals: usize| {
-        let error = spread.error.map_or(String::new(), |error| format!(" ± {error:.decimals$}"));
-        format!("{:.decimals$}{error}", spread.mean)
-    };
+    let with_error = |it: &Spread, decimals: usize| Cell::with_error(it.mean, it.error, decimals);
     Rows::of(&data.cases)
         .text("case", |case| &case.name)
-        .text("Fano at the start", |case| with_error(&case.fano_start, 2))
-        .text("Fano late", |case| with_error(&case.fano, 2))
-        .text("single seeds", |case| format!("{:.2}–{:.2}", case.fano.lowest, case.fano.highest))
-        .text("strongest mode at the start", |case| with_error(&case.mode_start, 3))
-        .text("strongest mode late", |case| with_error(&case.mode, 3))
-        .text("mean velocity late (m/s)", |case| with_error(&case.flow, 3))
+        .cell("Fano at the start", |case| with_error(&case.fano_start, 2))
+        .cell("Fano late", |case| with_error(&case.fano, 2))
+        .cell("single seeds", |case| Cell::Range([case.fano.lowest, case.fano.highest], 2))
+        .cell("strongest mode at the start", |case| with_error(&case.mode_start, 3))
+        .cell("strongest mode late", |case| with_error(&case.mode, 3))
+        .cell("mean velocity late (m/s)", |case| with_error(&case.flow, 3))
         .table("cases", "Every case")
         .note(format!(
             "Means over {} seeds with their standard errors. Strongest Fourier mode at wavelengths from 80 mean radii on, as a fraction of the \

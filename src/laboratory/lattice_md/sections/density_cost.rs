@@ -2,7 +2,7 @@
 
 use crate::laboratory::lattice_md::study::density_cost::{CEILING, Curve, DensityCost};
 use crate::report::figure::{Axis, Band, Chart, Figure, Series, Style};
-use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
+use crate::report::{Cell, Rows, Section, Table, Verdict};
 use crate::statistics;
 
 /// What came out.
@@ -26,18 +26,17 @@ pub fn section(data: &DensityCost) -> Section {
     ];
     let differences = differ.zip(power).map_or(String::new(), |(differ, power)| {
         format!(
-            " A particle's share by the lists {} on the density, up to {differ:.2} times at the same NP (by the source not at all), and the NP \
-             from which the lattice wins falls as ρ to the power {power:.1} (by the source −1).",
+            "A particle's share by the lists {} on the density, up to {differ:.2} times at the same NP (by the source not at all); the NP from \
+             which the lattice wins falls as ρ to the power {power:.1} (by the source −1). ",
             if differ < ALIKE { "hardly depends" } else { "depends" }
         )
     });
-    Section::new("cost", "Cost over particles and density (figures 3 and 4)", Part::Machine)
-        .asks("From how many particles on is a vector step shorter than one by scalar neighbour lists?")
-        .expects("BP93, figures 3 and 4: with D = 20 a vector step is nearly as long for few particles as for many, scalar neighbour lists rise \
-                  with the square of their number; a particle's share falls with the density for the lattice and does not depend on it for the \
-                  lists; the NP from which the lattice wins grows as 1/ρ.")
+    Section::new("cost", "Cost over particles and density (figures 3 and 4)")
+        .asks("When is a vector step shorter than one by scalar lists?")
+        .expects("BP93, figures 3 and 4: a vector step is nearly flat over NP, scalar lists rise as NP²; a particle's share falls with the density for \
+                  the lattice and not for the lists; the break-even NP grows as 1/ρ.")
         .answers(format!(
-            "The vector step is the shorter one from NP = {} on.{differences}",
+            "{differences}The vector step is the shorter one from NP = {} on.",
             crossings.join(", ")
         ))
         .verdict(Verdict::of_claims(&claims))

@@ -4,7 +4,6 @@ use crate::laboratory::lattice_md::study::efficiency_table::conventions::{Counte
 use crate::laboratory::lattice_md::study::efficiency_table::{
     EfficiencyTable, SOURCES_PARTS, SectionRow, TextCount,
 };
-use crate::report;
 use crate::report::{Rows, Section, Table, Verdict};
 use stripmine_kernels::printed::EQUATIONS;
 use stripmine_physics::method::lattice_md::Part;
@@ -12,7 +11,7 @@ use stripmine_physics::number::significant;
 
 /// What came out.
 pub fn section(data: &EfficiencyTable) -> Section {
-    Section::new("table", "The efficiency table", report::Part::Machine)
+    Section::new("table", "The efficiency table")
         .asks("How many vector operations and clock periods does a step take?")
         .expects("BP93, section 3, counts 59, 12, 1656 = 24·69 and 54 operations for predictor, index, forces and corrector, each at NOP·(n + D) \
                   clock periods with D = 20. It prints no program and no rule of counting.")
@@ -54,8 +53,7 @@ fn answer(data: &EfficiencyTable) -> String {
     let nearest = data.conventions.nearest.first();
     let nearest = nearest.map_or(String::new(), |nearest| {
         format!(
-            "; the nearest ({}) gives {}, at most {:.0} % off",
-            nearest.convention.words(),
+            ", and the nearest gives {}, at most {:.0} % off",
             four(nearest.counts),
             100.0 * nearest.worst
         )
@@ -67,10 +65,9 @@ fn answer(data: &EfficiencyTable) -> String {
     };
     format!(
         "The source's own program, written as it is printed and counted with every load and store, has {} operations where 59, 12, 1656 and 54 \
-         are printed. Of {} ways of counting it {all}, and none more than {}{nearest}.",
+         are printed; of {} ways of counting it {all}{nearest}.",
         counted.join(", "),
         data.conventions.tried,
-        data.conventions.most_exact
     )
 }
 
@@ -79,7 +76,14 @@ fn details(data: &EfficiencyTable) -> Vec<String> {
     let exact = data.conventions.exact;
     let ways = |ways: usize| if ways == 0 { "none".to_owned() } else { ways.to_string() };
     let place: u64 = data.printed_sections.iter().map(|row| row.in_a_place).sum();
-    vec![
+    let nearest = data.conventions.nearest.first().map(|nearest| {
+        format!(
+            "No way of counting gives more than {} of the four printed numbers. The nearest: {}.",
+            data.conventions.most_exact,
+            nearest.convention.words()
+        )
+    });
+    let more = vec![
         format!(
             "One by one, ways of counting that give the printed number: {} for the predictor's 59, {} for the index's 12, {} for the 69 of a \
              place of the mask, {} for the corrector's 54. 1656 is 24·69, so the source counts nothing outside the loop over the places. A place \
@@ -109,7 +113,8 @@ fn details(data: &EfficiencyTable) -> Vec<String> {
             data.printed.clocks_of_the_sources_parts(),
             data.ours.clocks
         ),
-    ]
+    ];
+    nearest.into_iter().chain(more).collect()
 }
 
 fn parts(data: &EfficiencyTable) -> Table {

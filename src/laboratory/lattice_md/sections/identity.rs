@@ -1,7 +1,7 @@
 //! The identity of lattice and lists: tables, figures and what came out.
 
 use crate::laboratory::lattice_md::study::identity::Identity;
-use crate::report::{Part, Rows, Section, Verdict};
+use crate::report::{Rows, Section, Verdict};
 use stripmine_physics::number::counted;
 
 /// What came out.
@@ -12,13 +12,13 @@ pub fn section(data: &Identity) -> Section {
         .text("scene", |(pair, _)| pair.name)
         .count("grains", |(pair, _)| pair.grains)
         .count("step", |(_, state)| state.step)
-        .text("lattice (CRC-32)", |(_, state)| &state.lattice)
-        .text("lists (CRC-32)", |(_, state)| &state.lists)
+        .text("lattice, CRC-32", |(_, state)| format!("0x{}", state.lattice))
+        .text("lists, CRC-32", |(_, state)| format!("0x{}", state.lists))
         .number("farthest apart (length)", 1, |(_, state)| state.farthest)
         .table("states", "States compared")
         .note("Both methods use the same images of the discs and sum contacts in the mask's order, so not even rounding differs. Seeds are those \
                of the presets.");
-    Section::new("identity", "Lattice and neighbour lists give the same", Part::Physics)
+    Section::new("identity", "Lattice and neighbour lists give the same")
         .asks("Do the lattice and neighbour lists give the same motion?")
         .expects(
             "BP93, section 4: no differences in the results compared to simulations with neighbour lists.",

@@ -2,7 +2,7 @@
 
 use crate::laboratory::lattice_md::study::host_ladder::HostLadder;
 use crate::laboratory::lattice_md::study::ladder::Ladder;
-use crate::report::{Part, Rows, Section, Table};
+use crate::report::{Rows, Section, Table, Verdict};
 use stripmine_physics::method::lattice_md::Phase;
 use stripmine_physics::number::significant;
 
@@ -32,9 +32,10 @@ pub fn section(ladders: &[Ladder]) -> Section {
             others.collect::<Vec<_>>().join(", ")
         )
     });
-    Section::new("ladder", "What each refinement of the clock adds", Part::Machine)
+    Section::new("ladder", "What each refinement of the clock adds")
         .asks("How many clock periods does a step take by finer clocks than the source's?")
         .expects("BP93 charges n + D for every operation and no chaining.")
+        .verdict(Verdict::Computed)
         .answers(chained.unwrap_or_default())
         .details([format!("With memory ports as well: {}.", said.collect::<Vec<_>>().join("; "))])
         .tables(ladders.iter().enumerate().map(|(at, data)| numbered(at, rungs(data))))

@@ -1,6 +1,6 @@
 //! The vector instructions of a step, as text.
 
-use crate::report::{Part, Section};
+use crate::report::{Section, Verdict};
 
 /// One program of a part, as text.
 #[derive(Clone, Debug)]
@@ -30,9 +30,10 @@ pub fn section(parts: &[PartListing]) -> Section {
         let lines = place.get(1).map_or(String::new(), |lines| format!("{FIRST_PLACE}{lines}"));
         ("The printed text, place 1 of the mask, each line below its equation:".to_owned(), lines)
     });
-    Section::new("listing", "The vector instructions", Part::Machine)
+    Section::new("listing", "The vector instructions")
         .asks("Which vector instructions does a step consist of?")
         .expects("BP93 gives the algorithm in vector notation and prints no code.")
+        .verdict(Verdict::Computed)
         .answers(format!(
             "Vector instructions of the source's own text, written as printed: {}; of ours: {}. A section of the printed text is named by its \
              equation; box and halo are beside them.",

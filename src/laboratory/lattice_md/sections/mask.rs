@@ -1,14 +1,14 @@
 //! The neighbourhood as the source draws it.
 
 use crate::report::figure::{Drawing, Figure, Picture, Shape, Tint};
-use crate::report::{Part, Rows, Section, Table, Verdict};
+use crate::report::{Rows, Section, Table, Verdict};
 use std::f64::consts::SQRT_2;
 use stripmine_kernels::mask::Mask;
 
 /// Figure 2 and the wider mask, with what each can see.
 pub fn section() -> Section {
     let [small, large] = [2, 3].map(Mask::square);
-    Section::new("mask", "The mask (figure 2)", Part::Machine)
+    Section::new("mask", "The mask (figure 2)")
         .asks("Which places around a disc can hold what touches it?")
         .expects("BP93, figure 2, numbers 24 places; every contact of a disc lies in one of them if the cells are at least as wide as the \
                   largest radius.")
@@ -27,10 +27,12 @@ fn drawing(name: &str, title: &str, mask: &Mask) -> Figure {
     let rim = f64::from(half) + 0.5;
     let cell = |columns: i32, rows: i32, words: String, tint| {
         let [x, y] = [columns, rows].map(f64::from);
+        // In the corner that is the farthest from the middle, where the circle does not cross it.
+        let right = if columns > 0 { 0.3 } else { -0.3 };
+        let up = if rows < 0 { -0.33 } else { 0.33 };
         [
             Shape::Rectangle { corners: [[x - 0.5, y - 0.5], [x + 0.5, y + 0.5]], tint, outlined: true },
-            // In a corner, where the circle does not cross it.
-            Shape::Text { centre: [x - 0.3, y + 0.33], height: 0.16, words },
+            Shape::Text { centre: [x + right, y + up], height: 0.16, words },
         ]
     };
     let mut shapes = Vec::from(cell(0, 0, "0".into(), Tint::Still));

@@ -4,12 +4,12 @@ use crate::laboratory::lattice_md::study::density_cost::CEILING;
 use crate::laboratory::lattice_md::study::measured_cost::{
     MeasuredCost, OCCUPANCY, PARTICLES, Sample, Variant,
 };
+use crate::report::Section;
 use crate::report::figure::{Axis, Band, Chart, Figure, Series, Style};
-use crate::report::{Part, Section};
 
 /// What came out.
 pub fn section(data: &MeasuredCost) -> Section {
-    Section::new("measured", "Cost over particles and density, measured", Part::Host)
+    Section::new("measured", "Cost over particles and density, measured")
         .asks("What do the source's ways of executing a step cost on this host?")
         .expects("BP93 predicts the cost and shows no measurement.")
         .answers(answer(data))
@@ -40,10 +40,10 @@ fn answer(data: &MeasuredCost) -> String {
     let [lowest, highest] =
         [densities.iter().copied().fold(1.0, f64::min), densities.iter().copied().fold(0.0, f64::max)];
     format!(
-        "Nanoseconds a particle and step at NP = {largest}, ρ = {OCCUPANCY}: {}; the fastest at ρ = {lowest:.2} is {}, at ρ = {highest:.2} {}.",
-        each(&at_largest),
+        "The fastest at ρ = {lowest:.2} is {}, at ρ = {highest:.2} {}. Nanoseconds a particle and step at NP = {largest}, ρ = {OCCUPANCY}: {}.",
         fastest(lowest).unwrap_or("none"),
-        fastest(highest).unwrap_or("none")
+        fastest(highest).unwrap_or("none"),
+        each(&at_largest),
     )
 }
 

@@ -2,11 +2,11 @@
 
 use crate::laboratory::lattice_md::study::misprints::{CoulombRatio, Energy, Finding, Misprints, Right};
 use crate::report::figure::{Axis, Chart, Figure, Style};
-use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
+use crate::report::{Cell, Rows, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &Misprints) -> Section {
-    Section::new("misprints", "What the misprints of the contact law do", Part::Physics)
+    Section::new("misprints", "What the misprints of the contact law do")
         .asks("Which equations of the contact law cannot be right as printed?")
         .expects(expected(data))
         .answers(answer(data))
@@ -90,7 +90,13 @@ fn table(data: &Misprints) -> Table {
         .text("as it runs", |finding| finding.ours)
         .text("what shows it", |finding| finding.quantity)
         .text("with", |finding| &finding.setting)
-        .text("right", |finding| right(finding.right))
+        .text("right is", |finding| match finding.right {
+            Right::Equal(_) => "equal to",
+            Right::AtMost(_) => "at most",
+        })
+        .cell("right", |finding| match finding.right {
+            Right::Equal(value) | Right::AtMost(value) => number(value),
+        })
         .cell("printed gives", |finding| number(finding.by_printed))
         .cell("ours gives", |finding| number(finding.by_ours))
         .table("misprints", "Equations that do not work as printed")
@@ -156,7 +162,7 @@ mod tests {
         assert!(details.contains("12.250 as printed"), "{details}");
         let table = &section.tables[0];
         assert!(table.rows.iter().all(|row| row.len() == table.columns.len()));
-        assert_eq!(table.rows[1][6], Cell::Number(12.25, 3));
+        assert_eq!(table.rows[1][7], Cell::Number(12.25, 3));
     }
 
     #[test]

@@ -1,11 +1,10 @@
 //! Figures 5 and 6 of the source: grains in a pipe.
 
-use crate::laboratory::lattice_md::study::pipe_flow::{FANO_BIN, MAP_BIN, PipeFlow};
-use crate::report;
+use crate::laboratory::lattice_md::study::pipe_flow::{FANO_BIN, LOOK, MAP_BIN, PipeFlow};
 use crate::report::figure::{Axis, Chart, Drawing, Figure, Guide, Map, Picture, Series, Shape, Style, Tint};
 use crate::report::section::{Film, Frame};
 use crate::report::{Rows, Section, Table, Verdict};
-use stripmine_physics::number::{counted, range};
+use stripmine_physics::number::{counted, range, significant};
 use stripmine_physics::observe::waves::Directions;
 use stripmine_physics::particles::{Kind, Particle, Particles};
 
@@ -26,11 +25,11 @@ pub struct Showing {
     pub snapshots: usize,
 }
 
-/// Waves run both ways where each way has this share of the late spectral power at least (%).
-const BOTH_WAYS: f64 = 10.0;
+/// Waves run a way where its share of the late spectral power is this many times that of the control, in which no wave runs, at least.
+const BEYOND_CONTROL: f64 = 2.0;
 
-/// What came out of runs that differ by their seed, the first of which kept its frames.
-pub fn section(showing: Showing, flows: &[PipeFlow]) -> Section {
+/// What came out of runs that differ by their seed, the first of which kept its frames, and of the control.
+pub fn section(showing: Showing, flows: &[PipeFlow], control: &PipeFlow) -> Section {
     let first = &flows[0];
     let late: Vec<f64> = flows.iter().map(|flow| flow.late(&flow.fano)).collect();
     let waves = late.iter().filter(|&&fano| fano > 1.0).count();
@@ -39,38 +38,55 @@ pub fn section(showing: Showing, flows: &[PipeFlow]) -> Section {
         100.0 * flows.iter().map(|flow| share(&flow.directions)).sum::<f64>() / flows.len() as f64
     };
     let seen = (!first.frames.is_empty()).then(|| [piece(first), snapshots(showing, first)]);
-    let [back, forth, standing] = [
-        mean(|directions| directions.back),
-        mean(|directions| directions.forth),
-        mean(|directions| directions.standing),
-    ];
-    let ways = [back, forth].iter().all(|share| *share >= BOTH_WAYS);
+    let shares: [f64; 3] = [mean(|it| it.back), mean(|it| it.forth), mean(|it| it.standing)];
+    let [back, forth, standing] = shares;
+    // The least over the runs, in multiples of the control's.
+    let beyond = |power: fn(&Directions) -> f64| {
+        let least = flows.iter().map(|flow| power(&flow.directions)).fold(f64::INFINITY, f64::min);
+        least / power(&control.directions)
+    };
+    let ways = [beyond(|it| it.power * it.back), beyond(|it| it.power * it.forth)];
+    let runs_both = ways.iter().all(|ratio| *ratio >= BEYOND_CONTROL);
     let fano = format!(
-        "The Fano factor (above 1 means waves) rises from {:.2} to {} in {waves} of {} of {lasting:.0} s.",
+        "The Fano factor (of waves above 1) rises from {:.2} to {} in {waves} of {} of {lasting:.0} s.",
         first.fano[0],
         range(late.iter().copied(), 3),
         counted(flows.len(), "run", "runs"),
     );
     let both = format!(
-        "{}: {back:.0} % of the late spectral power runs against gravity, {forth:.0} % with it.",
-        if ways { "Waves run both ways" } else { "Hardly a wave runs both ways" },
+        "{}: {back:.0} % of the late spectral power runs against gravity and {forth:.0} % with it, which is {} and {} times that of an elastic gas \
+         without gravity.",
+        match ways.map(|ratio| ratio >= BEYOND_CONTROL) {
+            [true, true] => "Waves run both ways",
+            [true, false] => "Waves run against gravity only",
+            [false, true] => "Waves run with gravity only",
+            [false, false] => "Waves run no way",
+        },
+        significant(ways[0], 2),
+        significant(ways[1], 2),
     );
-    Section::new(showing.name, showing.title, report::Part::Physics)
+    Section::new(showing.name, showing.title)
         .asks(showing.question)
-        .expects("BP93, section 4, figures 5 and 6: grains fall through a rough vertical pipe; started evenly spread they form density waves \
-                  that move both ways.")
+        .expects("BP93, section 4, figures 5 and 6, of which no numbers are printed: grains in a rough vertical pipe, started evenly spread, form \
+                  density waves that move both ways.")
         .answers(if showing.asks_ways { format!("{both} {fano}") } else { format!("{fano} {both}") })
-        .verdict(Verdict::of_claims(&[waves == flows.len(), ways]))
-        .details([format!(
-            "Of the late spectral power {standing:.0} % stands. The strongest Fourier mode grows from {:.3} to {:.2}; the mean velocity is {:.3} \
-             m/s.",
-            first.strongest_mode[0],
-            first.late(&first.strongest_mode),
-            first.late(&first.flow),
-        )])
+        .verdict(Verdict::of_claims(&[waves == flows.len(), runs_both]))
+        .details([
+            format!(
+                "Of the late spectral power {standing:.0} % stands. The strongest Fourier mode grows from {:.3} to {:.2}; the mean velocity is {:.3} \
+                 m/s.",
+                first.strongest_mode[0],
+                first.late(&first.strongest_mode),
+                first.late(&first.flow),
+            ),
+            format!(
+                "A wave runs a way where its power there is at least {BEYOND_CONTROL:.0} times that of the control in every run. A wave against gravity \
+                 that grows and decays also has power with gravity: how much of it is so is not known."
+            ),
+        ])
         .figures(seen.into_iter().flatten())
         .figures([map(first), over_time(flows)])
-        .tables([table(flows)])
+        .tables([table(flows, control)])
         .film(film(showing, first))
         .seeds(flows.iter().map(|flow| flow.seed))
 }
@@ -126,34 +142,37 @@ fn piece(flow: &PipeFlow) -> Figure {
     .caption("Grey discs make the walls; the shade of a grain is the speed of its rim, counter-clockwise positive. Gravity pulls to the right.")
 }
 
-/// Figure 6: the whole pipe again and again, one snapshot below the other.
+/// Figure 6: the whole pipe again and again, look after look, the first at the bottom.
 fn snapshots(showing: Showing, flow: &PipeFlow) -> Figure {
-    let shown: Vec<usize> = stills(showing, flow);
+    let first = first_look(showing, flow);
+    let shown: Vec<usize> = (first..flow.frames.len()).take(showing.snapshots).collect();
     let half = flow.frames.first().map_or(0.05, half_height);
-    let pitch = (2.6 * half).max(flow.length / 45.0);
+    let pitch = (2.6 * half).max(flow.length / 32.0);
     let left = 0.12 * flow.length;
     let mut shapes = vec![];
     for (row, &at) in shown.iter().enumerate() {
-        let down = -(row as f64 * pitch);
+        let up = row as f64 * pitch;
         let words = format!("{:.2} s", flow.times[at]);
-        shapes.push(Shape::Text { centre: [-0.5 * left, down], height: 0.45 * pitch, words });
+        shapes.push(Shape::Text { centre: [-0.5 * left, up], height: 0.45 * pitch, words });
         for rim in [-half, half] {
-            shapes.push(Shape::Line { ends: [[0.0, down + rim], [flow.length, down + rim]] });
+            shapes.push(Shape::Line { ends: [[0.0, up + rim], [flow.length, up + rim]] });
         }
         let grains = flow.frames[at].grains().iter();
-        shapes.extend(grains.map(|disc| shape(disc, [0.0, down], Tint::Hue(0))));
+        shapes.extend(grains.map(|disc| shape(disc, [0.0, up], Tint::Hue(0))));
     }
-    let below = -(shown.len() as f64 - 0.4) * pitch;
+    let top = (shown.len() as f64 - 0.4) * pitch;
     Picture::Drawing(Drawing {
-        window: [[-left, below], [1.01 * flow.length, 0.6 * pitch]],
+        window: [[-left, -0.6 * pitch], [1.01 * flow.length, top]],
         width: 1200.0,
         shapes,
         shades: None,
         guide: guide(),
     })
     .figure("figure_6", "Snapshots of the pipe: crowds of grains drift and dissolve")
-    .caption("One below the other, the earliest on top; gravity pulls to the right, what leaves on the right comes in on the left. Every grain \
-              is a dot.")
+    .caption(format!(
+        "Every {LOOK} s as in the source, the earliest at the bottom; gravity pulls to the right, what leaves on the right comes in on the left. \
+         Every grain is a dot."
+    ))
 }
 
 /// Metres, and gravity along the pipe, which lies.
@@ -161,11 +180,9 @@ fn guide() -> Option<Guide> {
     Some(Guide { unit: "m".into(), gravity: Some([1.0, 0.0]) })
 }
 
-/// The looks that are drawn: evenly spread from the time asked on.
-fn stills(showing: Showing, flow: &PipeFlow) -> Vec<usize> {
-    let first = flow.times.partition_point(|&time| time < showing.from - 1e-9).min(flow.frames.len());
-    let stride = (flow.frames.len() - first).div_ceil(showing.snapshots.max(1)).max(1);
-    (first..flow.frames.len()).step_by(stride).collect()
+/// The look from which on snapshots are drawn.
+fn first_look(showing: Showing, flow: &PipeFlow) -> usize {
+    flow.times.partition_point(|&time| time < showing.from - 1e-9).min(flow.frames.len())
 }
 
 /// Rows of a map that a picture still resolves.
@@ -209,22 +226,25 @@ fn over_time(flows: &[PipeFlow]) -> Figure {
         .caption(format!("Bins of {FANO_BIN:.0} mean radii."))
 }
 
-fn table(flows: &[PipeFlow]) -> Table {
+fn table(flows: &[PipeFlow], control: &PipeFlow) -> Table {
     let overrides = flows[0].overrides.iter().map(|text| format!(", {text}")).collect::<String>();
-    Rows::of(flows)
-        .count("seed", |flow| flow.seed)
-        .number("Fano at the start", 2, |flow| flow.fano[0])
-        .number("Fano late", 2, |flow| flow.late(&flow.fano))
-        .number("mode at the start", 3, |flow| flow.strongest_mode[0])
-        .number("mode late", 3, |flow| flow.late(&flow.strongest_mode))
-        .number("mean velocity late (m/s)", 3, |flow| flow.late(&flow.flow))
-        .number("power against gravity (%)", 0, |flow| 100.0 * flow.directions.back)
-        .number("standing (%)", 0, |flow| 100.0 * flow.directions.standing)
-        .number("with gravity (%)", 0, |flow| 100.0 * flow.directions.forth)
-        .number("deepest penetration, where beyond the warned", 3, |flow| {
+    let named = flows.iter().map(|flow| ("pipe", flow)).chain([("elastic gas, no gravity", control)]);
+    Rows::of(named)
+        .text("run", |(name, _)| *name)
+        .count("seed", |(_, flow)| flow.seed)
+        .number("Fano at the start", 2, |(_, flow)| flow.fano[0])
+        .number("Fano late", 2, |(_, flow)| flow.late(&flow.fano))
+        .number("mode at the start", 3, |(_, flow)| flow.strongest_mode[0])
+        .number("mode late", 3, |(_, flow)| flow.late(&flow.strongest_mode))
+        .number("mean velocity late (m/s)", 3, |(_, flow)| flow.late(&flow.flow))
+        .number("spectral power (independent grains: 1)", 2, |(_, flow)| flow.directions.power)
+        .number("power against gravity (%)", 0, |(_, flow)| 100.0 * flow.directions.back)
+        .number("standing (%)", 0, |(_, flow)| 100.0 * flow.directions.standing)
+        .number("with gravity (%)", 0, |(_, flow)| 100.0 * flow.directions.forth)
+        .number("deepest penetration, where beyond the warned", 3, |(_, flow)| {
             (flow.deepest > 0.0).then_some(flow.deepest)
         })
-        .text("final state (CRC-32)", |flow| &flow.checksum)
+        .text("final state, CRC-32", |(_, flow)| format!("0x{}", flow.checksum))
         .table("runs", format!("Runs of {}{overrides}", flows[0].scene))
         .note(format!(
             "{} grains; late is the mean over the second half of the run, whose spectral power at wavelengths from 80 mean radii on is divided \
@@ -245,7 +265,7 @@ const FRAMES: usize = 41;
 fn film(showing: Showing, flow: &PipeFlow) -> Option<Film> {
     let start = flow.frames.first()?;
     let half = half_height(start);
-    let shown = stills(Showing { snapshots: FRAMES, ..showing }, flow);
+    let shown: Vec<usize> = (first_look(showing, flow)..flow.frames.len()).take(FRAMES).collect();
     let frames = shown.iter().map(|&at| Frame {
         time: flow.times[at],
         discs: flow.frames[at]

@@ -5,13 +5,13 @@ use crate::laboratory::lattice_md::study::precision::forces::ForceError;
 use crate::laboratory::lattice_md::study::precision::trajectories::{self, Divergence};
 use crate::laboratory::lattice_md::study::precision::{EQUILIBRATION, PACKING_FRACTIONS, Precisions, SEEDS};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Cell, Part, Rows, Section, Table};
+use crate::report::{Cell, Rows, Section, Table};
 use crate::statistics::Spread;
 use stripmine_physics::number::{in_tens, range};
 
 /// What came out.
 pub fn section(data: &Precisions) -> Section {
-    Section::new("precision", "What single precision costs", Part::Physics)
+    Section::new("precision", "What single precision costs")
         .asks("What do fewer digits than 64 bits cost in forces, energy and trajectories?")
         .expects("The source used 64 bits only; single precision rounds to 6e-8 of a number.")
         .answers(answer(data))
@@ -159,14 +159,9 @@ fn trajectory_figure(rivals: &[Divergence]) -> Figure {
         ))
 }
 
-/// A number whose size says more than its digits.
-fn scientific(value: f64) -> String {
-    format!("{value:.1e}")
-}
-
-fn with_error(spread: &Spread) -> String {
-    let error = spread.error.map_or(String::new(), |error| format!(" ± {error:.1e}"));
-    format!("{:.1e}{error}", spread.mean)
+/// A relative error in millionths.
+fn millionths(it: &Spread) -> Cell {
+    Cell::with_error(1e6 * it.mean, it.error.map(|error| 1e6 * error), 2)
 }
 
 fn force_table(errors: &[ForceError]) -> Table {
@@ -176,8 +171,8 @@ fn force_table(errors: &[ForceError]) -> Table {
         .number("side (diameters)", 0, |error| error.side)
         .number("contacts a disc", 3, |error| error.contacts)
         .text("variant", |error| error.variant.name)
-        .text("rms error", |error| scientific(error.rms))
-        .text("largest error", |error| scientific(error.largest))
+        .short("rms error", |error| error.rms)
+        .short("largest error", |error| error.largest)
         .table("forces", "Errors of the forces on one configuration")
         .note(format!("The bench scene after {EQUILIBRATION} steps; errors of a disc's force, over the root of the mean square of all forces, \
                        against the fast engine in f64."))
@@ -189,9 +184,9 @@ fn energy_table(cases: &[EnergyCase]) -> Table {
         .text("integrator", |case| case.stepping.name)
         .number("dt", 4, |case| case.stepping.dt)
         .text("precision", |case| case.precision)
-        .text("largest deviation", |case| with_error(&case.largest))
-        .text("deviation at the end", |case| with_error(&case.last))
-        .text("drift", |case| with_error(&case.drift))
+        .cell("largest deviation (10⁻⁶)", |case| millionths(&case.largest))
+        .cell("deviation at the end (10⁻⁶)", |case| millionths(&case.last))
+        .cell("drift (10⁻⁶)", |case| millionths(&case.drift))
         .table("energy", format!("The energy over {steps} undamped steps"))
         .note(format!(
             "Relative to the energy at the first look, after {} steps; looks are {} steps apart. Drift: the change over {steps} steps by the \
@@ -207,17 +202,15 @@ fn trajectory_table(rivals: &[Divergence]) -> Table {
         let look = rival.distance.iter().position(|&distance| distance >= trajectories::LOST)?;
         Some(rival.times[look])
     };
-    let rate = |rate: &Spread| {
-        let error = rate.error.map_or(String::new(), |error| format!(" ± {error:.3}"));
-        format!("{:.3}{error}", rate.mean)
-    };
     Rows::of(rivals)
         .number("packing fraction", 2, |rival| rival.packing_fraction)
         .text("variant", |rival| named(rival))
-        .cell(format!("distance after {} steps (diameters)", trajectories::LOOK), |rival| {
-            rival.distance.first().map(|&distance| scientific(distance))
+        .short(format!("distance after {} steps (diameters)", trajectories::LOOK), |rival| {
+            rival.distance.first().copied()
         })
-        .text("rate of growth (1/time)", |rival| rate(&rival.rate))
+        .cell("rate of growth (1/time)", |rival| {
+            Cell::with_error(rival.rate.mean, rival.rate.error, 3)
+        })
         .number(format!("time until {} diameters", trajectories::LOST), 1, |rival| lost(rival))
         .table("trajectories", "How fast trajectories part from those of the fast engine in f64")
         .note(format!(

@@ -2,7 +2,8 @@
 
 use crate::laboratory::lattice_md::study::threads::{Scaling, Threads};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Cell, Part, Rows, Section, Table};
+use crate::report::{Cell, Rows, Section, Table};
+use stripmine_physics::number::{counted, range};
 
 /// How threads are used, in the order of a row.
 const VARIANTS: [&str; 3] = ["one thread", "all threads on one scene", "a scene on each thread"];
@@ -13,19 +14,20 @@ fn variants(scene: &Scaling) -> [&[f64]; 3] {
 
 /// What came out.
 pub fn section(data: &Threads) -> Section {
-    let named = data.scenes.iter().map(|scene| {
-        format!(
-            "{} discs at packing fraction {}: {:.2} times one thread, where scenes side by side reach {:.2}",
-            count(scene),
-            scene.packing_fraction,
-            scene.speedup(),
-            scene.ceiling()
-        )
+    let least = data.scenes.iter().min_by(|a, b| a.speedup().total_cmp(&b.speedup()));
+    let least = least.map_or(String::new(), |scene| {
+        format!(" The least is {} discs at packing fraction {}.", count(scene), scene.packing_fraction)
     });
-    Section::new("threads", "What threads give, and what the machine has to give", Part::Host)
+    Section::new("threads", "What threads give, and what the machine has to give")
         .asks("How much faster are several threads, and how much faster can they be on this machine?")
         .expects("No source says: BP93's machine had one processor. The ceiling is what scenes side by side reach, one a thread.")
-        .answers(format!("{}.", named.collect::<Vec<_>>().join("; ")))
+        .answers(format!(
+            "{} threads on one scene are {} times as fast as one, where scenes side by side reach {} ({}).{least}",
+            data.threads,
+            range(data.scenes.iter().map(Scaling::speedup), 3),
+            range(data.scenes.iter().map(Scaling::ceiling), 3),
+            counted(data.scenes.len(), "scene", "scenes")
+        ))
         .details([format!(
             "Fast lattice, f64, whole steps with friction, {}, {} threads. Every scene has the same bits on any number of threads.",
             data.instruction_set, data.threads

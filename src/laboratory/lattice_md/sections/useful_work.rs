@@ -3,7 +3,7 @@
 use crate::laboratory::lattice_md::study::density_cost::CEILING;
 use crate::laboratory::lattice_md::study::useful_work::{Share, UsefulWork};
 use crate::report::figure::{Axis, Band, Chart, Figure, Style};
-use crate::report::{Part, Rows, Section, Table};
+use crate::report::{Rows, Section, Table, Verdict};
 
 /// What came out.
 pub fn section(data: &UsefulWork) -> Section {
@@ -21,9 +21,10 @@ pub fn section(data: &UsefulWork) -> Section {
             }
         )
     });
-    Section::new("useful-work", "Useful work: operations on real contacts", Part::Machine)
+    Section::new("useful-work", "Useful work: operations on real contacts")
         .asks("How many of the counted operations act on a real contact?")
         .expects("BP93 counts operations, not how many of them meet a contact.")
+        .verdict(Verdict::Computed)
         .answers(said)
         .figures([figure(data)])
         .tables([table(data)])

@@ -1,12 +1,12 @@
 //! How much dissipation makes waves? The pipe over γ_N, and controls that must stay even.
 
 use super::StudyError;
-use super::pipe_flow::{PipeFlow, Question, pipe_flow};
+use super::pipe_flow::{PipeFlow, Question, elastic, pipe_flow};
 use crate::results::{Meter, Progress};
 use crate::statistics::Spread;
 use serde::Serialize;
-use stripmine_physics::method::lattice_md::keys::{FRICTION, NORMAL_DAMPING, SHEAR_DAMPING};
-use stripmine_physics::scene::{DT, GRAVITY, Overrides};
+use stripmine_physics::method::lattice_md::keys::NORMAL_DAMPING;
+use stripmine_physics::scene::Overrides;
 
 /// One case over its seeds.
 #[derive(Clone, Debug, Serialize)]
@@ -58,9 +58,7 @@ pub fn damping(seeds: &[u64], progress: Progress<'_>) -> Result<Damping, StudyEr
     let scan = SCAN.map(|damping| {
         (format!("γ_N = {damping:.0} 1/s"), damping, Overrides::new().set(&NORMAL_DAMPING, damping))
     });
-    let elastic = Overrides::new().set(&GRAVITY, [0.0; 2]).set(&NORMAL_DAMPING, 0.0).set(&SHEAR_DAMPING, 0.0);
-    let elastic = elastic.set(&FRICTION, 0.0).set(&DT, 5e-5);
-    let elastic = ("elastic gas without gravity".to_owned(), 0.0, elastic);
+    let elastic = ("elastic gas without gravity".to_owned(), 0.0, elastic(&Overrides::new()));
     let cases: Vec<_> = scan.into_iter().chain([elastic]).collect();
     let runs: Vec<(usize, u64)> =
         (0..cases.len()).flat_map(|case| seeds.iter().map(move |&seed| (case, seed))).collect();

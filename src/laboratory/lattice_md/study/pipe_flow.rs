@@ -3,13 +3,15 @@
 use super::StudyError;
 use serde::Serialize;
 use stripmine_physics::method::lattice_md::Document;
-use stripmine_physics::method::lattice_md::keys::{EXECUTION, SEARCH};
+use stripmine_physics::method::lattice_md::keys::{
+    EXECUTION, FRICTION, NORMAL_DAMPING, SEARCH, SHEAR_DAMPING,
+};
 use stripmine_physics::method::lattice_md::options::By;
 use stripmine_physics::method::lattice_md::{assemble, model};
 use stripmine_physics::observe::waves::{Directions, directions, fano, histogram, strongest_mode};
 use stripmine_physics::observe::{Observation, Scenery};
 use stripmine_physics::particles::Particles;
-use stripmine_physics::scene::{Overrides, SEED};
+use stripmine_physics::scene::{DT, GRAVITY, Overrides, SEED};
 
 /// What to run: a pipe scene with overrides, and for how long.
 #[derive(Clone, Debug)]
@@ -32,6 +34,12 @@ pub const FANO_BIN: f64 = 20.0;
 pub const MAP_BIN: f64 = 5.0;
 /// The shortest wavelength looked for, in mean radii.
 pub const SHORTEST_WAVE: f64 = 80.0;
+
+/// What makes of a pipe a control without waves: an elastic gas without gravity, whose contacts need the shorter step (s).
+pub fn elastic(pipe: &Overrides) -> Overrides {
+    let gas = pipe.clone().set(&GRAVITY, [0.0; 2]).set(&NORMAL_DAMPING, 0.0).set(&SHEAR_DAMPING, 0.0);
+    gas.set(&FRICTION, 0.0).set(&DT, 5e-5)
+}
 
 /// What came of one run.
 #[derive(Clone, Debug, Serialize)]

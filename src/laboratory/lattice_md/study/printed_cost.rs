@@ -71,7 +71,7 @@ pub struct Fitted {
     /// Operations.
     pub nop: u64,
     /// Nanoseconds of a clock period: what an element more costs an operation. Lowest, middle and highest over parts of the
-    /// samples.
+    /// samples, and over fits that leave out one length.
     pub period_ns: [f64; 3],
     /// D, likewise.
     pub depth: [f64; 3],
@@ -302,20 +302,25 @@ fn fit(part: &'static str, timed: &[Timed]) -> Fitted {
     let off = |line: [f64; 2], timed: &Timed| {
         (timed.ns / (line[0] * (timed.n as f64 + line[1]) * nop as f64) - 1.0).abs()
     };
-    let line = |count: usize, ns: &dyn Fn(&Timed) -> f64| {
+    // Through the shortest, but for the one left out.
+    let line = |count: usize, left_out: Option<usize>, ns: &dyn Fn(&Timed) -> f64| {
+        let kept = points[..count].iter().enumerate().filter(|(at, _)| Some(*at) != left_out);
         let points: Vec<(f64, f64)> =
-            points[..count].iter().map(|timed| (timed.n as f64, ns(timed) / nop as f64)).collect();
+            kept.map(|(_, timed)| (timed.n as f64, ns(timed) / nop as f64)).collect();
         straight(&points)
     };
     let worst = |count: usize| {
-        let line = line(count, &|timed| timed.ns);
+        let line = line(count, None, &|timed| timed.ns);
         points[..count].iter().map(|timed| off(line, timed)).fold(0.0, f64::max)
     };
     let held = (3..=points.len()).rev().find(|&count| worst(count) <= HOLDS).unwrap_or(points.len().min(3));
-    let middle = line(held, &|timed| timed.ns);
-    let of_parts: Vec<[f64; 2]> = (0..PARTS).map(|part| line(held, &|timed| timed.of_parts[part])).collect();
+    let middle = line(held, None, &|timed| timed.ns);
+    let of_parts = (0..PARTS).map(|part| line(held, None, &|timed| timed.of_parts[part]));
+    // Two points have a line that says nothing of the others.
+    let without = (0..held).filter(|_| held > 3).map(|at| line(held, Some(at), &|timed| timed.ns));
+    let others: Vec<[f64; 2]> = of_parts.chain(without).collect();
     let ends = |at: usize| {
-        let spread = Spread::of(&of_parts.iter().map(|line| line[at]).collect::<Vec<f64>>());
+        let spread = Spread::of(&others.iter().map(|line| line[at]).collect::<Vec<f64>>());
         [spread.lowest.min(middle[at]), middle[at], spread.highest.max(middle[at])]
     };
     let holds_to = points.get(held.saturating_sub(1)).map_or(0, |timed| timed.n);

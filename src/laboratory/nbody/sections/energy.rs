@@ -2,7 +2,7 @@
 
 use crate::laboratory::nbody::study::energy::{Energies, KNOWN, STEPS};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Cell, Part, Rows, Section, Table, Verdict};
+use crate::report::{Cell, Rows, Section, Table, Verdict};
 use stripmine_physics::method::nbody::schemes::SchemeName;
 use stripmine_physics::method::nbody::starts::ORBIT;
 use stripmine_physics::number::in_tens;
@@ -29,7 +29,7 @@ pub fn section(data: &Energies) -> Section {
         let said = own.map(|it| it.error.map_or("lost".to_owned(), |error| in_tens(error, 2)));
         said.collect::<Vec<_>>().join(", ")
     };
-    Section::new("nbody-energy", "Bodies: what integrators do to an orbit", Part::Physics)
+    Section::new("nbody-energy", "Bodies: what integrators do to an orbit")
         .asks("How well does each integrator keep the energy of an orbit, and what do the source's missing ½ and its damping do?")
         .expects(format!(
             "The largest |ΔE/E| of {} schemes along 100 orbits of eccentricity 0.5, as other programs have it. PWP says that its scheme keeps \
@@ -104,9 +104,9 @@ fn table(data: &Energies) -> Table {
     };
     let known = |scheme: &str, place: usize| {
         let known = KNOWN.iter().find(|(name, _)| name.word() == scheme);
-        known.map_or(String::new(), |(_, errors)| match errors[place] {
-            known if known.is_finite() => format!("{known:.1e}"),
-            _ => "rounding".into(),
+        known.map_or(Cell::Nothing, |(_, errors)| match errors[place] {
+            known if known.is_finite() => Cell::Short(known),
+            _ => Cell::from("rounding"),
         })
     };
     // Between the shortest steps whose errors are no rounding.
@@ -115,16 +115,16 @@ fn table(data: &Energies) -> Table {
         let errors: Vec<f64> = errors.filter(|error| (ROUNDING..0.5).contains(error)).collect();
         match errors.as_slice() {
             [.., a, b] => Cell::Number((a / b).log2() / 2.0, 2),
-            _ => Cell::from(""),
+            _ => Cell::Nothing,
         }
     };
     let mut rows = Rows::of(schemes(data)).text("scheme", |scheme| *scheme);
     for (place, steps) in STEPS.into_iter().enumerate() {
         rows = rows
-            .text(format!("{steps} steps"), |scheme| {
-                of(scheme, steps).map_or("lost".into(), |error| format!("{error:.1e}"))
+            .cell(format!("{steps} steps"), |scheme| {
+                of(scheme, steps).map_or(Cell::from("lost"), Cell::Short)
             })
-            .text("known", |scheme| known(scheme, place));
+            .cell("known", |scheme| known(scheme, place));
     }
     rows.cell("order", |scheme| order(scheme))
         .table("errors", "Largest |ΔE/E| along 100 orbits, by steps of an orbit")

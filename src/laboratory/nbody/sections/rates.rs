@@ -2,7 +2,7 @@
 
 use crate::laboratory::nbody::study::rates::{Rate, Rates};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::{Part, Rows, Section, Table, Verdict};
+use crate::report::{Rows, Section, Table, Verdict};
 use stripmine_physics::number::{counted, in_tens};
 
 /// What came out.
@@ -21,7 +21,7 @@ pub fn section(data: &Rates) -> Section {
     };
     let largest = data.rates.last().map_or(0, |it| it.bodies);
     let scaling = data.rates.iter().filter(|it| it.bodies == largest).map(|it| it.rates[1] / it.rates[0]);
-    Section::new("nbody-rates", "Bodies: interactions a second", Part::Host)
+    Section::new("nbody-rates", "Bodies: interactions a second")
         .asks("How many interactions a second, at which error of the forces?")
         .expects("Our aim: 13·10⁹ directed interactions a second (N² counted) in single precision at a force error of 10⁻⁶, 5·10⁹ in double at \
                   4·10⁻¹⁵, on a core of 4.1 GHz with AVX-512. Best published kernels there: 7.3·10⁹ at 9·10⁻⁷ and 2.8·10⁹ at 2·10⁻¹⁵.")
@@ -65,8 +65,8 @@ fn table(data: &Rates) -> Table {
         .number("1 thread (10⁹/s)", 2, |it| it.rates[0])
         .number("2 threads (10⁹/s)", 2, |it| it.rates[1])
         .number("ratio", 2, |it| it.rates[1] / it.rates[0])
-        .text("force error", |it| format!("{:.1e}", it.error[0]))
-        .text("with rounded masses", |it| format!("{:.1e}", it.error[1]))
+        .short("force error", |it| it.error[0])
+        .short("with rounded masses", |it| it.error[1])
         .table("rates", "Directed interactions a second, N² counted")
         .note("Medians of alternating repeats; the time of a whole evaluation with all conversions. Force error: that of the kernel, for \
                positions as it sees them, of 512 bodies.")
@@ -77,7 +77,7 @@ fn conserving(data: &Rates) -> Table {
         .text("forces", |it| it.precision)
         .text("arithmetic", |it| it.arithmetic)
         .count("steps of a unit of time", |it| it.steps)
-        .text("|ΔE/E|", |it| format!("{:.1e}", it.error))
+        .short("|ΔE/E|", |it| it.error)
         .table(
             "conserving",
             "Energy error of a Plummer sphere of 1024 bodies after two units of time, leapfrog",

@@ -1,10 +1,10 @@
 //! A cold sphere that falls in on itself.
 
 use crate::laboratory::running::Running;
-use crate::results::Progress;
+use crate::results::{Meter, Progress};
 use crate::study::StudyError;
 use serde::Serialize;
-use stripmine_physics::method::nbody::keys::COUNT;
+use stripmine_physics::method::nbody::keys::{COUNT, SEED};
 use stripmine_physics::particles::{Particle, Particles};
 use stripmine_physics::scene::Overrides;
 
@@ -15,8 +15,10 @@ const LOOKS: u64 = 320;
 const BETWEEN: u64 = 8;
 /// From this time on the bodies that are bound are looked at: they have swung several times.
 pub const LATE: f64 = 6.0;
-/// Bodies of the film.
+/// Bodies that are shown.
 const SHOWN: usize = 700;
+/// Seeds of the start.
+pub const SEEDS: [u64; 4] = [1, 2, 3, 4];
 
 /// The sphere at a moment.
 #[derive(Clone, Debug, Serialize)]
@@ -49,21 +51,29 @@ pub struct Bound {
     pub clausius_ratio: f64,
 }
 
-/// What came out.
+/// A sphere.
 #[derive(Clone, Debug, Serialize)]
 pub struct Collapse {
+    /// Seed of its start.
+    pub seed: u64,
     /// Bound bodies at late moments.
     pub bound: Vec<Bound>,
     /// Moments, from the start on.
     pub moments: Vec<Moment>,
 }
 
-/// Follows the sphere.
+/// Follows a sphere of each seed.
 ///
 /// # Errors
-/// [`StudyError`] if the scene breaks.
-pub fn collapse(progress: Progress<'_>) -> Result<Collapse, StudyError> {
-    let mut running = Running::timed("cold-collapse", &Overrides::new().set(&COUNT, BODIES))?;
+/// [`StudyError`] if a scene breaks.
+pub fn collapses(progress: Progress<'_>) -> Result<Vec<Collapse>, StudyError> {
+    let meter = Meter::new(SEEDS.len() as f64, progress);
+    meter.each(&SEEDS, |&seed| collapse(seed))
+}
+
+fn collapse(seed: u64) -> Result<Collapse, StudyError> {
+    let mut running =
+        Running::timed("cold-collapse", &Overrides::new().set(&COUNT, BODIES).set(&SEED, seed))?;
     let (mut moments, mut late) = (vec![], vec![]);
     for look in 0..=LOOKS {
         if look > 0 {
@@ -81,9 +91,8 @@ pub fn collapse(progress: Progress<'_>) -> Result<Collapse, StudyError> {
             late.push(bound(time, &particles));
         }
         moments.push(Moment { time, virial_ratio, half_mass_radius, energy_error, momentum, bodies });
-        progress(look as f64 / LOOKS as f64);
     }
-    Ok(Collapse { bound: late, moments })
+    Ok(Collapse { seed, bound: late, moments })
 }
 
 /// The bodies that stay when those whose energy is positive are taken away, again and again.

@@ -13,6 +13,9 @@ const LEAST: f64 = 1e-8;
 /// A logarithmic axis with fewer decades is marked like a linear one, and is one: it would have no two marks.
 const FEWEST_DECADES: f64 = 0.7;
 
+/// Where fewer powers of ten are marked, numbers between them are as well.
+const FEWEST_MARKS: usize = 3;
+
 /// An axis with its ends, in the numbers that the library is given.
 #[derive(Clone, Debug)]
 pub struct Span {
@@ -88,11 +91,14 @@ impl Span {
         // Powers of ten are spelled out only where none of them is long.
         let spelled = low >= -3 && high <= 4;
         let stride = (decades / most).ceil().max(1.0) as i32;
+        let first = libm::log10(self.ends[0]).ceil() as i32 - power;
+        let last = libm::log10(self.ends[1]).floor() as i32 - power;
+        let marked = (first..=last).filter(|raised| raised.rem_euclid(stride) == 0).count();
         TickFormat::Custom(Arc::new(move |number| {
             let raised = exponent(number);
             let factor = (number / libm::pow(10.0, f64::from(raised))).round() as i32;
             let raised = raised - power;
-            if decades >= 2.0 && (factor != 1 || raised.rem_euclid(stride) != 0) {
+            if marked >= FEWEST_MARKS && (factor != 1 || raised.rem_euclid(stride) != 0) {
                 return String::new();
             }
             match factor {

@@ -7,7 +7,7 @@ use super::conclusions::{of_theory, sentences};
 use super::dataset::Stability;
 use super::outcome::Class;
 use crate::console::Failure;
-use crate::report::{Part, Section, csv};
+use crate::report::Section;
 use crate::results::Made;
 use stripmine_physics::number::{counted, range};
 
@@ -34,6 +34,10 @@ fn answer(maps: &[(String, Stability)]) -> String {
     };
     let silent = match wrong {
         0 => "No run comes to an end and is wrong.".to_owned(),
+        _ if unsaid == 0 => format!(
+            "The program says so of {}.",
+            counted(wrong, "run that comes to an end and is wrong", "runs that come to an end and are wrong")
+        ),
         _ => format!(
             "Of {} to an end and {} wrong the program says nothing of {:.1} %.",
             counted(wrong, "run that comes", "runs that come"),
@@ -50,11 +54,12 @@ fn answer(maps: &[(String, Stability)]) -> String {
 /// If the dataset is none that JSON can hold.
 pub fn made(maps: &[(String, Stability)], again: String) -> Result<Made, Failure> {
     let said = maps.iter().map(|(name, data)| format!("`{name}`: {}", sentences(data).join(" ")));
-    let section = Section::new(NAME, "Where the method works", Part::Physics)
+    let section = Section::new(NAME, "Where the method works")
         .asks("From which step on does a method fail, how, and does theory or the program say so beforehand?")
         .expects("The sources state a step, and not how far it is from one that fails. Theory names steps beyond which errors grow.")
         .answers(answer(maps))
         .details(said)
+        .figures(figures::summary(maps))
         .figures(maps.iter().map(|(name, data)| figures::map(name, data)))
         .tables(tables::of(maps))
         .again(again)
@@ -65,11 +70,5 @@ pub fn made(maps: &[(String, Stability)], again: String) -> Result<Made, Failure
         .map(|(name, data)| Ok((name.clone(), serde_json::to_value(data)?)))
         .collect::<serde_json::Result<_>>()
         .map_err(|cause| Failure::writing("JSON")(cause.into()))?;
-    let mut made = Made::new(section, &all)?;
-    for table in [tables::cells(maps), tables::boundaries(maps)] {
-        let mut text = Vec::new();
-        csv::write(&table, &mut text).map_err(Failure::writing("CSV"))?;
-        made = made.with_file(&format!("{}.csv", table.name), String::from_utf8_lossy(&text).into_owned());
-    }
-    Ok(made)
+    Ok(Made::new(section, &all)?.with_tables([tables::cells(maps), tables::boundaries(maps)]))
 }

@@ -13,17 +13,19 @@ pub fn of(maps: &Maps) -> Vec<Table> {
 }
 
 /// Edges as multiples of the scene's own step: the middle, the lowest and the highest over the seeds.
-fn multiples(data: &Stability, edges: &[Edge]) -> (Cell, Option<String>) {
-    let Some([middle, low, high]) = over_seeds(edges) else {
-        let word = match edges {
-            [Edge::Above, ..] if edges.iter().all(|edge| *edge == Edge::Above) => "above the map",
-            [Edge::Below, ..] if edges.iter().all(|edge| *edge == Edge::Below) => "below the map",
-            _ => "not in every seed",
-        };
-        return (Cell::from(word), None);
-    };
-    let range = format!("{:.2} to {:.2}", low / data.step, high / data.step);
-    (Cell::Number(middle / data.step, 2), Some(range))
+fn multiples(data: &Stability, edges: &[Edge]) -> [Cell; 3] {
+    let numbers = over_seeds(edges).map(|steps| steps.map(|step| Cell::Number(step / data.step, 2)));
+    numbers.unwrap_or([const { Cell::Nothing }; 3])
+}
+
+/// Where there is no such edge.
+fn beyond(edges: &[Edge]) -> Option<&'static str> {
+    match edges {
+        _ if over_seeds(edges).is_some() => None,
+        [Edge::Above, ..] if edges.iter().all(|edge| *edge == Edge::Above) => Some("above the map"),
+        [Edge::Below, ..] if edges.iter().all(|edge| *edge == Edge::Below) => Some("below the map"),
+        _ => Some("not in every seed"),
+    }
 }
 
 fn schemes(maps: &Maps) -> Table {
@@ -32,9 +34,12 @@ fn schemes(maps: &Maps) -> Table {
     Rows::of(schemes)
         .text("scene", |(name, ..)| *name)
         .text("integrator", |(.., scheme)| &scheme.scheme)
-        .cell("works up to (own steps)", |(_, data, scheme)| multiples(data, &scheme.edges.works).0)
-        .cell("over the seeds", |(_, data, scheme)| multiples(data, &scheme.edges.works).1)
-        .cell("ends up to (own steps)", |(_, data, scheme)| multiples(data, &scheme.edges.ends).0)
+        .cells(["works up to (own steps)", "lowest seed", "highest seed"], |(_, data, scheme)| {
+            multiples(data, &scheme.edges.works)
+        })
+        .cell("edge of works", |(.., scheme)| beyond(&scheme.edges.works))
+        .cell("ends up to (own steps)", |(_, data, scheme)| multiples(data, &scheme.edges.ends)[0].clone())
+        .cell("edge of ends", |(.., scheme)| beyond(&scheme.edges.ends))
         .number("theory: errors grow beyond (own steps)", 2, |(_, data, scheme)| {
             scheme.theory.map(|(step, _)| step / data.step)
         })
@@ -79,8 +84,8 @@ pub fn cells(maps: &Maps) -> Table {
     Rows::of(cells)
         .text("scene", |(name, ..)| *name)
         .text("parameter", |(_, data, ..)| data.parameter.name)
-        .text("value", |(_, _, value, ..)| format!("{value:e}"))
-        .text("step", |(.., step, _)| format!("{step:e}"))
+        .number("value", 6, |(_, _, value, ..)| **value)
+        .number("step", 6, |(.., step, _)| **step)
         .text("class", |(.., cell)| cell.class.name())
         .text("foreseen", |(.., cell)| foreseen(cell.foreseen))
         .text("warned_by_run", |(.., cell)| cell.warned.join(" "))
@@ -100,22 +105,22 @@ pub fn boundaries(maps: &Maps) -> Table {
         })
     });
     let does = |data: &Stability, edge: &Edge| match edge {
-        Edge::Below => String::new(),
-        Edge::Between([low, _]) => format!("{low:e}"),
-        Edge::Above => format!("{:e}", data.steps[data.steps.len() - 1]),
+        Edge::Below => None,
+        Edge::Between([low, _]) => Some(*low),
+        Edge::Above => Some(data.steps[data.steps.len() - 1]),
     };
     let does_not = |data: &Stability, edge: &Edge| match edge {
-        Edge::Below => format!("{:e}", data.steps[0]),
-        Edge::Between([_, high]) => format!("{high:e}"),
-        Edge::Above => String::new(),
+        Edge::Below => Some(data.steps[0]),
+        Edge::Between([_, high]) => Some(*high),
+        Edge::Above => None,
     };
     Rows::of(edges)
         .text("scene", |(name, ..)| *name)
         .text("parameter", |(_, data, ..)| data.parameter.name)
-        .text("value", |(_, _, value, ..)| format!("{value:e}"))
+        .number("value", 6, |(_, _, value, ..)| **value)
         .text("edge", |(.., kind, _, _)| *kind)
         .number("seed", 0, |(.., seed, _)| **seed as f64)
-        .text("largest_step_that_does", |(_, data, .., edge)| does(data, edge))
-        .text("smallest_step_that_does_not", |(_, data, .., edge)| does_not(data, edge))
+        .number("largest_step_that_does", 6, |(_, data, .., edge)| does(data, edge))
+        .number("smallest_step_that_does_not", 6, |(_, data, .., edge)| does_not(data, edge))
         .table("edges", "Every edge")
 }

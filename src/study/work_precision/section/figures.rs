@@ -2,10 +2,11 @@
 
 use super::super::conclusions::short;
 use super::super::dataset::{Run, Way, WorkPrecision};
+use super::super::front::front;
 use super::super::measures::Measure;
-use crate::report::figure::{Axis, Chart, Figure, Picture, Series, Style};
+use crate::report::figure::{Axis, Band, Chart, Figure, Picture, Point, Series, Style};
 use crate::statistics::median;
-use crate::study::collision::{Collision, OUTCOMES, OutcomeError};
+use crate::study::collision::{Collision, OUTCOMES};
 use crate::study::growth::COMPARABLE;
 use crate::study::observables::Observables;
 
@@ -81,64 +82,111 @@ fn series<'d>(
     })
 }
 
-/// Runs that broke, at the upper edge of a chart, where they would cost as much as their first steps say.
-fn broken(data: &WorkPrecision, is_shown: impl Fn(&Way) -> bool, shown: &[Series]) -> Option<Series> {
+/// Runs that broke, in a band above all errors, where they would cost as much as their first steps say.
+fn broken(data: &WorkPrecision, is_shown: impl Fn(&Way) -> bool, shown: &[Series]) -> Option<(Series, Band)> {
     let highest = shown.iter().flat_map(|series| &series.points).map(|point| point.y).reduce(f64::max)?;
     let broken = data.runs.iter().filter(|run| run.outcome.is_err() && is_shown(&data.ways[run.way]));
-    let points = broken.filter_map(|run| Some((data.ways[run.way].each? / run.step, 4.0 * highest)));
+    let points = broken.filter_map(|run| Some((data.ways[run.way].each? / run.step, 10.0 * highest)));
     let mut points: Vec<_> = points.collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Some(Series::new("failed: see the table", Style::Points, INK, points))
+    let band = Band::of_y("", [4.0 * highest, 25.0 * highest]);
+    (!points.is_empty()).then(|| (Series::new("failed: no error", Style::Points, INK, points), band))
 }
 
-/// A horizontal line across what is shown.
-fn level(name: &str, y: f64, shown: &[Series]) -> Option<Series> {
-    let x = || shown.iter().flat_map(|series| &series.points).map(|point| point.x);
-    let ends = [x().reduce(f64::min)?, x().reduce(f64::max)?];
-    (y > 0.0).then(|| Series::new(name, Style::Dashed, INK, ends.map(|x| (x, y))))
-}
+/// Ways that have a name of their own in a picture; the others are grey.
+const NAMED: usize = 4;
 
 /// Error over cost, for every scheme and precision with the scene's own search and execution.
 fn diagram(file: &str, name: &str, data: &WorkPrecision, measure: Measure) -> Option<Figure> {
     let is_shown = |way: &Way| way.is_primary;
     let schemes = || data.ways.iter().map(|way| way.scheme.clone());
-    let mut all: Vec<Series> = series(
-        data,
-        measure,
-        is_shown,
-        |way| format!("{} {}", way.scheme, way.digits),
-        move |way| place(schemes(), &way.scheme),
-        Run::cost,
-    )
-    .collect();
     let floor = data.reference.floor.get(&measure).copied().unwrap_or(0.0);
-    let more = [
-        front_of(data, measure),
-        (measure == Measure::Position)
-            .then(|| level("a tenth of a radius: parted", COMPARABLE, &all))
-            .flatten(),
-        level("error of the reference itself", floor, &all),
-        broken(data, is_shown, &all),
-    ];
-    all.extend(more.into_iter().flatten());
+    let mut all: Vec<(&Way, Series)> = data
+        .ways
+        .iter()
+        .filter(|way| is_shown(way))
+        .filter_map(|way| {
+            let mut own = series(
+                data,
+                measure,
+                |it| it.label == way.label,
+                |way| format!("{} {}", way.scheme, way.digits),
+                move |way| place(schemes(), &way.scheme),
+                Run::cost,
+            );
+            let mut own = own.next()?;
+            // Below the reference's own error nothing is known.
+            own.points.retain(|point| point.y >= floor);
+            (!own.points.is_empty()).then_some((way, own))
+        })
+        .collect();
+    // The front goes through points that are drawn, and against which nothing speaks.
+    let sound: Vec<(f64, f64)> = data
+        .runs
+        .iter()
+        .filter(|run| run.is_sound() && is_shown(&data.ways[run.way]))
+        .filter_map(|run| point(run, measure, Run::cost))
+        .filter(|(_, error)| *error >= floor)
+        .collect();
+    let best: Vec<(f64, f64)> = front(&sound).into_iter().map(|place| sound[place]).collect();
+    let on_front = |it: &Series| it.points.iter().filter(|point| best.contains(&(point.x, point.y))).count();
+    // Those of the front first, then the scene's own, then the most accurate.
+    let least = |it: &Series| it.points.iter().map(|point| point.y).fold(f64::INFINITY, f64::min);
+    all.sort_by(|(a_way, a), (b_way, b)| {
+        let own = |way: &Way| way.label == data.own;
+        on_front(b).cmp(&on_front(a)).then(own(b_way).cmp(&own(a_way))).then(least(a).total_cmp(&least(b)))
+    });
+    let others: Vec<Point> = all.iter().skip(NAMED).flat_map(|(_, it)| it.points.clone()).collect();
+    let unnamed = all.iter().skip(NAMED).map(|(_, it)| it.name.as_str()).collect::<Vec<_>>().join(", ");
+    let mut all: Vec<Series> = all.into_iter().take(NAMED).map(|(_, it)| it).collect();
+    let parted = all.iter().flat_map(|it| &it.points).any(|point| point.y > COMPARABLE)
+        && measure == Measure::Position;
+    all.push(Series::new("others", Style::Points, INK, others));
+    let failed = broken(data, is_shown, &all);
+    all.push(Series::new("Pareto front", Style::Line, INK, best));
+    let highest = all.iter().flat_map(|it| &it.points).map(|point| point.y).fold(0.0, f64::max);
     let (of, error) = match measure {
         Measure::Position => ("position", "error"),
         _ => ("energy", "error of the energy"),
     };
+    let mut chart = Chart::of(axis_of_cost(), axis_of_error(measure, &data.unit));
+    if parted {
+        chart = chart.band(Band::of_y("", [COMPARABLE, 2.0 * highest]));
+    }
+    if let Some((series, band)) = failed {
+        all.push(series);
+        chart = chart.band(band);
+    }
+    let said = [
+        format!(
+            "{} particles over a time of {}; the scene's own step is {}, along each line it doubles from point to point.",
+            data.particles,
+            short(data.duration),
+            short(data.step)
+        ),
+        if unnamed.is_empty() { String::new() } else { format!(" Others: {unnamed}.") },
+        if parted {
+            " On the ground: parted by more than a tenth of a radius.".to_owned()
+        } else {
+            String::new()
+        },
+        if floor > 0.0 {
+            format!(" The reference itself errs by {}; what errs less is not drawn.", short(floor))
+        } else {
+            String::new()
+        },
+        format!(
+            " Cost: the median of the repeats, which differ by {:.0} % in the middle; search and execution as the scene has them ({}). The front \
+             is over the ways that are drawn and against which nothing speaks.",
+            100.0 * spread(data),
+            data.ways.iter().find(|way| way.is_primary).map_or("", |way| &way.cost)
+        ),
+    ];
     Some(
-        Chart::of(axis_of_cost(), axis_of_error(measure, &data.unit))
-            .with(all)
+        chart
+            .with(all.into_iter().filter(|series| !series.points.is_empty()))
             .figure(format!("{file}_{of}"), format!("{name}: {error} over cost"))
-            .caption(format!(
-                "{} particles over a time of {}; the scene's own step is {}, along each line it doubles from point to point. Cost: the median of \
-                 the repeats, which differ by {:.0} % in the middle; search and execution as the scene has them ({}). The front is over all ways \
-                 to run it against which nothing speaks.",
-                data.particles,
-                short(data.duration),
-                short(data.step),
-                100.0 * spread(data),
-                data.ways.iter().find(|way| way.is_primary).map_or("", |way| &way.cost)
-            )),
+            .caption(said.concat()),
     )
 }
 
@@ -149,12 +197,6 @@ fn spread(data: &WorkPrecision) -> f64 {
         Some(most? / least? - 1.0)
     };
     median(data.runs.iter().filter_map(of))
-}
-
-fn front_of(data: &WorkPrecision, measure: Measure) -> Option<Series> {
-    let (_, places) = data.fronts.iter().find(|(of, _)| *of == measure)?;
-    let points = places.iter().filter_map(|&place| point(&data.runs[place], measure, Run::cost));
-    Some(Series::new("Pareto front", Style::Line, INK, points))
 }
 
 /// The same for every search and execution, in the scene's own scheme and precision.
@@ -223,7 +265,7 @@ fn growth(file: &str, name: &str, data: &WorkPrecision) -> Option<Figure> {
     let disturbed = format!("start disturbed by 1e-9 {}", data.unit);
     Some(
         Chart::of(
-            Axis::linear("time", Some("reduced")),
+            Axis::linear("time", data.time_unit.as_deref()),
             Axis::logarithmic("distance, RMS", Some(&data.unit)),
         )
         .series(disturbed, Style::Line, 0, over_time(&grown.separation))
@@ -239,22 +281,20 @@ fn outcomes(file: &str, name: &str, data: &WorkPrecision, collision: &Collision)
     let schemes = || data.ways.iter().map(|way| way.scheme.clone());
     let mut labels: Vec<&str> = collision.errors.iter().map(|error| error.choice.as_str()).collect();
     labels.dedup();
-    let of = |label: &str, style, what: &str, value: fn(&OutcomeError) -> f64| {
-        let own = collision.errors.iter().filter(|error| error.choice == label);
-        let points = own.map(|error| (error.step, value(error))).filter(|(_, error)| *error > 0.0);
-        Series::new(format!("{}, {what}", scheme(label)), style, place(schemes(), scheme(label)), points)
+    let of = |label: &&str| {
+        let own = collision.errors.iter().filter(|error| error.choice == **label);
+        let points = own.map(|error| (error.step, error.spread[0])).filter(|(_, error)| *error > 0.0);
+        Series::new(scheme(label), Style::Joined, place(schemes(), scheme(label)), points)
     };
-    let spread = labels.iter().map(|label| of(label, Style::Joined, "RMS", |error| error.spread[0]));
-    let mean = labels.iter().map(|label| of(label, Style::Dashed, "mean", |error| error.mean[0]));
     Some(
         Chart::of(
-            Axis::logarithmic("step", Some("reduced")),
+            Axis::logarithmic("step", data.time_unit.as_deref()),
             Axis::logarithmic("error of the restitution", None),
         )
-        .with(spread.chain(mean))
+        .with(labels.iter().map(of))
         .figure(format!("{file}_{}", OUTCOMES[0]), format!("{name}: error of the restitution over the step"))
         .caption(format!(
-            "{} starts, each a part of a step later than the one before: root of the mean square over them, and the mean.",
+            "{} starts, each a part of a step later than the one before: root of the mean square over them. Means are in the table.",
             collision.phases
         )),
     )
@@ -321,7 +361,7 @@ fn means(file: &str, name: &str, data: &WorkPrecision, all: &Observables) -> Opt
         }
     }
     Some(
-        Chart::of(Axis::logarithmic("step", Some("reduced")), Axis::linear("difference", Some("%")))
+        Chart::of(Axis::logarithmic("step", data.time_unit.as_deref()), Axis::linear("difference", Some("%")))
             .with(series)
             .figure(format!("{file}_means"), format!("{name}: mean {observable}, off the reference's"))
             .caption(format!(

@@ -1,10 +1,10 @@
 //! The tables over all scenes.
 
 use super::super::Errors;
-use super::super::conclusions::{multiple, short, wishes as wishes_of};
+use super::super::conclusions::wishes as wishes_of;
 use super::super::dataset::{Run, WorkPrecision};
 use super::super::measures::Measure;
-use crate::report::{Rows, Table};
+use crate::report::{Cell, Rows, Table};
 use crate::study::growth::EndedBy;
 use crate::study::orders::Fitted;
 
@@ -34,14 +34,13 @@ fn wishes(scenes: &Scenes) -> Table {
     });
     Rows::of(answers)
         .text("scene", |(name, ..)| *name)
-        .text("error wished for, at most (radii; sizes of a system of bodies)", |(_, wish, ..)| {
-            format!("{wish:.0e}")
-        })
+        .short("error wished for, at most (radii; sizes of a system of bodies)", |(_, wish, ..)| *wish)
         .text("cheapest way", |(_, _, said, _)| said.clone())
-        .cell("step", |(.., found)| found.as_ref().map(|it| multiple(it.run.power)))
-        .cell("its error (the same)", |(.., found)| {
-            found.as_ref().map(|it| it.run.error(Measure::Position).map_or(String::new(), short))
+        .short("step", |(.., found)| found.as_ref().map(|it| it.run.step))
+        .short("of the scene's own step", |(.., found)| {
+            found.as_ref().map(|it| libm::exp2(f64::from(it.run.power)))
         })
+        .short("its error (the same)", |(.., found)| found.as_ref().and_then(|it| it.run.error(Measure::Position)))
         .number("cost of a unit of time (ms)", 3, |(.., found)| {
             found.as_ref().and_then(|it| Some(1e3 * it.run.cost()?))
         })
@@ -53,10 +52,13 @@ fn wishes(scenes: &Scenes) -> Table {
                where too little happens in that time, nor one that theory, a check or a warning of its run speaks against.")
 }
 
-/// The steps that an order was fitted through.
-fn steps_of(fitted: Option<Fitted>) -> Option<String> {
-    fitted.map(|it| format!("{} to {}", short(it.range[0]), short(it.range[1])))
+/// The steps that an order was fitted through: the shortest and the longest.
+fn steps_of(fitted: Option<Fitted>) -> [Cell; 2] {
+    fitted.map_or([Cell::Nothing, Cell::Nothing], |it| it.range.map(Cell::Short))
 }
+
+/// Their headings.
+const STEPS_OF: [&str; 2] = ["shortest step of the fit", "longest step of the fit"];
 
 fn orders(scenes: &Scenes) -> Table {
     let orders =
@@ -66,7 +68,7 @@ fn orders(scenes: &Scenes) -> Table {
         .text("integrator", |(_, data, order)| &data.ways[order.way].scheme)
         .text("error", |(.., order)| order.measure.name())
         .number("order", 2, |(.., order)| order.fitted.map(|it| it.order))
-        .cell("steps of the fit", |(.., order)| steps_of(order.fitted))
+        .cells(STEPS_OF, |(.., order)| steps_of(order.fitted))
         .number("theory", 1, |(.., order)| order.theory.map(|(order, _)| order))
         .cell("what decides it", |(.., order)| order.theory.map(|(_, why)| why))
         .table("orders", "Orders of convergence, measured and by theory")
@@ -90,7 +92,7 @@ fn outcomes(scenes: &Scenes) -> Table {
         .text("outcome", |(.., order)| &order.outcome)
         .number("order of the RMS", 2, |(.., order)| order.spread.map(|it| it.order))
         .number("order of the mean", 2, |(.., order)| order.mean.map(|it| it.order))
-        .cell("steps of the fit", |(.., order)| steps_of(order.spread))
+        .cells(STEPS_OF, |(.., order)| steps_of(order.spread))
         .table("collision", "One collision: how the error of what comes out falls")
         .note("Over starts shifted by parts of a step. Where a force sets in as ξ^s inside a step, the step errs by dt^(s+1) ζ(−s, phase), \
                Hurwitz's zeta function: order 2.5 for the kink of ξ^1.5, order 1 for the jump of a damping force. Its mean over all phases is \
@@ -119,10 +121,10 @@ fn compared(name: &str, scenes: &Scenes, is_shown: fn(&WorkPrecision, &str) -> b
         .text("scene", |(name, _)| *name)
         .text("mean of", |(_, it)| &it.observable)
         .text("way", |(_, it)| &it.choice)
-        .text("step", |(_, it)| short(it.step))
+        .short("step", |(_, it)| it.step)
         .number("difference (%)", 2, |(_, it)| 100.0 * it.difference)
         .number("bar, 95 % (%)", 2, |(_, it)| 100.0 * it.bar)
-        .text("significant", |(_, it)| if it.reaches_zero() { "no: the bar reaches zero" } else { "yes" })
+        .text("significant", |(_, it)| if it.reaches_zero() { "no" } else { "yes" })
         .table(name, "Means over time of the scene's own way beside the reference's")
         .note("Paired by seed; one bar in twenty misses zero by chance. The density profile: root of the mean square over bins along both sides \
                of the box. All other ways: `all_means.csv`.")
@@ -139,7 +141,7 @@ fn errors(scenes: &Scenes) -> Table {
         .text("integrator", |(_, way, _)| &way.scheme)
         .text("precision", |(_, way, _)| &way.digits);
     for measure in Measure::ALL {
-        rows = rows.cell(measure.name(), |(.., run)| run.error(measure).map(short));
+        rows = rows.short(measure.name(), |(.., run)| run.error(measure));
     }
     rows.number("cost of a unit of time (ms)", 3, |(.., run)| run.cost().map(|cost| 1e3 * cost))
         .table("errors", "Every error with the scene's own step")
@@ -152,20 +154,19 @@ fn references(scenes: &Scenes) -> Table {
         EndedBy::Scene => "the scene ends",
         EndedBy::Budget => "more would take too long",
     };
-    let of = |errors: &Errors| errors.get(&Measure::Position).map_or("–".to_owned(), |error| short(*error));
+    let of = |errors: &Errors| errors.get(&Measure::Position).copied();
     Rows::of(scenes)
         .text("scene", |(name, _)| name)
-        .cell("growth of a disturbance (1/time)", |(_, data)| data.growth.rate.map(short))
-        .text("comparable up to (time)", |(_, data)| short(data.growth.window))
+        .short("growth of a disturbance (1/time)", |(_, data)| data.growth.rate)
+        .short("comparable up to (time)", |(_, data)| data.growth.window)
         .text("because", |(_, data)| ended_by(&data.growth.ended_by))
-        .text("compared (time)", |(_, data)| short(data.duration))
-        .text("in that time, for a particle", |(_, data)| {
-            format!("{} {}", short(data.encounters.each), data.encounters.name())
-        })
+        .short("compared (time)", |(_, data)| data.duration)
+        .short("in that time a particle has", |(_, data)| data.encounters.each)
+        .text("of what", |(_, data)| data.encounters.name())
         .text("reference", |(_, data)| &data.reference.ways[0])
-        .text("its step", |(_, data)| short(data.reference.step))
-        .text("off by twice the step ", |(_, data)| of(&data.reference.halving))
-        .text("off by another integrator ", |(_, data)| of(&data.reference.second))
+        .short("its step", |(_, data)| data.reference.step)
+        .short("off by twice the step", |(_, data)| of(&data.reference.halving))
+        .short("off by another integrator", |(_, data)| of(&data.reference.second))
         .text("left out", |(_, data)| match data.plan.left_out.as_slice() {
             [] => "nothing".to_owned(),
             left_out => left_out.join("; "),
@@ -182,7 +183,7 @@ fn failed(scenes: &Scenes) -> Table {
     Rows::of(failed)
         .text("scene", |(name, ..)| *name)
         .text("way", |(_, what, ..)| what.clone())
-        .text("step", |(_, _, step, _)| step.map_or("any".to_owned(), short))
+        .cell("step", |(_, _, step, _)| step.map_or(Cell::from("any"), Cell::Short))
         .text("why", |(.., why)| *why)
         .table("failed", "What failed, and why")
         .note("Larger steps than one that failed were not tried.")
@@ -232,7 +233,7 @@ pub fn runs(scenes: &Scenes) -> Table {
     let mut rows = Rows::of(runs)
         .text("scene", |(name, ..)| *name)
         .text("way", |(_, way, _)| &way.label)
-        .number("step", 0, |(.., run)| run.step);
+        .short("step", |(.., run)| run.step);
     for measure in Measure::ALL {
         rows = rows.number(measure.name(), 0, |(.., run)| run.error(measure));
     }

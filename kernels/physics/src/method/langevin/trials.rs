@@ -86,7 +86,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "strength",
         label: "strength ε of the pairs",
-        unit: "reduced",
+        unit: "energy",
         bounds: [1e-300, 1e300],
         is_logarithmic: true,
         range: |values| around(values, &STRENGTH),
@@ -96,7 +96,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "temperature",
         label: "temperature kT of the bath",
-        unit: "reduced",
+        unit: "energy",
         bounds: [1e-300, 1e300],
         is_logarithmic: true,
         range: |values| around(values, &BATH_TEMPERATURE),
@@ -106,7 +106,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "friction",
         label: "friction γ of the bath",
-        unit: "reduced",
+        unit: "mass/time",
         bounds: [1e-300, 1e300],
         is_logarithmic: true,
         range: |values| around(values, &DRAG),

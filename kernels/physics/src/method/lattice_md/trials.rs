@@ -90,7 +90,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "stiffness",
         label: "stiffness of contacts",
-        unit: "reduced",
+        unit: "force/length^1.5",
         bounds: [1e-300, 1e300],
         is_logarithmic: true,
         range: |values| around(values.number(&STIFFNESS)?, 30.0),
@@ -100,7 +100,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "damping",
         label: "normal damping",
-        unit: "reduced",
+        unit: "1/time",
         bounds: [0.0, 1e300],
         is_logarithmic: true,
         range: |values| around(values.number(&NORMAL_DAMPING)?, 30.0),
@@ -110,7 +110,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "shear-damping",
         label: "tangential damping",
-        unit: "reduced",
+        unit: "1/time",
         bounds: [0.0, 1e300],
         is_logarithmic: true,
         range: |values| around(values.number(&SHEAR_DAMPING)?, 30.0),
@@ -163,7 +163,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "distance-from-origin",
         label: "distance of the box from the origin of coordinates",
-        unit: "reduced",
+        unit: "length",
         bounds: [0.0, 1e12],
         is_logarithmic: true,
         range: |values| (values.choice(&PRECISION)? != Precision::F64.word()).then_some([10.0, 1e6]),

@@ -89,7 +89,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "softening",
         label: "softening of the attraction",
-        unit: "reduced",
+        unit: "length",
         bounds: [1e-300, 1e300],
         is_logarithmic: true,
         range: |values| values.number(&SOFTENING).filter(|it| *it > 0.0).map(|it| [it / 30.0, it * 30.0]),

@@ -1,10 +1,14 @@
 //! Where a result comes from: what a reader needs to get it again.
 
+mod machine;
+
+pub use machine::Machine;
+
 use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
 use std::path::Path;
 use stripmine_kernels::InstructionSet;
-use stripmine_physics::origin::{Origin, host, today};
+use stripmine_physics::origin::{Origin, today};
 use stripmine_physics::quoted;
 
 /// This program, as it was built.
@@ -24,8 +28,8 @@ pub struct Provenance {
     pub origin: Origin,
     /// The whole command line, as it was given.
     pub command: String,
-    /// The processor, where the system names it, and the platform.
-    pub host: String,
+    /// The machine.
+    pub machine: Machine,
     /// Threads that were there to be used.
     pub threads: usize,
     /// The widest instructions.
@@ -42,7 +46,7 @@ impl Provenance {
         Provenance {
             origin: built(),
             command,
-            host: host(),
+            machine: Machine::here(),
             threads: rayon::current_num_threads(),
             instruction_set: InstructionSet::best().name().to_owned(),
             seconds,
@@ -50,20 +54,31 @@ impl Provenance {
         }
     }
 
-    /// Date and commit, with a link to the file that says all.
-    pub fn in_short(&self, file: &str) -> String {
-        let state = if self.origin.dirty { " with changes" } else { "" };
-        format!("[Made]({file}) {}, commit {}{state}.", self.date, self.origin.commit)
+    /// Whether the same command of the same program, from a source that is in a commit or was released, made it on the same host.
+    pub fn is_of_the_command(&self, other: &Provenance) -> bool {
+        let of = |it: &Provenance| (it.origin.clone(), it.command.clone(), it.machine.processor.clone());
+        !other.origin.dirty && of(self) == of(other)
     }
 
-    /// In a sentence.
-    pub fn sentence(&self) -> String {
-        let Provenance { origin, command, host, threads, instruction_set, seconds, date } = self;
-        let Origin { version, commit, dirty, target } = origin;
+    /// The program and the machine, in a sentence that goes on after how many were made.
+    pub fn of_program_and_machine(&self) -> String {
+        let Origin { version, commit, dirty, .. } = &self.origin;
         let state = if *dirty { ", with changes that are in no commit" } else { "" };
         format!(
-            "Made on {date} in {seconds:.1} s by `{command}`, stripmine {version} of source commit {commit}{state}, built for \
-             {target}, on {host} ({threads} threads, {instruction_set})."
+            "made on {} by stripmine {version} of source commit {commit}{state}, {}, on {}.",
+            self.date,
+            self.instruction_set,
+            self.machine.without_clock()
+        )
+    }
+
+    /// When, how long, by which command and commit, in a sentence.
+    pub fn sentence(&self) -> String {
+        let Provenance { origin, command, threads, seconds, date, .. } = self;
+        let state = if origin.dirty { " with changes" } else { "" };
+        format!(
+            "Made on {date} in {seconds:.1} s with {threads} threads by `{command}`, source commit {}{state}.",
+            origin.commit
         )
     }
 }
