@@ -1,7 +1,7 @@
 //! What several runs say together.
 
 use serde::Serialize;
-use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
+pub use stripmine_physics::averages::student;
 
 /// A figure over independent runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -49,29 +49,6 @@ impl Mean {
         let Spread { mean, error, runs, .. } = Spread::of(values);
         Mean { value: mean, bar: error.map_or(f64::INFINITY, |error| student(0.95, runs - 1) * error) }
     }
-}
-
-/// Student's t: so many standard errors to either side hold a mean with a probability, by the degrees of freedom, at least one.
-pub fn student(probability: f64, freedoms: usize) -> f64 {
-    // With t = √ν tan θ the probability is a finite sum (Abramowitz and Stegun, 26.7.3 and 26.7.4).
-    let within = |angle: f64| {
-        let cosine = libm::cos(angle);
-        let mut power = freedoms % 2;
-        let (mut term, mut sum) = (if power == 1 { cosine } else { 1.0 }, 0.0);
-        while power + 2 <= freedoms {
-            sum += term;
-            term *= cosine * cosine * (power + 1) as f64 / (power + 2) as f64;
-            power += 2;
-        }
-        let sum = sum * libm::sin(angle);
-        if freedoms % 2 == 1 { FRAC_2_PI * (angle + sum) } else { sum }
-    };
-    let (mut low, mut high) = (0.0, FRAC_PI_2);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if within(middle) < probability { low = middle } else { high = middle }
-    }
-    (freedoms as f64).sqrt() * libm::tan(high)
 }
 
 /// The middle one, the upper of two; not a number if there is none.
@@ -163,23 +140,6 @@ mod tests {
         assert_eq!(Spread::of(&[3.0]).error, None);
         let spread = Spread::of(&[1.0, 3.0]);
         assert_eq!((spread.mean, spread.error, spread.lowest, spread.highest), (2.0, Some(1.0), 1.0, 3.0));
-    }
-
-    /// The table of every textbook: two-sided probability, degrees of freedom, t.
-    #[test]
-    fn students_t_is_that_of_the_tables() {
-        for (probability, freedoms, t) in [
-            (0.95, 1, 12.706),
-            (0.95, 2, 4.303),
-            (0.95, 3, 3.182),
-            (0.999, 7, 5.408),
-            (0.95, 19, 2.093),
-            (0.99, 30, 2.750),
-            (0.95, 120, 1.980),
-        ] {
-            let found = student(probability, freedoms);
-            assert!((found - t).abs() < 5.1e-4, "{probability} {freedoms}: {found}");
-        }
     }
 
     /// By hand: 1 and 3 have the mean 2 and the standard error 1, of one degree of freedom.

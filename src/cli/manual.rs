@@ -19,7 +19,15 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
                 "stripmine run scene.toml --out first.run --set run.steps=1000",
                 "a file, with another number of steps",
             ),
+            ("stripmine run hard-disks --seeds 8", "eight runs with seeds of their own, and their mean"),
             ("stripmine run pipe --resume", "begins, or goes on where the run was interrupted"),
+        ],
+    ),
+    (
+        "average",
+        &[
+            ("stripmine average pipe-small.run", "means with their errors"),
+            ("stripmine average a.run b.run --json", "two runs of one scene with seeds of their own, joined"),
         ],
     ),
     (

@@ -1,5 +1,6 @@
 //! The command line: one file per verb; composes, decides nothing. Methods add verbs, benches, presets and items.
 
+mod average;
 mod bench;
 mod chart;
 mod compare;
@@ -21,6 +22,7 @@ use crate::study;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use stripmine_physics::method::{METHODS, Methods};
 use stripmine_physics::signals;
@@ -41,6 +43,7 @@ enum GeneralVerb {
     Reproduce(reproduce::Reproduce),
     Scene(scene::SceneVerb),
     Run(run::RunVerb),
+    Average(average::AverageVerb),
     Plot(plot::PlotVerb),
     Bench(Box<bench::BenchVerb>),
     Chart(chart::ChartVerb),
@@ -109,6 +112,14 @@ fn command(methods: Methods) -> clap::Command {
         })
 }
 
+/// The folder of a run that is meant: where there is none of that name, the one of a run that is called so.
+fn run_folder(name: &Path) -> PathBuf {
+    let mut with_ending = name.to_owned().into_os_string();
+    with_ending.push(".run");
+    let with_ending = PathBuf::from(with_ending);
+    if !name.exists() && with_ending.is_dir() { with_ending } else { name.to_owned() }
+}
+
 /// Runs the command with its arguments, the first of which is its name.
 pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     run_with(arguments, METHODS)
@@ -175,6 +186,7 @@ fn carried_out(matches: &ArgMatches, command: &str, methods: Methods) -> Result<
         GeneralVerb::Reproduce(verb) => verb.run(&common, methods),
         GeneralVerb::Scene(verb) => verb.run(&common, methods),
         GeneralVerb::Run(verb) => verb.run(&common, methods),
+        GeneralVerb::Average(verb) => verb.run(&common, methods),
         GeneralVerb::Plot(verb) => verb.run(&common, methods),
         GeneralVerb::Bench(verb) => {
             let given = matches.subcommand().map_or(matches, |(_, below)| below);

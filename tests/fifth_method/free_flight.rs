@@ -8,14 +8,15 @@ use stripmine_physics::domain::Domain;
 use stripmine_physics::io::checkpoint::Column;
 use stripmine_physics::memory::Foreseen;
 use stripmine_physics::method::{
-    Axis, Bench, BenchOption, Clock, Decides, Entry, Fact, Failure, Prepared, Purpose, Quantity, RunWarning,
-    SMALLEST_RADIUS, Schedule, Setting, Simulation, Snapshot, Startable, Takes, Trials, Until, compress,
+    Axis, Bench, BenchOption, Clock, Decides, Entry, Fact, Failure, Kind, Prepared, Purpose, Quantity,
+    RunWarning, SMALLEST_RADIUS, Schedule, Setting, Simulation, Snapshot, Startable, Takes, Trials, Until,
+    compress,
 };
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{
     self, Binding, DISC_RIVALS, DISCS, DT, DURATION, HEADING, KeySet, OUTPUT, Output, PLANAR_DOMAIN, Preset,
-    Read, Run, STEP, STEPPED_RUN, SceneErrors, Start, Values, Vocabulary, WallMotion, Write, bind_heading,
-    disagreements, too_many_steps,
+    Read, Run, STEP, STEPPED_RUN, SceneErrors, Start, TARGETED, Values, Vocabulary, WallMotion, Write,
+    bind_heading, disagreements, too_many_steps,
 };
 use stripmine_physics::start::{Stated, make, outside};
 
@@ -75,7 +76,7 @@ static TRIALS: Trials = Trials {
 static VOCABULARY: Vocabulary = Vocabulary {
     keys: KeySet {
         method: "free-flight",
-        groups: &[HEADING, PLANAR_DOMAIN, DISCS, STEP, STEPPED_RUN, OUTPUT],
+        groups: &[HEADING, PLANAR_DOMAIN, DISCS, STEP, STEPPED_RUN, TARGETED, OUTPUT],
         rivals: &[DISC_RIVALS, DURATION],
     },
     rules: &[disagreements, too_many_steps],
@@ -90,8 +91,8 @@ static VOCABULARY: Vocabulary = Vocabulary {
 };
 
 const QUANTITIES: &[Quantity] = &[
-    Quantity { name: "time", unit: "time", doc: "The time." },
-    Quantity { name: "kinetic", unit: "energy", doc: "Kinetic energy." },
+    Quantity { name: "time", unit: "time", kind: Kind::Time, doc: "The time." },
+    Quantity { name: "kinetic", unit: "energy", kind: Kind::Instant, doc: "Kinetic energy." },
 ];
 
 /// A scene of discs in free flight.
@@ -136,6 +137,7 @@ impl Flight {
         Prepared {
             scene: write.to_toml(&VOCABULARY.keys),
             schedule: Schedule::of_steps(&self.run),
+            target: self.run.target.clone(),
             output: self.output,
             domain: self.domain(),
             seed: self.start.seed(),

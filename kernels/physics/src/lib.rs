@@ -17,6 +17,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod averages;
 pub mod domain;
 pub mod grid;
 pub mod io;

@@ -14,6 +14,25 @@ pub fn significant(value: f64, digits: usize) -> String {
     trimmed(&format!("{value:.decimals$}")).to_owned()
 }
 
+/// A mean and the half width of its interval, with two digits of this: `0.675 ± 0.060`.
+pub fn with_bar(mean: f64, bar: f64) -> String {
+    let scientific = format!("{bar:.1e}");
+    let exponent = scientific.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
+    let Some(exponent) = exponent.filter(|_| bar > 0.0 && bar.is_finite()) else {
+        return format!("{} ± {}", significant(mean, 6), significant(bar, 2));
+    };
+    let magnitude = mean.abs().max(bar);
+    if (1e-3..1e7).contains(&magnitude) {
+        let decimals = (1 - exponent).max(0) as usize;
+        return format!("{mean:.decimals$} ± {bar:.decimals$}");
+    }
+    // Both in units of the power of ten of the larger one.
+    let power = libm::floor(libm::log10(magnitude)) as i32;
+    let unit = 10f64.powi(power);
+    let decimals = (power + 1 - exponent).max(0) as usize;
+    format!("({:.decimals$} ± {:.decimals$})e{power}", mean / unit, bar / unit)
+}
+
 /// A number with so many significant digits, for sentences: `8.2·10⁻⁸` where it is small or large.
 pub fn in_tens(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
@@ -79,6 +98,22 @@ mod tests {
     fn sentences_have_powers_of_ten() {
         let texts = [8.2e-8, 1e-12, 0.25, 3e9].map(|value| in_tens(value, 2));
         assert_eq!(texts, ["8.2·10⁻⁸", "10⁻¹²", "0.25", "3·10⁹"]);
+    }
+
+    #[test]
+    fn bars_have_two_digits_and_means_as_many_decimals() {
+        for (mean, bar, text) in [
+            (0.6749, 0.0601, "0.675 ± 0.060"),
+            (1234.56, 78.9, "1235 ± 79"),
+            (-3.0, 0.25, "-3.00 ± 0.25"),
+            (0.001, 2.0, "0.0 ± 2.0"),
+            (6.3412e-5, 1.2e-6, "(6.34 ± 0.12)e-5"),
+            (2.5e9, 3.1e7, "(2.500 ± 0.031)e9"),
+            (1.5, 0.0, "1.5 ± 0"),
+            (1.5, f64::INFINITY, "1.5 ± inf"),
+        ] {
+            assert_eq!(with_bar(mean, bar), text);
+        }
     }
 
     #[test]

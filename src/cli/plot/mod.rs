@@ -4,6 +4,7 @@ mod observed;
 mod particles;
 mod window;
 
+use super::run_folder;
 use crate::console::{Common, Failure, print, print_json, say};
 use crate::report::figure::{Figure, png, svg};
 use crate::report::terminal;
@@ -39,7 +40,7 @@ const LONGEST_NAME: usize = 80;
 
 impl PlotVerb {
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
-        let run = self.folder();
+        let run = run_folder(&self.run);
         let table = Observed::read(&run.join("thermo.csv"))?;
         let wanted = table.wanted(&self.columns, methods)?;
         let mut figures = table.figures(&wanted);
@@ -68,14 +69,6 @@ impl PlotVerb {
             return print_json(&json!({ "files": written }));
         }
         print(&terminal::render(&table.small(&wanted, &out)))
-    }
-
-    /// The folder meant: where there is none of that name, the one of a run that is called so.
-    fn folder(&self) -> PathBuf {
-        let mut with_ending = self.run.clone().into_os_string();
-        with_ending.push(".run");
-        let with_ending = PathBuf::from(with_ending);
-        if !self.run.exists() && with_ending.is_dir() { with_ending } else { self.run.clone() }
     }
 }
 

@@ -3,12 +3,12 @@
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::table::{Rows, Table};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use stripmine_physics::io::{FileError, regular_file};
-use stripmine_physics::method::{Methods, Quantity};
+use std::path::Path;
+use stripmine_physics::method::{Methods, observer};
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted::{self, quoted};
-use stripmine_physics::reported::{Class, FilePlace, Reported};
+use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::run::{TableError, TableReader};
 use stripmine_physics::words::suggestion;
 
 /// Curves of a picture: more cannot be told apart.
@@ -21,22 +21,9 @@ const POINTS: usize = 2000;
 const SMALL: usize = 40;
 /// Digits of a value in the terminal.
 const DIGITS: usize = 5;
-/// Longer than any table of a run (bytes).
-const LONGEST: u64 = 1 << 33;
-
 /// Why there are no curves.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum ObservedError {
-    /// No table of a run.
-    #[error("{}:{line}: {expected}", quoted::path(file))]
-    NoTable {
-        /// The file.
-        file: PathBuf,
-        /// Line, from 1.
-        line: usize,
-        /// What should stand there.
-        expected: &'static str,
-    },
     /// No column of that name.
     #[error("there is no column {}; these are: {}{}", quoted(name), known.join(", "), suggestion(name, known.iter().map(String::as_str)))]
     NoColumn {
@@ -45,27 +32,23 @@ pub(super) enum ObservedError {
         /// What there is.
         known: Vec<String>,
     },
-    /// The system.
+    /// The table.
     #[error(transparent)]
-    File(#[from] FileError),
+    Table(#[from] TableError),
 }
 
 impl Reported for ObservedError {
     fn class(&self) -> Class {
         match self {
-            ObservedError::NoTable { .. } => Class::Input,
             ObservedError::NoColumn { .. } => Class::Usage,
-            ObservedError::File(_) => Class::InputOutput,
+            ObservedError::Table(error) => error.class(),
         }
     }
 
-    fn place(&self) -> Option<FilePlace> {
+    fn passed_on(&self) -> Option<&dyn Reported> {
         match self {
-            ObservedError::NoTable { file, line, .. } => {
-                Some(FilePlace { line: Some(*line), ..FilePlace::at(file) })
-            }
             ObservedError::NoColumn { .. } => None,
-            ObservedError::File(error) => Some(FilePlace::at(&error.file)),
+            ObservedError::Table(error) => Some(error),
         }
     }
 }
@@ -103,28 +86,15 @@ pub(super) struct Wanted {
 
 impl Observed {
     pub(super) fn read(path: &Path) -> Result<Observed, ObservedError> {
-        let bytes = regular_file::read(path, LONGEST).map_err(FileError::at(path, "reading"))?;
-        let wrong = |line: usize, expected| ObservedError::NoTable { file: path.to_owned(), line, expected };
-        let text = String::from_utf8(bytes).map_err(|cause| {
-            let line = regular_file::line_that_is_not_text(cause.as_bytes());
-            wrong(line.unwrap_or(1), "not UTF-8 text")
-        })?;
-        let mut lines = text.lines();
-        let columns: Vec<String> = lines.next().unwrap_or_default().split(',').map(str::to_owned).collect();
-        if !columns.iter().any(|column| column == "time") {
-            return Err(wrong(1, "expected the heading of a run's table, with a column `time`"));
-        }
+        let mut table = TableReader::open(path)?;
         let mut rows = vec![];
-        for (number, line) in (2..).zip(lines) {
-            let row: Result<Vec<f64>, _> = line.split(',').map(str::parse).collect();
-            let row = row.ok().filter(|row: &Vec<f64>| row.len() == columns.len());
-            let row = row.filter(|row| row.iter().all(|value| value.is_finite()));
-            rows.push(row.ok_or_else(|| wrong(number, "expected a finite number for each column"))?);
+        while let Some(row) = table.next_row()? {
+            rows.push(row);
         }
         if rows.is_empty() {
-            return Err(wrong(2, "expected a row of numbers; the run has written none yet"));
+            return Err(table.without_rows().into());
         }
-        Ok(Observed { columns, rows })
+        Ok(Observed { columns: table.columns().to_vec(), rows })
     }
 
     fn column(&self, column: usize) -> impl Iterator<Item = f64> {
@@ -136,12 +106,7 @@ impl Observed {
     }
 
     pub(super) fn wanted(&self, names: &[String], methods: Methods) -> Result<Vec<Wanted>, ObservedError> {
-        // The method of the run is the one that observes all its columns.
-        let is_its = |quantities: &&'static [Quantity]| {
-            let known = |name: &String| quantities.iter().any(|quantity| quantity.name == name);
-            self.columns.iter().skip(1).all(known)
-        };
-        let quantities = methods.iter().map(|method| method.quantities).find(is_its).unwrap_or_default();
+        let quantities = observer(methods, &self.columns).map_or(&[][..], |method| method.quantities);
         let of = |column: usize| {
             let name = &self.columns[column];
             let unit = quantities.iter().find(|quantity| quantity.name == name).map_or("", |it| it.unit);

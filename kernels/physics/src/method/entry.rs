@@ -7,7 +7,7 @@ use super::trials::Trials;
 use crate::domain::Domain;
 use crate::memory::Foreseen;
 use crate::particles::Particles;
-use crate::scene::{Output, SceneErrors, Values, Vocabulary, Warning};
+use crate::scene::{Output, SceneErrors, Target, Values, Vocabulary, Warning};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -36,14 +36,44 @@ pub struct Entry {
 }
 
 /// Something observed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity {
     /// The name of its column.
     pub name: &'static str,
     /// The unit, empty for pure numbers.
     pub unit: &'static str,
+    /// What of it is averaged over a run.
+    pub kind: Kind,
     /// What it is.
     pub doc: &'static str,
+}
+
+/// What kind of number a quantity is, which decides what of it is averaged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// The time of the row.
+    Time,
+    /// A value of the moment: values are averaged.
+    Instant,
+    /// A count or a sum since the start: it has a rate.
+    Counter,
+    /// `ideal` + S/(t x), with a sum S since the start, the time t, and the quantity x `over` of the moment, 1 if there is none: S
+    /// is averaged by its increments.
+    SinceStart {
+        /// The value where the sum is 0.
+        ideal: f64,
+        /// The name of x.
+        over: Option<&'static str>,
+    },
+    /// What the equations keep or balance, but for what acts from outside: it shows errors, and is not averaged.
+    Kept,
+}
+
+impl Kind {
+    /// Whether it sums up since the start.
+    pub fn grows(self) -> bool {
+        matches!(self, Kind::Counter | Kind::SinceStart { .. })
+    }
 }
 
 /// A quantity, and how it is read off what a method has seen of a moment.
@@ -239,6 +269,8 @@ pub struct Prepared {
     pub scene: String,
     /// How long it runs, and how often something is written.
     pub schedule: Schedule,
+    /// The mean that ends it before, when it is known well enough.
+    pub target: Option<Target>,
     /// Which files are written.
     pub output: Output,
     /// The box.

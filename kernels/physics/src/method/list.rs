@@ -1,8 +1,10 @@
 //! The methods. Each is a folder beside this file and a line of this list.
 
-use super::entry::{Entry, Prepared};
+use super::entry::{Entry, Kind, Prepared, Quantity};
 use super::{hard_disks, langevin, lattice_md, nbody};
-use crate::scene::{METHOD, Reason, SceneErrors, Values, Vocabulary};
+use crate::quoted::quoted;
+use crate::scene::{METHOD, Reason, SceneError, SceneErrors, TARGET, Value, Values, Vocabulary};
+use crate::words::nearest;
 
 /// Methods that scenes may name.
 pub type Methods = &'static [&'static Entry];
@@ -18,6 +20,13 @@ pub fn vocabularies(methods: Methods) -> Vec<&'static Vocabulary> {
 /// The method of a name.
 pub fn method(methods: Methods, name: &str) -> Option<&'static Entry> {
     methods.iter().copied().find(|method| method.vocabulary.keys.method == name)
+}
+
+/// The method that observes just some columns, in their order, after the step.
+pub fn observer(methods: Methods, columns: &[String]) -> Option<&'static Entry> {
+    let names = |method: &Entry| method.quantities.iter().map(|quantity| quantity.name);
+    let is_its = |method: &&'static Entry| names(method).eq(columns.iter().skip(1).map(String::as_str));
+    methods.iter().copied().find(is_its)
 }
 
 /// The scene that is a preset's name or a file's path, with overrides `section.key=value`, ready to run; and its method.
@@ -40,5 +49,27 @@ pub fn prepare(values: Values, methods: Methods) -> Result<(Prepared, &'static E
     // A scene is read as one of a method of the list.
     let unlisted = || values.spot(&METHOD).error(Reason::Unknown, "there is no such method");
     let entry = method(methods, values.method()).ok_or_else(unlisted)?;
-    Ok(((entry.prepare)(values)?, entry))
+    let wrong = wrong_target(&values, entry);
+    match ((entry.prepare)(values), wrong) {
+        (Ok(prepared), None) => Ok((prepared, entry)),
+        (Ok(_), Some(wrong)) => Err(wrong.into()),
+        (Err(mistakes), wrong) => Err(SceneErrors(wrong.into_iter().chain(mistakes.0).collect())),
+    }
+}
+
+/// That the run is to end by a quantity that has no mean.
+fn wrong_target(values: &Values, entry: &Entry) -> Option<SceneError> {
+    let Some(Value::Target(target)) = values.value(&TARGET) else { return None };
+    let has_mean = |quantity: &&Quantity| !matches!(quantity.kind, Kind::Time | Kind::Kept);
+    let names: Vec<&str> = entry.quantities.iter().filter(has_mean).map(|quantity| quantity.name).collect();
+    if names.contains(&target.quantity.as_str()) {
+        return None;
+    }
+    let message =
+        format!("`{}` names no quantity that has a mean: \"{}\"", TARGET.path(), quoted(&target.quantity));
+    let error = values.spot(&TARGET).error(Reason::Unknown, message).expecting(names.join(", "));
+    Some(match nearest(&target.quantity, names.iter().copied()) {
+        Some(near) => error.advising(format!("did you mean \"{near}\"?")),
+        None => error,
+    })
 }

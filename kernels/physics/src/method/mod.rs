@@ -18,12 +18,12 @@ mod trials;
 
 pub use clock::{Clock, Every, Schedule, Until};
 pub use entry::{
-    Bench, BenchOption, Beyond, Entry, Fact, Observable, Prepared, Purpose, Quantity, RunWarning, Simulation,
-    Startable, StepLimit, Takes, VectorProgram, quantities,
+    Bench, BenchOption, Beyond, Entry, Fact, Kind, Observable, Prepared, Purpose, Quantity, RunWarning,
+    Simulation, Startable, StepLimit, Takes, VectorProgram, quantities,
 };
 pub use failure::{Culprit, Failure, FailureKind};
 pub use hard_disks::compress;
-pub use list::{METHODS, Methods, load, method, prepare, vocabularies};
+pub use list::{METHODS, Methods, load, method, observer, prepare, vocabularies};
 pub use probe::probed;
 pub use snapshot::Snapshot;
 pub use trials::{

@@ -29,11 +29,11 @@ impl Reported for UnknownName {
     }
 }
 
-/// A list of what is observed: name, unit, how it is read off what a method has seen, and meaning, in one row.
+/// A list of what is observed: name, unit, kind, how it is read off what a method has seen, and meaning, in one row.
 macro_rules! observables {
-    ($($name:literal, $unit:literal, $of:expr, $doc:literal;)*) => {
+    ($($name:literal, $unit:literal, $kind:expr, $of:expr, $doc:literal;)*) => {
         [$($crate::method::Observable {
-            quantity: $crate::method::Quantity { name: $name, unit: $unit, doc: $doc },
+            quantity: $crate::method::Quantity { name: $name, unit: $unit, kind: $kind, doc: $doc },
             of: $of,
         }),*]
     };
@@ -109,10 +109,12 @@ pub fn summed_up(summary: &Map<String, Value>, name: &str) -> Result<f64, Unknow
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::METHODS;
+    use crate::method::{Kind, METHODS};
 
-    const QUANTITIES: &[Quantity] =
-        &[Quantity { name: "time", unit: "time", doc: "" }, Quantity { name: "flow", unit: "", doc: "" }];
+    const QUANTITIES: &[Quantity] = &[
+        Quantity { name: "time", unit: "time", kind: Kind::Time, doc: "" },
+        Quantity { name: "flow", unit: "", kind: Kind::Instant, doc: "" },
+    ];
 
     #[test]
     fn a_misspelt_quantity_is_an_error_that_names_those_there_are() {
@@ -125,6 +127,21 @@ mod tests {
         assert_eq!(summed_up(&summary, "remaps"), Ok(3.0));
         let said = summed_up(&summary, "remap").unwrap_err().to_string();
         assert!(said.contains("`remap`") && said.ends_with("one of remaps"), "{said}");
+    }
+
+    /// A method observes the time, and what a mean since the start is over.
+    #[test]
+    fn kinds_name_what_is_observed() {
+        for method in METHODS {
+            let times = method.quantities.iter().filter(|quantity| quantity.kind == Kind::Time);
+            assert_eq!(times.map(|it| it.name).collect::<Vec<_>>(), ["time"]);
+            for quantity in method.quantities {
+                if let Kind::SinceStart { over: Some(over), .. } = quantity.kind {
+                    let place = find(method.quantities, over).unwrap();
+                    assert_eq!(method.quantities[place].kind, Kind::Instant, "{over}");
+                }
+            }
+        }
     }
 
     /// Every name that a method states of its benches occurs among what it observes.

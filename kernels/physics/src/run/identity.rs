@@ -155,26 +155,29 @@ pub fn chosen_otherwise(
 /// # Errors
 /// [`RunError::OtherScene`] with the first difference.
 pub(super) fn same_scene(folder: &Path, theirs: &str, ours: &str) -> Result<(), RunError> {
-    let physics = |text: &str| -> Vec<String> {
-        let mut lines = Vec::new();
-        let mut of_run = false;
-        for line in text.lines().filter(|line| !line.trim().is_empty()) {
-            if line.starts_with('[') {
-                of_run = matches!(line.trim(), "[run]" | "[output]");
-            }
-            if !of_run {
-                lines.push(line.to_owned());
-            }
-        }
-        lines
-    };
-    let (theirs, ours) = (physics(theirs), physics(ours));
-    let differs = (0..theirs.len().max(ours.len())).find(|&line| theirs.get(line) != ours.get(line));
-    match differs {
+    match first_difference(&physics(theirs), &physics(ours)) {
         None => Ok(()),
-        Some(line) => {
-            let text = |lines: &[String]| lines.get(line).cloned().unwrap_or_else(|| "nothing".to_owned());
-            Err(RunError::OtherScene { folder: folder.to_owned(), theirs: text(&theirs), ours: text(&ours) })
+        Some([theirs, ours]) => Err(RunError::OtherScene { folder: folder.to_owned(), theirs, ours }),
+    }
+}
+
+/// The lines of a resolved scene that decide what happens in it: without how long it runs and what is written.
+pub(super) fn physics(scene: &str) -> Vec<&str> {
+    let mut lines = Vec::new();
+    let mut of_run = false;
+    for line in scene.lines().filter(|line| !line.trim().is_empty()) {
+        if line.starts_with('[') {
+            of_run = matches!(line.trim(), "[run]" | "[output]");
+        }
+        if !of_run {
+            lines.push(line);
         }
     }
+    lines
+}
+
+/// The first lines that differ.
+pub(super) fn first_difference(theirs: &[&str], ours: &[&str]) -> Option<[String; 2]> {
+    let line = (0..theirs.len().max(ours.len())).find(|&line| theirs.get(line) != ours.get(line))?;
+    Some([theirs, ours].map(|lines| lines.get(line).map_or("nothing", |line| line).to_owned()))
 }

@@ -2,27 +2,33 @@
 //! `scene.toml`, `thermo.csv`, `trajectory.xyz`, `summary.json`, `run.checkpoint`, a list of all this (`run.files`) and, on
 //! request, LAMMPS files and a row for each event (`events.csv`).
 
+mod finished;
 mod folder;
 pub mod forecast;
 mod frames;
+mod goal;
 mod growing;
 mod identity;
 mod recorder;
 mod summary;
+mod table;
 
+pub use finished::{Finished, FinishedError, averages_of};
 pub use folder::FolderError;
 pub use identity::chosen_otherwise;
 pub use summary::Summary;
+pub use table::{TableError, TableReader};
 
 use crate::io::FileError;
 use crate::io::checkpoint::{CheckpointError, WriteError};
 use crate::io::growing_file::GrowingFileError;
 use crate::io::table_file::TableFileError;
 use crate::method::{Clock, Failure, Prepared, Purpose, Quantity, Until};
+use crate::number::significant;
 use crate::origin::Origin;
 use crate::quoted;
 use crate::reported::{Class, FilePlace, Reported};
-use crate::scene::SceneErrors;
+use crate::scene::{SceneErrors, Target, Width};
 use crate::signals;
 use recorder::Recorder;
 use std::path::{Path, PathBuf};
@@ -130,6 +136,27 @@ pub enum RunError {
     /// The physics of the first moment, before anything was written.
     #[error(transparent)]
     Start(Failure),
+    /// The mean that should end the run is not known well enough at its latest end.
+    #[error(
+        "{bound} is over, and the mean of {} is {}, not to ± {} (95 %); what was found is in {}{}",
+        target.quantity,
+        error.map_or_else(|| "not known".to_owned(), |error| format!("known to ± {error}")),
+        target.error,
+        quoted::path(folder),
+        enough_at.map_or_else(String::new, |time| format!("\n  help: go on with --resume to about time {}", significant(time, 2)))
+    )]
+    Unreached {
+        /// The folder of the run.
+        folder: PathBuf,
+        /// What was asked for.
+        target: Target,
+        /// The latest end.
+        bound: Until,
+        /// The half width of the interval of 95 %, if there is a mean.
+        error: Option<Width>,
+        /// About when it would be reached (time), if anything tells.
+        enough_at: Option<f64>,
+    },
     /// A checkpoint that cannot be used.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
@@ -150,6 +177,9 @@ pub enum RunError {
     /// The table of observables.
     #[error(transparent)]
     Table(#[from] TableFileError),
+    /// The rows of earlier sessions.
+    #[error(transparent)]
+    Rows(#[from] TableError),
     /// The frames.
     #[error(transparent)]
     Frames(#[from] GrowingFileError),
@@ -166,7 +196,9 @@ impl Reported for RunError {
             | RunError::OtherDiscs { .. }
             | RunError::OtherVersion { .. } => Class::Usage,
             RunError::Foreign { .. } => Class::Checkpoint,
+            RunError::Unreached { .. } => Class::Precondition,
             RunError::Folder(error) => error.class(),
+            RunError::Rows(error) => error.class(),
             RunError::Checkpoint(error) if error.is_corrupt() => Class::Checkpoint,
             RunError::Table(error) if error.is_damage() => Class::Checkpoint,
             RunError::Frames(error) if error.is_damage() => Class::Checkpoint,
@@ -182,6 +214,7 @@ impl Reported for RunError {
         match self {
             RunError::Scene(errors) => Some(errors),
             RunError::Physics { failure, .. } | RunError::Start(failure) => Some(failure),
+            RunError::Rows(error) => Some(error),
             _ => None,
         }
     }
@@ -192,12 +225,13 @@ impl Reported for RunError {
             | RunError::FewerSteps { folder, .. }
             | RunError::OtherDiscs { folder, .. }
             | RunError::OtherVersion { folder, .. }
-            | RunError::OtherScene { folder, .. } => Some(FilePlace::at(folder)),
+            | RunError::OtherScene { folder, .. }
+            | RunError::Unreached { folder, .. } => Some(FilePlace::at(folder)),
             RunError::Checkpoint(CheckpointError { file, .. }) | RunError::Foreign { file, .. } => {
                 Some(FilePlace::at(file))
             }
             RunError::File(error) => Some(FilePlace::at(&error.file)),
-            _ => None,
+            _ => self.passed_on()?.place(),
         }
     }
 
@@ -279,7 +313,7 @@ pub fn run(
     let from = simulation.clock();
     let mut strides = STRIDES;
     let start = Instant::now();
-    while !until.has_come(&simulation.clock()) {
+    while !(until.has_come(&simulation.clock()) || recorder.has_reached_its_goal()) {
         if interrupted.load(Ordering::Relaxed) {
             recorder.checkpoint(simulation.as_ref())?;
             return Ok(Ending::Interrupted { clock: simulation.clock() });
@@ -299,7 +333,8 @@ pub fn run(
         };
         if let Some(failure) = failed {
             let seconds = start.elapsed().as_secs_f64();
-            let summary = Summary::of(job, simulation.as_ref(), from, seconds, Some(&failure));
+            let averages = recorder.averages();
+            let summary = Summary::of(job, simulation.as_ref(), averages, from, seconds, Some(&failure));
             recorder.fail(simulation.as_ref(), summary)?;
             return Err(RunError::Physics { failure, snapshot: recorder.trajectory_path() });
         }
@@ -307,8 +342,18 @@ pub fn run(
         progress(done, all);
     }
     let seconds = start.elapsed().as_secs_f64();
-    let summary = Summary::of(job, simulation.as_ref(), from, seconds, None);
+    let summary = Summary::of(job, simulation.as_ref(), recorder.averages(), from, seconds, None);
     let summary = recorder.finish(simulation.as_ref(), summary)?;
+    if let Some((goal, known)) = recorder.missed_goal() {
+        let (target, bound) = (goal.target().clone(), until);
+        return Err(RunError::Unreached {
+            folder: folder.to_owned(),
+            target,
+            bound,
+            error: known.error,
+            enough_at: known.enough_at,
+        });
+    }
     Ok(Ending::Done(Box::new(summary)))
 }
 

@@ -1,9 +1,13 @@
 //! The folder of a run: what is written when.
 
-use super::folder::{DATA, DCD, DUMP, EVENTS, RunFolder, SCENE, SUMMARY, TRAJECTORY};
+use super::finished::{LONGEST_SCENE, rows_of};
+use super::folder::{DATA, DCD, DUMP, EVENTS, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY};
+use super::goal::{Goal, Known};
 use super::growing::{Growing, Kept};
 use super::identity::{BITS, Identity, same_scene};
+use super::table::TableReader;
 use super::{Existing, Job, RunError, Summary};
+use crate::averages::{Averages, Rows};
 use crate::domain::Domain;
 use crate::io::checkpoint::{Checkpoint, Counter, Latest, NAME, read_latest};
 use crate::io::dcd::Positions;
@@ -17,9 +21,6 @@ use crate::scene::Output;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-
-/// Longer than any scene (bytes).
-const LONGEST_SCENE: u64 = 64 << 20;
 
 /// The counter of events in a checkpoint.
 const EVENT_COUNT: &str = "events";
@@ -36,6 +37,10 @@ pub(super) struct Recorder {
     /// When the next row, the next snapshot and the next checkpoint are due.
     due: [Option<Until>; 3],
     growing: Growing,
+    /// The rows of observables, those of earlier sessions among them.
+    rows: Rows,
+    /// The mean that ends the run, if one does.
+    goal: Option<Goal>,
     /// What was out of the ordinary, in the order of the run's sessions.
     notes: Vec<String>,
     /// Which of them are of this session.
@@ -119,6 +124,8 @@ impl Recorder {
             quantities,
             due,
             growing,
+            rows: Rows::new(quantities),
+            goal: Goal::of(prepared, quantities),
             notes,
             new_notes: 0,
             checkpointed: None,
@@ -179,7 +186,25 @@ impl Recorder {
         recorder.new_notes = recorder.notes.len() - said;
         recorder.checkpointed = (recorder.new_notes == 0).then_some(clock);
         recorder.write_scene()?;
+        recorder.rows = rows_of(TableReader::open(&recorder.folder.file(THERMO))?, quantities)?;
         Ok(recorder)
+    }
+
+    /// The averages over the rows so far.
+    pub(super) fn averages(&self) -> Averages {
+        Averages::of(&self.rows)
+    }
+
+    /// Whether the mean that the run is to find is known well enough.
+    pub(super) fn has_reached_its_goal(&mut self) -> bool {
+        self.goal.as_mut().is_some_and(|goal| goal.is_reached(&self.rows))
+    }
+
+    /// The goal, and what is known at the end; none where there is no goal, or it is reached.
+    pub(super) fn missed_goal(&self) -> Option<(&Goal, Known)> {
+        let goal = self.goal.as_ref()?;
+        let known = goal.known(&self.rows);
+        (!known.is_enough).then_some((goal, known))
     }
 
     /// What this session found out of the ordinary when it began.
@@ -245,6 +270,7 @@ impl Recorder {
             return Ok(Some(overflow(clock, quantity.name, value)));
         }
         self.growing.thermo.append(clock.number(), &row)?;
+        self.rows.add(&row);
         Ok(None)
     }
 

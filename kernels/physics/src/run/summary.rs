@@ -1,6 +1,7 @@
 //! What a run says of itself at the end.
 
 use super::{Job, forecast};
+use crate::averages::Averages;
 use crate::method::{Clock, Failure, RunWarning, Simulation};
 use crate::origin::{Origin, host, moment};
 use serde::Serialize;
@@ -40,6 +41,8 @@ pub struct Summary {
     pub notes: Vec<String>,
     /// What stopped the run, if the physics did.
     pub failure: Option<Failure>,
+    /// The mean of each quantity with its error.
+    pub averages: Averages,
     /// Steps done.
     pub steps: u64,
     /// Simulated time.
@@ -65,6 +68,7 @@ impl Summary {
     pub(super) fn of(
         Job { prepared, program, .. }: Job<'_>,
         simulation: &dyn Simulation,
+        averages: Averages,
         from: Clock,
         seconds: f64,
         failure: Option<&Failure>,
@@ -88,6 +92,7 @@ impl Summary {
             foreseen: forecast::as_data(forecast::of_the_step(prepared)),
             notes: vec![],
             failure: failure.cloned(),
+            averages,
             steps: clock.steps,
             time: clock.time,
             events: clock.events,

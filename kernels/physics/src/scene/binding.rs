@@ -3,6 +3,7 @@
 use super::error::{Reason, SceneError, SceneErrors};
 use super::key_set::{KeySet, SECTIONS};
 use super::keys::{Fallback, Key, Value};
+use super::target::Target;
 use super::values::Values;
 use crate::words::Words;
 
@@ -55,6 +56,7 @@ define_bindings! {
     pairs, pairs_if_any, Pairs, Vec<[f64; 2]>;
     numbers, numbers_if_any, Numbers, Vec<f64>;
     rows, rows_if_any, Rows, Vec<Vec<f64>>;
+    target, target_if_any, Target, Target;
 }
 
 impl dyn Binding + '_ {

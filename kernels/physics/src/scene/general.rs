@@ -5,8 +5,9 @@ use super::error::{Reason, SceneError};
 use super::key_set::Rivals;
 use super::keys::Bounds::{NonNegative, Positive};
 use super::keys::Fallback::{Is, Otherwise, Required};
-use super::keys::Kind::{Number, OneOf, Switch, Text, Whole};
+use super::keys::Kind::{self, Number, OneOf, Switch, Text, Whole};
 use super::keys::{Use, define_keys};
+use super::target::Target;
 use super::values::Values;
 use crate::number::significant;
 
@@ -44,6 +45,13 @@ define_keys! {
 }
 
 define_keys! {
+    /// The end of a run by what is known of a mean.
+    pub static TARGETED;
+    TARGET = "run" "until", Kind::Target, "", Otherwise("no such end"), ALWAYS,
+        "Ends the run as soon as the mean of a quantity is known so well: the half width of its interval of 95 %, in percent of the mean or in its unit. The end by number or time that the scene gives is the latest; a run that comes to it first fails.";
+}
+
+define_keys! {
     /// Files on request.
     pub static OUTPUT;
     TRAJECTORY = "output" "trajectory", Switch, "", Is("true"), ALWAYS,
@@ -67,10 +75,12 @@ define_keys! {
 pub static DURATION: &[Rivals] = &[Rivals { keys: &[&STEPS, &TIME], used: ALWAYS, needed: true }];
 
 /// How long a run takes, and how often something is written (steps; 0 is never).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
     /// Steps to do.
     pub steps: u64,
+    /// The mean that ends the run before.
+    pub target: Option<Target>,
     /// Steps between rows of observables.
     pub thermo_every: u64,
     /// Steps between snapshots.
@@ -88,6 +98,7 @@ impl Run {
             Some(time) => self.steps = (time / dt).round() as u64,
             None => binding.whole(&STEPS, &mut self.steps),
         }
+        binding.target_if_any(&TARGET, &mut self.target);
         binding.whole(&THERMO_EVERY, &mut self.thermo_every);
         binding.whole(&SNAPSHOT_EVERY, &mut self.snapshot_every);
         binding.whole_if_any(&CHECKPOINT_EVERY, &mut self.checkpoint_every);

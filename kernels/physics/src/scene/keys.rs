@@ -1,6 +1,7 @@
 //! What a key is: its name, type, range, unit, default and documentation.
 
 use super::error::{Mistakes, Reason};
+use super::target::{Target, Width};
 use crate::quoted::quoted;
 use crate::words::nearest;
 use std::ops::Range;
@@ -28,6 +29,8 @@ pub enum Value {
     Numbers(Vec<f64>),
     /// A list of rows of numbers.
     Rows(Vec<Vec<f64>>),
+    /// A mean to be known so well.
+    Target(Target),
 }
 
 impl Value {
@@ -41,6 +44,7 @@ impl Value {
             Value::Switch(value) => value.to_string(),
             Value::Word(word) => toml::Value::String(word.clone()).to_string(),
             Value::Pair(value) => pair(value),
+            Value::Target(target) => target.to_toml(),
             Value::Switches([x, y]) => format!("[{x}, {y}]"),
             Value::Pairs(values) => list(values.iter().map(pair).collect()),
             Value::Rows(rows) => list(
@@ -119,6 +123,8 @@ pub enum Kind {
     Numbers(Bounds),
     /// `[[a, b, …], …]`, each row of as many finite numbers.
     Rows(usize),
+    /// `{ quantity = "…", error = "…%" }`, or a number as the error.
+    Target,
 }
 
 /// Why a value cannot be read, and where in the text it stands.
@@ -154,6 +160,9 @@ impl Kind {
             Kind::Choice(words) => joined(words.iter().map(|word| format!("\"{word}\"")).collect()),
             Kind::Text => "text in quotes, one line".to_owned(),
             Kind::Pair(bounds) => format!("[x, y], two numbers, {}", bounds.words()),
+            Kind::Target => {
+                "{ quantity = \"NAME\", error = \"0.1%\" }, or an error above 0 in its unit".to_owned()
+            }
             Kind::Switches => "[x, y], each true or false".to_owned(),
             Kind::Pairs => "[[x, y], …], finite numbers".to_owned(),
             Kind::Rows(numbers) => format!("[[…], …], each of {numbers} finite numbers"),
@@ -179,6 +188,7 @@ impl Kind {
             Kind::Choice(words) => Value::Word(choice(value, words)?),
             Kind::Text => Value::Word(text(value)?),
             Kind::Pair(bounds) => Value::Pair(pair(value, |item| number(item, bounds))?),
+            Kind::Target => Value::Target(target(value)?),
             Kind::Switches => Value::Switches(pair(value, switch)?),
             Kind::Pairs => Value::Pairs(list(value, |item| pair(item, |item| number(item, Bounds::Finite)))?),
             Kind::Rows(numbers) => Value::Rows(list(value, |row| {
@@ -312,6 +322,22 @@ fn list<T>(value: &Spanned<DeValue<'_>>, item: impl Fn(&Spanned<DeValue<'_>>) ->
 fn pair<T>(value: &Spanned<DeValue<'_>>, item: impl Fn(&Spanned<DeValue<'_>>) -> Read<T>) -> Read<[T; 2]> {
     let items = list(value, item)?;
     items.try_into().or_else(|_| wrong_type(value))
+}
+
+fn target(value: &Spanned<DeValue<'_>>) -> Read<Target> {
+    let Some(table) = value.get_ref().as_table() else { return wrong_type(value) };
+    let (Some(quantity), Some(error), 2) = (table.get("quantity"), table.get("error"), table.len()) else {
+        let names = "a table without just `quantity` and `error`";
+        return Err(vec![Fault::new(value, Reason::Type, names)]);
+    };
+    let width = match error.get_ref() {
+        DeValue::String(text) => Width::parse(text),
+        _ => Some(Width::Absolute(number(error, Bounds::Positive)?)),
+    };
+    match width {
+        Some(error) => Ok(Target { quantity: text(quantity)?, error }),
+        None => out_of_range(error),
+    }
 }
 
 /// What stands for a key that is not given.

@@ -18,6 +18,7 @@ mod machine;
 mod overrides;
 mod reading;
 mod rules;
+mod target;
 mod text;
 mod values;
 mod vocabulary;
@@ -33,7 +34,7 @@ pub use domain::{Domain, GRAVITY, ORIGIN, PERIODIC, PLANAR_DOMAIN, SIDES};
 pub use error::{Place, Reason, SceneError, SceneErrors, Spot, Warning};
 pub use general::{
     DT, DURATION, FORMAT_VERSION, HEADING, LAMMPS_DATA, LAMMPS_DUMP, METHOD, OUTPUT, Output, Run, STEP,
-    STEPPED_RUN, STEPS, UNITS, bind_heading, too_many_steps,
+    STEPPED_RUN, STEPS, TARGET, TARGETED, UNITS, bind_heading, too_many_steps,
 };
 pub use key_set::{KeySet, Rivals, SECTIONS};
 pub use keys::{Bounds, Fallback, Key, Kind, Use, Value};
@@ -42,6 +43,7 @@ pub use machine::{
     bind_instructions, execution_name,
 };
 pub use overrides::Overrides;
+pub use target::{Target, Width};
 pub use values::Values;
 pub use vocabulary::{Preset, Renamed, Vocabulary};
 

@@ -7,7 +7,7 @@ use crate::scene::Kind::{Choice, Number, Switch, Whole};
 use crate::scene::keys::define_keys;
 use crate::scene::{
     DISC_RIVALS, DISCS, GRAVITY, HEADING, INSTRUCTIONS, KeySet, OUTPUT, PERIODIC, PLANAR_DOMAIN, Reason,
-    Rivals, SceneError, Use, Value, Values, Vocabulary, disagreements,
+    Rivals, SceneError, TARGETED, Use, Value, Values, Vocabulary, disagreements,
 };
 use crate::words::Words;
 
@@ -71,7 +71,7 @@ static DURATION: &[Rivals] = &[Rivals { keys: &[&EVENTS, &TIME], used: ALWAYS, n
 pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     keys: KeySet {
         method: "hard-disks",
-        groups: &[HEADING, PLANAR_DOMAIN, DISCS, OWN, INSTRUCTIONS, OUTPUT],
+        groups: &[HEADING, PLANAR_DOMAIN, DISCS, OWN, INSTRUCTIONS, TARGETED, OUTPUT],
         rivals: &[DISC_RIVALS, DURATION],
     },
     rules: &[disagreements, own_rules],

@@ -19,6 +19,7 @@ impl Checked {
         Prepared {
             scene: scene.to_toml(),
             schedule: scene.run.schedule(),
+            target: scene.run.target.clone(),
             output: scene.output,
             domain: self.domain,
             seed: scene.start.seed(),

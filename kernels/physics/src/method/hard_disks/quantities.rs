@@ -1,5 +1,6 @@
 //! What is observed of hard discs: one list of quantities, each with how it is read off what was seen.
 
+use crate::method::Kind::{Counter, Instant, Kept, SinceStart, Time};
 use crate::method::observed::observables;
 use crate::method::{Clock, Observable, Quantity, quantities};
 
@@ -21,17 +22,17 @@ pub(super) struct Seen {
 
 /// What is observed, in the order of the columns.
 pub(super) const OBSERVABLES: [Observable<Seen>; 11] = observables! {
-    "time", "time", |seen| seen.clock.time, "The time.";
-    "events", "", |seen| seen.clock.events as f64, "Collisions since the start, of pairs and at walls.";
-    "collisions", "", |seen| seen.collisions as f64, "Collisions of pairs since the start.";
-    "kinetic", "energy", |seen| seen.kinetic, "Kinetic energy.";
-    "energy_error", "", |seen| seen.energy_error, "The kinetic energy less that of the start, over that of the start: rounding where all collisions are elastic.";
-    "temperature", "energy", |seen| seen.temperature, "Kinetic energy a disc and dimension, about the mean motion: over N, also where momentum is conserved and 2 N − 2 degrees of freedom move; the temperature of these is N/(N − 1) times it.";
-    "momentum_x", "mass·length/time", |seen| seen.momentum[0], "Momentum along x.";
-    "momentum_y", "mass·length/time", |seen| seen.momentum[1], "Momentum along y.";
-    "virial", "mass·length²/time", |seen| seen.virial, "Impulse times distance of the centres, summed over the collisions since the start.";
-    "compressibility", "", |seen| seen.compressibility, "Z = p A/(N kT): 1 + virial/(2 N kT t) since the start, with the temperature as it is.";
-    "collision_rate", "1/time", |seen| seen.collision_rate, "Collisions of a disc in a unit of time since the start: twice the collisions of pairs over the discs.";
+    "time", "time", Time, |seen| seen.clock.time, "The time.";
+    "events", "", Counter, |seen| seen.clock.events as f64, "Collisions since the start, of pairs and at walls.";
+    "collisions", "", Counter, |seen| seen.collisions as f64, "Collisions of pairs since the start.";
+    "kinetic", "energy", Instant, |seen| seen.kinetic, "Kinetic energy.";
+    "energy_error", "", Kept, |seen| seen.energy_error, "The kinetic energy less that of the start, over that of the start: rounding where all collisions are elastic.";
+    "temperature", "energy", Instant, |seen| seen.temperature, "Kinetic energy a disc and dimension, about the mean motion: over N, also where momentum is conserved and 2 N − 2 degrees of freedom move; the temperature of these is N/(N − 1) times it.";
+    "momentum_x", "mass·length/time", Kept, |seen| seen.momentum[0], "Momentum along x.";
+    "momentum_y", "mass·length/time", Kept, |seen| seen.momentum[1], "Momentum along y.";
+    "virial", "mass·length²/time", Counter, |seen| seen.virial, "Impulse times distance of the centres, summed over the collisions since the start.";
+    "compressibility", "", SinceStart { ideal: 1.0, over: Some("temperature") }, |seen| seen.compressibility, "Z = p A/(N kT): 1 + virial/(2 N kT t) since the start, with the temperature as it is.";
+    "collision_rate", "1/time", SinceStart { ideal: 0.0, over: None }, |seen| seen.collision_rate, "Collisions of a disc in a unit of time since the start: twice the collisions of pairs over the discs.";
 };
 
 /// Their names, units and meanings.

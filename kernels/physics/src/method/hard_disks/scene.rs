@@ -6,7 +6,9 @@ use super::keys::*;
 use super::options::EngineChoice;
 use crate::domain::Side;
 use crate::method::{Every, Schedule, Until};
-use crate::scene::{Binding, Domain, Output, Start, WallMotion, Write, bind_heading, bind_instructions};
+use crate::scene::{
+    Binding, Domain, Output, Start, TARGET, Target, WallMotion, Write, bind_heading, bind_instructions,
+};
 use stripmine_kernels::InstructionSet;
 
 /// What is simulated. Units are the scene's own; `units` names them.
@@ -37,10 +39,12 @@ pub struct Scene {
 }
 
 /// How long a run takes, and how often something is written (time; 0 is never).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Run {
     /// The end.
     pub until: Until,
+    /// The mean that ends the run before.
+    pub target: Option<Target>,
     /// Time between rows of observables.
     pub thermo_every: f64,
     /// Time between snapshots.
@@ -62,6 +66,7 @@ impl Default for Scene {
             mask: String::new(),
             run: Run {
                 until: Until::Events(0),
+                target: None,
                 thermo_every: 0.0,
                 snapshot_every: 0.0,
                 checkpoint_every: None,
@@ -87,6 +92,7 @@ impl Run {
                 self.until = Until::Events(events);
             }
         }
+        binding.target_if_any(&TARGET, &mut self.target);
         binding.number(&THERMO_EVERY, &mut self.thermo_every);
         binding.number(&SNAPSHOT_EVERY, &mut self.snapshot_every);
         binding.number_if_any(&CHECKPOINT_EVERY, &mut self.checkpoint_every);

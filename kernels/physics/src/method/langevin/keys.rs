@@ -7,8 +7,8 @@ use crate::scene::Kind::{Choice, Number, Switch, Whole};
 use crate::scene::keys::define_keys;
 use crate::scene::{
     ARITHMETIC, DISC_RIVALS, DISCS, DURATION, GRAVITY, HEADING, INSTRUCTIONS, KeySet, OUTPUT, PERIODIC,
-    PLANAR_DOMAIN, Reason, STEP, STEPPED_RUN, SceneError, Use, Value, Values, Vocabulary, disagreements,
-    too_many_steps,
+    PLANAR_DOMAIN, Reason, STEP, STEPPED_RUN, SceneError, TARGETED, Use, Value, Values, Vocabulary,
+    disagreements, too_many_steps,
 };
 use crate::words::Words;
 
@@ -53,7 +53,18 @@ define_keys! {
 pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     keys: KeySet {
         method: "langevin",
-        groups: &[HEADING, PLANAR_DOMAIN, DISCS, OWN, STEP, ARITHMETIC, INSTRUCTIONS, STEPPED_RUN, OUTPUT],
+        groups: &[
+            HEADING,
+            PLANAR_DOMAIN,
+            DISCS,
+            OWN,
+            STEP,
+            ARITHMETIC,
+            INSTRUCTIONS,
+            STEPPED_RUN,
+            TARGETED,
+            OUTPUT,
+        ],
         rivals: &[DISC_RIVALS, DURATION],
     },
     rules: &[disagreements, too_many_steps, own_rules],

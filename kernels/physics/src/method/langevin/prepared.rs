@@ -21,6 +21,7 @@ impl Checked {
         Prepared {
             scene: scene.to_toml(),
             schedule: Schedule::of_steps(&scene.run),
+            target: scene.run.target.clone(),
             output: scene.output,
             domain: self.domain,
             seed: scene.start.seed(),

@@ -1,5 +1,6 @@
 //! What is observed of particles in a bath: one list of quantities, each with how it is read off what was seen.
 
+use crate::method::Kind::{Counter, Instant, Time};
 use crate::method::observed::observables;
 use crate::method::{Observable, Quantity, quantities};
 
@@ -19,16 +20,16 @@ pub(super) struct Seen {
 
 /// What is observed, in the order of the columns.
 pub(super) const OBSERVABLES: [Observable<Seen>; 10] = observables! {
-    "time", "time", |seen| seen.time, "The time.";
-    "kinetic", "energy", |seen| seen.kinetic, "Kinetic energy; by baoab of the velocities after the bath, which have m⟨v²⟩ = kT but for higher orders than dt², where those of the end of the step, in trajectory.xyz, are low by dt²⟨F²⟩/(4 m).";
-    "potential", "energy", |seen| seen.potential, "Energy of the pairs.";
-    "temperature", "energy", |seen| seen.temperature, "Kinetic energy a particle and dimension: over N, for a bath does not conserve momentum, and all 2 N degrees of freedom have its temperature.";
-    "pressure", "force/length", |seen| seen.pressure, "Pressure of the motion and of the pairs, over the area of the box.";
-    "msd", "length²", |seen| seen.msd, "Mean square displacement since the start, by the positions as if there were no sides.";
-    "rms", "length", |seen| seen.msd.sqrt(), "Its root.";
-    "momentum_x", "mass·length/time", |seen| seen.momentum[0], "Momentum along x.";
-    "momentum_y", "mass·length/time", |seen| seen.momentum[1], "Momentum along y.";
-    "lost", "", |seen| seen.lost as f64, "Particles lost since the start.";
+    "time", "time", Time, |seen| seen.time, "The time.";
+    "kinetic", "energy", Instant, |seen| seen.kinetic, "Kinetic energy; by baoab of the velocities after the bath, which have m⟨v²⟩ = kT but for higher orders than dt², where those of the end of the step, in trajectory.xyz, are low by dt²⟨F²⟩/(4 m).";
+    "potential", "energy", Instant, |seen| seen.potential, "Energy of the pairs.";
+    "temperature", "energy", Instant, |seen| seen.temperature, "Kinetic energy a particle and dimension: over N, for a bath does not conserve momentum, and all 2 N degrees of freedom have its temperature.";
+    "pressure", "force/length", Instant, |seen| seen.pressure, "Pressure of the motion and of the pairs, over the area of the box.";
+    "msd", "length²", Instant, |seen| seen.msd, "Mean square displacement since the start, by the positions as if there were no sides.";
+    "rms", "length", Instant, |seen| seen.msd.sqrt(), "Its root.";
+    "momentum_x", "mass·length/time", Instant, |seen| seen.momentum[0], "Momentum along x.";
+    "momentum_y", "mass·length/time", Instant, |seen| seen.momentum[1], "Momentum along y.";
+    "lost", "", Counter, |seen| seen.lost as f64, "Particles lost since the start.";
 };
 
 /// Their names, units and meanings.

@@ -10,8 +10,8 @@ use crate::scene::Kind::{Choice, Number, OneOf, Switch};
 use crate::scene::keys::define_keys;
 use crate::scene::{
     ARITHMETIC, DISC_RIVALS, DISCS, DURATION, HEADING, INSTRUCTIONS, Key, KeySet, OUTPUT, PLANAR_DOMAIN,
-    PRECISION, Reason, Renamed, STEP, STEPPED_RUN, SceneError, Use, Value, Values, Vocabulary, disagreements,
-    too_many_steps,
+    PRECISION, Reason, Renamed, STEP, STEPPED_RUN, SceneError, TARGETED, Use, Value, Values, Vocabulary,
+    disagreements, too_many_steps,
 };
 use crate::words::Words;
 use stripmine_kernels::law::granular::ContactArm;
@@ -83,7 +83,18 @@ define_keys! {
 pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     keys: KeySet {
         method: "lattice-md",
-        groups: &[HEADING, PLANAR_DOMAIN, DISCS, OWN, STEP, ARITHMETIC, INSTRUCTIONS, STEPPED_RUN, OUTPUT],
+        groups: &[
+            HEADING,
+            PLANAR_DOMAIN,
+            DISCS,
+            OWN,
+            STEP,
+            ARITHMETIC,
+            INSTRUCTIONS,
+            STEPPED_RUN,
+            TARGETED,
+            OUTPUT,
+        ],
         rivals: &[DISC_RIVALS, DURATION],
     },
     rules: &[disagreements, too_many_steps, own_rules],

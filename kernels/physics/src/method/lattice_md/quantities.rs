@@ -2,6 +2,7 @@
 
 use super::Totals;
 use super::balance::Balance;
+use crate::method::Kind::{Counter, Instant, Kept, Time};
 use crate::method::observed::observables;
 use crate::method::{Observable, Quantity, quantities};
 use crate::observe::Observation;
@@ -19,31 +20,31 @@ pub(super) struct Seen {
 
 /// What is observed, in the order of the columns.
 pub(super) const OBSERVABLES: [Observable<Seen>; 18] = observables! {
-    "time", "time", |seen| seen.now.time, "The time.";
-    "kinetic", "energy", |seen| seen.now.kinetic, "Kinetic energy of the grains' translation.";
-    "rotational", "energy", |seen| seen.now.rotational, "Kinetic energy of their rotation.";
-    "elastic", "energy", |seen| seen.now.elastic, "Energy that contacts store.";
-    "gravitational", "energy", |seen| seen.now.gravitational,
+    "time", "time", Time, |seen| seen.now.time, "The time.";
+    "kinetic", "energy", Instant, |seen| seen.now.kinetic, "Kinetic energy of the grains' translation.";
+    "rotational", "energy", Instant, |seen| seen.now.rotational, "Kinetic energy of their rotation.";
+    "elastic", "energy", Instant, |seen| seen.now.elastic, "Energy that contacts store.";
+    "gravitational", "energy", Instant, |seen| seen.now.gravitational,
         "Potential energy in gravity, from the box's corner; jumps where a grain crosses a periodic side along gravity.";
-    "dissipated", "energy", |seen| seen.balance.dissipated, "What contacts have turned into heat since the start.";
-    "gravity_work", "energy", |seen| seen.balance.gravity_work, "What gravity has put in since the start.";
-    "wall_work", "energy", |seen| seen.balance.wall_work, "What moving walls have put in since the start.";
-    "balance_error", "energy", |seen| seen.balance.balance_error,
+    "dissipated", "energy", Counter, |seen| seen.balance.dissipated, "What contacts have turned into heat since the start.";
+    "gravity_work", "energy", Counter, |seen| seen.balance.gravity_work, "What gravity has put in since the start.";
+    "wall_work", "energy", Counter, |seen| seen.balance.wall_work, "What moving walls have put in since the start.";
+    "balance_error", "energy", Kept, |seen| seen.balance.balance_error,
         "The energy that there is, less what there should be.";
-    "momentum_x", "mass·length/time", |seen| seen.now.momentum_x, "Momentum of the grains along x.";
-    "momentum_y", "mass·length/time", |seen| seen.now.momentum_y, "Momentum of the grains along y.";
-    "temperature", "energy", |seen| seen.now.temperature,
+    "momentum_x", "mass·length/time", Kept, |seen| seen.now.momentum_x, "Momentum of the grains along x.";
+    "momentum_y", "mass·length/time", Kept, |seen| seen.now.momentum_y, "Momentum of the grains along y.";
+    "temperature", "energy", Instant, |seen| seen.now.temperature,
         "Kinetic energy a grain and dimension, about the mean motion: over N, also where momentum is conserved and 2 N − 2 degrees of freedom move; the temperature of these is N/(N − 1) times it.";
-    "pressure", "force/length", |seen| seen.now.pressure,
+    "pressure", "force/length", Instant, |seen| seen.now.pressure,
         "Pressure of the grains, of their motion and of the contacts between them, over the area of the whole box.";
-    "flow", "length/time", |seen| seen.now.flow,
+    "flow", "length/time", Instant, |seen| seen.now.flow,
         "Mean velocity of the grains along gravity, or along x without gravity.";
-    "deepest_penetration", "", |seen| seen.now.deepest_penetration,
+    "deepest_penetration", "", Instant, |seen| seen.now.deepest_penetration,
         "The deepest contact, as a fraction of the sum of the radii.";
-    "contacts", "", |seen| seen.now.contacts as f64, "Contacts with at least one grain.";
-    "deep_disc_steps", "", |seen| seen.totals.deep_disc_steps as f64,
+    "contacts", "", Instant, |seen| seen.now.contacts as f64, "Contacts with at least one grain.";
+    "deep_disc_steps", "", Counter, |seen| seen.totals.deep_disc_steps as f64,
         "Grains in contacts deeper than law.max_penetration, summed over the steps.";
-    "long_steps", "", |seen| seen.totals.long_steps as f64,
+    "long_steps", "", Counter, |seen| seen.totals.long_steps as f64,
         "Discs that moved farther in a step than contacts can be seen, summed over the steps.";
 };
 

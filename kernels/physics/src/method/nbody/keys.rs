@@ -7,8 +7,8 @@ use crate::scene::Fallback::{Is, Required};
 use crate::scene::Kind::{Choice, Number, Rows, Whole};
 use crate::scene::keys::define_keys;
 use crate::scene::{
-    ARITHMETIC, DURATION, HEADING, INSTRUCTIONS, KeySet, OUTPUT, Reason, STEP, STEPPED_RUN, SceneError, Use,
-    Value, Values, Vocabulary, too_many_steps,
+    ARITHMETIC, DURATION, HEADING, INSTRUCTIONS, KeySet, OUTPUT, Reason, STEP, STEPPED_RUN, SceneError,
+    TARGETED, Use, Value, Values, Vocabulary, too_many_steps,
 };
 use crate::words::Words;
 
@@ -67,7 +67,7 @@ define_keys! {
 pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     keys: KeySet {
         method: "nbody",
-        groups: &[HEADING, OWN, STEP, ARITHMETIC, INSTRUCTIONS, STEPPED_RUN, OUTPUT],
+        groups: &[HEADING, OWN, STEP, ARITHMETIC, INSTRUCTIONS, STEPPED_RUN, TARGETED, OUTPUT],
         rivals: &[DURATION],
     },
     rules: &[too_many_steps, own_rules],

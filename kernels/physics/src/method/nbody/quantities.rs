@@ -1,6 +1,7 @@
 //! What is observed of bodies: one list of quantities, each with how it is read off what was seen.
 
 use super::conserved::Conserved;
+use crate::method::Kind::{Instant, Kept, Time};
 use crate::method::observed::observables;
 use crate::method::{Observable, Quantity, quantities};
 
@@ -32,18 +33,18 @@ fn length(v: [f64; 3]) -> f64 {
 
 /// What is observed, in the order of the columns.
 pub(super) const OBSERVABLES: [Observable<Seen>; 12] = observables! {
-    "time", "time", |seen| seen.time, "The time.";
-    "kinetic", "energy", |seen| seen.conserved.kinetic, "Kinetic energy.";
-    "potential", "energy", |seen| seen.conserved.potential, "Energy of the softened pairs.";
-    "energy_error", "", |seen| seen.energy_error, "The energy less that of the start, over that of the start.";
-    "virial_ratio", "", |seen| seen.virial_ratio(), "Kinetic energy over the magnitude of the potential energy: 0.5 in equilibrium.";
-    "momentum", "mass·length/time", |seen| seen.momentum(), "Magnitude of the momentum.";
-    "angular_momentum_x", "mass·length²/time", |seen| seen.conserved.angular_momentum[0], "Angular momentum about the origin, along x.";
-    "angular_momentum_y", "mass·length²/time", |seen| seen.conserved.angular_momentum[1], "The same along y.";
-    "angular_momentum_z", "mass·length²/time", |seen| seen.conserved.angular_momentum[2], "The same along z.";
-    "centre", "length", |seen| length(seen.conserved.centre), "Distance of the centre of mass from the origin.";
-    "balance_error", "energy", |seen| seen.balance_error, "The energy less that of the start.";
-    "half_mass_radius", "length", |seen| seen.half_mass_radius, "Distance from the centre of mass within which half of the mass is.";
+    "time", "time", Time, |seen| seen.time, "The time.";
+    "kinetic", "energy", Instant, |seen| seen.conserved.kinetic, "Kinetic energy.";
+    "potential", "energy", Instant, |seen| seen.conserved.potential, "Energy of the softened pairs.";
+    "energy_error", "", Kept, |seen| seen.energy_error, "The energy less that of the start, over that of the start.";
+    "virial_ratio", "", Instant, |seen| seen.virial_ratio(), "Kinetic energy over the magnitude of the potential energy: 0.5 in equilibrium.";
+    "momentum", "mass·length/time", Kept, |seen| seen.momentum(), "Magnitude of the momentum.";
+    "angular_momentum_x", "mass·length²/time", Kept, |seen| seen.conserved.angular_momentum[0], "Angular momentum about the origin, along x.";
+    "angular_momentum_y", "mass·length²/time", Kept, |seen| seen.conserved.angular_momentum[1], "The same along y.";
+    "angular_momentum_z", "mass·length²/time", Kept, |seen| seen.conserved.angular_momentum[2], "The same along z.";
+    "centre", "length", Kept, |seen| length(seen.conserved.centre), "Distance of the centre of mass from the origin.";
+    "balance_error", "energy", Kept, |seen| seen.balance_error, "The energy less that of the start.";
+    "half_mass_radius", "length", Instant, |seen| seen.half_mass_radius, "Distance from the centre of mass within which half of the mass is.";
 };
 
 /// Their names, units and meanings.

@@ -1,6 +1,8 @@
-//! `stripmine run`: one simulation into a folder.
+//! `stripmine run`: one simulation into a folder, or several with seeds of their own.
 
-use crate::console::{Common, Failure, STEPS, bar, clear_progress, print, print_json, say, warn};
+mod seeds;
+
+use crate::console::{Common, Failure, STEPS, bar, clear_progress, count, print, print_json, say, warn};
 use crate::provenance::built;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -31,14 +33,17 @@ pub(super) struct RunVerb {
     /// Begin from the start where the folder holds a run; only what that run wrote is removed
     #[arg(long)]
     overwrite: bool,
+    /// So many runs side by side, each with a seed and a folder of its own, and their means in one summary
+    #[arg(long, value_name = "N", value_parser = count)]
+    seeds: Option<u64>,
 }
 
 impl RunVerb {
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
-        let folder = self.out.clone().unwrap_or_else(|| {
-            let stem = Path::new(&self.scene).file_stem().unwrap_or_default();
-            PathBuf::from(format!("{}.run", stem.to_string_lossy()))
-        });
+        if let Some(count) = self.seeds {
+            return self.run_seeds(count, common, methods);
+        }
+        let folder = self.folder("run");
         let vocabularies = vocabularies(methods);
         let values = Values::load(&self.scene, &self.overrides, &vocabularies)?;
         let (mut prepared, entry) = prepare(values.clone(), methods)?;
@@ -49,11 +54,7 @@ impl RunVerb {
                 (prepared, _) = prepare(Values::load(&self.scene, &overrides, &vocabularies)?, methods)?;
             }
         }
-        let existing = match (self.resume, self.overwrite) {
-            (true, _) => Existing::Resume { other_version: self.other_version },
-            (_, true) => Existing::Overwrite,
-            _ => Existing::Refuse,
-        };
+        let existing = self.existing();
         prepared.memory.fits(&self.scene)?;
         let begins = begins(&folder, existing)?;
         if !common.quiet {
@@ -85,6 +86,25 @@ impl RunVerb {
     }
 }
 
+impl RunVerb {
+    /// The folder asked for, or one called after the scene.
+    fn folder(&self, ending: &str) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| {
+            let stem = Path::new(&self.scene).file_stem().unwrap_or_default();
+            PathBuf::from(format!("{}.{ending}", stem.to_string_lossy()))
+        })
+    }
+
+    /// What is to become of a run that the folder holds.
+    fn existing(&self) -> Existing {
+        match (self.resume, self.overwrite) {
+            (true, _) => Existing::Resume { other_version: self.other_version },
+            (_, true) => Existing::Overwrite,
+            _ => Existing::Refuse,
+        }
+    }
+}
+
 /// Says what is to be expected: of the time, of a run that begins at the start.
 fn before(prepared: &Prepared, begins: bool) {
     let of_the_time = begins.then(|| forecast::of_the_time(prepared)).flatten();
@@ -100,7 +120,9 @@ fn text(summary: &Summary, folder: &Path) -> String {
     let done = Clock { steps, time, events }.done();
     let session = if from == Clock::default() { String::new() } else { format!(" (from {from} on)") };
     let time = significant(time, 9);
-    let mut text = format!("{done}, time {time}, in {seconds:.2} s{session}: {}\n", summary.in_words);
+    let mut text =
+        format!("{done}, time {time}, in {seconds:.2} s{session}\nat the end: {}\n", summary.in_words);
+    text.push_str(&summary.averages.to_string());
     for choice in &summary.choices {
         text.push_str(&format!("chosen: {choice}\n"));
     }

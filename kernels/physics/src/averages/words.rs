@@ -1,0 +1,57 @@
+//! Averages in a few lines.
+
+use super::{Average, Averages, Estimate, Outcome};
+use crate::number::{counted, significant, with_bar};
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// A line for each mean, then why the others have none; rates that are 0, and what should stay as it is, are left out.
+impl fmt::Display for Averages {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let of_runs = if self.runs > 1 { format!(" over {} runs", self.runs) } else { String::new() };
+        let mut is_first = true;
+        let mut constants = vec![];
+        let mut changing = vec![];
+        let mut short: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+        for average in &self.quantities {
+            let name = average.quantity;
+            match &average.outcome {
+                Outcome::Mean(estimate) => {
+                    if std::mem::take(&mut is_first) {
+                        writeln!(f, "means{of_runs}, ± 95 % (Student's t):")?;
+                    }
+                    writeln!(f, "  {}", line(average, estimate))?;
+                }
+                Outcome::Constant { mean } if *mean != 0.0 => {
+                    constants.push(format!("{name} {}", significant(*mean, 6)));
+                }
+                Outcome::Changing { .. } => changing.push(name),
+                Outcome::TooShort { enough_at, .. } => {
+                    short.entry(significant(*enough_at, 2)).or_default().push(name);
+                }
+                Outcome::Constant { .. } | Outcome::Kept { .. } => {}
+            }
+        }
+        if !constants.is_empty() {
+            writeln!(f, "constant: {}", constants.join(", "))?;
+        }
+        if !changing.is_empty() {
+            writeln!(f, "still changing, without a mean: {}", changing.join(", "))?;
+        }
+        for (enough_at, names) in short {
+            writeln!(f, "too short for a mean, until about time {enough_at}: {}", names.join(", "))?;
+        }
+        Ok(())
+    }
+}
+
+fn line(average: &Average, estimate: &Estimate) -> String {
+    let samples = counted(estimate.independent_samples as u64, "independent sample", "independent samples");
+    let name = match average.of {
+        "rate" => format!("rate of {}", average.quantity),
+        _ => average.quantity.to_owned(),
+    };
+    let unit = if average.unit.is_empty() { String::new() } else { format!(" {}", average.unit) };
+    let value = with_bar(estimate.mean, estimate.bar);
+    format!("{name} {value}{unit}, {samples} after time {}", significant(estimate.equilibrated_at, 3))
+}

@@ -1,0 +1,157 @@
+//! Runs that have been written: their rows, their scenes, and what several of them say together.
+
+use super::folder::{SCENE, THERMO};
+use super::identity::{first_difference, physics};
+use super::table::{TableError, TableReader};
+use crate::averages::{Averages, Rows, joined};
+use crate::io::{FileError, regular_file};
+use crate::method::{Methods, Quantity, observer};
+use crate::quoted;
+use crate::reported::{Class, FilePlace, Reported};
+use std::path::{Path, PathBuf};
+
+/// Longer than any scene (bytes).
+pub(super) const LONGEST_SCENE: u64 = 64 << 20;
+
+/// Why runs have no averages.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FinishedError {
+    /// The table of observables.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// A file.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// Columns that no method observes.
+    #[error("{}: its columns are not those of any method of this version", quoted::path(.0))]
+    NoMethod(PathBuf),
+    /// Runs of different scenes.
+    #[error(
+        "{} and {} are not of one scene: `{ours}` in the one, `{theirs}` in the other; only [run], [output] and seeds may differ\n  \
+         help: average them one by one",
+        quoted::path(first),
+        quoted::path(other)
+    )]
+    OtherScene {
+        /// The first run.
+        first: PathBuf,
+        /// One that differs.
+        other: PathBuf,
+        /// The first line that differs, of the first run.
+        ours: String,
+        /// Of the other.
+        theirs: String,
+    },
+    /// A run given twice.
+    #[error(
+        "{} and {} are one run made twice, of the same scene and seeds: together they say no more than one\n  help: give each \
+         run a seed of its own",
+        quoted::path(first),
+        quoted::path(other)
+    )]
+    Twice {
+        /// The first.
+        first: PathBuf,
+        /// The same again.
+        other: PathBuf,
+    },
+}
+
+impl Reported for FinishedError {
+    fn class(&self) -> Class {
+        match self {
+            FinishedError::Table(error) => error.class(),
+            FinishedError::File(_) => Class::InputOutput,
+            FinishedError::NoMethod(_) => Class::Input,
+            FinishedError::OtherScene { .. } | FinishedError::Twice { .. } => Class::Usage,
+        }
+    }
+
+    fn passed_on(&self) -> Option<&dyn Reported> {
+        if let FinishedError::Table(error) = self { Some(error) } else { None }
+    }
+
+    fn place(&self) -> Option<FilePlace> {
+        match self {
+            FinishedError::Table(error) => error.place(),
+            FinishedError::File(error) => Some(FilePlace::at(&error.file)),
+            FinishedError::NoMethod(file)
+            | FinishedError::OtherScene { other: file, .. }
+            | FinishedError::Twice { other: file, .. } => Some(FilePlace::at(file)),
+        }
+    }
+}
+
+/// A run by its files.
+#[derive(Clone, Debug)]
+pub struct Finished {
+    folder: PathBuf,
+    scene: String,
+    rows: Rows,
+}
+
+impl Finished {
+    /// Reads what a run has written so far.
+    ///
+    /// # Errors
+    /// If its scene or its table cannot be read, or no method observes its columns.
+    pub fn read(folder: &Path, methods: Methods) -> Result<Finished, FinishedError> {
+        let path = folder.join(THERMO);
+        let table = TableReader::open(&path)?;
+        let method = observer(methods, table.columns()).ok_or(FinishedError::NoMethod(path))?;
+        let rows = rows_of(table, method.quantities)?;
+        let path = folder.join(SCENE);
+        let scene = regular_file::read(&path, LONGEST_SCENE).map_err(FileError::at(&path, "reading"))?;
+        let scene = String::from_utf8_lossy(&scene).into_owned();
+        Ok(Finished { folder: folder.to_owned(), scene, rows })
+    }
+
+    /// What decides the run.
+    fn physics(&self) -> Vec<&str> {
+        physics(&self.scene)
+    }
+
+    /// That another run is of the same scene with another seed.
+    fn is_joined_by(&self, other: &Finished) -> Result<(), FinishedError> {
+        let (first, other_folder) = (self.folder.clone(), other.folder.clone());
+        if self.physics() == other.physics() {
+            return Err(FinishedError::Twice { first, other: other_folder });
+        }
+        let without_seeds = |run: &Finished| -> Vec<String> {
+            let is_seed = |line: &&str| ["seed = ", "noise_seed = "].iter().any(|it| line.starts_with(it));
+            run.physics().into_iter().filter(|line| !is_seed(line)).map(str::to_owned).collect()
+        };
+        let [ours, theirs] = [self, other].map(without_seeds);
+        let [ours, theirs] = [&ours, &theirs].map(|it| it.iter().map(String::as_str).collect::<Vec<_>>());
+        match first_difference(&theirs, &ours) {
+            None => Ok(()),
+            Some([theirs, ours]) => {
+                Err(FinishedError::OtherScene { first, other: other_folder, ours, theirs })
+            }
+        }
+    }
+}
+
+/// The averages of a run, or of several of one scene.
+///
+/// # Errors
+/// If two of them are not of one scene, or are the same run.
+pub fn averages_of(runs: &[Finished]) -> Result<Averages, FinishedError> {
+    for (place, run) in runs.iter().enumerate() {
+        runs[..place].iter().try_for_each(|before| before.is_joined_by(run))?;
+    }
+    Ok(joined(&runs.iter().map(|run| Averages::of(&run.rows)).collect::<Vec<_>>()))
+}
+
+/// The rows of a table, whose first column is the step.
+///
+/// # Errors
+/// If they cannot be read, or one is no row of numbers.
+pub(super) fn rows_of(mut table: TableReader, quantities: &'static [Quantity]) -> Result<Rows, TableError> {
+    let mut rows = Rows::new(quantities);
+    while let Some(row) = table.next_row()? {
+        rows.add(&row[1..]);
+    }
+    Ok(rows)
+}

@@ -1,0 +1,100 @@
+//! The end of a run by what is known of a mean.
+
+use crate::averages::{Average, Outcome, Rows};
+use crate::method::{Prepared, Quantity};
+use crate::scene::{Target, Width};
+
+/// Rows at which the mean is looked at first.
+const FIRST: u64 = 32;
+/// Then whenever there are so many parts more of them: looking is little beside the run, and chance has few tries.
+const PART: u64 = 8;
+
+/// The mean that a run is to find.
+#[derive(Clone, Debug)]
+pub(super) struct Goal {
+    target: Target,
+    place: usize,
+    /// Rows of the last look, and whether it was reached then.
+    looked: (u64, bool),
+}
+
+/// How well a mean is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Known {
+    /// Half the width of its interval of 95 %, in the terms of the target; none where there is no mean.
+    pub(super) error: Option<Width>,
+    /// About when it is known well enough (time); none where nothing tells.
+    pub(super) enough_at: Option<f64>,
+    /// Whether it is.
+    pub(super) is_enough: bool,
+}
+
+impl Goal {
+    /// That of a scene, if it has one.
+    pub(super) fn of(prepared: &Prepared, quantities: &[Quantity]) -> Option<Goal> {
+        let target = prepared.target.clone()?;
+        let place = quantities.iter().position(|quantity| quantity.name == target.quantity)?;
+        Some(Goal { target, place, looked: (0, false) })
+    }
+
+    /// What is asked for.
+    pub(super) fn target(&self) -> &Target {
+        &self.target
+    }
+
+    /// Whether it is reached, where it is the time to look: after a number of rows, the same in however many sessions.
+    pub(super) fn is_reached(&mut self, rows: &Rows) -> bool {
+        let count = rows.count();
+        if self.looked.0 != count {
+            self.looked = (count, is_looked_at(count) && self.known(rows).is_enough);
+        }
+        self.looked.1
+    }
+
+    /// What is known now.
+    pub(super) fn known(&self, rows: &Rows) -> Known {
+        match Average::of(rows, self.place).outcome {
+            Outcome::Mean(found) => {
+                let error = self.target.error.same_of(found.mean, found.bar);
+                let wanted = match (self.target.error, error) {
+                    (Width::Percent(wanted), Width::Percent(found)) => found / wanted,
+                    (Width::Absolute(wanted), Width::Absolute(found)) => found / wanted,
+                    _ => f64::INFINITY,
+                };
+                // The square of the error goes with the time that is averaged over.
+                let enough_at = found.equilibrated_at + found.span * wanted.powi(2).max(1.0);
+                let is_enough = self.target.error.holds(found.mean, found.bar);
+                Known { error: Some(error), enough_at: Some(enough_at), is_enough }
+            }
+            Outcome::Constant { .. } => {
+                Known { error: Some(self.target.error.same_of(1.0, 0.0)), enough_at: None, is_enough: true }
+            }
+            Outcome::TooShort { enough_at, .. } => {
+                Known { error: None, enough_at: Some(enough_at), is_enough: false }
+            }
+            Outcome::Changing { .. } | Outcome::Kept { .. } => {
+                Known { error: None, enough_at: None, is_enough: false }
+            }
+        }
+    }
+}
+
+fn is_looked_at(rows: u64) -> bool {
+    let mut next = FIRST;
+    while next < rows {
+        next += next / PART;
+    }
+    next == rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn looks_come_at_numbers_of_rows_that_grow() {
+        let looks: Vec<u64> = (0..60).filter(|&rows| is_looked_at(rows)).collect();
+        assert_eq!(looks, [32, 36, 40, 45, 50, 56]);
+        assert!((0..1_000_000).filter(|&rows| is_looked_at(rows)).count() < 100);
+    }
+}

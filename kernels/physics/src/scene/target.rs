@@ -1,0 +1,85 @@
+//! How well the mean of a quantity is to be known.
+
+use crate::number::significant;
+
+/// The mean of a quantity, and the half width of its interval of 95 % that is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Target {
+    /// The name of the quantity.
+    pub quantity: String,
+    /// Half the width.
+    pub error: Width,
+}
+
+/// Half the width of an interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Width {
+    /// In parts of a hundred of the mean.
+    Percent(f64),
+    /// In the unit of the quantity.
+    Absolute(f64),
+}
+
+impl Width {
+    /// Of a text such as `0.1%`, or of a number; none where it is neither, or not above 0.
+    pub fn parse(text: &str) -> Option<Width> {
+        let (number, of): (&str, fn(f64) -> Width) = match text.strip_suffix('%') {
+            Some(number) => (number, Width::Percent),
+            None => (text, Width::Absolute),
+        };
+        let value: f64 = number.trim().parse().ok()?;
+        (value.is_finite() && value > 0.0).then(|| of(value))
+    }
+
+    /// Whether a bar is as short.
+    pub fn holds(self, mean: f64, bar: f64) -> bool {
+        match self {
+            Width::Percent(percent) => bar <= 0.01 * percent * mean.abs(),
+            Width::Absolute(width) => bar <= width,
+        }
+    }
+
+    /// A bar in the same terms.
+    pub fn same_of(self, mean: f64, bar: f64) -> Width {
+        match self {
+            Width::Percent(_) => Width::Percent(100.0 * bar / mean.abs()),
+            Width::Absolute(_) => Width::Absolute(bar),
+        }
+    }
+}
+
+impl std::fmt::Display for Width {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Width::Percent(percent) => write!(f, "{} %", significant(*percent, 2)),
+            Width::Absolute(width) => f.write_str(&significant(*width, 2)),
+        }
+    }
+}
+
+impl Target {
+    /// As TOML, in shortest round-trip form.
+    pub fn to_toml(&self) -> String {
+        let error = match self.error {
+            Width::Percent(percent) => format!("\"{percent:?}%\""),
+            Width::Absolute(width) => format!("{width:?}"),
+        };
+        format!("{{ quantity = {}, error = {error} }}", toml::Value::String(self.quantity.clone()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn widths_are_absolute_or_parts_of_the_mean() {
+        assert_eq!(
+            ["0.1%", " 2 %", "0.5"].map(Width::parse),
+            [Width::Percent(0.1), Width::Percent(2.0), Width::Absolute(0.5)].map(Some)
+        );
+        assert!(["0%", "-1%", "nan%", "inf", "", "%"].iter().all(|text| Width::parse(text).is_none()));
+        assert!(Width::Percent(1.0).holds(-4.0, 0.04) && !Width::Percent(1.0).holds(4.0, 0.05));
+        assert!(Width::Absolute(0.1).holds(4.0, 0.1) && !Width::Absolute(0.1).holds(4.0, 0.2));
+    }
+}

@@ -1,0 +1,100 @@
+//! `stripmine average`: the mean of every quantity of a run, or of several, with its error.
+
+use super::run_folder;
+use crate::console::{Common, Failure, print, print_json};
+use crate::report::{Cell, Rows, Table, csv, terminal};
+use clap::Args;
+use std::path::PathBuf;
+use stripmine_physics::averages::{Average, Averages, Estimate, Outcome};
+use stripmine_physics::method::Methods;
+use stripmine_physics::number::{counted, significant};
+use stripmine_physics::run::{Finished, averages_of};
+
+/// The mean of every quantity of a run with its error, correlation time, equilibration and independent samples; several runs of one scene, with seeds of their own, are joined
+#[derive(Args)]
+pub(super) struct AverageVerb {
+    /// Folders of runs
+    #[arg(required = true, value_name = "RUN")]
+    runs: Vec<PathBuf>,
+    /// The table as comma-separated values
+    #[arg(long, conflicts_with = "json")]
+    csv: bool,
+}
+
+impl AverageVerb {
+    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
+        let runs = self.runs.iter().map(|run| Finished::read(&run_folder(run), methods));
+        let averages = averages_of(&runs.collect::<Result<Vec<_>, _>>()?)?;
+        if common.json {
+            return print_json(&averages);
+        }
+        let table = table(&averages);
+        if self.csv {
+            let mut bytes = vec![];
+            csv::write(&table, &mut bytes).map_err(Failure::writing("CSV"))?;
+            return print(&String::from_utf8_lossy(&bytes));
+        }
+        print(&terminal::render(&table))
+    }
+}
+
+/// Every quantity in a line: its mean with all that is known of it, or why there is none.
+fn table(averages: &Averages) -> Table {
+    let runs = counted(averages.runs, "run", "runs");
+    let number = |of: fn(&Estimate) -> f64| {
+        move |average: &&Average| match &average.outcome {
+            Outcome::Mean(estimate) => Cell::Number(of(estimate), decimals(of(estimate), 3)),
+            _ => Cell::Nothing,
+        }
+    };
+    Rows::of(&averages.quantities)
+        .text("quantity", |it| it.quantity)
+        .cell("mean", |it| match &it.outcome {
+            Outcome::Mean(Estimate { mean, bar, .. }) => Cell::Number(*mean, decimals(*bar, 2)),
+            Outcome::Constant { mean } => Cell::Number(*mean, decimals(*mean, 6)),
+            _ => Cell::Nothing,
+        })
+        .cell("± 95 %", |it| match &it.outcome {
+            Outcome::Mean(Estimate { bar, .. }) => Cell::Number(*bar, decimals(*bar, 2)),
+            _ => Cell::Nothing,
+        })
+        .text("unit", |it| it.unit.clone())
+        .cell("standard error", number(|it| it.standard_error))
+        .cell("by blocks", number(|it| it.standard_error_by_blocks.unwrap_or(f64::NAN)))
+        .cell("correlation time", number(|it| it.correlation_time))
+        .cell("from time", number(|it| it.equilibrated_at))
+        .cell("independent samples", |it| match &it.outcome {
+            Outcome::Mean(Estimate { independent_samples: samples, .. })
+            | Outcome::TooShort { independent_samples: samples, .. } => Cell::Number(*samples, 0),
+            _ => Cell::Nothing,
+        })
+        .text("remark", |it| remark(it))
+        .table("averages", format!("Averages of {runs}, {} rows", averages.rows))
+        .note(format!("± 95 %: the {}, of the larger of both standard errors.", averages.bar))
+}
+
+/// Decimals that show so many digits.
+fn decimals(value: f64, digits: i32) -> usize {
+    let magnitude = value.abs().log10().floor();
+    if magnitude.is_finite() { (digits - 1 - magnitude as i32).max(0) as usize } else { 0 }
+}
+
+fn remark(average: &Average) -> String {
+    match &average.outcome {
+        Outcome::Mean(_) if average.of == "values" => String::new(),
+        Outcome::Mean(_) => match average.of {
+            "rate" => "rate of what is counted".to_owned(),
+            _ => "of the intervals between rows".to_owned(),
+        },
+        Outcome::Constant { .. } => "does not vary".to_owned(),
+        Outcome::TooShort { enough_at, .. } => {
+            format!("too short: until about time {}", significant(*enough_at, 2))
+        }
+        Outcome::Changing { first, last } => {
+            format!("still changing: from {} to {}", significant(*first, 3), significant(*last, 3))
+        }
+        Outcome::Kept { first, farthest, .. } => {
+            format!("at most {} from {}", significant(*farthest, 2), significant(*first, 3))
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! `run --seeds`: one scene with several seeds, side by side, and what the runs say together.
+
+use super::RunVerb;
+use crate::console::{Common, Failure, SHARES, bar, clear_progress, print, print_json, say, to_json, warn};
+use crate::provenance::built;
+use crate::results::OwnFiles;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use serde::Serialize;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::PoisonError;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::thread;
+use std::time::Instant;
+use stripmine_physics::averages::{Averages, joined};
+use stripmine_physics::method::{Methods, Prepared, load, vocabularies};
+use stripmine_physics::quoted;
+use stripmine_physics::run::{Ending, Job, Summary, begins, run};
+use stripmine_physics::scene::{Fallback, Key, Reason, Value, Values, Vocabulary};
+use stripmine_physics::signals;
+
+/// The list of what stands in the folder beside the runs.
+const LIST: &str = "seeds.files";
+/// What the runs say together.
+const SUMMARY: &str = "seeds.json";
+/// Parts of a run on the bar.
+const PARTS: u64 = 1000;
+
+/// What runs with several seeds say together.
+#[derive(Serialize)]
+struct Ensemble {
+    /// The mean of each quantity over all runs.
+    averages: Averages,
+    /// Wall seconds of all together.
+    seconds: f64,
+    /// Each run.
+    runs: Vec<Member>,
+}
+
+/// A run with a seed of its own.
+#[derive(Serialize)]
+struct Member {
+    folder: PathBuf,
+    seeds: Vec<String>,
+    averages: Averages,
+}
+
+/// The keys that seed a scene, each with the value from which its seeds count: those of the start, and of noise where it is given, or
+/// is all that is drawn.
+fn seeds_of(values: &Values, vocabulary: &Vocabulary) -> Vec<(&'static Key, u64)> {
+    let is_seed = |key: &&'static Key| key.name == "seed" || key.name.ends_with("_seed");
+    let seed = |key: &&'static Key| match values.value(key) {
+        Some(Value::Whole(seed)) => Some((*key, seed)),
+        _ => None,
+    };
+    let used: Vec<&'static Key> =
+        vocabulary.keys.keys().filter(is_seed).filter(|key| values.is_used(key)).collect();
+    let found: Vec<(&'static Key, u64)> = used.iter().filter_map(seed).collect();
+    if !found.is_empty() {
+        return found;
+    }
+    used.into_iter()
+        .filter(|key| matches!(key.fallback, Fallback::Otherwise(_)))
+        .map(|key| (key, 1))
+        .collect()
+}
+
+impl RunVerb {
+    /// Runs the scene with so many seeds, the scene's own the first of them.
+    pub(super) fn run_seeds(&self, count: u64, common: &Common, methods: Methods) -> Result<(), Failure> {
+        let folder = self.folder("seeds");
+        let values = Values::load(&self.scene, &self.overrides, &vocabularies(methods))?;
+        let method = methods.iter().find(|method| method.vocabulary.keys.method == values.method());
+        let keys = method.map_or(vec![], |method| seeds_of(&values, method.vocabulary));
+        if keys.is_empty() {
+            let error = values.spot(&stripmine_physics::scene::METHOD);
+            let message = "nothing of this scene is drawn at random: every seed gives the same run";
+            return Err(Failure::Options(error.error(Reason::Unused, message).into()));
+        }
+        let members: Vec<(PathBuf, Vec<String>)> = (0..count)
+            .map(|number| {
+                let seeds =
+                    keys.iter().map(|(key, first)| format!("{}={}", key.path(), first.wrapping_add(number)));
+                (folder.join(format!("seed-{}", keys[0].1.wrapping_add(number))), seeds.collect())
+            })
+            .collect();
+        // What is wrong with the scene is said once, before anything is written.
+        let (prepared, _) = self.prepared(&members[0].1, methods)?;
+        prepared.memory.fits(&self.scene)?;
+        members.iter().try_for_each(|(folder, _)| begins(folder, self.existing()).map(drop))?;
+        let own = OwnFiles::claim(&folder, LIST, &[SUMMARY.to_owned()], self.overwrite)?;
+        let begun = Instant::now();
+        let found = self.side_by_side(&members, &prepared, common, methods);
+        clear_progress();
+        let mut runs = vec![];
+        for ((folder, seeds), summary) in members.into_iter().zip(found?) {
+            runs.push(Member { folder, seeds, averages: summary.averages });
+        }
+        let all: Vec<Averages> = runs.iter().map(|run| run.averages.clone()).collect();
+        let ensemble = Ensemble { averages: joined(&all), seconds: begun.elapsed().as_secs_f64(), runs };
+        own.write(SUMMARY, to_json(&ensemble)?.as_bytes())?;
+        if common.json {
+            return print_json(&ensemble);
+        }
+        let Ensemble { averages, seconds, .. } = &ensemble;
+        print(&format!(
+            "{count} runs with seeds of their own in {seconds:.2} s\n{averages}results in {}\n",
+            quoted::path(&folder)
+        ))
+    }
+
+    /// The scene with seeds.
+    fn prepared(
+        &self,
+        seeds: &[String],
+        methods: Methods,
+    ) -> Result<(Prepared, &'static stripmine_physics::method::Entry), Failure> {
+        Ok(load(&self.scene, &[self.overrides.as_slice(), seeds].concat(), methods)?)
+    }
+
+    /// Every run, as many at a time as there are threads and memory for; the first failure, once all have ended.
+    fn side_by_side(
+        &self,
+        members: &[(PathBuf, Vec<String>)],
+        prepared: &Prepared,
+        common: &Common,
+        methods: Methods,
+    ) -> Result<Vec<Summary>, Failure> {
+        let threads = rayon::current_num_threads();
+        let memory = &prepared.memory;
+        let fit = memory.available.map_or(threads, |left| (left.bytes / memory.needed.max(1)) as usize);
+        let workers = threads.min(members.len()).min(fit).max(1);
+        let (next, done) = (AtomicUsize::new(0), AtomicU64::new(0));
+        let bar = bar(common, PARTS * members.len() as u64, SHARES);
+        bar.set_message(format!("{} runs", members.len()));
+        let outcomes: Mutex<Vec<Option<Result<Summary, Failure>>>> =
+            Mutex::new(members.iter().map(|_| None).collect());
+        let notices: Mutex<BTreeSet<String>> = Mutex::default();
+        let work = |pool: &ThreadPool| {
+            while let Some((number, (folder, seeds))) =
+                Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|at| Some((at, members.get(at)?)))
+            {
+                let mut before = 0;
+                let progress = |part: u64, all: u64| {
+                    let part = (PARTS as f64 * part as f64 / all.max(1) as f64) as u64;
+                    bar.set_position(done.fetch_add(part - before, Ordering::Relaxed) + part - before);
+                    before = part;
+                };
+                let notice = |note: &str| {
+                    let mut all = notices.lock().unwrap_or_else(PoisonError::into_inner);
+                    if all.insert(note.to_owned()) && !common.quiet {
+                        say(format_args!("{}: {note}", quoted::path(folder)));
+                    }
+                };
+                let outcome = pool.install(|| self.one(folder, seeds, methods, progress, notice));
+                outcomes.lock().unwrap_or_else(PoisonError::into_inner)[number] = Some(outcome);
+            }
+        };
+        let pools: Result<Vec<ThreadPool>, _> =
+            (0..workers).map(|_| ThreadPoolBuilder::new().num_threads(threads / workers).build()).collect();
+        let pools = pools.map_err(Failure::Threads)?;
+        thread::scope(|scope| {
+            for pool in &pools {
+                scope.spawn(|| work(pool));
+            }
+        });
+        let outcomes = outcomes.into_inner().unwrap_or_else(PoisonError::into_inner);
+        outcomes.into_iter().flatten().collect()
+    }
+
+    fn one(
+        &self,
+        folder: &Path,
+        seeds: &[String],
+        methods: Methods,
+        progress: impl FnMut(u64, u64) + Send,
+        notice: impl FnMut(&str) + Send,
+    ) -> Result<Summary, Failure> {
+        let (prepared, entry) = self.prepared(seeds, methods)?;
+        let job = Job { prepared: &prepared, quantities: entry.quantities, program: &built() };
+        match run(job, folder, self.existing(), signals::asked(), progress, notice)? {
+            Ending::Done(summary) => {
+                for warning in &summary.warnings {
+                    warn(format_args!("{}: {warning}", quoted::path(folder)));
+                }
+                Ok(*summary)
+            }
+            Ending::Interrupted { clock } => {
+                let folder = folder.parent().unwrap_or(folder).to_owned();
+                Err(Failure::Interrupted { moment: clock.to_string(), folder })
+            }
+        }
+    }
+}
