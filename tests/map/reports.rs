@@ -73,3 +73,24 @@ fn numbers_in_sentences_are_for_readers() {
         }
     }
 }
+
+/// Entries of a legend at most.
+const ENTRIES: usize = 7;
+
+#[test]
+fn legends_are_short() {
+    let folders = [reports(), reports().join("host")];
+    let items = folders.iter().flat_map(|folder| fs::read_dir(folder).unwrap());
+    for file in items.map(|item| item.unwrap().path().join("section.json")).filter(|file| file.exists()) {
+        let section: serde_json::Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+        for figure in section["figures"].as_array().unwrap() {
+            let chart = &figure["picture"]["Chart"];
+            let named = |list: &str, name: &str| {
+                let all = chart[list].as_array().into_iter().flatten();
+                all.filter(|it| it[name].as_str().is_some_and(|name| !name.is_empty())).count()
+            };
+            let entries = named("series", "name") + named("bands", "label");
+            assert!(entries <= ENTRIES, "{} {}: {entries}", section["name"], figure["name"]);
+        }
+    }
+}

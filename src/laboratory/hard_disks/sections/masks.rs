@@ -67,7 +67,7 @@ fn figure(data: &Masks) -> Figure {
         };
         [
             drawn(format!("ν = {packing_fraction}"), Style::Points, |cost| cost.seconds),
-            drawn(format!("ν = {packing_fraction}, formula"), Style::Dashed, |cost| cost.fitted),
+            drawn(String::new(), Style::Dashed, |cost| cost.fitted),
         ]
     });
     Chart::of(
@@ -77,7 +77,7 @@ fn figure(data: &Masks) -> Figure {
     .with(curves)
     .figure("masks", "The cost of a collision over the mask")
     .caption(format!(
-        "{} discs, the source's way, one thread; medians of rounds in which the masks take turns.",
+        "Dashed: the source's formula. {} discs, the source's way, one thread; medians of rounds in which the masks take turns.",
         Cell::Number(data.discs as f64, 0).for_reading()
     ))
 }

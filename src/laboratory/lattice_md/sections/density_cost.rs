@@ -142,10 +142,18 @@ fn figure_3(data: &DensityCost) -> Figure {
 
 fn figure_4(data: &DensityCost) -> Figure {
     let named = |curve: &Curve| format!("ρ = {:.2}", curve.occupancy.unwrap_or(f64::NAN));
+    let unreachable: Vec<String> =
+        data.densities.iter().filter(|curve| !curve.reachable).map(named).collect();
     let vector = data.densities.iter().enumerate().map(|(hue, curve)| {
-        let (reach, style) =
-            if curve.reachable { ("", Style::Line) } else { (", out of reach", Style::Points) };
-        Series::new(format!("{}{reach}", named(curve)), style, hue, points(curve, true, false))
+        // Those out of reach are one kind of points, named once.
+        let (name, style) = match curve.reachable {
+            true => (named(curve), Style::Line),
+            false if unreachable.first() == Some(&named(curve)) => {
+                (format!("out of reach: {}", unreachable.join(", ")), Style::Points)
+            }
+            false => (String::new(), Style::Points),
+        };
+        Series::new(name, style, hue, points(curve, true, false))
     });
     // The lists of the thinnest and of the densest are the farthest apart.
     let last = data.list_densities.len().saturating_sub(1);

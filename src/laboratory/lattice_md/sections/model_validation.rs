@@ -126,8 +126,8 @@ fn over_predicted(data: &ModelValidation) -> Figure {
         Axis::logarithmic("measured over predicted", None),
     )
     .with(Series::by_name(Style::Points, points))
-    .band(Band::of_y("within 15 %", [1.0 / 1.15, 1.15]))
-    .band(Band::of_y("within 5 %", [1.0 / 1.05, 1.05]))
+    .band(Band::of_y("", [1.0 / 1.15, 1.15]))
+    .band(Band::of_y("", [1.0 / 1.05, 1.05]))
     .figure("measured_over_predicted", "Measured over predicted")
     .caption("Each point is a phase of a step of one run, or a program. 1 is right. Grounds: within 5 % and within 15 %.")
 }

@@ -105,8 +105,8 @@ fn against_the_clock(data: &PrintedCost) -> Figure {
         let measured = timed().map(|it| (it.n as f64, each(it, it.ns), it.quartiles.map(|ns| each(it, ns))));
         let lengths = timed().map(|it| it.n).filter(|n| *n <= fitted.holds_to).map(|n| n as f64);
         let line = lengths.map(|n| (n, fitted.period_ns[1] * (n + fitted.depth[1]) / n));
-        let name = format!("{:.2} ns, D = {:.0}", fitted.period_ns[1], fitted.depth[1]);
-        [Series::new(fitted.part, Style::Points, hue, measured), Series::new(name, Style::Line, hue, line)]
+        let name = format!("{}: {:.2} ns, D = {:.0}", fitted.part, fitted.period_ns[1], fitted.depth[1]);
+        [Series::new(name, Style::Points, hue, measured), Series::new("", Style::Line, hue, line)]
     });
     Chart::of(
         Axis::logarithmic("length of the vectors n", None),
