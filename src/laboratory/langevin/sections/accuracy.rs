@@ -54,7 +54,7 @@ pub fn section(data: &Accuracy) -> Section {
     };
     let of_source = match order(data, "stochastic") {
         Some(Mean { value, bar }) => format!("to the power {value:.1} ± {bar:.1}"),
-        None => "with an order that is not seen".to_owned(),
+        None => "too few errors are beyond their bars for an order".to_owned(),
     };
     // Smaller beyond the bars of both.
     let is_smaller =
