@@ -109,7 +109,13 @@ pub(super) const ITEMS: &[Item] = &[
         "BP93, figures 5 and 6, in two fifths of the pipe",
     ),
     Item::full("pipe", Sources, 15.0, pipe, "BP93, figures 5 and 6, in the whole pipe"),
-    Item::full("pipe-thin", Sources, 13.0, pipe_thin, "The whole pipe with fewer grains: waves both ways"),
+    Item::full(
+        "pipe-thin",
+        Sources,
+        13.0,
+        pipe_thin,
+        "The whole pipe with fewer grains: do waves run both ways?",
+    ),
     Item::full("waves", Sources, 14.0, waves, "Density waves over dissipation, and controls without"),
 ];
 
@@ -214,7 +220,7 @@ fn pipe(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 }
 
 fn pipe_thin(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let title = "Density waves both ways in a thinner filling";
+    let title = "Density waves in a thinner filling";
     let question = "Do the waves run both ways where the pipe is filled less?";
     let showing = Showing { name: "pipe-thin", title, question, asks_ways: true, from: 0.0, snapshots: 0 };
     let thin = Overrides::new().set(&PACKING_FRACTION, 0.35);

@@ -45,6 +45,9 @@ pub struct Directions {
     pub standing: f64,
     /// Of waves that run towards higher places.
     pub forth: f64,
+    /// What would run towards lower and towards higher places if each wavelength had one wave of the same strength at all times, that runs at
+    /// the mean rate of that wavelength: a wave that grows and decays has some of its power the other way.
+    pub of_one_wave: [f64; 2],
 }
 
 /// Which way the waves run in counts taken at equal intervals of time, all with the same bins of `0..length`.
@@ -52,27 +55,61 @@ pub struct Directions {
 /// The density of each wavelength is a complex number that turns one way or the other: a density f(x − ct) turns by
 /// −kc a second.
 pub fn directions(looks: &[Vec<u32>], length: f64, shortest: f64) -> Directions {
-    let (mut back, mut standing, mut forth) = (0.0, 0.0, 0.0);
+    let ([mut back, mut standing, mut forth], mut one_wave) = ([0.0; 3], [0.0; 3]);
     let times = looks.len();
     let modes = (length / shortest) as usize;
     for mode in 1..=modes {
         let amplitudes: Vec<[f64; 2]> =
             looks.iter().map(|counts| transform(mode, counts.iter().map(|&n| [f64::from(n), 0.0]))).collect();
-        for frequency in 0..times {
-            let [re, im] = transform(frequency, amplitudes.iter().copied());
-            let power = re * re + im * im;
-            // Frequencies above the half stand for negative ones.
-            match frequency {
-                0 => standing += power,
-                _ if 2 * frequency < times => back += power,
-                _ => forth += power,
-            }
+        for (sum, power) in [&mut back, &mut standing, &mut forth].into_iter().zip(powers(&amplitudes)) {
+            *sum += power;
+        }
+        for (sum, power) in one_wave.iter_mut().zip(powers(&of_one_wave(&amplitudes))) {
+            *sum += power;
         }
     }
     let all = back + standing + forth;
     let particles = looks.first().map_or(0, |counts| counts.iter().sum::<u32>());
     let power = all / (times * times * modes) as f64 / f64::from(particles);
-    Directions { power, back: back / all, standing: standing / all, forth: forth / all }
+    Directions {
+        power,
+        back: back / all,
+        standing: standing / all,
+        forth: forth / all,
+        of_one_wave: [one_wave[0] / all, one_wave[2] / all],
+    }
+}
+
+/// The spectral power of a wavelength that runs back, stands, and runs forth.
+fn powers(amplitudes: &[[f64; 2]]) -> [f64; 3] {
+    let times = amplitudes.len();
+    let mut powers = [0.0; 3];
+    for frequency in 0..times {
+        let [re, im] = transform(frequency, amplitudes.iter().copied());
+        // Frequencies above the half stand for negative ones.
+        let way = match frequency {
+            0 => 1,
+            _ if 2 * frequency < times => 0,
+            _ => 2,
+        };
+        powers[way] += re * re + im * im;
+    }
+    powers
+}
+
+/// A wave of the same magnitude at all times that turns by the mean angle of these from look to look.
+fn of_one_wave(amplitudes: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let turned = amplitudes.windows(2).fold([0.0; 2], |[re, im], pair| {
+        let [[a, b], [c, d]] = [pair[0], pair[1]];
+        [re + a * c + b * d, im + a * d - b * c]
+    });
+    let turn = libm::atan2(turned[1], turned[0]);
+    let at = |(look, [re, im]): (usize, &[f64; 2])| {
+        let (sine, cosine) = libm::sincos(turn * look as f64);
+        let size = re.hypot(*im);
+        [size * cosine, size * sine]
+    };
+    amplitudes.iter().enumerate().map(at).collect()
 }
 
 /// One component of the discrete Fourier transform.
@@ -99,14 +136,45 @@ mod tests {
     #[test]
     fn a_wave_runs_the_way_it_is_shifted() {
         for (shift, expected) in [(1, [0.0, 0.0, 1.0]), (-1, [1.0, 0.0, 0.0]), (0, [0.0, 1.0, 0.0])] {
-            let Directions { power, back, standing, forth } = directions(&wave(shift), 32.0, 8.0);
-            // Of four wavelengths one has all of it: an amplitude of 8/2 in each of 32 bins.
-            let expected_power = (4.0_f64 * 32.0).powi(2) / 4.0 / 320.0;
-            assert!((power / expected_power - 1.0).abs() < 0.02, "{power} instead of {expected_power}");
+            let Directions { power, back, standing, forth, of_one_wave } =
+                directions(&wave(shift), 32.0, 8.0);
+            assert!((of_one_wave[0] - back).abs() < 1e-2 && (of_one_wave[1] - forth).abs() < 1e-2, "{shift}");
+            // The mean over looks and wavelengths, as it is defined.
+            let looks = wave(shift);
+            let strength = |counts: &[u32], mode: f64| {
+                let angle = |bin: usize| TAU * mode * bin as f64 / 32.0;
+                let sums = counts.iter().enumerate().fold([0.0; 2], |[a, b], (bin, &count)| {
+                    [a + f64::from(count) * angle(bin).cos(), b + f64::from(count) * angle(bin).sin()]
+                });
+                sums[0].hypot(sums[1]).powi(2) / f64::from(counts.iter().sum::<u32>())
+            };
+            let of_look = |counts: &Vec<u32>| {
+                [1.0, 2.0, 3.0, 4.0].map(|mode| strength(counts, mode)).iter().sum::<f64>()
+            };
+            let naive = looks.iter().map(of_look).sum::<f64>() / (4.0 * looks.len() as f64);
+            assert!((power / naive - 1.0).abs() < 1e-9, "{power} instead of {naive}");
             for (found, expected) in [back, standing, forth].into_iter().zip(expected) {
                 assert!((found - expected).abs() < 1e-2, "{shift}: {found} instead of {expected}");
             }
         }
+    }
+
+    /// A wave that runs back and comes and goes has power forth, and so has the one wave of the same strength; two waves that run both ways
+    /// have more of it than one wave has.
+    #[test]
+    fn what_comes_and_goes_is_told_from_what_runs_both_ways() {
+        let looks = |of: fn(f64, f64) -> f64| -> Vec<Vec<u32>> {
+            let count = |look: i32, bin: i32| {
+                (100.0 + of(f64::from(look), TAU * f64::from(bin) / 16.0)).round() as u32
+            };
+            (0..48).map(|look| (0..32).map(|bin| count(look, bin)).collect()).collect()
+        };
+        let fades = looks(|look, phase| 80.0 * (-0.1 * look).exp() * (phase + 0.4 * look).cos());
+        let Directions { forth, of_one_wave, .. } = directions(&fades, 32.0, 8.0);
+        assert!(forth > 0.005 && forth < 1.5 * of_one_wave[1], "{forth} {of_one_wave:?}");
+        let both = looks(|look, phase| 60.0 * (phase + 0.4 * look).cos() + 30.0 * (phase - 0.4 * look).cos());
+        let Directions { forth, of_one_wave, .. } = directions(&both, 32.0, 8.0);
+        assert!(forth > 0.15 && forth > 2.0 * of_one_wave[1], "{forth} {of_one_wave:?}");
     }
 
     #[test]
