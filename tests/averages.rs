@@ -66,7 +66,7 @@ fn a_run_ends_with_means_and_their_errors() {
     let table = stripmine(folder.path(), &["average", "a", "--csv"]);
     let table = String::from_utf8_lossy(&table.stdout);
     assert!(
-        table.starts_with("quantity,mean,± 95 %,unit,") && table.contains("\ncompressibility,"),
+        table.starts_with("quantity,mean,mean_error_95,unit,") && table.contains("\ncompressibility,"),
         "{table}"
     );
 }

@@ -278,27 +278,15 @@ fn no_way_is_recommended_that_something_speaks_against() {
     let wishes = rows(&out.join("host/work-precision/wishes.csv"));
     let named: Vec<&Vec<String>> = wishes.iter().filter(|row| !row[3].is_empty()).collect();
     assert!(!named.is_empty(), "{wishes:?}");
-    let power = |step: &str| match step {
-        "its own step" => 0,
-        _ => (-4..=4).find(|&power| step == multiple(power)).unwrap(),
-    };
+    let power = |of_own: &str| of_own.parse::<f64>().unwrap().log2().round() as i64;
     for row in named {
         let way = data["ways"].as_array().unwrap().iter().position(|way| way["label"] == row[2]).unwrap();
-        let run = runs.iter().find(|run| run["way"] == way && run["power"] == power(&row[3])).unwrap();
+        let run = runs.iter().find(|run| run["way"] == way && run["power"] == power(&row[4])).unwrap();
         assert!(!objected(run), "{row:?}: {run}");
     }
     for (measure, front) in data["fronts"].as_array().unwrap().iter().map(|front| (&front[0], &front[1])) {
         for place in front.as_array().unwrap() {
             assert!(!objected(&runs[place.as_u64().unwrap() as usize]), "{measure}");
         }
-    }
-}
-
-/// A step as pages write it.
-fn multiple(power: i32) -> String {
-    if power > 0 {
-        format!("{} times its own step", 1 << power)
-    } else {
-        format!("1/{} of its own step", 1 << -power)
     }
 }
