@@ -9,7 +9,7 @@ const EVEN: f64 = 1e-3;
 
 /// The rows of a run since they have been evenly spaced.
 ///
-/// The first row is the start of all increments and is no value itself. The others are kept as [`MOST_BLOCKS`] at most: of a
+/// The first row is the start of all increments and is no value itself. The others are kept as `MOST_BLOCKS` at most: of a
 /// longer run, twice as many rows are a block whenever these are full. Of a moment's value a block has the mean over its rows,
 /// of what is counted since the start the value at its end. The same rows make the same blocks in however many sessions.
 #[derive(Clone, Debug)]
