@@ -138,7 +138,7 @@ impl Flight {
             scene: write.to_toml(&VOCABULARY.keys),
             schedule: Schedule::of_steps(&self.run),
             target: self.run.target.clone(),
-            output: self.output,
+            output: self.output.clone(),
             domain: self.domain(),
             seed: self.start.seed(),
             start_file: self.start.file().map(Path::to_owned),

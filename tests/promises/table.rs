@@ -346,7 +346,7 @@ impl Case {
         };
         assert!(expected.len() > 5);
         assert_eq!(xyz.iter().map(moment).collect::<Vec<_>>(), expected, "{label}: moments of the frames");
-        let output = prepared.output;
+        let output = &prepared.output;
         let dump =
             output.lammps_dump.then(|| ("dump.lammpstrj", lammps_dump(&folder.join("dump.lammpstrj"))));
         for (name, frames) in [("trajectory.xyz", xyz)].into_iter().chain(dump) {

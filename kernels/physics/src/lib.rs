@@ -35,4 +35,5 @@ pub mod run;
 pub mod scene;
 pub mod signals;
 pub mod start;
+pub mod structure;
 pub mod words;

@@ -2,6 +2,7 @@
 
 mod observed;
 mod particles;
+mod structure;
 mod window;
 
 use super::run_folder;
@@ -17,7 +18,7 @@ use std::path::PathBuf;
 use stripmine_physics::method::Methods;
 use stripmine_physics::quoted;
 
-/// A run to look at: its observables over time, its last state and the density along a long box as pictures, and small in the terminal
+/// A run to look at: its observables over time, its structure, its last state and the density along a long box as pictures, and small in the terminal
 #[derive(Args)]
 pub(super) struct PlotVerb {
     /// The folder of a run
@@ -44,6 +45,7 @@ impl PlotVerb {
         let table = Observed::read(&run.join("thermo.csv"))?;
         let wanted = table.wanted(&self.columns, methods)?;
         let mut figures = table.figures(&wanted);
+        figures.extend(structure::figures(&run));
         match particles::pictures(&run) {
             Ok(pictures) => figures.extend(pictures),
             Err(why) if !common.quiet => say(format_args!("the particles are not drawn: {why}")),

@@ -91,6 +91,16 @@ pub fn bar(error: f64, freedoms: f64) -> f64 {
     student(CONFIDENCE, whole(freedoms)) * error
 }
 
+/// The mean of values that are independent, with the half width of its interval of 95 %; none of fewer than two.
+pub fn of_independent(values: &[f64]) -> Option<[f64; 2]> {
+    if values.len() < 2 {
+        return None;
+    }
+    let (n, mean) = (values.len() as f64, mean(values));
+    let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+    Some([mean, bar((squares / (n * (n - 1.0))).sqrt(), n - 1.0)])
+}
+
 fn whole(freedoms: f64) -> usize {
     freedoms.clamp(1.0, MANY) as usize
 }
@@ -214,6 +224,14 @@ mod tests {
                 means.len()
             );
         }
+    }
+
+    /// By hand: the mean 2, the standard error 1/√3, Student's t of two degrees of freedom.
+    #[test]
+    fn a_mean_of_independent_values_has_students_bar() {
+        let [mean, bar] = of_independent(&[1.0, 2.0, 3.0]).unwrap();
+        assert!(mean == 2.0 && (bar - 4.3027 / 3f64.sqrt()).abs() < 1e-4, "{bar}");
+        assert_eq!(of_independent(&[1.0]), None);
     }
 
     /// By hand: ranks 1, 0, 2.5 and 2.5 of the times 0 to 3.

@@ -2,8 +2,9 @@
 
 use super::entry::{Entry, Kind, Prepared, Quantity};
 use super::{hard_disks, langevin, lattice_md, nbody};
+use crate::domain::Domain;
 use crate::quoted::quoted;
-use crate::scene::{METHOD, Reason, SceneError, SceneErrors, TARGET, Value, Values, Vocabulary};
+use crate::scene::{METHOD, Reason, STRUCTURE, SceneError, SceneErrors, TARGET, Value, Values, Vocabulary};
 use crate::words::nearest;
 
 /// Methods that scenes may name.
@@ -50,11 +51,22 @@ pub fn prepare(values: Values, methods: Methods) -> Result<(Prepared, &'static E
     let unlisted = || values.spot(&METHOD).error(Reason::Unknown, "there is no such method");
     let entry = method(methods, values.method()).ok_or_else(unlisted)?;
     let wrong = wrong_target(&values, entry);
+    let spot = values.spot(&STRUCTURE);
     match ((entry.prepare)(values), wrong) {
-        (Ok(prepared), None) => Ok((prepared, entry)),
+        (Ok(prepared), None) => match waveless(&prepared.output.structure, prepared.domain) {
+            Some(why) => Err(spot.error(Reason::Contradiction, why).into()),
+            None => Ok((prepared, entry)),
+        },
         (Ok(_), Some(wrong)) => Err(wrong.into()),
         (Err(mistakes), wrong) => Err(SceneErrors(wrong.into_iter().chain(mistakes.0).collect())),
     }
+}
+
+/// Why something of the structure cannot be summed up in a box.
+fn waveless(names: &[String], domain: Domain) -> Option<String> {
+    let has_waves = names.iter().any(|name| name == "S(k)");
+    (has_waves && domain.periodic() == [false; 2])
+        .then(|| format!("\"S(k)\" of `{}` needs a periodic side: its waves run along one", STRUCTURE.path()))
 }
 
 /// That the run is to end by a quantity that has no mean.

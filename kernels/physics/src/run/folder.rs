@@ -11,6 +11,7 @@ use crate::io::lock::{Lock, LockError, is_lock};
 use crate::io::replace::{is_temporary, listing, remove_if_there, replace};
 use crate::quoted;
 use crate::reported::Class;
+use crate::structure::OBSERVABLES;
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Read, Write};
@@ -43,7 +44,7 @@ pub(super) const SUMMARY: &str = "summary.json";
 /// The checkpoint before the newest.
 const PREVIOUS: &str = "run.checkpoint.previous";
 
-/// Everything that a run may have written.
+/// Everything that a run may have written, but for the structure.
 const FILES: [&str; 11] =
     [LIST, SCENE, THERMO, TRAJECTORY, DCD, EVENTS, DUMP, DATA, SUMMARY, CHECKPOINT, PREVIOUS];
 
@@ -162,7 +163,8 @@ fn read_list(path: &Path) -> Result<BTreeSet<&'static str>, FolderError> {
         return Err(wrong(1, "the heading of a list of a run's files of this version", heading));
     }
     let known = |(i, line): (usize, &str)| {
-        let name = FILES.into_iter().find(|&name| name == line);
+        let structure = OBSERVABLES.iter().map(|observable| observable.file);
+        let name = FILES.into_iter().chain(structure).find(|&name| name == line);
         name.ok_or_else(|| wrong(i + 1, "the name of a file of a run", line))
     };
     text.lines().enumerate().skip(1).map(known).collect()

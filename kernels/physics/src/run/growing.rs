@@ -60,7 +60,7 @@ impl Growing {
         prepared: &Prepared,
         quantities: &'static [Quantity],
     ) -> Result<Growing, RunError> {
-        let output = prepared.output;
+        let output = &prepared.output;
         let thermo = TableFile::create(folder.file(THERMO), &columns(quantities))?;
         let trajectory = Frames::create(folder.file(TRAJECTORY), extxyz::write)?;
         let dump = output.lammps_dump.then(|| Frames::create(folder.file(DUMP), lammps::write_dump));
@@ -103,7 +103,7 @@ impl Growing {
     /// Cuts the files where the checkpoint was written. Those that it does not know were begun after it, if they are there at
     /// all: they are begun again if the scene asks for them.
     pub(super) fn cut(&mut self, folder: &mut RunFolder, prepared: &Prepared) -> Result<(), RunError> {
-        let output = prepared.output;
+        let output = &prepared.output;
         self.thermo.cut()?;
         self.trajectory.cut()?;
         match &mut self.dump {

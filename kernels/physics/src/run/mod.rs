@@ -1,6 +1,6 @@
 //! A run: advance, observe, record; checkpoints, interruption, resumption. What it writes is a folder of its own:
 //! `scene.toml`, `thermo.csv`, `trajectory.xyz`, `summary.json`, `run.checkpoint`, a list of all this (`run.files`) and, on
-//! request, LAMMPS files and a row for each event (`events.csv`).
+//! request, LAMMPS files, a row for each event (`events.csv`) and what is summed up of the structure.
 
 mod finished;
 mod folder;
@@ -10,12 +10,14 @@ mod goal;
 mod growing;
 mod identity;
 mod recorder;
+mod structured;
 mod summary;
 mod table;
 
 pub use finished::{Finished, FinishedError, averages_of};
 pub use folder::FolderError;
 pub use identity::chosen_otherwise;
+pub use structured::Summed;
 pub use summary::Summary;
 pub use table::{TableError, TableReader};
 

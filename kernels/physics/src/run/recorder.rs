@@ -5,6 +5,7 @@ use super::folder::{DATA, DCD, DUMP, EVENTS, RunFolder, SCENE, SUMMARY, THERMO, 
 use super::goal::{Goal, Known};
 use super::growing::{Growing, Kept};
 use super::identity::{BITS, Identity, same_scene};
+use super::structured::{Structured, chosen};
 use super::table::TableReader;
 use super::{Existing, Job, RunError, Summary};
 use crate::averages::{Averages, Rows};
@@ -18,6 +19,7 @@ use crate::method::{
 };
 use crate::quoted;
 use crate::scene::Output;
+use crate::structure::OBSERVABLES;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -37,6 +39,8 @@ pub(super) struct Recorder {
     /// When the next row, the next snapshot and the next checkpoint are due.
     due: [Option<Until>; 3],
     growing: Growing,
+    /// What is summed up of the structure.
+    structured: Structured,
     /// The rows of observables, those of earlier sessions among them.
     rows: Rows,
     /// The mean that ends the run, if one does.
@@ -118,12 +122,13 @@ impl Recorder {
             folder,
             identity: Identity::of(job),
             schedule,
-            output: prepared.output,
+            output: prepared.output.clone(),
             seed: prepared.seed,
             domain: prepared.domain,
             quantities,
             due,
             growing,
+            structured: Structured::new(prepared),
             rows: Rows::new(quantities),
             goal: Goal::of(prepared, quantities),
             notes,
@@ -171,6 +176,7 @@ impl Recorder {
         }
         let kept = Kept::new(&checkpoint.counters);
         let mut growing = Growing::resume(&folder, quantities, &kept, foreign)?;
+        let structured = Structured::resumed(prepared, &checkpoint, &mut notes).map_err(foreign)?;
         let snapshot = Snapshot {
             counters: std::mem::take(&mut checkpoint.counters),
             columns: std::mem::take(&mut checkpoint.columns),
@@ -182,7 +188,9 @@ impl Recorder {
         // They speak of an end that is not reached yet.
         folder.remove_own(SUMMARY)?;
         folder.remove_own(DATA)?;
+        OBSERVABLES.iter().try_for_each(|observable| folder.remove_own(observable.file))?;
         let mut recorder = Recorder::with(folder, job, growing, &clock, notes);
+        recorder.structured = structured;
         recorder.new_notes = recorder.notes.len() - said;
         recorder.checkpointed = (recorder.new_notes == 0).then_some(clock);
         recorder.write_scene()?;
@@ -238,9 +246,11 @@ impl Recorder {
             if let Some(failure) = self.thermo(simulation)? {
                 return Ok(Some(failure));
             }
+            self.structured.row(simulation);
         }
         if snapshots {
             self.due[1] = snapshot.next(&clock);
+            self.structured.snapshot(simulation);
             self.snapshot(simulation)?;
         }
         if checkpoints {
@@ -329,7 +339,8 @@ impl Recorder {
         let mut counters = self.growing.sync()?;
         counters.insert("bits".to_owned(), Counter::Count(BITS));
         counters.insert(EVENT_COUNT.to_owned(), Counter::Count(clock.events));
-        let snapshot = simulation.snapshot();
+        let mut snapshot = simulation.snapshot();
+        self.structured.keep(&mut snapshot);
         counters.extend(snapshot.counters);
         let checkpoint = Checkpoint {
             step: clock.steps,
@@ -360,12 +371,14 @@ impl Recorder {
             let frame = self.frame(simulation);
             self.folder.write(DATA, |out| lammps::write_data(&frame, out))?;
         }
+        self.structured.write(&self.folder)?;
         self.summary(summary)
     }
 
     /// `summary.json`.
     fn summary(&self, mut summary: Summary) -> Result<Summary, RunError> {
         summary.notes.clone_from(&self.notes);
+        summary.structure = self.structured.summed();
         self.folder.write(SUMMARY, |out| {
             serde_json::to_writer_pretty(&mut *out, &summary)?;
             writeln!(out)
@@ -385,14 +398,15 @@ fn overflow(at: Clock, quantity: &'static str, value: f64) -> Failure {
 
 /// The files that a scene asks for beyond what every run writes.
 fn on_request(prepared: &Prepared) -> Vec<&'static str> {
-    let output = prepared.output;
+    let output = &prepared.output;
     let asked = [
         (output.lammps_dump, DUMP),
         (output.dcd, DCD),
         (output.lammps_data, DATA),
         (prepared.event_columns.is_some(), EVENTS),
     ];
-    asked.into_iter().filter_map(|(asked, name)| asked.then_some(name)).collect()
+    let structure = chosen(output).map(|observable| observable.file);
+    asked.into_iter().filter_map(|(asked, name)| asked.then_some(name)).chain(structure).collect()
 }
 
 /// Refuses another scene than that of a run which has no checkpoint yet.

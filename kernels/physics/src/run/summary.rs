@@ -1,5 +1,6 @@
 //! What a run says of itself at the end.
 
+use super::structured::Summed;
 use super::{Job, forecast};
 use crate::averages::Averages;
 use crate::method::{Clock, Failure, RunWarning, Simulation};
@@ -43,6 +44,9 @@ pub struct Summary {
     pub failure: Option<Failure>,
     /// The mean of each quantity with its error.
     pub averages: Averages,
+    /// What was summed up of the structure.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub structure: Vec<Summed>,
     /// Steps done.
     pub steps: u64,
     /// Simulated time.
@@ -93,6 +97,7 @@ impl Summary {
             notes: vec![],
             failure: failure.cloned(),
             averages,
+            structure: vec![],
             steps: clock.steps,
             time: clock.time,
             events: clock.events,

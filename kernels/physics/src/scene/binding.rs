@@ -57,6 +57,7 @@ define_bindings! {
     numbers, numbers_if_any, Numbers, Vec<f64>;
     rows, rows_if_any, Rows, Vec<Vec<f64>>;
     target, target_if_any, Target, Target;
+    words, words_if_any, Words, Vec<String>;
 }
 
 impl dyn Binding + '_ {

@@ -10,6 +10,7 @@ use super::keys::{Use, define_keys};
 use super::target::Target;
 use super::values::Values;
 use crate::number::significant;
+use crate::structure;
 
 /// The version of the scene format that this program reads.
 pub const FORMAT_VERSION: u64 = 2;
@@ -65,6 +66,13 @@ define_keys! {
 }
 
 define_keys! {
+    /// What is summed up as a run goes, where there is a box.
+    pub static SUMMED;
+    STRUCTURE = "output" "structure", Kind::Words(&structure::NAMES), "", Is("[]"), ALWAYS,
+        "What of the structure is averaged over the second half of the run, each with its error in a file of its own: of snapshots, msd and vacf of rows of thermo.csv.";
+}
+
+define_keys! {
     /// The step of a method that takes steps.
     pub static STEP;
     DT = "integrator" "dt", Number(Positive), "time", Required, ALWAYS,
@@ -115,7 +123,7 @@ pub fn too_many_steps(values: &Values) -> Vec<SceneError> {
 }
 
 /// Which files are written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Output {
     /// Extended XYZ snapshots.
     pub trajectory: bool,
@@ -125,6 +133,8 @@ pub struct Output {
     pub lammps_dump: bool,
     /// The final state as a LAMMPS data file.
     pub lammps_data: bool,
+    /// The names of what is summed up of the structure.
+    pub structure: Vec<String>,
 }
 
 impl Output {
@@ -134,6 +144,7 @@ impl Output {
         binding.switch(&DCD, &mut self.dcd);
         binding.switch(&LAMMPS_DUMP, &mut self.lammps_dump);
         binding.switch(&LAMMPS_DATA, &mut self.lammps_data);
+        binding.words(&STRUCTURE, &mut self.structure);
     }
 }
 

@@ -31,6 +31,8 @@ pub enum Value {
     Rows(Vec<Vec<f64>>),
     /// A mean to be known so well.
     Target(Target),
+    /// Some words of those to choose from.
+    Words(Vec<String>),
 }
 
 impl Value {
@@ -45,6 +47,9 @@ impl Value {
             Value::Word(word) => toml::Value::String(word.clone()).to_string(),
             Value::Pair(value) => pair(value),
             Value::Target(target) => target.to_toml(),
+            Value::Words(words) => {
+                list(words.iter().map(|word| toml::Value::String(word.clone()).to_string()).collect())
+            }
             Value::Switches([x, y]) => format!("[{x}, {y}]"),
             Value::Pairs(values) => list(values.iter().map(pair).collect()),
             Value::Rows(rows) => list(
@@ -125,6 +130,8 @@ pub enum Kind {
     Rows(usize),
     /// `{ quantity = "…", error = "…%" }`, or a number as the error.
     Target,
+    /// `["…", …]`, each one of some words.
+    Words(&'static [&'static str]),
 }
 
 /// Why a value cannot be read, and where in the text it stands.
@@ -164,6 +171,9 @@ impl Kind {
                 "{ quantity = \"NAME\", error = \"0.1%\" }, or an error above 0 in its unit".to_owned()
             }
             Kind::Switches => "[x, y], each true or false".to_owned(),
+            Kind::Words(words) => {
+                format!("a list of {}", joined(words.iter().map(|word| format!("\"{word}\"")).collect()))
+            }
             Kind::Pairs => "[[x, y], …], finite numbers".to_owned(),
             Kind::Rows(numbers) => format!("[[…], …], each of {numbers} finite numbers"),
             Kind::Numbers(bounds) => format!("[a, b, …], numbers, {}", bounds.words()),
@@ -189,6 +199,7 @@ impl Kind {
             Kind::Text => Value::Word(text(value)?),
             Kind::Pair(bounds) => Value::Pair(pair(value, |item| number(item, bounds))?),
             Kind::Target => Value::Target(target(value)?),
+            Kind::Words(words) => Value::Words(list(value, |item| choice(item, words))?),
             Kind::Switches => Value::Switches(pair(value, switch)?),
             Kind::Pairs => Value::Pairs(list(value, |item| pair(item, |item| number(item, Bounds::Finite)))?),
             Kind::Rows(numbers) => Value::Rows(list(value, |row| {

@@ -7,7 +7,7 @@ use crate::scene::Kind::{Choice, Number, Switch, Whole};
 use crate::scene::keys::define_keys;
 use crate::scene::{
     DISC_RIVALS, DISCS, GRAVITY, HEADING, INSTRUCTIONS, KeySet, OUTPUT, PERIODIC, PLANAR_DOMAIN, Reason,
-    Rivals, SceneError, TARGETED, Use, Value, Values, Vocabulary, disagreements,
+    Rivals, STRUCTURE, SUMMED, SceneError, TARGETED, Use, Value, Values, Vocabulary, disagreements,
 };
 use crate::words::Words;
 
@@ -71,7 +71,7 @@ static DURATION: &[Rivals] = &[Rivals { keys: &[&EVENTS, &TIME], used: ALWAYS, n
 pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     keys: KeySet {
         method: "hard-disks",
-        groups: &[HEADING, PLANAR_DOMAIN, DISCS, OWN, INSTRUCTIONS, TARGETED, OUTPUT],
+        groups: &[HEADING, PLANAR_DOMAIN, DISCS, OWN, INSTRUCTIONS, TARGETED, OUTPUT, SUMMED],
         rivals: &[DISC_RIVALS, DURATION],
     },
     rules: &[disagreements, own_rules],
@@ -102,6 +102,12 @@ fn own_rules(values: &Values) -> Vec<SceneError> {
         let message = "`domain.open_top` needs a floor and gravity that points down";
         let error = values.spot(&OPEN_TOP).error(Reason::Contradiction, message.to_owned());
         errors.push(error.expecting("periodic = [true, false] and gravity = [0.0, -1.0], for example"));
+    }
+    let summed = matches!(values.value(&STRUCTURE), Some(Value::Words(names)) if !names.is_empty());
+    if summed && values.value(&OPEN_TOP) == Some(Value::Switch(true)) {
+        let message = format!("`{}` needs a box, but its upper side is open", STRUCTURE.path());
+        let error = values.spot(&STRUCTURE).error(Reason::Contradiction, message);
+        errors.push(error.expecting("open_top = false"));
     }
     let shaken = matches!(values.value(&FLOOR_AMPLITUDE), Some(Value::Number(amplitude)) if amplitude > 0.0);
     if shaken && periodic[1] {

@@ -20,7 +20,7 @@ impl Checked {
             scene: scene.to_toml(),
             schedule: scene.run.schedule(),
             target: scene.run.target.clone(),
-            output: scene.output,
+            output: scene.output.clone(),
             domain: self.domain,
             seed: scene.start.seed(),
             start_file: scene.start.file().map(Path::to_owned),

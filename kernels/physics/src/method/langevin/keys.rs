@@ -7,7 +7,7 @@ use crate::scene::Kind::{Choice, Number, Switch, Whole};
 use crate::scene::keys::define_keys;
 use crate::scene::{
     ARITHMETIC, DISC_RIVALS, DISCS, DURATION, GRAVITY, HEADING, INSTRUCTIONS, KeySet, OUTPUT, PERIODIC,
-    PLANAR_DOMAIN, Reason, STEP, STEPPED_RUN, SceneError, TARGETED, Use, Value, Values, Vocabulary,
+    PLANAR_DOMAIN, Reason, STEP, STEPPED_RUN, SUMMED, SceneError, TARGETED, Use, Value, Values, Vocabulary,
     disagreements, too_many_steps,
 };
 use crate::words::Words;
@@ -64,6 +64,7 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
             STEPPED_RUN,
             TARGETED,
             OUTPUT,
+            SUMMED,
         ],
         rivals: &[DISC_RIVALS, DURATION],
     },

@@ -22,7 +22,7 @@ impl Checked {
             scene: scene.to_toml(),
             schedule: Schedule::of_steps(&scene.run),
             target: scene.run.target.clone(),
-            output: scene.output,
+            output: scene.output.clone(),
             domain: self.domain,
             seed: scene.start.seed(),
             start_file: scene.start.file().map(Path::to_owned),

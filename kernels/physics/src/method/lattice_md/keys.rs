@@ -10,8 +10,8 @@ use crate::scene::Kind::{Choice, Number, OneOf, Switch};
 use crate::scene::keys::define_keys;
 use crate::scene::{
     ARITHMETIC, DISC_RIVALS, DISCS, DURATION, HEADING, INSTRUCTIONS, Key, KeySet, OUTPUT, PLANAR_DOMAIN,
-    PRECISION, Reason, Renamed, STEP, STEPPED_RUN, SceneError, TARGETED, Use, Value, Values, Vocabulary,
-    disagreements, too_many_steps,
+    PRECISION, Reason, Renamed, STEP, STEPPED_RUN, SUMMED, SceneError, TARGETED, Use, Value, Values,
+    Vocabulary, disagreements, too_many_steps,
 };
 use crate::words::Words;
 use stripmine_kernels::law::granular::ContactArm;
@@ -94,6 +94,7 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
             STEPPED_RUN,
             TARGETED,
             OUTPUT,
+            SUMMED,
         ],
         rivals: &[DISC_RIVALS, DURATION],
     },

@@ -23,7 +23,7 @@ impl Checked {
             scene: scene.to_toml(),
             schedule: Schedule::of_steps(&scene.run),
             target: scene.run.target.clone(),
-            output: scene.output,
+            output: scene.output.clone(),
             domain: Domain { origin: [0.0; 3], sides: [Side::Open; 3] },
             seed: scene.start.is_drawn().then_some(scene.start.seed),
             start_file: None,

@@ -1,0 +1,98 @@
+//! Sums by blocks of time: a bounded number of them, however long a run is.
+
+/// Blocks at most; then each two become one.
+const MOST: usize = 32;
+
+/// Sums of the values of a function over looks, by blocks of as many looks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Blocks {
+    width: usize,
+    /// Looks of a block.
+    length: u64,
+    /// For each block its sums, then how many values are in each of them.
+    rows: Vec<Vec<f64>>,
+}
+
+impl Blocks {
+    /// None yet, of a function of `width` values, at least one.
+    pub fn new(width: usize) -> Blocks {
+        Blocks { width: width.max(1), length: 1, rows: vec![] }
+    }
+
+    /// Those that [`Blocks::length`] and [`Blocks::column`] were of; none where they do not fit a function of `width` values.
+    pub fn restored(width: usize, length: u64, column: &[f64]) -> Option<Blocks> {
+        let width = width.max(1);
+        let fits = length.is_power_of_two() && column.len().is_multiple_of(2 * width);
+        let rows: Vec<Vec<f64>> = column.chunks(2 * width).map(<[f64]>::to_vec).collect();
+        (fits && rows.len() <= MOST).then_some(Blocks { width, length, rows })
+    }
+
+    /// Looks of a block.
+    pub fn length(&self) -> u64 {
+        self.length
+    }
+
+    /// All sums in one column.
+    pub fn column(&self) -> Vec<f64> {
+        self.rows.concat()
+    }
+
+    /// Adds a value of the look of a number, the first of which is 0.
+    pub fn add(&mut self, look: u64, place: usize, value: f64) {
+        while look / self.length >= MOST as u64 {
+            self.length *= 2;
+            let pairs = self.rows.chunks(2);
+            let sum = |pair: &[Vec<f64>]| match pair {
+                [a, b] => a.iter().zip(b).map(|(a, b)| a + b).collect(),
+                _ => pair.concat(),
+            };
+            self.rows = pairs.map(sum).collect();
+        }
+        let block = (look / self.length) as usize;
+        if self.rows.len() <= block {
+            self.rows.resize(block + 1, vec![0.0; 2 * self.width]);
+        }
+        self.rows[block][place] += value;
+        self.rows[block][self.width + place] += 1.0;
+    }
+
+    /// The means of the whole blocks of the second half of `looks` looks, but for `last` more at the end: what comes before is taken
+    /// for the transient.
+    pub fn second_half(&self, looks: u64, last: usize) -> Vec<Vec<f64>> {
+        let whole = ((looks / self.length) as usize).min(self.rows.len()).saturating_sub(last);
+        let mean = |row: &Vec<f64>| -> Vec<f64> {
+            let (sums, counts) = row.split_at(self.width);
+            sums.iter().zip(counts).map(|(sum, count)| sum / count).collect()
+        };
+        self.rows[whole.div_ceil(2)..whole].iter().map(mean).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// However many looks, a block is the mean of its own looks, and there are 8 to 16 of them.
+    #[test]
+    fn blocks_are_means_of_their_looks() {
+        for looks in [1_u64, 2, 31, 32, 33, 100, 1000] {
+            let mut blocks = Blocks::new(2);
+            for look in 0..looks {
+                blocks.add(look, 0, look as f64);
+                blocks.add(look, 1, 1.0);
+            }
+            let half = blocks.second_half(looks, 0);
+            let whole = looks / blocks.length();
+            assert!(whole <= 32 && (looks < 32 || half.len() >= 8), "{looks}: {}", half.len());
+            let first = whole.div_ceil(2);
+            for (block, at) in half.iter().zip(first..) {
+                let middle = (at as f64 + 0.5) * blocks.length() as f64 - 0.5;
+                assert_eq!(block[..], [middle, 1.0], "{looks}");
+            }
+            let again = Blocks::restored(2, blocks.length(), &blocks.column());
+            assert_eq!(again.as_ref(), Some(&blocks));
+        }
+        assert_eq!(Blocks::restored(2, 3, &[]), None);
+        assert_eq!(Blocks::restored(2, 1, &[0.0]), None);
+    }
+}

@@ -1,0 +1,220 @@
+//! The structure of discs in a box and how it changes with time: what a run may sum up as it goes.
+//!
+//! Each observable is a row of one list. What is seen of one moment is averaged over the snapshots of a run, what is seen of two
+//! over its rows; sums are kept by blocks of time (`blocks`), from which errors come.
+
+mod blocks;
+mod motion;
+mod pairs;
+mod setting;
+mod single;
+mod waves;
+
+pub use blocks::Blocks;
+pub use motion::Motion;
+pub use pairs::{pair_counts, pair_counts_of_all};
+pub use setting::Setting;
+
+use crate::particles::Particle;
+
+/// A function of a distance, a time or the like that a run may sum up.
+#[derive(Debug)]
+pub struct Observable {
+    /// Its name in scenes.
+    pub name: &'static str,
+    /// The file of a run's folder that it is written to.
+    pub file: &'static str,
+    /// What it is a function of, with the unit; empty for pure numbers.
+    pub over: [&'static str; 2],
+    /// What its values are, with the unit.
+    pub value: [&'static str; 2],
+    /// What it is.
+    pub doc: &'static str,
+    /// Where its definition comes from.
+    pub source: &'static str,
+    /// How it is seen.
+    pub seen: Seen,
+    /// The numbers that stand for the whole.
+    pub headlines: &'static [Headline],
+}
+
+/// How an observable is seen.
+#[derive(Clone, Copy, Debug)]
+pub enum Seen {
+    /// Of the discs as they stand, at each snapshot.
+    Once {
+        /// What it is a function of: the middles of bins.
+        over: fn(&Setting) -> Vec<f64>,
+        /// Its values, and more that are for headlines only.
+        of: fn(&Setting, &[Particle]) -> Vec<f64>,
+        /// How many these are.
+        further: usize,
+    },
+    /// Of discs at two moments, at each row: the mean over the discs.
+    Twice(fn(&motion::Pair<'_>) -> f64),
+}
+
+/// A number that stands for a whole function.
+#[derive(Debug)]
+pub struct Headline {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit, empty for pure numbers.
+    pub unit: &'static str,
+    /// Of what the function is over, its mean, and its values in a block.
+    pub of: fn(&[f64], &[f64], &[f64]) -> f64,
+}
+
+/// All of them.
+pub static OBSERVABLES: [Observable; 9] = [
+    Observable {
+        name: "g(r)",
+        file: "g.csv",
+        over: ["r", "length"],
+        value: ["g", ""],
+        doc: "Pairs at a distance over those of an ideal gas in the same box, closed sides allowed for.",
+        source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5; closed sides by the set covariance of a rectangle (Stoyan \
+                 and Stoyan 1994)",
+        seen: Seen::Once { over: pairs::distances, of: pairs::correlation, further: 0 },
+        headlines: &[
+            Headline { name: "height of the first peak", unit: "", of: |_, mean, block| block[peak(mean)] },
+            Headline {
+                name: "place of the first peak",
+                unit: "length",
+                of: |over, _, block| over[peak(block)],
+            },
+        ],
+    },
+    Observable {
+        name: "S(k)",
+        file: "s.csv",
+        over: ["k", "1/length"],
+        value: ["S", ""],
+        doc: "The structure factor |Σ exp(ikr)|²/N of waves along the periodic axes of the box.",
+        source: "Hansen and McDonald, Theory of Simple Liquids, section 4.1",
+        seen: Seen::Once { over: waves::numbers, of: waves::factor, further: 0 },
+        headlines: &[
+            Headline { name: "height of the main peak", unit: "", of: |_, mean, block| block[peak(mean)] },
+            Headline {
+                name: "place of the main peak",
+                unit: "1/length",
+                of: |over, _, block| over[peak(block)],
+            },
+        ],
+    },
+    Observable {
+        name: "coordination",
+        file: "coordination.csv",
+        over: ["neighbours", ""],
+        value: ["share of discs", ""],
+        doc: "Shares of discs with so many neighbours: others nearer than 1.5 times the sum of the radii.",
+        source: "the first minimum of g(r) of dense discs lies there",
+        seen: Seen::Once { over: pairs::neighbour_numbers, of: pairs::coordination, further: 0 },
+        headlines: &[Headline {
+            name: "mean number of neighbours",
+            unit: "",
+            of: |over, _, block| over.iter().zip(block).map(|(number, share)| number * share).sum(),
+        }],
+    },
+    Observable {
+        name: "psi6",
+        file: "psi6.csv",
+        over: ["|psi6| of a disc", ""],
+        value: ["density", ""],
+        doc: "Distribution of the hexatic order of single discs, ψ6 = ⟨exp(6iθ)⟩ over the six nearest.",
+        source: "Nelson and Halperin 1979; six nearest neighbours in place of Voronoi's",
+        seen: Seen::Once { over: pairs::orders, of: pairs::hexatic, further: 2 },
+        headlines: &[
+            Headline { name: "global order |Ψ6|", unit: "", of: |over, _, block| block[over.len()] },
+            Headline { name: "mean order of a disc", unit: "", of: |over, _, block| block[over.len() + 1] },
+        ],
+    },
+    Observable {
+        name: "velocities",
+        file: "velocities.csv",
+        over: ["v/sqrt(kT/m)", ""],
+        value: ["density", ""],
+        doc: "Distribution of both components of the velocity over √(kT/m), kT by the kinetic energy of the same moment.",
+        source: "Maxwell 1860: the normal distribution in equilibrium",
+        seen: Seen::Once { over: single::speeds, of: single::velocities, further: 1 },
+        headlines: &[Headline { name: "kurtosis", unit: "", of: |over, _, block| block[over.len()] }],
+    },
+    Observable {
+        name: "density(x)",
+        file: "density-x.csv",
+        over: ["x", "length"],
+        value: ["density", "1/length²"],
+        doc: "Centres of discs by area along the first axis.",
+        source: "",
+        seen: Seen::Once {
+            over: |setting| single::slices(setting, 0),
+            of: |setting, discs| single::density(setting, discs, 0),
+            further: 0,
+        },
+        headlines: &[],
+    },
+    Observable {
+        name: "density(y)",
+        file: "density-y.csv",
+        over: ["y", "length"],
+        value: ["density", "1/length²"],
+        doc: "Centres of discs by area along the second axis.",
+        source: "",
+        seen: Seen::Once {
+            over: |setting| single::slices(setting, 1),
+            of: |setting, discs| single::density(setting, discs, 1),
+            further: 0,
+        },
+        headlines: &[],
+    },
+    Observable {
+        name: "msd",
+        file: "msd.csv",
+        over: ["lag", "time"],
+        value: ["mean square displacement", "length²"],
+        doc: "Mean square of the way of a disc within a time, across periodic sides.",
+        source: "Einstein 1905: 4 D t in the plane after long times",
+        seen: Seen::Twice(motion::square_displacement),
+        headlines: &[Headline {
+            name: "diffusion constant",
+            unit: "length²/time",
+            of: motion::by_displacements,
+        }],
+    },
+    Observable {
+        name: "vacf",
+        file: "vacf.csv",
+        over: ["lag", "time"],
+        value: ["velocity autocorrelation", "length²/time²"],
+        doc: "⟨v(0)·v(t)⟩/2: the autocorrelation of a component of the velocity.",
+        source: "Green and Kubo: its integral is D",
+        seen: Seen::Twice(motion::velocity_product),
+        headlines: &[Headline {
+            name: "diffusion constant",
+            unit: "length²/time",
+            of: motion::by_velocities,
+        }],
+    },
+];
+
+/// Their names, for scenes.
+pub static NAMES: [&str; OBSERVABLES.len()] = {
+    let mut names = [""; OBSERVABLES.len()];
+    let mut place = 0;
+    while place < names.len() {
+        names[place] = OBSERVABLES[place].name;
+        place += 1;
+    }
+    names
+};
+
+/// The observable of a name.
+pub fn observable(name: &str) -> Option<&'static Observable> {
+    OBSERVABLES.iter().find(|observable| observable.name == name)
+}
+
+/// Where a function is largest; the first place of several.
+fn peak(values: &[f64]) -> usize {
+    let larger = |best: usize, at: usize| if values[at] > values[best] { at } else { best };
+    (0..values.len()).fold(0, larger)
+}

@@ -1,0 +1,40 @@
+//! What an observable is measured by: the box and the size of the discs at the start.
+
+use crate::domain::Domain;
+use crate::particles::Particles;
+
+/// Mean diameters up to which pairs are looked at.
+const REACH: f64 = 4.0;
+
+/// The box, and lengths that bins go by.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    /// The box.
+    pub domain: Domain,
+    /// The mean diameter of the discs at the start (length).
+    pub diameter: f64,
+    /// How far pairs are looked at (length).
+    pub reach: f64,
+}
+
+impl Setting {
+    /// Of a box and the discs in it at the start.
+    pub fn new(domain: Domain, particles: &Particles) -> Setting {
+        let discs = particles.grains();
+        let diameter = 2.0 * discs.iter().map(|disc| disc.radius).sum::<f64>() / discs.len() as f64;
+        let reaches = [0, 1].map(|axis| match domain.is_periodic(axis) {
+            true => 0.5 * domain.length(axis),
+            false => domain.length(axis) - diameter,
+        });
+        let reach = reaches.into_iter().fold(REACH * diameter, f64::min).max(0.0);
+        Setting { domain, diameter, reach }
+    }
+
+    /// The sides of the rectangle that centres of discs may be in (length).
+    pub fn room(&self) -> [f64; 2] {
+        [0, 1].map(|axis| match self.domain.is_periodic(axis) {
+            true => self.domain.length(axis),
+            false => self.domain.length(axis) - self.diameter,
+        })
+    }
+}
