@@ -73,7 +73,7 @@ fn table(averages: &Averages) -> Table {
         .note(format!("± 95 %: the {}, of the larger of both standard errors.", averages.bar))
 }
 
-/// Decimals that show so many digits.
+/// Decimals that show a number of digits.
 fn decimals(value: f64, digits: i32) -> usize {
     let magnitude = value.abs().log10().floor();
     if magnitude.is_finite() { (digits - 1 - magnitude as i32).max(0) as usize } else { 0 }

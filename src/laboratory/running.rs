@@ -14,7 +14,7 @@ pub fn prepared(preset: &str, overrides: &[String]) -> Result<Prepared, StudyErr
     Ok(load(preset, overrides, METHODS)?.0)
 }
 
-/// Does something on so many threads.
+/// Does something on a number of threads.
 ///
 /// # Errors
 /// [`StudyError`] if they cannot be had, or what is done fails.

@@ -86,7 +86,7 @@ impl<T: Into<Cell>> From<Option<T>> for Cell {
     }
 }
 
-/// With so many decimals, thousands set apart.
+/// With a number of decimals, thousands set apart.
 fn decimal(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.split_once('.') {
@@ -168,7 +168,7 @@ impl<T> Rows<T> {
         self.cell(heading, |item| of(item).try_into().map_or(Cell::Nothing, Cell::Count))
     }
 
-    /// A column of numbers with so many decimals; an item may have none.
+    /// A column of numbers with a number of decimals; an item may have none.
     pub fn number<N: Into<Option<f64>>>(
         self,
         heading: impl Into<String>,

@@ -4,7 +4,7 @@ use super::{Cell, Table};
 use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Width};
 
-/// Columns of a page that nobody has said the width of.
+/// Columns of a page whose width is not said.
 const PAGE: usize = 100;
 /// Columns that a table takes beside the content of a column: a blank on either side.
 const BESIDE: usize = 2;

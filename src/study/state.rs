@@ -131,7 +131,7 @@ mod tests {
         let mut domain = Domain::planar([0.0; 2], [10.0; 2], [true, false]);
         let [a, b] = [[[9.5, 1.0], [4.0, 4.0]], [[0.5, 1.0], [4.0, 4.0]]].map(|at| State::of(&particles(at)));
         assert_eq!(a.distance(&b, &domain), [0.5f64.sqrt(), 1.0]);
-        // What is nowhere is as far as can be, whoever comes after it.
+        // What is nowhere is as far as can be, whatever comes after it.
         let lost = State::of(&particles([[9.5, 1.0], [f64::NAN, 4.0]]));
         assert!(a.distance(&lost, &domain).iter().all(|distance| distance.is_nan()));
         assert_eq!((a.momentum(), a.angular_momentum(&domain, None)), (([6.0, 0.0], 6.0), None));

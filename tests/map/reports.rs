@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// Words of question, expectation and answer of an item at most: all else is folded.
 const WORDS: usize = 120;
 /// Decimals of a number in a sentence at most.
-const DECIMALS: usize = 8;
+const DECIMALS: usize = 9;
 /// Bytes of the pages at most.
 const PAGES: [(&str, usize); 2] = [("README.md", 45_000), ("index.html", 1_200_000)];
 
@@ -67,13 +67,15 @@ fn numbers_in_sentences_are_for_readers() {
     assert_eq!(clumsy("0.7142857142857143 ns"), Some("0.7142857142857143".into()));
     assert_eq!(clumsy("in 1 layers, in 2 layers"), Some("1 layers,".into()));
     assert_eq!(clumsy("in 1 layer of 0.25 m"), None);
-    for (name, [read, _]) in sections() {
-        assert_eq!(clumsy(&read), None, "{name}");
+    for (name, texts) in sections() {
+        for text in texts {
+            assert_eq!(clumsy(&text), None, "{name}");
+        }
     }
 }
 
 /// Entries of a legend at most.
-const ENTRIES: usize = 8;
+const ENTRIES: usize = 7;
 
 #[test]
 fn legends_are_short() {

@@ -1,6 +1,6 @@
 //! Numbers as people read them.
 
-/// A number with so many significant digits, without zeros at the end; with an exponent only where it is below a thousandth or
+/// A number with a number of significant digits, without zeros at the end; with an exponent only where it is below a thousandth or
 /// has more than six digits before the point.
 pub fn significant(value: f64, digits: usize) -> String {
     let last = digits.saturating_sub(1);
@@ -33,7 +33,7 @@ pub fn with_bar(mean: f64, bar: f64) -> String {
     format!("({:.decimals$} ± {:.decimals$})e{power}", mean / unit, bar / unit)
 }
 
-/// A number with so many significant digits, for sentences: `8.2·10⁻⁸` where it is small or large.
+/// A number with a number of significant digits, for sentences: `8.2·10⁻⁸` where it is small or large.
 pub fn in_tens(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
     let Some((mantissa, exponent)) = text.split_once('e') else { return text };
@@ -44,7 +44,7 @@ pub fn in_tens(value: f64, digits: usize) -> String {
     }
 }
 
-/// From the lowest to the highest of some numbers, for sentences; one number where they are the same in so many digits.
+/// From the lowest to the highest of some numbers, for sentences; one number where they are the same in these digits.
 pub fn range(values: impl IntoIterator<Item = f64>, digits: usize) -> String {
     let mut values: Vec<f64> = values.into_iter().collect();
     values.sort_by(f64::total_cmp);
@@ -56,7 +56,7 @@ pub fn range(values: impl IntoIterator<Item = f64>, digits: usize) -> String {
     if low == high { low } else { format!("{low} to {high}") }
 }
 
-/// So many of something, for sentences: `1 scene`, `3 scenes`.
+/// A count of something, for sentences: `1 scene`, `3 scenes`.
 pub fn counted(count: impl std::fmt::Display, one: &str, many: &str) -> String {
     let count = count.to_string();
     format!("{count} {}", if count == "1" { one } else { many })

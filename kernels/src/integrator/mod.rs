@@ -143,7 +143,7 @@ pub enum Draws {
 /// A predictor and a corrector for one degree of freedom.
 ///
 /// The state is a row for each degree of freedom, q_k = s_k d^k r/dt^k, in which s_k are the scheme's own
-/// [scales](Self::scales). Whoever puts velocities in or reads them asks for these; the acceleration comes in the scene's units.
+/// [scales](Self::scales). What puts velocities in or reads them asks for these; the acceleration comes in the scene's units.
 pub trait Scheme: Copy + Send + Sync {
     /// How many derivatives a step hands on to the next, where corrector and next predictor are one.
     const CARRIED: usize;

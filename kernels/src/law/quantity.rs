@@ -67,7 +67,7 @@ impl Field {
         Field::Occupied,
     ];
 
-    /// Whether a particle has it in so many dimensions.
+    /// Whether a particle has it in a number of dimensions.
     #[inline(always)]
     pub const fn is_in(self, dimensions: usize) -> bool {
         match self {
@@ -107,7 +107,7 @@ impl Sum {
     /// The sums that there are in two dimensions, in the order of their [columns](Self::column).
     pub const PLANAR: [Sum; 3] = [Sum::Force(Axis::X), Sum::Force(Axis::Y), Sum::Torque];
 
-    /// Whether a particle has it in so many dimensions.
+    /// Whether a particle has it in a number of dimensions.
     #[inline(always)]
     pub const fn is_in(self, dimensions: usize) -> bool {
         match self {

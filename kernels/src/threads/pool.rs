@@ -13,7 +13,7 @@ pub(super) fn index() -> usize {
     rayon::current_thread_index().unwrap_or(0)
 }
 
-/// Does `work` so many times, each on the thread that comes to it, and comes back when all are done.
+/// Does `work` a number of times, each on the thread that comes to it, and comes back when all are done.
 pub(super) fn on_each(count: usize, work: &(dyn Fn() + Sync)) {
     (0..count).into_par_iter().with_max_len(1).for_each(|_| work());
 }

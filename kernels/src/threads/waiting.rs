@@ -78,7 +78,7 @@ impl Drop for Release {
     }
 }
 
-/// What `work` gives, done by one thread while so many others spin. Once `work` has parts for them itself they are let go: else a thread
+/// What `work` gives, done by one thread while others spin. Once `work` has parts for them itself they are let go: else a thread
 /// that waited for its parts to be taken, and kept others awake meanwhile, could wait for one that does the same.
 pub(crate) fn keep_awake<R>(others: usize, work: impl FnOnce() -> R) -> R {
     if others == 0 {

@@ -12,7 +12,7 @@ use stripmine_physics::particles::Kind;
 const SHOWN: usize = 20_000;
 /// Rows of a map: more cannot be seen.
 const ROWS: usize = 160;
-/// A box that is so many times as long as wide has a density along it.
+/// A box that is this many times as long as wide has a density along it.
 const LONG: f64 = 4.0;
 /// Bins along it: a slice of each has about this many mean diameters, as in the pictures of BP93's pipe.
 const BIN: f64 = 2.5;

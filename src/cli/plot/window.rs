@@ -3,15 +3,15 @@
 use crate::statistics::quantile;
 use stripmine_physics::io::extxyz::Frame;
 
-/// Of many particles a few far away do not decide what is seen: so many (parts of all) may lie beyond each end, in a box and in space.
+/// Of many particles a few far away do not decide what is seen: these parts of all may lie beyond each end, in a box and in space.
 const BEYOND: [f64; 2] = [0.01, 0.025];
-/// So many are many.
+/// From this number on there are many.
 const MANY: usize = 100;
 /// Around what is shown of them (parts of its length).
 const AROUND: f64 = 0.1;
 /// A box is shown whole where particles take up this part of its length.
 const FULL: f64 = 0.6;
-/// A side of what is shown is at least this part of the other, and so many largest radii.
+/// A side of what is shown is at least this part of the other, and this many largest radii.
 const FLATTEST: f64 = 0.25;
 const RADII: f64 = 20.0;
 

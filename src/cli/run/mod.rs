@@ -33,7 +33,7 @@ pub(super) struct RunVerb {
     /// Begin from the start where the folder holds a run; only what that run wrote is removed
     #[arg(long)]
     overwrite: bool,
-    /// So many runs side by side, each with a seed and a folder of its own, and their means in one summary
+    /// A number of runs side by side, each with a seed and a folder of its own, and their means in one summary
     #[arg(long, value_name = "N", value_parser = count)]
     seeds: Option<u64>,
 }

@@ -67,7 +67,7 @@ fn seeds_of(values: &Values, vocabulary: &Vocabulary) -> Vec<(&'static Key, u64)
 }
 
 impl RunVerb {
-    /// Runs the scene with so many seeds, the scene's own the first of them.
+    /// Runs the scene with a number of seeds, the scene's own the first of them.
     pub(super) fn run_seeds(&self, count: u64, common: &Common, methods: Methods) -> Result<(), Failure> {
         let folder = self.folder("seeds");
         let values = Values::load(&self.scene, &self.overrides, &vocabularies(methods))?;

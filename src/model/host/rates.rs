@@ -72,7 +72,7 @@ impl Rates {
     /// Nanoseconds of a phase.
     ///
     /// # Errors
-    /// [`OutOfRange`] where the precision was not measured, or not so many discs.
+    /// [`OutOfRange`] where the precision was not measured, or not that number of discs.
     pub fn phase(&self, precision: &str, phase: &str, amounts: &Amounts) -> Result<f64, OutOfRange> {
         let (Some(&fewest), Some(&most)) = (self.discs.first(), self.discs.last()) else { return Ok(0.0) };
         if !(fewest..=most).contains(&amounts.discs) {

@@ -2,15 +2,15 @@
 
 /// Lanes of a sum of products: a constant, so that the order of summation is the same on every host.
 const LANES: usize = 8;
-/// Correlations over at most so many values are summed whatever their sign: noise may take the first ones below zero.
+/// Correlations over at most this number of values are summed whatever their sign: noise may take the first ones below zero.
 const FIRST: usize = 3;
 
 /// What the autocorrelation of a series sums up to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correlation {
-    /// Statistical inefficiency g: so many values say as much as one independent value; at least 1.
+    /// Statistical inefficiency g: the number of values that say as much as one independent value; at least 1.
     pub inefficiency: f64,
-    /// The autocorrelation is summed over so many values.
+    /// The number of lags that the autocorrelation is summed over.
     pub window: usize,
 }
 

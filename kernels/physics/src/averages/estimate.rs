@@ -6,9 +6,10 @@ use super::equilibration::equilibrated;
 use super::student::student;
 use serde::Serialize;
 
-/// Independent samples below which no mean is given: neither the cut nor the error can be relied on.
+/// Independent samples below which no mean is given: neither the cut nor the error can be relied on. With hardly more of them the bars are a
+/// little short: those of 95 % hold the truth in 88 to 94 of 100 series.
 pub const FEWEST_SAMPLES: f64 = 10.0;
-/// A run that is too short is said to need so many times what it would by its own estimate, which is a rough one.
+/// A run that is too short is said to need this many times what it would by its own estimate, which is a rough one.
 const MARGIN: f64 = 1.5;
 /// Bars hold the truth with this probability.
 pub const CONFIDENCE: f64 = 0.95;
@@ -19,7 +20,7 @@ const TREND: f64 = 3.3;
 const STRONG: f64 = 0.8;
 /// A series that varies by less than this part of its largest value does not vary: it is rounding.
 const ROUNDING: f64 = 1e-9;
-/// Student's t hardly changes beyond so many degrees of freedom.
+/// Student's t hardly changes beyond this number of degrees of freedom.
 const MANY: f64 = 1000.0;
 
 /// A mean over time with its error.
@@ -222,6 +223,25 @@ mod tests {
                 means.len() > 210 && (0.92..=0.98).contains(&share),
                 "{memory}: {share} of {}",
                 means.len()
+            );
+        }
+    }
+
+    /// Where there are hardly more than the fewest samples, bars of 95 % hold the truth in 88 to 94 of 100 series: no less.
+    #[test]
+    fn bars_of_short_series_are_a_little_short() {
+        for (memory, least) in [(0.8, 0.925), (0.9, 0.875)] {
+            let found = (0..3000).map(|seed| estimated(&Noise::new(seed).series(200, memory), 0.0, 1.0));
+            let held = found.filter_map(|outcome| match outcome {
+                Outcome::Mean(estimate) => Some(estimate.mean.abs() <= estimate.bar),
+                _ => None,
+            });
+            let held: Vec<bool> = held.collect();
+            let share = held.iter().filter(|held| **held).count() as f64 / held.len() as f64;
+            assert!(
+                held.len() > 1500 && (least..0.98).contains(&share),
+                "{memory}: {share} of {}",
+                held.len()
             );
         }
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
-/// Student's t: so many standard errors to either side hold a mean with a probability, by the degrees of freedom, at least one.
+/// Student's t: the number of standard errors that to either side hold a mean with a probability, by the degrees of freedom, at least one.
 pub fn student(probability: f64, freedoms: usize) -> f64 {
     // With t = √ν tan θ the probability is a finite sum (Abramowitz and Stegun, 26.7.3 and 26.7.4).
     let within = |angle: f64| {

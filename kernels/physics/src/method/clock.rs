@@ -122,7 +122,7 @@ pub enum Every {
     Steps(u64),
     /// After as long a time (time).
     Time(f64),
-    /// After so many seconds of the wall clock: at no moment that the simulation knows.
+    /// After a number of seconds of the wall clock: at no moment that the simulation knows.
     Seconds(f64),
 }
 

@@ -64,7 +64,7 @@ impl Snapshot {
         }
     }
 
-    /// A column of times, which may be without end, if it has so many.
+    /// A column of times, which may be without end, if it has that number of them.
     ///
     /// # Errors
     /// A sentence, if it is missing or one is no number.
@@ -77,7 +77,7 @@ impl Snapshot {
         }
     }
 
-    /// The column of a name, of finite numbers in double precision, if it has so many.
+    /// The column of a name, of finite numbers in double precision, if it has that number of them.
     ///
     /// # Errors
     /// A sentence, if it is missing or one is not finite.
@@ -93,7 +93,7 @@ impl Snapshot {
         }
     }
 
-    /// The column of a name, of whole numbers of 64 bits, if it has so many.
+    /// The column of a name, of whole numbers of 64 bits, if it has that number of them.
     ///
     /// # Errors
     /// A sentence, if it is missing.
@@ -109,7 +109,7 @@ impl Snapshot {
         find_counts(&self.columns, name, length, most)
     }
 
-    /// The column of a name, of whole numbers of 32 bits, if it has so many.
+    /// The column of a name, of whole numbers of 32 bits, if it has that number of them.
     ///
     /// # Errors
     /// A sentence, if it is missing.

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// So many stretches of the beginning are timed, after the first.
+/// The number of stretches of the beginning that are timed, after the first.
 const STRETCHES: usize = 9;
 /// A stretch is timed if it takes as long.
 const LONG_ENOUGH: Duration = Duration::from_millis(3);

@@ -6,7 +6,7 @@ use crate::scene::{Target, Width};
 
 /// Rows at which the mean is looked at first.
 const FIRST: u64 = 32;
-/// Then whenever there are so many parts more of them: looking is little beside the run, and chance has few tries.
+/// Then whenever there is this part more of them: looking is little beside the run, and chance has few tries.
 const PART: u64 = 8;
 
 /// The mean that a run is to find.

@@ -2,10 +2,7 @@
 
 use super::binding::Binding;
 use super::disc_keys::*;
-use super::domain::periodic_as;
-use super::error::{Reason, SceneError};
 use super::keys::{Key, Value};
-use super::values::Values;
 use crate::placement::Second;
 use crate::words::define_words;
 use std::path::{Path, PathBuf};
@@ -399,57 +396,4 @@ fn beside(scene_file: &str, path: &str) -> PathBuf {
     let folder = Path::new(scene_file).parent().unwrap_or(Path::new(""));
     let path = folder.join(path);
     std::path::absolute(&path).unwrap_or(path)
-}
-
-/// What the keys of a start demand of each other.
-pub fn disagreements(values: &Values) -> Vec<SceneError> {
-    let mut errors = Vec::new();
-    let choice = values.choice(&GENERATE);
-    match choice.as_deref() {
-        Some("hexagonal") => {
-            let why = "a hexagonal lattice closes on both sides";
-            errors.extend(periodic_as(values, [true, true], why));
-            for key in [&COUNT, &PACKING_FRACTION] {
-                if !values.gives(key) && !values.is_faulty(key) {
-                    let error =
-                        values.spot(key).error(Reason::Missing, format!("`{}` is missing", key.path()));
-                    errors.push(error.expecting(key.expected()).advising(key.doc));
-                }
-            }
-        }
-        Some("pipe") => {
-            let why = "a pipe is periodic along x and walled along y";
-            errors.extend(periodic_as(values, [true, false], why));
-        }
-        Some("box") => {
-            errors.extend(periodic_as(values, [true, false], "a box is periodic along x and has a floor"));
-        }
-        _ => {}
-    }
-    errors.extend(lengths_of_lists(values));
-    errors
-}
-
-/// Lists that do not have a value for each grain.
-fn lengths_of_lists(values: &Values) -> Vec<SceneError> {
-    let mut errors = Vec::new();
-    let Some(Value::Pairs(positions)) = values.given(&POSITIONS) else { return errors };
-    if positions.is_empty() {
-        errors.push(values.spot(&POSITIONS).error(Reason::Range, "`particles.positions` lists no disc"));
-    }
-    for key in [&VELOCITIES, &OMEGAS, &RADII] {
-        let length = match values.given(key) {
-            Some(Value::Pairs(list)) => list.len(),
-            Some(Value::Numbers(list)) => list.len(),
-            _ => continue,
-        };
-        let count = positions.len();
-        if length != count {
-            let message =
-                format!("`{}` lists {length} values, but `particles.positions` lists {count}", key.path());
-            let error = values.spot(key).error(Reason::Contradiction, message);
-            errors.push(error.expecting(format!("{count} values, one for each grain")));
-        }
-    }
-    errors
 }

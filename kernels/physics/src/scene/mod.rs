@@ -29,7 +29,7 @@ pub use disc_keys::{
     RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, SECOND_RADIUS, SECOND_SHARE, SEED, SPACING, SPEED, TEMPERATURE,
     VELOCITIES, WALL_AMPLITUDE, WALL_POSITIONS, WALL_RADIUS, WALL_SPACING,
 };
-pub use discs::{Amount, Grains, Lining, List, Speed, Start, WallMotion, disagreements};
+pub use discs::{Amount, Grains, Lining, List, Speed, Start, WallMotion};
 pub use domain::{Domain, GRAVITY, ORIGIN, PERIODIC, PLANAR_DOMAIN, SIDES};
 pub use error::{Place, Reason, SceneError, SceneErrors, Spot, Warning};
 pub use general::{
@@ -43,6 +43,7 @@ pub use machine::{
     bind_instructions, execution_name,
 };
 pub use overrides::Overrides;
+pub use rules::disagreements;
 pub use target::{Target, Width};
 pub use values::Values;
 pub use vocabulary::{Preset, Renamed, Vocabulary};

@@ -107,7 +107,7 @@ pub static OBSERVABLES: [Observable; 9] = [
         file: "coordination.csv",
         over: ["neighbours", ""],
         value: ["share of discs", ""],
-        doc: "Shares of discs with so many neighbours: others nearer than 1.5 times the sum of the radii.",
+        doc: "Shares of discs by their number of neighbours: others nearer than 1.5 times the sum of the radii.",
         source: "the first minimum of g(r) of dense discs lies there",
         seen: Seen::Once { over: pairs::neighbour_numbers, of: pairs::coordination, further: 0 },
         headlines: &[Headline {

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 /// Bins of distances in a mean diameter, so that one of them begins at contact.
 const BINS: f64 = 50.0;
-/// Neighbours are nearer than so many sums of the radii.
+/// Neighbours are nearer than this many sums of the radii.
 const NEIGHBOURS: f64 = 1.5;
 /// More neighbours than a disc has.
 const MOST_NEIGHBOURS: usize = 16;
@@ -95,7 +95,7 @@ pub(super) fn neighbour_numbers(_: &Setting) -> Vec<f64> {
     (0..=MOST_NEIGHBOURS).map(|number| number as f64).collect()
 }
 
-/// Shares of discs with so many neighbours.
+/// Shares of discs by their number of neighbours.
 pub(super) fn coordination(setting: &Setting, discs: &[Particle]) -> Vec<f64> {
     let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
     let near = Near::among(setting.domain, discs.iter().map(Particle::place), 2.0 * NEIGHBOURS * largest);

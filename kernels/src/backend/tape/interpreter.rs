@@ -25,7 +25,7 @@ impl<L: Precision> Tape<L> {
         dispatch(set, Passes { tape: self, memory, range, strip })
     }
 
-    /// Bytes of the register files that [`interpret`](Self::interpret) keeps for strips of so many elements: of numbers, of
+    /// Bytes of the register files that [`interpret`](Self::interpret) keeps for strips of a number of elements: of numbers, of
     /// predicates, of indices.
     pub(crate) fn register_bytes(
         &self,

@@ -34,7 +34,7 @@ pub(super) fn nearest(readings: &[Read]) -> String {
     )
 }
 
-/// Pairs nearer than a distance (length) seen from each of the two, of so many particles at random places in the source's box.
+/// Pairs nearer than a distance (length) seen from each of the two, of a number of particles at random places in the source's box.
 fn near(particles: f64, distance: f64) -> f64 {
     particles * particles * PI * distance * distance / (SIDE * SIDE)
 }
@@ -76,7 +76,7 @@ pub(super) fn counts(readings: &[Read]) -> Table {
         )
         .note(
             "The last but one fits ε, the last ε, kT, γ and the choices it names, the best of 1600 trials. 700 trials \
-             at the stated density came within 3.4 at best. So many choices fit eight numbers by chance: nothing follows from them.",
+             at the stated density came within 3.4 at best. Seven choices fit eight numbers by chance: nothing follows from them.",
         )
 }
 

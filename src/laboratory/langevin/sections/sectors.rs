@@ -4,9 +4,9 @@ use crate::laboratory::langevin::study::sectors::{Fluid, Row, SEARCHES, SOURCE, 
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::{Cell, Rows, Section, Table, Verdict};
 
-/// Two threads help where they are at least so many times as fast as one.
+/// Two threads help where they are at least this many times as fast as one.
 const HELPS: f64 = 1.2;
-/// The floor is reached where a time is below so many times the shortest.
+/// The floor is reached where a time is below this many times the shortest.
 const FLOOR: f64 = 1.25;
 
 /// How many times as fast two threads are as one, in ours and in the source.

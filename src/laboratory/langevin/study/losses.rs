@@ -14,7 +14,7 @@ use stripmine_physics::scene::{COUNT, DT, Overrides, SIDES, TEMPERATURE};
 const FINER: [f64; 5] = [0.03, 0.005, 0.004, 0.003, 0.002];
 /// The integrators compared.
 pub const SCHEMES: [SchemeKind; 2] = [SchemeKind::Stochastic, SchemeKind::Baoab];
-/// One of so many particles is taken for the readings.
+/// One of this number of particles is taken for the readings.
 pub const PART: u64 = 4;
 /// The boundary is known to this part of itself.
 const TOLERANCE: f64 = 0.05;

@@ -54,7 +54,7 @@ pub struct Reading {
     pub is_friction_old: bool,
     /// Noise as √(2γkT/dt); without dt otherwise.
     pub is_noise_scaled: bool,
-    /// Whether particles beyond the lower sides are lost too; they go on and meet nobody otherwise.
+    /// Whether particles beyond the lower sides are lost too; otherwise they go on and meet no other.
     pub has_lower_bound: bool,
     /// Whether the offsets of sectors beyond a side are rounded to the nearest number; down otherwise.
     pub rounds_offsets: bool,
@@ -137,7 +137,7 @@ struct Particle {
     acceleration: [f64; 2],
 }
 
-/// The loop of the source over its steps, of so many particles at its density.
+/// The loop of the source over its steps, of a number of particles at its density.
 pub fn counted(reading: &Reading, particles: usize, dt: f64) -> Counts {
     let side = reading.side * (particles as f64 / PARTICLES as f64).sqrt();
     let mut all = start(reading, particles, side);
@@ -316,7 +316,7 @@ mod tests {
         counted(reading, 2500, dt)
     }
 
-    /// Without force random places meet as an ideal gas does, 2500 · 4 · π · 0.1² a step, and nobody is lost.
+    /// Without force random places meet as an ideal gas does, 2500 · 4 · π · 0.1² a step, and none is lost.
     #[test]
     fn particles_without_force_meet_as_an_ideal_gas() {
         let ideal = Reading { strength: 0.0, spacing: None, ..STATED };

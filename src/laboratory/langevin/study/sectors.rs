@@ -205,7 +205,7 @@ mod tests {
     use super::*;
     use stripmine_physics::particles::Particle;
 
-    /// Positions and velocities after some steps of so many particles in sectors, to the bit, and the positions.
+    /// Positions and velocities after some steps of a number of particles in sectors, to the bit, and the positions.
     fn moved(count: u64, per_side: Option<u64>, threads: usize) -> (Vec<[u64; 4]>, Vec<[f64; 2]>) {
         // Dense, so that sums have many terms, whose order counts.
         let side = (count as f64 / 0.7).sqrt();

@@ -248,7 +248,7 @@ fn scattered(model: &Model, occupancy: f64) -> Particles {
     Particles::new(discs)
 }
 
-/// Every part of an eager step on a lattice of about so many cells. Nothing in it depends on the data, so the discs need not move: the
+/// Every part of an eager step on a lattice of about a number of cells. Nothing in it depends on the data, so the discs need not move: the
 /// step is so short that none leaves its cell.
 fn eager(cells: usize, occupancy: f64, choice: Choice, samples: usize) -> Vec<Timed> {
     // Every lattice of 25 cells and more is one.

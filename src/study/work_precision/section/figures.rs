@@ -348,7 +348,9 @@ fn means(file: &str, name: &str, data: &WorkPrecision, all: &Observables) -> Opt
     let mut series = vec![];
     for label in in_full {
         let Some(way) = way(label) else { continue };
-        for (reaches_zero, said) in [(false, ""), (true, ", bar reaches zero")] {
+        // Full and hollow markers of one way have one name, that of those that there are.
+        let mut name = way.scheme.clone();
+        for reaches_zero in [false, true] {
             let own = all.comparisons.iter().filter(|it| {
                 it.choice == label && it.observable == *observable && it.reaches_zero() == reaches_zero
             });
@@ -357,7 +359,11 @@ fn means(file: &str, name: &str, data: &WorkPrecision, all: &Observables) -> Opt
                 (it.step, size, [size - bar, size + bar])
             });
             let hue = place(schemes(), &way.scheme);
-            series.push(Series::new(format!("{}{said}", way.scheme), Style::Points, hue, points));
+            let own = Series::new(name.clone(), Style::Points, hue, points);
+            if !own.points.is_empty() {
+                name.clear();
+            }
+            series.push(own);
         }
     }
     Some(

@@ -136,7 +136,7 @@ mod tests {
         Occurred { time, disc, with, impact: None, thrust: 0.0, free: [0.0; 2] }
     }
 
-    /// Events so far apart, of so many discs in turn: after how many events that is found to be endless.
+    /// Events that are at most so far apart, of a group of discs in turn: after how many events that is found to be endless.
     fn found(fall: f64, apart: f64, discs: u32) -> Option<(u64, bool)> {
         let mut watch = Watch::new(1.0, fall, 100);
         (1..=20_000).find_map(|event| {

@@ -120,7 +120,7 @@ impl Running {
         }
     }
 
-    /// Whether it is proved that nothing will ever happen. Between events nobody has to ask twice.
+    /// Whether it is proved that nothing will ever happen. Between events it need not be asked twice.
     fn is_idle(&mut self) -> bool {
         if !self.may_meet {
             let discs: Vec<Disc> = self.discs().copied().collect();

@@ -104,7 +104,7 @@ pub(super) fn found(
     Ok(chosen)
 }
 
-/// So many sectors along each side.
+/// Sectors along each side.
 fn grid(values: &Values, domain: &Domain, per_side: u64, reach: f64) -> Result<Grid, SceneError> {
     let counts = [per_side as usize; 2];
     let edge = domain.lengths().map(|side| side / per_side as f64);

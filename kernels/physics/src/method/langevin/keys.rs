@@ -44,7 +44,7 @@ define_keys! {
         "baoab; or the source's velocity Verlet with friction and noise in the acceleration (stochastic), also with friction by the velocity of the step before, as printed, which heats.";
 
     MOST_LOST = "run" "most_lost", Whole(0, 2_147_483_647), "", Is("0"), ALWAYS,
-        "So many particles may be lost: thrown out of the box farther than a period, or to no finite place. They are counted and listed, and the run goes on without them.";
+        "The number of particles that may be lost: thrown out of the box farther than a period, or to no finite place. They are counted and listed, and the run goes on without them.";
     LOSSES = "output" "losses", Switch, "", Is("true"), ALWAYS,
         "A row for each particle lost, as events.csv.";
 }

@@ -88,7 +88,7 @@ impl Losses {
         ]
     }
 
-    /// Takes up what [`columns`](Self::columns) gave after so many steps of particles of these ids.
+    /// Takes up what [`columns`](Self::columns) gave after a number of steps of particles of these ids.
     ///
     /// # Errors
     /// A sentence, if it is not there, or of other particles or later steps.

@@ -71,7 +71,7 @@ define_entries! {
 }
 
 impl Totals {
-    /// That so many steps of so many discs can have come to them.
+    /// That a number of steps of a number of discs can have come to them.
     ///
     /// # Errors
     /// A sentence that names the first that cannot be.

@@ -41,7 +41,7 @@ pub(super) struct Running {
     pub(super) field: RefCell<Attraction>,
     particles: Particles,
     steps: u64,
-    /// Rows are observed after multiples of so many steps, and the last state after so many; none in a measurement.
+    /// Rows are observed after multiples of this number of steps, and the last state after the other; none in a measurement.
     rows: Option<[u64; 2]>,
     watch: Watch,
     encounters: Encounters,
@@ -107,12 +107,12 @@ impl Running {
         self.bodies.len() <= FEW
     }
 
-    /// Whether a look is due after so many steps.
+    /// Whether a look is due after a number of steps.
     fn is_look(&self, steps: u64) -> bool {
         self.is_few() || steps.is_multiple_of(BETWEEN_LOOKS)
     }
 
-    /// Whether a row, or the end, is due after so many steps.
+    /// Whether a row, or the end, is due after a number of steps.
     fn is_row(&self, steps: u64) -> bool {
         self.rows.is_some_and(|[every, last]| steps == last || (every > 0 && steps.is_multiple_of(every)))
     }

@@ -27,7 +27,7 @@ fn advance(running: &mut Running, steps: u64) -> Result<(), Failure> {
     running.advance(&[Until::Steps(steps)], &AtomicBool::new(false))
 }
 
-/// Sums that do something else besides.
+/// Sums that do something else as well.
 struct Instead<F> {
     inner: Option<Box<dyn Sums>>,
     with: F,

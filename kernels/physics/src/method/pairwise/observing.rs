@@ -1,4 +1,4 @@
-//! The discs as they stand at the end of a step, for whoever observes them. Nothing of the engine is changed.
+//! The discs as they stand at the end of a step, for what observes them. Nothing of the engine is changed.
 //!
 //! ```text
 //! corrected      columns in double precision, in the order in memory     in parts of them, on all threads

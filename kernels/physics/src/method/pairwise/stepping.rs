@@ -74,7 +74,7 @@ pub trait Stepping: Named + Send {
     /// Everything that the next step depends on, by name.
     fn columns(&self) -> Vec<(String, Column)>;
 
-    /// Takes columns up, of a moment after so many steps.
+    /// Takes columns up, of a moment after a number of steps.
     ///
     /// # Errors
     /// A sentence, if they are not those of this engine and scene.

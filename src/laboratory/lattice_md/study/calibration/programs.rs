@@ -76,7 +76,7 @@ const INTERPRETED_ELEMENTS: usize = 20_000;
 const LOOP_ELEMENTS: usize = 100_000;
 const MOST: usize = 8;
 
-/// Vectors of so many elements take part in every n-th sweep only: the longest would take most of the time.
+/// Vectors of this number of elements take part in every n-th sweep only: the longest would take most of the time.
 fn turn(elements: usize) -> usize {
     match elements {
         0..=30_000 => 1,

@@ -4,7 +4,7 @@
 //! The source prints 59, 12, 1656 = 24 · 69 and 54, and neither a program nor a rule of counting. Changes between numbers and index
 //! vectors are counted by none of the rules: a word of a CRAY is both.
 
-use super::{Question, QuestionError, model_of, step};
+use super::question::{Question, QuestionError, model_of, step};
 use serde::Serialize;
 use stripmine_kernels::backend::Tape;
 use stripmine_kernels::integrator::gear::{Acceleration, STATE, coefficients};

@@ -6,14 +6,16 @@
 //!   then most such discs have found something that comes sooner.
 //! - Discs lie in memory in the order of their places, and are put so once more now and then.
 
+mod kept;
+mod leaving;
 mod lists;
 mod queue;
 
 use crate::domain::Side;
-use crate::io::checkpoint::Column;
 use crate::method::Snapshot;
 use crate::method::hard_disks::engine::{Engine, EngineError, Occurred};
 use crate::method::hard_disks::event::Arena;
+use leaving::{free_path, leaving};
 use lists::Lists;
 use queue::Queue;
 use stripmine_kernels::InstructionSet;
@@ -33,8 +35,6 @@ const AHEAD: [usize; 3] = [40, 24, 12];
 
 /// What a disc expects beside other discs, which are known by their places in memory.
 const WALL: [u32; 2] = [u32::MAX - 2, u32::MAX - 1];
-/// Lists of a checkpoint reach at least this part of the largest radius beyond contact.
-const NARROWEST: f64 = 1e-6;
 /// Its list has to be renewed.
 const RENEWAL: u32 = u32::MAX;
 
@@ -50,9 +50,6 @@ struct Expected {
 impl Expected {
     const RENEWAL: Expected = Expected { with: RENEWAL, events: 0 };
 }
-
-/// Where discs were registered, in a checkpoint.
-const REGISTERED: [&str; 2] = ["registered.x", "registered.y"];
 
 /// Discs under way.
 pub struct Fast {
@@ -364,96 +361,11 @@ impl Engine for Fast {
     }
 
     fn snapshot(&self) -> Snapshot {
-        let mut kept = Snapshot::default();
-        let by_number =
-            |of: &dyn Fn(u32) -> f64| Column::F64(self.places.iter().map(|&place| of(place)).collect());
-        for (axis, name) in REGISTERED.into_iter().enumerate() {
-            kept.add_column(name, by_number(&|place| self.lists.place(place)[axis]));
-        }
-        kept.add_column("expected.time", by_number(&|place| self.queue.times()[place as usize]));
-        let expected = || self.places.iter().map(|&place| self.partners[place as usize]);
-        let number = |with: u32| if with >= WALL[0] { with } else { self.numbers[with as usize] };
-        kept.add_column("expected.with", Column::U32(expected().map(|it| number(it.with)).collect()));
-        kept.add_column("expected.events", Column::U32(expected().map(|it| it.events).collect()));
-        kept.add_sum("engine.time", self.time);
-        kept.add_sum("engine.displacement_limit", self.displacement_limit);
-        kept.add_count("engine.stride", self.lists.stride() as u64);
-        kept.add_count("engine.renewals", self.renewals);
-        kept.add_count("engine.events", self.events);
-        kept.add_count("engine.sorted_until", self.sorted_until);
-        kept
+        self.kept()
     }
 
     fn restore(&mut self, discs: Vec<Disc>, kept: &Snapshot) -> Result<(), String> {
-        let count = discs.len();
-        let registered = [kept.numbers(REGISTERED[0], count)?, kept.numbers(REGISTERED[1], count)?];
-        let origin = self.arena.domain.origin;
-        if (0..2).any(|axis| registered[axis].iter().any(|&at| at < origin[axis])) {
-            return Err("a disc was listed at a place below the origin of the box".to_owned());
-        }
-        let times = kept.times("expected.time", count)?;
-        let [with, events] = [kept.codes("expected.with", count)?, kept.codes("expected.events", count)?];
-        let none =
-            |(own, &with): (usize, &u32)| with < WALL[0] && (with as usize >= count || with as usize == own);
-        if with.iter().enumerate().any(none) {
-            return Err("a disc expects itself or one that is not there".to_owned());
-        }
-        let (stride, displacement_limit) =
-            (kept.count("engine.stride")?, kept.sum("engine.displacement_limit")?);
-        // Narrower ones would be renewed without end.
-        let narrowest = NARROWEST * self.largest;
-        if stride > MOST_PARTNERS as u64 + 1 || !(narrowest..f64::INFINITY).contains(&displacement_limit) {
-            return Err(format!("lists of {stride} entries within {displacement_limit}"));
-        }
-        let time = kept.sum("engine.time")?;
-        if discs.iter().any(|disc| disc.time > time) || times.iter().any(|&expected| expected < time) {
-            return Err(format!(
-                "a disc is ahead of the engine's time {time:?}, or expects something before it"
-            ));
-        }
-        self.displacement_limit = displacement_limit;
-        self.time = time;
-        self.renewals = kept.count("engine.renewals")?;
-        self.events = kept.count("engine.events")?;
-        self.sorted_until = kept.count("engine.sorted_until")?;
-        self.discs = AlignedColumn::new(0, discs);
-        self.numbers = AlignedColumn::new(1, 0..count as u32);
-        self.sort(self.time);
-        let place_of = |number: u32| {
-            let number = number as usize;
-            [registered[0][number], registered[1][number]]
-        };
-        let places: Vec<[f64; 2]> = self.numbers.iter().map(|&number| place_of(number)).collect();
-        let (domain, discs) = (self.arena.domain, &self.discs);
-        let mut lists =
-            Lists::new(domain, count, self.displacement_limit, self.largest, LISTED, stride as usize);
-        let full = lists.begin(&places, |disc| discs[disc as usize].radius);
-        full.map_err(|disc| format!("the list of disc number {} is full", self.numbers[disc as usize]))?;
-        self.lists = lists;
-        let now = self.time;
-        for (place, &number) in self.numbers.iter().enumerate() {
-            // Its list is renewed at the latest when it leaves the surroundings for which it was made; where discs fall, when one
-            // from rest would have left them.
-            let within = match self.arena.space.gravity() {
-                Some([gx, gy]) => (2.0 * self.displacement_limit / gx.hypot(gy)).sqrt(),
-                None => {
-                    let listed_at = self.lists.place(place as u32);
-                    leaving(&self.arena, &self.discs[place], listed_at, self.lists.displacement_limit(), now)
-                        - now
-                }
-            };
-            if times[number as usize] - now > within * (1.0 + 1e-6) + 1e-9 * now.abs() {
-                return Err(format!("disc number {number} expects nothing before it leaves its list"));
-            }
-        }
-        self.queue = Queue::new(count);
-        for (place, &number) in self.numbers.iter().enumerate() {
-            let expects = with[number as usize];
-            let with = if expects >= WALL[0] { expects } else { self.places[expects as usize] };
-            self.partners[place] = Expected { with, events: events[number as usize] };
-            self.queue.set(place, number, times[number as usize]);
-        }
-        Ok(())
+        self.take_up(discs, kept)
     }
 
     fn figures(&self) -> Vec<(&'static str, f64)> {
@@ -498,38 +410,6 @@ impl Task<f64> for All<'_> {
     fn on<R: Registers<Lane = f64>>(self, registers: R) {
         for disc in 0..self.engine.discs.len() as u32 {
             self.engine.predict(registers, disc, self.time);
-        }
-    }
-}
-
-/// The mean free path (length) of `count` discs of a radius (length) in an area (length²), by Enskog's theory with Henderson's contact
-/// value; what one disc has in its square where the area is without end.
-fn free_path(count: f64, radius: f64, area: f64) -> f64 {
-    let density = if area.is_finite() { count / area } else { 0.25 / (radius * radius) };
-    let packing = (std::f64::consts::PI * radius * radius * density).min(0.9);
-    let contact_value = (1.0 - 7.0 * packing / 16.0) / (1.0 - packing).powi(2);
-    1.0 / (8.0_f64.sqrt() * density * 2.0 * radius * contact_value)
-}
-
-/// When a disc that is where it should be at `now` may be farther than `displacement_limit` from where it was registered (time).
-#[inline]
-fn leaving(arena: &Arena, disc: &Disc, registered: [f64; 2], displacement_limit: f64, now: f64) -> f64 {
-    let [dx, dy] = arena.domain.displacement(registered, disc.at(&arena.space, now));
-    let [u, v] = disc.velocity_at(&arena.space, now);
-    let square = u * u + v * v;
-    let left = displacement_limit * displacement_limit - (dx * dx + dy * dy);
-    match arena.space.gravity() {
-        None if square == 0.0 => f64::INFINITY,
-        None => {
-            let outwards = dx * u + dy * v;
-            let root = (outwards * outwards + square * left.max(0.0)).sqrt();
-            now + if outwards > 0.0 { left.max(0.0) / (outwards + root) } else { (root - outwards) / square }
-        }
-        // No farther than as if it flew and fell straight away from there.
-        Some([gx, gy]) => {
-            let way = (displacement_limit - (dx * dx + dy * dy).sqrt()).max(0.0);
-            let root = (square + 2.0 * (gx * gx + gy * gy).sqrt() * way).sqrt();
-            now + 2.0 * way / (square.sqrt() + root)
         }
     }
 }

@@ -141,7 +141,7 @@ impl Queue {
         self.levels[0].prefetch(place / GROUP);
     }
 
-    /// The place of the disc whose event comes so many events after the next one, as far as that is known.
+    /// The place of the disc whose event comes a number of events after the next one, as far as that is known.
     #[inline(always)]
     pub fn coming(&self, ahead: usize) -> Option<u32> {
         self.next.get(self.over + ahead).map(|&(_, _, place)| place)

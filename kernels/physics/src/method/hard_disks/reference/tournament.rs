@@ -10,13 +10,13 @@ pub struct Tournament {
 }
 
 /// Stands for no disc.
-const NOBODY: u32 = u32::MAX;
+const NONE: u32 = u32::MAX;
 
 impl Tournament {
     /// Of `count` discs, of which `time` gives the key; ties go to the smaller number.
     pub fn new(count: usize, time: impl Fn(u32) -> f64) -> Tournament {
         let leaves = count.next_power_of_two().max(2);
-        let mut tree = Tournament { winners: vec![NOBODY; leaves], leaves };
+        let mut tree = Tournament { winners: vec![NONE; leaves], leaves };
         for node in (1..leaves).rev() {
             tree.winners[node] = tree.play(node, count, &time);
         }
@@ -56,15 +56,15 @@ impl Tournament {
         let entrant = |child: usize| {
             if child >= self.leaves {
                 let disc = child - self.leaves;
-                if disc < count { disc as u32 } else { NOBODY }
+                if disc < count { disc as u32 } else { NONE }
             } else {
                 self.winners[child]
             }
         };
         let [left, right] = [entrant(2 * node), entrant(2 * node + 1)];
         match (left, right) {
-            (left, NOBODY) => left,
-            (NOBODY, right) => right,
+            (left, NONE) => left,
+            (NONE, right) => right,
             (left, right) if time(right) < time(left) => right,
             (left, _) => left,
         }

@@ -128,7 +128,7 @@ impl SchemeName {
             }
             SchemeName::RungeKutta4 => [5, 0],
             SchemeName::Hermite4 => [6, 2],
-            // Its start takes paths and what is found of them besides.
+            // Its start takes paths and what else is found of them.
             SchemeName::Gear6 => [12, 4],
         }
     }

@@ -1,0 +1,113 @@
+//! What a checkpoint keeps of the fast engine, and how it goes on with that.
+
+use super::leaving::leaving;
+use super::lists::Lists;
+use super::queue::Queue;
+use super::{Expected, Fast, LISTED, WALL};
+use crate::io::checkpoint::Column;
+use crate::method::Snapshot;
+use stripmine_kernels::flight::{Disc, MOST_PARTNERS};
+use stripmine_kernels::isa::AlignedColumn;
+
+/// Where discs were registered, in a checkpoint.
+const REGISTERED: [&str; 2] = ["registered.x", "registered.y"];
+
+/// Lists of a checkpoint reach at least this part of the largest radius beyond contact.
+const NARROWEST: f64 = 1e-6;
+
+impl Fast {
+    /// What goes into a checkpoint, by the numbers of the discs.
+    pub(super) fn kept(&self) -> Snapshot {
+        let mut kept = Snapshot::default();
+        let by_number =
+            |of: &dyn Fn(u32) -> f64| Column::F64(self.places.iter().map(|&place| of(place)).collect());
+        for (axis, name) in REGISTERED.into_iter().enumerate() {
+            kept.add_column(name, by_number(&|place| self.lists.place(place)[axis]));
+        }
+        kept.add_column("expected.time", by_number(&|place| self.queue.times()[place as usize]));
+        let expected = || self.places.iter().map(|&place| self.partners[place as usize]);
+        let number = |with: u32| if with >= WALL[0] { with } else { self.numbers[with as usize] };
+        kept.add_column("expected.with", Column::U32(expected().map(|it| number(it.with)).collect()));
+        kept.add_column("expected.events", Column::U32(expected().map(|it| it.events).collect()));
+        kept.add_sum("engine.time", self.time);
+        kept.add_sum("engine.displacement_limit", self.displacement_limit);
+        kept.add_count("engine.stride", self.lists.stride() as u64);
+        kept.add_count("engine.renewals", self.renewals);
+        kept.add_count("engine.events", self.events);
+        kept.add_count("engine.sorted_until", self.sorted_until);
+        kept
+    }
+
+    /// Goes on with discs from what [`kept`](Self::kept) gave; why not, where it does not fit them.
+    pub(super) fn take_up(&mut self, discs: Vec<Disc>, kept: &Snapshot) -> Result<(), String> {
+        let count = discs.len();
+        let registered = [kept.numbers(REGISTERED[0], count)?, kept.numbers(REGISTERED[1], count)?];
+        let origin = self.arena.domain.origin;
+        if (0..2).any(|axis| registered[axis].iter().any(|&at| at < origin[axis])) {
+            return Err("a disc was listed at a place below the origin of the box".to_owned());
+        }
+        let times = kept.times("expected.time", count)?;
+        let [with, events] = [kept.codes("expected.with", count)?, kept.codes("expected.events", count)?];
+        let none =
+            |(own, &with): (usize, &u32)| with < WALL[0] && (with as usize >= count || with as usize == own);
+        if with.iter().enumerate().any(none) {
+            return Err("a disc expects itself or one that is not there".to_owned());
+        }
+        let (stride, displacement_limit) =
+            (kept.count("engine.stride")?, kept.sum("engine.displacement_limit")?);
+        // Narrower ones would be renewed without end.
+        let narrowest = NARROWEST * self.largest;
+        if stride > MOST_PARTNERS as u64 + 1 || !(narrowest..f64::INFINITY).contains(&displacement_limit) {
+            return Err(format!("lists of {stride} entries within {displacement_limit}"));
+        }
+        let time = kept.sum("engine.time")?;
+        if discs.iter().any(|disc| disc.time > time) || times.iter().any(|&expected| expected < time) {
+            return Err(format!(
+                "a disc is ahead of the engine's time {time:?}, or expects something before it"
+            ));
+        }
+        self.displacement_limit = displacement_limit;
+        self.time = time;
+        self.renewals = kept.count("engine.renewals")?;
+        self.events = kept.count("engine.events")?;
+        self.sorted_until = kept.count("engine.sorted_until")?;
+        self.discs = AlignedColumn::new(0, discs);
+        self.numbers = AlignedColumn::new(1, 0..count as u32);
+        self.sort(self.time);
+        let place_of = |number: u32| {
+            let number = number as usize;
+            [registered[0][number], registered[1][number]]
+        };
+        let places: Vec<[f64; 2]> = self.numbers.iter().map(|&number| place_of(number)).collect();
+        let (domain, discs) = (self.arena.domain, &self.discs);
+        let mut lists =
+            Lists::new(domain, count, self.displacement_limit, self.largest, LISTED, stride as usize);
+        let full = lists.begin(&places, |disc| discs[disc as usize].radius);
+        full.map_err(|disc| format!("the list of disc number {} is full", self.numbers[disc as usize]))?;
+        self.lists = lists;
+        let now = self.time;
+        for (place, &number) in self.numbers.iter().enumerate() {
+            // Its list is renewed at the latest when it leaves the surroundings for which it was made; where discs fall, when one
+            // from rest would have left them.
+            let within = match self.arena.space.gravity() {
+                Some([gx, gy]) => (2.0 * self.displacement_limit / gx.hypot(gy)).sqrt(),
+                None => {
+                    let listed_at = self.lists.place(place as u32);
+                    leaving(&self.arena, &self.discs[place], listed_at, self.lists.displacement_limit(), now)
+                        - now
+                }
+            };
+            if times[number as usize] - now > within * (1.0 + 1e-6) + 1e-9 * now.abs() {
+                return Err(format!("disc number {number} expects nothing before it leaves its list"));
+            }
+        }
+        self.queue = Queue::new(count);
+        for (place, &number) in self.numbers.iter().enumerate() {
+            let expects = with[number as usize];
+            let with = if expects >= WALL[0] { expects } else { self.places[expects as usize] };
+            self.partners[place] = Expected { with, events: events[number as usize] };
+            self.queue.set(place, number, times[number as usize]);
+        }
+        Ok(())
+    }
+}
