@@ -114,6 +114,42 @@ fn an_ideal_gas_has_no_structure() {
     }
 }
 
+/// Hexatic order and neighbours of discs anywhere, by looking at all of them: the six nearest sorted by their distance, the angle of each.
+#[test]
+fn order_and_neighbours_are_those_of_looking_at_all() {
+    let mut random = Stream::new(2, Purpose::Test, 0);
+    for periodic in [[true, true], [true, false], [false, false]] {
+        let (setting, discs) = ideal(&mut random, [14.0, 11.0], periodic, 90);
+        let discs_of = discs.grains();
+        let ways = |own: &Particle| -> Vec<[f64; 2]> {
+            let others = discs_of.iter().filter(|other| other.id != own.id);
+            let mut ways: Vec<[f64; 2]> =
+                others.map(|other| setting.domain.displacement(own.place(), other.place())).collect();
+            ways.sort_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])));
+            ways
+        };
+        let order = |own: &Particle| {
+            let ways = ways(own);
+            let angles = ways.iter().take(6).map(|[x, y]| 6.0 * y.atan2(*x));
+            let sum = angles.fold([0.0; 2], |[a, b], angle| [a + angle.cos() / 6.0, b + angle.sin() / 6.0]);
+            (sum, ways.iter().filter(|[x, y]| x.hypot(*y) < 1.5).count())
+        };
+        let naive: Vec<([f64; 2], usize)> = discs_of.iter().map(order).collect();
+        let share = 1.0 / naive.len() as f64;
+        let whole = naive.iter().fold([0.0; 2], |[a, b], ([x, y], _)| [a + share * x, b + share * y]);
+        let single = naive.iter().map(|([x, y], _)| share * x.hypot(*y)).sum::<f64>();
+        let found = values("psi6", &setting, &discs);
+        let [.., global, mean] = found[..] else { panic!("{found:?}") };
+        assert!((global - whole[0].hypot(whole[1])).abs() < 1e-12, "{periodic:?}: {global} {whole:?}");
+        assert!((mean - single).abs() < 1e-12, "{periodic:?}: {mean} {single}");
+        let shares = values("coordination", &setting, &discs);
+        for (number, found) in shares.into_iter().enumerate() {
+            let naive = naive.iter().filter(|(_, count)| *count == number).count() as f64 * share;
+            assert!((found - naive).abs() < 1e-12, "{periodic:?}, {number}: {found} {naive}");
+        }
+    }
+}
+
 /// A hexagonal crystal: six neighbours, |Ψ6| = 1, and S(k) = N where a wave has its period.
 #[test]
 fn a_crystal_is_in_order() {
