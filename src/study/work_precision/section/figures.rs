@@ -362,8 +362,8 @@ fn means(file: &str, name: &str, data: &WorkPrecision, all: &Observables) -> Opt
             let own = Series::new(name.clone(), Style::Points, hue, points);
             if !own.points.is_empty() {
                 name.clear();
+                series.push(own);
             }
-            series.push(own);
         }
     }
     Some(
