@@ -1,7 +1,10 @@
 //! What several runs say together.
 
 use serde::Serialize;
+use std::fmt;
+use stripmine_physics::averages::of_correlated;
 pub use stripmine_physics::averages::student;
+use stripmine_physics::number::with_bar;
 
 /// A figure over independent runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -34,6 +37,23 @@ impl Spread {
     }
 }
 
+/// What a measurement says of a statement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Claim {
+    /// It holds.
+    Holds,
+    /// It does not.
+    Fails,
+    /// Error bars are too wide to tell.
+    Open,
+}
+
+impl From<bool> for Claim {
+    fn from(holds: bool) -> Claim {
+        if holds { Claim::Holds } else { Claim::Fails }
+    }
+}
+
 /// A mean with half the width of the interval that holds it in 95 of 100 studies.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Mean {
@@ -43,11 +63,41 @@ pub struct Mean {
     pub bar: f64,
 }
 
+impl fmt::Display for Mean {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&with_bar(self.value, self.bar))
+    }
+}
+
 impl Mean {
     /// Of independent values, at least one; a single one leaves the bar without an end.
     pub fn of(values: &[f64]) -> Mean {
         let Spread { mean, error, runs, .. } = Spread::of(values);
         Mean { value: mean, bar: error.map_or(f64::INFINITY, |error| student(0.95, runs - 1) * error) }
+    }
+
+    /// Of values one after the other in time, at least one: their correlation counts.
+    pub fn of_course(values: &[f64]) -> Mean {
+        of_correlated(values).map_or_else(|| Mean::of(values), |[value, bar]| Mean { value, bar })
+    }
+
+    /// In parts of a known value: how far from it.
+    pub fn off(self, known: f64) -> Mean {
+        Mean { value: self.value / known - 1.0, bar: (self.bar / known).abs() }
+    }
+
+    /// The same in percent.
+    pub fn percent(self) -> Mean {
+        Mean { value: 100.0 * self.value, bar: 100.0 * self.bar }
+    }
+
+    /// Whether a mean that should be 0 is, within a tolerance: open where its bar reaches over the tolerance's end.
+    pub fn vanishes(self, within: f64) -> Claim {
+        match self.value.abs() {
+            off if off + self.bar <= within => Claim::Holds,
+            off if off - self.bar > within => Claim::Fails,
+            _ => Claim::Open,
+        }
     }
 }
 
@@ -125,6 +175,16 @@ pub fn non_negative<const N: usize>(rows: &[([f64; N], f64)]) -> [f64; N] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The bar lies inside of the tolerance, outside, or over its end.
+    #[test]
+    fn a_claim_is_open_where_the_bar_is_too_wide() {
+        let claim = |value, bar| Mean { value, bar }.vanishes(0.02);
+        assert_eq!([claim(-0.015, 0.004), claim(0.0, 0.0)], [Claim::Holds; 2]);
+        assert_eq!([claim(0.03, 0.005), claim(-0.03, 0.005)], [Claim::Fails; 2]);
+        assert_eq!([claim(0.015, 0.01), claim(-0.03, 0.02), claim(0.0, 0.05)], [Claim::Open; 3]);
+        assert_eq!(Mean { value: 4.2, bar: 0.4 }.off(4.0).to_string(), "0.05 ± 0.10");
+    }
 
     #[test]
     fn a_line_has_its_slope() {

@@ -3,6 +3,7 @@
 use super::Table;
 use super::figure::Figure;
 use crate::provenance::Provenance;
+use crate::statistics::Claim;
 use serde::{Deserialize, Serialize};
 
 /// One item of the page.
@@ -187,6 +188,8 @@ pub enum Verdict {
     Partly,
     /// It did not come out.
     NotReproduced,
+    /// Error bars are too wide to tell.
+    Undecided,
     /// Our own aim is met.
     AimMet,
     /// It is missed.
@@ -199,10 +202,11 @@ pub enum Verdict {
 
 impl Verdict {
     /// All of them.
-    pub const ALL: [Verdict; 7] = [
+    pub const ALL: [Verdict; 8] = [
         Verdict::Reproduced,
         Verdict::Partly,
         Verdict::NotReproduced,
+        Verdict::Undecided,
         Verdict::AimMet,
         Verdict::AimMissed,
         Verdict::Measured,
@@ -210,15 +214,21 @@ impl Verdict {
     ];
 
     /// Of a source's or theory's statement that holds, or does not hold in all.
-    pub const fn reproduced(holds: bool) -> Verdict {
-        if holds { Verdict::Reproduced } else { Verdict::Partly }
+    pub fn reproduced(holds: impl Into<Claim>) -> Verdict {
+        match holds.into() {
+            Claim::Holds => Verdict::Reproduced,
+            Claim::Fails => Verdict::Partly,
+            Claim::Open => Verdict::Undecided,
+        }
     }
 
-    /// Of several statements of a source or theory, each of which came out or did not.
-    pub fn of_claims(came_out: &[bool]) -> Verdict {
-        match came_out.iter().filter(|came_out| **came_out).count() {
-            0 => Verdict::NotReproduced,
-            all if all == came_out.len() => Verdict::Reproduced,
+    /// Of several statements of a source or theory, each of which came out or did not, or is open.
+    pub fn of_claims<T: Into<Claim> + Copy>(claims: &[T]) -> Verdict {
+        let count = |which: Claim| claims.iter().filter(|claim| (**claim).into() == which).count();
+        match [count(Claim::Holds), count(Claim::Fails)] {
+            [all, _] if all == claims.len() => Verdict::Reproduced,
+            [_, all] if all == claims.len() => Verdict::NotReproduced,
+            [_, 0] => Verdict::Undecided,
             _ => Verdict::Partly,
         }
     }
@@ -234,6 +244,7 @@ impl Verdict {
             Verdict::Reproduced => "reproduced",
             Verdict::Partly => "partly reproduced",
             Verdict::NotReproduced => "not reproduced",
+            Verdict::Undecided => "undecided",
             Verdict::AimMet => "aim met",
             Verdict::AimMissed => "aim missed",
             Verdict::Measured => "measured",
@@ -247,6 +258,7 @@ impl Verdict {
             Verdict::Reproduced => "what the source or theory says came out, as closely as the item states",
             Verdict::Partly => "it came out in part, or with differences that the item names",
             Verdict::NotReproduced => "it did not come out",
+            Verdict::Undecided => "error bars are too wide to tell whether it came out",
             Verdict::AimMet => "no source says; our own aim, which the item states, is met",
             Verdict::AimMissed => "our own aim is missed, by as much as the item says",
             Verdict::Measured => "no source and no aim: a measurement",
@@ -281,4 +293,20 @@ pub struct Frame {
     pub time: f64,
     /// Centre and shade of every moving disc.
     pub discs: Vec<([f64; 2], f64)>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_verdict_is_that_of_its_claims() {
+        use Claim::{Fails, Holds, Open};
+        assert_eq!(Verdict::of_claims(&[Holds, Holds]), Verdict::Reproduced);
+        assert_eq!(Verdict::of_claims(&[Fails, Fails]), Verdict::NotReproduced);
+        assert_eq!(Verdict::of_claims(&[Holds, Open]), Verdict::Undecided);
+        assert_eq!(Verdict::of_claims(&[Fails, Open]), Verdict::Partly);
+        assert_eq!(Verdict::of_claims(&[true, false]), Verdict::Partly);
+        assert_eq!(Verdict::reproduced(Open), Verdict::Undecided);
+    }
 }

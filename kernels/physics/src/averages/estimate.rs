@@ -102,6 +102,12 @@ pub fn of_independent(values: &[f64]) -> Option<[f64; 2]> {
     Some([mean, bar((squares / (n * (n - 1.0))).sqrt(), n - 1.0)])
 }
 
+/// The mean of values one after the other in time, with the half width of its interval of 95 %: they may be correlated, and are taken to have
+/// left their start behind; none of fewer than two.
+pub fn of_correlated(values: &[f64]) -> Option<[f64; 2]> {
+    (values.len() > 1).then(|| of_stationary(values, 0.0, 1.0)).map(|found| [found.mean, found.bar])
+}
+
 fn whole(freedoms: f64) -> usize {
     freedoms.clamp(1.0, MANY) as usize
 }

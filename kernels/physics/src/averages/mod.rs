@@ -19,7 +19,7 @@ mod words;
 pub use autocorrelation::{Correlation, inefficiency};
 pub use blocking::blocked_error;
 pub use equilibration::equilibrated;
-pub use estimate::{Estimate, FEWEST_SAMPLES, Outcome, estimated, of_independent};
+pub use estimate::{Estimate, FEWEST_SAMPLES, Outcome, estimated, of_correlated, of_independent};
 pub use joined::joined;
 pub use rows::Rows;
 pub use student::student;

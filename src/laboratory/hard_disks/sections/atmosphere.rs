@@ -11,21 +11,22 @@ const WITHIN: f64 = 0.03;
 /// What came out.
 pub fn section(data: &Atmosphere) -> Section {
     let dilute = &data.profiles[0];
-    let agrees = [dilute.mean_height, dilute.temperature].iter().all(|ratio| (ratio - 1.0).abs() < WITHIN);
+    let claims = [dilute.mean_height, dilute.temperature].map(|ratio| ratio.off(1.0).vanishes(WITHIN));
     Section::new("hard-disks-atmosphere", "Hard discs: above a hot floor, without a ceiling")
         .asks("Does a gas above a hot floor, without a ceiling, follow the barometric law?")
         .expects("ISO99, section 3, has a system that is open above: discs under gravity over a source of energy. In the dilute limit the \
                   density falls with the height as exp(−m g y/kT).")
         .answers(format!(
-            "{} discs in {} have a mean height of {:.3} kT/(m g), where the law has 1, and a temperature of {:.3} of the floor's.",
+            "{} discs in {} have a mean height of {} kT/(m g), where the law has 1, and a temperature of {} \
+             of the floor's (95 %).",
             dilute.discs,
             layers(dilute.layers),
             dilute.mean_height,
             dilute.temperature,
         ))
-        .verdict(Verdict::reproduced(agrees))
+        .verdict(Verdict::of_claims(&claims))
         .details([format!(
-            "With {} the room that the discs take lifts the mean height to {:.2}. With restitution {} the gas above cools to {:.3}.",
+            "With {} the room that the discs take lifts the mean height to {}. With restitution {} the gas above cools to {}.",
             layers(data.profiles[2].layers),
             data.profiles[2].mean_height,
             data.restitution,
@@ -49,8 +50,9 @@ fn figure(data: &Atmosphere) -> Figure {
     let barometric = data.profiles[0].heights.iter().map(|&height| (height, (-height).exp()));
     let measured = named(data).enumerate().map(|(hue, (name, profile))| {
         let seen = profile.heights.iter().zip(&profile.densities);
-        let seen = seen.filter(|(_, [mean, error])| *mean > 2.0 * error);
-        let points = seen.map(|(&height, &[mean, error])| (height, mean, [mean - error, mean + error]));
+        let seen = seen.filter(|(_, mean)| mean.value > mean.bar);
+        let points =
+            seen.map(|(&height, mean)| (height, mean.value, [mean.value - mean.bar, mean.value + mean.bar]));
         Series::new(name, Style::Points, hue, points)
     });
     Chart::of(
@@ -61,7 +63,7 @@ fn figure(data: &Atmosphere) -> Figure {
     .with(measured)
     .figure("profiles", "Density over the height")
     .caption(format!(
-        "Means of {} looks; bars are standard errors, as if looks were independent.",
+        "Means of {} looks; bars hold the mean in 95 of 100 studies, with the looks' correlation.",
         data.looks
     ))
 }
@@ -70,8 +72,10 @@ fn table(data: &Atmosphere) -> Table {
     Rows::of(named(data))
         .text("discs", |(name, _)| name.clone())
         .count("how many", |(_, profile)| profile.discs)
-        .number("mean height over kT/(m g)", 3, |(_, profile)| profile.mean_height)
-        .number("temperature over the floor's", 3, |(_, profile)| profile.temperature)
+        .number("mean height over kT/(m g)", 3, |(_, profile)| profile.mean_height.value)
+        .number("± (95 %)", 3, |(_, profile)| profile.mean_height.bar)
+        .number("temperature over the floor's", 3, |(_, profile)| profile.temperature.value)
+        .number("± (95 %)", 3, |(_, profile)| profile.temperature.bar)
         .number("highest seen", 1, |(_, profile)| profile.highest)
         .table("atmosphere", "Discs above a hot floor")
 }

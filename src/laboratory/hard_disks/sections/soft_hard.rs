@@ -1,31 +1,38 @@
 //! Soft against hard.
 
-use crate::laboratory::hard_disks::study::soft_hard::{Mean, Model, SoftHard};
+use crate::laboratory::hard_disks::study::soft_hard::{Model, SoftHard};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::{Cell, Rows, Section, Table, Verdict};
+use crate::statistics::{Claim, Mean};
 use stripmine_physics::number::in_tens;
+
+/// How near the pressure of the stiffest discs is to come to that of hard ones (%).
+const WITHIN: f64 = 2.0;
+/// Where there is no model.
+const NOWHERE: Mean = Mean { value: f64::NAN, bar: f64::NAN };
 
 /// What came out.
 pub fn section(data: &SoftHard, again: String) -> Section {
     let hard = data.hard();
     let off = |model: &Model| {
-        let hard = hard.map_or(f64::NAN, |hard| hard.compressibility[0]);
-        100.0 * (model.compressibility[0] / hard - 1.0)
+        let Some(Mean { value, bar }) = hard.map(|hard| hard.compressibility) else { return NOWHERE };
+        let off = model.compressibility.off(value);
+        Mean { bar: off.bar.hypot(bar / value), ..off }.percent()
     };
     let soft: Vec<&Model> = data.models.iter().filter(|model| model.stiffness.is_some()).collect();
-    let first = soft.first().map_or(f64::NAN, |model| off(model));
-    let last = soft.last().map_or(f64::NAN, |model| off(model));
+    let first = soft.first().map_or(NOWHERE, |model| off(model));
+    let last = soft.last().map_or(NOWHERE, |model| off(model));
     let dearer = soft.last().map_or(f64::NAN, |model| model.cost) / hard.map_or(f64::NAN, |hard| hard.cost);
     Section::new("soft-hard", "Soft against hard discs")
         .asks("From which stiffness on do soft discs behave as hard ones, and what does that cost?")
         .expects("Hard discs are the limit of stiff ones; soft discs press as hard ones of their effective diameter do (Barker and Henderson).")
         .answers(format!(
-            "From a stiffness of {} to {} the pressure comes from {first:.1} % to {last:.1} % of that of hard discs, and the stiffest discs cost \
-             {dearer:.0} times as much as hard ones.",
+            "From a stiffness of {} to {} the pressure comes from {first} % to {last} % off that of hard discs, and the stiffest \
+             discs cost {dearer:.0} times as much as hard ones.",
             in_tens(soft.first().and_then(|model| model.stiffness).unwrap_or(f64::NAN), 2),
             in_tens(soft.last().and_then(|model| model.stiffness).unwrap_or(f64::NAN), 2),
         ))
-        .verdict(Verdict::reproduced(last.abs() < first.abs() && last.abs() < 2.0))
+        .verdict(Verdict::of_claims(&[Claim::from(last.value.abs() < first.value.abs()), last.vanishes(WITHIN)]))
         .details([format!("{} discs at ν = {}.", data.discs, data.question.packing_fraction)])
         .figures([
             over_stiffness(
@@ -60,17 +67,17 @@ fn stiffness_axis() -> Axis {
 /// An observable of the soft discs, and that of the hard ones as a line.
 fn over_stiffness(data: &SoftHard, name: &str, title: &str, label: &str, of: fn(&Model) -> Mean) -> Figure {
     let bars = soft(data).map(|(stiffness, model)| {
-        let [mean, error] = of(model);
-        (stiffness, mean, [mean - 2.0 * error, mean + 2.0 * error])
+        let Mean { value, bar } = of(model);
+        (stiffness, value, [value - bar, value + bar])
     });
     let effective = soft(data).map(|(stiffness, model)| (stiffness, model.effective));
     let effective = Series::new("hard discs of the effective diameter", Style::Line, 2, effective);
     Chart::of(stiffness_axis(), Axis::linear(label, None))
         .series("soft discs", Style::Points, 0, bars)
-        .with(hard_discs(data, |hard| of(hard)[0]))
+        .with(hard_discs(data, |hard| of(hard).value))
         .with((name == "pressure").then_some(effective))
         .figure(name, title)
-        .caption(format!("{} seeds; bars are two standard errors.", data.question.seeds))
+        .caption(format!("{} seeds; bars hold the mean in 95 of 100 studies.", data.question.seeds))
 }
 
 fn soft(data: &SoftHard) -> impl DoubleEndedIterator<Item = (f64, &Model)> {
@@ -99,11 +106,11 @@ fn table(data: &SoftHard) -> Table {
         .number("damping γ_N", 3, |model| model.damping)
         .number("step", 6, |model| model.step)
         .number("depth of a contact of kT (%)", 2, |model| 100.0 * model.depth)
-        .number("Z", 4, |model| model.compressibility[0])
-        .number("± (standard error)", 4, |model| model.compressibility[1])
+        .number("Z", 4, |model| model.compressibility.value)
+        .number("± (95 %)", 4, |model| model.compressibility.bar)
         .number("Z of the effective diameter", 4, |model| model.effective)
-        .number("T/T₀ cooled", 4, |model| model.cooled[0])
-        .number("± (standard error)", 4, |model| model.cooled[1])
+        .number("T/T₀ cooled", 4, |model| model.cooled.value)
+        .number("± (95 %)", 4, |model| model.cooled.bar)
         .number("cost (ms for a unit of time)", 2, |model| 1e3 * model.cost)
         .table("soft_hard", "Soft discs and hard ones")
         .note(format!(

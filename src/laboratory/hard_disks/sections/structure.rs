@@ -18,7 +18,7 @@ pub fn section(data: &Structures) -> Section {
     let [gas, fluid, between, crystal] = data.structures.as_slice() else {
         unreachable!("the study has four packing fractions")
     };
-    let is_ordered = fluid.order[0] < 0.15 && crystal.order[0] > 0.6;
+    let is_ordered = fluid.order[0].value < 0.15 && crystal.order[0].value > 0.6;
     // The fluid that melts and the crystal that does not are as near to each other as the transition is wide, or a little farther.
     let is_located = is_ordered && crystal.packing_fraction - fluid.packing_fraction < 2.0 * TRANSITION;
     let is_maxwell = data.structures.iter().all(|it| it.maxwell[1] > 0.001);
@@ -29,8 +29,7 @@ pub fn section(data: &Structures) -> Section {
         .expects("Simulations of a million discs find a fluid below a packing fraction of 0.700, fluid and hexatic phase beside each other up to \
                   0.716, and a crystal above 0.720. A dilute gas has the free times of its Maxwell velocities.")
         .answers(format!(
-            "{} densities {} melting: from a crystal of {} discs the global order |Ψ₆| falls to {:.2} at {}, is {:.2} at {} and stays at {:.2} \
-             at {}.",
+            "{} densities {} melting: from a crystal of {} discs the global order |Ψ₆| falls to {} at {}, is {} at {} and stays at {} at {}.",
             data.structures.len() - 1,
             if is_located { "locate" } else { "bracket and do not locate" },
             data.discs,
@@ -119,8 +118,10 @@ fn picture(it: &Structure) -> Figure {
 fn table(data: &Structures) -> Table {
     Rows::of(&data.structures)
         .number("ν", 2, |it| it.packing_fraction)
-        .number("|Ψ₆| of all", 3, |it| it.order[0])
-        .number("mean |ψ₆|", 3, |it| it.order[1])
+        .number("|Ψ₆| of all", 3, |it| it.order[0].value)
+        .number("± (95 %)", 3, |it| it.order[0].bar)
+        .number("mean |ψ₆|", 3, |it| it.order[1].value)
+        .number("± (95 %)", 4, |it| it.order[1].bar)
         .number("g at contact, by the virial", 3, |it| it.contact)
         .number("g from 1.00 to 1.02", 3, |it| it.correlation[0])
         .number("mean free time", 5, |it| it.free[0])

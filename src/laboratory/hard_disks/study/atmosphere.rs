@@ -2,6 +2,7 @@
 
 use crate::laboratory::running::Running;
 use crate::results::{Meter, Progress};
+use crate::statistics::Mean;
 use crate::study::StudyError;
 use serde::Serialize;
 use stripmine_physics::method::Until;
@@ -24,12 +25,12 @@ pub struct Profile {
     pub discs: usize,
     /// Heights of the middle of the bins above the lowest that a centre may have, in kT/(m g).
     pub heights: Vec<f64>,
-    /// Discs of a unit of area, over what the barometric law has on the floor, with the error of the mean.
-    pub densities: Vec<[f64; 2]>,
+    /// Discs of a unit of area, over what the barometric law has on the floor.
+    pub densities: Vec<Mean>,
     /// The mean height of the centres over kT/(m g): 1 by the barometric law.
-    pub mean_height: f64,
+    pub mean_height: Mean,
     /// The temperature over that of the floor, for elastic discs 1.
-    pub temperature: f64,
+    pub temperature: Mean,
     /// The highest that a disc was seen, in kT/(m g).
     pub highest: f64,
 }
@@ -108,41 +109,34 @@ fn profile(layers: f64, restitution: f64, looks: usize) -> Result<Profile, Study
     let mut now = 40.0 * between;
     gas.until(Until::Time(now))?;
     let bins = (SPAN / BIN) as usize;
-    let (mut sums, mut squares) = (vec![0.0; bins], vec![0.0; bins]);
-    let (mut mean_height, mut temperature, mut highest) = (0.0, 0.0, 0.0_f64);
-    let share = 1.0 / looks as f64;
+    let mut densities = vec![vec![]; bins];
+    let (mut heights, mut temperatures, mut highest) = (vec![], vec![], 0.0_f64);
     for _ in 0..looks {
         now += between;
         gas.until(Until::Time(now))?;
         let mut counts = vec![0.0; bins];
+        let mut height_now = 0.0;
         for disc in gas.simulation.particles().grains() {
             let above = (disc.position[1] - disc.radius) / height;
-            mean_height += share * above / discs as f64;
+            height_now += above / discs as f64;
             highest = highest.max(above);
             if let Some(count) = counts.get_mut((above / BIN) as usize) {
                 *count += 1.0;
             }
         }
-        temperature += share * gas.observed(["kinetic"])?[0] / discs as f64;
-        for (bin, count) in counts.into_iter().enumerate() {
-            // The barometric law has N/h of them on a unit of height at the floor.
-            let density = count / (discs as f64 * BIN);
-            sums[bin] += density;
-            squares[bin] += density * density;
-        }
+        heights.push(height_now);
+        temperatures.push(gas.observed(["kinetic"])?[0] / discs as f64);
+        // The barometric law has N/h of them on a unit of height at the floor.
+        let now = counts.into_iter().map(|count| count / (discs as f64 * BIN));
+        densities.iter_mut().zip(now).for_each(|(course, now)| course.push(now));
     }
-    let mean = |bin: usize| {
-        let mean = sums[bin] * share;
-        let variance = (squares[bin] * share - mean * mean).max(0.0);
-        [mean, (variance * share).sqrt()]
-    };
     Ok(Profile {
         layers,
         discs,
         heights: (0..bins).map(|bin| (bin as f64 + 0.5) * BIN).collect(),
-        densities: (0..bins).map(mean).collect(),
-        mean_height,
-        temperature,
+        densities: densities.iter().map(|course| Mean::of_course(course)).collect(),
+        mean_height: Mean::of_course(&heights),
+        temperature: Mean::of_course(&temperatures),
         highest,
     })
 }

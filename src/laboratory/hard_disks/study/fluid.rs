@@ -20,8 +20,8 @@ pub const KNOWN: [[f64; 3]; 7] = [
     [0.65, 8.41, 16.72],
 ];
 
-/// Parts of a run, each a measurement; their scatter gives the error.
-const PARTS: u64 = 20;
+/// Parts of a run, each a measurement; their scatter and correlation give the error.
+const PARTS: u64 = 200;
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug)]
@@ -60,8 +60,8 @@ pub struct Fluids {
 
 impl State {
     /// By how much it is off what is known, relative to that: Z and the rate.
-    pub fn off(&self) -> [f64; 2] {
-        [self.compressibility.value / self.known[0] - 1.0, self.rate.value / self.known[1] - 1.0]
+    pub fn off(&self) -> [Mean; 2] {
+        [self.compressibility.off(self.known[0]), self.rate.off(self.known[1])]
     }
 }
 
@@ -110,8 +110,8 @@ fn state(packing_fraction: f64, known: [f64; 2], effort: &Effort) -> Result<Stat
     }
     Ok(State {
         packing_fraction,
-        compressibility: Mean::of(&pressures),
-        rate: Mean::of(&rates),
+        compressibility: Mean::of_course(&pressures),
+        rate: Mean::of_course(&rates),
         energy_error: before[4],
         known,
     })

@@ -3,7 +3,7 @@
 use super::fluid::luding;
 use crate::laboratory::running::Running;
 use crate::results::{Meter, Progress};
-use crate::statistics::{Spread, median};
+use crate::statistics::{Mean, median};
 use crate::study::StudyError;
 use serde::Serialize;
 use stripmine_physics::method::lattice_md::keys::{FRICTION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
@@ -35,9 +35,6 @@ const LOOKS: u64 = 400;
 const COOLING: f64 = 10.0;
 /// Γ(7/5), of Hertz discs' effective diameter.
 const GAMMA: f64 = 0.887_263_817_503_075;
-
-/// A mean over the seeds, and its standard error.
-pub type Mean = [f64; 2];
 
 /// What one way to model the scene gives.
 #[derive(Clone, Debug, Serialize)]
@@ -105,6 +102,7 @@ pub fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<SoftHard
         };
         let runs = meter.each(&seeds, |&seed| way.run(question, seed, cooling_time))?;
         discs = runs[0].discs;
+        let over = |of: fn(&One) -> f64| Mean::of(&runs.iter().map(of).collect::<Vec<_>>());
         let depth = stiffness.map_or(0.0, |stiffness| (2.5 / stiffness).powf(0.4));
         let diameter = 1.0 - GAMMA * depth;
         let effective = luding(question.packing_fraction * diameter * diameter);
@@ -113,9 +111,9 @@ pub fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<SoftHard
             damping: way.damping(),
             step: way.step(),
             depth,
-            compressibility: mean(&runs.iter().map(|one| one.compressibility).collect::<Vec<_>>()),
+            compressibility: over(|one| one.compressibility),
             effective,
-            cooled: mean(&runs.iter().map(|one| one.cooled).collect::<Vec<_>>()),
+            cooled: over(|one| one.cooled),
             cost: median(runs.iter().map(|one| one.cost)),
         });
     }
@@ -243,11 +241,6 @@ fn impact(stiffness: f64, damping: f64, speed: f64) -> (f64, f64) {
         time += dt;
     }
     ((-v / speed).max(0.0), time)
-}
-
-fn mean(values: &[f64]) -> Mean {
-    let spread = Spread::of(values);
-    [spread.mean, spread.error.unwrap_or(0.0)]
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use crate::laboratory::running::Running;
 use crate::results::{Meter, Progress};
-use crate::statistics::kolmogorov_smirnov;
+use crate::statistics::{Mean, kolmogorov_smirnov};
 use crate::study::StudyError;
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
@@ -35,7 +35,7 @@ pub struct Structure {
     /// Area of the discs over that of the box.
     pub packing_fraction: f64,
     /// The global bond-orientational order |Σ ψ₆|/N, and the mean |ψ₆| of a disc.
-    pub order: [f64; 2],
+    pub order: [Mean; 2],
     /// The pair correlation at the middle of each bin of distances.
     pub correlation: Vec<f64>,
     /// Its value at contact by the virial, (Z − 1)/(2 ν).
@@ -114,7 +114,7 @@ fn structure(packing_fraction: f64, discs: usize) -> Result<Structure, StudyErro
     }
     let names = ["time", "virial", "collisions", "temperature"];
     let before = running.observed(names)?;
-    let (mut order, mut pairs, mut drawn) = ([0.0; 2], vec![0.0; DISTANCES.1], vec![]);
+    let (mut order, mut pairs, mut drawn) = ([vec![], vec![]], vec![0.0; DISTANCES.1], vec![]);
     let between = before[0] * LOOKS.1 as f64 / SETTLING as f64;
     for look in 0..LOOKS.0 {
         // At a time of its own: just after an event two discs would always touch.
@@ -125,8 +125,8 @@ fn structure(packing_fraction: f64, discs: usize) -> Result<Structure, StudyErro
         let bonds = bonds(domain, &places);
         let sum = bonds.iter().fold([0.0; 2], |sum, bond| [sum[0] + bond[0], sum[1] + bond[1]]);
         let whole = sum[0].hypot(sum[1]);
-        order[0] += whole / count as f64;
-        order[1] += bonds.iter().map(|bond| bond[0].hypot(bond[1])).sum::<f64>() / count as f64;
+        order[0].push(whole / count as f64);
+        order[1].push(bonds.iter().map(|bond| bond[0].hypot(bond[1])).sum::<f64>() / count as f64);
         count_pairs(domain, &places, &mut pairs);
         let along = |bond: [f64; 2]| (bond[0] * sum[0] + bond[1] * sum[1]) / whole;
         drawn = places.iter().copied().zip(bonds.into_iter().map(along)).collect();
@@ -144,7 +144,7 @@ fn structure(packing_fraction: f64, discs: usize) -> Result<Structure, StudyErro
     let ideal = |bin: usize| 0.5 * (count as f64).powi(2) / domain.area() * ring(bin) * looks;
     Ok(Structure {
         packing_fraction,
-        order: order.map(|sum| sum / looks),
+        order: order.map(|course| Mean::of_course(&course)),
         correlation: (0..DISTANCES.1).map(|bin| pairs[bin] / ideal(bin)).collect(),
         contact: (compressibility - 1.0) / (2.0 * packing_fraction),
         free_times: free_times(&running.simulation.take_events(), free_time),

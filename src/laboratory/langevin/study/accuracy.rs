@@ -131,7 +131,7 @@ fn fluid(scheme: SchemeKind, dt: f64, time: f64) -> Result<Fluid, StudyError> {
         parts.iter_mut().zip(means).for_each(|(parts, mean)| parts.push(mean));
     }
     let [potential, pressure, temperature, at_end, cooling, configurational, curvature] =
-        parts.map(|parts| Mean::of(&parts));
+        parts.map(|parts| Mean::of_course(&parts));
     let (scheme, is_whole) = (scheme.word(), done.is_ok());
     Ok(Fluid {
         scheme,

@@ -133,5 +133,10 @@ fn heated(scheme: SchemeKind, dt: f64) -> Result<Heated, StudyError> {
         running.steps(between)?;
         temperatures.push(running.observed(["temperature"])?[0]);
     }
-    Ok(Heated { scheme: scheme.word(), dt, temperature: Mean::of(&temperatures), maxwell: maxwell(&running) })
+    Ok(Heated {
+        scheme: scheme.word(),
+        dt,
+        temperature: Mean::of_course(&temperatures),
+        maxwell: maxwell(&running),
+    })
 }

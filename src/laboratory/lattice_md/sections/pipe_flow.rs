@@ -32,7 +32,7 @@ const BEYOND_CONTROL: f64 = 2.0;
 /// What came out of runs that differ by their seed, the first of which kept its frames, and of the control.
 pub fn section(showing: Showing, flows: &[PipeFlow], control: &PipeFlow) -> Section {
     let first = &flows[0];
-    let late: Vec<f64> = flows.iter().map(|flow| flow.late(&flow.fano)).collect();
+    let late: Vec<f64> = flows.iter().map(|flow| flow.late(&flow.fano).value).collect();
     let waves = late.iter().filter(|&&fano| fano > 1.0).count();
     let lasting = first.times.last().copied().unwrap_or(0.0);
     let mean = |share: fn(&Directions) -> f64| {
@@ -78,10 +78,10 @@ pub fn section(showing: Showing, flows: &[PipeFlow], control: &PipeFlow) -> Sect
         .verdict(Verdict::of_claims(&[waves == flows.len(), runs_both]))
         .details([
             format!(
-                "Of the late spectral power {standing:.0} % stands. The strongest Fourier mode grows from {:.3} to {:.2}; the mean velocity is {:.3} \
+                "Of the late spectral power {standing:.0} % stands. The strongest Fourier mode grows from {:.3} to {:.2}; the mean velocity is {} \
                  m/s.",
                 first.strongest_mode[0],
-                first.late(&first.strongest_mode),
+                first.late(&first.strongest_mode).value,
                 first.late(&first.flow),
             ),
             format!(
@@ -239,10 +239,12 @@ fn table(flows: &[PipeFlow], control: &PipeFlow) -> Table {
         .text("run", |(name, _)| *name)
         .count("seed", |(_, flow)| flow.seed)
         .number("Fano at the start", 2, |(_, flow)| flow.fano[0])
-        .number("Fano late", 2, |(_, flow)| flow.late(&flow.fano))
+        .number("Fano late", 2, |(_, flow)| flow.late(&flow.fano).value)
+        .number("± (95 %)", 2, |(_, flow)| flow.late(&flow.fano).bar)
         .number("mode at the start", 3, |(_, flow)| flow.strongest_mode[0])
-        .number("mode late", 3, |(_, flow)| flow.late(&flow.strongest_mode))
-        .number("mean velocity late (m/s)", 3, |(_, flow)| flow.late(&flow.flow))
+        .number("mode late", 3, |(_, flow)| flow.late(&flow.strongest_mode).value)
+        .number("mean velocity late (m/s)", 3, |(_, flow)| flow.late(&flow.flow).value)
+        .number("± (95 %)", 3, |(_, flow)| flow.late(&flow.flow).bar)
         .number("spectral power (independent grains: 1)", 2, |(_, flow)| flow.directions.power)
         .number("power against gravity (%)", 0, |(_, flow)| 100.0 * flow.directions.back)
         .number("standing (%)", 0, |(_, flow)| 100.0 * flow.directions.standing)

@@ -75,10 +75,10 @@ pub fn damping(seeds: &[u64], progress: Progress<'_>) -> Result<Damping, StudyEr
                 normal_damping,
                 overrides,
                 fano_start: over(&|flow| flow.fano[0]),
-                fano: over(&|flow| flow.late(&flow.fano)),
+                fano: over(&|flow| flow.late(&flow.fano).value),
                 mode_start: over(&|flow| flow.strongest_mode[0]),
-                mode: over(&|flow| flow.late(&flow.strongest_mode)),
-                flow: over(&|flow| flow.late(&flow.flow)),
+                mode: over(&|flow| flow.late(&flow.strongest_mode).value),
+                flow: over(&|flow| flow.late(&flow.flow).value),
                 deepest: over(&|flow| flow.deepest),
             }
         });

@@ -1,6 +1,7 @@
 //! Do grains that fall through a pipe gather into density waves? BP93 section 4, figures 5 and 6.
 
 use super::StudyError;
+use crate::statistics::Mean;
 use serde::Serialize;
 use stripmine_physics::method::lattice_md::Document;
 use stripmine_physics::method::lattice_md::keys::{
@@ -80,9 +81,8 @@ pub struct PipeFlow {
 
 impl PipeFlow {
     /// Mean of a figure over the looks of the last half.
-    pub fn late(&self, figure: &[f64]) -> f64 {
-        let late = &figure[figure.len() - figure.len() / 2..];
-        late.iter().sum::<f64>() / late.len() as f64
+    pub fn late(&self, figure: &[f64]) -> Mean {
+        Mean::of_course(&figure[figure.len() - figure.len() / 2..])
     }
 }
 

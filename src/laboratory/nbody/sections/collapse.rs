@@ -38,8 +38,8 @@ pub fn section(all: &[Collapse]) -> Section {
     let moments = || all.iter().flat_map(|it| &it.moments);
     let error = moments().map(|it| it.energy_error.abs()).fold(0.0, f64::max);
     let momentum = moments().map(|it| it.momentum).fold(0.0, f64::max);
-    let claims = [(fall.value / FREE_FALL - 1.0).abs() < FALL_WITHIN, (clausius.value - 0.5).abs() < WITHIN];
-    let with_bar = |it: Mean, decimals: usize| format!("{:.decimals$} ± {:.decimals$}", it.value, it.bar);
+    let claims = [fall.off(FREE_FALL).vanishes(FALL_WITHIN), clausius.off(0.5).vanishes(WITHIN / 0.5)];
+
     Section::new("nbody-collapse", "Bodies: a cold sphere collapses")
         .asks("Does a uniform sphere of bodies at rest collapse and come to equilibrium as theory says?")
         .expects(format!(
@@ -49,16 +49,16 @@ pub fn section(all: &[Collapse]) -> Section {
         .answers(format!(
             "The fall ends at {} ({FREE_FALL:.2} by theory); of {BODIES} bodies {:.0} % stay bound, and after a time of {LATE} their virial ratio \
              is {} (0.5 by theory). Bars: 95 % over {} seeds.",
-            with_bar(fall, 3),
+            fall,
             100.0 * share.value,
-            with_bar(clausius, 3),
+            clausius,
             all.len()
         ))
         .verdict(Verdict::of_claims(&claims))
         .details([format!(
             "Softened forces are not those of a potential 1/r: with their potential energy in the place of Σ r·F the ratio is {}, and theory \
              says nothing of it. At the closest, half of the mass is within {:.3}. The energy is off by at most {}, the momentum by {}.",
-            with_bar(potential, 3),
+            potential,
             radius.value,
             in_tens(error, 2),
             in_tens(momentum, 1)
