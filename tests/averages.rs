@@ -162,6 +162,8 @@ fn seeds_make_an_ensemble() {
 enum Truth {
     /// By theory or other programs.
     Known(f64),
+    /// The same at kT = 1; it goes with the root of the run's own temperature.
+    KnownRate(f64),
     /// By a run so many times as long, with a seed of its own.
     LongRun(f64),
 }
@@ -219,15 +221,15 @@ const SYSTEMS: [System; 6] = [
         preset: "hard-disks",
         overrides: DISCS,
         quantity: "collision_rate",
-        truth: Truth::Known(2.3995),
+        truth: Truth::KnownRate(2.3995),
     },
 ];
 
 const SEEDS: u64 = 200;
 
 impl System {
-    /// What a run so many times as long says; none where it has no mean.
-    fn mean(&self, seed: u64, times: f64) -> Option<Estimate> {
+    /// What a run so many times as long says, with its temperature at the end; none where it has no mean.
+    fn mean(&self, seed: u64, times: f64) -> Option<(Estimate, f64)> {
         let longer = |text: &&str| match text.split_once('=') {
             Some((key @ ("run.time" | "run.events"), length)) => {
                 format!("{key}={}", times * length.parse::<f64>().unwrap())
@@ -248,8 +250,9 @@ impl System {
                 rows.add(&simulation.observe());
             }
         }
+        let temperature = simulation.observe()[find(method.quantities, "temperature").unwrap()];
         match Average::of(&rows, find(method.quantities, self.quantity).unwrap()).outcome {
-            Outcome::Mean(estimate) => Some(estimate),
+            Outcome::Mean(estimate) => Some((estimate, temperature)),
             _ => None,
         }
     }
@@ -262,21 +265,29 @@ fn bars_of_95_percent_hold_the_truth_of_real_systems() {
     let mut wrong = vec![];
     for system in &SYSTEMS {
         let truth = match system.truth {
-            Truth::Known(value) => value,
-            Truth::LongRun(times) => system.mean(SEEDS, times).unwrap().mean,
+            Truth::Known(value) | Truth::KnownRate(value) => value,
+            Truth::LongRun(times) => system.mean(SEEDS, times).unwrap().0.mean,
         };
-        let found: Vec<Option<Estimate>> =
+        let at_one = |(found, temperature): (Estimate, f64)| match system.truth {
+            Truth::KnownRate(_) => {
+                let rate = temperature.sqrt();
+                Estimate { mean: found.mean / rate, bar: found.bar / rate, ..found }
+            }
+            Truth::Known(_) | Truth::LongRun(_) => found,
+        };
+        let found: Vec<Option<(Estimate, f64)>> =
             (0..SEEDS).into_par_iter().map(|seed| system.mean(seed, 1.0)).collect();
-        let found: Vec<Estimate> = found.into_iter().flatten().collect();
+        let found: Vec<Estimate> = found.into_iter().flatten().map(at_one).collect();
         let count = found.len() as f64;
         let over = |of: &dyn Fn(&Estimate) -> f64| found.iter().map(of).sum::<f64>() / count;
         let held = over(&|it| f64::from((it.mean - truth).abs() <= it.bar));
         println!(
-            "{} {}: {held:.3} of {count} hold {truth:.5}, mean {:.5}, bar {:.5}, {:.0} samples",
+            "{} {}: {held:.3} of {count} hold {truth:.5}, mean {:.5}, bar {:.5}, scatter {:.5}, {:.0} samples",
             system.preset,
             system.quantity,
             over(&|it| it.mean),
             over(&|it| it.bar),
+            1.96 * over(&|it| (it.mean - over(&|it| it.mean)).powi(2)).sqrt(),
             over(&|it| it.independent_samples)
         );
         if !(0.92..=0.98).contains(&held) || count < 0.9 * SEEDS as f64 {

@@ -5,6 +5,7 @@ mod bench;
 mod chart;
 mod compare;
 mod completions;
+mod explain;
 mod man;
 mod manual;
 mod meant;
@@ -48,6 +49,7 @@ enum GeneralVerb {
     Bench(Box<bench::BenchVerb>),
     Chart(chart::ChartVerb),
     Compare(compare::CompareVerb),
+    Explain(Box<explain::ExplainVerb>),
     Completions(completions::Completions),
     Man(man::ManVerb),
 }
@@ -194,6 +196,7 @@ fn carried_out(matches: &ArgMatches, command: &str, methods: Methods) -> Result<
         }
         GeneralVerb::Chart(verb) => verb.run(&common, methods),
         GeneralVerb::Compare(verb) => verb.run(&common, methods),
+        GeneralVerb::Explain(verb) => verb.run(&common, methods),
         GeneralVerb::Completions(verb) => verb.run(methods),
         GeneralVerb::Man(verb) => verb.run(methods),
     }

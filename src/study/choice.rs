@@ -1,6 +1,6 @@
 //! A way to run a scene: a setting for each axis that its method states.
 
-use stripmine_physics::method::{Axis, Decides, Prepared, Setting, Trials};
+use stripmine_physics::method::{Axis, Decides, Prepared, Setting};
 
 /// A setting for each axis.
 #[derive(Clone, Debug)]
@@ -14,9 +14,9 @@ impl PartialEq for Choice {
 
 impl Choice {
     /// Every combination of settings, those of the first axis changing slowest.
-    pub fn all(trials: &Trials) -> Vec<Choice> {
+    pub fn all(axes: &'static [Axis]) -> Vec<Choice> {
         let begin = vec![Choice(vec![])];
-        trials.axes.iter().fold(begin, |choices, axis| {
+        axes.iter().fold(begin, |choices, axis| {
             let with_axis = |choice: Choice| {
                 axis.settings
                     .iter()
@@ -27,12 +27,12 @@ impl Choice {
     }
 
     /// How a scene itself is run; the first setting where its own is not among those of an axis.
-    pub fn own(trials: &Trials, prepared: &Prepared) -> Choice {
+    pub fn own(axes: &'static [Axis], prepared: &Prepared) -> Choice {
         let of = |axis: &'static Axis| {
             let own = (axis.own)(prepared).and_then(|name| axis.setting(&name));
             Some((axis, own.or(axis.settings.first())?))
         };
-        Choice(trials.axes.iter().filter_map(of).collect())
+        Choice(axes.iter().filter_map(of).collect())
     }
 
     /// The same with some settings, by axis and name.

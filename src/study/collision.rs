@@ -91,7 +91,7 @@ pub fn collision(
     let Some(reference) = over_phases(&first, REFERENCE * smallest)? else { return Ok(None) };
     let reference = mean(&reference);
     let schemes: Vec<Choice> =
-        Choice::all(subject.trials).into_iter().filter(|choice| varies(choice, &first)).collect();
+        Choice::all(subject.entry.axes).into_iter().filter(|choice| varies(choice, &first)).collect();
     let cases: Vec<(&Choice, f64)> =
         schemes.iter().flat_map(|choice| steps.iter().map(move |step| (choice, *step))).collect();
     let found = cases.par_iter().map(|(choice, step)| {

@@ -96,7 +96,7 @@ pub fn growth(
 /// The scene's own way, with the digits of the reference: a small disturbance must not be lost in rounding.
 pub fn own_in_full_digits(subject: &Subject) -> Choice {
     let is_of_digits = |name: &str| {
-        subject.trials.axes.iter().any(|axis| axis.name == name && axis.decides == Decides::Digits)
+        subject.entry.axes.iter().any(|axis| axis.name == name && axis.decides == Decides::Digits)
     };
     let [first, _] = subject.trials.references;
     subject.own.with(&first.iter().copied().filter(|(axis, _)| is_of_digits(axis)).collect::<Vec<_>>())

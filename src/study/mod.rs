@@ -1,10 +1,12 @@
 //! Studies that any method joins by stating its trials: speed against accuracy. They know methods by their entries alone.
 
 mod averages;
+mod case;
 mod choice;
 mod collision;
 mod encounters;
 mod error;
+pub mod explain;
 mod growth;
 pub mod history;
 mod items;
@@ -18,6 +20,7 @@ mod subject;
 mod trial;
 pub mod work_precision;
 
+pub use case::Case;
 pub use choice::Choice;
 pub use error::StudyError;
 pub use items::ITEMS;

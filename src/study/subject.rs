@@ -1,34 +1,35 @@
 //! The scene of a study, and what its method states of the trials that may be made of it.
 
 use super::observed::Observed;
-use super::{Choice, StudyError};
+use super::{Case, Choice, StudyError};
 use crate::results::Identity;
 use sha2::{Digest, Sha256};
-use stripmine_physics::method::{Every, Methods, Prepared, Setting, Trials, Until, prepare, vocabularies};
-use stripmine_physics::scene::{Overrides, SceneErrors, UNITS, Values};
+use std::ops::Deref;
+use stripmine_physics::method::{Every, Methods, Prepared, Setting, Trials, Until};
+use stripmine_physics::scene::{Overrides, SceneErrors, UNITS};
 
 /// The form in which studies keep finished runs; another one whenever these hold other things.
 const JOURNALED: &str = "2";
 
 /// A scene under study.
 pub struct Subject {
-    what: String,
-    overrides: Vec<String>,
-    methods: Methods,
+    case: Case,
     /// What its method states.
     pub trials: &'static Trials,
-    /// The values of the scene as they were given.
-    pub values: Values,
-    /// The scene as it was given.
-    pub prepared: Prepared,
     /// What is observed of it.
     pub observed: Observed,
-    /// How the scene itself is run.
-    pub own: Choice,
     /// Its own step (time).
     pub step: f64,
     /// Its own number of steps.
     pub steps: u64,
+}
+
+impl Deref for Subject {
+    type Target = Case;
+
+    fn deref(&self) -> &Case {
+        &self.case
+    }
 }
 
 impl Subject {
@@ -37,45 +38,23 @@ impl Subject {
     /// # Errors
     /// [`StudyError`] if the scene is bad, its method states no trials, or it is over before anything is seen of it.
     pub fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Subject, StudyError> {
-        let values = Values::load(what, overrides, &vocabularies(methods))?;
-        let (prepared, entry) = prepare(values.clone(), methods)?;
-        let nothing = StudyError::NothingToVary(entry.vocabulary.keys.method);
-        let (Some(trials), Until::Steps(steps)) = (entry.trials, prepared.schedule.until) else {
+        let case = Case::load(what, overrides, methods)?;
+        let nothing = StudyError::NothingToVary(case.entry.vocabulary.keys.method);
+        let schedule = case.prepared.schedule;
+        let (Some(trials), Until::Steps(steps), Some(step)) =
+            (case.entry.trials, schedule.until, case.step())
+        else {
             return Err(nothing);
         };
-        let Some(step) = values.number(trials.step) else { return Err(nothing) };
-        let first = match prepared.schedule.rows {
+        let first = match schedule.rows {
             Every::Steps(steps) => steps,
             Every::Never | Every::Time(_) | Every::Seconds(_) => 1,
         };
         if steps < first.max(1) {
             return Err(StudyError::OverBeforeOutput { steps, first: first.max(1) });
         }
-        prepared.memory.fits("scene").map_err(StudyError::Scene)?;
-        let own = Choice::own(trials, &prepared);
-        Ok(Subject {
-            what: what.to_owned(),
-            overrides: overrides.to_vec(),
-            methods,
-            trials,
-            values,
-            prepared,
-            observed: Observed::of(trials, entry.quantities)?,
-            own,
-            step,
-            steps,
-        })
-    }
-
-    /// The name of the scene.
-    pub fn name(&self) -> &str {
-        &self.what
-    }
-
-    /// The arguments that name it on a command line.
-    pub fn arguments(&self) -> String {
-        let set = self.overrides.iter().map(|text| format!(" --set {text}"));
-        std::iter::once(self.what.clone()).chain(set).collect()
+        let observed = Observed::of(trials, case.entry.quantities)?;
+        Ok(Subject { case, trials, observed, step, steps })
     }
 
     /// The same scene in a way to run it, with a step (time) and further overrides.
@@ -83,7 +62,7 @@ impl Subject {
     /// # Errors
     /// [`SceneErrors`]: why it cannot be run so.
     pub fn prepared_as(&self, choice: &Choice, step: f64, more: &[String]) -> Result<Prepared, SceneErrors> {
-        Ok(prepare(self.values_as(choice, step, more)?, self.methods)?.0)
+        self.prepared_in(choice, &self.at_step(step, more))
     }
 
     /// The same, whatever is foreseen of the step.
@@ -96,14 +75,12 @@ impl Subject {
         step: f64,
         more: &[String],
     ) -> Result<Prepared, SceneErrors> {
-        (self.trials.at_any_step)(self.values_as(choice, step, more)?)
+        (self.trials.at_any_step)(self.values_in(choice, &self.at_step(step, more))?)
     }
 
-    fn values_as(&self, choice: &Choice, step: f64, more: &[String]) -> Result<Values, SceneErrors> {
-        let chosen: Vec<String> = choice.overrides().collect();
+    fn at_step(&self, step: f64, more: &[String]) -> Vec<String> {
         let step = Overrides::new().set(self.trials.step, step);
-        let overrides = [&self.overrides[..], &chosen, &step, more].concat();
-        Values::load(&self.what, &overrides, &vocabularies(self.methods))
+        [&step, more].concat()
     }
 
     /// The setting of the axis that decides the order, of a way to run it.

@@ -46,18 +46,19 @@ pub static ENTRY: Entry = Entry {
         compared: &["kinetic"],
         at_end: &[],
     }],
-    trials: Some(&TRIALS),
-};
-
-/// The one way there is: steps of any length end in the same place.
-static TRIALS: Trials = Trials {
-    step: &DT,
     axes: &[Axis {
         name: "integrator",
         decides: Decides::Order,
         settings: &[Setting { name: "drift", overrides: &[] }],
         own: |_| Some("drift".to_owned()),
     }],
+    twins: &[],
+    trials: Some(&TRIALS),
+};
+
+/// The one way there is: steps of any length end in the same place.
+static TRIALS: Trials = Trials {
+    step: &DT,
     references: [&[("integrator", "drift")], &[("integrator", "drift")]],
     balance: None,
     has_trajectories: true,

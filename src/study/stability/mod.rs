@@ -172,7 +172,7 @@ fn inside(value: f64, [low, high]: [f64; 2]) -> bool {
 
 /// The scene's own way to run, with every integrator.
 fn schemes(subject: &Subject) -> Vec<Choice> {
-    let axes = subject.trials.axes.iter().filter(|axis| axis.decides == Decides::Order);
+    let axes = subject.entry.axes.iter().filter(|axis| axis.decides == Decides::Order);
     axes.flat_map(|axis| axis.settings.iter().map(|setting| subject.own.with(&[(axis.name, setting.name)])))
         .collect()
 }

@@ -66,7 +66,7 @@ pub fn work_precision(
     }
     let start = Instant::now();
     let meter = Meter::new(effort.budget, progress);
-    let choices = Choice::all(subject.trials);
+    let choices = Choice::all(subject.entry.axes);
     let probes = probes(subject, &choices, journal)?;
     let rates: Vec<Option<f64>> = probes.iter().map(|probe| probe.as_ref().ok().copied()).collect();
     let own_place = choices.iter().position(|choice| *choice == subject.own).unwrap_or(0);

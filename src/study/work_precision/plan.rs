@@ -118,8 +118,8 @@ mod tests {
 
     #[test]
     fn less_time_leaves_out_more_and_says_so() {
-        let trials = METHODS[0].trials.unwrap();
-        let choices = Choice::all(trials);
+        let axes = METHODS[0].axes;
+        let choices = Choice::all(axes);
         let own = choices[0].clone();
         let mut rates = vec![Some(1e-6); choices.len()];
         rates[1] = None;

@@ -3,7 +3,7 @@
 use super::clock::{Clock, Schedule, Until};
 use super::failure::Failure;
 use super::snapshot::Snapshot;
-use super::trials::Trials;
+use super::trials::{Axis, Trials, Twin};
 use crate::domain::Domain;
 use crate::memory::Foreseen;
 use crate::particles::Particles;
@@ -31,6 +31,10 @@ pub struct Entry {
     pub prepare: fn(Values) -> Result<Prepared, SceneErrors>,
     /// What `bench` can measure of it.
     pub benches: &'static [Bench],
+    /// What may be chosen without changing what is simulated; every combination that its check accepts is a way to run a scene.
+    pub axes: &'static [Axis],
+    /// What a scene may be modelled without.
+    pub twins: &'static [Twin],
     /// How its scenes may be tried; none where nothing of them may be varied.
     pub trials: Option<&'static Trials>,
 }

@@ -10,8 +10,6 @@ use crate::scene::{Key, Overrides, SceneErrors, Values};
 pub struct Trials {
     /// The key of the step (time).
     pub step: &'static Key,
-    /// What may be chosen; every combination that the method's check accepts is a way to run the scene.
-    pub axes: &'static [Axis],
     /// The settings of the reference, one for each axis it names, the most accurate there is; and of a second one with
     /// another integrator, against which it is held.
     pub references: [&'static [(&'static str, &'static str)]; 2],
@@ -98,6 +96,15 @@ pub struct Mapped {
     pub overrides: &'static [&'static str],
     /// The parameter that is varied.
     pub parameter: &'static str,
+}
+
+/// A simpler model of a scene, beside which its results show what it needs.
+#[derive(Debug)]
+pub struct Twin {
+    /// What it lacks.
+    pub name: &'static str,
+    /// The overrides that make it of a scene; none where the scene has nothing of the kind.
+    pub overrides: fn(&Values) -> Option<Overrides>,
 }
 
 /// Something that may be chosen.

@@ -4,7 +4,7 @@ use super::benches::BENCHES;
 use super::checked::prepare;
 use super::keys::VOCABULARY;
 use super::quantities::QUANTITIES;
-use crate::method::Entry;
+use crate::method::{Axis, Decides, Entry, Setting};
 
 /// Event-driven hard discs.
 pub static ENTRY: Entry = Entry {
@@ -14,5 +14,17 @@ pub static ENTRY: Entry = Entry {
     quantities: QUANTITIES,
     prepare,
     benches: BENCHES,
+    axes: AXES,
+    twins: &[],
     trials: None,
 };
+
+const AXES: &[Axis] = &[Axis {
+    name: "engine",
+    decides: Decides::Cost,
+    settings: &[
+        Setting { name: "fast", overrides: &["machine.engine=fast"] },
+        Setting { name: "reference", overrides: &["machine.engine=reference"] },
+    ],
+    own: |prepared| Some(prepared.settings.get("engine")?.as_str()?.to_owned()),
+}];

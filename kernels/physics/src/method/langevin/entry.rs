@@ -4,7 +4,7 @@ use super::benches::BENCHES;
 use super::checked::prepare;
 use super::keys::VOCABULARY;
 use super::quantities::QUANTITIES;
-use super::trials::TRIALS;
+use super::trials::{AXES, TRIALS, TWINS};
 use crate::method::Entry;
 
 /// Langevin dynamics.
@@ -15,5 +15,7 @@ pub static ENTRY: Entry = Entry {
     quantities: QUANTITIES,
     prepare,
     benches: BENCHES,
+    axes: AXES,
+    twins: TWINS,
     trials: Some(&TRIALS),
 };

@@ -1,9 +1,11 @@
 //! How particles in a bath may be run, and what a map of stability varies.
 
 use super::checked::prepare;
-use super::keys::{BATH_TEMPERATURE, DRAG, STRENGTH};
-use crate::method::{Axis, Decides, Mapped, Parameter, Prepared, SMALLEST_RADIUS, Setting, Trials};
+use super::keys::{BATH_TEMPERATURE, DRAG, LAW, STRENGTH};
+use super::options::PairLaw;
+use crate::method::{Axis, Decides, Mapped, Parameter, Prepared, SMALLEST_RADIUS, Setting, Trials, Twin};
 use crate::scene::{DT, Key, Overrides, Values};
+use crate::words::Words;
 
 macro_rules! settings {
     ($($name:literal [$($override:literal),*],)*) => {
@@ -14,7 +16,6 @@ macro_rules! settings {
 /// Every way to run a scene of particles in a bath.
 pub(super) static TRIALS: Trials = Trials {
     step: &DT,
-    axes: AXES,
     references: [
         &[("integrator", "baoab"), ("precision", "f64")],
         &[("integrator", "stochastic"), ("precision", "f64")],
@@ -49,7 +50,25 @@ const MAPPED: &[Mapped] = &[
     },
 ];
 
-const AXES: &[Axis] = &[
+/// What a scene may be modelled without.
+pub(super) const TWINS: &[Twin] = &[
+    Twin {
+        name: "attraction between pairs (wca in the place of lennard-jones)",
+        overrides: |values| {
+            let attracts = values.choice(&LAW)? == PairLaw::LennardJones.word();
+            attracts.then(|| Overrides::new().set(&LAW, PairLaw::Wca))
+        },
+    },
+    Twin {
+        name: "pairs: free particles in the bath",
+        overrides: |values| {
+            let has_pairs = values.choice(&LAW)? != PairLaw::None.word();
+            has_pairs.then(|| Overrides::new().set(&LAW, PairLaw::None))
+        },
+    },
+];
+
+pub(super) const AXES: &[Axis] = &[
     Axis {
         name: "integrator",
         decides: Decides::Order,

@@ -9,6 +9,7 @@ use super::quantities::QUANTITIES;
 use crate::method::observed::place;
 use crate::method::{
     Axis, Balance, Decides, Mapped, Parameter, Prepared, Purpose, SMALLEST_RADIUS, Setting, Theory, Trials,
+    Twin,
 };
 use crate::scene::{
     DT, ORIGIN, Overrides, PACKING_FRACTION, PRECISION, Precision, RADIUS_CUT, RADIUS_SPREAD, SPEED,
@@ -27,7 +28,6 @@ macro_rules! settings {
 /// Every way to run a scene of granular discs.
 pub(super) static TRIALS: Trials = Trials {
     step: &DT,
-    axes: AXES,
     references: [
         &[("integrator", "gear6"), ("precision", "f64")],
         &[("integrator", "gear5"), ("precision", "f64")],
@@ -209,7 +209,29 @@ fn faster(values: &Values, factor: f64) -> Overrides {
     }
 }
 
-const AXES: &[Axis] = &[
+/// What a scene may be modelled without, or less of.
+pub(super) const TWINS: &[Twin] = &[
+    Twin {
+        name: "friction and spin",
+        overrides: |values| {
+            (values.number(&FRICTION)? > 0.0)
+                .then(|| Overrides::new().set(&FRICTION, 0.0).set(&SHEAR_DAMPING, 0.0))
+        },
+    },
+    Twin {
+        name: "a spread of radii",
+        overrides: |values| {
+            let spreads = values.is_used(&RADIUS_SPREAD) && values.number(&RADIUS_SPREAD)? > 0.0;
+            spreads.then(|| Overrides::new().set(&RADIUS_SPREAD, 0.0))
+        },
+    },
+    Twin {
+        name: "three quarters of the stiffness",
+        overrides: |values| Some(Overrides::new().set(&STIFFNESS, 0.25 * values.number(&STIFFNESS)?)),
+    },
+];
+
+pub(super) const AXES: &[Axis] = &[
     Axis {
         name: "integrator",
         decides: Decides::Order,

@@ -2,7 +2,9 @@
 
 use super::checked::prepare;
 use super::keys::{ECCENTRICITY, SOFTENING};
-use crate::method::{Axis, Balance, Decides, Length, Mapped, Parameter, Prepared, Setting, Theory, Trials};
+use crate::method::{
+    Axis, Balance, Decides, Length, Mapped, Parameter, Prepared, Setting, Theory, Trials, Twin,
+};
 use crate::particles::{Particle, Particles};
 use crate::scene::{DT, Overrides, Values};
 
@@ -15,7 +17,6 @@ macro_rules! settings {
 /// Every way to run a scene of bodies. Studies see the plane of x and y: orbits of two and three bodies lie in it.
 pub(super) static TRIALS: Trials = Trials {
     step: &DT,
-    axes: AXES,
     references: [
         &[("integrator", "yoshida-8"), ("precision", "f64")],
         &[("integrator", "gear-6"), ("precision", "f64")],
@@ -39,7 +40,10 @@ pub(super) static TRIALS: Trials = Trials {
     }],
 };
 
-const AXES: &[Axis] = &[
+/// What a scene may be modelled without.
+pub(super) const TWINS: &[Twin] = &[];
+
+pub(super) const AXES: &[Axis] = &[
     Axis {
         name: "integrator",
         decides: Decides::Order,

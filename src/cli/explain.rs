@@ -1,0 +1,204 @@
+//! `stripmine explain`: which way to run a scene, which step and how long, for an error that can be borne.
+
+use crate::console::{Common, Failure, clear_progress, print, print_json, say};
+use crate::report::{Cell, Rows, terminal};
+use crate::study::explain::{
+    ExplainError, Kept, Plan, Rigour, Sample, Span, Target, explain, page, rows_every, sample, with_unit,
+};
+use crate::study::{Case, StudyError};
+use clap::Args;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use stripmine_physics::method::{Methods, load};
+use stripmine_physics::number::significant;
+use stripmine_physics::quoted;
+use stripmine_physics::scene::Width;
+use stripmine_physics::signals;
+
+/// Which integrator, step, precision, search, run length and seeds a scene needs for an error you can bear, and what that costs
+#[derive(Args)]
+pub(super) struct ExplainVerb {
+    /// A preset's name, or a scene file
+    #[arg(required_unless_present = "forget")]
+    scene: Option<String>,
+    /// Overrides a value; may be given several times
+    #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
+    overrides: Vec<String>,
+    /// The error of the mean that can be borne with a probability of 95 %, such as 1% or 0.02; without it, that of the scene's own values
+    #[arg(long, value_parser = width)]
+    error: Option<Width>,
+    /// The quantity whose mean it is; what the method is mostly asked for by default
+    #[arg(long = "of", value_name = "QUANTITY")]
+    quantity: Option<String>,
+    /// Runs nothing: by what is kept of the scene
+    #[arg(long, conflicts_with = "patient")]
+    estimate: bool,
+    /// Trials of a minute in the place of some seconds
+    #[arg(long)]
+    patient: bool,
+    /// Carries out the plan, and prints what was expected beside what came out
+    #[arg(long)]
+    analyze: bool,
+    /// Writes the plan as a scene file
+    #[arg(long, value_name = "FILE")]
+    write: Option<PathBuf>,
+    /// Removes what is kept of scenes on this host
+    #[arg(long)]
+    forget: bool,
+}
+
+fn width(text: &str) -> Result<Width, String> {
+    Width::parse(text).ok_or_else(|| "an error is a number above 0, or a part such as 1%".to_owned())
+}
+
+/// A row of what was expected and came out.
+#[derive(Clone, Debug, Serialize)]
+struct Compared {
+    what: String,
+    estimated: f64,
+    actual: f64,
+    unit: String,
+    /// Whether it lies within what was expected.
+    is_within: bool,
+    /// What to measure again, where it does not.
+    advice: &'static str,
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Said {
+    #[serde(flatten)]
+    plan: Plan,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    analyzed: Vec<Compared>,
+}
+
+impl ExplainVerb {
+    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
+        let kept = Kept::here();
+        if self.forget {
+            let count = kept.forget().map_err(failed)?;
+            print(&format!("removed: {count}\n"))?;
+        }
+        let Some(scene) = &self.scene else { return Ok(()) };
+        let case = Case::load(scene, &self.overrides, methods)?;
+        let target = Target::of(&case, self.quantity.as_deref(), self.error).map_err(failed)?;
+        let rigour = match (self.estimate, self.patient) {
+            (true, _) => Rigour::Estimate,
+            (_, true) => Rigour::Patient,
+            _ => Rigour::Trials,
+        };
+        if !common.quiet && rigour != Rigour::Estimate {
+            say(format_args!("trials of about {} s, unless they are kept", rigour.seconds()));
+        }
+        let plan = explain(&case, &target, rigour, &kept, signals::asked()).map_err(failed)?;
+        clear_progress();
+        if let Some(file) = &self.write {
+            self.written(&plan, file, scene, methods)?;
+            if !common.quiet {
+                say(format_args!("written: {}", quoted::path(file)));
+            }
+        }
+        let analyzed = if self.analyze { self.analyzed(&plan, &target, scene, methods)? } else { vec![] };
+        if common.json {
+            return print_json(&Said { plan, analyzed });
+        }
+        print(&page(&plan))?;
+        if analyzed.is_empty() { Ok(()) } else { print(&table(&analyzed)) }
+    }
+
+    /// The overrides of the plan, and rows so often that its mean has a bar.
+    fn overrides(&self, plan: &Plan, own_rows: u64) -> Vec<String> {
+        let rows = rows_every(plan, own_rows).map(|every| format!("run.thermo_every={every}"));
+        self.overrides.iter().cloned().chain(plan.overrides.clone()).chain(rows).collect()
+    }
+
+    fn prepared(
+        &self,
+        plan: &Plan,
+        scene: &str,
+        methods: Methods,
+    ) -> Result<stripmine_physics::method::Prepared, Failure> {
+        let (first, _) = load(scene, &self.overrides(plan, u64::MAX), methods)?;
+        Ok(first)
+    }
+
+    fn written(&self, plan: &Plan, file: &Path, scene: &str, methods: Methods) -> Result<(), Failure> {
+        let prepared = self.prepared(plan, scene, methods)?;
+        let seeds = if plan.seeds > 1 { format!(" --seeds {}", plan.seeds) } else { String::new() };
+        let text = format!(
+            "# By stripmine explain, for {}: run it with{} stripmine run FILE{seeds}\n{}",
+            plan.quantity,
+            if seeds.is_empty() { "" } else { " its seeds:" },
+            prepared.scene
+        );
+        std::fs::write(file, text).map_err(Failure::writing("the plan"))
+    }
+
+    /// Carries out one run of the plan.
+    fn analyzed(
+        &self,
+        plan: &Plan,
+        target: &Target,
+        scene: &str,
+        methods: Methods,
+    ) -> Result<Vec<Compared>, Failure> {
+        let (prepared, entry) = load(scene, &self.overrides(plan, u64::MAX), methods)?;
+        let observed = (entry.quantities, target.place);
+        let found: Sample = sample(&prepared, observed, Span::Time(plan.time, None), signals::asked())
+            .map_err(Failure::from)?;
+        let seeds = plan.seeds as f64;
+        let known = found.known();
+        let mut rows = vec![Compared {
+            what: "wall time of a run".to_owned(),
+            estimated: plan.seconds.likely,
+            actual: found.cost * plan.time + found.start,
+            unit: "s".to_owned(),
+            is_within: (plan.seconds.least..=plan.seconds.most)
+                .contains(&(found.cost * plan.time + found.start)),
+            advice: "the host was busier or idler than in the trials: --patient",
+        }];
+        if let (Some(known), Some([mean, bar])) = (known, plan.mean) {
+            let chance = plan.expected[1] * seeds.sqrt();
+            rows.push(Compared {
+                what: format!("chance of {} in a run (95 %)", plan.quantity),
+                estimated: chance,
+                actual: known.bar,
+                unit: plan.unit.to_owned(),
+                is_within: known.bar < 1.5 * chance && known.bar > chance / 1.5,
+                advice: "the scatter was hardly known: --patient",
+            });
+            let allowed = plan.expected[0] + known.bar.hypot(bar);
+            rows.push(Compared {
+                what: format!("{} less that of the reference", plan.quantity),
+                estimated: 0.0,
+                actual: known.mean - mean,
+                unit: plan.unit.to_owned(),
+                is_within: (known.mean - mean).abs() <= allowed,
+                advice: "the step or the digits take it off: --patient",
+            });
+        }
+        Ok(rows)
+    }
+}
+
+fn table(rows: &[Compared]) -> String {
+    let number =
+        |of: fn(&Compared) -> f64| move |it: &&Compared| with_unit(&significant(of(it), 3), &it.unit);
+    let table = Rows::of(rows)
+        .text("what", |it| it.what.clone())
+        .text("estimated", number(|it| it.estimated))
+        .text("actual", number(|it| it.actual))
+        .cell("ratio", |it| {
+            if it.estimated == 0.0 { Cell::Nothing } else { Cell::Number(it.actual / it.estimated, 2) }
+        })
+        .text("remark", |it| {
+            if it.is_within { String::new() } else { format!("outside of what was expected: {}", it.advice) }
+        })
+        .table("analyzed", "Expected and come out");
+    terminal::render(&table)
+}
+
+fn failed(error: impl Into<ExplainError>) -> Failure {
+    StudyError::Own(Box::new(error.into())).into()
+}

@@ -1,0 +1,175 @@
+//! Which way to run a scene, with which step and for how long, for an error that can be borne at the least cost.
+//!
+//! Trial runs of some seconds say what each way costs (`findings`), how long its step may be before theory, a check or a failure speaks against it, how a
+//! mean scatters, and how far a long step takes it off (`bias`). From these follow the step and the run length that reach an error most cheaply
+//! (`optimum`), and with them a plan (`plan`). Nothing here is fitted: what trials could not see is counted as error, with its bar.
+
+mod bias;
+mod drift;
+mod findings;
+mod kept;
+mod optimum;
+mod plan;
+mod sample;
+mod words;
+
+pub use kept::{Kept, KeptError};
+pub use plan::{Beside, Decision, Interval, LeftOut, Own, Plan, in_unit, rows_every};
+pub use sample::{Known, Sample, Span, sample};
+pub use words::{page, with_unit};
+
+use super::Case;
+use findings::findings;
+use std::sync::atomic::AtomicBool;
+use stripmine_physics::method::{Kind, Quantity};
+use stripmine_physics::number::significant;
+use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::scene::Width;
+
+/// How much is done to know.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rigour {
+    /// Nothing is run: what was kept of the scene.
+    Estimate,
+    /// Trials of some seconds.
+    Trials,
+    /// Trials of a minute.
+    Patient,
+}
+
+/// What is asked for.
+#[derive(Clone, Debug)]
+pub struct Target {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Its place among those observed.
+    pub place: usize,
+    /// The error of its mean that can be borne; none where the scene's own values are to be judged.
+    pub error: Option<Width>,
+}
+
+/// Why there is no plan.
+#[derive(Debug, thiserror::Error)]
+pub enum ExplainError {
+    /// The scene observes nothing of that name.
+    #[error("`{name}` is nothing that this scene observes\n  help: one of {}", known.join(", "))]
+    NoSuchQuantity {
+        /// What was asked for.
+        name: String,
+        /// What it observes.
+        known: Vec<&'static str>,
+    },
+    /// The scene breaks, however it is run.
+    #[error(
+        "every trial of the scene breaks; tried were:{}\n  help: lower integrator.dt, or mend what the failures name",
+        .0.iter().map(|(what, why)| format!("\n  {what}: {why}")).collect::<String>()
+    )]
+    EveryWayFails(Vec<(String, String)>),
+    /// The quantity comes to no mean.
+    #[error(
+        "{quantity} comes to no mean in the trials: {why}\n  help: --patient looks longer; or choose another quantity with --of"
+    )]
+    NoMean {
+        /// The quantity.
+        quantity: &'static str,
+        /// What was seen.
+        why: String,
+    },
+    /// No way comes to the error.
+    #[error(
+        "no way to run the scene is known to come to an error of {} of {quantity}: in the trials the bias is known to {} at best{}\n  help: --patient \
+         knows it better; or ask for a larger error",
+        significant(*wanted, 3), significant(*least, 2), cost.as_ref().map_or(String::new(), |cost| format!(", which would take {cost}"))
+    )]
+    OutOfReach {
+        /// The quantity.
+        quantity: &'static str,
+        /// What was asked for.
+        wanted: f64,
+        /// What can be had.
+        least: f64,
+        /// What that would take.
+        cost: Option<String>,
+    },
+    /// Nothing was kept of the scene.
+    #[error(
+        "nothing is known here of this scene\n  help: run it without --estimate once; what is measured is kept"
+    )]
+    NothingKept,
+    /// What is kept.
+    #[error(transparent)]
+    Kept(#[from] KeptError),
+}
+
+impl Reported for ExplainError {
+    fn class(&self) -> Class {
+        match self {
+            ExplainError::NoSuchQuantity { .. } => Class::Usage,
+            ExplainError::Kept(error) => error.class(),
+            _ => Class::Precondition,
+        }
+    }
+
+    fn passed_on(&self) -> Option<&dyn Reported> {
+        match self {
+            ExplainError::Kept(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+impl Target {
+    /// Of a quantity, or the first that the method has a mean of.
+    ///
+    /// # Errors
+    /// [`ExplainError::NoSuchQuantity`]
+    pub fn of(case: &Case, name: Option<&str>, error: Option<Width>) -> Result<Target, ExplainError> {
+        let quantities = case.entry.quantities;
+        let is_judged = |quantity: &&Quantity| quantity.kind != Kind::Time;
+        let known: Vec<&'static str> = quantities.iter().filter(is_judged).map(|it| it.name).collect();
+        let first = || {
+            let of_trials = case.entry.trials.and_then(|trials| trials.observables.first().copied());
+            let since_start = quantities.iter().find(|it| matches!(it.kind, Kind::SinceStart { .. }));
+            of_trials.or(since_start.map(|it| it.name)).unwrap_or_default()
+        };
+        let name = name.unwrap_or_else(first);
+        let place = quantities.iter().position(|it| it.name == name && is_judged(&it));
+        let place = place.ok_or_else(|| ExplainError::NoSuchQuantity { name: name.to_owned(), known })?;
+        Ok(Target { quantity: quantities[place], place, error })
+    }
+
+    /// Whether it should keep its value: its error is then how far it goes from the first.
+    pub fn is_kept(&self) -> bool {
+        self.quantity.kind == Kind::Kept
+    }
+}
+
+/// What is recommended: by what is kept of the scene, or by trials, which are kept.
+///
+/// # Errors
+/// [`ExplainError`]
+pub fn explain(
+    case: &Case,
+    target: &Target,
+    rigour: Rigour,
+    kept: &Kept,
+    stop: &AtomicBool,
+) -> Result<Plan, ExplainError> {
+    let key = kept.key(case, target);
+    let (findings, origin) = match (kept.recall(&key, rigour)?, rigour) {
+        (Some((findings, origin)), _) => (findings, origin),
+        (None, Rigour::Estimate) => return Err(ExplainError::NothingKept),
+        (None, _) => {
+            let findings = findings(case, target, rigour.seconds(), stop)?;
+            let origin = kept.keep(&key, rigour, &findings)?;
+            (findings, origin)
+        }
+    };
+    let plan = if target.is_kept() { plan::keeping } else { plan::plan };
+    plan(case, target, &findings, &origin).map_err(|least| ExplainError::OutOfReach {
+        quantity: target.quantity.name,
+        wanted: target.error.map_or(0.0, |width| in_unit(width, findings.reference.mean)),
+        least,
+        cost: None,
+    })
+}

@@ -1,0 +1,181 @@
+//! A run of some seconds: what a unit of time costs, and what it says of a mean.
+
+use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+use stripmine_physics::averages::{Average, Estimate, Outcome, Rows};
+use stripmine_physics::method::{Clock, Every, Failure, Prepared, Purpose, Quantity, Simulation, Until};
+
+/// Rows of a sample, about: as many as a correlation needs, and so few that they cost little.
+const ROWS: f64 = 1000.0;
+/// The first stretches, whose memory is cold and whose threads have not begun, are no part of the cost: this share of the time.
+const COLD: f64 = 0.1;
+
+/// A run of some seconds.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// Wall seconds of a unit of time.
+    pub cost: f64,
+    /// Wall seconds until the first step.
+    pub start: f64,
+    /// Time that it came to (time).
+    pub time: f64,
+    /// What it says of the quantity.
+    pub outcome: Outcome,
+    /// What its checks warn of.
+    pub warnings: Vec<String>,
+}
+
+/// What a run says of a mean.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct Known {
+    /// The mean.
+    pub mean: f64,
+    /// Half the width of its interval of 95 %.
+    pub bar: f64,
+    /// Square of the bar of a mean over one unit of time.
+    pub square: f64,
+    /// Time that does not count (time).
+    pub transient: f64,
+    /// Degrees of freedom of the bar.
+    pub freedoms: f64,
+}
+
+impl From<Estimate> for Known {
+    fn from(it: Estimate) -> Known {
+        Known {
+            mean: it.mean,
+            bar: it.bar,
+            square: it.bar * it.bar * it.span,
+            transient: it.equilibrated_at,
+            freedoms: it.freedoms,
+        }
+    }
+}
+
+impl Sample {
+    /// What it says of the mean, where there is one, however roughly.
+    pub fn known(&self) -> Option<Known> {
+        match self.outcome {
+            Outcome::Mean(estimate) | Outcome::TooShort { estimate: Some(estimate), .. } => {
+                Some(estimate.into())
+            }
+            Outcome::Constant { mean } => {
+                Some(Known { mean, bar: 0.0, square: 0.0, transient: 0.0, freedoms: f64::INFINITY })
+            }
+            Outcome::TooShort { estimate: None, .. } | Outcome::Changing { .. } | Outcome::Kept { .. } => {
+                None
+            }
+        }
+    }
+}
+
+/// How long a sample is.
+#[derive(Clone, Copy, Debug)]
+pub enum Span {
+    /// About so many wall seconds.
+    Seconds(f64),
+    /// A time (time), but no more wall seconds than these where they are given.
+    Time(f64, Option<f64>),
+}
+
+/// Runs a scene, observing a quantity.
+///
+/// # Errors
+/// [`Failure`] if it breaks.
+pub fn sample(
+    prepared: &Prepared,
+    (quantities, place): (&'static [Quantity], usize),
+    span: Span,
+    stop: &AtomicBool,
+) -> Result<Sample, Failure> {
+    let begun = Instant::now();
+    let mut simulation = prepared.start(Purpose::Run)?;
+    let start = begun.elapsed().as_secs_f64();
+    let mut rows = Rows::new(quantities);
+    rows.add(&simulation.observe());
+    let (seconds, most) = match span {
+        Span::Seconds(seconds) => (Some(seconds), f64::INFINITY),
+        Span::Time(time, seconds) => (seconds, time),
+    };
+    let limit = seconds.map_or(Duration::MAX, Duration::from_secs_f64);
+    let stride = match span {
+        Span::Seconds(seconds) => stride(simulation.as_mut(), prepared, seconds / ROWS, stop)?,
+        Span::Time(time, _) => {
+            simulation.advance(&[first(prepared).after(&simulation.clock())], stop)?;
+            let Clock { steps, time: gone, .. } = simulation.clock();
+            match prepared.schedule.until {
+                Until::Steps(_) => Until::Steps(((time / ROWS * steps as f64 / gone) as u64).max(1)),
+                _ => Until::Time(time / ROWS),
+            }
+        }
+    };
+    // Rows are evenly spaced from here on.
+    rows.add(&simulation.observe());
+    let (mut from, mut warm) = (simulation.clock(), Instant::now());
+    let mut is_warm = false;
+    let running = Instant::now();
+    while running.elapsed() < limit && simulation.clock().time < most && !stop.load(Ordering::Relaxed) {
+        simulation.advance(&[stride.after(&simulation.clock())], stop)?;
+        rows.add(&simulation.observe());
+        let share = running.elapsed().as_secs_f64() / seconds.unwrap_or(f64::INFINITY);
+        if !is_warm && share.max(simulation.clock().time / most) > COLD {
+            (from, warm, is_warm) = (simulation.clock(), Instant::now(), true);
+        }
+    }
+    let gone = simulation.clock().time - from.time;
+    let (gone, spent) =
+        if gone > 0.0 { (gone, warm.elapsed()) } else { (simulation.clock().time, begun.elapsed()) };
+    Ok(Sample {
+        cost: spent.as_secs_f64() / gone,
+        start,
+        time: simulation.clock().time,
+        outcome: Average::of(&rows, place).outcome,
+        warnings: simulation.warnings().into_iter().map(|warning| warning.message).collect(),
+    })
+}
+
+/// The shortest stretch: a step, or for a method without any a part of the time between rows.
+fn first(prepared: &Prepared) -> Until {
+    match (prepared.schedule.until, prepared.schedule.rows) {
+        (Until::Steps(_), _) => Until::Steps(1),
+        (_, Every::Time(time)) => Until::Time(time / 64.0),
+        (Until::Time(time), _) => Until::Time(1e-6 * time),
+        (Until::Events(_), _) => Until::Time(1e-6),
+    }
+}
+
+/// A stretch that takes about some seconds: steps, or for a method without any a part of the time between rows.
+fn stride(
+    simulation: &mut dyn Simulation,
+    prepared: &Prepared,
+    seconds: f64,
+    stop: &AtomicBool,
+) -> Result<Until, Failure> {
+    let mut stride = first(prepared);
+    loop {
+        let begun = Instant::now();
+        simulation.advance(&[stride.after(&simulation.clock())], stop)?;
+        if begun.elapsed().as_secs_f64() > 0.5 * seconds || stop.load(Ordering::Relaxed) {
+            return Ok(stride);
+        }
+        stride = stride.doubled();
+    }
+}
+
+/// Wall seconds of a unit of time, by the fastest of some stretches.
+///
+/// # Errors
+/// [`Failure`] if it breaks.
+pub fn timed(prepared: &Prepared, seconds: f64, stop: &AtomicBool) -> Result<f64, Failure> {
+    const STRETCHES: u32 = 4;
+    let mut simulation = prepared.start(Purpose::Run)?;
+    let stride = stride(simulation.as_mut(), prepared, seconds / f64::from(STRETCHES), stop)?;
+    let mut least = f64::INFINITY;
+    for _ in 0..STRETCHES {
+        let (from, begun): (Clock, _) = (simulation.clock(), Instant::now());
+        simulation.advance(&[stride.after(&from)], stop)?;
+        least = least.min(begun.elapsed().as_secs_f64() / (simulation.clock().time - from.time));
+    }
+    Ok(least)
+}
