@@ -4,11 +4,14 @@ use super::run_folder;
 use crate::console::{Common, Failure, print, print_json};
 use crate::report::{Cell, Rows, Table, csv, terminal};
 use clap::Args;
+use clap::builder::PossibleValuesParser;
+use serde::Serialize;
 use std::path::PathBuf;
 use stripmine_physics::averages::{Average, Averages, Estimate, Outcome};
 use stripmine_physics::method::Methods;
 use stripmine_physics::number::{counted, significant};
-use stripmine_physics::run::{Finished, averages_of};
+use stripmine_physics::run::{Finished, Function, Number, averages_of, function_of, functions_of};
+use stripmine_physics::structure::{NAMES, observable};
 
 /// The mean of every quantity of a run with its error, correlation time, equilibration and independent samples; several runs of one scene, with seeds of their own, are joined
 #[derive(Args)]
@@ -19,14 +22,37 @@ pub(super) struct AverageVerb {
     /// The table as comma-separated values
     #[arg(long, conflicts_with = "json")]
     csv: bool,
+    /// A function of the structure in place of the averages, such as "g(r)": where, mean and bar
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(NAMES))]
+    structure: Option<String>,
+}
+
+/// What is said as data.
+#[derive(Serialize)]
+struct Said<'a> {
+    #[serde(flatten)]
+    averages: &'a Averages,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    structure: &'a [Function],
 }
 
 impl AverageVerb {
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
         let runs = self.runs.iter().map(|run| Finished::read(&run_folder(run), methods));
         let averages = averages_of(&runs.collect::<Result<Vec<_>, _>>()?)?;
+        let folders: Vec<PathBuf> = self.runs.iter().map(|run| run_folder(run)).collect();
+        let folders = || folders.iter().map(PathBuf::as_path);
+        if let Some(observable) = self.structure.as_deref().and_then(observable) {
+            let function = function_of(folders(), observable)?;
+            return match (common.json, self.csv) {
+                (true, _) => print_json(&function),
+                (_, true) => print(&String::from_utf8_lossy(&function.csv())),
+                _ => print(&terminal::render(&of_function(&function))),
+            };
+        }
+        let functions = functions_of(folders());
         if common.json {
-            return print_json(&averages);
+            return print_json(&Said { averages: &averages, structure: &functions });
         }
         let table = table(&averages);
         if self.csv {
@@ -34,8 +60,46 @@ impl AverageVerb {
             csv::write(&table, &mut bytes).map_err(Failure::writing("CSV"))?;
             return print(&String::from_utf8_lossy(&bytes));
         }
-        print(&terminal::render(&table))
+        print(&terminal::render(&table))?;
+        if functions.is_empty() {
+            return Ok(());
+        }
+        print(&format!("\n{}", terminal::render(&of_structure(&functions))))
     }
+}
+
+/// A function, point by point.
+fn of_function(function: &Function) -> Table {
+    let [over, value] = [function.observable.over, function.observable.value];
+    let with_unit = |[name, unit]: [&str; 2]| match unit {
+        "" => name.to_owned(),
+        unit => format!("{name} ({unit})"),
+    };
+    Rows::of(&function.points)
+        .cell(with_unit(over), |[over, ..]| Cell::Number(*over, decimals(*over, 4)))
+        .cell(with_unit(value), |[_, mean, bar]| Cell::Number(*mean, decimals(*bar, 2)))
+        .cell("± 95 %", |[_, _, bar]| Cell::Number(*bar, decimals(*bar, 2)))
+        .table("structure", format!("{} of {}", function.name, counted(function.runs, "run", "runs")))
+}
+
+/// The numbers that stand for functions of the structure.
+fn of_structure(functions: &[Function]) -> Table {
+    let of = |function: &'_ Function| -> Vec<(&'static str, Number)> {
+        function.headlines.iter().map(|number| (function.name, number.clone())).collect()
+    };
+    let headlines: Vec<(&str, Number)> = functions.iter().flat_map(of).collect();
+    let names: Vec<&str> = functions.iter().map(|function| function.name).collect();
+    Rows::of(&headlines)
+        .text("structure", |(name, _)| *name)
+        .text("number", |(_, number)| number.name)
+        .cell("mean", |(_, number)| Cell::Number(number.mean, decimals(number.bar, 2)))
+        .cell("± 95 %", |(_, number)| Cell::Number(number.bar, decimals(number.bar, 2)))
+        .text("unit", |(_, number)| number.unit)
+        .table("structure", "Structure".to_owned())
+        .note(format!(
+            "± 95 %: over blocks of a run, or by Student's t of what lies between several. --structure NAME has a whole function: {}.",
+            names.join(", ")
+        ))
 }
 
 /// Every quantity in a line: its mean with all that is known of it, or why there is none.

@@ -116,6 +116,75 @@ impl Particles {
     }
 }
 
+/// Places and velocities in the plane of the grains of a scene, in their order at the start: what is looked at often.
+#[derive(Clone, Debug)]
+pub struct States {
+    ids: Vec<u32>,
+    /// The number of each id, where ids are not far more than grains.
+    numbers: Vec<u32>,
+    rows: Vec<[f64; 4]>,
+}
+
+impl States {
+    /// Room for these grains, none of which is there yet.
+    pub fn of(grains: &[Particle]) -> States {
+        let ids: Vec<u32> = grains.iter().map(|grain| grain.id).collect();
+        let largest = ids.iter().max().map_or(0, |&id| id as usize);
+        let mut numbers = vec![];
+        if largest < 8 * ids.len() {
+            numbers = vec![u32::MAX; largest + 1];
+            ids.iter().zip(0..).for_each(|(&id, number)| numbers[id as usize] = number);
+        }
+        States { rows: vec![[f64::NAN; 4]; ids.len()], ids, numbers }
+    }
+
+    /// Bytes for a number of grains.
+    pub const fn bytes(grains: usize) -> usize {
+        grains * (size_of::<[f64; 4]>() + 2 * size_of::<u32>())
+    }
+
+    /// For each grain its place (length) and velocity (length/time); not a number where it is lost.
+    pub fn rows(&self) -> &[[f64; 4]] {
+        &self.rows
+    }
+
+    /// None of them is there.
+    pub fn forget(&mut self) {
+        self.rows.fill([f64::NAN; 4]);
+    }
+
+    /// Where the grain of a number in the scene's order is, and how fast; others than grains do not count.
+    #[inline]
+    pub fn put(&mut self, number: usize, [x, y]: [f64; 2], [vx, vy]: [f64; 2]) {
+        if let Some(row) = self.rows.get_mut(number) {
+            *row = [x, y, vx, vy];
+        }
+    }
+
+    /// The grains among some particles, by their ids; those that are not there are lost.
+    pub fn take_up(&mut self, particles: &Particles) {
+        self.forget();
+        for (at, grain) in particles.grains().iter().enumerate() {
+            // Grains are mostly in the order of the scene.
+            let number = match self.ids.get(at) == Some(&grain.id) {
+                true => Some(at),
+                false => self.number(grain.id),
+            };
+            if let Some(number) = number {
+                self.put(number, grain.place(), grain.planar_velocity());
+            }
+        }
+    }
+
+    fn number(&self, id: u32) -> Option<usize> {
+        let number = match self.numbers.is_empty() {
+            true => self.ids.iter().position(|&it| it == id),
+            false => self.numbers.get(id as usize).map(|&number| number as usize),
+        };
+        number.filter(|&number| number < self.ids.len())
+    }
+}
+
 /// How far discs may move in a step (length) for no contact deeper than a fraction `max_penetration` of the sum of the radii
 /// to pass unseen between two steps, if no radius is below `smallest_radius` (length).
 ///

@@ -16,9 +16,10 @@ use std::time::Instant;
 use stripmine_physics::averages::{Averages, joined};
 use stripmine_physics::method::{Methods, Prepared, load, vocabularies};
 use stripmine_physics::quoted;
-use stripmine_physics::run::{Ending, Job, Summary, begins, run};
+use stripmine_physics::run::{Ending, Function, Job, Summary, begins, functions_of, run};
 use stripmine_physics::scene::{Fallback, Key, Reason, Value, Values, Vocabulary};
 use stripmine_physics::signals;
+use stripmine_physics::structure::observable;
 
 /// The list of what stands in the folder beside the runs.
 const LIST: &str = "seeds.files";
@@ -36,6 +37,9 @@ struct Ensemble {
     seconds: f64,
     /// Each run.
     runs: Vec<Member>,
+    /// The functions of the structure over all runs, each in its file beside this one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    structure: Vec<Function>,
 }
 
 /// A run with a seed of its own.
@@ -89,7 +93,10 @@ impl RunVerb {
         let (prepared, _) = self.prepared(&members[0].1, methods)?;
         prepared.memory.fits(&self.scene)?;
         members.iter().try_for_each(|(folder, _)| begins(folder, self.existing()).map(drop))?;
-        let own = OwnFiles::claim(&folder, LIST, &[SUMMARY.to_owned()], self.overwrite)?;
+        let asked = &prepared.output.structure;
+        let files = asked.iter().filter_map(|name| observable(name)).map(|it| it.file.to_owned());
+        let files: Vec<String> = std::iter::once(SUMMARY.to_owned()).chain(files).collect();
+        let own = OwnFiles::claim(&folder, LIST, &files, self.overwrite)?;
         let begun = Instant::now();
         let found = self.side_by_side(&members, &prepared, common, methods);
         clear_progress();
@@ -98,7 +105,15 @@ impl RunVerb {
             runs.push(Member { folder, seeds, averages: summary.averages });
         }
         let all: Vec<Averages> = runs.iter().map(|run| run.averages.clone()).collect();
-        let ensemble = Ensemble { averages: joined(&all), seconds: begun.elapsed().as_secs_f64(), runs };
+        let structure = functions_of(runs.iter().map(|run| run.folder.as_path()));
+        let structure: Vec<Function> =
+            structure.into_iter().filter(|it| files.contains(&it.file.to_owned())).collect();
+        let seconds = begun.elapsed().as_secs_f64();
+        let ensemble = Ensemble { averages: joined(&all), seconds, runs, structure };
+        ensemble
+            .structure
+            .iter()
+            .try_for_each(|function| own.write(function.file, &function.csv()).map(drop))?;
         own.write(SUMMARY, to_json(&ensemble)?.as_bytes())?;
         if common.json {
             return print_json(&ensemble);

@@ -6,7 +6,7 @@ use super::snapshot::Snapshot;
 use super::trials::{Axis, Trials, Twin};
 use crate::domain::Domain;
 use crate::memory::Foreseen;
-use crate::particles::Particles;
+use crate::particles::{Particles, States};
 use crate::scene::{Output, SceneErrors, Target, Values, Vocabulary, Warning};
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -331,6 +331,12 @@ pub trait Startable: Send + Sync {
         vec![]
     }
 
+    /// What a disc takes in a step, or in a unit of time where there are no steps: nanoseconds by a count of its pairs or events at
+    /// the start, on no machine in particular. How often the structure is looked at goes by it: at every row and snapshot where it is 0.
+    fn work(&self) -> f64 {
+        0.0
+    }
+
     /// Begins.
     ///
     /// # Errors
@@ -354,6 +360,11 @@ pub trait Simulation: Send {
 
     /// The particles as they stand, positions inside the box.
     fn particles(&self) -> Particles;
+
+    /// Places and velocities of the grains in the plane, places inside the box.
+    fn states(&self, states: &mut States) {
+        states.take_up(&self.particles());
+    }
 
     /// Positions alone, in single precision, one for each particle of the start in its order; no numbers where one is lost.
     fn positions(&self) -> Vec<[f32; 3]> {

@@ -5,6 +5,7 @@ use super::{hard_disks, langevin, lattice_md, nbody};
 use crate::domain::Domain;
 use crate::quoted::quoted;
 use crate::scene::{METHOD, Reason, STRUCTURE, SceneError, SceneErrors, TARGET, Value, Values, Vocabulary};
+use crate::structure::{self, observable};
 use crate::words::nearest;
 
 /// Methods that scenes may name.
@@ -53,13 +54,22 @@ pub fn prepare(values: Values, methods: Methods) -> Result<(Prepared, &'static E
     let wrong = wrong_target(&values, entry);
     let spot = values.spot(&STRUCTURE);
     match ((entry.prepare)(values), wrong) {
-        (Ok(prepared), None) => match waveless(&prepared.output.structure, prepared.domain) {
+        (Ok(mut prepared), None) => match waveless(&prepared.output.structure, prepared.domain) {
             Some(why) => Err(spot.error(Reason::Contradiction, why).into()),
-            None => Ok((prepared, entry)),
+            None => {
+                prepared.memory.needed += memory_of_looks(&prepared);
+                Ok((prepared, entry))
+            }
         },
         (Ok(_), Some(wrong)) => Err(wrong.into()),
         (Err(mistakes), wrong) => Err(SceneErrors(wrong.into_iter().chain(mistakes.0).collect())),
     }
+}
+
+/// Bytes that looking at the structure takes.
+fn memory_of_looks(prepared: &Prepared) -> u64 {
+    let asked: Vec<_> = prepared.output.structure.iter().filter_map(|name| observable(name)).collect();
+    structure::bytes(&asked, prepared.particles().grain_count(), prepared.schedule.row_count())
 }
 
 /// Why something of the structure cannot be summed up in a box.

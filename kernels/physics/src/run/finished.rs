@@ -56,6 +56,17 @@ pub enum FinishedError {
         /// The same again.
         other: PathBuf,
     },
+    /// A function that a run has not written.
+    #[error(
+        "{}: the run has written no {name}, or has not ended\n  help: run it with --set 'output.structure=[\"{name}\"]'",
+        quoted::path(folder)
+    )]
+    NoStructure {
+        /// The run.
+        folder: PathBuf,
+        /// The function.
+        name: &'static str,
+    },
 }
 
 impl Reported for FinishedError {
@@ -64,7 +75,9 @@ impl Reported for FinishedError {
             FinishedError::Table(error) => error.class(),
             FinishedError::File(_) => Class::InputOutput,
             FinishedError::NoMethod(_) => Class::Input,
-            FinishedError::OtherScene { .. } | FinishedError::Twice { .. } => Class::Usage,
+            FinishedError::OtherScene { .. }
+            | FinishedError::Twice { .. }
+            | FinishedError::NoStructure { .. } => Class::Usage,
         }
     }
 
@@ -78,7 +91,8 @@ impl Reported for FinishedError {
             FinishedError::File(error) => Some(FilePlace::at(&error.file)),
             FinishedError::NoMethod(file)
             | FinishedError::OtherScene { other: file, .. }
-            | FinishedError::Twice { other: file, .. } => Some(FilePlace::at(file)),
+            | FinishedError::Twice { other: file, .. }
+            | FinishedError::NoStructure { folder: file, .. } => Some(FilePlace::at(file)),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What is to be expected of a run, before it begins: the step against its limits, its error, how long it takes.
 
+use super::structured::every;
 use crate::memory::in_words;
 use crate::method::{Beyond, Clock, Fact, Failure, Prepared, Purpose, Until};
 use crate::number::{counted, significant};
@@ -48,7 +49,7 @@ pub fn of_the_memory(prepared: &Prepared) -> Fact {
     Fact::new("memory", json!(memory), "memory of a run", words)
 }
 
-/// How often rows and frames are written, where that is known beforehand.
+/// How often rows and frames are written, where that is known beforehand, and the structure is looked at.
 pub fn of_the_files(prepared: &Prepared) -> Vec<Fact> {
     let schedule = prepared.schedule;
     let counts = [
@@ -56,7 +57,26 @@ pub fn of_the_files(prepared: &Prepared) -> Vec<Fact> {
         ("frames", "frames of a trajectory", schedule.snapshot_count()),
     ];
     let known = counts.into_iter().filter_map(|(name, label, count)| Some((name, label, count?)));
-    known.map(|(name, label, count)| Fact::new(name, count, label, count.to_string())).collect()
+    let mut facts: Vec<Fact> =
+        known.map(|(name, label, count)| Fact::new(name, count, label, count.to_string())).collect();
+    if !prepared.output.structure.is_empty() {
+        let [rows, snapshots] = every(prepared);
+        let words = format!("at every {} and every {}", nth(rows, "row"), nth(snapshots, "snapshot"));
+        facts.push(Fact::new("structure_every", json!([rows, snapshots]), "looks at the structure", words));
+    }
+    facts
+}
+
+fn nth(number: u64, what: &str) -> String {
+    let ending = match (number % 10, number % 100) {
+        _ if number == 1 => return what.to_owned(),
+        (_, 11..=13) => "th",
+        (1, _) => "st",
+        (2, _) => "nd",
+        (3, _) => "rd",
+        _ => "th",
+    };
+    format!("{number}{ending} {what}")
 }
 
 /// How long it takes on this host, as a range, by its first stretches once it is warm and one row of observables; none where it does

@@ -6,6 +6,7 @@ mod finished;
 mod folder;
 pub mod forecast;
 mod frames;
+mod functions;
 mod goal;
 mod growing;
 mod identity;
@@ -16,6 +17,7 @@ mod table;
 
 pub use finished::{Finished, FinishedError, averages_of};
 pub use folder::FolderError;
+pub use functions::{Function, Number, function_of, functions_of};
 pub use identity::chosen_otherwise;
 pub use structured::Summed;
 pub use summary::Summary;

@@ -2,26 +2,38 @@
 //!
 //! Sums are those of the looks after the start. What comes before the middle of the run is taken for the transient; the rest is in
 //! blocks of time, and a bar is the half width of the interval of 95 % by Student's t of their means: right where blocks are longer
-//! than the structure takes to change.
+//! than the structure takes to change. What blocks share by lags that begin in one and end in the next is allowed for.
+//!
+//! Where rows or snapshots are so close that looking would take more than its share of the run's work, it is done at every second,
+//! third, … of them. The work is counted (`structure::strides`), never measured.
 
 use super::RunError;
 use super::folder::RunFolder;
+use super::functions::write_csv;
 use crate::averages::of_independent;
 use crate::io::checkpoint::{Checkpoint, Column};
 use crate::method::{Every, Prepared, Simulation, Snapshot};
+use crate::particles::States;
 use crate::scene::Output;
-use crate::structure::{Blocks, Headline, Motion, OBSERVABLES, Observable, Seen, Setting};
+use crate::structure::{
+    Blocks, Headline, Look, Motion, OBSERVABLES, Observable, Seen, Setting, strides, widening,
+};
 use serde::Serialize;
-use std::io::Write;
 
 /// What a run sums up of the structure.
 pub(super) struct Structured {
     setting: Setting,
-    /// What is between two rows and between two snapshots (steps or time).
+    /// Every how many rows and snapshots are looked at.
+    strides: [u64; 2],
+    /// Rows and snapshots so far, those at the start left out.
+    passed: [u64; 2],
+    /// What is between two looks at rows and at snapshots (steps or time).
     spacings: [f64; 2],
     sums: Vec<Sum>,
-    /// The discs at earlier rows, where an observable asks for them.
-    motion: Option<Motion>,
+    /// What is found at snapshots, where an observable asks for them.
+    look: Option<Look>,
+    /// The discs at earlier rows, where an observable asks for them, and as they stand.
+    motion: Option<(Motion, States)>,
 }
 
 /// The sums of an observable.
@@ -40,6 +52,8 @@ pub struct Summed {
     pub file: &'static str,
     /// Looks after the start, those of the transient among them.
     pub looks: u64,
+    /// Every how many rows or snapshots are looked at.
+    pub every: u64,
     /// Blocks that bars are from.
     pub blocks: usize,
     /// Looks of each of them.
@@ -64,6 +78,8 @@ pub struct Headlined {
     pub bar: f64,
 }
 
+/// The share of a run's work that looking takes at most, where the scene does not say.
+const SHARE: f64 = 0.05;
 /// Where the ways of discs cannot be known.
 const DOUBT: &str =
     "a disc went farther than a quarter of a periodic side between two rows: make them closer";
@@ -73,19 +89,35 @@ pub(super) fn chosen(output: &Output) -> impl Iterator<Item = &'static Observabl
     OBSERVABLES.iter().filter(|observable| output.structure.iter().any(|name| name == observable.name))
 }
 
+/// Every how many rows and snapshots are looked at.
+pub(super) fn every(prepared: &Prepared) -> [u64; 2] {
+    let setting = Setting::new(prepared.domain, prepared.particles());
+    let asked: Vec<&Observable> = chosen(&prepared.output).collect();
+    let share = prepared.output.structure_share.unwrap_or(SHARE);
+    let schedule = prepared.schedule;
+    let work = [schedule.rows, schedule.snapshots].map(|every| spacing(every) * prepared.model.work());
+    strides(&asked, &setting, prepared.particles().grain_count(), share, work)
+}
+
 impl Structured {
     /// Nothing yet of what a scene asks for.
     pub(super) fn new(prepared: &Prepared) -> Structured {
+        let grains = prepared.particles().grains();
         let setting = Setting::new(prepared.domain, prepared.particles());
+        let asked: Vec<&Observable> = chosen(&prepared.output).collect();
+        let strides = every(prepared);
+        let spacings = [prepared.schedule.rows, prepared.schedule.snapshots].map(spacing);
+        let stands = asked.iter().any(|observable| matches!(observable.seen, Seen::Once { .. }));
+        let moves = asked.iter().any(|observable| matches!(observable.seen, Seen::Twice { .. }));
         let sum = |observable| Sum { observable, looks: 0, blocks: Blocks::new(width(observable, &setting)) };
-        let sums: Vec<Sum> = chosen(&prepared.output).map(sum).collect();
-        let moves = sums.iter().any(|sum| matches!(sum.observable.seen, Seen::Twice(_)));
-        let schedule = prepared.schedule;
         Structured {
             setting,
-            spacings: [schedule.rows, schedule.snapshots].map(spacing),
-            sums,
-            motion: moves.then(|| Motion::new(prepared.particles().grains())),
+            strides,
+            passed: [0; 2],
+            spacings: [0, 1].map(|at| spacings[at] * strides[at] as f64),
+            sums: chosen(&prepared.output).map(sum).collect(),
+            look: stands.then(|| Look::new(setting, grains, asked.iter().copied())),
+            motion: moves.then(|| (Motion::new(grains.len()), States::of(grains))),
         }
     }
 
@@ -110,11 +142,14 @@ impl Structured {
         let is_known = |observable: &Observable| at_same_moments && column(observable.name).is_some();
         // What is seen of two moments goes on together or not at all.
         let motion_is_known = structured.moving().all(|sum| is_known(sum.observable));
+        if at_same_moments {
+            structured.passed = [there.count(&key(PASSED[0]))?, there.count(&key(PASSED[1]))?];
+        }
         for sum in &mut structured.sums {
             let name = sum.observable.name;
             let goes_on = match sum.observable.seen {
                 Seen::Once { .. } => is_known(sum.observable),
-                Seen::Twice(_) => motion_is_known,
+                Seen::Twice { .. } => motion_is_known,
             };
             let Some(values) = column(name).filter(|_| goes_on) else {
                 notes.push(format!("{name} is summed up from here on"));
@@ -125,11 +160,11 @@ impl Structured {
             let width = width(sum.observable, &structured.setting);
             sum.blocks = Blocks::restored(width, length, values).ok_or_else(|| wrong(name))?;
         }
-        if let Some(motion) = structured.motion.as_mut().filter(|_| motion_is_known) {
+        if let Some((motion, _)) = structured.motion.as_mut().filter(|_| motion_is_known) {
             let values = column(MOTION).ok_or_else(|| wrong(MOTION))?;
             let looks = there.count(&key(MOTION))?;
             let [first, last, farthest] = MOTIONS.map(|name| there.sum(&key(name)));
-            let discs = prepared.particles().grains();
+            let discs = prepared.particles().grain_count();
             let restored = Motion::restored(discs, looks, [first?, last?, farthest?], values);
             *motion = restored.ok_or_else(|| wrong(MOTION))?;
         }
@@ -138,43 +173,56 @@ impl Structured {
 
     /// The sums of what is seen of two moments.
     fn moving(&self) -> impl Iterator<Item = &Sum> {
-        self.sums.iter().filter(|sum| matches!(sum.observable.seen, Seen::Twice(_)))
+        self.sums.iter().filter(|sum| matches!(sum.observable.seen, Seen::Twice { .. }))
+    }
+
+    /// Whether a row or a snapshot more is one that is looked at.
+    fn passes(&mut self, what: usize) -> bool {
+        self.passed[what] += 1;
+        self.passed[what].is_multiple_of(self.strides[what])
     }
 
     /// Looks at a moment of which there is a row.
     pub(super) fn row(&mut self, simulation: &dyn Simulation) {
-        let Some(motion) = &mut self.motion else { return };
-        let (particles, time) = (simulation.particles(), simulation.clock().time);
-        let mut functions = vec![];
-        let mut sums = vec![];
-        for sum in &mut self.sums {
-            if let Seen::Twice(function) = sum.observable.seen {
-                functions.push(function);
-                sum.looks += 1;
-                sums.push(sum);
-            }
+        if self.motion.is_none() || !self.passes(ROWS) {
+            return;
         }
-        motion.look(&self.setting.domain, particles.grains(), time, &functions, |look, place, means| {
-            for (sum, &mean) in sums.iter_mut().zip(means) {
-                sum.blocks.add(look, place, mean);
+        let Structured { setting, sums, motion, .. } = self;
+        let Some((motion, states)) = motion else { return };
+        states.forget();
+        simulation.states(states);
+        let of = |sum: &Sum| match sum.observable.seen {
+            Seen::Twice { of } => Some(of),
+            Seen::Once { .. } => None,
+        };
+        motion.look(&setting.domain, states.rows(), simulation.clock().time, |look, place, means| {
+            for sum in &mut *sums {
+                if let Some(of) = of(sum) {
+                    sum.blocks.add(look, place, of(means));
+                }
             }
         });
+        sums.iter_mut().filter(|sum| of(sum).is_some()).for_each(|sum| sum.looks += 1);
     }
 
     /// Looks at a moment of which there is a snapshot.
     pub(super) fn snapshot(&mut self, simulation: &dyn Simulation) {
-        if !self.sums.iter().any(|sum| matches!(sum.observable.seen, Seen::Once { .. })) {
+        if self.look.is_none() || !self.passes(SNAPSHOTS) {
             return;
         }
-        let particles = simulation.particles();
-        if particles.grain_count() == 0 {
+        let Some(look) = &mut self.look else { return };
+        let is_any_left = look.at(|states| {
+            states.forget();
+            simulation.states(states);
+        });
+        if !is_any_left {
             return;
         }
         for sum in &mut self.sums {
-            if let Seen::Once { of, .. } = sum.observable.seen {
-                let values = of(&self.setting, particles.grains());
-                let places = values.into_iter().enumerate();
-                places.for_each(|(place, value)| sum.blocks.add(sum.looks, place, value));
+            if let Seen::Once { .. } = sum.observable.seen {
+                let values = look.values(sum.observable).into_iter().enumerate();
+                let seen = values.filter(|(_, value)| !value.is_nan());
+                seen.for_each(|(place, value)| sum.blocks.add(sum.looks, place, value));
                 sum.looks += 1;
             }
         }
@@ -190,8 +238,10 @@ impl Structured {
         if !self.sums.is_empty() {
             let spacings = SPACINGS.into_iter().zip(self.spacings);
             spacings.for_each(|(name, spacing)| snapshot.add_sum(&key(name), spacing));
+            let passed = PASSED.into_iter().zip(self.passed);
+            passed.for_each(|(name, passed)| snapshot.add_count(&key(name), passed));
         }
-        if let Some(motion) = &self.motion {
+        if let Some((motion, _)) = &self.motion {
             snapshot.add_count(&key(MOTION), motion.looks());
             let numbers = MOTIONS.into_iter().zip(motion.numbers());
             numbers.for_each(|(name, number)| snapshot.add_sum(&key(name), number));
@@ -202,14 +252,10 @@ impl Structured {
     /// Each observable in its file: what it is a function of, its mean, and the bar.
     pub(super) fn write(&self, folder: &RunFolder) -> Result<(), RunError> {
         for sum in &self.sums {
-            let Observable { file, over, value, .. } = sum.observable;
-            let function = self.function(sum);
-            folder.write(file, |out| {
-                writeln!(out, "{},{},error", with_unit(*over), with_unit(*value))?;
-                let rows = function.over.iter().zip(&function.means);
-                rows.into_iter()
-                    .try_for_each(|(over, [mean, bar])| writeln!(out, "{over:?},{mean:?},{bar:?}"))
-            })?;
+            let Function { over, means, .. } = self.function(sum);
+            let points: Vec<[f64; 3]> =
+                over.iter().zip(&means).map(|(&over, &[mean, bar])| [over, mean, bar]).collect();
+            folder.write(sum.observable.file, |out| write_csv(sum.observable, &points, out))?;
         }
         Ok(())
     }
@@ -217,27 +263,33 @@ impl Structured {
     /// What `summary.json` says of each.
     pub(super) fn summed(&self) -> Vec<Summed> {
         let of = |sum: &Sum| {
-            let Function { over, means, blocks } = self.function(sum);
-            let mean: Vec<f64> = means.iter().map(|[mean, _]| *mean).collect();
+            let function = self.function(sum);
+            let Function { over, blocks, .. } = &function;
+            let mean: Vec<f64> = function.means.iter().map(|[mean, _]| *mean).collect();
+            let headlines: &[Headline] = if over.len() > 1 { sum.observable.headlines } else { &[] };
+            let never = headlines.iter().find_map(|headline| (headline.never)(over, &mean));
             let headline = |headline: &Headline| {
-                let values: Vec<f64> =
-                    blocks.iter().map(|block| (headline.of)(&over, &mean, block)).collect();
-                let [mean, bar] = of_independent(&values)?;
+                let of = |block: &Vec<f64>| (headline.of)(over, &mean, block);
+                let [mean, bar] = function.mean(of, over.len() - 1)?;
                 Some(Headlined { name: headline.name, unit: headline.unit, mean, bar })
             };
-            let doubt = matches!(sum.observable.seen, Seen::Twice(_))
-                && self.motion.as_ref().is_some_and(|motion| !motion.is_certain());
+            let is_far = matches!(sum.observable.seen, Seen::Twice { .. })
+                && self.motion.as_ref().is_some_and(|(motion, _)| !motion.is_certain());
             Summed {
                 name: sum.observable.name,
                 file: sum.observable.file,
                 looks: sum.looks,
                 blocks: blocks.len(),
                 looks_of_a_block: sum.blocks.length(),
-                headlines: match over.len() {
-                    0 | 1 => vec![],
-                    _ => sum.observable.headlines.iter().filter_map(headline).collect(),
+                headlines: match never {
+                    Some(_) => vec![],
+                    None => headlines.iter().filter_map(headline).collect(),
                 },
-                doubt: doubt.then_some(DOUBT),
+                every: self.strides[match sum.observable.seen {
+                    Seen::Once { .. } => SNAPSHOTS,
+                    Seen::Twice { .. } => ROWS,
+                }],
+                doubt: is_far.then_some(DOUBT).or(never),
             }
         };
         self.sums.iter().map(of).collect()
@@ -245,31 +297,57 @@ impl Structured {
 
     /// The function that an observable is, as far as it is known.
     fn function(&self, sum: &Sum) -> Function {
-        let (over, last) = match sum.observable.seen {
-            Seen::Once { over, .. } => (over(&self.setting), 0),
-            Seen::Twice(_) => {
+        let length = sum.blocks.length();
+        let (over, lags, last) = match sum.observable.seen {
+            Seen::Once { over, .. } => (over(&self.setting), vec![], 0),
+            Seen::Twice { .. } => {
                 // Lags no longer than a block, so that blocks share no more than their ends, and all of them are whole.
-                let lags = Motion::lags().into_iter().zip(self.motion.iter().flat_map(Motion::times));
-                let short = lags.filter(|(lag, _)| *lag <= sum.blocks.length());
-                (short.map(|(_, time)| time).collect(), 1)
+                let motion = self.motion.iter().flat_map(|(motion, _)| motion.times());
+                let short = Motion::lags().zip(motion).filter(|(lag, _)| *lag <= length);
+                let (lags, times) = short.unzip();
+                (times, lags, 1)
             }
         };
         let blocks = sum.blocks.second_half(sum.looks, last);
-        let of = |place: usize| of_independent(&blocks.iter().map(|block| block[place]).collect::<Vec<_>>());
-        let means: Vec<[f64; 2]> = (0..over.len()).map_while(of).collect();
-        Function { over: over[..means.len()].to_vec(), means, blocks }
+        let mut function = Function { over, means: vec![], blocks, lags, length };
+        let means = (0..function.over.len()).map_while(|place| function.mean(|block| block[place], place));
+        function.means = means.collect();
+        function.over.truncate(function.means.len());
+        function
     }
 }
 
 /// What a function is over, its means with their bars, and its values in each block.
 struct Function {
     over: Vec<f64>,
+    /// Not a number where fewer than two blocks have a value.
     means: Vec<[f64; 2]>,
     blocks: Vec<Vec<f64>>,
+    /// The lags (looks) where it is over lags, and the looks of a block.
+    lags: Vec<u64>,
+    length: u64,
 }
+
+impl Function {
+    /// The mean over blocks of a number that is of lags up to that at `place`, with its bar; none where there are too few blocks.
+    fn mean(&self, of: impl Fn(&Vec<f64>) -> f64, place: usize) -> Option<[f64; 2]> {
+        if self.blocks.len() < 2 {
+            return None;
+        }
+        let values: Vec<f64> = self.blocks.iter().map(of).filter(|value| !value.is_nan()).collect();
+        let Some([mean, bar]) = of_independent(&values) else { return Some([f64::NAN; 2]) };
+        let wider = self.lags.get(place).map_or(1.0, |&lag| widening(lag, self.length, values.len()));
+        Some([mean, wider * bar])
+    }
+}
+
+/// Their places where both are kept.
+const ROWS: usize = 0;
+const SNAPSHOTS: usize = 1;
 
 /// What checkpoints call the spacings of rows and snapshots, the motion, and its numbers.
 const SPACINGS: [&str; 2] = ["rows", "snapshots"];
+const PASSED: [&str; 2] = ["rows passed", "snapshots passed"];
 const MOTION: &str = "motion";
 const MOTIONS: [&str; 3] = ["motion first", "motion last", "motion farthest"];
 
@@ -290,10 +368,6 @@ fn spacing(every: Every) -> f64 {
 fn width(observable: &Observable, setting: &Setting) -> usize {
     match observable.seen {
         Seen::Once { over, further, .. } => over(setting).len() + further,
-        Seen::Twice(_) => Motion::lags().len(),
+        Seen::Twice { .. } => Motion::lags().len(),
     }
-}
-
-fn with_unit([name, unit]: [&str; 2]) -> String {
-    if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") }
 }

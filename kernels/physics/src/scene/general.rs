@@ -70,6 +70,8 @@ define_keys! {
     pub static SUMMED;
     STRUCTURE = "output" "structure", Kind::Words(&structure::NAMES), "", Is("[]"), ALWAYS,
         "What of the structure is averaged over the second half of the run, each with its error in a file of its own: of snapshots, msd and vacf of rows of thermo.csv.";
+    STRUCTURE_SHARE = "output" "structure_share", Number(Positive), "", Otherwise("0.05"), ALWAYS,
+        "The largest share of a run's work that this may take, by a count of it: where rows or snapshots are closer, every second, third, … of them is looked at. 1000 for all of them.";
 }
 
 define_keys! {
@@ -123,7 +125,7 @@ pub fn too_many_steps(values: &Values) -> Vec<SceneError> {
 }
 
 /// Which files are written.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Output {
     /// Extended XYZ snapshots.
     pub trajectory: bool,
@@ -135,6 +137,8 @@ pub struct Output {
     pub lammps_data: bool,
     /// The names of what is summed up of the structure.
     pub structure: Vec<String>,
+    /// The largest share of the work that may take.
+    pub structure_share: Option<f64>,
 }
 
 impl Output {
@@ -145,6 +149,7 @@ impl Output {
         binding.switch(&LAMMPS_DUMP, &mut self.lammps_dump);
         binding.switch(&LAMMPS_DATA, &mut self.lammps_data);
         binding.words(&STRUCTURE, &mut self.structure);
+        binding.number_if_any(&STRUCTURE_SHARE, &mut self.structure_share);
     }
 }
 

@@ -279,8 +279,9 @@ impl Source<'_> {
             .spot(name.span().start)
             .error(Reason::Unknown, format!("unknown key `{}` {place}", quoted(name.get_ref())));
         let elsewhere = self.keys.keys().find(|key| key.name == name.get_ref());
-        let other_method =
-            self.methods.iter().find(|method| method.keys.key(section, name.get_ref()).is_some());
+        let has_it = |method: &&&Vocabulary| method.keys.key(section, name.get_ref()).is_some();
+        let others: Vec<String> =
+            self.methods.iter().filter(has_it).map(|method| format!("\"{}\"", method.keys.method)).collect();
         let by_name = self.full_names(name.get_ref());
         if self.lines.is_none() && !by_name.is_empty() {
             let paths: Vec<String> = by_name.iter().map(|key| format!("`{}`", key.path())).collect();
@@ -293,9 +294,9 @@ impl Source<'_> {
             };
             error = error.advising(format!("`{}` belongs {home}", key.name));
             values.faulty.insert(key.id());
-        } else if let Some(method) = other_method {
-            let method = method.keys.method;
-            error = error.advising(format!("it is a key of scenes with {} = \"{method}\"", METHOD.path()));
+        } else if !others.is_empty() {
+            let methods = others.join(" or ");
+            error = error.advising(format!("it is a key of scenes with {} = {methods}", METHOD.path()));
         } else if let Some(nearest) = nearest(name.get_ref(), in_section()) {
             error = error.advising(format!("did you mean `{nearest}`?"));
             values.faulty.insert((section, nearest));

@@ -4,18 +4,21 @@
 //! over its rows; sums are kept by blocks of time (`blocks`), from which errors come.
 
 mod blocks;
+mod cells;
+mod look;
 mod motion;
 mod pairs;
 mod setting;
 mod single;
 mod waves;
+mod work;
 
 pub use blocks::Blocks;
-pub use motion::Motion;
+pub use look::{Look, seen};
+pub use motion::{Motion, widening};
 pub use pairs::{pair_counts, pair_counts_of_all};
 pub use setting::Setting;
-
-use crate::particles::Particle;
+pub use work::{bytes, strides};
 
 /// A function of a distance, a time or the like that a run may sum up.
 #[derive(Debug)]
@@ -45,13 +48,31 @@ pub enum Seen {
     Once {
         /// What it is a function of: the middles of bins.
         over: fn(&Setting) -> Vec<f64>,
-        /// Its values, and more that are for headlines only.
-        of: fn(&Setting, &[Particle]) -> Vec<f64>,
+        /// Its values, and more that are for headlines only; not a number where there is nothing to be seen.
+        of: fn(&Look, &mut [f64]),
         /// How many these are.
         further: usize,
+        /// What is found for it.
+        asks: Asks,
     },
-    /// Of discs at two moments, at each row: the mean over the discs.
-    Twice(fn(&motion::Pair<'_>) -> f64),
+    /// Of discs at two moments, at each row.
+    Twice {
+        /// Its value by means over the discs: of Δx², Δy², v(0)·v(t) along x and along y.
+        of: fn([f64; 4]) -> f64,
+    },
+}
+
+/// What a look finds for several observables together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asks {
+    /// Nothing but the discs.
+    Discs,
+    /// Pairs by their distance.
+    Distances,
+    /// The discs around each.
+    Neighbours,
+    /// Density waves.
+    Waves,
 }
 
 /// A number that stands for a whole function.
@@ -63,10 +84,15 @@ pub struct Headline {
     pub unit: &'static str,
     /// Of what the function is over, its mean, and its values in a block.
     pub of: fn(&[f64], &[f64], &[f64]) -> f64,
+    /// Why it cannot be had of a function, by what that is over and its mean.
+    pub never: fn(&[f64], &[f64]) -> Option<&'static str>,
 }
 
+/// It can be had of every function.
+const ALWAYS: fn(&[f64], &[f64]) -> Option<&'static str> = |_, _| None;
+
 /// All of them.
-pub static OBSERVABLES: [Observable; 9] = [
+pub static OBSERVABLES: [Observable; 13] = [
     Observable {
         name: "g(r)",
         file: "g.csv",
@@ -75,13 +101,24 @@ pub static OBSERVABLES: [Observable; 9] = [
         doc: "Pairs at a distance over those of an ideal gas in the same box, closed sides allowed for.",
         source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5; closed sides by the set covariance of a rectangle (Stoyan \
                  and Stoyan 1994)",
-        seen: Seen::Once { over: pairs::distances, of: pairs::correlation, further: 0 },
+        seen: Seen::Once {
+            over: pairs::distances,
+            of: pairs::correlation,
+            further: 0,
+            asks: Asks::Distances,
+        },
         headlines: &[
-            Headline { name: "height of the first peak", unit: "", of: |_, mean, block| block[peak(mean)] },
+            Headline {
+                name: "height of the first peak",
+                unit: "",
+                of: |_, mean, block| block[peak(mean)],
+                never: ALWAYS,
+            },
             Headline {
                 name: "place of the first peak",
                 unit: "length",
                 of: |over, _, block| over[peak(block)],
+                never: ALWAYS,
             },
         ],
     },
@@ -92,13 +129,19 @@ pub static OBSERVABLES: [Observable; 9] = [
         value: ["S", ""],
         doc: "The structure factor |Σ exp(ikr)|²/N of waves along the periodic axes of the box.",
         source: "Hansen and McDonald, Theory of Simple Liquids, section 4.1",
-        seen: Seen::Once { over: waves::numbers, of: waves::factor, further: 0 },
+        seen: Seen::Once { over: waves::numbers, of: waves::factor, further: 0, asks: Asks::Waves },
         headlines: &[
-            Headline { name: "height of the main peak", unit: "", of: |_, mean, block| block[peak(mean)] },
+            Headline {
+                name: "height of the main peak",
+                unit: "",
+                of: |_, mean, block| block[peak(mean)],
+                never: ALWAYS,
+            },
             Headline {
                 name: "place of the main peak",
                 unit: "1/length",
                 of: |over, _, block| over[peak(block)],
+                never: ALWAYS,
             },
         ],
     },
@@ -109,11 +152,17 @@ pub static OBSERVABLES: [Observable; 9] = [
         value: ["share of discs", ""],
         doc: "Shares of discs by their number of neighbours: others nearer than 1.5 times the sum of the radii.",
         source: "the first minimum of g(r) of dense discs lies there",
-        seen: Seen::Once { over: pairs::neighbour_numbers, of: pairs::coordination, further: 0 },
+        seen: Seen::Once {
+            over: pairs::neighbour_numbers,
+            of: pairs::coordination,
+            further: 0,
+            asks: Asks::Neighbours,
+        },
         headlines: &[Headline {
             name: "mean number of neighbours",
             unit: "",
             of: |over, _, block| over.iter().zip(block).map(|(number, share)| number * share).sum(),
+            never: ALWAYS,
         }],
     },
     Observable {
@@ -123,10 +172,20 @@ pub static OBSERVABLES: [Observable; 9] = [
         value: ["density", ""],
         doc: "Distribution of the hexatic order of single discs, ψ6 = ⟨exp(6iθ)⟩ over the six nearest.",
         source: "Nelson and Halperin 1979; six nearest neighbours in place of Voronoi's",
-        seen: Seen::Once { over: pairs::orders, of: pairs::hexatic, further: 2 },
+        seen: Seen::Once { over: pairs::orders, of: pairs::hexatic, further: 2, asks: Asks::Neighbours },
         headlines: &[
-            Headline { name: "global order |Ψ6|", unit: "", of: |over, _, block| block[over.len()] },
-            Headline { name: "mean order of a disc", unit: "", of: |over, _, block| block[over.len() + 1] },
+            Headline {
+                name: "global order |Ψ6|",
+                unit: "",
+                of: |over, _, block| block[over.len()],
+                never: ALWAYS,
+            },
+            Headline {
+                name: "mean order of a disc",
+                unit: "",
+                of: |over, _, block| block[over.len() + 1],
+                never: ALWAYS,
+            },
         ],
     },
     Observable {
@@ -136,20 +195,26 @@ pub static OBSERVABLES: [Observable; 9] = [
         value: ["density", ""],
         doc: "Distribution of both components of the velocity over √(kT/m), kT by the kinetic energy of the same moment.",
         source: "Maxwell 1860: the normal distribution in equilibrium",
-        seen: Seen::Once { over: single::speeds, of: single::velocities, further: 1 },
-        headlines: &[Headline { name: "kurtosis", unit: "", of: |over, _, block| block[over.len()] }],
+        seen: Seen::Once { over: single::speeds, of: single::velocities, further: 1, asks: Asks::Discs },
+        headlines: &[Headline {
+            name: "kurtosis",
+            unit: "",
+            of: |over, _, block| block[over.len()],
+            never: ALWAYS,
+        }],
     },
     Observable {
         name: "density(x)",
         file: "density-x.csv",
         over: ["x", "length"],
         value: ["density", "1/length²"],
-        doc: "Centres of discs by area along the first axis.",
-        source: "",
+        doc: "Centres of discs by area in a hundred slices along the first axis.",
+        source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5: the single-particle density, averaged across the axis",
         seen: Seen::Once {
-            over: |setting| single::slices(setting, 0),
-            of: |setting, discs| single::density(setting, discs, 0),
+            over: single::slices::<0>,
+            of: single::density::<0>,
             further: 0,
+            asks: Asks::Discs,
         },
         headlines: &[],
     },
@@ -158,12 +223,63 @@ pub static OBSERVABLES: [Observable; 9] = [
         file: "density-y.csv",
         over: ["y", "length"],
         value: ["density", "1/length²"],
-        doc: "Centres of discs by area along the second axis.",
-        source: "",
+        doc: "Centres of discs by area in a hundred slices along the second axis.",
+        source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5: the single-particle density, averaged across the axis",
         seen: Seen::Once {
-            over: |setting| single::slices(setting, 1),
-            of: |setting, discs| single::density(setting, discs, 1),
+            over: single::slices::<1>,
+            of: single::density::<1>,
             further: 0,
+            asks: Asks::Discs,
+        },
+        headlines: &[],
+    },
+    Observable {
+        name: "flow(x)",
+        file: "flow-x.csv",
+        over: ["x", "length"],
+        value: ["velocity along y", "length/time"],
+        doc: "Velocity of the discs along y, weighted by mass, in a hundred slices along x.",
+        source: "Irving and Kirkwood 1950: momentum density over mass density",
+        seen: Seen::Once { over: single::slices::<0>, of: single::flow::<0>, further: 0, asks: Asks::Discs },
+        headlines: &[],
+    },
+    Observable {
+        name: "flow(y)",
+        file: "flow-y.csv",
+        over: ["y", "length"],
+        value: ["velocity along x", "length/time"],
+        doc: "Velocity of the discs along x, weighted by mass, in a hundred slices along y.",
+        source: "Irving and Kirkwood 1950: momentum density over mass density",
+        seen: Seen::Once { over: single::slices::<1>, of: single::flow::<1>, further: 0, asks: Asks::Discs },
+        headlines: &[],
+    },
+    Observable {
+        name: "temperature(x)",
+        file: "temperature-x.csv",
+        over: ["x", "length"],
+        value: ["kT", "energy"],
+        doc: "Kinetic energy beside the flow of the slice, Σm|v − u|²/(2(n − 1)), in a hundred slices along the first axis.",
+        source: "Irving and Kirkwood 1950: the kinetic part, with one disc less for the mean velocity",
+        seen: Seen::Once {
+            over: single::slices::<0>,
+            of: single::temperature::<0>,
+            further: 0,
+            asks: Asks::Discs,
+        },
+        headlines: &[],
+    },
+    Observable {
+        name: "temperature(y)",
+        file: "temperature-y.csv",
+        over: ["y", "length"],
+        value: ["kT", "energy"],
+        doc: "Kinetic energy beside the flow of the slice, Σm|v − u|²/(2(n − 1)), in a hundred slices along the second axis.",
+        source: "Irving and Kirkwood 1950: the kinetic part, with one disc less for the mean velocity",
+        seen: Seen::Once {
+            over: single::slices::<1>,
+            of: single::temperature::<1>,
+            further: 0,
+            asks: Asks::Discs,
         },
         headlines: &[],
     },
@@ -174,11 +290,12 @@ pub static OBSERVABLES: [Observable; 9] = [
         value: ["mean square displacement", "length²"],
         doc: "Mean square of the way of a disc within a time, across periodic sides.",
         source: "Einstein 1905: 4 D t in the plane after long times",
-        seen: Seen::Twice(motion::square_displacement),
+        seen: Seen::Twice { of: motion::square_displacement },
         headlines: &[Headline {
             name: "diffusion constant",
             unit: "length²/time",
             of: motion::by_displacements,
+            never: ALWAYS,
         }],
     },
     Observable {
@@ -188,11 +305,12 @@ pub static OBSERVABLES: [Observable; 9] = [
         value: ["velocity autocorrelation", "length²/time²"],
         doc: "⟨v(0)·v(t)⟩/2: the autocorrelation of a component of the velocity.",
         source: "Green and Kubo: its integral is D",
-        seen: Seen::Twice(motion::velocity_product),
+        seen: Seen::Twice { of: motion::velocity_product },
         headlines: &[Headline {
             name: "diffusion constant",
             unit: "length²/time",
             of: motion::by_velocities,
+            never: motion::unresolved,
         }],
     },
 ];

@@ -4,31 +4,26 @@
 //! goes with the logarithm of the length of a run (the order-n algorithm of Frenkel and Smit, section 4.4.2, without coarse-graining).
 
 use crate::domain::Domain;
-use crate::particles::Particle;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend::{Registers, Task, dispatch_native};
 
 /// Lags of one power of two, of which the upper half is new.
 const LAGS: u64 = 8;
+/// Discs that are added up side by side.
+const LANES: usize = 4;
 /// Powers of two.
 const LEVELS: u32 = 16;
 /// More of a periodic side than a disc may go between two looks for its way to be certain.
 const CERTAIN: f64 = 0.25;
 
-/// A disc at two moments.
-#[derive(Clone, Copy, Debug)]
-pub struct Pair<'m> {
-    earlier: &'m [f64; 4],
-    later: &'m [f64; 4],
-}
-
 /// |r(t) − r(0)|² (length²).
-pub(super) fn square_displacement(Pair { earlier, later }: &Pair<'_>) -> f64 {
-    let [x, y] = [later[0] - earlier[0], later[1] - earlier[1]];
-    x * x + y * y
+pub(super) fn square_displacement([x, y, _, _]: [f64; 4]) -> f64 {
+    x + y
 }
 
 /// v(0)·v(t)/2 (length²/time²).
-pub(super) fn velocity_product(Pair { earlier, later }: &Pair<'_>) -> f64 {
-    0.5 * (earlier[2] * later[2] + earlier[3] * later[3])
+pub(super) fn velocity_product([_, _, x, y]: [f64; 4]) -> f64 {
+    0.5 * (x + y)
 }
 
 /// D by the slope of the second half of the mean square displacement: (M(t) − M(t/2))/(4 t/2).
@@ -44,11 +39,34 @@ pub(super) fn by_velocities(lags: &[f64], _: &[f64], block: &[f64]) -> f64 {
     pairs.map(|(lag, value)| 0.5 * (lag[1] - lag[0]) * (value[0] + value[1])).sum()
 }
 
+/// Of what remains of the autocorrelation at the first lag, the least for its integral to be known: by trapeziums it is 1 % off
+/// where it decays exponentially.
+const RESOLVED: f64 = 0.7;
+
+/// Why the integral cannot be known: velocities are forgotten between two rows.
+pub(super) fn unresolved(_: &[f64], mean: &[f64]) -> Option<&'static str> {
+    (mean[1] < RESOLVED * mean[0]).then_some(
+        "rows too far apart: velocities are forgotten from one to the next, and their integral is not known",
+    )
+}
+
+/// By how much bars are wider than those of as many independent blocks of `length` looks, for a lag (looks) that is no longer than a
+/// block: what begins in a block ends in the next one.
+///
+/// Squares of displacements of free particles that overlap by a part f have the correlation f². With x the lag over the length, the
+/// means of two blocks in a row have ρ = (x²/12)/(2x/3 − x²/6), others none; the square of the error of n of them is (1 + 2ρ)/(1 − 2ρ/n)
+/// times that of n that are independent.
+pub fn widening(lag: u64, length: u64, blocks: usize) -> f64 {
+    let x = lag as f64 / length as f64;
+    let correlation = x / (8.0 - 2.0 * x);
+    ((1.0 + 2.0 * correlation) / (1.0 - 2.0 * correlation / blocks as f64)).sqrt()
+}
+
 /// Discs as they were at some looks: place across periodic sides, and velocity; not a number where a disc is lost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
-    /// The numbers of the discs, in ascending order.
-    ids: Vec<u32>,
+    /// How many discs there are.
+    discs: usize,
     /// Looks so far.
     looks: u64,
     /// Times of the first and the last of them.
@@ -57,25 +75,25 @@ pub struct Motion {
     farthest: f64,
     /// The looks that are kept, in their order.
     kept: Vec<(u64, Vec<[f64; 4]>)>,
+    /// Room for later ones.
+    spare: Vec<Vec<[f64; 4]>>,
 }
 
 impl Motion {
-    /// Of these discs.
-    pub fn new(discs: &[Particle]) -> Motion {
-        let mut ids: Vec<u32> = discs.iter().map(|disc| disc.id).collect();
-        ids.sort_unstable();
-        Motion { ids, looks: 0, times: [0.0; 2], farthest: 0.0, kept: vec![] }
+    /// Of as many discs.
+    pub fn new(discs: usize) -> Motion {
+        Motion { discs, looks: 0, times: [0.0; 2], farthest: 0.0, kept: vec![], spare: vec![] }
     }
 
     /// What was kept of discs, as [`Motion::numbers`] and [`Motion::column`] gave it; none where it does not fit the discs.
     pub fn restored(
-        discs: &[Particle],
+        discs: usize,
         looks: u64,
         [first, last, farthest]: [f64; 3],
         column: &[f64],
     ) -> Option<Motion> {
         let mut motion = Motion::new(discs);
-        let length = 1 + 4 * motion.ids.len();
+        let length = 1 + 4 * discs;
         let of = |row: &[f64]| {
             let (states, _) = row[1..].as_chunks::<4>();
             (row[0] as u64, states.to_vec())
@@ -114,48 +132,56 @@ impl Motion {
     }
 
     /// Every lag, in looks.
-    pub fn lags() -> Vec<u64> {
-        let of = |level: u32| (LAGS / 2..LAGS).map(move |lag| lag << level);
-        (0..LAGS / 2).chain((0..LEVELS).flat_map(of)).collect()
+    pub fn lags() -> impl ExactSizeIterator<Item = u64> {
+        const NEW: u64 = LAGS / 2;
+        (0..NEW as u32 * (LEVELS + 1)).map(|place| match u64::from(place).checked_sub(NEW) {
+            None => u64::from(place),
+            Some(place) => (NEW + place % NEW) << (place / NEW),
+        })
     }
 
     /// The lags, in time.
     pub fn times(&self) -> Vec<f64> {
         let between = (self.times[1] - self.times[0]) / (self.looks.max(2) - 1) as f64;
-        Motion::lags().into_iter().map(|lag| lag as f64 * between).collect()
+        Motion::lags().map(|lag| lag as f64 * between).collect()
     }
 
-    /// Looks at the discs at a time; gives each pair of looks that a lag is between to `meet`: the number of the earlier look, the
-    /// place among the lags, and the means of the functions over the discs.
+    /// How many looks are kept at most, once there were a number of them.
+    pub fn most_kept(looks: u64) -> u64 {
+        let levels = (0..LEVELS).take_while(|level| (LAGS / 2) << level < looks);
+        looks.min(LAGS + LAGS / 2 * levels.count() as u64)
+    }
+
+    /// Looks at the discs, as `put` gives them in the order of the scene, at a time; gives each pair of looks that a lag is between
+    /// to `meet`: the number of the earlier look, the place among the lags, and the means over the discs of Δx², Δy² and the
+    /// products of velocities along x and y.
     pub fn look(
         &mut self,
         domain: &Domain,
-        discs: &[Particle],
+        discs: &[[f64; 4]],
         time: f64,
-        functions: &[fn(&Pair<'_>) -> f64],
-        mut meet: impl FnMut(u64, usize, &[f64]),
+        mut meet: impl FnMut(u64, usize, [f64; 4]),
     ) {
-        let mut states = vec![[f64::NAN; 4]; self.ids.len()];
-        let last = self.kept.last().map(|(_, states)| states.as_slice());
-        for (at_hand, disc) in discs.iter().enumerate() {
-            // Discs are mostly in the order of their numbers.
-            let place = match self.ids.get(at_hand) == Some(&disc.id) {
-                true => Ok(at_hand),
-                false => self.ids.binary_search(&disc.id),
-            };
-            let Ok(place) = place else { continue };
-            let (mut at, velocity) = (disc.place(), disc.planar_velocity());
-            if let Some(before) = last.map(|states| states[place]) {
-                let before = [before[0], before[1]];
-                let way = domain.displacement(before, at);
+        let mut states = self.spare.pop().unwrap_or_default();
+        states.clear();
+        states.extend_from_slice(discs);
+        if let Some((_, last)) = self.kept.last() {
+            let sides = [0, 1].map(|axis| match domain.is_periodic(axis) {
+                true => domain.length(axis),
+                false => f64::INFINITY,
+            });
+            let mut farthest = [0.0_f64; 2];
+            for (state, before) in states.iter_mut().zip(last) {
                 for axis in 0..2 {
-                    at[axis] = before[axis] + way[axis];
-                    if domain.is_periodic(axis) {
-                        self.farthest = self.farthest.max(way[axis].abs() / domain.length(axis));
+                    let (side, mut way) = (sides[axis], state[axis] - before[axis]);
+                    if way.abs() > 0.5 * side {
+                        way -= (way / side).round() * side;
                     }
+                    state[axis] = before[axis] + way;
+                    farthest[axis] = farthest[axis].max(way.abs() / side);
                 }
             }
-            states[place] = [at[0], at[1], velocity[0], velocity[1]];
+            self.farthest = self.farthest.max(farthest[0]).max(farthest[1]);
         }
         let look = self.looks;
         self.kept.push((look, states));
@@ -165,28 +191,72 @@ impl Motion {
         }
         self.times[1] = time;
         let later = &self.kept[self.kept.len() - 1].1;
-        for (place, lag) in Motion::lags().into_iter().enumerate() {
+        for (place, lag) in Motion::lags().enumerate() {
             let Some(earlier) = look.checked_sub(lag) else { break };
             // Only looks whose number the power of two of the lag divides are kept long enough.
             let Ok(at) = self.kept.binary_search_by_key(&earlier, |(look, _)| *look) else { continue };
-            if let Some(means) = means(&self.kept[at].1, later, functions) {
-                meet(earlier, place, &means);
+            if let Some(means) = means(&self.kept[at].1, later) {
+                meet(earlier, place, means);
             }
         }
         let looks = self.looks;
-        self.kept.retain(|(look, _)| is_kept(*look, looks));
+        for at in (0..self.kept.len()).rev() {
+            if !is_kept(self.kept[at].0, looks) {
+                self.spare.push(self.kept.remove(at).1);
+            }
+        }
     }
 }
 
-/// The mean of each function over the discs that are there both times.
-fn means(earlier: &[[f64; 4]], later: &[[f64; 4]], functions: &[fn(&Pair<'_>) -> f64]) -> Option<Vec<f64>> {
-    let pairs = || {
-        let pairs = earlier.iter().zip(later).filter(|(_, later)| !later[0].is_nan());
-        pairs.map(|(earlier, later)| Pair { earlier, later })
-    };
-    let count = pairs().count() as f64;
-    let mean = |function: &fn(&Pair<'_>) -> f64| pairs().map(|pair| function(&pair)).sum::<f64>() / count;
-    (count > 0.0).then(|| functions.iter().map(mean).collect())
+/// The means over the discs that are there both times.
+fn means(earlier: &[[f64; 4]], later: &[[f64; 4]]) -> Option<[f64; 4]> {
+    let mut sums = Sums { sums: [[0.0; 4]; LANES], count: 0 };
+    // The best set is one of this processor.
+    dispatch_native(InstructionSet::best(), Meeting { earlier, later, to: &mut sums }).unwrap_or_default();
+    let total = |place: usize| sums.sums.iter().map(|lane| lane[place]).sum::<f64>();
+    (sums.count > 0).then(|| [0, 1, 2, 3].map(|place| total(place) / sums.count as f64))
+}
+
+/// Sums over discs, one disc after the other in each of some lanes.
+struct Sums {
+    sums: [[f64; 4]; LANES],
+    count: u64,
+}
+
+struct Meeting<'m> {
+    earlier: &'m [[f64; 4]],
+    later: &'m [[f64; 4]],
+    to: &'m mut Sums,
+}
+
+impl Task<f64> for Meeting<'_> {
+    #[inline(always)]
+    fn on<R: Registers<Lane = f64>>(self, _: R) {
+        let Meeting { earlier, later, to } = self;
+        let mut sums = [[0.0; 4]; LANES];
+        let mut add = |lane: usize, a: &[f64; 4], b: &[f64; 4]| {
+            let [x, y] = [b[0] - a[0], b[1] - a[1]];
+            // A disc that is lost adds nothing.
+            let is_there = !x.is_nan();
+            let adds = [x * x, y * y, a[2] * b[2], a[3] * b[3]];
+            for place in 0..4 {
+                sums[lane][place] += if is_there { adds[place] } else { 0.0 };
+            }
+            u64::from(is_there)
+        };
+        let (whole_a, rest_a) = earlier.as_chunks::<LANES>();
+        let (whole_b, rest_b) = later.as_chunks::<LANES>();
+        let mut count = 0;
+        for (a, b) in whole_a.iter().zip(whole_b) {
+            for lane in 0..LANES {
+                count += add(lane, &a[lane], &b[lane]);
+            }
+        }
+        for (lane, (a, b)) in rest_a.iter().zip(rest_b).enumerate() {
+            count += add(lane, a, b);
+        }
+        *to = Sums { sums, count };
+    }
 }
 
 /// Whether a look is the earlier one of a lag to the look number `next` or a later one.

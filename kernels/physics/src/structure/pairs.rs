@@ -1,10 +1,16 @@
-//! What discs have with those around them: distances, neighbours, hexatic order.
+//! What discs have with those around them: distances, neighbours, hexatic order. All from one order of cells.
 
+use super::cells::{AT_ONCE, Cells};
+use super::look::{Discs, Look};
 use super::setting::Setting;
-use crate::near::Near;
 use crate::particles::Particle;
-use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rayon::iter::{
+    IndexedParallelIterator, IntoParallelRefIterator, IntoParallelRefMutIterator, ParallelIterator,
+};
 use std::f64::consts::PI;
+use std::ops::Range;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend::{Registers, Task, dispatch_native};
 
 /// Bins of distances in a mean diameter, so that one of them begins at contact.
 const BINS: f64 = 50.0;
@@ -14,67 +20,127 @@ const NEIGHBOURS: f64 = 1.5;
 const MOST_NEIGHBOURS: usize = 16;
 /// Bins of the order of single discs.
 const ORDERS: usize = 50;
-/// Discs that a thread takes at a time.
-const AT_A_TIME: usize = 512;
+/// Whom the hexatic order is over.
+const NEAREST: usize = 6;
+/// Where these are looked for, farther and farther, in mean distances 1/√n: about ten others are there in a gas, and twelve in a
+/// corner at last.
+const LOOKED_FOR: [f64; 3] = [1.8, 2.7, 4.0];
 
-/// The width of the bins of distances (length), and their number.
-fn bins(setting: &Setting) -> (f64, usize) {
-    let width = setting.diameter / BINS;
-    (width, (setting.reach / width + 1e-9).floor() as usize)
+/// How many bins of distances there are.
+fn bins(setting: &Setting) -> usize {
+    (setting.reach * BINS / setting.diameter + 1e-9).floor() as usize
 }
 
 /// The middles of the bins of distances (length).
 pub(super) fn distances(setting: &Setting) -> Vec<f64> {
-    let (width, count) = bins(setting);
-    (0..count).map(|bin| (bin as f64 + 0.5) * width).collect()
+    (0..bins(setting)).map(|bin| (bin as f64 + 0.5) * setting.diameter / BINS).collect()
 }
 
-/// Pairs of discs by the bin of their distance: of those that are near each other, found in squares.
-pub fn pair_counts(setting: &Setting, discs: &[Particle]) -> Vec<u64> {
-    let (width, count) = bins(setting);
-    let (domain, reach) = (setting.domain, width * count as f64);
-    let near = Near::among(domain, discs.iter().map(Particle::place), reach);
-    let of = |(chunk, own): (usize, &[Particle])| {
-        let mut counts = vec![0_u64; count];
-        for (own, number) in own.iter().zip((chunk * AT_A_TIME) as u32..) {
-            let place = own.place();
-            for (other, at) in near.of(place) {
-                let [x, y] = domain.displacement(place, at);
-                let square = x * x + y * y;
-                if other > number && square < reach * reach {
-                    let bin = (square.sqrt() / width) as usize;
-                    counts[bin.min(count - 1)] += 1;
+/// Pairs by the bin of their distance.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Distances {
+    counts: Vec<u64>,
+    /// The same of each part, then those that are farther.
+    parts: Vec<Vec<u32>>,
+}
+
+impl Distances {
+    /// Each pair once: of the box with those behind it in its row and with those in the rows above.
+    pub(super) fn count(&mut self, setting: &Setting, cells: &Cells) {
+        let count = bins(setting);
+        let halves: Vec<f64> = cells.halves(setting.reach).collect();
+        self.parts.resize(cells.parts.len(), vec![]);
+        let of = |(counts, rows): (&mut Vec<u32>, &Range<usize>)| {
+            counts.clear();
+            counts.resize(count + 1, 0);
+            let by_length = BINS / setting.diameter;
+            let counting = Counting { cells, rows: rows.clone(), halves: &halves, by_length, counts };
+            // The best set is one of this processor.
+            dispatch_native(InstructionSet::best(), counting).unwrap_or_default();
+        };
+        self.parts.par_iter_mut().zip(cells.parts.par_iter()).for_each(of);
+        self.counts.clear();
+        self.counts.resize(count, 0);
+        for part in &self.parts {
+            self.counts.iter_mut().zip(part).for_each(|(sum, &count)| *sum += u64::from(count));
+        }
+    }
+}
+
+/// Counts the pairs of some rows of the box.
+struct Counting<'c> {
+    cells: &'c Cells,
+    rows: Range<usize>,
+    halves: &'c [f64],
+    by_length: f64,
+    counts: &'c mut [u32],
+}
+
+impl Task<f64> for Counting<'_> {
+    #[inline(always)]
+    fn on<R: Registers<Lane = f64>>(self, _: R) {
+        let Counting { cells, rows, halves, by_length, counts } = self;
+        let far = (counts.len() - 1) as f64;
+        for row in rows {
+            for own in cells.own(row) {
+                let (x, y) = (cells.x[own], cells.y[own]);
+                for (&half, up) in halves.iter().zip(0..) {
+                    let span = cells.span(row, up, x, half);
+                    let first = if up == 0 { own + 1 } else { span.start };
+                    for begin in (first..span.end).step_by(AT_ONCE) {
+                        let [_, _, squares] = ways(cells, begin, [x, y]);
+                        let bins = squares.map(|square| (square.sqrt() * by_length).min(far) as u32);
+                        for &bin in &bins[..AT_ONCE.min(span.end - begin)] {
+                            counts[bin as usize] += 1;
+                        }
+                    }
                 }
             }
         }
-        counts
-    };
-    // Whole numbers: the same in any order.
-    let sum = |a: Vec<u64>, b: Vec<u64>| a.into_iter().zip(b).map(|(a, b)| a + b).collect();
-    let chunks: Vec<&[Particle]> = discs.chunks(AT_A_TIME).collect();
-    chunks.par_iter().copied().enumerate().map(of).reduce(|| vec![0; count], sum)
+    }
+}
+
+/// From a place to some discs one after the other: along x, along y (length), and the squares of the distances.
+#[inline(always)]
+fn ways(cells: &Cells, first: usize, [x, y]: [f64; 2]) -> [[f64; AT_ONCE]; 3] {
+    let [mut right, mut up, mut squares] = [[0.0; AT_ONCE]; 3];
+    right.copy_from_slice(&cells.x[first..first + AT_ONCE]);
+    up.copy_from_slice(&cells.y[first..first + AT_ONCE]);
+    for at in 0..AT_ONCE {
+        right[at] -= x;
+        up[at] -= y;
+        squares[at] = right[at] * right[at] + up[at] * up[at];
+    }
+    [right, up, squares]
+}
+
+/// Pairs of discs by the bin of their distance, found in cells.
+pub fn pair_counts(setting: &Setting, discs: &[Particle]) -> Vec<u64> {
+    let of = |place: fn(&Particle) -> f64| discs.iter().map(place).collect();
+    let discs = Discs { x: of(|it| it.position[0]), y: of(|it| it.position[1]), ..Discs::default() };
+    let (mut cells, mut distances) = (Cells::default(), Distances::default());
+    cells.sort(setting, &discs, setting.reach);
+    distances.count(setting, &cells);
+    distances.counts
 }
 
 /// The same by looking at every pair: the oracle.
 pub fn pair_counts_of_all(setting: &Setting, discs: &[Particle]) -> Vec<u64> {
-    let (width, count) = bins(setting);
-    let reach = width * count as f64;
-    let mut counts = vec![0; count];
+    let mut counts = vec![0; bins(setting)];
     for (number, own) in discs.iter().enumerate() {
         for other in &discs[number + 1..] {
             let [x, y] = setting.domain.displacement(own.place(), other.place());
-            let square = x * x + y * y;
-            if square < reach * reach {
-                counts[((square.sqrt() / width) as usize).min(count - 1)] += 1;
-            }
+            let bin = ((x * x + y * y).sqrt() * (BINS / setting.diameter)) as usize;
+            counts.iter_mut().skip(bin).take(1).for_each(|count| *count += 1);
         }
     }
     counts
 }
 
 /// g(r) in each bin: pairs over those that an ideal gas has on average.
-pub(super) fn correlation(setting: &Setting, discs: &[Particle]) -> Vec<f64> {
-    let (width, _) = bins(setting);
+pub(super) fn correlation(look: &Look, values: &mut [f64]) {
+    let setting = &look.setting;
+    let width = setting.diameter / BINS;
     let [x, y] = setting.room();
     let closed = [0, 1].map(|axis| f64::from(!setting.domain.is_periodic(axis)));
     let [over_x, over_y] = [closed[0] / x, closed[1] / y];
@@ -83,11 +149,198 @@ pub(super) fn correlation(setting: &Setting, discs: &[Particle]) -> Vec<f64> {
         let (linear, square) = (2.0 / PI * (over_x + over_y), over_x * over_y / PI);
         2.0 * PI * r * r * (0.5 - linear * r / 3.0 + 0.25 * square * r * r)
     };
-    let density_of_pairs = 0.5 * discs.len() as f64 * (discs.len() as f64 - 1.0) / (x * y);
+    let discs = look.discs.x.len() as f64;
+    let density_of_pairs = 0.5 * discs * (discs - 1.0) / (x * y);
     let ideal =
         |bin: usize| density_of_pairs * (within((bin + 1) as f64 * width) - within(bin as f64 * width));
-    let counts = pair_counts(setting, discs).into_iter().enumerate();
-    counts.map(|(bin, count)| if count == 0 { 0.0 } else { count as f64 / ideal(bin) }).collect()
+    for (bin, (value, &count)) in values.iter_mut().zip(&look.distances.counts).enumerate() {
+        *value = if count == 0 { 0.0 } else { count as f64 / ideal(bin) };
+    }
+}
+
+/// Who is next to whom.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Neighbours {
+    parts: Vec<Around>,
+}
+
+/// What some discs have around them, summed up, and room for the others around one.
+#[derive(Clone, Debug)]
+struct Around {
+    /// Discs by their number of neighbours, and by the bin of |ψ6|.
+    numbers: [u32; MOST_NEIGHBOURS + 1],
+    orders: [u32; ORDERS],
+    /// Sums of ψ6, and of |ψ6|.
+    order: [f64; 3],
+    /// Of those around a disc the ways along x and y (length), the squares of the distances, and the places in the order of cells.
+    right: Vec<f64>,
+    up: Vec<f64>,
+    squares: Vec<f64>,
+    places: Vec<usize>,
+}
+
+impl Neighbours {
+    /// How far neighbours and the six nearest are looked for (length).
+    pub(super) fn reach(setting: &Setting, discs: usize) -> f64 {
+        (2.0 * NEIGHBOURS * setting.largest_radius).max(Neighbours::looked_for(setting, discs)[2])
+    }
+
+    fn looked_for(setting: &Setting, discs: usize) -> [f64; 3] {
+        let [x, y] = setting.room();
+        let apart = (x * y / discs as f64).sqrt();
+        LOOKED_FOR.map(|distances| distances * apart)
+    }
+
+    /// Looks around every disc.
+    pub(super) fn find(&mut self, setting: &Setting, discs: &Discs, cells: &Cells) {
+        let none = Around {
+            numbers: [0; MOST_NEIGHBOURS + 1],
+            orders: [0; ORDERS],
+            order: [0.0; 3],
+            right: vec![],
+            up: vec![],
+            squares: vec![],
+            places: vec![],
+        };
+        self.parts.resize(cells.parts.len(), none);
+        let looked_for = Neighbours::looked_for(setting, discs.x.len());
+        let largest = setting.largest_radius;
+        self.parts.par_iter_mut().zip(cells.parts.par_iter()).for_each(|(around, rows)| {
+            let rows = rows.clone();
+            let looking = Looking { radius: &discs.radius, cells, rows, looked_for, largest, around };
+            dispatch_native(InstructionSet::best(), looking).unwrap_or_default();
+        });
+    }
+
+    /// The sum of a number of each part, in the order of the parts.
+    fn sum<T: Into<f64>>(&self, of: impl Fn(&Around) -> T) -> f64 {
+        self.parts.iter().map(|part| of(part).into()).sum()
+    }
+}
+
+/// Looks around the discs of some rows.
+struct Looking<'c> {
+    radius: &'c [f64],
+    cells: &'c Cells,
+    rows: Range<usize>,
+    looked_for: [f64; 3],
+    largest: f64,
+    around: &'c mut Around,
+}
+
+impl Task<f64> for Looking<'_> {
+    #[inline(always)]
+    fn on<R: Registers<Lane = f64>>(self, _: R) {
+        let Looking { radius, cells, rows, looked_for, largest, around } = self;
+        around.numbers.fill(0);
+        around.orders.fill(0);
+        around.order = [0.0; 3];
+        for row in rows {
+            for own in cells.own(row) {
+                let own_radius = radius[cells.number[own] as usize];
+                let near = (NEIGHBOURS * (own_radius + largest)).max(looked_for[0]);
+                let mut found = around.look(cells, row, own, near);
+                let neighbours =
+                    around.places[..found].iter().zip(&around.squares).filter(|&(&at, &square)| {
+                        let reach = NEIGHBOURS * (own_radius + radius[cells.number[at] as usize]);
+                        square < reach * reach
+                    });
+                around.numbers[neighbours.count().min(MOST_NEIGHBOURS)] += 1;
+                for reach in [looked_for[1], looked_for[2]] {
+                    if found < NEAREST && near < reach {
+                        found = around.look(cells, row, own, reach);
+                    }
+                }
+                let [x, y] = around.hexatic(found);
+                let order = (x * x + y * y).sqrt();
+                around.orders[((order * ORDERS as f64) as usize).min(ORDERS - 1)] += 1;
+                around.order[0] += x;
+                around.order[1] += y;
+                around.order[2] += order;
+            }
+        }
+    }
+}
+
+impl Around {
+    /// Writes down who is nearer than `reach` (length) to a disc, itself left out: how many. Those that follow are at no finite distance.
+    #[inline(always)]
+    fn look(&mut self, cells: &Cells, row: usize, own: usize, reach: f64) -> usize {
+        let (x, y) = (cells.x[own], cells.y[own]);
+        let rows = cells.rows_within(reach);
+        let mut found = 0;
+        for up in -rows..=rows {
+            let span = cells.span(row, up, x, cells.half(reach, up));
+            if self.squares.len() < found + span.len() + AT_ONCE {
+                let room = 2 * (found + span.len() + AT_ONCE);
+                for column in [&mut self.squares, &mut self.right, &mut self.up] {
+                    column.resize(room, 0.0);
+                }
+                self.places.resize(room, 0);
+            }
+            for begin in (span.start..span.end).step_by(AT_ONCE) {
+                let [right, up, squares] = ways(cells, begin, [x, y]);
+                // Written in any case, one over the other where it is too far.
+                for at in 0..AT_ONCE.min(span.end - begin) {
+                    self.squares[found] = squares[at];
+                    self.right[found] = right[at];
+                    self.up[found] = up[at];
+                    self.places[found] = begin + at;
+                    found += usize::from(squares[at] < reach * reach && begin + at != own);
+                }
+            }
+        }
+        self.squares[found..found + AT_ONCE].fill(f64::INFINITY);
+        found
+    }
+
+    /// ⟨exp(6iθ)⟩ over the six nearest of those found; over all where they are fewer, 0 of none.
+    #[inline(always)]
+    fn hexatic(&self, found: usize) -> [f64; 2] {
+        // The smallest so far, in order: each pushes what is larger along.
+        let mut nearest = [f64::INFINITY; NEAREST];
+        for &square in &self.squares[..found] {
+            let mut pushed = square;
+            for held in &mut nearest {
+                (*held, pushed) = (held.min(pushed), held.max(pushed));
+            }
+        }
+        let [.., farthest] = nearest.map(|square| if square.is_finite() { square } else { f64::MAX });
+        let ([mut x, mut y], mut count) = ([[0.0; AT_ONCE]; 2], 0);
+        for begin in (0..found).step_by(AT_ONCE) {
+            let [mut right, mut up, mut squares] = [[0.0; AT_ONCE]; 3];
+            right.copy_from_slice(&self.right[begin..begin + AT_ONCE]);
+            up.copy_from_slice(&self.up[begin..begin + AT_ONCE]);
+            squares.copy_from_slice(&self.squares[begin..begin + AT_ONCE]);
+            for at in 0..AT_ONCE {
+                let is_near = squares[at] <= farthest;
+                let part = sixth_power([right[at], up[at]])
+                    .map(|part| part / (squares[at] * squares[at] * squares[at]));
+                x[at] += if is_near { part[0] } else { 0.0 };
+                y[at] += if is_near { part[1] } else { 0.0 };
+                count += usize::from(is_near);
+            }
+        }
+        if count > NEAREST {
+            return self.hexatic_of_equals(found, farthest);
+        }
+        [x, y].map(|lanes| lanes.iter().sum::<f64>() / count.max(1) as f64)
+    }
+
+    /// The same where several are just as far as the sixth: the first ones of these count.
+    fn hexatic_of_equals(&self, found: usize, farthest: f64) -> [f64; 2] {
+        let nearer = self.squares[..found].iter().filter(|&&square| square < farthest).count();
+        let (mut sum, mut equals) = ([0.0; 2], NEAREST - nearer);
+        for at in 0..found {
+            let square = self.squares[at];
+            if square < farthest || square == farthest && equals > 0 {
+                equals -= usize::from(square == farthest);
+                let [x, y] = sixth_power([self.right[at], self.up[at]]);
+                sum = [sum[0] + x / (square * square * square), sum[1] + y / (square * square * square)];
+            }
+        }
+        sum.map(|part| part / NEAREST as f64)
+    }
 }
 
 /// Numbers of neighbours.
@@ -96,20 +349,11 @@ pub(super) fn neighbour_numbers(_: &Setting) -> Vec<f64> {
 }
 
 /// Shares of discs by their number of neighbours.
-pub(super) fn coordination(setting: &Setting, discs: &[Particle]) -> Vec<f64> {
-    let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
-    let near = Near::among(setting.domain, discs.iter().map(Particle::place), 2.0 * NEIGHBOURS * largest);
-    let of = |(number, own): (usize, &Particle)| {
-        let is_neighbour = |&(other, at): &(u32, [f64; 2])| {
-            let reach = NEIGHBOURS * (own.radius + discs[other as usize].radius);
-            other as usize != number && setting.domain.distance(own.place(), at) < reach
-        };
-        near.of(own.place()).filter(is_neighbour).count().min(MOST_NEIGHBOURS)
-    };
-    let numbers: Vec<usize> = discs.par_iter().enumerate().map(of).collect();
-    let mut shares = vec![0.0; MOST_NEIGHBOURS + 1];
-    numbers.into_iter().for_each(|number| shares[number] += 1.0 / discs.len() as f64);
-    shares
+pub(super) fn coordination(look: &Look, values: &mut [f64]) {
+    let discs = look.discs.x.len() as f64;
+    for (number, value) in values.iter_mut().enumerate() {
+        *value = look.neighbours.sum(|part| part.numbers[number]) / discs;
+    }
 }
 
 /// The middles of the bins of |ψ6|.
@@ -118,46 +362,19 @@ pub(super) fn orders(_: &Setting) -> Vec<f64> {
 }
 
 /// The density of |ψ6| of the discs, then |Ψ6|, the order of all of them, and the mean |ψ6|.
-pub(super) fn hexatic(setting: &Setting, discs: &[Particle]) -> Vec<f64> {
-    let domain = setting.domain;
-    // About ten others are within it in a gas, too; where there are fewer than six, those that there are.
-    let [x, y] = setting.room();
-    let reach = 2.0 * (x * y / discs.len() as f64).sqrt();
-    let near = Near::among(domain, discs.iter().map(Particle::place), reach);
-    let of = |(number, own): (usize, &Particle)| {
-        let others = near.of(own.place()).filter(|&(other, _)| other as usize != number);
-        let mut around: Vec<(f64, [f64; 2])> = others
-            .map(|(_, at)| domain.displacement(own.place(), at))
-            .map(|[x, y]| (x * x + y * y, [x, y]))
-            .collect();
-        let nearest = around.len().min(6);
-        if nearest == 0 {
-            return [0.0; 2];
-        }
-        around.select_nth_unstable_by(nearest - 1, |a, b| a.0.total_cmp(&b.0));
-        around.truncate(nearest);
-        // What is left is in an order that depends on the search alone, which is that of the discs.
-        let sum = around.iter().fold([0.0; 2], |sum, &(square, way)| {
-            let [x, y] = sixth_power(way).map(|part| part / (square * square * square));
-            [sum[0] + x, sum[1] + y]
-        });
-        sum.map(|part| part / nearest as f64)
-    };
-    let bonds: Vec<[f64; 2]> = discs.par_iter().enumerate().map(of).collect();
-    let share = 1.0 / discs.len() as f64;
-    let mut values = vec![0.0; ORDERS + 2];
-    let mut whole = [0.0; 2];
-    for [x, y] in bonds {
-        let order = x.hypot(y);
-        values[((order * ORDERS as f64) as usize).min(ORDERS - 1)] += share * ORDERS as f64;
-        values[ORDERS + 1] += share * order;
-        whole = [whole[0] + share * x, whole[1] + share * y];
+pub(super) fn hexatic(look: &Look, values: &mut [f64]) {
+    let discs = look.discs.x.len() as f64;
+    let (densities, whole) = values.split_at_mut(ORDERS);
+    for (bin, value) in densities.iter_mut().enumerate() {
+        *value = look.neighbours.sum(|part| part.orders[bin]) * ORDERS as f64 / discs;
     }
-    values[ORDERS] = whole[0].hypot(whole[1]);
-    values
+    let [x, y, single] = [0, 1, 2].map(|sum| look.neighbours.sum(|part| part.order[sum]) / discs);
+    whole[0] = x.hypot(y);
+    whole[1] = single;
 }
 
 /// (x + iy)⁶.
+#[inline(always)]
 fn sixth_power([x, y]: [f64; 2]) -> [f64; 2] {
     let [a, b] = [x * x - y * y, 2.0 * x * y];
     let [c, d] = [a * a - b * b, 2.0 * a * b];

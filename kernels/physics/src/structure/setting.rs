@@ -13,6 +13,8 @@ pub struct Setting {
     pub domain: Domain,
     /// The mean diameter of the discs at the start (length).
     pub diameter: f64,
+    /// The largest radius at the start (length).
+    pub largest_radius: f64,
     /// How far pairs are looked at (length).
     pub reach: f64,
 }
@@ -27,7 +29,8 @@ impl Setting {
             false => domain.length(axis) - diameter,
         });
         let reach = reaches.into_iter().fold(REACH * diameter, f64::min).max(0.0);
-        Setting { domain, diameter, reach }
+        let largest_radius = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
+        Setting { domain, diameter, largest_radius, reach }
     }
 
     /// The sides of the rectangle that centres of discs may be in (length).

@@ -1,7 +1,7 @@
 //! Distributions of what each disc has alone: velocities and places.
 
+use super::look::Look;
 use super::setting::Setting;
-use crate::particles::Particle;
 
 /// Width of the bins of velocities, and their number: from −5 to 5.
 const VELOCITIES: (f64, usize) = (0.1, 100);
@@ -15,43 +15,69 @@ pub(super) fn speeds(_: &Setting) -> Vec<f64> {
 }
 
 /// The density of the components of v/√(kT/m), and their kurtosis, which is 3 by Maxwell.
-pub(super) fn velocities(_: &Setting, discs: &[Particle]) -> Vec<f64> {
+pub(super) fn velocities(look: &Look, values: &mut [f64]) {
     let (width, count) = VELOCITIES;
-    let square = |[x, y]: [f64; 2]| x * x + y * y;
-    let components = 2.0 * discs.len() as f64;
-    let temperature =
-        discs.iter().map(|disc| disc.mass * square(disc.planar_velocity())).sum::<f64>() / components;
-    let mut values = vec![0.0; count + 1];
+    let discs = &look.discs;
+    let components = 2.0 * discs.x.len() as f64;
+    let moving = || discs.vx.iter().zip(&discs.vy).zip(&discs.mass);
+    let temperature = moving().map(|((x, y), mass)| mass * (x * x + y * y)).sum::<f64>() / components;
     if temperature <= 0.0 {
-        return values;
+        return;
     }
-    for disc in discs {
-        let scale = (disc.mass / temperature).sqrt();
-        for v in disc.planar_velocity().map(|v| v * scale) {
-            let bin = v / width + 0.5 * count as f64;
+    let mut counts = [0_u32; VELOCITIES.1];
+    for ((x, y), mass) in moving() {
+        let scale = (mass / temperature).sqrt();
+        for v in [x * scale, y * scale] {
+            let bin = v * (1.0 / width) + 0.5 * count as f64;
             if (0.0..count as f64).contains(&bin) {
-                values[bin as usize] += 1.0 / (components * width);
+                counts[bin as usize] += 1;
             }
-            values[count] += v * v * v * v / components;
+            values[count] += v * v * v * v;
         }
     }
-    values
+    values[count] /= components;
+    values.iter_mut().zip(counts).for_each(|(value, count)| *value = f64::from(count) / (components * width));
 }
 
 /// The middles of slices of the box along an axis (length).
-pub(super) fn slices(setting: &Setting, axis: usize) -> Vec<f64> {
-    let (origin, width) = (setting.domain.origin[axis], setting.domain.length(axis) / SLICES as f64);
+pub(super) fn slices<const AXIS: usize>(setting: &Setting) -> Vec<f64> {
+    let (origin, width) = (setting.domain.origin[AXIS], setting.domain.length(AXIS) / SLICES as f64);
     (0..SLICES).map(|slice| origin + (slice as f64 + 0.5) * width).collect()
 }
 
-/// Centres of discs by area (1/length²) in each of these slices.
-pub(super) fn density(setting: &Setting, discs: &[Particle], axis: usize) -> Vec<f64> {
-    let (origin, length) = (setting.domain.origin[axis], setting.domain.length(axis));
-    let one = SLICES as f64 / setting.domain.area();
-    let mut values = vec![0.0; SLICES];
-    for disc in discs {
-        let slice = (disc.position[axis] - origin) / length * SLICES as f64;
-        values[(slice as usize).min(SLICES - 1)] += one;
+/// Of each slice: how many discs, their mass, momentum and twice their kinetic energy.
+fn sums<const AXIS: usize>(look: &Look) -> [[f64; 5]; SLICES] {
+    let (discs, domain) = (&look.discs, look.setting.domain);
+    let by_length = SLICES as f64 / domain.length(AXIS);
+    let places = if AXIS == 0 { &discs.x } else { &discs.y };
+    let mut sums = [[0.0; 5]; SLICES];
+    for (disc, &place) in places.iter().enumerate() {
+        let slice = ((place - domain.origin[AXIS]) * by_length) as usize;
+        let (mass, [x, y]) = (discs.mass[disc], [discs.vx[disc], discs.vy[disc]]);
+        let adds = [1.0, mass, mass * x, mass * y, mass * (x * x + y * y)];
+        sums[slice.min(SLICES - 1)].iter_mut().zip(adds).for_each(|(sum, it)| *sum += it);
     }
-    values
+    sums
+}
+
+/// Centres of discs by area (1/length²) in each of these slices.
+pub(super) fn density<const AXIS: usize>(look: &Look, values: &mut [f64]) {
+    let one = SLICES as f64 / look.setting.domain.area();
+    values.iter_mut().zip(sums::<AXIS>(look)).for_each(|(value, [discs, ..])| *value = discs * one);
+}
+
+/// The velocity across the axis (length/time): Σmv/Σm; not a number where there is no disc.
+pub(super) fn flow<const AXIS: usize>(look: &Look, values: &mut [f64]) {
+    let of = |[_, mass, x, y, _]: [f64; 5]| if AXIS == 0 { y / mass } else { x / mass };
+    values.iter_mut().zip(sums::<AXIS>(look)).for_each(|(value, sums)| *value = of(sums));
+}
+
+/// kT of both components beside the flow of the slice, which takes one disc's part away: Σm|v − u|²/(2(n − 1)); not a number where
+/// there are fewer than two discs.
+pub(super) fn temperature<const AXIS: usize>(look: &Look, values: &mut [f64]) {
+    let of = |[discs, mass, x, y, square]: [f64; 5]| match discs > 1.0 {
+        true => (square - (x * x + y * y) / mass) / (2.0 * (discs - 1.0)),
+        false => f64::NAN,
+    };
+    values.iter_mut().zip(sums::<AXIS>(look)).for_each(|(value, sums)| *value = of(sums));
 }

@@ -9,6 +9,7 @@ use crate::method::{Fact, Failure, Prepared, Purpose, Simulation, Startable};
 use crate::particles::{Kind, Particle, Particles};
 use crate::words::Words;
 use serde_json::{Map, Value, json};
+use std::f64::consts::PI;
 use std::path::Path;
 use stripmine_kernels::flight::Disc;
 
@@ -103,6 +104,25 @@ impl Checked {
 impl Startable for Checked {
     fn particles(&self) -> &Particles {
         &self.particles
+    }
+
+    fn work(&self) -> f64 {
+        // Collisions of a disc in a unit of time by Enskog, each of two discs and 400 ns.
+        let discs = self.particles.all();
+        let count = discs.len() as f64;
+        let mean = |of: fn(&Particle) -> f64| discs.iter().map(of).sum::<f64>() / count;
+        let [diameter, area, square] = [
+            mean(|it| 2.0 * it.radius),
+            mean(|it| PI * it.radius * it.radius),
+            mean(|it| {
+                let [x, y] = it.planar_velocity();
+                0.5 * (x * x + y * y)
+            }),
+        ];
+        let density = count / self.domain.area();
+        let fraction = (area * density).min(0.9);
+        let at_contact = (1.0 - 7.0 / 16.0 * fraction) / (1.0 - fraction).powi(2);
+        400.0 * PI.sqrt() * density * diameter * at_contact * square.sqrt()
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {

@@ -14,7 +14,7 @@ use crate::io::checkpoint::Column;
 use crate::method::observed::values;
 use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
-use crate::particles::{Particles, in_space};
+use crate::particles::{Particles, States, in_space};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -334,6 +334,13 @@ impl Simulation for Running {
             all[place].velocity = in_space(disc.velocity_at(&self.arena.space, time));
         }
         particles
+    }
+
+    fn states(&self, states: &mut States) {
+        let time = self.clock.time;
+        for (disc, &number) in self.discs().zip(&self.places) {
+            states.put(number, self.arena.place(disc, time), disc.velocity_at(&self.arena.space, time));
+        }
     }
 
     fn observe(&self) -> Vec<f64> {

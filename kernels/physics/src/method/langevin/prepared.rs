@@ -11,6 +11,7 @@ use crate::method::{Fact, Failure, Prepared, Purpose, Schedule, Simulation, Star
 use crate::particles::{Particle, Particles};
 use crate::words::Words;
 use serde_json::{Map, Value, json};
+use std::f64::consts::PI;
 use std::path::Path;
 use stripmine_kernels::sweep::fast::lattice::SPARSE;
 
@@ -115,6 +116,13 @@ impl Startable for Checked {
 
     fn programs(&self) -> Vec<VectorProgram> {
         programs(self)
+    }
+
+    fn work(&self) -> f64 {
+        // Noise and motion, and the pairs within reach.
+        let density = self.particles.len() as f64 / self.domain.area();
+        let pairs = if self.has_pairs() { 0.5 * PI * self.reach * self.reach * density } else { 0.0 };
+        6.0 + 1.2 * pairs
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {

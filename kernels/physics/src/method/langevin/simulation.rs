@@ -9,7 +9,7 @@ use crate::method::observed::values;
 use crate::method::pairwise::Stepping;
 use crate::method::{Clock, Failure, Purpose, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
-use crate::particles::{Particle, Particles};
+use crate::particles::{Particle, Particles, States};
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -225,6 +225,14 @@ impl Simulation for Running {
 
     fn particles(&self) -> Particles {
         self.stepper.particles()
+    }
+
+    fn states(&self, states: &mut States) {
+        // The stepper numbers those that are still there.
+        match self.start.len() == self.checked.particles.len() {
+            true => self.stepper.states(states),
+            false => states.take_up(&self.particles()),
+        }
     }
 
     fn positions(&self) -> Vec<[f32; 3]> {

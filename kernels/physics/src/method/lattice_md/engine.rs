@@ -5,7 +5,7 @@ use super::{Elapsed, Timings, Totals};
 use crate::io::checkpoint::Column;
 use crate::method::Failure;
 use crate::observe::{Scenery, Sums};
-use crate::particles::Particles;
+use crate::particles::{Particles, States};
 use stripmine_kernels::ledger::{Ledger, Length};
 
 /// Steps granular discs. It never prints and never writes a file.
@@ -24,6 +24,11 @@ pub trait Engine: Send {
 
     /// The particles as they stand, positions inside the box.
     fn particles(&self) -> Particles;
+
+    /// Places inside the box and velocities of the grains.
+    fn states(&self, states: &mut States) {
+        states.take_up(&self.particles());
+    }
 
     /// The same as the state has them: the last correction may have taken a position beyond a periodic side, and no
     /// [crossing](Self::crossings) is counted before the next step.

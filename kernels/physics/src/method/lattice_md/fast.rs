@@ -15,7 +15,7 @@ use crate::method::pairwise::{
     self, Dynamics, Elapsed, Prescribed, Sort, Stepping, System, WithLaw, WithScheme,
 };
 use crate::observe::{Scenery, Sums};
-use crate::particles::Particles;
+use crate::particles::{Particles, States};
 use crate::scene::WallMotion;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
@@ -181,6 +181,10 @@ impl Engine for FastMd {
 
     fn particles(&self) -> Particles {
         self.stepping.particles()
+    }
+
+    fn states(&self, states: &mut States) {
+        self.stepping.states(states);
     }
 
     fn unwrapped(&self) -> Particles {

@@ -21,13 +21,14 @@ use crate::method::{
 };
 use crate::number::significant;
 use crate::observe::{Observation, Scenery, Sums};
-use crate::particles::Particles;
+use crate::particles::{Particles, States};
 use crate::scene::{Precision, SceneErrors};
 use crate::words::Words;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::cell::{Cell, OnceCell};
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -97,6 +98,13 @@ impl Checked {
 impl Startable for Checked {
     fn particles(&self) -> &Particles {
         &self.particles
+    }
+
+    fn work(&self) -> f64 {
+        // To move them and find the pairs, and the contacts, of which there are more the denser they lie.
+        let discs = self.particles.all().iter();
+        let fraction = discs.map(|disc| PI * disc.radius * disc.radius).sum::<f64>() / self.domain.area();
+        2.5 + 11.0 * fraction.min(1.0).powi(2)
     }
 
     fn programs(&self) -> Vec<VectorProgram> {
@@ -263,6 +271,10 @@ impl Simulation for Running {
 
     fn particles(&self) -> Particles {
         self.engine.particles()
+    }
+
+    fn states(&self, states: &mut States) {
+        self.engine.states(states);
     }
 
     fn observe(&self) -> Vec<f64> {

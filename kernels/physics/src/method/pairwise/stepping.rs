@@ -5,7 +5,7 @@ use super::{Dynamics, Elapsed, Engine, Named, Phase, unwrapped, wrapped};
 use crate::io::checkpoint::Column;
 use crate::method::Failure;
 use crate::observe::{Scenery, Sums};
-use crate::particles::{Particle, Particles, in_space};
+use crate::particles::{Particle, Particles, States, in_space};
 use stripmine_kernels::alone_if;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::law::Asked;
@@ -46,6 +46,9 @@ pub trait Stepping: Named + Send {
 
     /// The particles as they stand, positions inside the box.
     fn particles(&self) -> Particles;
+
+    /// Places inside the box and velocities of the grains, by their places in the scene.
+    fn states(&self, states: &mut States);
 
     /// Positions alone, inside the box and in single precision, in the scene's order.
     fn positions(&self) -> Vec<[f32; 3]>;
@@ -122,6 +125,22 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
 
     fn particles(&self) -> Particles {
         wrapped(self.unwrapped(), &self.system.domain)
+    }
+
+    fn states(&self, states: &mut States) {
+        const AT_A_TIME: usize = 128;
+        for first in (0..self.start.len()).step_by(AT_A_TIME) {
+            let count = AT_A_TIME.min(self.start.len() - first);
+            let mut columns = [[0.0; AT_A_TIME]; 4];
+            let [x, y, vx, vy] = &mut columns;
+            self.correct(0, first, [&mut x[..count], &mut vx[..count]]);
+            self.correct(1, first, [&mut y[..count], &mut vy[..count]]);
+            for at in 0..count {
+                let place = self.seen_from_origin(first + at, [x[at], y[at]]);
+                let place = self.system.domain.wrapped(place);
+                states.put(self.state.number(first + at), place, [vx[at], vy[at]]);
+            }
+        }
     }
 
     fn positions(&self) -> Vec<[f32; 3]> {

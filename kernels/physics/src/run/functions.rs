@@ -1,0 +1,178 @@
+//! What runs have written of the structure, and what several of one scene say of it together.
+
+use super::finished::FinishedError;
+use super::folder::SUMMARY;
+use crate::averages::of_independent;
+use crate::io::regular_file;
+use crate::structure::{OBSERVABLES, Observable};
+use serde::Serialize;
+use serde_json::Value;
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Longer than any of the files (bytes).
+const LONGEST: u64 = 1 << 20;
+/// Places are the same where they differ by less than this part of themselves.
+const SAME: f64 = 1e-6;
+
+/// A function of the structure by one run or several.
+#[derive(Clone, Debug, Serialize)]
+pub struct Function {
+    /// The name of the observable.
+    pub name: &'static str,
+    /// The name of its file.
+    pub file: &'static str,
+    /// How many runs it is from.
+    pub runs: usize,
+    /// Where, the mean, and the half width of its interval of 95 %: over blocks of one run, or over runs by Student's t.
+    pub points: Vec<[f64; 3]>,
+    /// The numbers that stand for it.
+    pub headlines: Vec<Number>,
+    /// What it is.
+    #[serde(skip)]
+    pub observable: &'static Observable,
+}
+
+/// A number that stands for a function.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Number {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit, empty for pure numbers.
+    pub unit: &'static str,
+    /// Its mean.
+    pub mean: f64,
+    /// Half the width of its interval of 95 %.
+    pub bar: f64,
+}
+
+/// The functions that every one of some runs has written, each where all of them have it. A mean is that of the runs, its bar from
+/// what lies between them; of one run they are its own.
+pub fn functions_of<'f>(folders: impl Iterator<Item = &'f Path>) -> Vec<Function> {
+    let folders: Vec<&Path> = folders.collect();
+    let summaries: Vec<Value> = folders.iter().map(|folder| summary(folder)).collect();
+    let of = |observable: &'static Observable| {
+        let files: Option<Vec<Vec<[f64; 3]>>> =
+            folders.iter().map(|folder| points(&folder.join(observable.file))).collect();
+        let points = joined(&files?);
+        let headline = |name: &'static str, unit: &'static str| {
+            let of = |summary: &Value| number(summary, observable.name, name);
+            let runs: Option<Vec<[f64; 3]>> = summaries.iter().map(of).collect();
+            let joined = joined(&runs?.into_iter().map(|run| vec![run]).collect::<Vec<_>>());
+            joined.first().map(|&[_, mean, bar]| Number { name, unit, mean, bar })
+        };
+        let headlines = observable.headlines.iter();
+        let headlines = headlines.filter_map(|it| headline(it.name, it.unit)).collect();
+        let Observable { name, file, .. } = *observable;
+        (!points.is_empty()).then_some(Function {
+            name,
+            file,
+            runs: folders.len(),
+            points,
+            headlines,
+            observable,
+        })
+    };
+    OBSERVABLES.iter().filter_map(of).collect()
+}
+
+/// One of the functions that every one of some runs has written.
+///
+/// # Errors
+/// [`FinishedError::NoStructure`], if one has not.
+pub fn function_of<'f>(
+    folders: impl Iterator<Item = &'f Path> + Clone,
+    observable: &'static Observable,
+) -> Result<Function, FinishedError> {
+    let found = functions_of(folders.clone()).into_iter().find(|it| it.name == observable.name);
+    found.ok_or_else(|| {
+        let mut folders = folders.map(Path::to_owned);
+        let without = folders.find(|folder| points(&folder.join(observable.file)).is_none());
+        FinishedError::NoStructure { folder: without.unwrap_or_default(), name: observable.name }
+    })
+}
+
+/// Writes a function as comma-separated values: what it is over, its mean and its bar, lines without a mean left out.
+///
+/// # Errors
+/// Those of what is written to.
+pub(super) fn write_csv(observable: &Observable, points: &[[f64; 3]], out: &mut dyn Write) -> io::Result<()> {
+    let with_unit = |[name, unit]: [&str; 2]| match unit {
+        "" => name.to_owned(),
+        unit => format!("{name} ({unit})"),
+    };
+    writeln!(out, "{},{},error", with_unit(observable.over), with_unit(observable.value))?;
+    let mut points = points.iter().filter(|[_, mean, _]| !mean.is_nan());
+    points.try_for_each(|[over, mean, bar]| writeln!(out, "{over:?},{mean:?},{bar:?}"))
+}
+
+impl Function {
+    /// As comma-separated values.
+    pub fn csv(&self) -> Vec<u8> {
+        let mut bytes = vec![];
+        // Memory takes everything.
+        write_csv(self.observable, &self.points, &mut bytes).unwrap_or_default();
+        bytes
+    }
+}
+
+/// The points of a file; none where there is no such file.
+fn points(path: &Path) -> Option<Vec<[f64; 3]>> {
+    let text = String::from_utf8(regular_file::read(path, LONGEST).ok()?).ok()?;
+    let point = |line: &str| -> Option<[f64; 3]> {
+        let numbers: Vec<f64> = line.split(',').map(str::parse).collect::<Result<_, _>>().ok()?;
+        numbers.try_into().ok()
+    };
+    Some(text.lines().skip(1).map_while(point).collect())
+}
+
+/// What a run says at its end; nothing where it has not ended.
+fn summary(folder: &Path) -> Value {
+    let bytes = regular_file::read(&folder.join(SUMMARY), LONGEST << 4).unwrap_or_default();
+    serde_json::from_slice(&bytes).unwrap_or_default()
+}
+
+/// A number that stands for an observable, as a point that is nowhere.
+fn number(summary: &Value, observable: &str, name: &str) -> Option<[f64; 3]> {
+    let find = |list: &Value, name: &str| list.as_array()?.iter().find(|it| it["name"] == name).cloned();
+    let found = find(&find(&summary["structure"], observable)?["headlines"], name)?;
+    Some([0.0, found["mean"].as_f64()?, found["bar"].as_f64()?])
+}
+
+/// The points that are in all runs.
+fn joined(runs: &[Vec<[f64; 3]>]) -> Vec<[f64; 3]> {
+    let [first, others @ ..] = runs else { return vec![] };
+    if others.is_empty() {
+        return first.clone();
+    }
+    let of = |&[over, mean, _]: &[f64; 3]| {
+        let there = |run: &Vec<[f64; 3]>| {
+            let close = |[other, ..]: &&[f64; 3]| (other - over).abs() <= SAME * over.abs();
+            run.iter().find(close).map(|[_, mean, _]| *mean)
+        };
+        let means: Option<Vec<f64>> = std::iter::once(Some(mean)).chain(others.iter().map(there)).collect();
+        let [mean, bar] = of_independent(&means?)?;
+        Some([over, mean, bar])
+    };
+    first.iter().filter_map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: 1, 2 and 3 have the mean 2 and the standard error 1/√3, and Student's t for two degrees of freedom is 4.303.
+    #[test]
+    fn runs_are_joined_where_all_of_them_are() {
+        let runs = [
+            vec![[0.5, 1.0, 0.1], [1.5, 7.0, 0.1]],
+            vec![[0.5, 2.0, 0.1], [1.0, 9.0, 0.1], [1.5, 7.0, 0.1]],
+            vec![[0.5 + 1e-9, 3.0, 0.1]],
+        ];
+        let [[over, mean, bar]] = joined(&runs)[..] else { panic!() };
+        assert!(over == 0.5 && (mean - 2.0).abs() < 1e-12 && (bar - 4.3027 / 3_f64.sqrt()).abs() < 1e-3);
+        assert_eq!(joined(&runs[..2]).len(), 2);
+        assert_eq!(joined(&runs[..1]), runs[0]);
+        assert_eq!(joined(&[]), vec![] as Vec<[f64; 3]>);
+    }
+}

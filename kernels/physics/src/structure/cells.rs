@@ -1,0 +1,186 @@
+//! Discs in the order of cells, in compact columns, with their images across periodic sides: all who are within a reach of a disc
+//! stand in a few spans.
+
+use super::look::Discs;
+use super::setting::Setting;
+use std::ops::Range;
+
+/// Discs of rows that a thread takes at a time, at least.
+const AT_A_TIME: usize = 512;
+/// Places that are read at once: as many stand behind the last disc.
+pub(super) const AT_ONCE: usize = 8;
+/// The cells of an axis number less.
+const MOST_CELLS: f64 = 4096.0;
+
+/// Discs sorted into rows of cells. What is behind a periodic side stands there once more, so that nobody asks for it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Cells {
+    /// Where the first cell of the box begins, and cells by length, along each axis.
+    origin: [f64; 2],
+    by_length: [f64; 2],
+    /// Cells of the box along each axis, and cells of images before and behind them.
+    count: [usize; 2],
+    margin: [usize; 2],
+    /// Of each disc its cell in the box; then how many are in each cell of the box, and where they begin among `order`.
+    cell_of: Vec<u32>,
+    box_starts: Vec<u32>,
+    order: Vec<u32>,
+    /// Where the discs of each cell begin, images among them, and the end.
+    starts: Vec<u32>,
+    /// Places (length) in the order of cells, and the number of each disc.
+    pub(super) x: Vec<f64>,
+    pub(super) y: Vec<f64>,
+    pub(super) number: Vec<u32>,
+    /// Rows of cells of the box that are a thread's.
+    pub(super) parts: Vec<Range<usize>>,
+}
+
+impl Cells {
+    /// Sorts the discs; finds those within `reach` (length).
+    pub(super) fn sort(&mut self, setting: &Setting, discs: &Discs, reach: f64) {
+        let domain = setting.domain;
+        let sides = domain.lengths();
+        // About a disc in each.
+        let edge = (sides[0] * sides[1] / discs.x.len() as f64).sqrt().max(setting.diameter);
+        for axis in 0..2 {
+            let count = (sides[axis] / edge).floor().clamp(1.0, MOST_CELLS);
+            self.origin[axis] = domain.origin[axis];
+            self.by_length[axis] = count / sides[axis];
+            self.count[axis] = count as usize;
+            self.margin[axis] = match domain.is_periodic(axis) {
+                true => (reach * self.by_length[axis]).ceil() as usize + 1,
+                false => 0,
+            };
+        }
+        self.sort_into_box(discs);
+        self.lay_out(discs, sides);
+        self.share_out();
+    }
+
+    /// The discs of each cell of the box, in the order of their numbers.
+    fn sort_into_box(&mut self, discs: &Discs) {
+        let [columns, rows] = self.count;
+        let (origin, by_length) = (self.origin, self.by_length);
+        let along = |axis: usize, at: f64| {
+            let cell = (at - origin[axis]) * by_length[axis];
+            (cell as usize).min(if axis == 0 { columns - 1 } else { rows - 1 })
+        };
+        self.cell_of.clear();
+        let cells = discs.x.iter().zip(&discs.y).map(|(&x, &y)| (along(1, y) * columns + along(0, x)) as u32);
+        self.cell_of.extend(cells);
+        self.box_starts.clear();
+        self.box_starts.resize(columns * rows + 1, 0);
+        self.cell_of.iter().for_each(|&cell| self.box_starts[cell as usize + 1] += 1);
+        let mut sum = 0;
+        for start in &mut self.box_starts {
+            sum += *start;
+            *start = sum;
+        }
+        self.order.resize(discs.x.len(), 0);
+        // Each start moves to the end of its cell, which is where the next one began.
+        for (&cell, number) in self.cell_of.iter().zip(0..) {
+            let place = &mut self.box_starts[cell as usize];
+            self.order[*place as usize] = number;
+            *place += 1;
+        }
+        self.box_starts.rotate_right(1);
+        self.box_starts[0] = 0;
+    }
+
+    /// Cells with their images, row by row.
+    fn lay_out(&mut self, discs: &Discs, sides: [f64; 2]) {
+        let image = |axis: usize, at: usize| {
+            let (count, at) = (self.count[axis] as i64, at as i64 - self.margin[axis] as i64);
+            (at.rem_euclid(count) as usize, at.div_euclid(count) as f64 * sides[axis])
+        };
+        let [columns, rows] = self.all();
+        self.starts.clear();
+        self.x.clear();
+        self.y.clear();
+        self.number.clear();
+        for (from_row, above) in (0..rows).map(|row| image(1, row)) {
+            for (from_column, right) in (0..columns).map(|column| image(0, column)) {
+                self.starts.push(self.number.len() as u32);
+                let cell = from_row * self.count[0] + from_column;
+                let members = self.box_starts[cell] as usize..self.box_starts[cell + 1] as usize;
+                for &number in &self.order[members] {
+                    self.x.push(discs.x[number as usize] + right);
+                    self.y.push(discs.y[number as usize] + above);
+                    self.number.push(number);
+                }
+            }
+        }
+        self.starts.push(self.number.len() as u32);
+        // Distances are found so many at once, the last ones of a span with what follows.
+        let room = [f64::INFINITY; AT_ONCE];
+        self.x.extend(room);
+        self.y.extend(room);
+    }
+
+    /// Rows of the box by the discs in them: the same parts whatever the threads.
+    fn share_out(&mut self) {
+        self.parts.clear();
+        let (mut begin, mut discs) = (0, 0);
+        for row in 0..self.count[1] {
+            discs += self.own(row).len();
+            if discs >= AT_A_TIME || row + 1 == self.count[1] {
+                self.parts.push(begin..row + 1);
+                (begin, discs) = (row + 1, 0);
+            }
+        }
+    }
+
+    /// Cells along each axis with the images.
+    #[inline(always)]
+    fn all(&self) -> [usize; 2] {
+        [0, 1].map(|axis| self.count[axis] + 2 * self.margin[axis])
+    }
+
+    #[inline(always)]
+    fn start(&self, row: usize, column: usize) -> usize {
+        self.starts[row * self.all()[0] + column] as usize
+    }
+
+    /// The discs of the box in one of its rows.
+    #[inline(always)]
+    pub(super) fn own(&self, row: usize) -> Range<usize> {
+        let (row, first) = (row + self.margin[1], self.margin[0]);
+        self.start(row, first)..self.start(row, first + self.count[0])
+    }
+
+    /// Those that may be within a reach of a place in a row of the box, in a row that is `up` above it (below, if negative), where
+    /// `half` is how far they reach along it ([`Cells::halves`]); none where there is no such row.
+    #[inline(always)]
+    pub(super) fn span(&self, row: usize, up: i64, x: f64, half: f64) -> Range<usize> {
+        let [columns, rows] = self.all();
+        let row = (row + self.margin[1]) as i64 + up;
+        if !(0..rows as i64).contains(&row) {
+            return 0..0;
+        }
+        let column = |at: f64| {
+            let cell = (at - self.origin[0]) * self.by_length[0] + self.margin[0] as f64;
+            (cell.max(0.0) as usize).min(columns - 1)
+        };
+        let (row, first, last) = (row as usize, column(x - half), column(x + half));
+        self.start(row, first)..self.start(row, last + 1)
+    }
+
+    /// How far those within `reach` are along the row that is `up` above (below, if negative) a disc's own (length).
+    #[inline(always)]
+    pub(super) fn half(&self, reach: f64, up: i64) -> f64 {
+        // The row is at least so far away.
+        let away = (up.unsigned_abs() as f64 - 1.0).max(0.0) / self.by_length[1];
+        (reach * reach - away * away).max(0.0).sqrt()
+    }
+
+    /// The same of its own row and each above it.
+    pub(super) fn halves(&self, reach: f64) -> impl Iterator<Item = f64> + use<'_> {
+        (0..=self.rows_within(reach)).map(move |up| self.half(reach, up))
+    }
+
+    /// Rows that are at most `reach` away.
+    #[inline(always)]
+    pub(super) fn rows_within(&self, reach: f64) -> i64 {
+        (reach * self.by_length[1]).ceil() as i64
+    }
+}

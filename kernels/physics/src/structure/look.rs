@@ -1,0 +1,117 @@
+//! One look at the discs: what several observables need is found once, in memory that is kept from look to look.
+
+use super::cells::Cells;
+use super::pairs::{Distances, Neighbours};
+use super::setting::Setting;
+use super::waves::Waves;
+use super::{Asks, Observable, Seen};
+use crate::particles::{Particle, Particles, States};
+
+/// The discs that are there, in the order of the scene, in columns.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Discs {
+    pub(super) x: Vec<f64>,
+    pub(super) y: Vec<f64>,
+    pub(super) vx: Vec<f64>,
+    pub(super) vy: Vec<f64>,
+    pub(super) radius: Vec<f64>,
+    pub(super) mass: Vec<f64>,
+}
+
+/// What is seen of discs as they stand.
+#[derive(Clone, Debug)]
+pub struct Look {
+    pub(super) setting: Setting,
+    /// Radius and mass of each grain of the scene.
+    sizes: Vec<[f64; 2]>,
+    states: States,
+    pub(super) discs: Discs,
+    cells: Cells,
+    pub(super) distances: Distances,
+    pub(super) neighbours: Neighbours,
+    pub(super) waves: Waves,
+    asked: Vec<Asks>,
+}
+
+impl Look {
+    /// For some observables of the grains of a scene.
+    pub fn new<'o>(
+        setting: Setting,
+        grains: &[Particle],
+        observables: impl Iterator<Item = &'o Observable>,
+    ) -> Look {
+        let asks = |observable: &Observable| match observable.seen {
+            Seen::Once { asks, .. } => Some(asks),
+            Seen::Twice { .. } => None,
+        };
+        Look {
+            setting,
+            sizes: grains.iter().map(|grain| [grain.radius, grain.mass]).collect(),
+            states: States::of(grains),
+            discs: Discs::default(),
+            cells: Cells::default(),
+            distances: Distances::default(),
+            neighbours: Neighbours::default(),
+            waves: Waves::new(&setting),
+            asked: observables.filter_map(asks).collect(),
+        }
+    }
+
+    /// Looks at states that `put` gives; false where no disc is left.
+    pub fn at(&mut self, put: impl FnOnce(&mut States)) -> bool {
+        put(&mut self.states);
+        self.take_up();
+        if self.discs.x.is_empty() {
+            return false;
+        }
+        let asks = |what: Asks| self.asked.contains(&what);
+        let (distances, neighbours, waves) =
+            (asks(Asks::Distances), asks(Asks::Neighbours), asks(Asks::Waves));
+        if distances || neighbours {
+            let reaches = [
+                if distances { self.setting.reach } else { 0.0 },
+                if neighbours { Neighbours::reach(&self.setting, self.discs.x.len()) } else { 0.0 },
+            ];
+            self.cells.sort(&self.setting, &self.discs, reaches[0].max(reaches[1]));
+        }
+        if distances {
+            self.distances.count(&self.setting, &self.cells);
+        }
+        if neighbours {
+            self.neighbours.find(&self.setting, &self.discs, &self.cells);
+        }
+        if waves {
+            self.waves.sum(&self.setting, &self.discs);
+        }
+        true
+    }
+
+    /// The values of an observable that is seen of one moment.
+    pub fn values(&self, observable: &Observable) -> Vec<f64> {
+        let Seen::Once { over, of, further, .. } = observable.seen else { return vec![] };
+        let mut values = vec![0.0; over(&self.setting).len() + further];
+        of(self, &mut values);
+        values
+    }
+
+    /// The states as the columns of those that are there.
+    fn take_up(&mut self) {
+        let Discs { x, y, vx, vy, radius, mass } = &mut self.discs;
+        [&mut *x, y, vx, vy, radius, mass].into_iter().for_each(|column| column.clear());
+        let there = self.states.rows().iter().zip(&self.sizes).filter(|(row, _)| !row[0].is_nan());
+        for (&[at_x, at_y, along_x, along_y], &[its_radius, its_mass]) in there {
+            x.push(at_x);
+            y.push(at_y);
+            vx.push(along_x);
+            vy.push(along_y);
+            radius.push(its_radius);
+            mass.push(its_mass);
+        }
+    }
+}
+
+/// What an observable says of some discs.
+pub fn seen(observable: &'static Observable, setting: Setting, discs: &Particles) -> Vec<f64> {
+    let mut look = Look::new(setting, discs.grains(), std::iter::once(observable));
+    if look.at(|states| states.take_up(discs)) { look.values(observable) } else { vec![] }
+}

@@ -1,0 +1,78 @@
+//! What looking takes: how often it is done for its part of a run's work, and its memory.
+
+use super::waves::sums_of_a_disc;
+use super::{Asks, Motion, Observable, Seen, Setting};
+use crate::particles::States;
+use std::f64::consts::PI;
+
+/// Nanoseconds of a disc: to take it up, in a pair within reach, with its neighbours, in a density wave, in what it is alone; in a row.
+/// They were measured once; nothing is measured in a run, so that every machine looks at the same moments.
+const TAKEN_UP: f64 = 40.0;
+const PAIR: f64 = 3.0;
+const NEIGHBOURS: f64 = 140.0;
+const WAVE: f64 = 1.0;
+const ALONE: f64 = 12.0;
+const ROW: f64 = 50.0;
+
+/// Nanoseconds that looks at a row and at a snapshot take a disc.
+fn nanoseconds(observables: &[&Observable], setting: &Setting, discs: usize) -> [f64; 2] {
+    let [mut row, mut snapshot]: [f64; 2] = [0.0; 2];
+    let (mut found, [x, y]) = (vec![], setting.room());
+    for observable in observables {
+        let asks = match observable.seen {
+            Seen::Once { asks, .. } => asks,
+            Seen::Twice { .. } => {
+                row = ROW;
+                continue;
+            }
+        };
+        snapshot = snapshot.max(TAKEN_UP);
+        if asks != Asks::Discs && found.contains(&asks) {
+            continue;
+        }
+        found.push(asks);
+        snapshot += match asks {
+            Asks::Discs => ALONE,
+            Asks::Distances => PAIR * 0.5 * PI * setting.reach * setting.reach * discs as f64 / (x * y),
+            Asks::Neighbours => NEIGHBOURS,
+            Asks::Waves => WAVE * sums_of_a_disc(setting) as f64,
+        };
+    }
+    [row, snapshot]
+}
+
+/// Every how many rows and snapshots are looked at, so that looking takes at most a share of the work of a run: `work` is what lies
+/// between two of each (nanoseconds of a disc), 0 where it is not known. Either has half the share where both are asked for.
+pub fn strides(
+    observables: &[&Observable],
+    setting: &Setting,
+    discs: usize,
+    share: f64,
+    work: [f64; 2],
+) -> [u64; 2] {
+    let takes = nanoseconds(observables, setting, discs);
+    let asked = takes.iter().filter(|takes| **takes > 0.0).count().max(1) as f64;
+    let stride = |at: usize| match work[at] > 0.0 {
+        true => (takes[at] * asked / (share * work[at])).ceil().clamp(1.0, 1e9) as u64,
+        false => 1,
+    };
+    [stride(0), stride(1)]
+}
+
+/// Bytes that looking takes at one time, in a run of at most as many looks at rows: what is kept of earlier ones, twice while a
+/// checkpoint is written.
+pub fn bytes(observables: &[&Observable], discs: usize, rows: Option<u64>) -> u64 {
+    let moves = observables.iter().any(|observable| matches!(observable.seen, Seen::Twice { .. }));
+    let stands = observables.iter().any(|observable| matches!(observable.seen, Seen::Once { .. }));
+    let state = size_of::<[f64; 4]>() as u64 * discs as u64;
+    let mut bytes = 0;
+    if moves {
+        bytes += States::bytes(discs) as u64 + 2 * state * Motion::most_kept(rows.unwrap_or(u64::MAX));
+    }
+    if stands {
+        // Six columns, three in the order of cells with images, three of cells; sizes.
+        let of_a_disc = size_of::<[f64; 6]>() + 2 * size_of::<[f64; 3]>() + 3 * size_of::<u32>();
+        bytes += (States::bytes(discs) + (of_a_disc + size_of::<[f64; 2]>()) * discs) as u64;
+    }
+    bytes
+}
