@@ -20,6 +20,11 @@ pub(super) fn is_endless(frame: &Frame) -> bool {
     frame.cell.iter().any(|side| side.is_infinite())
 }
 
+/// Whether the particles of a frame with these bounds are bodies, which have no size.
+pub(super) fn is_of_points(frame: &Frame, bounds: [[f64; 2]; 2]) -> bool {
+    is_endless(frame) && bounds.iter().all(|[low, high]| low.is_infinite() && high.is_infinite())
+}
+
 /// Two numbers of the scene's `domain`.
 pub(super) fn pair(scene: &toml::Table, key: &str) -> Option<[f64; 2]> {
     let pair = scene.get("domain")?.get(key)?.as_array()?;

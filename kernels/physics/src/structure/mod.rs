@@ -12,7 +12,7 @@ mod waves;
 
 pub use blocks::Blocks;
 pub use motion::Motion;
-pub use pairs::{pair_counts, pair_counts_of_all};
+pub use pairs::{hexatic_orders, pair_counts, pair_counts_of_all};
 pub use setting::Setting;
 
 use crate::particles::Particle;

@@ -117,8 +117,8 @@ pub(super) fn orders(_: &Setting) -> Vec<f64> {
     (0..ORDERS).map(|bin| (bin as f64 + 0.5) / ORDERS as f64).collect()
 }
 
-/// The density of |ψ6| of the discs, then |Ψ6|, the order of all of them, and the mean |ψ6|.
-pub(super) fn hexatic(setting: &Setting, discs: &[Particle]) -> Vec<f64> {
+/// ψ6 of each disc, its real and its imaginary part: the mean of exp(6iθ) over the six nearest.
+pub fn hexatic_orders(setting: &Setting, discs: &[Particle]) -> Vec<[f64; 2]> {
     let domain = setting.domain;
     // About ten others are within it in a gas, too; where there are fewer than six, those that there are.
     let [x, y] = setting.room();
@@ -143,11 +143,15 @@ pub(super) fn hexatic(setting: &Setting, discs: &[Particle]) -> Vec<f64> {
         });
         sum.map(|part| part / nearest as f64)
     };
-    let bonds: Vec<[f64; 2]> = discs.par_iter().enumerate().map(of).collect();
+    discs.par_iter().enumerate().map(of).collect()
+}
+
+/// The density of |ψ6| of the discs, then |Ψ6|, the order of all of them, and the mean |ψ6|.
+pub(super) fn hexatic(setting: &Setting, discs: &[Particle]) -> Vec<f64> {
     let share = 1.0 / discs.len() as f64;
     let mut values = vec![0.0; ORDERS + 2];
     let mut whole = [0.0; 2];
-    for [x, y] in bonds {
+    for [x, y] in hexatic_orders(setting, discs) {
         let order = x.hypot(y);
         values[((order * ORDERS as f64) as usize).min(ORDERS - 1)] += share * ORDERS as f64;
         values[ORDERS + 1] += share * order;
