@@ -209,7 +209,11 @@ impl Reel {
         let film = Film {
             title: format!(
                 "{} from time {} to {}",
-                counted(cast.particles.len(), "particle", "particles"),
+                counted(
+                    cast.particles.iter().filter(|it| it.kind == Kind::Grain).count(),
+                    "particle",
+                    "particles"
+                ),
                 self.kept.first().map_or(0.0, |(time, _)| *time),
                 self.kept.last().map_or(0.0, |(time, _)| *time)
             ),

@@ -64,8 +64,10 @@ impl Means {
     pub(super) fn words(&self, name: &str) -> Option<String> {
         let average = self.of_column(name)?;
         let rate = if average.of == "rate" { "rate " } else { "" };
+        // A mean and its bar stay in one line.
+        let whole = |text: String| text.replace(' ', "\u{a0}");
         Some(match &average.outcome {
-            Outcome::Mean(Estimate { mean, bar, .. }) => format!("{rate}{}", with_bar(*mean, *bar)),
+            Outcome::Mean(Estimate { mean, bar, .. }) => format!("{rate}{}", whole(with_bar(*mean, *bar))),
             Outcome::Constant { mean } => format!("{rate}always {}", significant(*mean, 6)),
             Outcome::TooShort { enough_at, .. } => {
                 format!("too short for a mean, until about time {}", significant(*enough_at, 2))

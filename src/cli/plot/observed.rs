@@ -3,6 +3,7 @@
 use super::means::Means;
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::table::{Rows, Table};
+use crate::statistics::quantile;
 use std::collections::BTreeMap;
 use std::path::Path;
 use stripmine_physics::method::{Methods, observer};
@@ -15,7 +16,9 @@ use stripmine_physics::words::suggestion;
 /// Curves of a picture: more cannot be told apart.
 const CURVES: usize = 5;
 /// A curve whose own range is a smaller part of its chart's than this is a line.
-const FLAT: f64 = 0.1;
+const FLAT: f64 = 0.2;
+/// A curve's range is that without this part of its values at either end: a short peak fills no chart.
+const PEAKS: f64 = 0.05;
 /// Points of a curve: more cannot be seen.
 const POINTS: usize = 2000;
 /// Characters of a curve in the terminal.
@@ -62,7 +65,7 @@ pub(super) struct Observed {
     means: Option<Means>,
 }
 
-/// Curves that share a chart: each column with its smallest and largest value.
+/// Curves that share a chart: each column with its range.
 struct Group {
     curves: Vec<(usize, [f64; 2])>,
 }
@@ -153,10 +156,11 @@ impl Observed {
         units.into_iter().flat_map(of).collect()
     }
 
-    /// The smallest and the largest value of a column.
+    /// The range of a column.
     fn ends(&self, column: usize) -> [f64; 2] {
-        let none = [f64::INFINITY, f64::NEG_INFINITY];
-        self.column(column).fold(none, |[low, high], value| [low.min(value), high.max(value)])
+        let mut values: Vec<f64> = self.column(column).collect();
+        values.sort_by(f64::total_cmp);
+        [PEAKS, 1.0 - PEAKS].map(|part| quantile(&values, part).unwrap_or(0.0))
     }
 
     fn figure(&self, unit: &str, columns: &[usize]) -> Figure {
