@@ -5,7 +5,6 @@ use super::particles::{LARGE_POINT, POINT, SHOWN, TRACED, WIDTH, scene};
 use super::window;
 use crate::report::section::{Film, Frame as Moment, Side};
 use std::collections::HashMap;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use stripmine_physics::io::extxyz::{Frame, Frames, ReadError};
 use stripmine_physics::number::counted;
@@ -17,6 +16,8 @@ use stripmine_physics::reported::{Class, FilePlace, Reported};
 const PLACES: usize = 2_400_000;
 /// Frames of a film: more take minutes to see.
 const FRAMES: usize = 1500;
+/// A wall disc that is never farther from its first place than this part of its radius stands still: the rest is rounding.
+const STILL: f64 = 1e-6;
 /// Places that decide what is shown.
 const LOOKED_AT: usize = 100_000;
 
@@ -26,21 +27,19 @@ const TRAJECTORY: &str = "trajectory.xyz";
 /// Why there is no film.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum FilmError {
-    /// The run has written no trajectory.
+    /// The trajectory has no frame.
     #[error(
-        "there is no {}, which a film is made of\n  help: run with --set output.trajectory=true{}",
+        "{} has no frame, of which a film is made\n  help: a run with --set output.trajectory=true writes one every \
+         run.snapshot_every{}",
         quoted::path(file),
         if *has_dcd { "; trajectory.dcd has neither times nor sizes" } else { "" }
     )]
-    NoTrajectory {
-        /// Where it should be.
+    NoFrame {
+        /// The trajectory.
         file: PathBuf,
         /// Whether there is one of another kind.
         has_dcd: bool,
     },
-    /// The trajectory has no frame.
-    #[error("{} has no frame yet; a run writes one every run.snapshot_every", quoted::path(.0))]
-    NoFrame(PathBuf),
     /// The trajectory cannot be read.
     #[error(transparent)]
     Trajectory(#[from] ReadError),
@@ -52,16 +51,15 @@ pub(super) enum FilmError {
 impl Reported for FilmError {
     fn class(&self) -> Class {
         match self {
-            FilmError::NoTrajectory { .. } => Class::InputOutput,
             FilmError::Trajectory(error) if error.system().is_some() => Class::InputOutput,
-            FilmError::NoFrame(_) | FilmError::Trajectory(_) => Class::Input,
+            FilmError::NoFrame { .. } | FilmError::Trajectory(_) => Class::Input,
             FilmError::Colouring(error) => error.class(),
         }
     }
 
     fn place(&self) -> Option<FilePlace> {
         match self {
-            FilmError::NoTrajectory { file, .. } | FilmError::NoFrame(file) => Some(FilePlace::at(file)),
+            FilmError::NoFrame { file, .. } => Some(FilePlace::at(file)),
             FilmError::Trajectory(error) => Some(FilePlace {
                 line: error.mistakes.first().and_then(|mistake| mistake.line),
                 ..FilePlace::at(error.file.as_ref())
@@ -78,17 +76,16 @@ impl Reported for FilmError {
 pub(super) fn film(run: &Path, colouring: &Colouring) -> Result<(Film, Vec<String>), FilmError> {
     let file = run.join(TRAJECTORY);
     let has_dcd = run.join("trajectory.dcd").exists();
-    let frames = Frames::open(&file).map_err(|error| match error.system().map(std::io::Error::kind) {
-        Some(ErrorKind::NotFound) => FilmError::NoTrajectory { file: file.clone(), has_dcd },
-        _ => error.into(),
-    })?;
     let mut reel = Reel::default();
-    for frame in frames.in_space() {
+    for frame in Frames::open(&file)?.in_space() {
         reel.add(frame?, colouring)?;
     }
-    let Some((last, cast)) = reel.last.take() else { return Err(FilmError::NoFrame(file)) };
+    let Some((last, cast)) = reel.last.take() else { return Err(FilmError::NoFrame { file, has_dcd }) };
     let scene = scene(run);
-    reel.film(&last, cast, colouring, scene.as_ref())
+    let (mut film, notes) = reel.film(&last, cast, colouring, scene.as_ref())?;
+    let name = run.file_stem().unwrap_or_default().to_string_lossy();
+    film.title = format!("{}: {}", quoted::quoted(&name), film.title);
+    Ok((film, notes))
 }
 
 /// Who is in the film, as of the first frame.
@@ -165,8 +162,8 @@ impl Reel {
         let everywhere = || self.kept.iter().flat_map(|(_, seen)| seen).flatten();
         let grains = || everywhere().filter(|seen| !seen.value.is_nan());
         let some = (self.kept.len() * cast.particles.len()).div_ceil(LOOKED_AT).max(1);
-        let bounds = window::bounds(last, scene, AXES);
         let places: Vec<[f64; 3]> = grains().step_by(some).map(|seen| seen.position).collect();
+        let bounds = window::bounds(last, scene, &places, AXES);
         let [[left, right], [low, high]] = window::shown(last, &places, AXES, bounds);
         let shades = colouring.ends(grains().map(|seen| seen.value).collect())?;
         let is_seen = |[x, y, _]: [f64; 3], radius: f64| {
@@ -178,10 +175,12 @@ impl Reel {
         let radius = |particle: &Particle| if is_of_points { of_a_point } else { particle.radius };
         // Walls that stand still are drawn once.
         let is_still = |place: usize| {
-            let first = cast.particles[place].position;
-            let moves =
-                |(_, seen): &(f64, Vec<Option<Seen>>)| seen[place].is_none_or(|it| it.position != first);
-            cast.particles[place].kind == Kind::Wall && !self.kept.iter().any(moves)
+            let Particle { kind, position: first, radius, .. } = cast.particles[place];
+            let stays = |(_, seen): &(f64, Vec<Option<Seen>>)| {
+                let is_near = |(a, b): (f64, f64)| (a - b).abs() <= STILL * radius;
+                seen[place].is_some_and(|it| it.position.into_iter().zip(first).all(is_near))
+            };
+            kind == Kind::Wall && self.kept.iter().all(stays)
         };
         let (fixed, moving): (Vec<usize>, Vec<usize>) =
             (0..cast.particles.len()).partition(|&at| is_still(at));
@@ -204,16 +203,13 @@ impl Reel {
             })
             .collect();
         let window = [[left, low], [right, high]];
+        let grain_count = cast.particles.iter().filter(|it| it.kind == Kind::Grain).count();
         let gravity = scene.and_then(|scene| window::pair(scene, "gravity")).unwrap_or([0.0; 2]);
         let [width, height] = [right - left, high - low];
         let film = Film {
             title: format!(
-                "{} from time {} to {}",
-                counted(
-                    cast.particles.iter().filter(|it| it.kind == Kind::Grain).count(),
-                    "particle",
-                    "particles"
-                ),
+                "{}, time {} to {}",
+                counted(grain_count, "particle", "particles"),
                 self.kept.first().map_or(0.0, |(time, _)| *time),
                 self.kept.last().map_or(0.0, |(time, _)| *time)
             ),
@@ -231,7 +227,14 @@ impl Reel {
             shade: colouring.label(scene),
             shades,
         };
-        let has_depth = everywhere().any(|seen| seen.position[2] != 0.0);
+        let beyond = beyond as f64 / (self.kept.len() * moving.len()).max(1) as f64;
+        let notes = self.notes(&cast, &film, is_of_points, beyond);
+        Ok((film, notes))
+    }
+
+    /// What a reader must know: what is left out, how much of all places (a part of 1) is beyond the picture, and what is drawn how.
+    fn notes(&self, cast: &Cast, film: &Film, is_of_points: bool, beyond: f64) -> Vec<String> {
+        let mut seen = self.kept.iter().flat_map(|(_, seen)| seen).flatten();
         let notes = [
             (self.read == 1).then(|| {
                 "The trajectory has one frame: run.snapshot_every says how many there are.".to_owned()
@@ -239,18 +242,17 @@ impl Reel {
             (self.stride > 1)
                 .then(|| format!("One of {} of its {} frames is shown.", self.stride, self.read)),
             (cast.every > 1).then(|| format!("One of {} particles is shown.", cast.every)),
-            has_depth.then(|| "Seen along z: x to the right, y upwards.".to_owned()),
-            is_of_points.then(|| "Bodies have no size; the dots are as large as can be seen.".to_owned()),
-            (beyond > 0).then(|| {
-                let all = self.kept.len() * moving.len();
-                format!("Beyond the picture: {:.1} % of all places.", 100.0 * beyond as f64 / all as f64)
-            }),
+            seen.any(|seen| seen.position[2] != 0.0)
+                .then(|| "Seen along z: x to the right, y upwards.".to_owned()),
+            is_of_points
+                .then(|| "Bodies have no size; the dots are as large as they must be to be seen.".to_owned()),
+            (beyond > 0.0).then(|| format!("Beyond the picture: {:.1} % of all places.", 100.0 * beyond)),
             film.sides
                 .iter()
                 .any(|side| side.is_periodic)
                 .then(|| "Dashed: periodic sides; what leaves there comes in at the other.".to_owned()),
         ];
-        Ok((film, notes.into_iter().flatten().collect()))
+        notes.into_iter().flatten().collect()
     }
 }
 
@@ -258,7 +260,7 @@ impl Reel {
 fn sides(frame: &Frame, bounds: [[f64; 2]; 2], [corner, end]: [[f64; 2]; 2]) -> Vec<Side> {
     let mut sides = vec![];
     for axis in [0, 1] {
-        let is_periodic = !window::is_endless(frame) && frame.periodic.is_none_or(|periodic| periodic[axis]);
+        let is_periodic = window::is_periodic(frame, axis);
         for at in bounds[axis].into_iter().filter(|at| (corner[axis]..=end[axis]).contains(at)) {
             let ends = [corner, end].map(|mut place| {
                 place[axis] = at;

@@ -123,7 +123,7 @@ fn state(
     let every = all.len().div_ceil(SHOWN).max(1);
     let axes = view.axes();
     let flat = |position: [f64; 3]| axes.map(|axis| position[axis]);
-    let bounds = window::bounds(frame, scene, axes);
+    let bounds = window::bounds(frame, scene, traces, axes);
     let [[x, x_end], [y, y_end]] = window::shown(frame, traces, axes, bounds);
     let (width, height) = (x_end - x, y_end - y);
     // A tall box lies down, its upper end to the left.
