@@ -105,3 +105,69 @@ fn a_run_is_found_by_the_name_of_its_scene() {
     assert!(stripmine(&["plot", "two-discs"]).status.success());
     assert!(folder.path().join("two-discs.plots/last-state.png").exists());
 }
+
+/// Numbers of a path or of an attribute.
+fn numbers(text: &str) -> Vec<f64> {
+    let mut all: Vec<String> = vec![];
+    let mut inside = false;
+    for letter in text.chars() {
+        let goes_on = letter.is_ascii_digit() || letter == '.';
+        if letter == '-' || goes_on && !inside {
+            all.push(String::new());
+        }
+        inside = letter == '-' || goes_on;
+        if let Some(number) = all.last_mut().filter(|_| inside) {
+            number.push(letter);
+        }
+    }
+    all.iter().map(|number| number.parse().unwrap()).collect()
+}
+
+fn between<'t>(text: &'t str, from: &str, to: &str) -> &'t str {
+    text.split_once(from).unwrap_or_else(|| panic!("no {from}")).1.split_once(to).unwrap().0
+}
+
+/// The ribbon of a mean lies where `summary.json` has the mean and its bar, and begins where the transient ends, up to which the
+/// picture is shaded.
+#[test]
+fn a_chart_has_the_mean_of_the_summary_and_its_transient() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder.path().join("dense");
+    let (run, plots) = (run.to_str().unwrap(), folder.path().join("pictures"));
+    assert!(stripmine(&["run", "langevin-dense", "--quiet", "--out", run]).status.success());
+    let plotted = stripmine(&["plot", run, "--columns", "potential,msd", "--out", plots.to_str().unwrap()]);
+    assert!(plotted.status.success(), "{}", String::from_utf8_lossy(&plotted.stderr));
+    let summary = fs::read_to_string(folder.path().join("dense/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let quantities = summary["averages"]["quantities"].as_array().unwrap();
+    let known = quantities.iter().find(|it| it["quantity"] == "potential").unwrap();
+    let [mean, bar, cut] = ["mean", "bar", "equilibrated_at"].map(|key| known[key].as_f64().unwrap());
+    assert!(cut > 0.0, "a run without a transient shows nothing here");
+
+    let svg = fs::read_to_string(plots.join("potential.svg")).unwrap();
+    // Scale, both ends in pixels, both in values.
+    let axis = |name: &str| {
+        let all = between(&svg, &format!("{name}=\"lin"), "\"").to_owned();
+        let ends: Vec<f64> = all.split(' ').filter_map(|it| it.parse().ok()).take(4).collect();
+        move |pixel: f64| ends[2] + (pixel - ends[0]) / (ends[1] - ends[0]) * (ends[3] - ends[2])
+    };
+    let (x, y) = (axis("data-x"), axis("data-y"));
+    let steps = numbers(between(&svg, "fill-opacity=\"0.25\" d=\"M", "z"));
+    let [left, low, across, _, _, up, ..] = steps[..] else { panic!("{steps:?}") };
+    let pixel = (y(0.0) - y(1.0)).abs();
+    let near = |found: f64, expected: f64, off: f64| {
+        assert!((found - expected).abs() <= off, "{found} instead of {expected}");
+    };
+    near(y(low), mean - bar, 0.02 * pixel);
+    near(y(low + up), mean + bar, 0.03 * pixel);
+    let second = x(1.0) - x(0.0);
+    near(x(left), cut, 0.02 * second);
+    near(x(left + across), 50.0, 0.03 * second);
+    let shaded = between(&svg, "<title>transient: not in the mean</title>", "/>");
+    let [from, _, width, ..] = numbers(shaded.split_once("x=").unwrap().1)[..] else { panic!("{shaded}") };
+    near(x(from), 0.0, 0.1 * second);
+    near(x(from + width), cut, 0.2 * second);
+    // What has no mean says why.
+    let svg = fs::read_to_string(plots.join("msd.svg")).unwrap();
+    assert!(!svg.contains("fill-opacity") && svg.contains("still changing"), "{svg}");
+}

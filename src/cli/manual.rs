@@ -32,7 +32,10 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     ),
     (
         "plot",
-        &[("stripmine plot pipe-small.run", "SVG and PNG in the run's folder, courses in the terminal")],
+        &[
+            ("stripmine plot pipe-small.run", "SVG and PNG in pipe-small.plots, courses in the terminal"),
+            ("stripmine plot melting.run --film --color psi6", "a film for a browser too, coloured by order"),
+        ],
     ),
     (
         "bench",

@@ -272,11 +272,17 @@ impl Verdict {
 pub struct Film {
     /// What it shows.
     pub title: String,
-    /// Lower left and upper right corner of what is shown (m).
+    /// The units of lengths and of times.
+    pub units: [String; 2],
+    /// Lower left and upper right corner of what is shown (length).
     pub window: [[f64; 2]; 2],
-    /// Radii of the discs that move (m), in the order of every frame's discs.
+    /// The sides of the box that are seen.
+    pub sides: Vec<Side>,
+    /// Whether gravity pulls along a long window, the way in which it is read.
+    pub falls: bool,
+    /// Radii of the discs that move (length), in the order of every frame's discs.
     pub radii: Vec<f64>,
-    /// Centre and radius of the discs that do not move (m).
+    /// Centre and radius of the discs that do not move (length).
     pub fixed: Vec<([f64; 2], f64)>,
     /// The frames by increasing time.
     pub frames: Vec<Frame>,
@@ -286,12 +292,21 @@ pub struct Film {
     pub shades: [f64; 2],
 }
 
+/// A side of a box.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Side {
+    /// Its ends (length).
+    pub ends: [[f64; 2]; 2],
+    /// Whether what leaves here comes in at the other side.
+    pub is_periodic: bool,
+}
+
 /// A moment of a [`Film`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
-    /// When (s).
+    /// When (time).
     pub time: f64,
-    /// Centre and shade of every moving disc.
+    /// Centre and shade of every moving disc; the shade is no number where it says nothing, the centre where there is no disc.
     pub discs: Vec<([f64; 2], f64)>,
 }
 

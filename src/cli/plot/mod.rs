@@ -1,5 +1,8 @@
 //! `stripmine plot`: a run to look at, without another program.
 
+mod colouring;
+mod film;
+mod means;
 mod observed;
 mod particles;
 mod structure;
@@ -8,17 +11,20 @@ mod window;
 use super::run_folder;
 use crate::console::{Common, Failure, print, print_json, say};
 use crate::report::figure::{Figure, png, svg};
-use crate::report::terminal;
+use crate::report::{html, terminal};
 use crate::results::OwnFiles;
 use clap::Args;
+use clap::builder::PossibleValuesParser;
+use colouring::{COLOURINGS, Colouring};
 use observed::Observed;
+use particles::PictureError;
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use stripmine_physics::method::Methods;
 use stripmine_physics::quoted;
 
-/// A run to look at: its observables over time, its structure, its last state and the density along a long box as pictures, and small in the terminal
+/// A run to look at: its observables over time with their means, its structure, its last state and the density along a long box as pictures, and small in the terminal; as a film on request
 #[derive(Args)]
 pub(super) struct PlotVerb {
     /// The folder of a run
@@ -26,6 +32,12 @@ pub(super) struct PlotVerb {
     /// Columns of thermo.csv, with commas between them; all that change by default
     #[arg(long, value_delimiter = ',')]
     columns: Vec<String>,
+    /// What the colours of particles say
+    #[arg(long, default_value = COLOURINGS[0].word, value_parser = PossibleValuesParser::new(Colouring::possible_values()))]
+    color: String,
+    /// Also a film of the trajectory: film.html, one page to be opened in a browser, which needs nothing else
+    #[arg(long)]
+    film: bool,
     /// Folder for the pictures; the run's name with `.plots` by default
     #[arg(long)]
     out: Option<PathBuf>,
@@ -36,18 +48,22 @@ pub(super) struct PlotVerb {
 
 /// The list of the pictures that a folder has from here.
 const LIST: &str = "plot.files";
+/// The film among them.
+const FILM: &str = "film.html";
 /// Longest name of a picture (characters), its kind and number left out.
 const LONGEST_NAME: usize = 80;
 
 impl PlotVerb {
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
         let run = run_folder(&self.run);
-        let table = Observed::read(&run.join("thermo.csv"))?;
+        let table = Observed::read(&run.join("thermo.csv"), methods)?;
         let wanted = table.wanted(&self.columns, methods)?;
         let mut figures = table.figures(&wanted);
         figures.extend(structure::figures(&run));
-        match particles::pictures(&run) {
+        let colouring = Colouring::of_word(&self.color).unwrap_or(&COLOURINGS[0]);
+        match particles::pictures(&run, colouring) {
             Ok(pictures) => figures.extend(pictures),
+            Err(PictureError::Colouring(error)) => return Err(error.into()),
             Err(why) if !common.quiet => say(format_args!("the particles are not drawn: {why}")),
             Err(_) => {}
         }
@@ -62,6 +78,11 @@ impl PlotVerb {
             names.extend(["svg", "png"].map(|kind| format!("{name}.{kind}")));
             pictures.extend([vector.into_bytes(), pixels]);
         }
+        if self.film {
+            let (film, notes) = film::film(&run, colouring)?;
+            names.push(FILM.to_owned());
+            pictures.push(html::film_page(&film, &notes).into_bytes());
+        }
         let folder = OwnFiles::claim(&out, LIST, &names, self.overwrite)?;
         let mut written = vec![];
         for (name, bytes) in names.iter().zip(&pictures) {
@@ -70,7 +91,11 @@ impl PlotVerb {
         if common.json {
             return print_json(&json!({ "files": written }));
         }
-        print(&terminal::render(&table.small(&wanted, &out)))
+        let mut small = table.small(&wanted, &out);
+        if self.film {
+            small = small.note(format!("film: {}, to be opened in a browser", quoted::path(&out.join(FILM))));
+        }
+        print(&terminal::render(&small))
     }
 }
 

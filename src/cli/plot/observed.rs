@@ -1,7 +1,9 @@
 //! The observables of a run: `thermo.csv` as charts, and a line for each in the terminal.
 
+use super::means::Means;
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::table::{Rows, Table};
+use crate::statistics::quantile;
 use std::collections::BTreeMap;
 use std::path::Path;
 use stripmine_physics::method::{Methods, observer};
@@ -14,7 +16,9 @@ use stripmine_physics::words::suggestion;
 /// Curves of a picture: more cannot be told apart.
 const CURVES: usize = 5;
 /// A curve whose own range is a smaller part of its chart's than this is a line.
-const FLAT: f64 = 0.1;
+const FLAT: f64 = 0.2;
+/// A curve's range is that without this part of its values at either end: a short peak fills no chart.
+const PEAKS: f64 = 0.05;
 /// Points of a curve: more cannot be seen.
 const POINTS: usize = 2000;
 /// Characters of a curve in the terminal.
@@ -57,9 +61,11 @@ impl Reported for ObservedError {
 pub(super) struct Observed {
     columns: Vec<String>,
     rows: Vec<Vec<f64>>,
+    /// None of a table of no method of this version.
+    means: Option<Means>,
 }
 
-/// Curves that share a chart: each column with its smallest and largest value.
+/// Curves that share a chart: each column with its range.
 struct Group {
     curves: Vec<(usize, [f64; 2])>,
 }
@@ -85,7 +91,7 @@ pub(super) struct Wanted {
 }
 
 impl Observed {
-    pub(super) fn read(path: &Path) -> Result<Observed, ObservedError> {
+    pub(super) fn read(path: &Path, methods: Methods) -> Result<Observed, ObservedError> {
         let mut table = TableReader::open(path)?;
         let mut rows = vec![];
         while let Some(row) = table.next_row()? {
@@ -94,7 +100,9 @@ impl Observed {
         if rows.is_empty() {
             return Err(table.without_rows().into());
         }
-        Ok(Observed { columns: table.columns().to_vec(), rows })
+        let columns = table.columns().to_vec();
+        let means = Means::of(&columns, &rows, methods);
+        Ok(Observed { columns, rows, means })
     }
 
     fn column(&self, column: usize) -> impl Iterator<Item = f64> {
@@ -148,38 +156,61 @@ impl Observed {
         units.into_iter().flat_map(of).collect()
     }
 
-    /// The smallest and the largest value of a column.
+    /// The range of a column.
     fn ends(&self, column: usize) -> [f64; 2] {
-        let none = [f64::INFINITY, f64::NEG_INFINITY];
-        self.column(column).fold(none, |[low, high], value| [low.min(value), high.max(value)])
+        let mut values: Vec<f64> = self.column(column).collect();
+        values.sort_by(f64::total_cmp);
+        [PEAKS, 1.0 - PEAKS].map(|part| quantile(&values, part).unwrap_or(0.0))
     }
 
     fn figure(&self, unit: &str, columns: &[usize]) -> Figure {
         let names: Vec<String> = columns.iter().map(|&column| quoted(&self.columns[column])).collect();
         let every = self.rows.len().div_ceil(POINTS);
         let time = self.time();
-        let series = columns.iter().zip(&names).enumerate().map(|(hue, (&column, name))| {
-            let points = self.rows.iter().step_by(every).map(|row| (row[time], row[column]));
-            Series::new(name.replace('_', " "), Style::Line, hue, points)
-        });
         let words: Vec<String> = names.iter().map(|name| name.replace('_', " ")).collect();
+        let said: Vec<String> = columns
+            .iter()
+            .zip(&words)
+            .map(|(&column, name)| match self.mean_of(column) {
+                Some(mean) => format!("{name}: {mean}"),
+                None => name.clone(),
+            })
+            .collect();
+        let series = columns.iter().zip(&said).enumerate().map(|(hue, (&column, said))| {
+            let points = self.rows.iter().step_by(every).map(|row| (row[time], row[column]));
+            Series::new(said.clone(), Style::Line, hue, points)
+        });
         let label = if let [name] = words.as_slice() { name } else { "value" };
-        Chart::of(
+        let chart = Chart::of(
             Axis::linear("time", Some("the scene's unit")),
             Axis::linear(label, (!unit.is_empty()).then_some(unit)),
         )
-        .with(series)
-        .figure(names.join("-").replace('_', "-"), words.join(", "))
-        .caption("Of thermo.csv.")
+        .with(series);
+        let columns: Vec<&str> = columns.iter().map(|&column| self.columns[column].as_str()).collect();
+        let ribbons = self.means.iter().flat_map(|means| means.ribbons(&columns));
+        let before = self.means.iter().filter_map(|means| means.before(&columns));
+        before
+            .fold(chart.with(ribbons), Chart::band)
+            .figure(names.join("-").replace('_', "-"), words.join(", "))
+            .caption(format!(
+                "Of thermo.csv, with means and their 95 % intervals as of `average`. {}.",
+                said.join("; ")
+            ))
     }
 
-    /// Every column in a line: first, last, and its course.
+    /// What there is to be said of a column's mean.
+    fn mean_of(&self, column: usize) -> Option<String> {
+        self.means.as_ref()?.words(&self.columns[column])
+    }
+
+    /// Every column in a line: first, last, mean, and its course.
     pub(super) fn small(&self, wanted: &[Wanted], out: &Path) -> Table {
         let number = |value: Option<f64>| value.map_or(String::new(), |value| significant(value, DIGITS));
         Rows::of(wanted)
             .text("quantity", |it| quoted(&self.columns[it.column]))
             .text("first", |it| number(self.column(it.column).next()))
             .text("last", |it| number(self.column(it.column).last()))
+            .text("mean ± 95 %", |it| self.mean_of(it.column).unwrap_or_default())
             .text("course", |it| course(&self.column(it.column).collect::<Vec<_>>()))
             .table("plot", "The run")
             .note(format!("pictures in {}", quoted::path(out)))
@@ -216,7 +247,7 @@ mod tests {
     fn no_curve_is_a_line_on_the_scale_of_others() {
         let columns = ["time", "kinetic", "temperature", "elastic", "px", "py", "far"].map(str::to_owned);
         let row = |t: f64| vec![t, 680.0 * t, 0.7 * t, 200.0 * t, 1e-15 * t, 2e-15 * t, 1e9 + 300.0 * t];
-        let observed = Observed { columns: columns.to_vec(), rows: vec![row(0.0), row(1.0)] };
+        let observed = Observed { columns: columns.to_vec(), rows: vec![row(0.0), row(1.0)], means: None };
         let wanted: Vec<Wanted> = (1..7).map(|column| Wanted { column, unit: "energy" }).collect();
         let names: Vec<String> = observed.figures(&wanted).into_iter().map(|figure| figure.name).collect();
         assert_eq!(names, ["kinetic-elastic", "temperature", "px-py", "far"]);

@@ -1,15 +1,15 @@
 //! Pictures of the particles of a run: its last state, and, where the box is long, the density along it over time.
 
+use super::colouring::{Colouring, ColouringError};
 use super::window;
 use crate::report::figure::{Axis, Drawing, Figure, Guide, Map, Picture, Shape, Tint};
 use std::path::Path;
 use stripmine_physics::io::extxyz::{Frame, Frames, ReadError};
 use stripmine_physics::io::regular_file;
 use stripmine_physics::number::significant;
-use stripmine_physics::particles::Kind;
 
 /// Particles of a picture: more cannot be seen, and files would be large.
-const SHOWN: usize = 20_000;
+pub(super) const SHOWN: usize = 20_000;
 /// Rows of a map: more cannot be seen.
 const ROWS: usize = 160;
 /// A box that is this many times as long as wide has a density along it.
@@ -18,23 +18,34 @@ const LONG: f64 = 4.0;
 const BIN: f64 = 2.5;
 
 /// Bodies up to which the places of earlier frames are shown too.
-const TRACED: usize = 12;
+pub(super) const TRACED: usize = 12;
 /// Places of earlier frames, at most.
 const TRACES: usize = 5000;
 /// Width of a picture, and of one that is much wider than high (pixels).
-const WIDTH: f64 = 720.0;
+pub(super) const WIDTH: f64 = 720.0;
 const WIDE: f64 = 1800.0;
 /// Least radius of a particle; radius of a body, which has none, of one of a few, and of where it was (pixels).
 const LEAST: f64 = 1.0;
-const POINT: f64 = 2.5;
-const LARGE_POINT: f64 = 9.0;
+pub(super) const POINT: f64 = 2.5;
+pub(super) const LARGE_POINT: f64 = 9.0;
 const TRACE: f64 = 2.0;
+
+/// Why there are no pictures.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum PictureError {
+    /// The trajectory cannot be read.
+    #[error(transparent)]
+    Trajectory(#[from] ReadError),
+    /// Its particles have no such colours.
+    #[error(transparent)]
+    Colouring(#[from] ColouringError),
+}
 
 /// The pictures of a trajectory. Gravity is that of the run's scene, if the scene can be read.
 ///
 /// # Errors
-/// [`ReadError`] if the trajectory cannot be read.
-pub fn pictures(run: &Path) -> Result<Vec<Figure>, ReadError> {
+/// If the trajectory cannot be read, or its particles cannot be coloured so.
+pub(super) fn pictures(run: &Path, colouring: &Colouring) -> Result<Vec<Figure>, PictureError> {
     let (mut last, mut slices, mut traces) = (None, vec![], vec![]);
     for frame in Frames::open(run.join("trajectory.xyz"))?.in_space() {
         let frame: Frame = frame?;
@@ -50,8 +61,20 @@ pub fn pictures(run: &Path) -> Result<Vec<Figure>, ReadError> {
         traces.iter().step_by(traces.len().div_ceil(TRACES).max(1)).copied().collect();
     let has_depth = last.particles.all().iter().any(|particle| particle.position[2] != 0.0);
     let views: &[View] = if has_depth { &[View::AlongZ, View::AlongY] } else { &[View::Plane] };
-    let states = views.iter().map(|&view| state(&last, scene.as_ref(), &traces, view));
+    let values = colouring.values(&last)?;
+    let ends = colouring.ends(values.clone())?;
+    let shades = Shades { values, ends, label: colouring.label(scene.as_ref()) };
+    let states = views.iter().map(|&view| state(&last, scene.as_ref(), &traces, &shades, view));
     Ok(states.chain(density(&last, &slices)).collect())
+}
+
+/// What the shades of particles say.
+struct Shades {
+    /// A value for each grain.
+    values: Vec<f64>,
+    /// Those of the lowest and the highest shade.
+    ends: [f64; 2],
+    label: String,
 }
 
 /// From where particles are seen.
@@ -76,7 +99,7 @@ impl View {
 const LONGEST_SCENE: u64 = 1 << 24;
 
 /// The scene of a run.
-fn scene(run: &Path) -> Option<toml::Table> {
+pub(super) fn scene(run: &Path) -> Option<toml::Table> {
     let text = regular_file::read(&run.join("scene.toml"), LONGEST_SCENE).ok()?;
     String::from_utf8(text).ok()?.parse().ok()
 }
@@ -87,18 +110,20 @@ fn gravity(scene: &toml::Table) -> Option<[f64; 2]> {
     ([x, y] != [0.0, 0.0]).then_some([x, y])
 }
 
-/// The particles of a frame, their speed as shade.
-fn state(frame: &Frame, scene: Option<&toml::Table>, traces: &[[f64; 3]], view: View) -> Figure {
-    let speed = |v: [f64; 3]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+/// The particles of a frame with their shades.
+fn state(
+    frame: &Frame,
+    scene: Option<&toml::Table>,
+    traces: &[[f64; 3]],
+    shades: &Shades,
+    view: View,
+) -> Figure {
     let all = frame.particles.all();
-    let mut speeds: Vec<f64> = all.iter().map(|particle| speed(particle.velocity)).collect();
-    speeds.sort_by(f64::total_cmp);
-    // Few are much faster than the others: they look like the fastest of a hundred.
-    let fastest = crate::statistics::quantile(&speeds, 0.99).filter(|fastest| *fastest > 0.0).unwrap_or(1.0);
+    let Shades { values, ends: [low, high], label } = shades;
     let every = all.len().div_ceil(SHOWN).max(1);
     let axes = view.axes();
     let flat = |position: [f64; 3]| axes.map(|axis| position[axis]);
-    let bounds = window::bounds(frame, scene, axes);
+    let bounds = window::bounds(frame, scene, traces, axes);
     let [[x, x_end], [y, y_end]] = window::shown(frame, traces, axes, bounds);
     let (width, height) = (x_end - x, y_end - y);
     // A tall box lies down, its upper end to the left.
@@ -107,8 +132,7 @@ fn state(frame: &Frame, scene: Option<&toml::Table>, traces: &[[f64; 3]], view: 
     let window = if lies { [[0.0, 0.0], [height, width]] } else { [[x, y], [x_end, y_end]] };
     let pixels = if lies || width > LONG * height { WIDE } else { WIDTH };
     let pixel = (window[1][0] - window[0][0]) / pixels;
-    let is_point =
-        window::is_endless(frame) && bounds.iter().all(|[low, high]| low.is_infinite() && high.is_infinite());
+    let is_point = window::is_of_points(frame, bounds);
     let point = if all.len() <= TRACED { LARGE_POINT } else { POINT };
     let radius = |of: f64| if is_point { point * pixel } else { of.max(LEAST * pixel) };
     let (across, up) = (x..=x_end, y..=y_end);
@@ -125,14 +149,14 @@ fn state(frame: &Frame, scene: Option<&toml::Table>, traces: &[[f64; 3]], view: 
         radius: TRACE * pixel,
         tint: Tint::Hue(0),
     });
-    let seen = all.iter().step_by(every).filter(|particle| is_inside(particle.position));
-    let shapes = seen.map(|particle| Shape::Disc {
+    // Grains come before walls, and have values.
+    let seen = all.iter().enumerate().step_by(every).filter(|(_, particle)| is_inside(particle.position));
+    let shapes = seen.map(|(at, particle)| Shape::Disc {
         centre: place(flat(particle.position)),
         radius: radius(particle.radius),
-        tint: match particle.kind {
-            Kind::Wall => Tint::Still,
-            Kind::Grain => Tint::Shade((speed(particle.velocity) / fastest).min(1.0)),
-        },
+        tint: values
+            .get(at)
+            .map_or(Tint::Still, |value| Tint::Shade(((value - low) / (high - low)).clamp(0.0, 1.0))),
     });
     let outside = all.iter().filter(|particle| !is_inside(particle.position)).count();
     let mut title = format!("The particles at time {}", significant(frame.time, 6));
@@ -164,7 +188,7 @@ fn state(frame: &Frame, scene: Option<&toml::Table>, traces: &[[f64; 3]], view: 
         window,
         width: pixels,
         shapes: walls.chain(earlier).chain(shapes).collect(),
-        shades: Some((0.0, fastest, "speed (the scene's unit)".into())),
+        shades: Some((*low, *high, label.clone())),
         guide: Some(Guide {
             unit: String::new(),
             gravity: scene
@@ -174,7 +198,7 @@ fn state(frame: &Frame, scene: Option<&toml::Table>, traces: &[[f64; 3]], view: 
         }),
     })
     .figure(if view == View::AlongY { "last-state-side" } else { "last-state" }, title)
-    .caption(format!("Shade: speed.{traced}"))
+    .caption(format!("Shade: {label}.{traced}"))
 }
 
 /// Grains in slices across a long box, from its lower or left end; none where no side is much the longest.

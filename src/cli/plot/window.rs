@@ -20,6 +20,16 @@ pub(super) fn is_endless(frame: &Frame) -> bool {
     frame.cell.iter().any(|side| side.is_infinite())
 }
 
+/// Whether what leaves a frame's box along an axis comes in at the other side.
+pub(super) fn is_periodic(frame: &Frame, axis: usize) -> bool {
+    !is_endless(frame) && frame.periodic.is_none_or(|periodic| periodic[axis])
+}
+
+/// Whether the particles of a frame with these bounds are bodies, which have no size.
+pub(super) fn is_of_points(frame: &Frame, bounds: [[f64; 2]; 2]) -> bool {
+    is_endless(frame) && bounds.iter().all(|[low, high]| low.is_infinite() && high.is_infinite())
+}
+
 /// Two numbers of the scene's `domain`.
 pub(super) fn pair(scene: &toml::Table, key: &str) -> Option<[f64; 2]> {
     let pair = scene.get("domain")?.get(key)?.as_array()?;
@@ -27,14 +37,21 @@ pub(super) fn pair(scene: &toml::Table, key: &str) -> Option<[f64; 2]> {
     Some([pair.first().and_then(number)?, pair.get(1).and_then(number)?])
 }
 
-/// The ends of the box along two axes (length); without end where there is none. A frame of a box that is open above does not say how
-/// wide it is; the scene does.
-pub(super) fn bounds(frame: &Frame, scene: Option<&toml::Table>, axes: [usize; 2]) -> [[f64; 2]; 2] {
+/// The ends of the box along two axes (length); without end where there is none, or where particles of the frame or of `traces` are
+/// beyond it. A frame of a box that is open above does not say how wide it is; the scene does.
+pub(super) fn bounds(
+    frame: &Frame,
+    scene: Option<&toml::Table>,
+    traces: &[[f64; 3]],
+    axes: [usize; 2],
+) -> [[f64; 2]; 2] {
     let endless = [f64::NEG_INFINITY, f64::INFINITY];
+    let places = || frame.particles.grains().iter().map(|it| it.position).chain(traces.iter().copied());
     let known = |axis: usize| -> Option<[f64; 2]> {
         if !is_endless(frame) {
-            let (origin, side) = (frame.origin.get(axis)?, frame.cell.get(axis)?);
-            return Some([*origin, origin + side]);
+            let (origin, side) = (*frame.origin.get(axis)?, frame.cell.get(axis)?);
+            let is_open = !is_periodic(frame, axis) && places().any(|place| place[axis] > origin + side);
+            return Some([origin, if is_open { f64::INFINITY } else { origin + side }]);
         }
         let side = *pair(scene?, "sides")?.get(axis)?;
         let origin = pair(scene?, "origin").map_or(0.0, |origin| origin[axis]);
@@ -109,7 +126,7 @@ mod tests {
 
     fn seen(places: &[[f64; 3]], cell: [f64; 2], axes: [usize; 2]) -> [[f64; 2]; 2] {
         let frame = frame(places, cell);
-        shown(&frame, &[], axes, bounds(&frame, None, axes))
+        shown(&frame, &[], axes, bounds(&frame, None, &[], axes))
     }
 
     /// A square of n by n places with sides of 10 and its corner at the origin.
@@ -145,12 +162,22 @@ mod tests {
         }
     }
 
+    /// Where a disc is above the box of its frame there is no ceiling; where it leaves a periodic side, there is one.
+    #[test]
+    fn a_box_that_is_left_is_open() {
+        let mut frame = frame(&[[5.0, 5.0, 0.0], [5.0, 12.0, 0.0]], [10.0, 10.0]);
+        let box_of = |frame: &Frame, traces: &[[f64; 3]]| bounds(frame, None, traces, [0, 1]);
+        assert_eq!(box_of(&frame, &[]), [[0.0, 10.0], [0.0, 10.0]]);
+        frame.periodic = Some([true, false]);
+        assert_eq!(box_of(&frame, &[[15.0, 5.0, 0.0]]), [[0.0, 10.0], [0.0, f64::INFINITY]]);
+    }
+
     /// A box that is open above shows its floor and what is above it; how wide it is, the scene says.
     #[test]
     fn an_open_box_shows_its_floor() {
         let frame = frame(&square(20), [f64::INFINITY; 2]);
         let scene: toml::Table = "[domain]\nsides = [10.0, 40.0]".parse().unwrap();
-        let bounds = bounds(&frame, Some(&scene), [0, 1]);
+        let bounds = bounds(&frame, Some(&scene), &[], [0, 1]);
         assert_eq!(bounds, [[0.0, 10.0], [0.0, f64::INFINITY]]);
         let [x, y] = shown(&frame, &[], [0, 1], bounds);
         assert_eq!((x, y[0]), ([0.0, 10.0], 0.0));

@@ -146,6 +146,8 @@ pub enum Style {
     Joined,
     /// Steps of a histogram: each point is the middle of a bin.
     Steps,
+    /// A dashed line within the ground between the ends of the spreads: a mean with its error.
+    Ribbon,
 }
 
 /// A point of a series.

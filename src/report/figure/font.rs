@@ -26,10 +26,11 @@ pub fn widest<'a>(lines: impl IntoIterator<Item = &'a String>, size: f64) -> f64
     lines.into_iter().map(|line| width(line, size)).fold(0.0, f64::max)
 }
 
-/// Cuts words into lines that are no wider than a width; a single word may be.
+/// Cuts words into lines that are no wider than a width; a single word may be. A no-break space is within a word.
 pub fn wrap(words: &str, size: f64, most: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for word in words.split_whitespace() {
+    let words = words.split(|c: char| c.is_whitespace() && c != '\u{a0}').filter(|word| !word.is_empty());
+    for word in words {
         match lines.last_mut() {
             Some(line) if width(&format!("{line} {word}"), size) <= most => {
                 line.push(' ');

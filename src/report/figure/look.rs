@@ -47,6 +47,7 @@ pub fn looks(chart: &Chart) -> Vec<Look> {
                 Style::Line => style::line_dash(series.hue + twins),
                 Style::Dashed => style::short_dash(series.hue + twins),
                 Style::Joined | Style::Steps => style::line_dash(before),
+                Style::Ribbon => style::short_dash(before),
                 Style::Points => &[],
             },
             hollow: twins % 2 == 1,
@@ -79,7 +80,7 @@ mod tests {
 
     #[test]
     fn no_two_lines_have_one_colour_and_dash() {
-        for style in [Style::Line, Style::Dashed, Style::Joined, Style::Steps] {
+        for style in [Style::Line, Style::Dashed, Style::Joined, Style::Steps, Style::Ribbon] {
             let axis = Axis::linear("x", None);
             let series =
                 (0..14).map(|hue| Series { name: String::new(), style, hue, points: vec![] }).collect();

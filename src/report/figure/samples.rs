@@ -53,6 +53,7 @@ pub fn linear() -> Figure {
         .series("with friction", Style::Line, 0, friction)
         .series("what a neighbour list would need", Style::Dashed, 1, rival)
         .series("seen", Style::Joined, 2, seen)
+        .series("mean of what is seen", Style::Ribbon, 2, [(0.3, 9.0, [7.0, 11.0]), (0.9, 9.0, [7.0, 11.0])])
         .band(Band::of_x("no configuration is denser", [0.84, 0.9]));
     figure("linear", "Flow through the pipe", Picture::Chart(chart))
 }

@@ -126,9 +126,11 @@ fn element(text: &mut String, it: &Primitive) -> Result<(), Fault> {
         Primitive::RectBatch { x, y, w, h, fills } => (0..fills.len())
             .try_for_each(|i| writeln!(text, "<rect{}{}/>", at([x[i], y[i], w[i], h[i]]), filled(&fills[i]))),
         Primitive::Path(path) => {
-            let PathData { d, fill, stroke, stroke_width, stroke_dasharray, .. } = &**path;
+            let PathData { d, fill, stroke, stroke_width, opacity, stroke_dasharray } = &**path;
             // Without a filling of its own it has that of what it stands in: none on the plane of a chart; and a straight line has none.
+            let through = opacity.map_or(String::new(), |part| format!(" fill-opacity=\"{part}\""));
             let look = fill.as_ref().map_or(String::new(), filled)
+                + &through
                 + &outline(stroke, *stroke_width, stroke_dasharray.as_deref());
             writeln!(text, "<path{look} d=\"{d}\"/>")
         }

@@ -12,6 +12,16 @@ pub fn embedded(id: &str, data: &Value) -> Markup {
     html! { script type="application/json" id=[Some(id).filter(|id| !id.is_empty())] { (PreEscaped(text)) } }
 }
 
+/// Where the player puts a film; `instead` says where to look without it.
+pub fn holder(film: &Film, instead: &Markup) -> Markup {
+    html! {
+        div.film data-label=(film.title) {
+            (embedded("", &data(film)))
+            noscript { p { "The film needs JavaScript. " (instead) } }
+        }
+    }
+}
+
 /// The colours of magnitudes, and those of signed quantities, from the lowest to the highest.
 pub fn shades() -> Value {
     let colours =
@@ -28,14 +38,17 @@ const PIXELS: f64 = 6.0 * 2200.0;
 /// The film, all frames of a quantity behind one another. Every frame has a place for each of the radii; a disc that a
 /// frame does not have is no number there.
 pub fn data(film: &Film) -> Value {
-    let Film { window, radii, fixed, frames, shade, shades, .. } = film;
+    let Film { units, window, sides, falls, radii, fixed, frames, shade, shades, .. } = film;
     let still =
         |number: fn(&([f64; 2], f64)) -> f64| Quantised::of(&fixed.iter().map(number).collect::<Vec<_>>());
     let [width, height] = [window[1][0] - window[0][0], window[1][1] - window[0][1]];
     let half_a_pixel = 0.5 * width.max(height) / PIXELS;
     let half_a_shade = 0.5 * (shades[1] - shades[0]) / f64::from(style::SHADES);
     json!({
+        "units": units,
         "window": window,
+        "sides": sides,
+        "falls": falls,
         "long": width > LONG * height || height > LONG * width,
         "shade": { "label": shade, "ends": shades },
         "radii": Quantised::of(radii),
@@ -44,7 +57,7 @@ pub fn data(film: &Film) -> Value {
         "x": column(film, |disc| disc.0[0], half_a_pixel),
         "y": column(film, |disc| disc.0[1], half_a_pixel),
         // A shade beyond an end looks like the end.
-        "shades": column(film, |disc| disc.1.max(shades[0]).min(shades[1]), half_a_shade),
+        "shades": column(film, |disc| disc.1.clamp(shades[0], shades[1]), half_a_shade),
     })
 }
 
@@ -67,7 +80,10 @@ mod tests {
         };
         Film {
             title: "Grains".to_owned(),
+            units: ["m", "s"].map(str::to_owned),
             window: [[0.0, -0.0275], [8.1, 0.0275]],
+            sides: vec![],
+            falls: true,
             radii: (0..discs).map(|disc| 0.01 + 1e-5 * disc as f64).collect(),
             fixed: (0..600).map(|i| ([0.027 * f64::from(i / 2), 0.0275], 0.009)).collect(),
             frames: (0..frames)

@@ -115,13 +115,10 @@ fn heading(title: &str) -> Markup {
 }
 
 fn moving(section: &Section, shown: &Film) -> Markup {
-    let instead = html! { noscript { p { "The film needs JavaScript. Its frames are in the folder " (folder(&section.folder())) "." } } };
+    let instead = html! { "Its frames are in the folder " (folder(&section.folder())) "." };
     html! {
         figure id={ (section.name) "-film" } {
-            div.film data-label=(shown.title) {
-                (film::embedded("", &film::data(shown)))
-                (instead)
-            }
+            (film::holder(shown, &instead))
             figcaption { (heading(&shown.title)) }
         }
     }

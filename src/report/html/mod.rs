@@ -1,10 +1,13 @@
 //! The page of a reproduction as one HTML file: charts to hover over, films to play, nothing fetched from anywhere.
 
 mod film;
+mod film_page;
 mod inline;
 mod item;
 mod quantised;
 mod words;
+
+pub use film_page::film_page;
 
 use super::figure::{Figure, style};
 use super::{Chapter, Section, Verdict};
@@ -16,8 +19,10 @@ use words::{badge, kind, prose, sign};
 const STYLE: &str = include_str!("page.css");
 
 /// Scripts, each of which may use those before it.
-const SCRIPTS: [&str; 4] =
-    [include_str!("page.js"), include_str!("tips.js"), include_str!("strips.js"), include_str!("player.js")];
+const SCRIPTS: [&str; 4] = [PAGE, include_str!("tips.js"), STRIPS, PLAYER];
+const PAGE: &str = include_str!("page.js");
+const STRIPS: &str = include_str!("strips.js");
+const PLAYER: &str = include_str!("player.js");
 
 /// The content policy for the browser: nothing that is not in the file itself.
 const POLICY: &str =
@@ -39,12 +44,8 @@ pub fn render(
         (DOCTYPE)
         html lang="en" {
             head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
-                (PreEscaped(MARK))
-                link rel="icon" href="data:,";
-                style { (PreEscaped(STYLE)) (PreEscaped(on_dark_paper())) }
+                (head(&PreEscaped(MARK)))
+                style { (PreEscaped(on_dark_paper())) }
             }
             body {
                 a.skip href="#summary" { "To the summary" }
@@ -70,6 +71,18 @@ pub fn render(
         }
     };
     page.into_string()
+}
+
+/// What stands in the head of every page, with the element of its title.
+fn head(title: &PreEscaped<&str>) -> Markup {
+    html! {
+        meta charset="utf-8";
+        meta name="viewport" content="width=device-width, initial-scale=1";
+        meta http-equiv="Content-Security-Policy" content=(POLICY);
+        (title)
+        link rel="icon" href="data:,";
+        style { (PreEscaped(STYLE)) }
+    }
 }
 
 /// Pictures where the reader's screen is dark.

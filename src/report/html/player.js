@@ -4,11 +4,15 @@
 const RATES = [1, 2, 5, 10, 20, 40]; // frames a second
 const DOTS_ON_PAPER = 3; // to a pixel
 
+const LOW = 480; // height of a film among text (pixels)
+const ELSE = 210; // height of all but the film on a page of its own (pixels)
+const LASTS = 20; // how long it takes there at most, if a rate allows it (seconds)
+
 /** Times as text, with as many decimals for each as the most exact one needs. */
-function timesAsText(times) {
+function timesAsText(times, unit) {
   const decimals = times.map((time) => (String(Number(time.toPrecision(6))).split(".")[1] ?? "").length);
   const most = Math.max(0, ...decimals);
-  return times.map((time) => `t = ${time.toFixed(most)}\u202fs`);
+  return times.map((time) => `t = ${time.toFixed(most)}\u202f${unit}`);
 }
 
 /** A bar that says what the colours mean. */
@@ -21,7 +25,7 @@ function colourBar(parent, { label, ends }) {
 }
 
 /** The buttons and sliders of a player. */
-function filmControls(player, film) {
+function filmControls(player, film, usual) {
   const controls = element("div", "controls", player);
   const button = element("button", "play", controls);
   button.type = "button";
@@ -32,7 +36,7 @@ function filmControls(player, film) {
   const label = element("label", "", controls);
   label.append("Speed ");
   const speed = element("select", "", label);
-  for (const rate of RATES) speed.add(new Option(`${rate} frames/s`, rate, rate === 5, rate === 5));
+  for (const rate of RATES) speed.add(new Option(`${rate} frames/s`, rate, rate === usual, rate === usual));
   colourBar(controls, film.shade);
   return { button, slider, time, speed };
 }
@@ -52,9 +56,11 @@ for (const holder of document.querySelectorAll(".film")) {
   const canvas = element("canvas", "", player);
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", holder.dataset.label);
-  const { button, slider, time, speed } = filmControls(player, film);
+  const alone = document.body.classList.contains("alone");
+  const usual = alone ? (RATES.find((rate) => rate >= 5 && last / rate <= LASTS) ?? RATES.at(-1)) : 5;
+  const { button, slider, time, speed } = filmControls(player, film, usual);
   const screen = filmScreen(film, canvas);
-  const texts = timesAsText(film.times);
+  const texts = timesAsText(film.times, film.units[1]);
 
   let frame = 0;
   const go = (to) => {
@@ -91,8 +97,8 @@ for (const holder of document.querySelectorAll(".film")) {
   button.addEventListener("click", toggle);
   slider.addEventListener("input", () => step(Number(slider.value)));
   speed.addEventListener("change", () => play(next !== undefined));
-  player.addEventListener("keydown", (event) => {
-    if (event.target !== player) return;
+  (alone ? document : player).addEventListener("keydown", (event) => {
+    if (event.target !== player && event.target !== document.body) return;
     const doings = {
       " ": toggle,
       ArrowRight: () => step(frame + 1),
@@ -107,13 +113,16 @@ for (const holder of document.querySelectorAll(".film")) {
 
   const fit = (dots) => {
     if (holder.clientWidth === 0) return;
-    screen.size(holder.clientWidth, dots);
+    screen.size(holder.clientWidth, alone ? Math.max(innerHeight - ELSE, LOW / 2) : LOW, dots);
     go(frame);
   };
   const fitScreen = () => fit(window.devicePixelRatio || 1);
   new ResizeObserver(fitScreen).observe(holder);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", fitScreen);
   window.addEventListener("beforeprint", () => fit(DOTS_ON_PAPER));
   window.addEventListener("afterprint", fitScreen);
   fitScreen();
-  play(false);
+  const asked = alone && /^#frame=(\d+)$/.exec(location.hash);
+  if (asked) go(Number(asked[1]));
+  play(alone && !asked && !matchMedia("(prefers-reduced-motion: reduce)").matches);
 }

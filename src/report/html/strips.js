@@ -41,8 +41,11 @@ const GUTTER = 64; // room for the place where a strip begins (pixels)
 const LOWEST_STRIP = 34; // a strip lower than this shows no discs
 const MOST_STRIPS = 16;
 
-/** Where everything lies on a canvas of a width: a strip's height, the scale, and the way from metres to pixels. */
-function layOut(film, width) {
+const STILL = "#b0b0b0"; // what has no shade
+const LEAST = 0.8; // radius of a disc that would not be seen (pixels)
+
+/** Where everything lies on a canvas of a width and at most a height: a strip's height, the scale, and the way from lengths to pixels. */
+function layOut(film, width, tallest) {
   const [[left, bottom], [right, top]] = film.window;
   const [wide, high] = [right - left, top - bottom];
   // A tall window lies down, its lower end to the right.
@@ -54,7 +57,7 @@ function layOut(film, width) {
   if (film.long) {
     strips = Math.min(Math.max(Math.ceil((LOWEST_STRIP * length) / (free * thick)), 4), MOST_STRIPS);
   }
-  const scale = film.long ? (free * strips) / length : Math.min(free / length, 480 / thick);
+  const scale = film.long ? (free * strips) / length : Math.min(free / length, tallest / thick);
   const gap = film.long ? 10 : 0;
   const head = film.long ? 26 : 0;
   return {
@@ -66,7 +69,7 @@ function layOut(film, width) {
     stripLength: length / strips,
     stripHeight: thick * scale,
     height: head + strips * (thick * scale + gap) - gap,
-    /** Distance along the long side and across it (m), from the upper left corner of the picture. */
+    /** Distance along the long side and across it (length), from the upper left corner of the picture. */
     along: tall ? (x, y) => top - y : (x) => x - left,
     across: tall ? (x) => right - x : (x, y) => top - y,
     /** What the axis along the long side says at a distance along it. */
@@ -78,14 +81,17 @@ function layOut(film, width) {
 function inStrip(layout, x, y, radius, strip, circle) {
   const along = layout.along(x, y) - strip * layout.stripLength;
   if (along + radius < 0 || along - radius > layout.stripLength) return;
-  circle(layout.left + along * layout.scale, layout.across(x, y) * layout.scale, radius * layout.scale);
+  const seen = Math.max(radius * layout.scale, LEAST);
+  circle(layout.left + along * layout.scale, layout.across(x, y) * layout.scale, seen);
 }
 
-/** The arrow of gravity, and what else a reader of strips must know. */
-function drawHead(ctx) {
+/** What a reader of strips must know, after the arrow of gravity where it pulls along them. */
+function drawHead(ctx, falls) {
   const y = 10;
-  const [from, to] = [GUTTER + 48, GUTTER + 100];
+  const [from, to] = falls ? [GUTTER + 48, GUTTER + 100] : [GUTTER, GUTTER - 14];
   ctx.textAlign = "left";
+  ctx.fillText("each line goes on in the next", to + 14, y);
+  if (!falls) return;
   ctx.fillText("gravity", GUTTER, y);
   ctx.lineWidth = 1.5;
   ctx.beginPath();
@@ -95,15 +101,14 @@ function drawHead(ctx) {
   ctx.lineTo(to, y);
   ctx.lineTo(to - 7, y + 5);
   ctx.stroke();
-  ctx.fillText("each line goes on in the next", to + 14, y);
 }
 
-/** A canvas for a film: `size(width, dots)` lays it out, `show(frame)` draws a frame. */
+/** A canvas for a film: `size(width, tallest, dots)` lays it out, `show(frame)` draws a frame. */
 function filmScreen(film, canvas) {
   const radii = numbers(film.radii);
   const [xs, ys, shades] = [film.x, film.y, film.shades].map(numbers);
   const fixed = { x: numbers(film.fixed.x), y: numbers(film.fixed.y), radii: numbers(film.fixed.radii) };
-  const colour = (shade) => (Number.isNaN(shade) ? "#fff" : shadesOf(film.shade.ends)[shadeOf(shade, film.shade.ends)]);
+  const colour = (shade) => (Number.isNaN(shade) ? STILL : shadesOf(film.shade.ends)[shadeOf(shade, film.shade.ends)]);
   // What stays the same from frame to frame is drawn once.
   const still = document.createElement("canvas");
   let layout, ctx, width;
@@ -128,39 +133,59 @@ function filmScreen(film, canvas) {
       if (circle[2] > 2) onto.stroke();
     });
 
+  /** A colour of the page. */
+  const ofPage = (name) => getComputedStyle(canvas).getPropertyValue(name);
+
+  /** The sides of the box, in the place of a strip: dashed where what leaves comes in at the other side. */
+  const drawSides = (onto, strip) => {
+    onto.strokeStyle = ofPage("--quiet");
+    onto.lineWidth = 2;
+    for (const { ends, is_periodic } of film.sides) {
+      onto.setLineDash(is_periodic ? [6, 5] : []);
+      onto.beginPath();
+      for (const [x, y] of ends) {
+        const along = layout.along(x, y) - strip * layout.stripLength;
+        onto.lineTo(layout.left + along * layout.scale, layout.across(x, y) * layout.scale);
+      }
+      onto.stroke();
+    }
+    onto.setLineDash([]);
+  };
+
   const drawStill = (onto) => {
-    onto.fillStyle = "#fff";
+    onto.fillStyle = ofPage("--paper");
     onto.fillRect(0, 0, width, layout.height);
-    onto.strokeStyle = "#8a8a8a";
-    onto.lineWidth = 0.5;
     eachStrip(onto, (strip) => {
-      onto.fillStyle = "#f6f6f6";
+      onto.fillStyle = ofPage("--box");
       onto.fillRect(layout.left, 0, layout.stripLength * layout.scale, layout.stripHeight);
-      onto.fillStyle = "#b0b0b0";
+      onto.fillStyle = STILL;
+      onto.strokeStyle = "#8a8a8a";
+      onto.lineWidth = 0.5;
       fixed.radii.forEach((radius, i) => disc(onto, fixed.x[i], fixed.y[i], radius, strip));
+      drawSides(onto, strip);
     });
     if (!film.long) return;
-    onto.fillStyle = onto.strokeStyle = "#333";
+    onto.fillStyle = onto.strokeStyle = ofPage("--text");
     onto.font = "12px system-ui, sans-serif";
     onto.textBaseline = "middle";
     onto.textAlign = "right";
     for (let strip = 0; strip < layout.strips; strip++) {
-      const begin = readable(layout.place(strip * layout.stripLength), 3) + "\u202fm";
+      const begin = `${readable(layout.place(strip * layout.stripLength), 3)}\u202f${film.units[0]}`;
       onto.fillText(begin, GUTTER - 8, top(strip) + layout.stripHeight / 2);
     }
-    drawHead(onto);
+    drawHead(onto, film.falls);
   };
 
   return {
-    size(wide, dots) {
+    size(wide, tallest, dots) {
       width = wide;
-      layout = layOut(film, width);
+      layout = layOut(film, width, tallest);
       drawStill(sizeCanvas(still, width, layout.height, dots));
       ctx = sizeCanvas(canvas, width, layout.height, dots);
     },
     show(frame) {
       ctx.drawImage(still, 0, 0, width, layout.height);
-      ctx.strokeStyle = "rgba(0,0,0,0.55)";
+      ctx.strokeStyle = ofPage("--rim");
       ctx.lineWidth = 0.6;
       eachStrip(ctx, (strip) => {
         radii.forEach((radius, i) => {

@@ -52,7 +52,10 @@ fn section(name: &str) -> Section {
         excerpt: Some((HOSTILE.to_owned(), HOSTILE.to_owned())),
         film: Some(Film {
             title: HOSTILE.to_owned(),
+            units: [HOSTILE.to_owned(), HOSTILE.to_owned()],
             window: [[0.0; 2], [1.0; 2]],
+            sides: vec![],
+            falls: false,
             radii: vec![0.1],
             fixed: vec![],
             frames: vec![Frame { time: 0.0, discs: vec![([0.5, 0.5], 1.0)] }],

@@ -110,6 +110,20 @@ impl Look {
     }
 }
 
+/// ψ6 of each disc, its real and its imaginary part: the mean of exp(6iθ) over the six nearest.
+pub fn hexatic_orders(setting: &Setting, discs: &[Particle]) -> Vec<[f64; 2]> {
+    let mut look = Look::new(*setting, discs, std::iter::empty());
+    look.take_up();
+    if look.discs.x.is_empty() {
+        return vec![];
+    }
+    let reach = Neighbours::reach(setting, look.discs.x.len());
+    look.cells.sort(setting, &look.discs, reach);
+    look.neighbours.keeps_each = true;
+    look.neighbours.find(setting, &look.discs, &look.cells);
+    look.neighbours.each()
+}
+
 /// What an observable says of some discs.
 pub fn seen(observable: &'static Observable, setting: Setting, discs: &Particles) -> Vec<f64> {
     let mut look = Look::new(setting, discs.grains(), std::iter::once(observable));

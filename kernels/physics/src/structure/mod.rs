@@ -14,7 +14,7 @@ mod waves;
 mod work;
 
 pub use blocks::Blocks;
-pub use look::{Look, seen};
+pub use look::{Look, hexatic_orders, seen};
 pub use motion::{Motion, widening};
 pub use pairs::{pair_counts, pair_counts_of_all};
 pub use setting::Setting;

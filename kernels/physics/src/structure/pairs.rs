@@ -162,6 +162,8 @@ pub(super) fn correlation(look: &Look, values: &mut [f64]) {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Neighbours {
     parts: Vec<Around>,
+    /// Whether ψ6 of each disc is kept beside the sums.
+    pub(super) keeps_each: bool,
 }
 
 /// What some discs have around them, summed up, and room for the others around one.
@@ -177,6 +179,8 @@ struct Around {
     up: Vec<f64>,
     squares: Vec<f64>,
     places: Vec<usize>,
+    /// ψ6 of each disc by its number, where it is kept.
+    each: Vec<(u32, [f64; 2])>,
 }
 
 impl Neighbours {
@@ -201,15 +205,25 @@ impl Neighbours {
             up: vec![],
             squares: vec![],
             places: vec![],
+            each: vec![],
         };
         self.parts.resize(cells.parts.len(), none);
         let looked_for = Neighbours::looked_for(setting, discs.x.len());
-        let largest = setting.largest_radius;
+        let (largest, keeps_each) = (setting.largest_radius, self.keeps_each);
         self.parts.par_iter_mut().zip(cells.parts.par_iter()).for_each(|(around, rows)| {
             let rows = rows.clone();
-            let looking = Looking { radius: &discs.radius, cells, rows, looked_for, largest, around };
+            let looking =
+                Looking { radius: &discs.radius, cells, rows, looked_for, largest, keeps_each, around };
             dispatch_native(InstructionSet::best(), looking).unwrap_or_default();
         });
+    }
+
+    /// ψ6 of each disc, where it was kept, in the order of their numbers.
+    pub(super) fn each(&self) -> Vec<[f64; 2]> {
+        let mut all: Vec<(u32, [f64; 2])> =
+            self.parts.iter().flat_map(|part| part.each.iter().copied()).collect();
+        all.sort_unstable_by_key(|(number, _)| *number);
+        all.into_iter().map(|(_, order)| order).collect()
     }
 
     /// The sum of a number of each part, in the order of the parts.
@@ -225,16 +239,18 @@ struct Looking<'c> {
     rows: Range<usize>,
     looked_for: [f64; 3],
     largest: f64,
+    keeps_each: bool,
     around: &'c mut Around,
 }
 
 impl Task<f64> for Looking<'_> {
     #[inline(always)]
     fn on<R: Registers<Lane = f64>>(self, _: R) {
-        let Looking { radius, cells, rows, looked_for, largest, around } = self;
+        let Looking { radius, cells, rows, looked_for, largest, keeps_each, around } = self;
         around.numbers.fill(0);
         around.orders.fill(0);
         around.order = [0.0; 3];
+        around.each.clear();
         for row in rows {
             for own in cells.own(row) {
                 let own_radius = radius[cells.number[own] as usize];
@@ -257,6 +273,9 @@ impl Task<f64> for Looking<'_> {
                 around.order[0] += x;
                 around.order[1] += y;
                 around.order[2] += order;
+                if keeps_each {
+                    around.each.push((cells.number[own], [x, y]));
+                }
             }
         }
     }

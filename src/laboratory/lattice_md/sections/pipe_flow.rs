@@ -284,7 +284,10 @@ fn film(showing: Showing, flow: &PipeFlow) -> Option<Film> {
     });
     Some(Film {
         title: format!("{} grains falling", flow.grains),
+        units: ["m", "s"].map(str::to_owned),
         window: [[0.0, -half], [flow.length, half]],
+        sides: vec![],
+        falls: true,
         radii: start.grains().iter().map(|disc| disc.radius).collect(),
         fixed: start.all()[flow.grains..].iter().map(|disc| (disc.place(), disc.radius)).collect(),
         frames: frames.collect(),

@@ -165,7 +165,10 @@ fn film(data: &Collapse) -> Film {
     });
     Film {
         title: "The collapse, seen along z".into(),
+        units: ["R", "√(R³/GM)"].map(str::to_owned),
         window: [[-WINDOW; 2], [WINDOW; 2]],
+        sides: vec![],
+        falls: false,
         radii: vec![RADIUS; bodies],
         fixed: vec![],
         frames: frames.collect(),

@@ -33,10 +33,11 @@ pub fn scene(title: &str, chart: &Chart) -> Result<Scene, Fault> {
     let places = &picture.places;
     let areas = chart.bands.iter().zip(grounds(chart));
     let areas = areas.flat_map(|(band, ground)| area(band, ground, &x, &y, places));
-    // Curves below, markers on top, whichever series they belong to.
+    // Grounds below, then curves, markers on top, whichever series they belong to.
+    let grounds = drawn().filter_map(|(series, look)| series::ground(look, series, &x, &y, places));
     let curves = drawn().flat_map(|(series, look)| series::curve(look, series, &x, &y, places));
     let points = drawn().flat_map(|(series, look)| series::points(look, series, &x, &y, places));
-    let things = areas.chain(curves).chain(points).collect();
+    let things = areas.chain(grounds).chain(curves).chain(points).collect();
     picture.fill(&x, &y, "", things);
     let markers: BTreeSet<String> = looks.iter().map(marker::definition).collect();
     picture.scene.defs.extend(markers);

@@ -15,6 +15,10 @@ use std::fmt::Write;
 /// Half the width of the ends of an error bar (pixels).
 const CAP: f64 = 4.5;
 
+/// How much of its colour a ground has, and how high its sample is in a legend (pixels).
+const LIGHT: f64 = 0.25;
+const GROUND: f64 = 18.0;
+
 /// The curve of a series, if it has one. It bears the series' name where no markers do.
 pub fn curve(look: &Look, series: &Series, x: &Span, y: &Span, places: &ComputedLayout) -> Vec<Primitive> {
     if look.style == Style::Points || series.points.len() < 2 {
@@ -28,10 +32,30 @@ pub fn curve(look: &Look, series: &Series, x: &Span, y: &Span, places: &Computed
     group(title, None, vec![path(through(&bends(&middles)), look.colour, width(look), dash(look))])
 }
 
+/// The ground between the ends of the spreads of a ribbon.
+pub fn ground(
+    look: &Look,
+    series: &Series,
+    x: &Span,
+    y: &Span,
+    places: &ComputedLayout,
+) -> Option<Primitive> {
+    if look.style != Style::Ribbon {
+        return None;
+    }
+    let end = |which: usize| {
+        let ends = series.points.iter().filter_map(move |it| Some((it.x, it.spread?[which])));
+        ends.map(|(across, up)| [places.map_x(x.number(across)), places.map_y(y.number(up))])
+    };
+    let outline: Vec<[f64; 2]> = end(0).chain(end(1).collect::<Vec<_>>().into_iter().rev()).collect();
+    Some(filled(format!("{}z", through(&outline)), look.colour))
+}
+
 /// The bars and markers of a series, with its name.
 pub fn points(look: &Look, series: &Series, x: &Span, y: &Span, places: &ComputedLayout) -> Vec<Primitive> {
     let mut bars = String::new();
-    for (point, ends) in series.points.iter().filter_map(|point| Some((point, point.spread?))) {
+    let barred = if look.style == Style::Ribbon { &[][..] } else { &series.points };
+    for (point, ends) in barred.iter().filter_map(|point| Some((point, point.spread?))) {
         let [low, high] = ends.map(|end| places.map_y(y.number(end)));
         let (left, cap) = (places.map_x(x.number(point.x)) - CAP, 2.0 * CAP);
         // The page's script reads both ends here.
@@ -59,6 +83,11 @@ pub fn sample(look: &Look, [left, y]: [f64; 2], length: f64) -> Vec<Primitive> {
     let d = format!("M{left:.1} {y:.1}h{half}h{half}");
     let line = match look.style {
         Style::Points => unseen(d),
+        Style::Ribbon => {
+            let (top, right, high) = (y - 0.5 * GROUND, left + length, GROUND);
+            let around = format!("M{left:.1} {top:.1}H{right:.1}v{high}H{left:.1}z");
+            return vec![filled(around, look.colour), path(d, look.colour, width(look), dash(look))];
+        }
         _ => path(d, look.colour, width(look), dash(look)),
     };
     if look.has_markers() { marked("marker-mid", look, line) } else { vec![line] }
@@ -85,6 +114,13 @@ fn marked(property: &str, look: &Look, line: Primitive) -> Vec<Primitive> {
 /// A line of which only the markers are seen.
 fn unseen(d: String) -> Primitive {
     stroke(d, Color::None, 0.0, None)
+}
+
+/// A light ground.
+fn filled(d: String, of: Colour) -> Primitive {
+    let (fill, opacity) = (Some(colour(of)), Some(LIGHT));
+    let (stroke, stroke_width, stroke_dasharray) = (Color::None, 0.0, None);
+    Primitive::Path(Box::new(PathData { d, fill, stroke, stroke_width, opacity, stroke_dasharray }))
 }
 
 fn path(d: String, of: Colour, width: f64, dash: Option<String>) -> Primitive {

@@ -1,0 +1,273 @@
+//! A film of a run: the frames of its trajectory in one page.
+
+use super::colouring::{Colouring, ColouringError, units};
+use super::particles::{LARGE_POINT, POINT, SHOWN, TRACED, WIDTH, scene};
+use super::window;
+use crate::report::section::{Film, Frame as Moment, Side};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use stripmine_physics::io::extxyz::{Frame, Frames, ReadError};
+use stripmine_physics::number::counted;
+use stripmine_physics::particles::{Kind, Particle};
+use stripmine_physics::quoted;
+use stripmine_physics::reported::{Class, FilePlace, Reported};
+
+/// Places of particles in a film: at two bytes a coordinate and at most two a shade, in base 64, less than 20 million bytes.
+const PLACES: usize = 2_400_000;
+/// Frames of a film: more take minutes to see.
+const FRAMES: usize = 1500;
+/// A wall disc that is never farther from its first place than this part of its radius stands still: the rest is rounding.
+const STILL: f64 = 1e-6;
+/// Places that decide what is shown.
+const LOOKED_AT: usize = 100_000;
+
+/// The trajectory of a run.
+const TRAJECTORY: &str = "trajectory.xyz";
+
+/// Why there is no film.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum FilmError {
+    /// The trajectory has no frame.
+    #[error(
+        "{} has no frame, of which a film is made\n  help: a run with --set output.trajectory=true writes one every \
+         run.snapshot_every{}",
+        quoted::path(file),
+        if *has_dcd { "; trajectory.dcd has neither times nor sizes" } else { "" }
+    )]
+    NoFrame {
+        /// The trajectory.
+        file: PathBuf,
+        /// Whether there is one of another kind.
+        has_dcd: bool,
+    },
+    /// The trajectory cannot be read.
+    #[error(transparent)]
+    Trajectory(#[from] ReadError),
+    /// Its particles have no such colours.
+    #[error(transparent)]
+    Colouring(#[from] ColouringError),
+}
+
+impl Reported for FilmError {
+    fn class(&self) -> Class {
+        match self {
+            FilmError::Trajectory(error) if error.system().is_some() => Class::InputOutput,
+            FilmError::NoFrame { .. } | FilmError::Trajectory(_) => Class::Input,
+            FilmError::Colouring(error) => error.class(),
+        }
+    }
+
+    fn place(&self) -> Option<FilePlace> {
+        match self {
+            FilmError::NoFrame { file, .. } => Some(FilePlace::at(file)),
+            FilmError::Trajectory(error) => Some(FilePlace {
+                line: error.mistakes.first().and_then(|mistake| mistake.line),
+                ..FilePlace::at(error.file.as_ref())
+            }),
+            FilmError::Colouring(_) => None,
+        }
+    }
+}
+
+/// The film of a run, and what a reader must know of it, a line each.
+///
+/// # Errors
+/// If there is no trajectory, it cannot be read, or its particles cannot be coloured so.
+pub(super) fn film(run: &Path, colouring: &Colouring) -> Result<(Film, Vec<String>), FilmError> {
+    let file = run.join(TRAJECTORY);
+    let has_dcd = run.join("trajectory.dcd").exists();
+    let mut reel = Reel::default();
+    for frame in Frames::open(&file)?.in_space() {
+        reel.add(frame?, colouring)?;
+    }
+    let Some((last, cast)) = reel.last.take() else { return Err(FilmError::NoFrame { file, has_dcd }) };
+    let scene = scene(run);
+    let (mut film, notes) = reel.film(&last, cast, colouring, scene.as_ref())?;
+    let name = run.file_stem().unwrap_or_default().to_string_lossy();
+    film.title = format!("{}: {}", quoted::quoted(&name), film.title);
+    Ok((film, notes))
+}
+
+/// Who is in the film, as of the first frame.
+struct Cast {
+    /// The place of each in every frame, by its id.
+    places: HashMap<u32, usize>,
+    particles: Vec<Particle>,
+    /// One of so many is in it.
+    every: usize,
+}
+
+impl Cast {
+    fn of(frame: &Frame) -> Cast {
+        let all = frame.particles.all();
+        let every = all.len().div_ceil(SHOWN).max(1);
+        let particles: Vec<Particle> = all.iter().step_by(every).copied().collect();
+        let places = particles.iter().enumerate().map(|(place, particle)| (particle.id, place)).collect();
+        Cast { places, particles, every }
+    }
+}
+
+/// Frames as they are read: whenever there are too many, every other one goes.
+#[derive(Default)]
+struct Reel {
+    /// Frames read.
+    read: usize,
+    /// Frames after which the next is kept, less than 2 for all; doubles.
+    stride: usize,
+    kept: Vec<(f64, Vec<Option<Seen>>)>,
+    /// The newest frame, and the cast.
+    last: Option<(Frame, Cast)>,
+}
+
+/// Where a particle is in a frame, and its value where it has one.
+#[derive(Clone, Copy)]
+struct Seen {
+    position: [f64; 3],
+    value: f64,
+}
+
+impl Reel {
+    fn add(&mut self, frame: Frame, colouring: &Colouring) -> Result<(), FilmError> {
+        let cast = self.last.take().map_or_else(|| Cast::of(&frame), |(_, cast)| cast);
+        if self.read.is_multiple_of(self.stride.max(1)) {
+            let values = colouring.values(&frame)?;
+            let mut seen = vec![None; cast.particles.len()];
+            // Grains come before walls, and have values.
+            for (at, particle) in frame.particles.all().iter().enumerate() {
+                if let Some(&place) = cast.places.get(&particle.id) {
+                    let value = values.get(at).copied().unwrap_or(f64::NAN);
+                    seen[place] = Some(Seen { position: particle.position, value });
+                }
+            }
+            self.kept.push((frame.time, seen));
+            if self.kept.len() > (PLACES / cast.particles.len().max(1)).clamp(2, FRAMES) {
+                self.stride = 2 * self.stride.max(1);
+                let mut number = 0..;
+                self.kept.retain(|_| number.next().is_some_and(|number: usize| number.is_multiple_of(2)));
+            }
+        }
+        self.read += 1;
+        self.last = Some((frame, cast));
+        Ok(())
+    }
+
+    fn film(
+        self,
+        last: &Frame,
+        cast: Cast,
+        colouring: &Colouring,
+        scene: Option<&toml::Table>,
+    ) -> Result<(Film, Vec<String>), FilmError> {
+        const AXES: [usize; 2] = [0, 1];
+        let everywhere = || self.kept.iter().flat_map(|(_, seen)| seen).flatten();
+        let grains = || everywhere().filter(|seen| !seen.value.is_nan());
+        let some = (self.kept.len() * cast.particles.len()).div_ceil(LOOKED_AT).max(1);
+        let places: Vec<[f64; 3]> = grains().step_by(some).map(|seen| seen.position).collect();
+        let bounds = window::bounds(last, scene, &places, AXES);
+        let [[left, right], [low, high]] = window::shown(last, &places, AXES, bounds);
+        let shades = colouring.ends(grains().map(|seen| seen.value).collect())?;
+        let is_seen = |[x, y, _]: [f64; 3], radius: f64| {
+            x > left - radius && x < right + radius && y > low - radius && y < high + radius
+        };
+        let point = if cast.particles.len() <= TRACED { LARGE_POINT } else { POINT };
+        let of_a_point = point / WIDTH * (right - left).max(high - low);
+        let is_of_points = window::is_of_points(last, bounds);
+        let radius = |particle: &Particle| if is_of_points { of_a_point } else { particle.radius };
+        // Walls that stand still are drawn once.
+        let is_still = |place: usize| {
+            let Particle { kind, position: first, radius, .. } = cast.particles[place];
+            let stays = |(_, seen): &(f64, Vec<Option<Seen>>)| {
+                let is_near = |(a, b): (f64, f64)| (a - b).abs() <= STILL * radius;
+                seen[place].is_some_and(|it| it.position.into_iter().zip(first).all(is_near))
+            };
+            kind == Kind::Wall && self.kept.iter().all(stays)
+        };
+        let (fixed, moving): (Vec<usize>, Vec<usize>) =
+            (0..cast.particles.len()).partition(|&at| is_still(at));
+        let mut beyond = 0;
+        let mut disc = |seen: &[Option<Seen>], place: usize| match seen[place] {
+            Some(Seen { position, value }) if is_seen(position, radius(&cast.particles[place])) => {
+                ([position[0], position[1]], value)
+            }
+            other => {
+                beyond += usize::from(other.is_some());
+                ([f64::NAN; 2], f64::NAN)
+            }
+        };
+        let frames: Vec<Moment> = self
+            .kept
+            .iter()
+            .map(|(time, seen)| Moment {
+                time: *time,
+                discs: moving.iter().map(|&place| disc(seen, place)).collect(),
+            })
+            .collect();
+        let window = [[left, low], [right, high]];
+        let grain_count = cast.particles.iter().filter(|it| it.kind == Kind::Grain).count();
+        let gravity = scene.and_then(|scene| window::pair(scene, "gravity")).unwrap_or([0.0; 2]);
+        let [width, height] = [right - left, high - low];
+        let film = Film {
+            title: format!(
+                "{}, time {} to {}",
+                counted(grain_count, "particle", "particles"),
+                self.kept.first().map_or(0.0, |(time, _)| *time),
+                self.kept.last().map_or(0.0, |(time, _)| *time)
+            ),
+            units: units(scene).of_length_and_time(),
+            window,
+            sides: sides(last, bounds, window),
+            falls: if height > width { gravity[1] < 0.0 } else { gravity[0] > 0.0 },
+            radii: moving.iter().map(|&place| radius(&cast.particles[place])).collect(),
+            fixed: fixed
+                .iter()
+                .map(|&place| &cast.particles[place])
+                .map(|wall| (wall.place(), wall.radius))
+                .collect(),
+            frames,
+            shade: colouring.label(scene),
+            shades,
+        };
+        let beyond = beyond as f64 / (self.kept.len() * moving.len()).max(1) as f64;
+        let notes = self.notes(&cast, &film, is_of_points, beyond);
+        Ok((film, notes))
+    }
+
+    /// What a reader must know: what is left out, how much of all places (a part of 1) is beyond the picture, and what is drawn how.
+    fn notes(&self, cast: &Cast, film: &Film, is_of_points: bool, beyond: f64) -> Vec<String> {
+        let mut seen = self.kept.iter().flat_map(|(_, seen)| seen).flatten();
+        let notes = [
+            (self.read == 1).then(|| {
+                "The trajectory has one frame: run.snapshot_every says how many there are.".to_owned()
+            }),
+            (self.stride > 1)
+                .then(|| format!("One of {} of its {} frames is shown.", self.stride, self.read)),
+            (cast.every > 1).then(|| format!("One of {} particles is shown.", cast.every)),
+            seen.any(|seen| seen.position[2] != 0.0)
+                .then(|| "Seen along z: x to the right, y upwards.".to_owned()),
+            is_of_points
+                .then(|| "Bodies have no size; the dots are as large as they must be to be seen.".to_owned()),
+            (beyond > 0.0).then(|| format!("Beyond the picture: {:.1} % of all places.", 100.0 * beyond)),
+            film.sides
+                .iter()
+                .any(|side| side.is_periodic)
+                .then(|| "Dashed: periodic sides; what leaves there comes in at the other.".to_owned()),
+        ];
+        notes.into_iter().flatten().collect()
+    }
+}
+
+/// The sides of the box that are within a window.
+fn sides(frame: &Frame, bounds: [[f64; 2]; 2], [corner, end]: [[f64; 2]; 2]) -> Vec<Side> {
+    let mut sides = vec![];
+    for axis in [0, 1] {
+        let is_periodic = window::is_periodic(frame, axis);
+        for at in bounds[axis].into_iter().filter(|at| (corner[axis]..=end[axis]).contains(at)) {
+            let ends = [corner, end].map(|mut place| {
+                place[axis] = at;
+                place
+            });
+            sides.push(Side { ends, is_periodic });
+        }
+    }
+    sides
+}
