@@ -1,5 +1,6 @@
 //! What `reproduce` makes of studies.
 
+use super::explain::{SCENES, regret, section as plans};
 use super::history::{section as history, shipped};
 use super::rivals::section as rivals;
 use super::stability::{self, Over, stability};
@@ -27,6 +28,13 @@ pub const ITEMS: &[Item] = &[
         "Where the method works: maps over the step and a second parameter, beside theory",
     ),
     Item::quick(
+        plans::NAME,
+        Chapter::Host,
+        [6.0, 800.0],
+        plans_judged,
+        "Plans of `explain` for forty scenes, beside the best that is known",
+    ),
+    Item::quick(
         history::NAME,
         Chapter::Host,
         [0.1, 0.1],
@@ -41,6 +49,19 @@ pub const ITEMS: &[Item] = &[
         "LAMMPS and the crate particular on the same systems, as measured last",
     ),
 ];
+
+/// Plans, judged.
+fn plans_judged(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    // One scene of each method, where time is short.
+    let (scenes, effort) = match effort {
+        Effort::Quick => {
+            (SCENES.iter().step_by(11).copied().collect(), regret::Effort { plan: 0.3, best: 0.6 })
+        }
+        Effort::Full => (SCENES.to_vec(), regret::Effort { plan: 3.0, best: 12.0 }),
+    };
+    let judged = regret::judged(&scenes, effort, progress)?;
+    plans::made(&judged, effort, format!("stripmine reproduce --only {}", plans::NAME))
+}
 
 /// What was recorded.
 fn over_time(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {

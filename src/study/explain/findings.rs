@@ -325,6 +325,10 @@ impl Work<'_> {
                 step *= 0.5;
                 way.cost = way.cost.map(|cost| 2.0 * cost);
             }
+            if way.bias.is_none() {
+                way.dropped =
+                    way.bound.clone().or_else(|| Some("it has no mean in the time of a trial".to_owned()));
+            }
             let (own, way) = (self.choice(way), way.clone());
             for other in ways.iter_mut().filter(|other| other.bias.is_none() && other.cost.is_some()) {
                 let choice = self.choice(other);
@@ -368,7 +372,8 @@ impl Work<'_> {
             }
         }
         sort(&mut ways);
-        let reference = Known { mean: 0.0, bar: 0.0, square: 0.0, transient: 0.0, freedoms: f64::INFINITY };
+        let reference =
+            Known { mean: 0.0, bar: 0.0, square: 0.0, transient: 0.0, apart: 0.0, freedoms: f64::INFINITY };
         let threads = rayon::current_num_threads();
         let (without, reference_way) = (vec![], String::new());
         Ok(Findings { ways, reference, reference_way, start, one_thread: 1.0, threads, without })

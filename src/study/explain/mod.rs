@@ -10,12 +10,16 @@ mod findings;
 mod kept;
 mod optimum;
 mod plan;
+pub mod regret;
 mod sample;
+mod scenes;
+pub mod section;
 mod words;
 
 pub use kept::{Kept, KeptError};
 pub use plan::{Beside, Decision, Interval, LeftOut, Own, Plan, in_unit, rows_every};
 pub use sample::{Known, Sample, Span, sample};
+pub use scenes::SCENES;
 pub use words::{page, with_unit};
 
 use super::Case;

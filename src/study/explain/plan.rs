@@ -12,6 +12,8 @@ use stripmine_physics::scene::{STEPS, Width};
 const TIME_WITHIN: f64 = 1.5;
 /// Steps, rows and the like of a run that a mean is taken of, at least.
 const FEWEST_ROWS: f64 = 100.0;
+/// Independent samples that a run has at least: so many that it knows the error of its own mean.
+const SAMPLES: f64 = 30.0;
 
 /// From the least to the most, with what is likely in between.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -259,6 +261,15 @@ fn overrides(case: &Case, way: &Way, step: Option<f64>, time: Option<f64>) -> Ve
     overrides
 }
 
+/// What a plan costs by other findings (wall seconds); none where these do not know its way.
+pub fn cost_of(plan: &Plan, findings: &Findings) -> Option<f64> {
+    let is_chosen = |way: &&Way| way.overrides.iter().all(|text| plan.overrides.contains(text));
+    let way = findings.ways.iter().filter(is_chosen).max_by_key(|way| way.overrides.len())?;
+    let cost = way.cost? * way.step.zip(plan.step).map_or(1.0, |(longest, step)| longest / step);
+    let threads = if plan.seeds > 1 { findings.one_thread } else { 1.0 };
+    Some(findings.start + cost * threads * plan.time)
+}
+
 /// An error in the quantity's unit.
 pub fn in_unit(width: Width, mean: f64) -> f64 {
     match width {
@@ -290,13 +301,14 @@ struct Length {
 
 fn length(best: &Weighed<'_>, findings: &Findings) -> Length {
     let transient = findings.reference.transient;
-    // A mean wants some correlation times, of which the transient is a few.
-    let time = best.optimum.time.max(transient);
+    // So that each run has a mean of its own, with a bar.
+    let least = SAMPLES * findings.reference.apart;
+    let time = best.optimum.time.max(transient).max(least);
     let cost = best.way.cost.unwrap_or(0.0) / best.optimum.part;
     let together = findings.start + cost * (time + transient);
     let threads = findings.threads as f64;
     let apart = findings.start + cost * findings.one_thread * (time / threads + transient);
-    if findings.threads > 1 && apart < 0.95 * together && time / threads > transient {
+    if findings.threads > 1 && apart < 0.95 * together && time / threads > transient.max(least) {
         return Length {
             time,
             seeds: findings.threads as u64,

@@ -37,6 +37,8 @@ pub struct Known {
     pub square: f64,
     /// Time that does not count (time).
     pub transient: f64,
+    /// Time between independent samples (time).
+    pub apart: f64,
     /// Degrees of freedom of the bar.
     pub freedoms: f64,
 }
@@ -48,6 +50,7 @@ impl From<Estimate> for Known {
             bar: it.bar,
             square: it.bar * it.bar * it.span,
             transient: it.equilibrated_at,
+            apart: it.span / it.independent_samples,
             freedoms: it.freedoms,
         }
     }
@@ -60,9 +63,14 @@ impl Sample {
             Outcome::Mean(estimate) | Outcome::TooShort { estimate: Some(estimate), .. } => {
                 Some(estimate.into())
             }
-            Outcome::Constant { mean } => {
-                Some(Known { mean, bar: 0.0, square: 0.0, transient: 0.0, freedoms: f64::INFINITY })
-            }
+            Outcome::Constant { mean } => Some(Known {
+                mean,
+                bar: 0.0,
+                square: 0.0,
+                transient: 0.0,
+                apart: 0.0,
+                freedoms: f64::INFINITY,
+            }),
             Outcome::TooShort { estimate: None, .. } | Outcome::Changing { .. } | Outcome::Kept { .. } => {
                 None
             }

@@ -1,0 +1,230 @@
+//! How good plans are: each beside the best that trials of several times as long know, carried out, and held against the error that was asked for.
+
+use super::findings::{Findings, findings};
+use super::plan::{Plan, cost_of, keeping, plan};
+use super::sample::{Sample, Span, sample};
+use super::{Target, in_unit};
+use crate::results::{Meter, Progress};
+use crate::study::{Case, StudyError};
+use rayon::ThreadPoolBuilder;
+use serde::Serialize;
+use std::sync::atomic::AtomicBool;
+use std::thread;
+use std::time::Instant;
+use stripmine_physics::averages::Outcome;
+use stripmine_physics::method::METHODS;
+use stripmine_physics::scene::{Overrides, SEED, Width};
+
+/// A scene and what is asked of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked {
+    /// The preset.
+    pub preset: &'static str,
+    /// What differs from it.
+    pub overrides: &'static [&'static str],
+    /// The quantity.
+    pub quantity: &'static str,
+    /// The error of its mean, or of its value where it should be kept.
+    pub error: &'static str,
+}
+
+/// Seconds of trials: those of a plan, and those of the best that is known.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Effort {
+    /// Of a plan.
+    pub plan: f64,
+    /// Of the best.
+    pub best: f64,
+}
+
+/// What became of a plan.
+#[derive(Clone, Debug, Serialize)]
+pub struct Judged {
+    /// The scene.
+    pub scene: String,
+    /// The quantity.
+    pub quantity: &'static str,
+    /// What was asked for, in the quantity's unit.
+    pub error: f64,
+    /// What came out less what the best reference has, and half the width of the interval of 95 % of the latter.
+    pub off: Option<[f64; 2]>,
+    /// Whether that is the error that was asked for, or less.
+    pub is_met: bool,
+    /// Wall seconds: foreseen, and taken.
+    pub seconds: Option<[f64; 2]>,
+    /// Cost over that of the best.
+    pub regret: Option<f64>,
+    /// The same of three baselines: lists always, the scene's own step, f64 by the scene's own integrator at the longest step; none where they do
+    /// not come to the error.
+    pub baselines: [Option<f64>; 3],
+    /// What was recommended.
+    pub recommended: String,
+    /// What would have been the best.
+    pub best: String,
+    /// Why there is no plan.
+    pub failed: Option<String>,
+}
+
+/// Judges plans for some scenes.
+///
+/// # Errors
+/// [`StudyError`] if a scene is bad.
+pub fn judged(asked: &[Asked], effort: Effort, progress: Progress<'_>) -> Result<Vec<Judged>, StudyError> {
+    let meter = Meter::new(asked.len() as f64, progress);
+    let mut all = vec![];
+    for it in asked {
+        all.push(judge(it, effort)?);
+        meter.add(1.0);
+    }
+    Ok(all)
+}
+
+fn judge(asked: &Asked, effort: Effort) -> Result<Judged, StudyError> {
+    let overrides: Vec<String> = asked.overrides.iter().map(|&text| text.to_owned()).collect();
+    let case = Case::load(asked.preset, &overrides, METHODS)?;
+    let own = |error: super::ExplainError| StudyError::Own(Box::new(error));
+    let target = Target::of(&case, Some(asked.quantity), Width::parse(asked.error)).map_err(own)?;
+    let mut judged = Judged {
+        scene: case.arguments(),
+        quantity: target.quantity.name,
+        error: f64::NAN,
+        off: None,
+        is_met: false,
+        seconds: None,
+        regret: None,
+        baselines: [None; 3],
+        recommended: String::new(),
+        best: String::new(),
+        failed: None,
+    };
+    let never = AtomicBool::new(false);
+    let planned = |seconds: f64| -> Result<(Findings, Plan), String> {
+        let found = findings(&case, &target, seconds, &never).map_err(|error| error.to_string())?;
+        let make = if target.is_kept() { keeping } else { plan };
+        let made = make(&case, &target, &found, "")
+            .map_err(|least| format!("no way comes to it; the bias is known to {least:.2e} at best"))?;
+        Ok((found, made))
+    };
+    let (found, made) = match planned(effort.plan) {
+        Ok(planned) => planned,
+        Err(why) => {
+            judged.failed = Some(why);
+            return Ok(judged);
+        }
+    };
+    judged.recommended = said(&made);
+    judged.error = made.error.unwrap_or(f64::NAN);
+    let (known, best) = match planned(effort.best) {
+        Ok(planned) => planned,
+        Err(_) => (found, made.clone()),
+    };
+    judged.best = said(&best);
+    if let Some([mean, _]) = best.mean {
+        judged.error = target.error.map_or(f64::NAN, |width| in_unit(width, mean));
+    }
+    let cheapest = best.seconds.likely;
+    judged.regret = cost_of(&made, &known).map(|cost| cost / cheapest);
+    judged.baselines = baselines(&case, &target, &known).map(|cost| Some(cost? / cheapest));
+    match carried_out(&case, &target, &made, &overrides) {
+        Ok((value, seconds)) => {
+            let [mean, bar] = best.mean.unwrap_or([0.0; 2]);
+            judged.off = Some([value - mean, bar]);
+            judged.is_met = (value - mean).abs() <= judged.error + bar;
+            judged.seconds = Some([made.seconds.likely, seconds]);
+        }
+        Err(why) => judged.failed = Some(why),
+    }
+    Ok(judged)
+}
+
+/// A plan in a line.
+fn said(plan: &Plan) -> String {
+    let chosen = |what: &str| plan.decisions.iter().find(|it| it.what == what).map(|it| it.chosen.as_str());
+    let names = ["integrator", "precision", "search", "engine", "execution", "dt", "run length", "seeds"];
+    let named = names.into_iter().filter_map(|name| Some((name, chosen(name)?)));
+    let words = named.map(|(name, chosen)| match name {
+        "dt" => format!("dt {chosen}"),
+        "run length" => format!("time {chosen}"),
+        "seeds" => format!("seeds {chosen}"),
+        _ => chosen.to_owned(),
+    });
+    words.collect::<Vec<_>>().join(", ")
+}
+
+/// Seconds by lists, by the scene's own step and way, and by the scene's own integrator in f64 at the longest step.
+fn baselines(case: &Case, target: &Target, findings: &Findings) -> [Option<f64>; 3] {
+    let of = |ways: Vec<super::findings::Way>| {
+        let only = Findings { ways, ..findings.clone() };
+        let make = if target.is_kept() { keeping } else { plan };
+        (!only.ways.is_empty())
+            .then(|| make(case, target, &only, "").ok())
+            .flatten()
+            .map(|it| it.seconds.likely)
+    };
+    let has = |way: &super::findings::Way, axis: &str, name: &str| {
+        way.settings.iter().any(|setting| setting.0 == axis && setting.1 == name)
+    };
+    let own: Vec<(&str, &str)> = case.own.settings().collect();
+    let is_own = |way: &&super::findings::Way| own.iter().all(|(axis, name)| has(way, axis, name));
+    let lists = findings.ways.iter().filter(|way| has(way, "search", "neighbor-list")).cloned().collect();
+    let as_it_is = findings.ways.iter().filter(is_own).cloned().map(|mut way| {
+        // Its own step is the only one.
+        if let (Some(own), Some(longest)) = (case.step(), way.step) {
+            way.cost = way.cost.map(|cost| cost * longest / own);
+            way.step = Some(own);
+        }
+        way
+    });
+    let own_integrator = own.iter().find(|(axis, _)| *axis == "integrator").map(|(_, name)| *name);
+    let at_limit = findings.ways.iter().filter(|way| {
+        own_integrator.is_none_or(|name| has(way, "integrator", name)) && has(way, "precision", "f64")
+    });
+    [of(lists), of(as_it_is.collect()), of(at_limit.cloned().collect())]
+}
+
+/// Carries out a plan, its seeds side by side: the mean, or how far what should be kept went, and wall seconds.
+fn carried_out(
+    case: &Case,
+    target: &Target,
+    plan: &Plan,
+    overrides: &[String],
+) -> Result<(f64, f64), String> {
+    let observed = (case.entry.quantities, target.place);
+    let begun = Instant::now();
+    let one = |seed: u64| -> Result<Sample, String> {
+        let seeded =
+            if case.prepared.seed.is_some() { Overrides::new().set(&SEED, seed) } else { Overrides::new() };
+        let all = [overrides, &plan.overrides, &seeded].concat();
+        let (prepared, _) = stripmine_physics::method::load(case.name(), &all, METHODS)
+            .map_err(|errors| errors.to_string())?;
+        sample(&prepared, observed, Span::Time(plan.time, None), &AtomicBool::new(false))
+            .map_err(|failure| failure.what())
+    };
+    // Another seed than that of the trials.
+    let first = 1000;
+    let samples: Result<Vec<Sample>, String> = if plan.seeds == 1 {
+        one(first).map(|sample| vec![sample])
+    } else {
+        thread::scope(|scope| {
+            let runs: Vec<_> = (0..plan.seeds)
+                .map(|number| {
+                    scope.spawn(move || {
+                        let pool = ThreadPoolBuilder::new().num_threads(1).build();
+                        pool.map_err(|error| error.to_string())?.install(|| one(first + number))
+                    })
+                })
+                .collect();
+            runs.into_iter()
+                .map(|run| run.join().unwrap_or_else(|_| Err("a thread broke".to_owned())))
+                .collect()
+        })
+    };
+    let samples = samples?;
+    let seconds = begun.elapsed().as_secs_f64();
+    let values = samples.iter().map(|sample| match sample.outcome {
+        Outcome::Kept { farthest, .. } => Ok(farthest),
+        _ => sample.known().map(|known| known.mean).ok_or_else(|| "the run has no mean".to_owned()),
+    });
+    let values: Vec<f64> = values.collect::<Result<_, String>>()?;
+    Ok((values.iter().sum::<f64>() / values.len() as f64, seconds))
+}
