@@ -3,7 +3,7 @@
 use crate::console::{Common, Failure, clear_progress, print, print_json, say};
 use crate::report::{Cell, Rows, terminal};
 use crate::study::explain::{
-    ExplainError, Kept, Plan, Rigour, Sample, Span, Target, explain, page, rows_every, sample, with_unit,
+    ExplainError, Kept, Plan, SECONDS, Sample, Span, Target, explain, page, rows_every, sample, with_unit,
 };
 use crate::study::{Case, StudyError};
 use clap::Args;
@@ -36,6 +36,9 @@ pub(super) struct ExplainVerb {
     /// Trials of a minute in the place of some seconds
     #[arg(long)]
     patient: bool,
+    /// Seconds of trials
+    #[arg(long, conflicts_with_all = ["estimate", "patient"], value_parser = clap::value_parser!(u16).range(1..=3600))]
+    seconds: Option<u16>,
     /// Carries out the plan, and prints what was expected beside what came out
     #[arg(long)]
     analyze: bool,
@@ -83,15 +86,15 @@ impl ExplainVerb {
         let Some(scene) = &self.scene else { return Ok(()) };
         let case = Case::load(scene, &self.overrides, methods)?;
         let target = Target::of(&case, self.quantity.as_deref(), self.error).map_err(failed)?;
-        let rigour = match (self.estimate, self.patient) {
-            (true, _) => Rigour::Estimate,
-            (_, true) => Rigour::Patient,
-            _ => Rigour::Trials,
+        let seconds = match (self.estimate, self.patient) {
+            (true, _) => 0.0,
+            (_, true) => SECONDS[1],
+            _ => self.seconds.map_or(SECONDS[0], f64::from),
         };
-        if !common.quiet && rigour != Rigour::Estimate {
-            say(format_args!("trials of about {} s, unless they are kept", rigour.seconds()));
+        if !common.quiet && seconds > 0.0 {
+            say(format_args!("trials of about {seconds} s, unless they are kept"));
         }
-        let plan = explain(&case, &target, rigour, &kept, signals::asked()).map_err(failed)?;
+        let plan = explain(&case, &target, seconds, &kept, signals::asked()).map_err(failed)?;
         clear_progress();
         if let Some(file) = &self.write {
             self.written(&plan, file, scene, methods)?;

@@ -1,7 +1,7 @@
 //! What was measured of scenes, kept for this host and this version of the program: the second time costs nothing.
 
+use super::Target;
 use super::findings::Findings;
-use super::{Rigour, Target};
 use crate::provenance::Provenance;
 use crate::study::Case;
 use serde::{Deserialize, Serialize};
@@ -97,12 +97,12 @@ impl Kept {
         Some(self.folder.as_ref()?.join(format!("{key}.json")))
     }
 
-    /// What is kept, where it was measured as well as is asked for, and where it comes from. A file that is none of ours, or was measured on
+    /// What is kept, where trials were at least as long, and where it comes from. A file that is none of ours, or was measured on
     /// another host, is as good as none.
     ///
     /// # Errors
     /// [`KeptError`] if it is there and cannot be read.
-    pub fn recall(&self, key: &str, rigour: Rigour) -> Result<Option<(Findings, String)>, KeptError> {
+    pub fn recall(&self, key: &str, seconds: f64) -> Result<Option<(Findings, String)>, KeptError> {
         let Some(path) = self.path(key) else { return Ok(None) };
         let text = match fs::read(&path) {
             Ok(text) => text,
@@ -110,7 +110,7 @@ impl Kept {
             Err(source) => return Err(KeptError::File { path, source }),
         };
         let Ok(file) = serde_json::from_slice::<File>(&text) else { return Ok(None) };
-        if file.host != self.host || file.seconds < rigour.seconds() {
+        if file.host != self.host || file.seconds < seconds {
             return Ok(None);
         }
         let origin = format!("kept from {} ({} s of trials on {})", file.moment, file.seconds, file.host);
@@ -121,8 +121,7 @@ impl Kept {
     ///
     /// # Errors
     /// [`KeptError`] if it cannot be written.
-    pub fn keep(&self, key: &str, rigour: Rigour, findings: &Findings) -> Result<String, KeptError> {
-        let seconds = rigour.seconds();
+    pub fn keep(&self, key: &str, seconds: f64, findings: &Findings) -> Result<String, KeptError> {
         let origin = format!("{seconds} s of trials on {}", self.host);
         let Some(path) = self.path(key) else { return Ok(origin) };
         let file = File {

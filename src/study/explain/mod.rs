@@ -30,16 +30,8 @@ use stripmine_physics::number::significant;
 use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::scene::Width;
 
-/// How much is done to know.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rigour {
-    /// Nothing is run: what was kept of the scene.
-    Estimate,
-    /// Trials of some seconds.
-    Trials,
-    /// Trials of a minute.
-    Patient,
-}
+/// Seconds of trials where nothing else is asked for, and where one is patient.
+pub const SECONDS: [f64; 2] = [6.0, 60.0];
 
 /// What is asked for.
 #[derive(Clone, Debug)]
@@ -148,24 +140,25 @@ impl Target {
     }
 }
 
-/// What is recommended: by what is kept of the scene, or by trials, which are kept.
+/// What is recommended: by what is kept of the scene from trials at least as long, or by trials of some seconds, which are kept. Of no seconds at
+/// all nothing is run.
 ///
 /// # Errors
 /// [`ExplainError`]
 pub fn explain(
     case: &Case,
     target: &Target,
-    rigour: Rigour,
+    seconds: f64,
     kept: &Kept,
     stop: &AtomicBool,
 ) -> Result<Plan, ExplainError> {
     let key = kept.key(case, target);
-    let (findings, origin) = match (kept.recall(&key, rigour)?, rigour) {
-        (Some((findings, origin)), _) => (findings, origin),
-        (None, Rigour::Estimate) => return Err(ExplainError::NothingKept),
-        (None, _) => {
-            let findings = findings(case, target, rigour.seconds(), stop)?;
-            let origin = kept.keep(&key, rigour, &findings)?;
+    let (findings, origin) = match kept.recall(&key, seconds)? {
+        Some((findings, origin)) => (findings, origin),
+        None if seconds == 0.0 => return Err(ExplainError::NothingKept),
+        None => {
+            let findings = findings(case, target, seconds, stop)?;
+            let origin = kept.keep(&key, seconds, &findings)?;
             (findings, origin)
         }
     };

@@ -1,8 +1,8 @@
 //! From what was measured to what is recommended.
 
+use super::Target;
 use super::findings::{Findings, Way};
 use super::optimum::{Optimum, Terms, optimum};
-use super::{Rigour, Target};
 use crate::study::Case;
 use serde::Serialize;
 use stripmine_physics::number::significant;
@@ -492,16 +492,4 @@ fn left_out(findings: &Findings, wanted: f64, mean: f64) -> Vec<LeftOut> {
 pub fn rows_every(plan: &Plan, own: u64) -> Option<u64> {
     let steps = plan.time / plan.step?;
     (steps / own.max(1) as f64 <= FEWEST_ROWS).then_some(((steps / (2.0 * FEWEST_ROWS)) as u64).max(1))
-}
-
-/// How well things are to be known.
-impl Rigour {
-    /// Seconds of trials.
-    pub fn seconds(self) -> f64 {
-        match self {
-            Rigour::Estimate => 0.0,
-            Rigour::Trials => 6.0,
-            Rigour::Patient => 60.0,
-        }
-    }
 }

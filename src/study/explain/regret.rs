@@ -15,6 +15,9 @@ use stripmine_physics::averages::Outcome;
 use stripmine_physics::method::METHODS;
 use stripmine_physics::scene::{Overrides, SEED, Width};
 
+/// Plans that would take longer are not carried out (s).
+const LONGEST: f64 = 20.0;
+
 /// A scene and what is asked of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked {
@@ -125,6 +128,10 @@ fn judge(asked: &Asked, effort: Effort) -> Result<Judged, StudyError> {
     let cheapest = best.seconds.likely;
     judged.regret = cost_of(&made, &known).map(|cost| cost / cheapest);
     judged.baselines = baselines(&case, &target, &known).map(|cost| Some(cost? / cheapest));
+    if made.seconds.likely > LONGEST {
+        judged.failed = Some(format!("not carried out: it would take {:.0} s", made.seconds.likely));
+        return Ok(judged);
+    }
     match carried_out(&case, &target, &made, &overrides) {
         Ok((value, seconds)) => {
             let [mean, bar] = best.mean.unwrap_or([0.0; 2]);
@@ -197,7 +204,7 @@ fn carried_out(
         let all = [overrides, &plan.overrides, &seeded].concat();
         let (prepared, _) = stripmine_physics::method::load(case.name(), &all, METHODS)
             .map_err(|errors| errors.to_string())?;
-        sample(&prepared, observed, Span::Time(plan.time, None), &AtomicBool::new(false))
+        sample(&prepared, observed, Span::Time(plan.time, Some(5.0 * LONGEST)), &AtomicBool::new(false))
             .map_err(|failure| failure.what())
     };
     // Another seed than that of the trials.

@@ -1,0 +1,109 @@
+//! Plans as a user meets them.
+
+use assert_cmd::cargo::CommandCargoExt;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// `explain` in a folder, where it also keeps what it measures.
+fn explain(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::cargo_bin("stripmine").unwrap();
+    command.current_dir(folder).env("XDG_CACHE_HOME", folder.join("cache")).arg("explain");
+    command.args(arguments).arg("--quiet").output().unwrap()
+}
+
+fn ends_with(output: &Output, code: i32, words: &[&str]) {
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{said}");
+    words.iter().for_each(|word| assert!(said.contains(word), "{word} is not in: {said}"));
+}
+
+fn plan(output: &Output) -> Value {
+    ends_with(output, 0, &[]);
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// A gas whose trials take no time.
+const GAS: [&str; 5] = ["hard-disks", "--set", "particles.count=100", "--seconds", "1"];
+
+#[test]
+fn a_plan_is_written_carried_out_and_reaches_its_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let asked = [&GAS[..], &["--error", "2%", "--write", "plan.toml", "--analyze", "--json"]].concat();
+    let found = plan(&explain(folder, &asked));
+    let [mean, bar] = [0, 1].map(|place| found["mean"][place].as_f64().unwrap());
+    // Z of 100 discs at ν = 0.5.
+    assert!(found["quantity"] == "compressibility" && (mean - 4.1).abs() < 0.1 + bar, "{found:#}");
+    let [bias, chance] = [0, 1].map(|place| found["expected"][place].as_f64().unwrap());
+    assert!(bias == 0.0 && chance > 0.0 && chance <= 0.0201 * mean, "{bias} {chance}");
+    assert!(found["analyzed"].as_array().unwrap().len() == 3);
+    let mut command = Command::cargo_bin("stripmine").unwrap();
+    let run = command.current_dir(folder).args(["run", "plan.toml", "--out", "out", "--quiet"]).output().unwrap();
+    ends_with(&run, 0, &[]);
+    let summary: Value = serde_json::from_slice(&fs::read(folder.join("out/summary.json")).unwrap()).unwrap();
+    let all = summary["averages"]["quantities"].as_array().unwrap();
+    let z = all.iter().find(|it| it["quantity"] == "compressibility").unwrap();
+    // One of its runs: the error is that of all seeds.
+    let allowed = 2.5 * 0.02 * mean * found["seeds"].as_f64().unwrap().sqrt();
+    assert!(z["says"] == "mean" && (z["mean"].as_f64().unwrap() - mean).abs() < allowed, "{z:#}");
+}
+
+#[test]
+fn what_was_measured_is_kept_for_this_host_and_may_be_forgotten() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    ends_with(&explain(folder, &[&GAS[..3], &["--estimate"]].concat()), 4, &["nothing is known here"]);
+    let found = plan(&explain(folder, &[&GAS[..], &["--error", "2%", "--json"]].concat()));
+    assert!(found["origin"].as_str().unwrap().starts_with("1 s of trials"));
+    // Another error needs no new trials.
+    let again = plan(&explain(folder, &[&GAS[..3], &["--estimate", "--error", "1%", "--json"]].concat()));
+    assert!(again["origin"].as_str().unwrap().starts_with("kept from"), "{again:#}");
+    assert_eq!(again["mean"], found["mean"]);
+    let ratio = again["time"].as_f64().unwrap() / found["time"].as_f64().unwrap();
+    assert!(ratio > 1.5 && ratio < 4.01, "{ratio}");
+    // What another processor measured is not used.
+    let kept: Vec<_> = fs::read_dir(folder.join("cache/stripmine/explain")).unwrap().collect();
+    let [file] = kept.as_slice() else { panic!("{kept:?}") };
+    let file = file.as_ref().unwrap().path();
+    let text = fs::read_to_string(&file).unwrap().replace("threads, stripmine", "threads of another, stripmine");
+    fs::write(&file, text).unwrap();
+    ends_with(&explain(folder, &[&GAS[..3], &["--estimate"]].concat()), 4, &["nothing is known here"]);
+    let forgotten = explain(folder, &["--forget"]);
+    assert_eq!(String::from_utf8_lossy(&forgotten.stdout), "removed: 1\n");
+    assert!(!file.exists());
+}
+
+#[test]
+fn what_should_keep_its_value_gets_the_step_that_keeps_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let asked = ["kepler", "--of", "energy_error", "--error", "1e-6", "--seconds", "2", "--json"];
+    let found = plan(&explain(folder, &[&asked[..], &["--write", "plan.toml"]].concat()));
+    assert!(found["mean"].is_null() && found["expected"][0].as_f64().unwrap() <= 0.5e-6, "{found:#}");
+    let mut command = Command::cargo_bin("stripmine").unwrap();
+    let run = command.current_dir(folder).args(["run", "plan.toml", "--out", "out", "--quiet"]).output().unwrap();
+    ends_with(&run, 0, &[]);
+    let summary: Value = serde_json::from_slice(&fs::read(folder.join("out/summary.json")).unwrap()).unwrap();
+    let all = summary["averages"]["quantities"].as_array().unwrap();
+    let error = all.iter().find(|it| it["quantity"] == "energy_error").unwrap();
+    assert!(error["says"] == "kept" && error["farthest"].as_f64().unwrap() <= 1e-6, "{error:#}");
+    // The scene's own leapfrog is not that good.
+    let own = found["own"]["error"][0].as_f64().unwrap();
+    assert!(own > 1e-5, "{own}");
+}
+
+#[test]
+fn what_cannot_be_planned_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let bad = |arguments: &[&str]| explain(folder, arguments);
+    ends_with(&bad(&["hard-disks", "--of", "colour"]), 2, &["`colour`", "one of events", "compressibility"]);
+    ends_with(&bad(&["hard-disks", "--error", "little"]), 2, &["above 0, or a part such as 1%"]);
+    ends_with(&bad(&["nothing.toml"]), 2, &["nothing.toml"]);
+    let cooling = ["cooling-gas", "--of", "temperature", "--error", "1%", "--seconds", "1"];
+    ends_with(&bad(&cooling), 4, &["temperature comes to no mean", "still changing", "--patient"]);
+    let kepler = ["kepler", "--of", "energy_error", "--error", "1e-30", "--seconds", "1"];
+    ends_with(&bad(&kepler), 4, &["no way to run the scene is known to come to an error of 1e-30", "at best"]);
+}
