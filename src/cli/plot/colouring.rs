@@ -100,7 +100,7 @@ fn orders(frame: &Frame) -> Result<Vec<f64>, &'static str> {
             [places().fold(f64::INFINITY, f64::min), places().fold(f64::NEG_INFINITY, f64::max)]
         };
         let largest = grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
-        let [x, y] = [0, 1].map(|axis| ends(axis)).map(|[low, high]| [low - largest, high + largest]);
+        let [x, y] = [0, 1].map(ends).map(|[low, high]| [low - largest, high + largest]);
         Domain::planar([x[0], y[0]], [x[1] - x[0], y[1] - y[0]], [false; 2])
     } else {
         Domain::planar(frame.origin, frame.cell, frame.periodic.unwrap_or([true; 2]))

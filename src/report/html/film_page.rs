@@ -1,6 +1,6 @@
 //! A film as a page of its own.
 
-use super::{PAGE, PLAYER, STRIPS, film, head};
+use super::{PAGE, PLAYER, STRIPS, compact, film, head};
 use crate::report::section::Film;
 use maud::{DOCTYPE, PreEscaped, html};
 
@@ -23,7 +23,7 @@ pub fn film_page(shown: &Film, notes: &[String]) -> String {
                 }
                 (film::embedded("shades", &film::shades()))
                 @for script in [PAGE, STRIPS, PLAYER] {
-                    script { (PreEscaped(script)) }
+                    script { (PreEscaped(compact(script))) }
                 }
             }
         }

@@ -65,12 +65,19 @@ pub fn render(
                 }
                 (film::embedded("shades", &film::shades()))
                 @for script in SCRIPTS {
-                    script { (PreEscaped(script)) }
+                    script { (PreEscaped(compact(script))) }
                 }
             }
         }
     };
     page.into_string()
+}
+
+/// A script without indentation and comments on lines of their own, which a page need not carry.
+fn compact(script: &str) -> String {
+    let is_comment = |line: &str| line.starts_with("//") || line.starts_with("/**") && line.ends_with("*/");
+    let lines = script.lines().map(str::trim_start).filter(|line| !line.is_empty() && !is_comment(line));
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// What stands in the head of every page, with the element of its title.
