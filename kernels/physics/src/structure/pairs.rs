@@ -89,7 +89,12 @@ impl Task<f64> for Counting<'_> {
                     let first = if up == 0 { own + 1 } else { span.start };
                     for begin in (first..span.end).step_by(AT_ONCE) {
                         let [_, _, squares] = ways(cells, begin, [x, y]);
-                        let bins = squares.map(|square| (square.sqrt() * by_length).min(far) as u32);
+                        let bins = squares.map(|square| {
+                            let bin = square.sqrt() * by_length;
+                            let bin = if bin < far { bin } else { far };
+                            // SAFETY: it is a number, not below 0 and at most `far`, the last place of `counts`, which are few.
+                            unsafe { bin.to_int_unchecked::<i32>() }
+                        });
                         for &bin in &bins[..AT_ONCE.min(span.end - begin)] {
                             counts[bin as usize] += 1;
                         }
@@ -177,6 +182,9 @@ struct Around {
     up: Vec<f64>,
     squares: Vec<f64>,
     places: Vec<usize>,
+    /// The reach (length) that was last asked for, and how far it goes along each row.
+    reach: f64,
+    halves: Vec<f64>,
 }
 
 impl Neighbours {
@@ -201,6 +209,8 @@ impl Neighbours {
             up: vec![],
             squares: vec![],
             places: vec![],
+            reach: f64::NAN,
+            halves: vec![],
         };
         self.parts.resize(cells.parts.len(), none);
         let looked_for = Neighbours::looked_for(setting, discs.x.len());
@@ -235,6 +245,7 @@ impl Task<f64> for Looking<'_> {
         around.numbers.fill(0);
         around.orders.fill(0);
         around.order = [0.0; 3];
+        around.reach = f64::NAN;
         for row in rows {
             for own in cells.own(row) {
                 let own_radius = radius[cells.number[own] as usize];
@@ -267,10 +278,16 @@ impl Around {
     #[inline(always)]
     fn look(&mut self, cells: &Cells, row: usize, own: usize, reach: f64) -> usize {
         let (x, y) = (cells.x[own], cells.y[own]);
-        let rows = cells.rows_within(reach);
+        // Mostly the same for one disc after the other.
+        if reach != self.reach {
+            self.reach = reach;
+            self.halves.clear();
+            self.halves.extend(cells.halves(reach));
+        }
+        let rows = self.halves.len() as i64 - 1;
         let mut found = 0;
         for up in -rows..=rows {
-            let span = cells.span(row, up, x, cells.half(reach, up));
+            let span = cells.span(row, up, x, self.halves[up.unsigned_abs() as usize]);
             if self.squares.len() < found + span.len() + AT_ONCE {
                 let room = 2 * (found + span.len() + AT_ONCE);
                 for column in [&mut self.squares, &mut self.right, &mut self.up] {
@@ -302,7 +319,7 @@ impl Around {
         for &square in &self.squares[..found] {
             let mut pushed = square;
             for held in &mut nearest {
-                (*held, pushed) = (held.min(pushed), held.max(pushed));
+                (*held, pushed) = if pushed < *held { (pushed, *held) } else { (*held, pushed) };
             }
         }
         let [.., farthest] = nearest.map(|square| if square.is_finite() { square } else { f64::MAX });
