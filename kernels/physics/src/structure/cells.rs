@@ -1,7 +1,7 @@
 //! Discs in the order of cells, in compact columns, with their images across periodic sides: all who are within a reach of a disc
 //! stand in a few spans.
 
-use super::look::Discs;
+use super::discs::Discs;
 use super::setting::Setting;
 use std::ops::Range;
 

@@ -1,7 +1,7 @@
 //! What discs have with those around them: distances, neighbours, hexatic order. All from one order of cells.
 
 use super::cells::{AT_ONCE, Cells};
-use super::look::{Discs, Look};
+use super::discs::Discs;
 use super::setting::Setting;
 use crate::particles::Particle;
 use rayon::iter::{
@@ -143,8 +143,7 @@ pub fn pair_counts_of_all(setting: &Setting, discs: &[Particle]) -> Vec<u64> {
 }
 
 /// g(r) in each bin: pairs over those that an ideal gas has on average.
-pub(super) fn correlation(look: &Look, values: &mut [f64]) {
-    let setting = &look.setting;
+pub(super) fn correlation(setting: &Setting, discs: &Discs, found: &Distances, values: &mut [f64]) {
     let width = setting.diameter / BINS;
     let [x, y] = setting.room();
     let closed = [0, 1].map(|axis| f64::from(!setting.domain.is_periodic(axis)));
@@ -154,11 +153,11 @@ pub(super) fn correlation(look: &Look, values: &mut [f64]) {
         let (linear, square) = (2.0 / PI * (over_x + over_y), over_x * over_y / PI);
         2.0 * PI * r * r * (0.5 - linear * r / 3.0 + 0.25 * square * r * r)
     };
-    let discs = look.discs.x.len() as f64;
+    let discs = discs.x.len() as f64;
     let density_of_pairs = 0.5 * discs * (discs - 1.0) / (x * y);
     let ideal =
         |bin: usize| density_of_pairs * (within((bin + 1) as f64 * width) - within(bin as f64 * width));
-    for (bin, (value, &count)) in values.iter_mut().zip(&look.distances.counts).enumerate() {
+    for (bin, (value, &count)) in values.iter_mut().zip(&found.counts).enumerate() {
         *value = if count == 0 { 0.0 } else { count as f64 / ideal(bin) };
     }
 }
@@ -366,10 +365,10 @@ pub(super) fn neighbour_numbers(_: &Setting) -> Vec<f64> {
 }
 
 /// Shares of discs by their number of neighbours.
-pub(super) fn coordination(look: &Look, values: &mut [f64]) {
-    let discs = look.discs.x.len() as f64;
+pub(super) fn coordination(discs: &Discs, found: &Neighbours, values: &mut [f64]) {
+    let discs = discs.x.len() as f64;
     for (number, value) in values.iter_mut().enumerate() {
-        *value = look.neighbours.sum(|part| part.numbers[number]) / discs;
+        *value = found.sum(|part| part.numbers[number]) / discs;
     }
 }
 
@@ -379,13 +378,13 @@ pub(super) fn orders(_: &Setting) -> Vec<f64> {
 }
 
 /// The density of |ψ6| of the discs, then |Ψ6|, the order of all of them, and the mean |ψ6|.
-pub(super) fn hexatic(look: &Look, values: &mut [f64]) {
-    let discs = look.discs.x.len() as f64;
+pub(super) fn hexatic(discs: &Discs, found: &Neighbours, values: &mut [f64]) {
+    let discs = discs.x.len() as f64;
     let (densities, whole) = values.split_at_mut(ORDERS);
     for (bin, value) in densities.iter_mut().enumerate() {
-        *value = look.neighbours.sum(|part| part.orders[bin]) * ORDERS as f64 / discs;
+        *value = found.sum(|part| part.orders[bin]) * ORDERS as f64 / discs;
     }
-    let [x, y, single] = [0, 1, 2].map(|sum| look.neighbours.sum(|part| part.order[sum]) / discs);
+    let [x, y, single] = [0, 1, 2].map(|sum| found.sum(|part| part.order[sum]) / discs);
     whole[0] = x.hypot(y);
     whole[1] = single;
 }
