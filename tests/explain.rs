@@ -40,7 +40,8 @@ fn a_plan_is_written_carried_out_and_reaches_its_error() {
     assert!(bias == 0.0 && chance > 0.0 && chance <= 0.0201 * mean, "{bias} {chance}");
     assert!(found["analyzed"].as_array().unwrap().len() == 3);
     let mut command = Command::cargo_bin("stripmine").unwrap();
-    let run = command.current_dir(folder).args(["run", "plan.toml", "--out", "out", "--quiet"]).output().unwrap();
+    let run =
+        command.current_dir(folder).args(["run", "plan.toml", "--out", "out", "--quiet"]).output().unwrap();
     ends_with(&run, 0, &[]);
     let summary: Value = serde_json::from_slice(&fs::read(folder.join("out/summary.json")).unwrap()).unwrap();
     let all = summary["averages"]["quantities"].as_array().unwrap();
@@ -67,7 +68,8 @@ fn what_was_measured_is_kept_for_this_host_and_may_be_forgotten() {
     let kept: Vec<_> = fs::read_dir(folder.join("cache/stripmine/explain")).unwrap().collect();
     let [file] = kept.as_slice() else { panic!("{kept:?}") };
     let file = file.as_ref().unwrap().path();
-    let text = fs::read_to_string(&file).unwrap().replace("threads, stripmine", "threads of another, stripmine");
+    let text =
+        fs::read_to_string(&file).unwrap().replace("threads, stripmine", "threads of another, stripmine");
     fs::write(&file, text).unwrap();
     ends_with(&explain(folder, &[&GAS[..3], &["--estimate"]].concat()), 4, &["nothing is known here"]);
     let forgotten = explain(folder, &["--forget"]);
@@ -83,7 +85,8 @@ fn what_should_keep_its_value_gets_the_step_that_keeps_it() {
     let found = plan(&explain(folder, &[&asked[..], &["--write", "plan.toml"]].concat()));
     assert!(found["mean"].is_null() && found["expected"][0].as_f64().unwrap() <= 0.5e-6, "{found:#}");
     let mut command = Command::cargo_bin("stripmine").unwrap();
-    let run = command.current_dir(folder).args(["run", "plan.toml", "--out", "out", "--quiet"]).output().unwrap();
+    let run =
+        command.current_dir(folder).args(["run", "plan.toml", "--out", "out", "--quiet"]).output().unwrap();
     ends_with(&run, 0, &[]);
     let summary: Value = serde_json::from_slice(&fs::read(folder.join("out/summary.json")).unwrap()).unwrap();
     let all = summary["averages"]["quantities"].as_array().unwrap();
@@ -105,5 +108,9 @@ fn what_cannot_be_planned_is_refused() {
     let cooling = ["cooling-gas", "--of", "temperature", "--error", "1%", "--seconds", "1"];
     ends_with(&bad(&cooling), 4, &["temperature comes to no mean", "still changing", "--patient"]);
     let kepler = ["kepler", "--of", "energy_error", "--error", "1e-30", "--seconds", "1"];
-    ends_with(&bad(&kepler), 4, &["no way to run the scene is known to come to an error of 1e-30", "at best"]);
+    ends_with(
+        &bad(&kepler),
+        4,
+        &["no way to run the scene is known to come to an error of 1e-30", "at best"],
+    );
 }

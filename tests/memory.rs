@@ -67,7 +67,13 @@ fn judged(said: &[(bool, String)]) {
 /// What the program itself takes is left out on both sides, by a run of a few bodies: how much of its file is in memory
 /// is the system's choice, and differs by several megabytes between hosts.
 fn foreseen_and_taken(preset: &str, sets: &[&str], frame: f64) -> (bool, String) {
-    let (itself, all) = (needed_and_most("plummer", &["particles.count=64"]), needed_and_most(preset, sets));
+    foreseen_and_taken_by(preset, sets, frame, [1, 2])
+}
+
+/// The same of a run that is begun up to the first of two ends, and gone on with up to the second.
+fn foreseen_and_taken_by(preset: &str, sets: &[&str], frame: f64, ends: [u32; 2]) -> (bool, String) {
+    let itself = needed_and_most("plummer", &["particles.count=64"], [1, 2]);
+    let all = needed_and_most(preset, sets, ends);
     let [needed, most] = [all.0 - itself.0, all.1 - itself.1];
     let fits = (0.95 * most..=1.05 * most + frame).contains(&needed) && (itself.0 - itself.1).abs() < PROGRAM;
     (fits, format!("{sets:?}: {needed} foreseen, {most} taken; the program itself {itself:?}"))
@@ -77,7 +83,7 @@ fn foreseen_and_taken(preset: &str, sets: &[&str], frame: f64) -> (bool, String)
 const PROGRAM: f64 = 12.0e6;
 
 /// Bytes that a run was said to need, and the most that it took, begun or gone on with.
-fn needed_and_most(preset: &str, sets: &[&str]) -> (f64, f64) {
+fn needed_and_most(preset: &str, sets: &[&str], ends: [u32; 2]) -> (f64, f64) {
     let folder = tempfile::tempdir().unwrap();
     let until = if preset == "hard-disks" { "run.events" } else { "run.steps" };
     let with_sets = |words: &[&str], end: u32| {
@@ -87,11 +93,11 @@ fn needed_and_most(preset: &str, sets: &[&str]) -> (f64, f64) {
         words.iter().map(|&word| word.to_owned()).chain(sets).collect::<Vec<String>>()
     };
     // Not asked in this process: what it holds counts in the memory of its children while they begin.
-    let check = with_sets(&["scene", "check", preset, "--json"], 1);
+    let check = with_sets(&["scene", "check", preset, "--json"], ends[1]);
     let checked = Command::new(env!("CARGO_BIN_EXE_stripmine")).args(check).output().unwrap();
     let checked: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
     let out = folder.path().join("run").display().to_string();
-    let taken = [("--overwrite", 1), ("--resume", 2)]
+    let taken = [("--overwrite", ends[0]), ("--resume", ends[1])]
         .map(|(how, end)| peak(&with_sets(&["run", preset, how, "--threads", "2", "--out", &out], end)));
     (checked["memory"]["needed"].as_u64().unwrap() as f64, taken[0].max(taken[1]) as f64)
 }
@@ -103,6 +109,24 @@ fn particles_in_a_bath_take_the_memory_that_was_foreseen() {
     for by in ["search.by=neighbor-list", "search.by=sectors", "search.by=lattice"] {
         let sets = ["particles.count=100000", "domain.sides=[160, 160]", by];
         said.push(foreseen_and_taken("langevin-report", &sets, FRAME));
+    }
+    judged(&said);
+}
+
+/// Discs at earlier rows, which are kept for displacements, and what is found at snapshots.
+#[test]
+fn looks_at_the_structure_take_the_memory_that_was_foreseen() {
+    let mut said = Vec::new();
+    for structure in [r#"["msd"]"#, r#"["vacf", "g(r)", "S(k)", "psi6", "velocities"]"#] {
+        let structure = format!("output.structure={structure}");
+        let sets = [
+            "particles.count=100000",
+            "run.thermo_every=1",
+            "run.snapshot_every=40",
+            "output.trajectory=false",
+        ];
+        let sets = [&sets[..], &[&structure, "output.structure_share=1000.0"]].concat();
+        said.push(foreseen_and_taken_by("bench", &sets, FRAME, [40, 80]));
     }
     judged(&said);
 }

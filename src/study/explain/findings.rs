@@ -11,7 +11,7 @@ use std::sync::atomic::AtomicBool;
 use stripmine_physics::averages::Outcome;
 use stripmine_physics::method::{Decides, Prepared, StepLimit, Twin};
 use stripmine_physics::number::significant;
-use stripmine_physics::scene::Overrides;
+use stripmine_physics::scene::{Overrides, SEED};
 
 /// The longest step that is tried, in parts of the shortest limit of theory: what lies at the limit itself fails for the fastest disc.
 const OF_LIMIT: f64 = 0.9;
@@ -25,8 +25,11 @@ const DEAR: f64 = 5.0;
 const COMPARED: usize = 3;
 /// How often each way is timed.
 const ROUNDS: usize = 2;
-/// Parts of the time that is given: to time the ways, to the reference, to those that are compared with it, to what may be left out.
-const SHARES: [f64; 4] = [0.15, 0.35, 0.3, 0.2];
+/// Starts differ where their means are as many bars apart: about three standard errors.
+const SURE: f64 = 1.5;
+/// Parts of the time that is given: to time the ways, to the reference, to those that are compared with it, to what may be left out, to another
+/// start.
+const SHARES: [f64; 5] = [0.15, 0.3, 0.25, 0.2, 0.1];
 
 /// A way to run the scene, as measured.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -73,6 +76,8 @@ pub struct Findings {
     pub reference: Known,
     /// What the reference is: its way and its step.
     pub reference_way: String,
+    /// By how much the mean of another start differs, where that is beyond both bars: what is kept of a start does not average out.
+    pub starts_differ: Option<f64>,
     /// Wall seconds until the first step.
     pub start: f64,
     /// Cost of one thread over that of all.
@@ -110,10 +115,12 @@ pub fn findings(
     work.compare(&mut ways, &mut reference);
     let best = &ways[0];
     let one_thread = work.one_thread(best);
+    let starts_differ = work.starts_differ(best, &reference.known);
     let without = work.without(best, &reference.known);
     Ok(Findings {
         reference: reference.known,
         reference_way: reference.label,
+        starts_differ,
         start: reference.start,
         one_thread,
         threads: rayon::current_num_threads(),
@@ -376,7 +383,16 @@ impl Work<'_> {
             Known { mean: 0.0, bar: 0.0, square: 0.0, transient: 0.0, apart: 0.0, freedoms: f64::INFINITY };
         let threads = rayon::current_num_threads();
         let (without, reference_way) = (vec![], String::new());
-        Ok(Findings { ways, reference, reference_way, start, one_thread: 1.0, threads, without })
+        Ok(Findings {
+            ways,
+            reference,
+            reference_way,
+            starts_differ: None,
+            start,
+            one_thread: 1.0,
+            threads,
+            without,
+        })
     }
 
     /// What one thread takes over what all of them take.
@@ -390,6 +406,20 @@ impl Work<'_> {
             Some(pool.install(|| timed(&prepared, seconds, self.stop)).ok()? / all)
         };
         if threads == 1 { 1.0 } else { measured().unwrap_or(1.0) }
+    }
+
+    /// The mean of another start less that of the reference, where that is beyond both bars.
+    fn starts_differ(&self, way: &Way, reference: &Known) -> Option<f64> {
+        let seed = self.case.prepared.seed?;
+        let another = Way {
+            overrides: [&way.overrides[..], &Overrides::new().set(&SEED, seed.wrapping_add(1))].concat(),
+            ..way.clone()
+        };
+        let sample =
+            self.sampled(&another, way.step.map(|step| 0.5 * step), SHARES[4] * self.seconds).ok()?;
+        let known = sample.known()?;
+        let difference = known.mean - reference.mean;
+        (difference.abs() > SURE * known.bar.hypot(reference.bar)).then_some(difference)
     }
 
     /// The scene without each of what it may be modelled without.

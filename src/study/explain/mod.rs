@@ -73,9 +73,10 @@ pub enum ExplainError {
     },
     /// No way comes to the error.
     #[error(
-        "no way to run the scene is known to come to an error of {} of {quantity}: in the trials the bias is known to {} at best{}\n  help: --patient \
+        "no way to run the scene is known to come to an error of {} of {quantity}: in the trials {}{}\n  help: --patient \
          knows it better; or ask for a larger error",
-        significant(*wanted, 3), significant(*least, 2), cost.as_ref().map_or(String::new(), |cost| format!(", which would take {cost}"))
+        significant(*wanted, 3),
+        if least.is_finite() { format!("the bias is known to {} at best", significant(*least, 2)) } else { "the bias of no step was seen".to_owned() }, cost.as_ref().map_or(String::new(), |cost| format!(", which would take {cost}"))
     )]
     OutOfReach {
         /// The quantity.

@@ -81,6 +81,8 @@ pub struct Plan {
     pub transient: f64,
     /// Runs with seeds of their own.
     pub seeds: u64,
+    /// By how much the mean of another start differs, where that was seen.
+    pub starts_differ: Option<f64>,
     /// The overrides that make the plan of the scene.
     pub overrides: Vec<String>,
     /// What the scene's own values cost and reach.
@@ -170,6 +172,7 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
         time: per_run,
         transient: reference.transient,
         seeds: length.seeds,
+        starts_differ: findings.starts_differ,
         overrides: overrides(case, best.way, step, Some(per_run)),
         own,
         left_out: left_out(findings, wanted, reference.mean),
@@ -237,6 +240,7 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
         time,
         transient: 0.0,
         seeds: 1,
+        starts_differ: None,
         overrides: overrides(case, best.way, step, None),
         own: of_own.zip(case.step()).and_then(|(way, step)| {
             Some(Own { seconds: costs(way, step)?, error: [way.drift?.at(step), 0.0] })
@@ -307,6 +311,13 @@ fn length(best: &Weighed<'_>, findings: &Findings) -> Length {
     let cost = best.way.cost.unwrap_or(0.0) / best.optimum.part;
     let together = findings.start + cost * (time + transient);
     let threads = findings.threads as f64;
+    if let Some(difference) = findings.starts_differ {
+        let why = format!(
+            "another start has a mean {} off: what a start keeps, such as its energy, does not average out in a run, and the plan is for this one",
+            significant(difference, 2)
+        );
+        return Length { time, seeds: 1, seconds: together, why };
+    }
     let apart = findings.start + cost * findings.one_thread * (time / threads + transient);
     if findings.threads > 1 && apart < 0.95 * together && time / threads > transient.max(least) {
         return Length {

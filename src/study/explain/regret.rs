@@ -207,8 +207,9 @@ fn carried_out(
         sample(&prepared, observed, Span::Time(plan.time, Some(5.0 * LONGEST)), &AtomicBool::new(false))
             .map_err(|failure| failure.what())
     };
-    // Another seed than that of the trials.
-    let first = 1000;
+    // Another seed than that of the trials, where starts are alike.
+    let own = case.prepared.seed.unwrap_or_default();
+    let first = if plan.starts_differ.is_some() { own } else { own + 1000 };
     let samples: Result<Vec<Sample>, String> = if plan.seeds == 1 {
         one(first).map(|sample| vec![sample])
     } else {

@@ -1,7 +1,7 @@
 //! Discs in the order of cells, in compact columns, with their images across periodic sides: all who are within a reach of a disc
 //! stand in a few spans.
 
-use super::look::Discs;
+use super::discs::Discs;
 use super::setting::Setting;
 use std::ops::Range;
 
@@ -42,10 +42,10 @@ impl Cells {
         let sides = domain.lengths();
         // About a disc in each.
         let edge = (sides[0] * sides[1] / discs.x.len() as f64).sqrt().max(setting.diameter);
-        for axis in 0..2 {
-            let count = (sides[axis] / edge).floor().clamp(1.0, MOST_CELLS);
+        for (axis, side) in sides.into_iter().enumerate() {
+            let count = (side / edge).floor().clamp(1.0, MOST_CELLS);
             self.origin[axis] = domain.origin[axis];
-            self.by_length[axis] = count / sides[axis];
+            self.by_length[axis] = count / side;
             self.count[axis] = count as usize;
             self.margin[axis] = match domain.is_periodic(axis) {
                 true => (reach * self.by_length[axis]).ceil() as usize + 1,
@@ -159,28 +159,20 @@ impl Cells {
         }
         let column = |at: f64| {
             let cell = (at - self.origin[0]) * self.by_length[0] + self.margin[0] as f64;
-            (cell.max(0.0) as usize).min(columns - 1)
+            let last = (columns - 1) as f64;
+            let cell = if cell > 0.0 { cell } else { 0.0 };
+            // Cells of an axis are few.
+            (if cell < last { cell } else { last }) as i32 as usize
         };
         let (row, first, last) = (row as usize, column(x - half), column(x + half));
         self.start(row, first)..self.start(row, last + 1)
     }
 
-    /// How far those within `reach` are along the row that is `up` above (below, if negative) a disc's own (length).
-    #[inline(always)]
-    pub(super) fn half(&self, reach: f64, up: i64) -> f64 {
-        // The row is at least so far away.
-        let away = (up.unsigned_abs() as f64 - 1.0).max(0.0) / self.by_length[1];
-        (reach * reach - away * away).max(0.0).sqrt()
-    }
-
-    /// The same of its own row and each above it.
+    /// How far those within `reach` are along a row, for the row of a disc and each one above it (length).
     pub(super) fn halves(&self, reach: f64) -> impl Iterator<Item = f64> + use<'_> {
-        (0..=self.rows_within(reach)).map(move |up| self.half(reach, up))
-    }
-
-    /// Rows that are at most `reach` away.
-    #[inline(always)]
-    pub(super) fn rows_within(&self, reach: f64) -> i64 {
-        (reach * self.by_length[1]).ceil() as i64
+        // A row is at least so far away.
+        let away = |up: i64| (up as f64 - 1.0).max(0.0) / self.by_length[1];
+        let rows = (reach * self.by_length[1]).ceil() as i64;
+        (0..=rows).map(move |up| (reach * reach - away(up) * away(up)).max(0.0).sqrt())
     }
 }

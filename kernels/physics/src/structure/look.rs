@@ -1,22 +1,12 @@
 //! One look at the discs: what several observables need is found once, in memory that is kept from look to look.
 
 use super::cells::Cells;
+use super::discs::Discs;
 use super::pairs::{Distances, Neighbours};
 use super::setting::Setting;
 use super::waves::Waves;
 use super::{Asks, Observable, Seen};
 use crate::particles::{Particle, Particles, States};
-
-/// The discs that are there, in the order of the scene, in columns.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Discs {
-    pub(super) x: Vec<f64>,
-    pub(super) y: Vec<f64>,
-    pub(super) vx: Vec<f64>,
-    pub(super) vy: Vec<f64>,
-    pub(super) radius: Vec<f64>,
-    pub(super) mass: Vec<f64>,
-}
 
 /// What is seen of discs as they stand.
 #[derive(Clone, Debug)]

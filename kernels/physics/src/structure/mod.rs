@@ -5,6 +5,7 @@
 
 mod blocks;
 mod cells;
+mod discs;
 mod look;
 mod motion;
 mod pairs;
@@ -103,7 +104,7 @@ pub static OBSERVABLES: [Observable; 13] = [
                  and Stoyan 1994)",
         seen: Seen::Once {
             over: pairs::distances,
-            of: pairs::correlation,
+            of: |it, values| pairs::correlation(&it.setting, &it.discs, &it.distances, values),
             further: 0,
             asks: Asks::Distances,
         },
@@ -129,7 +130,12 @@ pub static OBSERVABLES: [Observable; 13] = [
         value: ["S", ""],
         doc: "The structure factor |Σ exp(ikr)|²/N of waves along the periodic axes of the box.",
         source: "Hansen and McDonald, Theory of Simple Liquids, section 4.1",
-        seen: Seen::Once { over: waves::numbers, of: waves::factor, further: 0, asks: Asks::Waves },
+        seen: Seen::Once {
+            over: waves::numbers,
+            of: |it, values| waves::factor(&it.waves, values),
+            further: 0,
+            asks: Asks::Waves,
+        },
         headlines: &[
             Headline {
                 name: "height of the main peak",
@@ -154,7 +160,7 @@ pub static OBSERVABLES: [Observable; 13] = [
         source: "the first minimum of g(r) of dense discs lies there",
         seen: Seen::Once {
             over: pairs::neighbour_numbers,
-            of: pairs::coordination,
+            of: |it, values| pairs::coordination(&it.discs, &it.neighbours, values),
             further: 0,
             asks: Asks::Neighbours,
         },
@@ -172,7 +178,12 @@ pub static OBSERVABLES: [Observable; 13] = [
         value: ["density", ""],
         doc: "Distribution of the hexatic order of single discs, ψ6 = ⟨exp(6iθ)⟩ over the six nearest.",
         source: "Nelson and Halperin 1979; six nearest neighbours in place of Voronoi's",
-        seen: Seen::Once { over: pairs::orders, of: pairs::hexatic, further: 2, asks: Asks::Neighbours },
+        seen: Seen::Once {
+            over: pairs::orders,
+            of: |it, values| pairs::hexatic(&it.discs, &it.neighbours, values),
+            further: 2,
+            asks: Asks::Neighbours,
+        },
         headlines: &[
             Headline {
                 name: "global order |Ψ6|",
@@ -195,7 +206,12 @@ pub static OBSERVABLES: [Observable; 13] = [
         value: ["density", ""],
         doc: "Distribution of both components of the velocity over √(kT/m), kT by the kinetic energy of the same moment.",
         source: "Maxwell 1860: the normal distribution in equilibrium",
-        seen: Seen::Once { over: single::speeds, of: single::velocities, further: 1, asks: Asks::Discs },
+        seen: Seen::Once {
+            over: single::speeds,
+            of: |it, values| single::velocities(&it.discs, values),
+            further: 1,
+            asks: Asks::Discs,
+        },
         headlines: &[Headline {
             name: "kurtosis",
             unit: "",
@@ -212,7 +228,7 @@ pub static OBSERVABLES: [Observable; 13] = [
         source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5: the single-particle density, averaged across the axis",
         seen: Seen::Once {
             over: single::slices::<0>,
-            of: single::density::<0>,
+            of: |it, values| single::density::<0>(&it.setting.domain, &it.discs, values),
             further: 0,
             asks: Asks::Discs,
         },
@@ -227,7 +243,7 @@ pub static OBSERVABLES: [Observable; 13] = [
         source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5: the single-particle density, averaged across the axis",
         seen: Seen::Once {
             over: single::slices::<1>,
-            of: single::density::<1>,
+            of: |it, values| single::density::<1>(&it.setting.domain, &it.discs, values),
             further: 0,
             asks: Asks::Discs,
         },
@@ -240,7 +256,12 @@ pub static OBSERVABLES: [Observable; 13] = [
         value: ["velocity along y", "length/time"],
         doc: "Velocity of the discs along y, weighted by mass, in a hundred slices along x.",
         source: "Irving and Kirkwood 1950: momentum density over mass density",
-        seen: Seen::Once { over: single::slices::<0>, of: single::flow::<0>, further: 0, asks: Asks::Discs },
+        seen: Seen::Once {
+            over: single::slices::<0>,
+            of: |it, values| single::flow::<0>(&it.setting.domain, &it.discs, values),
+            further: 0,
+            asks: Asks::Discs,
+        },
         headlines: &[],
     },
     Observable {
@@ -250,7 +271,12 @@ pub static OBSERVABLES: [Observable; 13] = [
         value: ["velocity along x", "length/time"],
         doc: "Velocity of the discs along x, weighted by mass, in a hundred slices along y.",
         source: "Irving and Kirkwood 1950: momentum density over mass density",
-        seen: Seen::Once { over: single::slices::<1>, of: single::flow::<1>, further: 0, asks: Asks::Discs },
+        seen: Seen::Once {
+            over: single::slices::<1>,
+            of: |it, values| single::flow::<1>(&it.setting.domain, &it.discs, values),
+            further: 0,
+            asks: Asks::Discs,
+        },
         headlines: &[],
     },
     Observable {
@@ -262,7 +288,7 @@ pub static OBSERVABLES: [Observable; 13] = [
         source: "Irving and Kirkwood 1950: the kinetic part, with one disc less for the mean velocity",
         seen: Seen::Once {
             over: single::slices::<0>,
-            of: single::temperature::<0>,
+            of: |it, values| single::temperature::<0>(&it.setting.domain, &it.discs, values),
             further: 0,
             asks: Asks::Discs,
         },
@@ -277,7 +303,7 @@ pub static OBSERVABLES: [Observable; 13] = [
         source: "Irving and Kirkwood 1950: the kinetic part, with one disc less for the mean velocity",
         seen: Seen::Once {
             over: single::slices::<1>,
-            of: single::temperature::<1>,
+            of: |it, values| single::temperature::<1>(&it.setting.domain, &it.discs, values),
             further: 0,
             asks: Asks::Discs,
         },

@@ -146,10 +146,11 @@ impl Motion {
         Motion::lags().map(|lag| lag as f64 * between).collect()
     }
 
-    /// How many looks are kept at most, once there were a number of them.
+    /// About how many looks are kept at most, once there were a number of them: eight, and half of seven for each power of two
+    /// whose lags are farther back than those before.
     pub fn most_kept(looks: u64) -> u64 {
-        let levels = (0..LEVELS).take_while(|level| (LAGS / 2) << level < looks);
-        looks.min(LAGS + LAGS / 2 * levels.count() as u64)
+        let levels = (1..LEVELS).take_while(|level| (LAGS - 1) << (level - 1) < looks).count() as u64;
+        looks.min(LAGS + (LAGS - 1) * levels / 2)
     }
 
     /// Looks at the discs, as `put` gives them in the order of the scene, at a time; gives each pair of looks that a lag is between

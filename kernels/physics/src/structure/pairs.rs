@@ -1,7 +1,7 @@
 //! What discs have with those around them: distances, neighbours, hexatic order. All from one order of cells.
 
 use super::cells::{AT_ONCE, Cells};
-use super::look::{Discs, Look};
+use super::discs::Discs;
 use super::setting::Setting;
 use crate::particles::Particle;
 use rayon::iter::{
@@ -89,7 +89,12 @@ impl Task<f64> for Counting<'_> {
                     let first = if up == 0 { own + 1 } else { span.start };
                     for begin in (first..span.end).step_by(AT_ONCE) {
                         let [_, _, squares] = ways(cells, begin, [x, y]);
-                        let bins = squares.map(|square| (square.sqrt() * by_length).min(far) as u32);
+                        let bins = squares.map(|square| {
+                            let bin = square.sqrt() * by_length;
+                            let bin = if bin < far { bin } else { far };
+                            // SAFETY: it is a number, not below 0 and at most `far`, the last place of `counts`, which are few.
+                            unsafe { bin.to_int_unchecked::<i32>() }
+                        });
                         for &bin in &bins[..AT_ONCE.min(span.end - begin)] {
                             counts[bin as usize] += 1;
                         }
@@ -138,8 +143,7 @@ pub fn pair_counts_of_all(setting: &Setting, discs: &[Particle]) -> Vec<u64> {
 }
 
 /// g(r) in each bin: pairs over those that an ideal gas has on average.
-pub(super) fn correlation(look: &Look, values: &mut [f64]) {
-    let setting = &look.setting;
+pub(super) fn correlation(setting: &Setting, discs: &Discs, found: &Distances, values: &mut [f64]) {
     let width = setting.diameter / BINS;
     let [x, y] = setting.room();
     let closed = [0, 1].map(|axis| f64::from(!setting.domain.is_periodic(axis)));
@@ -149,11 +153,11 @@ pub(super) fn correlation(look: &Look, values: &mut [f64]) {
         let (linear, square) = (2.0 / PI * (over_x + over_y), over_x * over_y / PI);
         2.0 * PI * r * r * (0.5 - linear * r / 3.0 + 0.25 * square * r * r)
     };
-    let discs = look.discs.x.len() as f64;
+    let discs = discs.x.len() as f64;
     let density_of_pairs = 0.5 * discs * (discs - 1.0) / (x * y);
     let ideal =
         |bin: usize| density_of_pairs * (within((bin + 1) as f64 * width) - within(bin as f64 * width));
-    for (bin, (value, &count)) in values.iter_mut().zip(&look.distances.counts).enumerate() {
+    for (bin, (value, &count)) in values.iter_mut().zip(&found.counts).enumerate() {
         *value = if count == 0 { 0.0 } else { count as f64 / ideal(bin) };
     }
 }
@@ -181,6 +185,9 @@ struct Around {
     places: Vec<usize>,
     /// ψ6 of each disc by its number, where it is kept.
     each: Vec<(u32, [f64; 2])>,
+    /// The reach (length) that was last asked for, and how far it goes along each row.
+    reach: f64,
+    halves: Vec<f64>,
 }
 
 impl Neighbours {
@@ -206,6 +213,8 @@ impl Neighbours {
             squares: vec![],
             places: vec![],
             each: vec![],
+            reach: f64::NAN,
+            halves: vec![],
         };
         self.parts.resize(cells.parts.len(), none);
         let looked_for = Neighbours::looked_for(setting, discs.x.len());
@@ -251,6 +260,7 @@ impl Task<f64> for Looking<'_> {
         around.orders.fill(0);
         around.order = [0.0; 3];
         around.each.clear();
+        around.reach = f64::NAN;
         for row in rows {
             for own in cells.own(row) {
                 let own_radius = radius[cells.number[own] as usize];
@@ -286,10 +296,16 @@ impl Around {
     #[inline(always)]
     fn look(&mut self, cells: &Cells, row: usize, own: usize, reach: f64) -> usize {
         let (x, y) = (cells.x[own], cells.y[own]);
-        let rows = cells.rows_within(reach);
+        // Mostly the same for one disc after the other.
+        if reach != self.reach {
+            self.reach = reach;
+            self.halves.clear();
+            self.halves.extend(cells.halves(reach));
+        }
+        let rows = self.halves.len() as i64 - 1;
         let mut found = 0;
         for up in -rows..=rows {
-            let span = cells.span(row, up, x, cells.half(reach, up));
+            let span = cells.span(row, up, x, self.halves[up.unsigned_abs() as usize]);
             if self.squares.len() < found + span.len() + AT_ONCE {
                 let room = 2 * (found + span.len() + AT_ONCE);
                 for column in [&mut self.squares, &mut self.right, &mut self.up] {
@@ -321,7 +337,7 @@ impl Around {
         for &square in &self.squares[..found] {
             let mut pushed = square;
             for held in &mut nearest {
-                (*held, pushed) = (held.min(pushed), held.max(pushed));
+                (*held, pushed) = if pushed < *held { (pushed, *held) } else { (*held, pushed) };
             }
         }
         let [.., farthest] = nearest.map(|square| if square.is_finite() { square } else { f64::MAX });
@@ -368,10 +384,10 @@ pub(super) fn neighbour_numbers(_: &Setting) -> Vec<f64> {
 }
 
 /// Shares of discs by their number of neighbours.
-pub(super) fn coordination(look: &Look, values: &mut [f64]) {
-    let discs = look.discs.x.len() as f64;
+pub(super) fn coordination(discs: &Discs, found: &Neighbours, values: &mut [f64]) {
+    let discs = discs.x.len() as f64;
     for (number, value) in values.iter_mut().enumerate() {
-        *value = look.neighbours.sum(|part| part.numbers[number]) / discs;
+        *value = found.sum(|part| part.numbers[number]) / discs;
     }
 }
 
@@ -381,13 +397,13 @@ pub(super) fn orders(_: &Setting) -> Vec<f64> {
 }
 
 /// The density of |ψ6| of the discs, then |Ψ6|, the order of all of them, and the mean |ψ6|.
-pub(super) fn hexatic(look: &Look, values: &mut [f64]) {
-    let discs = look.discs.x.len() as f64;
+pub(super) fn hexatic(discs: &Discs, found: &Neighbours, values: &mut [f64]) {
+    let discs = discs.x.len() as f64;
     let (densities, whole) = values.split_at_mut(ORDERS);
     for (bin, value) in densities.iter_mut().enumerate() {
-        *value = look.neighbours.sum(|part| part.orders[bin]) * ORDERS as f64 / discs;
+        *value = found.sum(|part| part.orders[bin]) * ORDERS as f64 / discs;
     }
-    let [x, y, single] = [0, 1, 2].map(|sum| look.neighbours.sum(|part| part.order[sum]) / discs);
+    let [x, y, single] = [0, 1, 2].map(|sum| found.sum(|part| part.order[sum]) / discs);
     whole[0] = x.hypot(y);
     whole[1] = single;
 }

@@ -1,7 +1,8 @@
 //! Distributions of what each disc has alone: velocities and places.
 
-use super::look::Look;
+use super::discs::Discs;
 use super::setting::Setting;
+use crate::domain::Domain;
 
 /// Width of the bins of velocities, and their number: from −5 to 5.
 const VELOCITIES: (f64, usize) = (0.1, 100);
@@ -15,9 +16,8 @@ pub(super) fn speeds(_: &Setting) -> Vec<f64> {
 }
 
 /// The density of the components of v/√(kT/m), and their kurtosis, which is 3 by Maxwell.
-pub(super) fn velocities(look: &Look, values: &mut [f64]) {
+pub(super) fn velocities(discs: &Discs, values: &mut [f64]) {
     let (width, count) = VELOCITIES;
-    let discs = &look.discs;
     let components = 2.0 * discs.x.len() as f64;
     let moving = || discs.vx.iter().zip(&discs.vy).zip(&discs.mass);
     let temperature = moving().map(|((x, y), mass)| mass * (x * x + y * y)).sum::<f64>() / components;
@@ -46,8 +46,7 @@ pub(super) fn slices<const AXIS: usize>(setting: &Setting) -> Vec<f64> {
 }
 
 /// Of each slice: how many discs, their mass, momentum and twice their kinetic energy.
-fn sums<const AXIS: usize>(look: &Look) -> [[f64; 5]; SLICES] {
-    let (discs, domain) = (&look.discs, look.setting.domain);
+fn sums<const AXIS: usize>(domain: &Domain, discs: &Discs) -> [[f64; 5]; SLICES] {
     let by_length = SLICES as f64 / domain.length(AXIS);
     let places = if AXIS == 0 { &discs.x } else { &discs.y };
     let mut sums = [[0.0; 5]; SLICES];
@@ -61,23 +60,23 @@ fn sums<const AXIS: usize>(look: &Look) -> [[f64; 5]; SLICES] {
 }
 
 /// Centres of discs by area (1/length²) in each of these slices.
-pub(super) fn density<const AXIS: usize>(look: &Look, values: &mut [f64]) {
-    let one = SLICES as f64 / look.setting.domain.area();
-    values.iter_mut().zip(sums::<AXIS>(look)).for_each(|(value, [discs, ..])| *value = discs * one);
+pub(super) fn density<const AXIS: usize>(domain: &Domain, discs: &Discs, values: &mut [f64]) {
+    let one = SLICES as f64 / domain.area();
+    values.iter_mut().zip(sums::<AXIS>(domain, discs)).for_each(|(value, [discs, ..])| *value = discs * one);
 }
 
 /// The velocity across the axis (length/time): Σmv/Σm; not a number where there is no disc.
-pub(super) fn flow<const AXIS: usize>(look: &Look, values: &mut [f64]) {
+pub(super) fn flow<const AXIS: usize>(domain: &Domain, discs: &Discs, values: &mut [f64]) {
     let of = |[_, mass, x, y, _]: [f64; 5]| if AXIS == 0 { y / mass } else { x / mass };
-    values.iter_mut().zip(sums::<AXIS>(look)).for_each(|(value, sums)| *value = of(sums));
+    values.iter_mut().zip(sums::<AXIS>(domain, discs)).for_each(|(value, sums)| *value = of(sums));
 }
 
 /// kT of both components beside the flow of the slice, which takes one disc's part away: Σm|v − u|²/(2(n − 1)); not a number where
 /// there are fewer than two discs.
-pub(super) fn temperature<const AXIS: usize>(look: &Look, values: &mut [f64]) {
+pub(super) fn temperature<const AXIS: usize>(domain: &Domain, discs: &Discs, values: &mut [f64]) {
     let of = |[discs, mass, x, y, square]: [f64; 5]| match discs > 1.0 {
         true => (square - (x * x + y * y) / mass) / (2.0 * (discs - 1.0)),
         false => f64::NAN,
     };
-    values.iter_mut().zip(sums::<AXIS>(look)).for_each(|(value, sums)| *value = of(sums));
+    values.iter_mut().zip(sums::<AXIS>(domain, discs)).for_each(|(value, sums)| *value = of(sums));
 }

@@ -1,6 +1,6 @@
 //! Density waves along the periodic axes of the box.
 
-use super::look::{Discs, Look};
+use super::discs::Discs;
 use super::setting::Setting;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 use rayon::slice::ParallelSlice;
@@ -54,8 +54,8 @@ pub(super) fn numbers(setting: &Setting) -> Vec<f64> {
 }
 
 /// S(k) = |Σ exp(ikr)|²/N, the mean along both axes.
-pub(super) fn factor(look: &Look, values: &mut [f64]) {
-    values.copy_from_slice(&look.waves.factor);
+pub(super) fn factor(waves: &Waves, values: &mut [f64]) {
+    values.copy_from_slice(&waves.factor);
 }
 
 /// The waves of a box, and their sums.

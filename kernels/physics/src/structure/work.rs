@@ -7,12 +7,12 @@ use std::f64::consts::PI;
 
 /// Nanoseconds of a disc: to take it up, in a pair within reach, with its neighbours, in a density wave, in what it is alone; in a row.
 /// They were measured once; nothing is measured in a run, so that every machine looks at the same moments.
-const TAKEN_UP: f64 = 40.0;
-const PAIR: f64 = 3.0;
-const NEIGHBOURS: f64 = 140.0;
-const WAVE: f64 = 1.0;
-const ALONE: f64 = 12.0;
-const ROW: f64 = 50.0;
+const TAKEN_UP: f64 = 60.0;
+const PAIR: f64 = 8.0;
+const NEIGHBOURS: f64 = 260.0;
+const WAVE: f64 = 0.5;
+const ALONE: f64 = 15.0;
+const ROW: f64 = 55.0;
 
 /// Nanoseconds that looks at a row and at a snapshot take a disc.
 fn nanoseconds(observables: &[&Observable], setting: &Setting, discs: usize) -> [f64; 2] {

@@ -107,7 +107,7 @@ impl Startable for Checked {
     }
 
     fn work(&self) -> f64 {
-        // Collisions of a disc in a unit of time by Enskog, each of two discs and 400 ns.
+        // Collisions of a disc in a unit of time by Enskog, each of two discs and 650 ns.
         let discs = self.particles.all();
         let count = discs.len() as f64;
         let mean = |of: fn(&Particle) -> f64| discs.iter().map(of).sum::<f64>() / count;
@@ -122,7 +122,7 @@ impl Startable for Checked {
         let density = count / self.domain.area();
         let fraction = (area * density).min(0.9);
         let at_contact = (1.0 - 7.0 / 16.0 * fraction) / (1.0 - fraction).powi(2);
-        400.0 * PI.sqrt() * density * diameter * at_contact * square.sqrt()
+        650.0 * PI.sqrt() * density * diameter * at_contact * square.sqrt()
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {

@@ -122,7 +122,7 @@ impl Startable for Checked {
         // Noise and motion, and the pairs within reach.
         let density = self.particles.len() as f64 / self.domain.area();
         let pairs = if self.has_pairs() { 0.5 * PI * self.reach * self.reach * density } else { 0.0 };
-        6.0 + 1.2 * pairs
+        30.0 + 8.0 * pairs
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {

@@ -104,7 +104,7 @@ impl Startable for Checked {
         // To move them and find the pairs, and the contacts, of which there are more the denser they lie.
         let discs = self.particles.all().iter();
         let fraction = discs.map(|disc| PI * disc.radius * disc.radius).sum::<f64>() / self.domain.area();
-        2.5 + 11.0 * fraction.min(1.0).powi(2)
+        2.5 + 16.0 * fraction.min(1.0)
     }
 
     fn programs(&self) -> Vec<VectorProgram> {

@@ -1,0 +1,12 @@
+//! Discs as a look has them.
+
+/// The discs that are there, in the order of the scene, in columns.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Discs {
+    pub(super) x: Vec<f64>,
+    pub(super) y: Vec<f64>,
+    pub(super) vx: Vec<f64>,
+    pub(super) vy: Vec<f64>,
+    pub(super) radius: Vec<f64>,
+    pub(super) mass: Vec<f64>,
+}

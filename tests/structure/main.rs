@@ -1,0 +1,245 @@
+//! The structure that a run sums up: against theory (here), against naive sums (`oracles`), its bars (`bars`), and the same in however many
+//! sessions.
+
+mod bars;
+mod oracles;
+
+use assert_cmd::cargo::CommandCargoExt;
+use rand::RngExt;
+use serde_json::Value;
+use std::f64::consts::TAU;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_physics::domain::Domain;
+use stripmine_physics::particles::{Kind, Particle, Particles};
+use stripmine_physics::structure::{NAMES, Seen, Setting, observable, pair_counts, pair_counts_of_all, seen};
+
+fn stripmine(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::cargo_bin("stripmine").unwrap();
+    command.current_dir(folder).args(arguments).arg("--quiet").output().unwrap()
+}
+
+/// A run that sums everything up, at every row and snapshot.
+fn run(folder: &Path, scene: &str, out: &str, sets: &[&str], more: &[&str]) {
+    let all = format!("output.structure={NAMES:?}");
+    let sets = [&[all.as_str(), "output.structure_share=1000.0"], sets].concat();
+    let sets = sets.into_iter().flat_map(|set| ["--set", set]);
+    let arguments: Vec<&str> = ["run", scene, "--out", out].into_iter().chain(sets).collect();
+    let output = stripmine(folder, &[&arguments, more].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// The rows of a file: what the function is over, mean and bar.
+fn rows(folder: &Path, out: &str, name: &str) -> Vec<[f64; 3]> {
+    let text = fs::read_to_string(folder.join(out).join(observable(name).unwrap().file)).unwrap();
+    let numbers = |line: &str| line.split(',').map(|number| number.parse().unwrap()).collect::<Vec<f64>>();
+    text.lines().skip(1).map(|line| numbers(line).try_into().unwrap()).collect()
+}
+
+/// Mean and bar of a headline.
+fn headline(folder: &Path, out: &str, name: &str, what: &str) -> [f64; 2] {
+    let text = fs::read_to_string(folder.join(out).join("summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&text).unwrap();
+    let find = |list: &Value, name: &str| -> Value {
+        list.as_array().unwrap().iter().find(|it| it["name"] == name).unwrap().clone()
+    };
+    let found = find(&find(&summary["structure"], name)["headlines"], what);
+    ["mean", "bar"].map(|key| found[key].as_f64().unwrap())
+}
+
+/// Points anywhere in a box, in which no disc's centre comes nearer to a closed side than its radius.
+fn ideal(random: &mut Stream, sides: [f64; 2], periodic: [bool; 2], count: u32) -> (Setting, Particles) {
+    let origin = [-3.0, 1.0];
+    let disc = |id: u32, random: &mut Stream| {
+        let at = [0, 1].map(|axis| {
+            let rim = if periodic[axis] { 0.0 } else { 0.5 };
+            random.random_range(origin[axis] + rim..origin[axis] + sides[axis] - rim)
+        });
+        let kind = Kind::Grain;
+        let position = [at[0], at[1], 0.0];
+        Particle {
+            id,
+            kind,
+            position,
+            velocity: [1.0, 0.0, 0.0],
+            angle: 0.0,
+            omega: 0.0,
+            radius: 0.5,
+            mass: 1.0,
+        }
+    };
+    let discs = Particles::new((0..count).map(|id| disc(id, random)).collect());
+    (Setting::new(Domain::planar(origin, sides, periodic), &discs), discs)
+}
+
+fn values(name: &str, setting: &Setting, discs: &Particles) -> Vec<f64> {
+    seen(observable(name).unwrap(), *setting, discs)
+}
+
+/// In periodic and in closed boxes, an ideal gas has g(r) = 1 and S(k) = 1 at every distance and wave number: four times the error of
+/// each at most, and all errors together as large as they should be. Pairs are those of looking at all.
+#[test]
+fn an_ideal_gas_has_no_structure() {
+    let mut random = Stream::new(1, Purpose::Test, 0);
+    for (sides, periodic) in
+        [([20.0, 13.0], [true, true]), ([20.0, 9.0], [true, false]), ([11.0, 12.0], [false, false])]
+    {
+        const LOOKS: usize = 200;
+        for name in ["g(r)", "S(k)"].into_iter().take(if periodic[0] { 2 } else { 1 }) {
+            let looks: Vec<Vec<f64>> = (0..LOOKS)
+                .map(|_| {
+                    let (setting, discs) = ideal(&mut random, sides, periodic, 150);
+                    assert_eq!(
+                        pair_counts(&setting, discs.grains()),
+                        pair_counts_of_all(&setting, discs.grains())
+                    );
+                    values(name, &setting, &discs)
+                })
+                .collect();
+            // Where there are next to no pairs, errors are not normal.
+            let places = if name == "g(r)" { 20..looks[0].len() } else { 0..looks[0].len() };
+            let scores: Vec<f64> = places
+                .map(|place| {
+                    let n = LOOKS as f64;
+                    let mean = looks.iter().map(|look| look[place]).sum::<f64>() / n;
+                    let square = looks.iter().map(|look| (look[place] - mean).powi(2)).sum::<f64>();
+                    (mean - 1.0) / (square / (n * (n - 1.0))).sqrt()
+                })
+                .collect();
+            let worst = scores.iter().fold(0.0_f64, |worst, score| worst.max(score.abs()));
+            let square = scores.iter().map(|score| score * score).sum::<f64>() / scores.len() as f64;
+            let mean = scores.iter().sum::<f64>() / scores.len() as f64;
+            assert!(worst < 4.5 && (0.6..1.5).contains(&square), "{name} {periodic:?}: {worst} {square}");
+            assert!(mean.abs() < 0.4, "{name} {periodic:?}: {mean}");
+        }
+    }
+}
+
+/// A hexagonal crystal: six neighbours, |Ψ6| = 1, and S(k) = N where a wave has its period.
+#[test]
+fn a_crystal_is_in_order() {
+    let (columns, rows) = (12_u32, 14_u32);
+    let edge = 1.1;
+    let domain = Domain::planar([0.0; 2], [12.0 * edge, 14.0 * edge * 0.75_f64.sqrt()], [true; 2]);
+    let disc = |id: u32| {
+        let (column, row) = (f64::from(id % columns), f64::from(id / columns));
+        let position = [(column + 0.5 * (row % 2.0) + 0.1) * edge, (row + 0.1) * edge * 0.75_f64.sqrt(), 0.0];
+        let velocity = [1.0, 0.0, 0.0];
+        let kind = Kind::Grain;
+        Particle { id, kind, position, velocity, angle: 0.0, omega: 0.0, radius: 0.5, mass: 1.0 }
+    };
+    let discs = Particles::new((0..columns * rows).map(disc).collect());
+    let setting = Setting::new(domain, &discs);
+    let shares = values("coordination", &setting, &discs);
+    assert!((shares[6] - 1.0).abs() < 1e-12, "{shares:?}");
+    let order = values("psi6", &setting, &discs);
+    let [global, mean] = [order[order.len() - 2], order[order.len() - 1]];
+    assert!((global - 1.0).abs() < 1e-9 && (mean - 1.0).abs() < 1e-9, "{global} {mean}");
+    let Seen::Once { over, .. } = observable("S(k)").unwrap().seen else { unreachable!() };
+    let factor = values("S(k)", &setting, &discs);
+    let naive = |periods: f64| {
+        let angle = |disc: &Particle, axis: usize| TAU * periods * disc.position[axis] / domain.length(axis);
+        let of = |axis: usize| {
+            let sum =
+                |part: fn(f64) -> f64| discs.grains().iter().map(|disc| part(angle(disc, axis))).sum::<f64>();
+            sum(f64::cos).powi(2) + sum(f64::sin).powi(2)
+        };
+        [of(0), of(1)]
+    };
+    // The wave of 24 periods along x has two in an edge, that of 14 along y one in two rows.
+    let [along_x, _] = naive(24.0);
+    assert!((along_x / f64::from(columns * rows).powi(2) - 1.0).abs() < 1e-9);
+    for (number, value) in over(&setting).into_iter().zip(factor) {
+        let periods = [0, 1].map(|axis| (number * domain.length(axis) / TAU).round());
+        if periods.map(|periods| (TAU * periods / domain.length(0) - number).abs() < 1e-9)[0] {
+            let found = 0.5 * (naive(periods[0])[0] + naive(periods[1])[1]) / f64::from(columns * rows);
+            assert!((value - found).abs() < 1e-6, "{number}: {value} {found}");
+        }
+    }
+}
+
+/// Hard discs: g at contact is (Z − 1)/(2ν) by the virial, and velocities are Maxwell's.
+#[test]
+fn hard_discs_touch_as_often_as_their_pressure_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    run(folder, "hard-disks", "a", &["run.snapshot_every=0.5", "run.events=1e6"], &[]);
+    let text = fs::read_to_string(folder.join("a/summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&text).unwrap();
+    let averages = summary["averages"]["quantities"].as_array().unwrap();
+    let z = averages.iter().find(|it| it["quantity"] == "compressibility").unwrap()["mean"].as_f64().unwrap();
+    let virial = (z - 1.0) / (2.0 * 0.5);
+    let g = rows(folder, "a", "g(r)");
+    assert!(g.iter().filter(|[r, ..]| *r < 1.0).all(|[_, g, _]| *g == 0.0));
+    // A straight line through the first bins after contact.
+    let first: Vec<[f64; 3]> = g.iter().copied().filter(|[r, ..]| (1.0..1.1).contains(r)).collect();
+    let n = first.len() as f64;
+    let mean = |of: fn(&[f64; 3]) -> f64| first.iter().map(of).sum::<f64>() / n;
+    let [r, value] = [mean(|row| row[0]), mean(|row| row[1])];
+    let slope = first.iter().map(|row| (row[0] - r) * (row[1] - value)).sum::<f64>()
+        / first.iter().map(|row| (row[0] - r).powi(2)).sum::<f64>();
+    let contact = value + slope * (1.0 - r);
+    assert!((contact / virial - 1.0).abs() < 0.02, "{contact} {virial}");
+    let [kurtosis, bar] = headline(folder, "a", "velocities", "kurtosis");
+    assert!((kurtosis - 3.0).abs() < 2.0 * bar + 6.0 / 1054.0 && bar < 0.03, "{kurtosis} ± {bar}");
+    let density = rows(folder, "a", "velocities");
+    let far = density.iter().filter(|[v, density, error]| {
+        let maxwell = (-0.5 * v * v).exp() / TAU.sqrt();
+        (density - maxwell).abs() > 2.0 * error + 1e-3
+    });
+    assert!(far.count() < 3);
+    // S(k → 0) is the compressibility of the fluid, far below 1; far out it is 1.
+    let waves = rows(folder, "a", "S(k)");
+    assert!(waves[1][1] < 0.15 && (waves[waves.len() - 1][1] - 1.0).abs() < 0.2, "{waves:?}");
+    let [global, _] = headline(folder, "a", "psi6", "global order |Ψ6|");
+    assert!(global < 0.05, "{global}");
+}
+
+/// A run in two sessions writes the same files, whether all of it is asked for from the start on or not.
+#[test]
+fn two_sessions_write_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for (scene, [half, whole]) in [
+        ("hard-disks", ["run.events=77777", "run.events=300000"]),
+        ("langevin-dense", ["run.steps=3333", "run.steps=10000"]),
+        ("dense-gas", ["run.steps=777", "run.steps=2000"]),
+    ] {
+        let closer: &[&str] = match scene {
+            "hard-disks" => &["run.snapshot_every=1.0", "run.thermo_every=0.5", "particles.count=200"],
+            _ => &["run.snapshot_every=100", "run.thermo_every=30", "particles.count=100"],
+        };
+        let [one, two] = ["one", "two"].map(|name| format!("{scene}-{name}"));
+        run(folder, scene, &one, &[closer, &[whole]].concat(), &[]);
+        run(folder, scene, &two, &[closer, &[half]].concat(), &[]);
+        run(folder, scene, &two, &[closer, &[whole]].concat(), &["--resume", "--threads", "1"]);
+        for name in NAMES {
+            let file = observable(name).unwrap().file;
+            let [one, two] = [&one, &two].map(|out| fs::read_to_string(folder.join(out).join(file)).unwrap());
+            assert!(one == two && one.lines().count() > 5, "{scene} {name}:\n{one}");
+        }
+        // Asked for later: it begins then.
+        let third = format!("{scene}-third");
+        run(folder, scene, &third, &[closer, &[half, "output.structure=[]"]].concat(), &[]);
+        run(folder, scene, &third, &[closer, &[whole]].concat(), &["--resume"]);
+        let text = fs::read_to_string(folder.join(&third).join("summary.json")).unwrap();
+        assert!(text.contains("g(r) is summed up from here on"), "{text}");
+    }
+}
+
+#[test]
+fn what_has_no_box_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for (open, words) in [(true, "needs a box, but its upper side is open"), (false, "needs a periodic side")]
+    {
+        let all = format!("output.structure={NAMES:?}");
+        let top = format!("domain.open_top={open}");
+        let sets = [all.as_str(), &top, "domain.periodic=[false, false]"].into_iter();
+        let sets: Vec<&str> = sets.flat_map(|set| ["--set", set]).collect();
+        let output = stripmine(folder.path(), &[&["scene", "check", "vibrating-floor"], &sets[..]].concat());
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(3) && said.contains(words), "{said}");
+    }
+}

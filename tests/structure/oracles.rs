@@ -1,0 +1,232 @@
+//! What is found fast, beside naive sums.
+
+use super::{ideal, values};
+use rand::RngExt;
+use std::f64::consts::TAU;
+use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_physics::domain::Domain;
+use stripmine_physics::particles::Particle;
+use stripmine_physics::structure::{
+    Asks, Look, Motion, OBSERVABLES, Seen, observable, pair_counts, pair_counts_of_all, seen, strides,
+};
+
+/// Hexatic order and neighbours of discs anywhere, by looking at all of them: the six nearest sorted by their distance, the angle of each.
+#[test]
+fn order_and_neighbours_are_those_of_looking_at_all() {
+    let mut random = Stream::new(2, Purpose::Test, 0);
+    for periodic in [[true, true], [true, false], [false, false]] {
+        let (setting, discs) = ideal(&mut random, [14.0, 11.0], periodic, 90);
+        let discs_of = discs.grains();
+        let ways = |own: &Particle| -> Vec<[f64; 2]> {
+            let others = discs_of.iter().filter(|other| other.id != own.id);
+            let mut ways: Vec<[f64; 2]> =
+                others.map(|other| setting.domain.displacement(own.place(), other.place())).collect();
+            ways.sort_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])));
+            ways
+        };
+        let order = |own: &Particle| {
+            let ways = ways(own);
+            let angles = ways.iter().take(6).map(|[x, y]| 6.0 * y.atan2(*x));
+            let sum = angles.fold([0.0; 2], |[a, b], angle| [a + angle.cos() / 6.0, b + angle.sin() / 6.0]);
+            (sum, ways.iter().filter(|[x, y]| x.hypot(*y) < 1.5).count())
+        };
+        let naive: Vec<([f64; 2], usize)> = discs_of.iter().map(order).collect();
+        let share = 1.0 / naive.len() as f64;
+        let whole = naive.iter().fold([0.0; 2], |[a, b], ([x, y], _)| [a + share * x, b + share * y]);
+        let single = naive.iter().map(|([x, y], _)| share * x.hypot(*y)).sum::<f64>();
+        let found = values("psi6", &setting, &discs);
+        let [.., global, mean] = found[..] else { panic!("{found:?}") };
+        assert!((global - whole[0].hypot(whole[1])).abs() < 1e-12, "{periodic:?}: {global} {whole:?}");
+        assert!((mean - single).abs() < 1e-12, "{periodic:?}: {mean} {single}");
+        let shares = values("coordination", &setting, &discs);
+        for (number, found) in shares.into_iter().enumerate() {
+            let naive = naive.iter().filter(|(_, count)| *count == number).count() as f64 * share;
+            assert!((found - naive).abs() < 1e-12, "{periodic:?}, {number}: {found} {naive}");
+        }
+    }
+}
+
+/// One look at everything, again and again with the same memory, is each alone; and it is the same however many threads there are.
+#[test]
+fn looks_share_what_they_find() {
+    let mut random = Stream::new(3, Purpose::Test, 0);
+    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pools = [1, 3].map(pool);
+    for (sides, periodic) in
+        [([40.0, 30.0], [true, true]), ([9.0, 60.0], [true, false]), ([31.0, 35.0], [false, false])]
+    {
+        let (setting, first) = ideal(&mut random, sides, periodic, 2000);
+        let all = || OBSERVABLES.iter().filter(|it| periodic[0] || it.name != "S(k)");
+        let mut look = Look::new(setting, first.grains(), all());
+        for _ in 0..3 {
+            let (_, discs) = ideal(&mut random, sides, periodic, 2000);
+            let mut of = |pool: &rayon::ThreadPool| {
+                pool.install(|| assert!(look.at(|states| states.take_up(&discs))));
+                all().map(|it| look.values(it)).collect::<Vec<_>>()
+            };
+            let [one, three] = [of(&pools[0]), of(&pools[1])];
+            let alone: Vec<Vec<f64>> = all().map(|it| seen(it, setting, &discs)).collect();
+            // Slices without a disc have no temperature.
+            let bits = |all: &[Vec<f64>]| all.concat().iter().map(|it| it.to_bits()).collect::<Vec<u64>>();
+            assert!(bits(&one) == bits(&three) && bits(&one) == bits(&alone), "{periodic:?}");
+            assert_eq!(
+                pair_counts(&setting, discs.grains()),
+                pair_counts_of_all(&setting, discs.grains()),
+                "{periodic:?}"
+            );
+        }
+    }
+}
+
+/// Waves of discs anywhere, each by the sine and cosine of its angle.
+#[test]
+fn waves_are_those_of_sines_and_cosines() {
+    let mut random = Stream::new(4, Purpose::Test, 0);
+    for periodic in [[true, true], [false, true]] {
+        let (setting, discs) = ideal(&mut random, [57.0, 43.0], periodic, 1037);
+        let domain = setting.domain;
+        let along = |axis: usize, number: f64| {
+            let periods = (number * domain.length(axis) / TAU).round();
+            let angle = |disc: &Particle| {
+                TAU * periods * (disc.position[axis] - domain.origin[axis]) / domain.length(axis)
+            };
+            let sum = |part: fn(f64) -> f64| discs.grains().iter().map(|disc| part(angle(disc))).sum::<f64>();
+            (sum(f64::cos).powi(2) + sum(f64::sin).powi(2)) / 1037.0
+        };
+        let observable = observable("S(k)").unwrap();
+        let Seen::Once { over, asks: Asks::Waves, .. } = observable.seen else { unreachable!() };
+        let mut held = 0;
+        for (wave, (number, found)) in
+            over(&setting).into_iter().zip(seen(observable, setting, &discs)).enumerate()
+        {
+            let axes: Vec<usize> = (0..2).filter(|&axis| periodic[axis]).collect();
+            // The wave number asked for, and what of it fits each side.
+            let asked = 25.0 * (wave + 1) as f64 / 100.0;
+            let naive = axes.iter().map(|&axis| along(axis, asked)).sum::<f64>() / axes.len() as f64;
+            let fits = axes
+                .iter()
+                .map(|&axis| TAU * (asked * domain.length(axis) / TAU).round() / domain.length(axis));
+            if (fits.sum::<f64>() / axes.len() as f64 - number).abs() < 1e-9 {
+                held += 1;
+                assert!(
+                    (found - naive).abs() < 1e-9 * (1.0 + naive),
+                    "{periodic:?} {number}: {found} {naive}"
+                );
+            }
+        }
+        assert!(held > 90, "{held}");
+    }
+}
+
+/// Density, flow and temperature in each slice, slice by slice.
+#[test]
+fn profiles_are_those_of_looking_at_each_slice() {
+    let mut random = Stream::new(5, Purpose::Test, 0);
+    let (setting, mut discs) = ideal(&mut random, [30.0, 20.0], [true, false], 400);
+    for disc in discs.all_mut() {
+        disc.mass = random.random_range(0.5..2.0);
+        disc.velocity = [random.random_range(-1.0..1.0), random.random_range(0.0..3.0), 0.0];
+    }
+    for (axis, name) in ["x", "y"].into_iter().enumerate() {
+        let [density, flow, temperature] =
+            ["density", "flow", "temperature"].map(|of| values(&format!("{of}({name})"), &setting, &discs));
+        let domain = setting.domain;
+        let width = domain.length(axis) / 100.0;
+        for slice in 0..100 {
+            let low = domain.origin[axis] + slice as f64 * width;
+            let there: Vec<&Particle> =
+                discs.grains().iter().filter(|it| (low..low + width).contains(&it.position[axis])).collect();
+            let sum = |of: &dyn Fn(&Particle) -> f64| there.iter().map(|it| of(it)).sum::<f64>();
+            let (count, mass) = (there.len() as f64, sum(&|it| it.mass));
+            assert!((density[slice] - count * 100.0 / domain.area()).abs() < 1e-12);
+            let mean = [0, 1].map(|along| sum(&|it| it.mass * it.velocity[along]) / mass);
+            assert!(count > 0.0 || flow[slice].is_nan());
+            assert!(count == 0.0 || (flow[slice] - mean[1 - axis]).abs() < 1e-12);
+            let beside = sum(&|it| {
+                it.mass * ((it.velocity[0] - mean[0]).powi(2) + (it.velocity[1] - mean[1]).powi(2))
+            });
+            let naive = beside / (2.0 * (count - 1.0));
+            assert!(count > 1.5 || temperature[slice].is_nan());
+            assert!(
+                count < 1.5 || (temperature[slice] - naive).abs() < 1e-12,
+                "{naive} {}",
+                temperature[slice]
+            );
+        }
+    }
+}
+
+/// Every pair of looks at every lag, with all of them kept; a disc is lost on the way, and sides are crossed.
+#[test]
+fn motion_is_that_of_all_looks_kept() {
+    let mut random = Stream::new(6, Purpose::Test, 0);
+    let domain = Domain::planar([-1.0, 2.0], [5.0, 7.0], [true, false]);
+    const DISCS: usize = 23;
+    let mut whole: Vec<Vec<[f64; 4]>> = vec![];
+    let mut now = [[0.0, 3.0, 0.0, 0.0]; DISCS];
+    let mut motion = Motion::new(DISCS);
+    let lags: Vec<u64> = Motion::lags().collect();
+    assert_eq!(lags[..14], [0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20]);
+    for look in 0..150_u64 {
+        for (disc, state) in now.iter_mut().enumerate() {
+            let step = [0, 1].map(|_| random.random_range(-0.9..0.9));
+            *state = [state[0] + step[0], state[1] + 0.1 * step[1], step[0], step[1]];
+            if disc == 7 && look > 60 {
+                *state = [f64::NAN; 4];
+            }
+        }
+        whole.push(now.to_vec());
+        let wrapped = |&[x, y, vx, vy]: &[f64; 4]| match x.is_nan() {
+            true => [x; 4],
+            false => [domain.wrapped([x, y])[0], y, vx, vy],
+        };
+        let inside: Vec<[f64; 4]> = now.iter().map(wrapped).collect();
+        let mut met = 0;
+        motion.look(&domain, &inside, 0.5 * look as f64, |earlier, place, means| {
+            met += 1;
+            assert_eq!(earlier + lags[place], look);
+            let pairs = whole[earlier as usize].iter().zip(&now).filter(|(_, later)| !later[0].is_nan());
+            let count = pairs.clone().count() as f64;
+            let mean = |of: &dyn Fn(&[f64; 4], &[f64; 4]) -> f64| {
+                pairs.clone().map(|(a, b)| of(a, b)).sum::<f64>() / count
+            };
+            let naive = [
+                mean(&|a, b| (b[0] - a[0]).powi(2)),
+                mean(&|a, b| (b[1] - a[1]).powi(2)),
+                mean(&|a, b| a[2] * b[2]),
+                mean(&|a, b| a[3] * b[3]),
+            ];
+            for (mean, naive) in means.into_iter().zip(naive) {
+                assert!((mean - naive).abs() < 1e-11, "{look} {place}: {mean} {naive}");
+            }
+        });
+        let whole_lags =
+            lags.iter().filter(|&&lag| lag <= look && (look - lag).is_multiple_of(power_of(lag)));
+        assert_eq!(met, whole_lags.count(), "{look}");
+    }
+    assert_eq!((Motion::most_kept(1), Motion::most_kept(40), Motion::most_kept(80)), (1, 18, 22));
+    assert!(motion.is_certain() && (motion.times()[2] - 1.0).abs() < 1e-12);
+}
+
+/// Looks of a lag are so many looks apart.
+fn power_of(lag: u64) -> u64 {
+    if lag < 8 { 1 } else { 1 << (lag.ilog2() - 2) }
+}
+
+/// Looks are so far apart that they take no more than their share of the work, which is counted.
+#[test]
+fn looks_take_no_more_than_their_share() {
+    let mut random = Stream::new(7, Purpose::Test, 0);
+    let (setting, _) = ideal(&mut random, [30.0, 30.0], [true, true], 500);
+    let all: Vec<_> = OBSERVABLES.iter().collect();
+    let some = [observable("msd").unwrap()];
+    let of = |observables, share, work| strides(observables, &setting, 500, share, work);
+    assert_eq!(of(&all, 0.05, [0.0; 2]), [1; 2], "work that is not known");
+    assert_eq!(of(&all, 1000.0, [1200.0, 12_000.0]), [1; 2]);
+    let [rows, snapshots] = of(&all, 0.05, [1200.0, 12_000.0]);
+    assert!(rows > 1 && snapshots > 1, "{rows} {snapshots}");
+    let half = of(&all, 0.025, [1200.0, 12_000.0]);
+    assert!(half[0].abs_diff(2 * rows) <= 1 && half[1].abs_diff(2 * snapshots) <= 1, "{half:?}");
+    // Alone, rows have the whole share.
+    assert!(of(&some, 0.05, [1200.0, 12_000.0])[0] < rows);
+}
