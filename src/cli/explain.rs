@@ -168,7 +168,7 @@ impl ExplainVerb {
                 estimated: chance,
                 actual: known.bar,
                 unit: plan.unit.to_owned(),
-                is_within: known.bar < 1.5 * chance && known.bar > chance / 1.5,
+                is_within: known.bar <= 1.5 * chance,
                 advice: "the scatter was hardly known: --patient",
             });
             let allowed = plan.expected[0] + known.bar.hypot(bar);

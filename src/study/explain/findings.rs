@@ -27,6 +27,8 @@ const COMPARED: usize = 3;
 const ROUNDS: usize = 2;
 /// Starts differ where their means are as many bars apart: about three standard errors.
 const SURE: f64 = 1.5;
+/// Errors of means fall with a power of the step between these.
+const POWERS: [f64; 2] = [1.0, 2.0];
 /// Parts of the time that is given: to time the ways, to the reference, to those that are compared with it, to what may be left out, to another
 /// start.
 const SHARES: [f64; 5] = [0.15, 0.3, 0.25, 0.2, 0.1];
@@ -296,8 +298,8 @@ impl Work<'_> {
         self.case.own.with(&settings)
     }
 
-    /// The means of the cheapest ways at their longest steps, held against the reference: of each integrator the one with the cheapest digits. Ways that
-    /// differ from a compared one in nothing that changes results have its bias.
+    /// The means of the cheapest ways at their longest steps, held against the reference: of each integrator the one with the cheapest digits. Other digits and
+    /// searches have the same bias: rounding is far below what can be seen of a mean.
     fn compare(&self, ways: &mut [Way], reference: &mut Reference) {
         if self.case.entry.trials.is_none() {
             return;
@@ -311,19 +313,19 @@ impl Work<'_> {
             }
         }
         let seconds = SHARES[2] * self.seconds / compared.len().max(1) as f64;
+        let mut transients = vec![reference.known.transient];
         for at in compared {
+            let power = self.power(&self.choice(&ways[at]));
             let way = &mut ways[at];
             let Some(mut step) = way.step else { continue };
             for _ in 0..HALVINGS {
                 match self.sampled(way, Some(step), seconds) {
                     Ok(sample) if sample.warnings.is_empty() => {
                         let known = sample.known();
-                        if let Some(known) = known {
-                            // The start is the same: its transient is no longer than the shortest that is found.
-                            reference.known.transient = reference.known.transient.min(known.transient);
-                        }
+                        // The start is the same: transients differ by the noise of what finds them.
+                        transients.extend(known.map(|known| known.transient));
                         way.step = Some(step);
-                        way.bias = known.map(|known| Bias::of(step, &known, &reference.known));
+                        way.bias = known.map(|known| Bias::of(step, &known, &reference.known, power));
                         break;
                     }
                     Ok(sample) => way.bound = Some(format!("warned of: {}", sample.warnings.join("; "))),
@@ -333,21 +335,32 @@ impl Work<'_> {
                 way.cost = way.cost.map(|cost| 2.0 * cost);
             }
             if way.bias.is_none() {
-                way.dropped =
-                    way.bound.clone().or_else(|| Some("it has no mean in the time of a trial".to_owned()));
+                let why = || Some("it has no mean in the time of a trial".to_owned());
+                way.dropped = way.bound.clone().or_else(why);
             }
             let (own, way) = (self.choice(way), way.clone());
-            for other in ways.iter_mut().filter(|other| other.bias.is_none() && other.cost.is_some()) {
-                let choice = self.choice(other);
-                if choice.agrees(&own, Decides::Order) && choice.agrees(&own, Decides::Digits) {
-                    let longest = other.step;
-                    (other.step, other.bias) = (way.step, way.bias);
-                    let slower = longest.zip(way.step).map_or(1.0, |(longest, step)| longest / step);
-                    other.cost = other.cost.map(|cost| slower * cost);
-                }
+            let alike = |other: &Way| self.choice(other).agrees(&own, Decides::Order);
+            for other in ways
+                .iter_mut()
+                .filter(|other| other.label != way.label && other.dropped.is_none() && alike(other))
+            {
+                let slower = other.step.zip(way.step).map_or(1.0, |(longest, step)| longest / step);
+                other.cost = other.cost.map(|cost| slower * cost);
+                (other.step, other.bias) = (way.step, way.bias);
+                (other.bound, other.dropped) = (way.bound.clone(), way.dropped.clone());
             }
         }
+        transients.sort_by(f64::total_cmp);
+        reference.known.transient = transients[transients.len() / 2];
         sort(ways);
+    }
+
+    /// The power of the step with which errors of means fall: that of theory for positions, but no more than 2, for contacts have kinks.
+    fn power(&self, choice: &Choice) -> f64 {
+        let theory = self.case.entry.trials.map(|trials| trials.theory).zip(choice.scheme());
+        let theory =
+            theory.and_then(|(theory, scheme)| theory(&self.case.values, &self.case.prepared, scheme));
+        theory.map_or(POWERS[1], |theory| theory.order.clamp(POWERS[0], POWERS[1]))
     }
 
     /// How far what should keep its value goes, by the cheapest way of each integrator at two steps.

@@ -373,7 +373,8 @@ fn decisions(
     for (axis, chosen) in &best.way.settings {
         let mut beside: Vec<Beside> = vec![];
         // Of each other setting the cheapest way that has it.
-        for way in &findings.ways {
+        let known = weighed.iter().map(|it| it.way);
+        for way in known.chain(&findings.ways) {
             let Some((_, other)) = way.settings.iter().find(|(name, _)| name == axis) else { continue };
             if other == chosen || beside.iter().any(|it| it.name == *other) {
                 continue;
