@@ -155,10 +155,9 @@ impl ExplainVerb {
         let mut rows = vec![Compared {
             what: "wall time of a run".to_owned(),
             estimated: plan.seconds.likely,
-            actual: found.cost * plan.time + found.start,
+            actual: found.seconds,
             unit: "s".to_owned(),
-            is_within: (plan.seconds.least..=plan.seconds.most)
-                .contains(&(found.cost * plan.time + found.start)),
+            is_within: (plan.seconds.least..=plan.seconds.most).contains(&found.seconds),
             advice: "the host was busier or idler than in the trials: --patient",
         }];
         if let (Some(known), Some([mean, bar])) = (known, plan.mean) {

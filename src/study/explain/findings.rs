@@ -308,7 +308,9 @@ impl Work<'_> {
         for at in 0..ways.len() {
             let own = self.choice(&ways[at]);
             let is_another = compared.iter().all(|&it| !self.choice(&ways[it]).agrees(&own, Decides::Order));
-            if ways[at].dropped.is_none() && is_another && compared.len() < COMPARED {
+            // The scene's own is always among them: what it reaches is said.
+            let is_own = own.agrees(&self.case.own, Decides::Order);
+            if ways[at].dropped.is_none() && is_another && (compared.len() < COMPARED || is_own) {
                 compared.push(at);
             }
         }

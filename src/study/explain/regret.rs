@@ -10,7 +10,6 @@ use rayon::ThreadPoolBuilder;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 use std::thread;
-use std::time::Instant;
 use stripmine_physics::averages::Outcome;
 use stripmine_physics::method::METHODS;
 use stripmine_physics::scene::{Overrides, SEED, Width};
@@ -197,7 +196,6 @@ fn carried_out(
     overrides: &[String],
 ) -> Result<(f64, f64), String> {
     let observed = (case.entry.quantities, target.place);
-    let begun = Instant::now();
     let one = |seed: u64| -> Result<Sample, String> {
         let seeded =
             if case.prepared.seed.is_some() { Overrides::new().set(&SEED, seed) } else { Overrides::new() };
@@ -228,7 +226,7 @@ fn carried_out(
         })
     };
     let samples = samples?;
-    let seconds = begun.elapsed().as_secs_f64();
+    let seconds = samples.iter().map(|sample| sample.seconds).fold(0.0, f64::max);
     let values = samples.iter().map(|sample| match sample.outcome {
         Outcome::Kept { farthest, .. } => Ok(farthest),
         _ => sample.known().map(|known| known.mean).ok_or_else(|| "the run has no mean".to_owned()),

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use stripmine_physics::averages::{Average, Estimate, Outcome, Rows};
 use stripmine_physics::method::{Clock, Every, Failure, Prepared, Purpose, Quantity, Simulation, Until};
 
-/// Rows of a sample, about: as many as a correlation needs, and so few that they cost little.
-const ROWS: f64 = 1000.0;
+/// Rows of a sample of some seconds, about: as many as a correlation needs, and so few that they cost little; and of one whose time is known.
+const ROWS: [f64; 2] = [1000.0, 250.0];
 /// The first stretches, whose memory is cold and whose threads have not begun, are no part of the cost: this share of the time.
 const COLD: f64 = 0.1;
 
@@ -18,6 +18,8 @@ pub struct Sample {
     pub cost: f64,
     /// Wall seconds until the first step.
     pub start: f64,
+    /// Wall seconds from the beginning to the end.
+    pub seconds: f64,
     /// Time that it came to (time).
     pub time: f64,
     /// What it says of the quantity.
@@ -108,13 +110,13 @@ pub fn sample(
     };
     let limit = seconds.map_or(Duration::MAX, Duration::from_secs_f64);
     let stride = match span {
-        Span::Seconds(seconds) => stride(simulation.as_mut(), prepared, seconds / ROWS, stop)?,
+        Span::Seconds(seconds) => stride(simulation.as_mut(), prepared, seconds / ROWS[0], stop)?,
         Span::Time(time, _) => {
             simulation.advance(&[first(prepared).after(&simulation.clock())], stop)?;
             let Clock { steps, time: gone, .. } = simulation.clock();
             match prepared.schedule.until {
-                Until::Steps(_) => Until::Steps(((time / ROWS * steps as f64 / gone) as u64).max(1)),
-                _ => Until::Time(time / ROWS),
+                Until::Steps(_) => Until::Steps(((time / ROWS[1] * steps as f64 / gone) as u64).max(1)),
+                _ => Until::Time(time / ROWS[1]),
             }
         }
     };
@@ -137,6 +139,7 @@ pub fn sample(
     Ok(Sample {
         cost: spent.as_secs_f64() / gone,
         start,
+        seconds: begun.elapsed().as_secs_f64(),
         time: simulation.clock().time,
         outcome: Average::of(&rows, place).outcome,
         warnings: simulation.warnings().into_iter().map(|warning| warning.message).collect(),
