@@ -18,9 +18,18 @@ pub struct Drift {
     pub farthest: [f64; 2],
     /// The time that was seen (time).
     pub time: f64,
+    /// Whether it has all digits: with fewer, rounding ends the law at some step, and none below the shorter is vouched for.
+    pub is_full: bool,
 }
 
 impl Drift {
+    /// The same over a longer time: it goes no farther than in proportion.
+    #[must_use]
+    pub fn over(self, time: f64) -> Drift {
+        let longer = (time / self.time).max(1.0);
+        Drift { farthest: self.farthest.map(|far| longer * far), ..self }
+    }
+
     /// The power of the step with which it falls.
     pub fn power(&self) -> f64 {
         let [long, short] = self.farthest;
@@ -41,7 +50,8 @@ impl Drift {
 
     /// The longest step at which it goes no farther than an error; none where that was not seen.
     pub fn step_for(&self, error: f64) -> Option<f64> {
-        let parts = (0..).map(|at| 2f64.powf(-0.25 * f64::from(at))).take_while(|part| *part >= SHORTEST);
+        let shortest = if self.is_full { SHORTEST } else { 0.5 };
+        let parts = (0..).map(|at| 2f64.powf(-0.25 * f64::from(at))).take_while(|part| *part >= shortest);
         parts.map(|part| part * self.step).find(|&step| MARGIN * self.at(step) <= error)
     }
 }
@@ -53,14 +63,16 @@ mod tests {
     /// An error of fourth order: a sixteenth at half the step.
     #[test]
     fn the_step_follows_from_the_law_of_two_errors() {
-        let drift = Drift { step: 0.4, farthest: [16e-4, 1e-4], time: 10.0 };
+        let drift = Drift { step: 0.4, farthest: [16e-4, 1e-4], time: 10.0, is_full: true };
         assert_eq!((drift.power(), drift.at(0.4), drift.at(0.2)), (4.0, 16e-4, 1e-4));
         assert!((drift.at(0.1) - 1e-4 / 16.0).abs() < 1e-18);
         let step = drift.step_for(2e-5).unwrap();
         assert!(2.0 * drift.at(step) <= 2e-5 && 2.0 * drift.at(1.2 * step) > 2e-5, "{step}");
         assert_eq!(drift.step_for(1.0), Some(0.4));
+        assert_eq!(drift.over(20.0).at(0.2), 2e-4);
+        assert_eq!(Drift { is_full: false, ..drift }.step_for(2e-5), None);
         // Rounding alone, which no step lowers.
-        let rounding = Drift { step: 0.4, farthest: [1e-13, 1e-13], time: 10.0 };
+        let rounding = Drift { step: 0.4, farthest: [1e-13, 1e-13], time: 10.0, is_full: true };
         assert_eq!((rounding.power(), rounding.step_for(1e-20)), (0.5, None));
     }
 }

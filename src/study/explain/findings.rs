@@ -82,6 +82,8 @@ pub struct Findings {
     pub starts_differ: Option<f64>,
     /// Wall seconds until the first step.
     pub start: f64,
+    /// Wall seconds of a row.
+    pub row: f64,
     /// Cost of one thread over that of all.
     pub one_thread: f64,
     /// Threads.
@@ -117,13 +119,16 @@ pub fn findings(
     work.compare(&mut ways, &mut reference);
     let best = &ways[0];
     let one_thread = work.one_thread(best);
-    let starts_differ = work.starts_differ(best, &reference.known);
+    let starts_differ = work.starts_differ(best, &mut reference);
+    reference.transients.sort_by(f64::total_cmp);
+    reference.known.transient = reference.transients[(reference.transients.len() - 1) / 2];
     let without = work.without(best, &reference.known);
     Ok(Findings {
         reference: reference.known,
         reference_way: reference.label,
         starts_differ,
         start: reference.start,
+        row: reference.row,
         one_thread,
         threads: rayon::current_num_threads(),
         without,
@@ -136,6 +141,10 @@ struct Reference {
     label: String,
     known: Known,
     start: f64,
+    row: f64,
+    cost: f64,
+    /// Transients of all samples: the start is the same, or alike, and they differ by the noise of what finds them.
+    transients: Vec<f64>,
 }
 
 impl Work<'_> {
@@ -275,6 +284,9 @@ impl Work<'_> {
                             label: format!("{}{at}", way.label),
                             known,
                             start: sample.start,
+                            row: sample.row,
+                            cost: sample.cost,
+                            transients: vec![known.transient],
                         });
                     }
                     None => {
@@ -302,6 +314,8 @@ impl Work<'_> {
     /// searches have the same bias: rounding is far below what can be seen of a mean.
     fn compare(&self, ways: &mut [Way], reference: &mut Reference) {
         if self.case.entry.trials.is_none() {
+            // The reference is the way itself.
+            ways[0].cost = Some(reference.cost);
             return;
         }
         let mut compared: Vec<usize> = vec![];
@@ -315,18 +329,20 @@ impl Work<'_> {
             }
         }
         let seconds = SHARES[2] * self.seconds / compared.len().max(1) as f64;
-        let mut transients = vec![reference.known.transient];
         for at in compared {
             let power = self.power(&self.choice(&ways[at]));
             let way = &mut ways[at];
             let Some(mut step) = way.step else { continue };
+            // What a way takes over what the first stretches took.
+            let mut slower = 1.0;
             for _ in 0..HALVINGS {
                 match self.sampled(way, Some(step), seconds) {
                     Ok(sample) if sample.warnings.is_empty() => {
                         let known = sample.known();
-                        // The start is the same: transients differ by the noise of what finds them.
-                        transients.extend(known.map(|known| known.transient));
+                        reference.transients.extend(known.map(|known| known.transient));
                         way.step = Some(step);
+                        slower = sample.cost / way.cost.unwrap_or(sample.cost);
+                        way.cost = Some(sample.cost);
                         way.bias = known.map(|known| Bias::of(step, &known, &reference.known, power));
                         break;
                     }
@@ -346,14 +362,12 @@ impl Work<'_> {
                 .iter_mut()
                 .filter(|other| other.label != way.label && other.dropped.is_none() && alike(other))
             {
-                let slower = other.step.zip(way.step).map_or(1.0, |(longest, step)| longest / step);
-                other.cost = other.cost.map(|cost| slower * cost);
+                let shorter = other.step.zip(way.step).map_or(1.0, |(longest, step)| longest / step);
+                other.cost = other.cost.map(|cost| slower * shorter * cost);
                 (other.step, other.bias) = (way.step, way.bias);
                 (other.bound, other.dropped) = (way.bound.clone(), way.dropped.clone());
             }
         }
-        transients.sort_by(f64::total_cmp);
-        reference.known.transient = transients[transients.len() / 2];
         sort(ways);
     }
 
@@ -370,9 +384,9 @@ impl Work<'_> {
         let seconds = (1.0 - SHARES[0]) * self.seconds / (2.0 * ways.len().min(8) as f64);
         let span =
             self.case.duration().map_or(Span::Seconds(seconds), |time| Span::Time(time, Some(seconds)));
-        let mut start = 0.0;
+        let (mut start, mut row) = (0.0, 0.0);
         for way in ways.iter_mut().filter(|way| way.dropped.is_none()) {
-            let Some(longest) = way.step else { continue };
+            let (Some(longest), trials) = (way.step, self.case.entry.trials) else { continue };
             let both: Result<Vec<Sample>, String> = [1.0, 0.5]
                 .into_iter()
                 .map(|part| self.sampled_over(way, Some(part * longest), span))
@@ -383,11 +397,16 @@ impl Work<'_> {
                         Outcome::Kept { farthest, .. } => farthest,
                         _ => f64::NAN,
                     };
-                    start = both[0].start;
+                    (start, row) = (both[0].start, both[0].row);
+                    way.cost = Some(both[0].cost);
                     way.drift = Some(Drift {
                         step: longest,
                         farthest: [far(&both[0]), far(&both[1])],
                         time: both[0].time.min(both[1].time),
+                        is_full: trials.is_none_or(|trials| {
+                            self.choice(way)
+                                .agrees(&self.case.own.with(trials.references[0]), Decides::Digits)
+                        }),
                     });
                 }
                 Err(why) => way.dropped = Some(why),
@@ -404,6 +423,7 @@ impl Work<'_> {
             reference_way,
             starts_differ: None,
             start,
+            row,
             one_thread: 1.0,
             threads,
             without,
@@ -424,7 +444,7 @@ impl Work<'_> {
     }
 
     /// The mean of another start less that of the reference, where that is beyond both bars.
-    fn starts_differ(&self, way: &Way, reference: &Known) -> Option<f64> {
+    fn starts_differ(&self, way: &Way, reference: &mut Reference) -> Option<f64> {
         let seed = self.case.prepared.seed?;
         let another = Way {
             overrides: [&way.overrides[..], &Overrides::new().set(&SEED, seed.wrapping_add(1))].concat(),
@@ -433,8 +453,9 @@ impl Work<'_> {
         let sample =
             self.sampled(&another, way.step.map(|step| 0.5 * step), SHARES[4] * self.seconds).ok()?;
         let known = sample.known()?;
-        let difference = known.mean - reference.mean;
-        (difference.abs() > SURE * known.bar.hypot(reference.bar)).then_some(difference)
+        reference.transients.push(known.transient);
+        let difference = known.mean - reference.known.mean;
+        (difference.abs() > SURE * known.bar.hypot(reference.known.bar)).then_some(difference)
     }
 
     /// The scene without each of what it may be modelled without.

@@ -3,6 +3,7 @@
 use super::Target;
 use super::findings::{Findings, Way};
 use super::optimum::{Optimum, Terms, optimum};
+use super::sample::ROWS;
 use crate::study::Case;
 use serde::Serialize;
 use stripmine_physics::number::significant;
@@ -186,15 +187,17 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
 /// The least error that can be had, where no way comes to what is asked for.
 pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, f64> {
     let usable = || findings.ways.iter().filter(|way| way.dropped.is_none());
+    let time = case.duration().or_else(|| Some(usable().next()?.drift?.time)).unwrap_or(0.0);
     let of_own = usable().find(|way| way.label == case.own.label());
-    let own_error = of_own.and_then(|way| Some(way.drift?.at(case.step()?)));
+    let own_error = of_own.and_then(|way| Some(way.drift?.over(time).at(case.step()?)));
     let error = target.error.map(|width| in_unit(width, 1.0));
     let wanted = error.or(own_error.map(|error| 2.0 * error)).unwrap_or(1e-3);
-    let time = case.duration().or_else(|| Some(usable().next()?.drift?.time)).unwrap_or(0.0);
-    let costs = |way: &Way, step: f64| Some(findings.start + way.cost? * way.step? / step * time);
+    let costs = |way: &Way, step: f64| {
+        Some(findings.start + ROWS[1] * findings.row + way.cost? * way.step? / step * time)
+    };
     let mut weighed: Vec<Weighed<'_>> = usable()
         .filter_map(|way| {
-            let (drift, longest) = (way.drift?, way.step?);
+            let (drift, longest) = (way.drift?.over(time), way.step?);
             let step = drift.step_for(wanted)?;
             let optimum =
                 Optimum { part: step / longest, bias: drift.at(step), time, seconds: costs(way, step)? };
@@ -203,7 +206,7 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
         .collect();
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
     let Some(best) = weighed.first() else {
-        let least = usable().filter_map(|way| Some(way.drift?.farthest[1]));
+        let least = usable().filter_map(|way| Some(way.drift?.over(time).farthest[1]));
         return Err(least.fold(f64::INFINITY, f64::min));
     };
     let step = best.way.step.map(|step| best.optimum.part * step);
@@ -243,7 +246,7 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
         starts_differ: None,
         overrides: overrides(case, best.way, step, None),
         own: of_own.zip(case.step()).and_then(|(way, step)| {
-            Some(Own { seconds: costs(way, step)?, error: [way.drift?.at(step), 0.0] })
+            Some(Own { seconds: costs(way, step)?, error: [way.drift?.over(time).at(step), 0.0] })
         }),
         left_out: vec![],
         origin: origin.to_owned(),
@@ -271,7 +274,7 @@ pub fn cost_of(plan: &Plan, findings: &Findings) -> Option<f64> {
     let way = findings.ways.iter().filter(is_chosen).max_by_key(|way| way.overrides.len())?;
     let cost = way.cost? * way.step.zip(plan.step).map_or(1.0, |(longest, step)| longest / step);
     let threads = if plan.seeds > 1 { findings.one_thread } else { 1.0 };
-    Some(findings.start + cost * threads * plan.time)
+    Some(findings.start + ROWS[1] * findings.row + cost * threads * plan.time)
 }
 
 /// An error in the quantity's unit.
@@ -309,7 +312,8 @@ fn length(best: &Weighed<'_>, findings: &Findings) -> Length {
     let least = SAMPLES * findings.reference.apart;
     let time = best.optimum.time.max(transient).max(least);
     let cost = best.way.cost.unwrap_or(0.0) / best.optimum.part;
-    let together = findings.start + cost * (time + transient);
+    let start = findings.start + ROWS[1] * findings.row;
+    let together = start + cost * (time + transient);
     let threads = findings.threads as f64;
     if let Some(difference) = findings.starts_differ {
         let why = format!(
@@ -318,7 +322,7 @@ fn length(best: &Weighed<'_>, findings: &Findings) -> Length {
         );
         return Length { time, seeds: 1, seconds: together, why };
     }
-    let apart = findings.start + cost * findings.one_thread * (time / threads + transient);
+    let apart = start + cost * findings.one_thread * (time / threads + transient);
     if findings.threads > 1 && apart < 0.95 * together && time / threads > transient.max(least) {
         return Length {
             time,

@@ -7,15 +7,17 @@ use stripmine_physics::averages::{Average, Estimate, Outcome, Rows};
 use stripmine_physics::method::{Clock, Every, Failure, Prepared, Purpose, Quantity, Simulation, Until};
 
 /// Rows of a sample of some seconds, about: as many as a correlation needs, and so few that they cost little; and of one whose time is known.
-const ROWS: [f64; 2] = [1000.0, 250.0];
+pub const ROWS: [f64; 2] = [1000.0, 250.0];
 /// The first stretches, whose memory is cold and whose threads have not begun, are no part of the cost: this share of the time.
 const COLD: f64 = 0.1;
 
 /// A run of some seconds.
 #[derive(Clone, Debug)]
 pub struct Sample {
-    /// Wall seconds of a unit of time.
+    /// Wall seconds of a unit of time, rows apart.
     pub cost: f64,
+    /// Wall seconds of a row.
+    pub row: f64,
     /// Wall seconds until the first step.
     pub start: f64,
     /// Wall seconds from the beginning to the end.
@@ -122,28 +124,41 @@ pub fn sample(
     };
     // Rows are evenly spaced from here on.
     rows.add(&simulation.observe());
-    let (mut from, mut warm) = (simulation.clock(), Instant::now());
-    let mut is_warm = false;
     let running = Instant::now();
+    // Of the stretches once it is warm, and of all.
+    let (mut warm, mut all) = ((0.0, 0.0), (0.0, 0.0));
     while running.elapsed() < limit && simulation.clock().time < most && !stop.load(Ordering::Relaxed) {
+        let (from, begun) = (simulation.clock().time, Instant::now());
         simulation.advance(&[stride.after(&simulation.clock())], stop)?;
-        rows.add(&simulation.observe());
+        let (gone, spent) = (simulation.clock().time - from, begun.elapsed().as_secs_f64());
+        all = (all.0 + gone, all.1 + spent);
         let share = running.elapsed().as_secs_f64() / seconds.unwrap_or(f64::INFINITY);
-        if !is_warm && share.max(simulation.clock().time / most) > COLD {
-            (from, warm, is_warm) = (simulation.clock(), Instant::now(), true);
+        if share.max(simulation.clock().time / most) > COLD {
+            warm = (warm.0 + gone, warm.1 + spent);
         }
+        rows.add(&simulation.observe());
     }
-    let gone = simulation.clock().time - from.time;
-    let (gone, spent) =
-        if gone > 0.0 { (gone, warm.elapsed()) } else { (simulation.clock().time, begun.elapsed()) };
+    let (gone, spent) = if warm.0 > 0.0 { warm } else { all };
+    let row = timed_row(simulation.as_ref());
     Ok(Sample {
-        cost: spent.as_secs_f64() / gone,
+        cost: spent / gone,
+        row,
         start,
         seconds: begun.elapsed().as_secs_f64(),
         time: simulation.clock().time,
         outcome: Average::of(&rows, place).outcome,
         warnings: simulation.warnings().into_iter().map(|warning| warning.message).collect(),
     })
+}
+
+/// Wall seconds of a row, the least of some.
+fn timed_row(simulation: &dyn Simulation) -> f64 {
+    let once = |_| {
+        let begun = Instant::now();
+        let _row = simulation.observe();
+        begun.elapsed().as_secs_f64()
+    };
+    (0..3).map(once).fold(f64::INFINITY, f64::min)
 }
 
 /// The shortest stretch: a step, or for a method without any a part of the time between rows.

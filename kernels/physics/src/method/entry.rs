@@ -253,6 +253,11 @@ pub enum Purpose {
     Measurement,
 }
 
+/// What a scene has no need of, each with the reason: those that are so.
+pub(super) fn left_out(reasons: &[(bool, &str)]) -> Vec<String> {
+    reasons.iter().filter(|(is_so, _)| *is_so).map(|(_, reason)| (*reason).to_owned()).collect()
+}
+
 /// A program of whole-array operations, as often as a step executes it.
 pub struct VectorProgram {
     /// The part of the step.

@@ -5,6 +5,7 @@ use super::collision_log::COLUMNS;
 use super::reference::grid::Sizes;
 use super::simulation::Running;
 use crate::memory::{Foreseen, PROGRAM, available};
+use crate::method::entry::left_out;
 use crate::method::{Fact, Failure, Prepared, Purpose, Simulation, Startable};
 use crate::particles::{Kind, Particle, Particles};
 use crate::words::Words;
@@ -28,7 +29,12 @@ impl Checked {
             facts: self.facts(),
             warnings: self.warnings.clone(),
             choices: self.choices.clone(),
-            left_out: vec![],
+            left_out: left_out(&[
+                (true, "a time step, and how discs deform: they are hard"),
+                (scene.law.restitution == 1.0, "dissipation of collisions: law.restitution is 1"),
+                (scene.law.contact_duration == 0.0, "the duration of contacts: law.contact_duration is 0"),
+                (self.domain.periodic() == [true; 2], "walls: both sides are periodic"),
+            ]),
             step_limits: vec![],
             expected_error: None,
             memory: self.memory(),

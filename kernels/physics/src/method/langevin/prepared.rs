@@ -7,6 +7,7 @@ use super::options::PairLaw;
 use super::programs::programs;
 use super::simulation::Running;
 use crate::memory::{Foreseen, PROGRAM, available};
+use crate::method::entry::left_out;
 use crate::method::{Fact, Failure, Prepared, Purpose, Schedule, Simulation, Startable, VectorProgram};
 use crate::particles::{Particle, Particles};
 use crate::words::Words;
@@ -30,7 +31,11 @@ impl Checked {
             facts: self.facts(),
             warnings: self.warnings.clone(),
             choices: self.choices.clone(),
-            left_out: vec![],
+            left_out: left_out(&[
+                (scene.law == PairLaw::None, "pairs, and the search for them: law.kind is none"),
+                (scene.law == PairLaw::Wca, "attraction: law.kind is wca"),
+                (scene.bath.friction == 0.0, "friction and noise: law.drag is 0"),
+            ]),
             step_limits: self.limits(),
             expected_error: None,
             memory: self.memory(),

@@ -8,6 +8,7 @@ use super::simulation::Running;
 use super::starts::ORBIT;
 use crate::domain::{Domain, Side};
 use crate::memory::{Foreseen, PROGRAM, available};
+use crate::method::entry::left_out;
 use crate::method::{
     Beyond, Fact, Failure, Prepared, Purpose, Schedule, Simulation, Startable, StepLimit, VectorProgram,
 };
@@ -30,7 +31,7 @@ impl Checked {
             facts: self.facts(),
             warnings: vec![],
             choices: self.choices.clone(),
-            left_out: vec![],
+            left_out: left_out(&[(scene.softening == 0.0, "softening: law.softening is 0")]),
             step_limits: self.step_limits(),
             expected_error: None,
             memory: self.memory(),

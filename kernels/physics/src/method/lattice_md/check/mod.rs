@@ -13,6 +13,7 @@ use super::keys::{SEARCH, VOCABULARY};
 use super::scene::{By, Scene};
 use crate::domain::Domain;
 use crate::method::compress;
+use crate::method::entry::left_out;
 use crate::particles::{Kind, Particle, Particles};
 use crate::scene::{RADIUS, Reason, SceneError, SceneErrors, Values, Warning};
 use crate::start::{self, Made, Stated};
@@ -129,7 +130,7 @@ fn check(mut document: Document, steps: Steps) -> Result<Checked, SceneErrors> {
     let estimates = Estimates::of(&scene, &particles);
     warnings.extend(motion::warnings(&scene, &domain, &particles, &geometry, &estimates));
     let alike = all_alike(&particles);
-    let left_out = left_out(&scene, &particles, alike);
+    let left_out = not_modelled(&scene, &particles, alike);
     Ok(Checked { scene, domain, particles, alike, geometry, estimates, choices, left_out, warnings })
 }
 
@@ -181,23 +182,16 @@ fn numbered(document: &Document, particles: &Particles) -> Option<SceneError> {
 }
 
 /// What is not modelled because the scene has no need of it.
-fn left_out(scene: &Scene, particles: &Particles, alike: bool) -> Vec<String> {
+fn not_modelled(scene: &Scene, particles: &Particles, alike: bool) -> Vec<String> {
     let contact = &scene.law.contact;
-    let mut left_out = Vec::new();
-    let mut leave = |condition: bool, what: &str| {
-        if condition {
-            left_out.push(what.to_owned());
-        }
-    };
-    leave(contact.friction == 0.0, "friction, spin and torque: law.friction is 0");
-    leave(
-        contact.friction > 0.0 && contact.shear_damping == 0.0,
-        "friction, spin and torque: law.shear_damping is 0",
-    );
-    leave(contact.normal_damping == 0.0, "normal damping: law.normal_damping is 0");
-    leave(alike, "radius and mass of each disc: all are alike, so they are numbers, not vectors");
-    leave(scene.domain.gravity == [0.0; 2], "gravity: domain.gravity is 0");
-    leave(particles.grain_count() == particles.len(), "walls: there are no wall discs");
-    leave(scene.domain.periodic == [false; 2], "periodic images: both sides are open");
-    left_out
+    let rubs = contact.friction > 0.0;
+    left_out(&[
+        (!rubs, "friction, spin and torque: law.friction is 0"),
+        (rubs && contact.shear_damping == 0.0, "friction, spin and torque: law.shear_damping is 0"),
+        (contact.normal_damping == 0.0, "normal damping: law.normal_damping is 0"),
+        (alike, "radius and mass of each disc: all are alike, so they are numbers, not vectors"),
+        (scene.domain.gravity == [0.0; 2], "gravity: domain.gravity is 0"),
+        (particles.grain_count() == particles.len(), "walls: there are no wall discs"),
+        (scene.domain.periodic == [false; 2], "periodic images: both sides are open"),
+    ])
 }

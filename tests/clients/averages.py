@@ -1,0 +1,64 @@
+"""Holds the means and statistical inefficiencies of runs against those that `pymbar` finds in the same rows.
+
+    python averages.py STRIPMINE
+
+Needs the packages `pymbar` and `numpy`; where one is not installed, the check says SKIPPED and exits with 0.
+
+Rows from the end of our transient on: the mean is the same to nine digits, and the inefficiency within what our correction for the mean of the series
+itself (Wolff 2004) adds, about twice g/n of it, and a tenth. Exits with 1 where one is not. The end of the transient is printed beside pymbar's: ours is twice
+the start of the most samples, theirs is that start.
+"""
+
+import csv
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+SCENES = {
+    "langevin-dense": {"run.time": 50, "run.thermo_every": 20},
+    "dense-gas": {"run.steps": 20000, "run.thermo_every": 20},
+    "hard-disks": {"run.events": 500000, "run.thermo_every": 0.1},
+}
+
+
+def main(stripmine):
+    try:
+        import numpy
+        from pymbar import timeseries
+    except ImportError as error:
+        print(f"SKIPPED: {error}")
+        return 0
+    wrong = 0
+    for scene, settings in SCENES.items():
+        with tempfile.TemporaryDirectory() as folder:
+            sets = [part for key, value in settings.items() for part in ("--set", f"{key}={value}")]
+            subprocess.run([stripmine, "run", scene, "--quiet", "--overwrite", "--out", folder, *sets], check=True)
+            rows = list(csv.DictReader((Path(folder) / "thermo.csv").open()))
+            averages = json.loads((Path(folder) / "summary.json").read_text())["averages"]["quantities"]
+        times = numpy.array([float(row["time"]) for row in rows])
+        for ours in averages:
+            name = ours["quantity"]
+            if ours["says"] != "mean" or ours["of"] != "values":
+                continue
+            # The first row is the start, and no value.
+            series = numpy.array([float(row[name]) for row in rows])[1:]
+            # Ours are means over blocks of rows where there are many.
+            kept = series[times[1:] > ours["equilibrated_at"] * (1 + 1e-9)]
+            theirs = timeseries.statistical_inefficiency(kept, mintime=3)
+            start, *_ = timeseries.detect_equilibration(series, nskip=max(1, len(series) // 100))
+            mean = abs(kept.mean() / ours["mean"] - 1)
+            correction = 1 + 2 * theirs / len(kept)
+            ratio = ours["inefficiency"] / theirs
+            is_wrong = mean > 1e-9 and abs(kept.mean()) > 1e-9 * abs(kept).max() or not 0.9 < ratio < 1.1 * correction**2
+            wrong += is_wrong
+            print(
+                f"{scene} {name}: g {ours['inefficiency']:.2f}, pymbar {theirs:.2f}; transient {ours['equilibrated_at']:.3g}, "
+                f"pymbar {times[1:][start]:.3g}{'  WRONG' if is_wrong else ''}"
+            )
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
