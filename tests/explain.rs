@@ -104,7 +104,7 @@ fn what_cannot_be_planned_is_refused() {
     let bad = |arguments: &[&str]| explain(folder, arguments);
     ends_with(&bad(&["hard-disks", "--of", "colour"]), 2, &["`colour`", "one of events", "compressibility"]);
     ends_with(&bad(&["hard-disks", "--error", "little"]), 2, &["above 0, or a part such as 1%"]);
-    ends_with(&bad(&["nothing.toml"]), 2, &["nothing.toml"]);
+    ends_with(&bad(&["nothing.toml"]), 3, &["nothing.toml"]);
     let cooling = ["cooling-gas", "--of", "temperature", "--error", "1%", "--seconds", "1"];
     ends_with(&bad(&cooling), 4, &["temperature comes to no mean", "still changing", "--patient"]);
     let kepler = ["kepler", "--of", "energy_error", "--error", "1e-30", "--seconds", "1"];

@@ -103,7 +103,12 @@ fn films_of_every_method_are_as_their_trajectories() {
     let (page, shown) = film(folder, "hard-disks", "psi6");
     assert_eq!(shown["sides"].as_array().unwrap().len(), 4);
     assert!(page.contains("periodic sides") && shown["shade"]["ends"] == serde_json::json!([0.0, 1.0]));
+    // The crystal of the start is in order, and melts.
     assert!(column(&shown["shades"]).0.iter().all(|order| (-1e-9..=1.0 + 1e-9).contains(order)));
+    let orders = column(&shown["shades"]).0;
+    let discs = orders.len() / shown["times"].as_array().unwrap().len();
+    let mean = |orders: &[f64]| orders.iter().sum::<f64>() / orders.len() as f64;
+    assert!(mean(&orders[..discs]) > 0.99 && mean(&orders[orders.len() - discs..]) < 0.9);
     let (page, shown) = film(folder, "plummer", "id");
     assert!(shown["sides"].as_array().unwrap().is_empty() && page.contains("Seen along z"));
     // What there is not is refused, with what there is.

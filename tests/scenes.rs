@@ -368,3 +368,18 @@ fn values_that_are_not_given_follow_from_others() {
     let Start::List(list) = Scene::parse("scene.toml", listed).unwrap().start else { panic!("a list") };
     assert!((list.wall_radius - 0.45).abs() < 1e-15 && list.radii == [0.5] && list.velocities == [[0.0; 2]]);
 }
+
+/// What a run writes as its scene, and a plan, is a scene: of every preset of every method.
+#[test]
+fn resolved_scenes_are_scenes() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("again.toml");
+    let file = file.to_str().unwrap();
+    for preset in METHODS.iter().flat_map(|method| method.vocabulary.presets) {
+        let (prepared, _) = stripmine_physics::method::load(preset.name, &[], METHODS).unwrap();
+        std::fs::write(file, &prepared.scene).unwrap();
+        let (again, _) = stripmine_physics::method::load(file, &[], METHODS)
+            .unwrap_or_else(|errors| panic!("{}: {errors}", preset.name));
+        assert_eq!(again.scene, prepared.scene, "{}", preset.name);
+    }
+}

@@ -31,6 +31,20 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         ],
     ),
     (
+        "explain",
+        &[
+            (
+                "stripmine explain langevin-dense --of pressure --error 1%",
+                "the cheapest run that reaches it, and why",
+            ),
+            (
+                "stripmine explain kepler --of energy_error --error 1e-6 --write plan.toml",
+                "the step that keeps the energy",
+            ),
+            ("stripmine explain pipe-small --estimate", "by what is kept of it, without a run"),
+        ],
+    ),
+    (
         "plot",
         &[
             ("stripmine plot pipe-small.run", "SVG and PNG in pipe-small.plots, courses in the terminal"),

@@ -106,7 +106,7 @@ fn orders(frame: &Frame) -> Result<Vec<f64>, &'static str> {
         Domain::planar(frame.origin, frame.cell, frame.periodic.unwrap_or([true; 2]))
     };
     let setting = Setting::new(domain, &frame.particles);
-    Ok(hexatic_orders(&setting, grains).into_iter().map(|[x, y]| x.hypot(y)).collect())
+    Ok(hexatic_orders(&setting, &frame.particles).into_iter().map(|[x, y]| x.hypot(y)).collect())
 }
 
 /// A colouring that a run does not have.

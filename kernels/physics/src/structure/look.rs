@@ -101,8 +101,9 @@ impl Look {
 }
 
 /// ψ6 of each disc, its real and its imaginary part: the mean of exp(6iθ) over the six nearest.
-pub fn hexatic_orders(setting: &Setting, discs: &[Particle]) -> Vec<[f64; 2]> {
-    let mut look = Look::new(*setting, discs, std::iter::empty());
+pub fn hexatic_orders(setting: &Setting, discs: &Particles) -> Vec<[f64; 2]> {
+    let mut look = Look::new(*setting, discs.grains(), std::iter::empty());
+    look.states.take_up(discs);
     look.take_up();
     if look.discs.x.is_empty() {
         return vec![];

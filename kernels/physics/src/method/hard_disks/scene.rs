@@ -150,7 +150,10 @@ impl Scene {
         let mut name = (*name.unwrap_or(&THERMAL_SIDES[0])).to_owned();
         let mut temperature = known.map_or(1.0, |thermal| thermal.temperature);
         binding.word(&THERMAL_SIDE, &mut name);
-        binding.number(&WALL_TEMPERATURE, &mut temperature);
+        // Without a side that is hot it means nothing.
+        if side(&name).is_some() {
+            binding.number(&WALL_TEMPERATURE, &mut temperature);
+        }
         let seed = self.start.seed().unwrap_or(0);
         self.law.thermal = side(&name).map(|side| Thermal { side, temperature, seed });
     }
