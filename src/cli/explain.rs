@@ -3,7 +3,7 @@
 use crate::console::{Common, Failure, clear_progress, print, print_json, say};
 use crate::report::{Cell, Rows, terminal};
 use crate::study::explain::{
-    ExplainError, Kept, Plan, SECONDS, Sample, Span, Target, explain, page, rows_every, sample, with_unit,
+    ExplainError, Kept, Plan, SECONDS, Sample, Span, Target, explain, page, sample, with_unit,
 };
 use crate::study::{Case, StudyError};
 use clap::Args;
@@ -110,24 +110,13 @@ impl ExplainVerb {
         if analyzed.is_empty() { Ok(()) } else { print(&table(&analyzed)) }
     }
 
-    /// The overrides of the plan, and rows so often that its mean has a bar.
-    fn overrides(&self, plan: &Plan, own_rows: u64) -> Vec<String> {
-        let rows = rows_every(plan, own_rows).map(|every| format!("run.thermo_every={every}"));
-        self.overrides.iter().cloned().chain(plan.overrides.clone()).chain(rows).collect()
-    }
-
-    fn prepared(
-        &self,
-        plan: &Plan,
-        scene: &str,
-        methods: Methods,
-    ) -> Result<stripmine_physics::method::Prepared, Failure> {
-        let (first, _) = load(scene, &self.overrides(plan, u64::MAX), methods)?;
-        Ok(first)
+    /// The overrides of the plan.
+    fn overrides(&self, plan: &Plan) -> Vec<String> {
+        [&self.overrides[..], &plan.overrides].concat()
     }
 
     fn written(&self, plan: &Plan, file: &Path, scene: &str, methods: Methods) -> Result<(), Failure> {
-        let prepared = self.prepared(plan, scene, methods)?;
+        let (prepared, _) = load(scene, &self.overrides(plan), methods)?;
         let seeds = if plan.seeds > 1 { format!(" --seeds {}", plan.seeds) } else { String::new() };
         let text = format!(
             "# By stripmine explain, for {}: run it with{} stripmine run FILE{seeds}\n{}",
@@ -146,7 +135,7 @@ impl ExplainVerb {
         scene: &str,
         methods: Methods,
     ) -> Result<Vec<Compared>, Failure> {
-        let (prepared, entry) = load(scene, &self.overrides(plan, u64::MAX), methods)?;
+        let (prepared, entry) = load(scene, &self.overrides(plan), methods)?;
         let observed = (entry.quantities, target.place);
         let found: Sample = sample(&prepared, observed, Span::Time(plan.time, None), signals::asked())
             .map_err(Failure::from)?;

@@ -17,7 +17,7 @@ pub mod section;
 mod words;
 
 pub use kept::{Kept, KeptError};
-pub use plan::{Beside, Decision, Interval, LeftOut, Own, Plan, in_unit, rows_every};
+pub use plan::{Beside, Decision, Interval, LeftOut, Own, Plan, in_unit};
 pub use sample::{Known, Sample, Span, sample};
 pub use scenes::SCENES;
 pub use words::{page, with_unit};

@@ -6,12 +6,13 @@ use super::optimum::{Optimum, Terms, optimum};
 use super::sample::ROWS;
 use crate::study::Case;
 use serde::Serialize;
+use stripmine_physics::method::Every;
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::{STEPS, Width};
 
 /// A time is foreseen within this factor, beside what the scatter is known to: other programs come and go.
 const TIME_WITHIN: f64 = 1.5;
-/// Steps, rows and the like of a run that a mean is taken of, at least.
+/// Rows that a mean is taken of, at least.
 const FEWEST_ROWS: f64 = 100.0;
 /// Independent samples that a run has at least: so many that it knows the error of its own mean.
 const SAMPLES: f64 = 30.0;
@@ -261,10 +262,22 @@ fn overrides(case: &Case, way: &Way, step: Option<f64>, time: Option<f64>) -> Ve
     }
     let time = time.or(case.duration());
     // The length of a run is given as the scene has it, in steps or as a time.
-    overrides.extend(time.map(|time| match (case.values.gives(&STEPS), step) {
+    let Some(time) = time else { return overrides };
+    overrides.push(match (case.values.gives(&STEPS), step) {
         (true, Some(step)) => format!("{}={}", STEPS.path(), (time / step).ceil()),
         _ => format!("run.time={}", significant(time, 6)),
-    }));
+    });
+    // Its own rows, where these are enough for a mean with a bar.
+    let apart = match case.prepared.schedule.rows {
+        Every::Steps(steps) => step.map_or(f64::INFINITY, |step| steps as f64 * step),
+        Every::Time(time) => time,
+        Every::Never | Every::Seconds(_) => f64::INFINITY,
+    };
+    if time < FEWEST_ROWS * apart {
+        let every = time / ROWS[1];
+        let every = step.map_or(significant(every, 3), |step| (every / step).max(1.0).floor().to_string());
+        overrides.push(format!("run.thermo_every={every}"));
+    }
     overrides
 }
 
@@ -502,10 +515,4 @@ fn left_out(findings: &Findings, wanted: f64, mean: f64) -> Vec<LeftOut> {
         LeftOut { name: it.name.clone(), change: it.difference, cost: it.cost, says }
     });
     all.collect()
-}
-
-/// Rows that a run of a plan writes at least, so that its own mean has a bar.
-pub fn rows_every(plan: &Plan, own: u64) -> Option<u64> {
-    let steps = plan.time / plan.step?;
-    (steps / own.max(1) as f64 <= FEWEST_ROWS).then_some(((steps / (2.0 * FEWEST_ROWS)) as u64).max(1))
 }

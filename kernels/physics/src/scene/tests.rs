@@ -39,6 +39,7 @@ fn dimensional_keys_have_units() {
         "eccentricity",
         "mass_ratio",
         "damping",
+        "structure_share",
     ];
     for key in METHODS.iter().flat_map(|method| method.vocabulary.keys.keys()) {
         let measures = matches!(key.kind, Number(_) | Pair(_) | Pairs | Numbers(_));
