@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The power of the step is taken to lie in between: noise in two values says nothing beyond.
-const POWERS: [f64; 2] = [0.5, 10.0];
+/// The power of the step is taken to be no lower: noise in two values says nothing beyond.
+const LEAST_POWER: f64 = 0.5;
 /// A step is shortened so much that the error is this many times smaller than is asked for: two values tell its law roughly.
 const MARGIN: f64 = 2.0;
 /// Shorter steps than this part of the longest were not seen, and are not vouched for.
@@ -18,6 +18,8 @@ pub struct Drift {
     pub farthest: [f64; 2],
     /// The time that was seen (time).
     pub time: f64,
+    /// The power that theory gives for positions, which is no lower: two long steps may show a steeper fall, that ends.
+    pub most_power: f64,
     /// Whether it has all digits: with fewer, rounding ends the law at some step, and none below the shorter is vouched for.
     pub is_full: bool,
 }
@@ -33,7 +35,8 @@ impl Drift {
     /// The power of the step with which it falls.
     pub fn power(&self) -> f64 {
         let [long, short] = self.farthest;
-        if short > 0.0 { (long / short).log2().clamp(POWERS[0], POWERS[1]) } else { POWERS[1] }
+        let seen = if short > 0.0 { (long / short).log2() } else { f64::INFINITY };
+        seen.min(self.most_power).max(LEAST_POWER)
     }
 
     /// How far it goes at a step that is no longer than the first.
@@ -63,7 +66,7 @@ mod tests {
     /// An error of fourth order: a sixteenth at half the step.
     #[test]
     fn the_step_follows_from_the_law_of_two_errors() {
-        let drift = Drift { step: 0.4, farthest: [16e-4, 1e-4], time: 10.0, is_full: true };
+        let drift = Drift { step: 0.4, farthest: [16e-4, 1e-4], time: 10.0, most_power: 8.0, is_full: true };
         assert_eq!((drift.power(), drift.at(0.4), drift.at(0.2)), (4.0, 16e-4, 1e-4));
         assert!((drift.at(0.1) - 1e-4 / 16.0).abs() < 1e-18);
         let step = drift.step_for(2e-5).unwrap();
@@ -71,8 +74,11 @@ mod tests {
         assert_eq!(drift.step_for(1.0), Some(0.4));
         assert_eq!(drift.over(20.0).at(0.2), 2e-4);
         assert_eq!(Drift { is_full: false, ..drift }.step_for(2e-5), None);
+        let kinks = Drift { most_power: 2.5, ..drift };
+        assert!(kinks.power() == 2.5 && kinks.at(0.1) > 2.0 * drift.at(0.1));
         // Rounding alone, which no step lowers.
-        let rounding = Drift { step: 0.4, farthest: [1e-13, 1e-13], time: 10.0, is_full: true };
+        let rounding =
+            Drift { step: 0.4, farthest: [1e-13, 1e-13], time: 10.0, most_power: 8.0, is_full: true };
         assert_eq!((rounding.power(), rounding.step_for(1e-20)), (0.5, None));
     }
 }

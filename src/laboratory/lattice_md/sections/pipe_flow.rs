@@ -267,7 +267,7 @@ fn rounded(value: f64) -> f64 {
 }
 
 /// Frames of a film that a page can bear.
-const FRAMES: usize = 31;
+const FRAMES: usize = 24;
 
 /// The snapshots as a film; none without frames.
 fn film(showing: Showing, flow: &PipeFlow) -> Option<Film> {
