@@ -29,6 +29,8 @@ const ROUNDS: usize = 2;
 const SURE: f64 = 1.5;
 /// Errors of means fall with a power of the step between these.
 const POWERS: [f64; 2] = [1.0, 2.0];
+/// The highest order of an integrator here.
+const MOST_POWER: f64 = 8.0;
 /// Parts of the time that is given: to time the ways, to the reference, to those that are compared with it, to what may be left out, to another
 /// start.
 const SHARES: [f64; 5] = [0.15, 0.3, 0.25, 0.2, 0.1];
@@ -373,10 +375,13 @@ impl Work<'_> {
 
     /// The power of the step with which errors of means fall: that of theory for positions, but no more than 2, for contacts have kinks.
     fn power(&self, choice: &Choice) -> f64 {
-        let theory = self.case.entry.trials.map(|trials| trials.theory).zip(choice.scheme());
-        let theory =
-            theory.and_then(|(theory, scheme)| theory(&self.case.values, &self.case.prepared, scheme));
-        theory.map_or(POWERS[1], |theory| theory.order.clamp(POWERS[0], POWERS[1]))
+        self.theory(choice).map_or(POWERS[1], |order| order.clamp(POWERS[0], POWERS[1]))
+    }
+
+    /// The power of the step with which errors of positions fall by theory.
+    fn theory(&self, choice: &Choice) -> Option<f64> {
+        let (trials, scheme) = self.case.entry.trials.zip(choice.scheme())?;
+        Some((trials.theory)(&self.case.values, &self.case.prepared, scheme)?.order)
     }
 
     /// How far what should keep its value goes, by the cheapest way of each integrator at two steps.
@@ -403,6 +408,7 @@ impl Work<'_> {
                         step: longest,
                         farthest: [far(&both[0]), far(&both[1])],
                         time: both[0].time.min(both[1].time),
+                        most_power: self.theory(&self.choice(way)).unwrap_or(MOST_POWER),
                         is_full: trials.is_none_or(|trials| {
                             self.choice(way)
                                 .agrees(&self.case.own.with(trials.references[0]), Decides::Digits)
