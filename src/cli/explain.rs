@@ -9,6 +9,7 @@ use crate::study::{Case, StudyError};
 use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use stripmine_physics::averages::Outcome;
 use stripmine_physics::method::{Methods, load};
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
@@ -149,6 +150,16 @@ impl ExplainVerb {
             is_within: (plan.seconds.least..=plan.seconds.most).contains(&found.seconds),
             advice: "the host was busier or idler than in the trials: --patient",
         }];
+        if let Outcome::Kept { farthest, .. } = found.outcome {
+            rows.push(Compared {
+                what: format!("{}, at its farthest", plan.quantity),
+                estimated: plan.expected[0],
+                actual: farthest,
+                unit: plan.unit.to_owned(),
+                is_within: farthest <= plan.error.unwrap_or(f64::INFINITY),
+                advice: "two steps did not tell the law: --patient",
+            });
+        }
         if let (Some(known), Some([mean, bar])) = (known, plan.mean) {
             let chance = plan.expected[1] * seeds.sqrt();
             rows.push(Compared {
