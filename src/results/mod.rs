@@ -41,9 +41,13 @@ impl Made {
     /// Of a section and its dataset.
     ///
     /// # Errors
-    /// If the dataset is none that JSON can hold.
+    /// If the dataset, or the section, is none that JSON can hold: a number that is none comes back as nothing.
     pub fn new(section: Section, data: &impl Serialize) -> Result<Made, Failure> {
         let data = serde_json::to_value(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
+        // Whoever makes the page anew reads it.
+        serde_json::to_vec(&section)
+            .and_then(|text| serde_json::from_slice::<Section>(&text))
+            .map_err(|cause| Failure::writing("JSON")(cause.into()))?;
         Ok(Made { section, data, tables: vec![], files: vec![] })
     }
 

@@ -131,7 +131,7 @@ fn table(judged: &[Judged]) -> Table {
     Rows::of(judged)
         .text("scene", |it| it.scene.clone())
         .text("quantity", |it| it.quantity)
-        .short("error asked", |it| it.error)
+        .cell("error asked", |it| if it.error.is_finite() { Cell::Short(it.error) } else { Cell::Nothing })
         .cell("off", |it| it.off.map_or(Cell::Nothing, |[off, _]| Cell::Short(off)))
         .cell("± (95 %) of the reference", |it| it.off.map_or(Cell::Nothing, |[_, bar]| Cell::Short(bar)))
         .text("reached", |it| match (it.seconds, it.is_met) {
