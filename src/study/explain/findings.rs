@@ -18,22 +18,16 @@ const OF_LIMIT: f64 = 0.9;
 /// Where theory has no limit, the longest step is that many times the scene's own.
 const TIMES_OWN: f64 = 4.0;
 /// How often a step that fails or is warned of is halved.
-const HALVINGS: u32 = 6;
+pub(super) const HALVINGS: u32 = 6;
 /// A way that costs this many times the best is followed no further.
 const DEAR: f64 = 5.0;
-/// Ways whose means are compared.
-const COMPARED: usize = 3;
 /// How often each way is timed.
 const ROUNDS: usize = 2;
 /// Starts differ where their means are as many bars apart: about three standard errors.
 const SURE: f64 = 1.5;
-/// Errors of means fall with a power of the step between these.
-const POWERS: [f64; 2] = [1.0, 2.0];
-/// The highest order of an integrator here.
-const MOST_POWER: f64 = 8.0;
 /// Parts of the time that is given: to time the ways, to the reference, to those that are compared with it, to what may be left out, to another
 /// start.
-const SHARES: [f64; 5] = [0.15, 0.3, 0.25, 0.2, 0.1];
+pub(super) const SHARES: [f64; 5] = [0.15, 0.3, 0.25, 0.2, 0.1];
 
 /// A way to run the scene, as measured.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -95,10 +89,10 @@ pub struct Findings {
 }
 
 /// A scene at work.
-struct Work<'w> {
-    case: &'w Case,
+pub(super) struct Work<'w> {
+    pub(super) case: &'w Case,
     target: &'w Target,
-    seconds: f64,
+    pub(super) seconds: f64,
     stop: &'w AtomicBool,
 }
 
@@ -139,14 +133,14 @@ pub fn findings(
 }
 
 /// The reference, as measured.
-struct Reference {
-    label: String,
-    known: Known,
-    start: f64,
-    row: f64,
-    cost: f64,
+pub(super) struct Reference {
+    pub(super) label: String,
+    pub(super) known: Known,
+    pub(super) start: f64,
+    pub(super) row: f64,
+    pub(super) cost: f64,
     /// Transients of all samples: the start is the same, or alike, and they differ by the noise of what finds them.
-    transients: Vec<f64>,
+    pub(super) transients: Vec<f64>,
 }
 
 impl Work<'_> {
@@ -253,11 +247,11 @@ impl Work<'_> {
         way
     }
 
-    fn sampled(&self, way: &Way, step: Option<f64>, seconds: f64) -> Result<Sample, String> {
+    pub(super) fn sampled(&self, way: &Way, step: Option<f64>, seconds: f64) -> Result<Sample, String> {
         self.sampled_over(way, step, Span::Seconds(seconds))
     }
 
-    fn sampled_over(&self, way: &Way, step: Option<f64>, span: Span) -> Result<Sample, String> {
+    pub(super) fn sampled_over(&self, way: &Way, step: Option<f64>, span: Span) -> Result<Sample, String> {
         let prepared = self.prepared(&way.overrides, step)?;
         let observed = (self.case.entry.quantities, self.target.place);
         sample(&prepared, observed, span, self.stop).map_err(|failure| first_line(&failure.what()))
@@ -306,134 +300,10 @@ impl Work<'_> {
         Err(ExplainError::NoMean { quantity: self.target.quantity.name, why })
     }
 
-    fn choice(&self, way: &Way) -> Choice {
+    pub(super) fn choice(&self, way: &Way) -> Choice {
         let settings: Vec<(&str, &str)> =
             way.settings.iter().map(|(axis, name)| (axis.as_str(), name.as_str())).collect();
         self.case.own.with(&settings)
-    }
-
-    /// The means of the cheapest ways at their longest steps, held against the reference: of each integrator the one with the cheapest digits. Other digits and
-    /// searches have the same bias: rounding is far below what can be seen of a mean.
-    fn compare(&self, ways: &mut [Way], reference: &mut Reference) {
-        if self.case.entry.trials.is_none() {
-            // The reference is the way itself.
-            ways[0].cost = Some(reference.cost);
-            return;
-        }
-        let mut compared: Vec<usize> = vec![];
-        for at in 0..ways.len() {
-            let own = self.choice(&ways[at]);
-            let is_another = compared.iter().all(|&it| !self.choice(&ways[it]).agrees(&own, Decides::Order));
-            // The scene's own is always among them: what it reaches is said.
-            let is_own = own.agrees(&self.case.own, Decides::Order);
-            if ways[at].dropped.is_none() && is_another && (compared.len() < COMPARED || is_own) {
-                compared.push(at);
-            }
-        }
-        let seconds = SHARES[2] * self.seconds / compared.len().max(1) as f64;
-        for at in compared {
-            let power = self.power(&self.choice(&ways[at]));
-            let way = &mut ways[at];
-            let Some(mut step) = way.step else { continue };
-            // What a way takes over what the first stretches took.
-            let mut slower = 1.0;
-            for _ in 0..HALVINGS {
-                match self.sampled(way, Some(step), seconds) {
-                    Ok(sample) if sample.warnings.is_empty() => {
-                        let known = sample.known();
-                        reference.transients.extend(known.map(|known| known.transient));
-                        way.step = Some(step);
-                        slower = sample.cost / way.cost.unwrap_or(sample.cost);
-                        way.cost = Some(sample.cost);
-                        way.bias = known.map(|known| Bias::of(step, &known, &reference.known, power));
-                        break;
-                    }
-                    Ok(sample) => way.bound = Some(format!("warned of: {}", sample.warnings.join("; "))),
-                    Err(why) => way.bound = Some(why),
-                }
-                step *= 0.5;
-                way.cost = way.cost.map(|cost| 2.0 * cost);
-            }
-            if way.bias.is_none() {
-                let why = || Some("it has no mean in the time of a trial".to_owned());
-                way.dropped = way.bound.clone().or_else(why);
-            }
-            let (own, way) = (self.choice(way), way.clone());
-            let alike = |other: &Way| self.choice(other).agrees(&own, Decides::Order);
-            for other in ways
-                .iter_mut()
-                .filter(|other| other.label != way.label && other.dropped.is_none() && alike(other))
-            {
-                let shorter = other.step.zip(way.step).map_or(1.0, |(longest, step)| longest / step);
-                other.cost = other.cost.map(|cost| slower * shorter * cost);
-                (other.step, other.bias) = (way.step, way.bias);
-                (other.bound, other.dropped) = (way.bound.clone(), way.dropped.clone());
-            }
-        }
-        sort(ways);
-    }
-
-    /// The power of the step with which errors of means fall: that of theory for positions, but no more than 2, for contacts have kinks.
-    fn power(&self, choice: &Choice) -> f64 {
-        self.theory(choice).map_or(POWERS[1], |order| order.clamp(POWERS[0], POWERS[1]))
-    }
-
-    /// The power of the step with which errors of positions fall by theory.
-    fn theory(&self, choice: &Choice) -> Option<f64> {
-        let (trials, scheme) = self.case.entry.trials.zip(choice.scheme())?;
-        Some((trials.theory)(&self.case.values, &self.case.prepared, scheme)?.order)
-    }
-
-    /// How far what should keep its value goes, by the cheapest way of each integrator at two steps.
-    fn drifts(&self, mut ways: Vec<Way>) -> Result<Findings, ExplainError> {
-        let seconds = (1.0 - SHARES[0]) * self.seconds / (2.0 * ways.len().min(8) as f64);
-        let span =
-            self.case.duration().map_or(Span::Seconds(seconds), |time| Span::Time(time, Some(seconds)));
-        let (mut start, mut row) = (0.0, 0.0);
-        for way in ways.iter_mut().filter(|way| way.dropped.is_none()) {
-            let (Some(longest), trials) = (way.step, self.case.entry.trials) else { continue };
-            let both: Result<Vec<Sample>, String> = [1.0, 0.5]
-                .into_iter()
-                .map(|part| self.sampled_over(way, Some(part * longest), span))
-                .collect();
-            match both {
-                Ok(both) => {
-                    let far = |sample: &Sample| match sample.outcome {
-                        Outcome::Kept { farthest, .. } => farthest,
-                        _ => f64::NAN,
-                    };
-                    (start, row) = (both[0].start, both[0].row);
-                    way.cost = Some(both[0].cost);
-                    way.drift = Some(Drift {
-                        step: longest,
-                        farthest: [far(&both[0]), far(&both[1])],
-                        time: both[0].time.min(both[1].time),
-                        most_power: self.theory(&self.choice(way)).unwrap_or(MOST_POWER),
-                        is_full: trials.is_none_or(|trials| {
-                            self.choice(way)
-                                .agrees(&self.case.own.with(trials.references[0]), Decides::Digits)
-                        }),
-                    });
-                }
-                Err(why) => way.dropped = Some(why),
-            }
-        }
-        sort(&mut ways);
-        let reference =
-            Known { mean: 0.0, bar: 0.0, square: 0.0, transient: 0.0, apart: 0.0, freedoms: f64::INFINITY };
-        let threads = rayon::current_num_threads();
-        let (without, reference_way) = (vec![], String::new());
-        Ok(Findings {
-            ways,
-            reference,
-            reference_way,
-            starts_differ: None,
-            start,
-            row,
-            one_thread: 1.0,
-            threads,
-            without,
-        })
     }
 
     /// What one thread takes over what all of them take.
@@ -523,7 +393,7 @@ fn give_up(ways: &mut [Way]) {
 }
 
 /// The cheapest first, those that were given up last.
-fn sort(ways: &mut [Way]) {
+pub(super) fn sort(ways: &mut [Way]) {
     let key = |way: &Way| (way.dropped.is_some(), way.cost.unwrap_or(f64::INFINITY));
     ways.sort_by(|a, b| key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1)));
 }

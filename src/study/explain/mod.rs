@@ -5,8 +5,10 @@
 //! (`optimum`), and with them a plan (`plan`). Nothing here is fitted: what trials could not see is counted as error, with its bar.
 
 mod bias;
+mod comparison;
 mod drift;
 mod findings;
+mod keeping;
 mod kept;
 mod optimum;
 mod plan;
@@ -163,7 +165,7 @@ pub fn explain(
             (findings, origin)
         }
     };
-    let plan = if target.is_kept() { plan::keeping } else { plan::plan };
+    let plan = if target.is_kept() { keeping::keeping } else { plan::plan };
     plan(case, target, &findings, &origin).map_err(|least| ExplainError::OutOfReach {
         quantity: target.quantity.name,
         wanted: target.error.map_or(0.0, |width| in_unit(width, findings.reference.mean)),

@@ -11,7 +11,7 @@ use stripmine_physics::number::significant;
 use stripmine_physics::scene::{STEPS, Width};
 
 /// A time is foreseen within this factor, beside what the scatter is known to: other programs come and go.
-const TIME_WITHIN: f64 = 1.5;
+pub(super) const TIME_WITHIN: f64 = 1.5;
 /// Rows that a mean is taken of, at least.
 const FEWEST_ROWS: f64 = 100.0;
 /// Independent samples that a run has at least: so many that it knows the error of its own mean.
@@ -118,9 +118,9 @@ pub struct LeftOut {
 }
 
 /// A way with what it takes for the error.
-struct Weighed<'w> {
-    way: &'w Way,
-    optimum: Optimum,
+pub(super) struct Weighed<'w> {
+    pub(super) way: &'w Way,
+    pub(super) optimum: Optimum,
 }
 
 /// What is recommended for an error in the quantity's unit.
@@ -182,80 +182,8 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
     })
 }
 
-/// What is recommended for a quantity that should keep its value over the scene's own time.
-///
-/// # Errors
-/// The least error that can be had, where no way comes to what is asked for.
-pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, f64> {
-    let usable = || findings.ways.iter().filter(|way| way.dropped.is_none());
-    let time = case.duration().or_else(|| Some(usable().next()?.drift?.time)).unwrap_or(0.0);
-    let of_own = usable().find(|way| way.label == case.own.label());
-    let own_error = of_own.and_then(|way| Some(way.drift?.over(time).at(case.step()?)));
-    let error = target.error.map(|width| in_unit(width, 1.0));
-    let wanted = error.or(own_error.map(|error| 2.0 * error)).unwrap_or(1e-3);
-    let costs = |way: &Way, step: f64| {
-        Some(findings.start + ROWS[1] * findings.row + way.cost? * way.step? / step * time)
-    };
-    let mut weighed: Vec<Weighed<'_>> = usable()
-        .filter_map(|way| {
-            let (drift, longest) = (way.drift?.over(time), way.step?);
-            let step = drift.step_for(wanted)?;
-            let optimum =
-                Optimum { part: step / longest, bias: drift.at(step), time, seconds: costs(way, step)? };
-            Some(Weighed { way, optimum })
-        })
-        .collect();
-    weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
-    let Some(best) = weighed.first() else {
-        let least = usable().filter_map(|way| Some(way.drift?.over(time).farthest[1]));
-        return Err(least.fold(f64::INFINITY, f64::min));
-    };
-    let step = best.way.step.map(|step| best.optimum.part * step);
-    let likely = best.optimum.seconds;
-    let length = Length { time, seeds: 1, seconds: likely, why: String::new() };
-    let mut decisions = decisions(case, findings, &weighed, &length, wanted);
-    decisions.truncate(case.entry.axes.len());
-    let drift = best.way.drift;
-    decisions.extend(drift.zip(step).map(|(drift, step)| Decision {
-        what: "dt".to_owned(),
-        chosen: significant(step, 4),
-        why: format!(
-            "{} in a time of {} at {}, {} at half of it: it falls with the power {}",
-            significant(drift.farthest[0], 2),
-            significant(drift.time, 3),
-            significant(drift.step, 3),
-            significant(drift.farthest[1], 2),
-            significant(drift.power(), 2)
-        ),
-        beside: vec![],
-    }));
-    Ok(Plan {
-        scene: case.arguments(),
-        method: case.entry.vocabulary.keys.method,
-        quantity: target.quantity.name,
-        unit: target.quantity.unit,
-        mean: None,
-        error,
-        decisions,
-        expected: [best.optimum.bias, 0.0],
-        seconds: Interval { least: likely / TIME_WITHIN, likely, most: likely * TIME_WITHIN },
-        memory: case.prepared.memory.needed,
-        step,
-        time,
-        transient: 0.0,
-        seeds: 1,
-        starts_differ: None,
-        overrides: overrides(case, best.way, step, None),
-        own: of_own.zip(case.step()).and_then(|(way, step)| {
-            Some(Own { seconds: costs(way, step)?, error: [way.drift?.over(time).at(step), 0.0] })
-        }),
-        left_out: vec![],
-        origin: origin.to_owned(),
-    })
-}
-
 /// The overrides that make a plan of a scene.
-fn overrides(case: &Case, way: &Way, step: Option<f64>, time: Option<f64>) -> Vec<String> {
+pub(super) fn overrides(case: &Case, way: &Way, step: Option<f64>, time: Option<f64>) -> Vec<String> {
     let mut overrides = way.overrides.clone();
     if let (Some(trials), Some(step)) = (case.entry.trials, step) {
         overrides.push(format!("{}={}", trials.step.path(), significant(step, 4)));
@@ -310,13 +238,13 @@ fn weigh(way: &Way, findings: &Findings, wanted: f64) -> Option<Optimum> {
 }
 
 /// How the time is spread over runs.
-struct Length {
+pub(super) struct Length {
     /// Time that is averaged over, of all runs (time).
-    time: f64,
-    seeds: u64,
+    pub(super) time: f64,
+    pub(super) seeds: u64,
     /// Wall seconds of all.
-    seconds: f64,
-    why: String,
+    pub(super) seconds: f64,
+    pub(super) why: String,
 }
 
 fn length(best: &Weighed<'_>, findings: &Findings) -> Length {
@@ -378,7 +306,7 @@ fn own(case: &Case, way: &Way, findings: &Findings) -> Option<Own> {
     Some(Own { seconds: findings.start + cost * time, error: [bias, chance] })
 }
 
-fn decisions(
+pub(super) fn decisions(
     case: &Case,
     findings: &Findings,
     weighed: &[Weighed<'_>],

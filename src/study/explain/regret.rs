@@ -1,7 +1,8 @@
 //! How good plans are: each beside the best that trials of several times as long know, carried out, and held against the error that was asked for.
 
 use super::findings::{Findings, findings};
-use super::plan::{Plan, cost_of, keeping, plan};
+use super::keeping::keeping;
+use super::plan::{Plan, cost_of, plan};
 use super::sample::{Sample, Span, sample};
 use super::{Target, in_unit};
 use crate::results::{Meter, Progress};
