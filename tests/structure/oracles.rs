@@ -96,8 +96,12 @@ fn waves_are_those_of_sines_and_cosines() {
         let observable = observable("S(k)").unwrap();
         let Seen::Once { over, asks: Asks::Waves, .. } = observable.seen else { unreachable!() };
         let mut held = 0;
-        for (wave, (number, found)) in
-            over(&setting).into_iter().zip(seen(observable, setting, &discs)).enumerate()
+        for (wave, (number, found)) in over
+            .places(&setting)
+            .into_iter()
+            .map(|place| place[0])
+            .zip(seen(observable, setting, &discs))
+            .enumerate()
         {
             let axes: Vec<usize> = (0..2).filter(|&axis| periodic[axis]).collect();
             // The wave number asked for, and what of it fits each side.

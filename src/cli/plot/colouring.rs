@@ -3,12 +3,14 @@
 use super::window;
 use crate::statistics::quantile;
 use clap::builder::PossibleValue;
+use std::path::Path;
 use stripmine_physics::domain::Domain;
 use stripmine_physics::io::extxyz::Frame;
+use stripmine_physics::method::{Methods, load};
 use stripmine_physics::particles::Particle;
 use stripmine_physics::quoted::quoted;
 use stripmine_physics::reported::{Class, Reported};
-use stripmine_physics::structure::{Setting, hexatic_orders};
+use stripmine_physics::structure::{PairForces, Setting, forces_on_each, hexatic_orders};
 
 /// Few values are much larger than the others: they look like the largest of a hundred.
 const MOST: f64 = 0.99;
@@ -24,19 +26,22 @@ pub(super) struct Colouring {
     /// Its unit where the scene's are SI; none for pure numbers.
     si: Option<&'static str>,
     /// Its value for each grain of a frame, or why it has none.
-    of: fn(&Frame) -> Result<Vec<f64>, &'static str>,
+    of: fn(&Frame, Option<&PairForces>) -> Result<Vec<f64>, &'static str>,
+    /// Whether that takes the forces of the run's scene.
+    takes_forces: bool,
     /// The values of the lowest and the highest colour, of all values in order, or why they say nothing.
     ends: fn(&[f64]) -> Result<[f64; 2], &'static str>,
 }
 
-/// All of them, the usual one first. Forces are not among them: no file of a run holds any.
-pub(super) static COLOURINGS: [Colouring; 5] = [
+/// All of them, the usual one first.
+pub(super) static COLOURINGS: [Colouring; 6] = [
     Colouring {
         word: "speed",
         doc: "how fast it moves",
         label: "speed",
         si: Some("m/s"),
-        of: |frame| Ok(of_each(frame, |it| it.velocity.iter().map(|v| v * v).sum::<f64>().sqrt())),
+        of: |frame, _| Ok(of_each(frame, |it| it.velocity.iter().map(|v| v * v).sum::<f64>().sqrt())),
+        takes_forces: false,
         ends: |speeds| Ok([0.0, quantile(speeds, MOST).unwrap_or(0.0)]),
     },
     Colouring {
@@ -44,15 +49,26 @@ pub(super) static COLOURINGS: [Colouring; 5] = [
         doc: "hexatic order |ψ6|, 1 in a hexagonal crystal; of discs in a box",
         label: "|ψ6|",
         si: None,
-        of: orders,
+        of: |frame, _| orders(frame),
+        takes_forces: false,
         ends: |_| Ok([0.0, 1.0]),
+    },
+    Colouring {
+        word: "force",
+        doc: "magnitudes of what all others exert on it, summed up; of discs with forces between them",
+        label: "force",
+        si: Some("N"),
+        of: forces_on,
+        takes_forces: true,
+        ends: |forces| Ok([0.0, quantile(forces, MOST).unwrap_or(0.0)]),
     },
     Colouring {
         word: "spin",
         doc: "angular velocity, counter-clockwise; of discs that turn",
         label: "spin",
         si: Some("1/s"),
-        of: |frame| Ok(of_each(frame, |disc| disc.omega)),
+        of: |frame, _| Ok(of_each(frame, |disc| disc.omega)),
+        takes_forces: false,
         ends: |spins| {
             let [low, high] = [1.0 - MOST, MOST].map(|part| quantile(spins, part).unwrap_or(0.0));
             let most = high.abs().max(low.abs());
@@ -64,7 +80,8 @@ pub(super) static COLOURINGS: [Colouring; 5] = [
         doc: "its radius",
         label: "radius",
         si: Some("m"),
-        of: |frame| Ok(of_each(frame, |disc| disc.radius)),
+        of: |frame, _| Ok(of_each(frame, |disc| disc.radius)),
+        takes_forces: false,
         ends: first_and_last,
     },
     Colouring {
@@ -72,7 +89,8 @@ pub(super) static COLOURINGS: [Colouring; 5] = [
         doc: "its number, from which it is seen how particles mix",
         label: "id",
         si: None,
-        of: |frame| Ok(of_each(frame, |particle| f64::from(particle.id))),
+        of: |frame, _| Ok(of_each(frame, |particle| f64::from(particle.id))),
+        takes_forces: false,
         ends: first_and_last,
     },
 ];
@@ -85,16 +103,10 @@ fn first_and_last(values: &[f64]) -> Result<[f64; 2], &'static str> {
     Ok([values.first(), values.last()].map(|end| end.copied().unwrap_or(0.0)))
 }
 
-/// |ψ6| of each grain, in the box, or where there is none above, in a closed one around the discs.
-fn orders(frame: &Frame) -> Result<Vec<f64>, &'static str> {
+/// The box of a frame, or where it has no sides, a closed one around the discs.
+fn room(frame: &Frame) -> Domain {
     let grains = frame.particles.grains();
-    if grains.iter().any(|grain| grain.position[2] != 0.0) {
-        return Err("bodies in space have no hexatic order");
-    }
-    if grains.is_empty() {
-        return Ok(vec![]);
-    }
-    let domain = if window::is_endless(frame) {
+    if window::is_endless(frame) {
         let ends = |axis: usize| {
             let places = || grains.iter().map(|grain| grain.position[axis]);
             [places().fold(f64::INFINITY, f64::min), places().fold(f64::NEG_INFINITY, f64::max)]
@@ -104,8 +116,29 @@ fn orders(frame: &Frame) -> Result<Vec<f64>, &'static str> {
         Domain::planar([x[0], y[0]], [x[1] - x[0], y[1] - y[0]], [false; 2])
     } else {
         Domain::planar(frame.origin, frame.cell, frame.periodic.unwrap_or([true; 2]))
-    };
-    let setting = Setting::new(domain, &frame.particles);
+    }
+}
+
+/// The magnitudes of the forces on each grain, summed up.
+fn forces_on(frame: &Frame, forces: Option<&PairForces>) -> Result<Vec<f64>, &'static str> {
+    let forces =
+        forces.ok_or("its scene has no forces between discs that act at any moment, or cannot be read")?;
+    let setting = Setting::new(room(frame), &frame.particles);
+    let mut sums = forces_on_each(&setting, frame.particles.all(), forces);
+    sums.truncate(frame.particles.grain_count());
+    Ok(sums)
+}
+
+/// |ψ6| of each grain.
+fn orders(frame: &Frame) -> Result<Vec<f64>, &'static str> {
+    let grains = frame.particles.grains();
+    if grains.iter().any(|grain| grain.position[2] != 0.0) {
+        return Err("bodies in space have no hexatic order");
+    }
+    if grains.is_empty() {
+        return Ok(vec![]);
+    }
+    let setting = Setting::new(room(frame), &frame.particles);
     Ok(hexatic_orders(&setting, &frame.particles).into_iter().map(|[x, y]| x.hypot(y)).collect())
 }
 
@@ -129,10 +162,25 @@ impl Colouring {
     pub(super) fn possible_values() -> Vec<PossibleValue> {
         COLOURINGS.iter().map(|it| PossibleValue::new(it.word).help(it.doc)).collect()
     }
+}
 
-    /// That of a word.
-    pub(super) fn of_word(word: &str) -> Option<&'static Colouring> {
-        COLOURINGS.iter().find(|it| it.word == word)
+/// A colouring of the particles of a run.
+pub(super) struct Colours {
+    colouring: &'static Colouring,
+    /// The forces of its scene, where the colouring takes them.
+    forces: Option<PairForces>,
+}
+
+impl Colours {
+    /// The colouring of a word, the usual one where there is none of it.
+    pub(super) fn new(word: &str, run: &Path, methods: Methods) -> Colours {
+        let colouring = COLOURINGS.iter().find(|it| it.word == word).unwrap_or(&COLOURINGS[0]);
+        let forces = || {
+            let scene = run.join("scene.toml");
+            let (prepared, _) = load(&scene.to_string_lossy(), &[], methods).ok()?;
+            prepared.model.pair_forces()
+        };
+        Colours { colouring, forces: if colouring.takes_forces { forces() } else { None } }
     }
 
     /// A value for each grain of a frame.
@@ -140,7 +188,7 @@ impl Colouring {
     /// # Errors
     /// If its particles have no such values.
     pub(super) fn values(&self, frame: &Frame) -> Result<Vec<f64>, ColouringError> {
-        (self.of)(frame).map_err(|why| self.none(why))
+        (self.colouring.of)(frame, self.forces.as_ref()).map_err(|why| self.none(why))
     }
 
     /// The values that have the lowest and the highest colour.
@@ -150,7 +198,7 @@ impl Colouring {
     pub(super) fn ends(&self, mut values: Vec<f64>) -> Result<[f64; 2], ColouringError> {
         values.retain(|value| value.is_finite());
         values.sort_by(f64::total_cmp);
-        let ends = (self.ends)(&values).map_err(|why| self.none(why))?;
+        let ends = (self.colouring.ends)(&values).map_err(|why| self.none(why))?;
         // Where all are one, that one is in the middle; at rest nothing is fast.
         Ok(match ends {
             [low, high] if low < high => ends,
@@ -160,16 +208,18 @@ impl Colouring {
     }
 
     fn none(&self, why: &'static str) -> ColouringError {
-        let others = COLOURINGS.iter().map(|it| it.word).filter(|word| *word != self.word).collect();
-        ColouringError { word: self.word, why, others }
+        let others =
+            COLOURINGS.iter().map(|it| it.word).filter(|word| *word != self.colouring.word).collect();
+        ColouringError { word: self.colouring.word, why, others }
     }
 
     /// What stands at the colours: the quantity and its unit.
     pub(super) fn label(&self, scene: Option<&toml::Table>) -> String {
-        match (self.si, units(scene)) {
-            (None, _) => self.label.to_owned(),
-            (Some(si), Units::Si) => format!("{} ({si})", self.label),
-            (Some(_), Units::Other(name)) => format!("{} ({name})", self.label),
+        let Colouring { label, si, .. } = *self.colouring;
+        match (si, units(scene)) {
+            (None, _) => label.to_owned(),
+            (Some(si), Units::Si) => format!("{label} ({si})"),
+            (Some(_), Units::Other(name)) => format!("{label} ({name})"),
         }
     }
 }

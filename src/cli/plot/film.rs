@@ -1,6 +1,6 @@
 //! A film of a run: the frames of its trajectory in one page.
 
-use super::colouring::{Colouring, ColouringError, units};
+use super::colouring::{ColouringError, Colours, units};
 use super::particles::{LARGE_POINT, POINT, SHOWN, TRACED, WIDTH, scene};
 use super::window;
 use crate::report::section::{Film, Frame as Moment, Side};
@@ -73,16 +73,16 @@ impl Reported for FilmError {
 ///
 /// # Errors
 /// If there is no trajectory, it cannot be read, or its particles cannot be coloured so.
-pub(super) fn film(run: &Path, colouring: &Colouring) -> Result<(Film, Vec<String>), FilmError> {
+pub(super) fn film(run: &Path, colours: &Colours) -> Result<(Film, Vec<String>), FilmError> {
     let file = run.join(TRAJECTORY);
     let has_dcd = run.join("trajectory.dcd").exists();
     let mut reel = Reel::default();
     for frame in Frames::open(&file)?.in_space() {
-        reel.add(frame?, colouring)?;
+        reel.add(frame?, colours)?;
     }
     let Some((last, cast)) = reel.last.take() else { return Err(FilmError::NoFrame { file, has_dcd }) };
     let scene = scene(run);
-    let (mut film, notes) = reel.film(&last, cast, colouring, scene.as_ref())?;
+    let (mut film, notes) = reel.film(&last, cast, colours, scene.as_ref())?;
     let name = run.file_stem().unwrap_or_default().to_string_lossy();
     film.title = format!("{}: {}", quoted::quoted(&name), film.title);
     Ok((film, notes))
@@ -127,10 +127,10 @@ struct Seen {
 }
 
 impl Reel {
-    fn add(&mut self, frame: Frame, colouring: &Colouring) -> Result<(), FilmError> {
+    fn add(&mut self, frame: Frame, colours: &Colours) -> Result<(), FilmError> {
         let cast = self.last.take().map_or_else(|| Cast::of(&frame), |(_, cast)| cast);
         if self.read.is_multiple_of(self.stride.max(1)) {
-            let values = colouring.values(&frame)?;
+            let values = colours.values(&frame)?;
             let mut seen = vec![None; cast.particles.len()];
             // Grains come before walls, and have values.
             for (at, particle) in frame.particles.all().iter().enumerate() {
@@ -155,7 +155,7 @@ impl Reel {
         self,
         last: &Frame,
         cast: Cast,
-        colouring: &Colouring,
+        colours: &Colours,
         scene: Option<&toml::Table>,
     ) -> Result<(Film, Vec<String>), FilmError> {
         const AXES: [usize; 2] = [0, 1];
@@ -165,7 +165,7 @@ impl Reel {
         let places: Vec<[f64; 3]> = grains().step_by(some).map(|seen| seen.position).collect();
         let bounds = window::bounds(last, scene, &places, AXES);
         let [[left, right], [low, high]] = window::shown(last, &places, AXES, bounds);
-        let shades = colouring.ends(grains().map(|seen| seen.value).collect())?;
+        let shades = colours.ends(grains().map(|seen| seen.value).collect())?;
         let is_seen = |[x, y, _]: [f64; 3], radius: f64| {
             x > left - radius && x < right + radius && y > low - radius && y < high + radius
         };
@@ -224,7 +224,7 @@ impl Reel {
                 .map(|wall| (wall.place(), wall.radius))
                 .collect(),
             frames,
-            shade: colouring.label(scene),
+            shade: colours.label(scene),
             shades,
         };
         let beyond = beyond as f64 / (self.kept.len() * moving.len()).max(1) as f64;

@@ -15,7 +15,7 @@ use crate::report::{html, terminal};
 use crate::results::OwnFiles;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use colouring::{COLOURINGS, Colouring};
+use colouring::{COLOURINGS, Colouring, Colours};
 use observed::Observed;
 use particles::PictureError;
 use serde_json::json;
@@ -60,8 +60,8 @@ impl PlotVerb {
         let wanted = table.wanted(&self.columns, methods)?;
         let mut figures = table.figures(&wanted);
         figures.extend(structure::figures(&run));
-        let colouring = Colouring::of_word(&self.color).unwrap_or(&COLOURINGS[0]);
-        match particles::pictures(&run, colouring) {
+        let colours = Colours::new(&self.color, &run, methods);
+        match particles::pictures(&run, &colours) {
             Ok(pictures) => figures.extend(pictures),
             Err(PictureError::Colouring(error)) => return Err(error.into()),
             Err(why) if !common.quiet => say(format_args!("the particles are not drawn: {why}")),
@@ -79,7 +79,7 @@ impl PlotVerb {
             pictures.extend([vector.into_bytes(), pixels]);
         }
         if self.film {
-            let (film, notes) = film::film(&run, colouring)?;
+            let (film, notes) = film::film(&run, &colours)?;
             names.push(FILM.to_owned());
             pictures.push(html::film_page(&film, &notes).into_bytes());
         }

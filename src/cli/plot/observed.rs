@@ -210,7 +210,7 @@ impl Observed {
             .text("quantity", |it| quoted(&self.columns[it.column]))
             .text("first", |it| number(self.column(it.column).next()))
             .text("last", |it| number(self.column(it.column).last()))
-            .text("mean ± 95 %", |it| self.mean_of(it.column).unwrap_or_default())
+            .text("mean ± 95 %", |it| self.mean_of(it.column).unwrap_or_default().replace('\u{a0}', " "))
             .text("course", |it| course(&self.column(it.column).collect::<Vec<_>>()))
             .table("plot", "The run")
             .note(format!("pictures in {}", quoted::path(out)))

@@ -1,6 +1,6 @@
 //! Pictures of the particles of a run: its last state, and, where the box is long, the density along it over time.
 
-use super::colouring::{Colouring, ColouringError};
+use super::colouring::{ColouringError, Colours};
 use super::window;
 use crate::report::figure::{Axis, Drawing, Figure, Guide, Map, Picture, Shape, Tint};
 use std::path::Path;
@@ -45,7 +45,7 @@ pub(super) enum PictureError {
 ///
 /// # Errors
 /// If the trajectory cannot be read, or its particles cannot be coloured so.
-pub(super) fn pictures(run: &Path, colouring: &Colouring) -> Result<Vec<Figure>, PictureError> {
+pub(super) fn pictures(run: &Path, colours: &Colours) -> Result<Vec<Figure>, PictureError> {
     let (mut last, mut slices, mut traces) = (None, vec![], vec![]);
     for frame in Frames::open(run.join("trajectory.xyz"))?.in_space() {
         let frame: Frame = frame?;
@@ -61,9 +61,9 @@ pub(super) fn pictures(run: &Path, colouring: &Colouring) -> Result<Vec<Figure>,
         traces.iter().step_by(traces.len().div_ceil(TRACES).max(1)).copied().collect();
     let has_depth = last.particles.all().iter().any(|particle| particle.position[2] != 0.0);
     let views: &[View] = if has_depth { &[View::AlongZ, View::AlongY] } else { &[View::Plane] };
-    let values = colouring.values(&last)?;
-    let ends = colouring.ends(values.clone())?;
-    let shades = Shades { values, ends, label: colouring.label(scene.as_ref()) };
+    let values = colours.values(&last)?;
+    let ends = colours.ends(values.clone())?;
+    let shades = Shades { values, ends, label: colours.label(scene.as_ref()) };
     let states = views.iter().map(|&view| state(&last, scene.as_ref(), &traces, &shades, view));
     Ok(states.chain(density(&last, &slices)).collect())
 }

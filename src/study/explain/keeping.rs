@@ -1,10 +1,11 @@
 //! Plans for what should keep its value: the step at which it goes no farther than is asked for.
 
 use super::Target;
+use super::bias::Off;
 use super::findings::{Findings, Way};
 use super::optimum::Optimum;
 use super::plan::{
-    Decision, Interval, Length, Own, Plan, TIME_WITHIN, Weighed, decisions, in_unit, overrides,
+    Decision, Expected, Interval, Length, Own, Plan, TIME_WITHIN, Weighed, decisions, in_unit, overrides,
 };
 use super::sample::ROWS;
 use crate::study::Case;
@@ -28,8 +29,12 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
         .filter_map(|way| {
             let (drift, longest) = (way.drift?.over(time), way.step?);
             let step = drift.step_for(wanted)?;
-            let optimum =
-                Optimum { part: step / longest, bias: drift.at(step), time, seconds: costs(way, step)? };
+            let optimum = Optimum {
+                part: step / longest,
+                bias: Off::exactly(drift.at(step)),
+                time,
+                seconds: costs(way, step)?,
+            };
             Some(Weighed { way, optimum })
         })
         .collect();
@@ -65,7 +70,7 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
         mean: None,
         error,
         decisions,
-        expected: [best.optimum.bias, 0.0],
+        expected: Expected::of(best.optimum.bias, 0.0),
         seconds: Interval { least: likely / TIME_WITHIN, likely, most: likely * TIME_WITHIN },
         memory: case.prepared.memory.needed,
         step,
@@ -75,7 +80,10 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
         starts_differ: None,
         overrides: overrides(case, best.way, step, None),
         own: of_own.zip(case.step()).and_then(|(way, step)| {
-            Some(Own { seconds: costs(way, step)?, error: [way.drift?.over(time).at(step), 0.0] })
+            Some(Own {
+                seconds: costs(way, step)?,
+                error: Expected::of(Off::exactly(way.drift?.over(time).at(step)), 0.0),
+            })
         }),
         left_out: vec![],
         origin: origin.to_owned(),

@@ -1,5 +1,7 @@
 //! The step and the run length that reach an error at the least cost.
 
+use super::bias::Off;
+
 /// A way to run a scene, as far as its cost and error go.
 #[derive(Clone, Copy, Debug)]
 pub struct Terms {
@@ -16,8 +18,8 @@ pub struct Terms {
 pub struct Optimum {
     /// The step in parts of the longest.
     pub part: f64,
-    /// How much of the error may be bias.
-    pub bias: f64,
+    /// What the step takes the mean off by.
+    pub bias: Off,
     /// Time that is averaged over (time).
     pub time: f64,
     /// Wall seconds.
@@ -33,14 +35,14 @@ const SHORTEST: f64 = 1.0 / 256.0;
 /// none where bias alone is more.
 ///
 /// A shorter step costs more for a unit of time and has less bias, which leaves more of the error to chance and so asks for a shorter time.
-pub fn optimum(terms: Terms, error: f64, bias: impl Fn(f64) -> f64) -> Option<Optimum> {
+pub fn optimum(terms: Terms, error: f64, bias: impl Fn(f64) -> Off) -> Option<Optimum> {
     let parts = (0..).map(|at| 2f64.powf(-f64::from(at) / f64::from(BETWEEN)));
     let of = |part: f64| {
         let bias = bias(part);
-        let left = error - bias;
-        let time = terms.square / (left * left);
+        let chance = bias.leaves(error)?;
+        let time = terms.square / (chance * chance);
         let seconds = terms.cost / part * (time + terms.transient);
-        (left > 0.0).then_some(Optimum { part, bias, time, seconds })
+        Some(Optimum { part, bias, time, seconds })
     };
     parts.take_while(|part| *part >= SHORTEST).filter_map(of).min_by(|a, b| a.seconds.total_cmp(&b.seconds))
 }
@@ -54,14 +56,14 @@ mod tests {
     /// Without bias the longest step; with b·part the cost 1/(part (e − b part)²) is least at part = e/(3 b): a third of the error.
     #[test]
     fn a_third_of_the_error_is_bias_where_it_falls_with_the_step() {
-        let free = optimum(TERMS, 0.1, |_| 0.0).unwrap();
+        let free = optimum(TERMS, 0.1, |_| Off::default()).unwrap();
         assert!(free.part == 1.0 && (free.time - 400.0).abs() < 1e-9 && (free.seconds - 800.0).abs() < 1e-9);
-        let bound = optimum(TERMS, 0.1, |part| 0.3 * part).unwrap();
-        assert!((bound.bias / 0.1 - 1.0 / 3.0).abs() < 0.05, "{bound:?}");
+        let bound = optimum(TERMS, 0.1, |part| Off::exactly(0.3 * part)).unwrap();
+        assert!((bound.bias.shift / 0.1 - 1.0 / 3.0).abs() < 0.05, "{bound:?}");
         // What is not seen to fall is not reached at any step.
-        assert_eq!(optimum(TERMS, 0.1, |_| 0.1), None);
+        assert_eq!(optimum(TERMS, 0.1, |_| Off::exactly(0.1)), None);
         // A transient that is long asks for a longer step.
         let long = Terms { transient: 1e5, ..TERMS };
-        assert!(optimum(long, 0.1, |part| 0.3 * part).unwrap().part > bound.part);
+        assert!(optimum(long, 0.1, |part| Off::exactly(0.3 * part)).unwrap().part > bound.part);
     }
 }

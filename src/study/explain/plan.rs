@@ -1,6 +1,7 @@
 //! From what was measured to what is recommended.
 
 use super::Target;
+use super::bias::Off;
 use super::findings::{Findings, Way};
 use super::optimum::{Optimum, Terms, optimum};
 use super::sample::ROWS;
@@ -69,8 +70,8 @@ pub struct Plan {
     pub error: Option<f64>,
     /// What is recommended, one after the other.
     pub decisions: Vec<Decision>,
-    /// Most of the error that is bias, and chance (95 %), in the quantity's unit.
-    pub expected: [f64; 2],
+    /// The error that is expected, in the quantity's unit.
+    pub expected: Expected,
     /// Wall seconds.
     pub seconds: Interval,
     /// Bytes of a run.
@@ -100,8 +101,25 @@ pub struct Plan {
 pub struct Own {
     /// Wall seconds.
     pub seconds: f64,
-    /// Most of the error that is bias, and chance (95 %).
-    pub error: [f64; 2],
+    /// The error that is expected of them, in the quantity's unit.
+    pub error: Expected,
+}
+
+/// What an error is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Expected {
+    /// What the step takes the mean off by.
+    pub bias: Off,
+    /// Half the width of the interval of 95 % of a mean of this length.
+    pub chance: f64,
+    /// The most that both are together with a probability of 95 %.
+    pub most: f64,
+}
+
+impl Expected {
+    pub(super) fn of(bias: Off, chance: f64) -> Expected {
+        Expected { bias, chance, most: bias.with(chance) }
+    }
 }
 
 /// What the scene may be modelled without.
@@ -133,7 +151,7 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
     let own = own_way.and_then(|way| own(case, way, findings));
     let error = target.error.map(|width| in_unit(width, reference.mean));
     // Without an error: as good as the scene's own values.
-    let wanted = error.or(own.as_ref().map(|own| own.error[0] + own.error[1]));
+    let wanted = error.or(own.as_ref().map(|own| own.error.most));
     let wanted = wanted.unwrap_or(0.01 * reference.mean.abs());
     let usable = |way: &&Way| way.cost.is_some() && way.dropped.is_none();
     let mut weighed: Vec<Weighed<'_>> = findings
@@ -145,13 +163,13 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
     let Some(best) = weighed.first() else {
         // Bias at the shortest step that is weighed is all that is left.
-        let least = findings.ways.iter().filter(usable).filter_map(|way| Some(way.bias?.at_most(0.0)));
+        let least = findings.ways.iter().filter(usable).filter_map(|way| Some(way.bias?.at(0.0).most()));
         return Err(least.fold(f64::INFINITY, f64::min));
     };
     let length = length(best, findings);
     let step = best.way.step.map(|step| best.optimum.part * step);
     let per_run = length.time / length.seeds as f64 + reference.transient;
-    let expected = [best.optimum.bias, (reference.square / length.time).sqrt()];
+    let expected = Expected::of(best.optimum.bias, (reference.square / length.time).sqrt());
     // The square of a bar is known to its degrees of freedom.
     let scatter = 1.0 + 2.0 * (2.0 / reference.freedoms.max(2.0)).sqrt();
     let seconds = Interval {
@@ -231,8 +249,8 @@ fn weigh(way: &Way, findings: &Findings, wanted: f64) -> Option<Optimum> {
     let reference = &findings.reference;
     let terms = Terms { cost: way.cost?, square: reference.square, transient: reference.transient };
     match (way.step, way.bias) {
-        (None, _) => optimum(terms, wanted, |_| 0.0).filter(|it| it.part == 1.0),
-        (Some(step), Some(bias)) => optimum(terms, wanted, |part| bias.at_most(part * step)),
+        (None, _) => optimum(terms, wanted, |_| Off::default()).filter(|it| it.part == 1.0),
+        (Some(step), Some(bias)) => optimum(terms, wanted, |part| bias.at(part * step)),
         (Some(_), None) => None,
     }
 }
@@ -297,13 +315,13 @@ fn own(case: &Case, way: &Way, findings: &Findings) -> Option<Own> {
     };
     let bias = findings.ways.iter().filter(is_alike).find_map(|it| it.bias);
     let bias = match (bias, step) {
-        (Some(bias), Some(step)) => bias.at_most(step),
-        (None, Some(_)) => f64::NAN,
-        (_, None) => 0.0,
+        (Some(bias), Some(step)) => bias.at(step),
+        (None, Some(_)) => Off::exactly(f64::NAN),
+        (_, None) => Off::default(),
     };
     let left = time - reference.transient;
     let chance = if left > 0.0 { (reference.square / left).sqrt() } else { f64::INFINITY };
-    Some(Own { seconds: findings.start + cost * time, error: [bias, chance] })
+    Some(Own { seconds: findings.start + cost * time, error: Expected::of(bias, chance) })
 }
 
 pub(super) fn decisions(
@@ -383,7 +401,7 @@ fn step_decision(case: &Case, best: &Weighed<'_>, longest: f64, wanted: f64) -> 
     let why = match best.way.bias {
         Some(bias) => format!(
             "{own}bias at most {} of the {} allowed, as {} at {} was {} ± {} off",
-            significant(best.optimum.bias, 2),
+            significant(best.optimum.bias.most(), 2),
             significant(wanted, 2),
             best.way.label,
             significant(bias.step, 3),

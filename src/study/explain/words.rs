@@ -1,6 +1,6 @@
 //! A plan as a page that is read in a minute.
 
-use super::plan::{Beside, Decision, Interval, LeftOut, Plan};
+use super::plan::{Beside, Decision, Expected, Interval, LeftOut, Plan};
 use stripmine_physics::memory::in_words;
 use stripmine_physics::number::{significant, with_bar};
 
@@ -13,12 +13,7 @@ pub fn with_unit(value: &str, unit: &str) -> String {
 pub fn page(plan: &Plan) -> String {
     let mut page = vec![answer(plan), expected(plan)];
     page.extend(plan.own.as_ref().map(|own| {
-        let [bias, chance] = own.error;
-        format!(
-            "as it stands: {} for an error of at most {}",
-            seconds(own.seconds),
-            parts(plan, [bias, chance])
-        )
+        format!("as it stands: {} for an error of at most {}", seconds(own.seconds), parts(plan, own.error))
     }));
     page.push(String::new());
     page.extend(plan.decisions.iter().flat_map(decision));
@@ -54,12 +49,20 @@ fn expected(plan: &Plan) -> String {
     )
 }
 
-/// Bias and chance, in parts of the mean where there is one.
-fn parts(plan: &Plan, [bias, chance]: [f64; 2]) -> String {
-    if plan.mean.is_none() {
-        return share(plan, bias);
+/// An error with its parts, in parts of the mean where there is one.
+fn parts(plan: &Plan, error: Expected) -> String {
+    let Expected { bias, chance, most } = error;
+    let of_step = |bar: f64| if bar > 0.0 { format!(" ± {}", share(plan, bar)) } else { String::new() };
+    match plan.mean {
+        Some(_) => format!(
+            "{} (by the step {}{}, by chance {})",
+            share(plan, most),
+            share(plan, bias.shift),
+            of_step(bias.bar),
+            share(plan, chance)
+        ),
+        None => share(plan, most),
     }
-    format!("{} (bias {}, chance {})", share(plan, bias + chance), share(plan, bias), share(plan, chance))
 }
 
 fn share(plan: &Plan, error: f64) -> String {

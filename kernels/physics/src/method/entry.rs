@@ -8,6 +8,7 @@ use crate::domain::Domain;
 use crate::memory::Foreseen;
 use crate::particles::{Particles, States};
 use crate::scene::{Output, SceneErrors, Target, Values, Vocabulary, Warning};
+use crate::structure::PairForces;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -340,6 +341,11 @@ pub trait Startable: Send + Sync {
     /// the start, on no machine in particular. How often the structure is looked at goes by it: at every row and snapshot where it is 0.
     fn work(&self) -> f64 {
         0.0
+    }
+
+    /// What two particles do to each other at any moment; none where there are no forces between pairs of discs.
+    fn pair_forces(&self) -> Option<PairForces> {
+        None
     }
 
     /// Begins.

@@ -2,10 +2,9 @@
 
 use super::entry::{Entry, Kind, Prepared, Quantity};
 use super::{hard_disks, langevin, lattice_md, nbody};
-use crate::domain::Domain;
 use crate::quoted::quoted;
 use crate::scene::{METHOD, Reason, STRUCTURE, SceneError, SceneErrors, TARGET, Value, Values, Vocabulary};
-use crate::structure::{self, observable};
+use crate::structure::{self, Asks, Observable, Seen, observable};
 use crate::words::nearest;
 
 /// Methods that scenes may name.
@@ -54,7 +53,7 @@ pub fn prepare(values: Values, methods: Methods) -> Result<(Prepared, &'static E
     let wrong = wrong_target(&values, entry);
     let spot = values.spot(&STRUCTURE);
     match ((entry.prepare)(values), wrong) {
-        (Ok(mut prepared), None) => match waveless(&prepared.output.structure, prepared.domain) {
+        (Ok(mut prepared), None) => match not_there(&prepared) {
             Some(why) => Err(spot.error(Reason::Contradiction, why).into()),
             None => {
                 prepared.memory.needed += memory_of_looks(&prepared);
@@ -72,11 +71,21 @@ fn memory_of_looks(prepared: &Prepared) -> u64 {
     structure::bytes(&asked, prepared.particles().grain_count(), prepared.schedule.row_count())
 }
 
-/// Why something of the structure cannot be summed up in a box.
-fn waveless(names: &[String], domain: Domain) -> Option<String> {
-    let has_waves = names.iter().any(|name| name == "S(k)");
-    (has_waves && domain.periodic() == [false; 2])
-        .then(|| format!("\"S(k)\" of `{}` needs a periodic side: its waves run along one", STRUCTURE.path()))
+/// Why something of the structure cannot be summed up.
+fn not_there(prepared: &Prepared) -> Option<String> {
+    let why = |observable: &Observable| match observable.seen {
+        Seen::Once { asks: Asks::Waves, .. } if prepared.domain.periodic() == [false; 2] => {
+            Some("needs a periodic side: its waves run along one")
+        }
+        Seen::Once { asks: Asks::Forces, .. } if prepared.model.pair_forces().is_none() => {
+            Some("needs forces between discs that act at any moment: this method has none")
+        }
+        _ => None,
+    };
+    let asked = prepared.output.structure.iter().filter_map(|name| observable(name));
+    let mut reasons = asked.filter_map(|it| Some((it.name, why(it)?)));
+    let (name, why) = reasons.next()?;
+    Some(format!("\"{name}\" of `{}` {why}", STRUCTURE.path()))
 }
 
 /// That the run is to end by a quantity that has no mean.

@@ -12,7 +12,7 @@ use std::path::Path;
 
 /// Longer than any of the files (bytes).
 const LONGEST: u64 = 1 << 20;
-/// Places are the same where they differ by less than this part of themselves.
+/// Coordinates are the same where they differ by less than this part of themselves.
 const SAME: f64 = 1e-6;
 
 /// A function of the structure by one run or several.
@@ -25,12 +25,31 @@ pub struct Function {
     /// How many runs it is from.
     pub runs: usize,
     /// Where, the mean, and the half width of its interval of 95 %: over blocks of one run, or over runs by Student's t.
-    pub points: Vec<[f64; 3]>,
+    pub points: Vec<Point>,
     /// The numbers that stand for it.
     pub headlines: Vec<Number>,
     /// What it is.
     #[serde(skip)]
     pub observable: &'static Observable,
+}
+
+/// A function at a place.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(into = "Vec<f64>")]
+pub struct Point {
+    /// Its coordinates: one, or two.
+    pub over: Vec<f64>,
+    /// The mean.
+    pub mean: f64,
+    /// Half the width of its interval of 95 %.
+    pub bar: f64,
+}
+
+impl From<Point> for Vec<f64> {
+    fn from(Point { mut over, mean, bar }: Point) -> Self {
+        over.extend([mean, bar]);
+        over
+    }
 }
 
 /// A number that stands for a function.
@@ -52,14 +71,14 @@ pub fn functions_of<'f>(folders: impl Iterator<Item = &'f Path>) -> Vec<Function
     let folders: Vec<&Path> = folders.collect();
     let summaries: Vec<Value> = folders.iter().map(|folder| summary(folder)).collect();
     let of = |observable: &'static Observable| {
-        let files: Option<Vec<Vec<[f64; 3]>>> =
-            folders.iter().map(|folder| points(&folder.join(observable.file))).collect();
+        let files: Option<Vec<Vec<Point>>> =
+            folders.iter().map(|folder| points(&folder.join(observable.file), observable)).collect();
         let points = joined(&files?);
         let headline = |name: &'static str, unit: &'static str| {
             let of = |summary: &Value| number(summary, observable.name, name);
-            let runs: Option<Vec<[f64; 3]>> = summaries.iter().map(of).collect();
+            let runs: Option<Vec<Point>> = summaries.iter().map(of).collect();
             let joined = joined(&runs?.into_iter().map(|run| vec![run]).collect::<Vec<_>>());
-            joined.first().map(|&[_, mean, bar]| Number { name, unit, mean, bar })
+            joined.first().map(|&Point { mean, bar, .. }| Number { name, unit, mean, bar })
         };
         let headlines = observable.headlines.iter();
         let headlines = headlines.filter_map(|it| headline(it.name, it.unit)).collect();
@@ -87,7 +106,7 @@ pub fn function_of<'f>(
     let found = functions_of(folders.clone()).into_iter().find(|it| it.name == observable.name);
     found.ok_or_else(|| {
         let mut folders = folders.map(Path::to_owned);
-        let without = folders.find(|folder| points(&folder.join(observable.file)).is_none());
+        let without = folders.find(|folder| points(&folder.join(observable.file), observable).is_none());
         FinishedError::NoStructure { folder: without.unwrap_or_default(), name: observable.name }
     })
 }
@@ -96,14 +115,20 @@ pub fn function_of<'f>(
 ///
 /// # Errors
 /// Those of what is written to.
-pub(super) fn write_csv(observable: &Observable, points: &[[f64; 3]], out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write_csv(observable: &Observable, points: &[Point], out: &mut dyn Write) -> io::Result<()> {
     let with_unit = |[name, unit]: [&str; 2]| match unit {
         "" => name.to_owned(),
         unit => format!("{name} ({unit})"),
     };
-    writeln!(out, "{},{},error", with_unit(observable.over), with_unit(observable.value))?;
-    let mut points = points.iter().filter(|[_, mean, _]| !mean.is_nan());
-    points.try_for_each(|[over, mean, bar]| writeln!(out, "{over:?},{mean:?},{bar:?}"))
+    for &over in observable.over {
+        write!(out, "{},", with_unit(over))?;
+    }
+    writeln!(out, "{},error", with_unit(observable.value))?;
+    for Point { over, mean, bar } in points.iter().filter(|point| !point.mean.is_nan()) {
+        over.iter().try_for_each(|over| write!(out, "{over:?},"))?;
+        writeln!(out, "{mean:?},{bar:?}")?;
+    }
+    Ok(())
 }
 
 impl Function {
@@ -117,11 +142,12 @@ impl Function {
 }
 
 /// The points of a file; none where there is no such file.
-fn points(path: &Path) -> Option<Vec<[f64; 3]>> {
+fn points(path: &Path, observable: &Observable) -> Option<Vec<Point>> {
     let text = String::from_utf8(regular_file::read(path, LONGEST).ok()?).ok()?;
-    let point = |line: &str| -> Option<[f64; 3]> {
-        let numbers: Vec<f64> = line.split(',').map(str::parse).collect::<Result<_, _>>().ok()?;
-        numbers.try_into().ok()
+    let point = |line: &str| -> Option<Point> {
+        let mut over: Vec<f64> = line.split(',').map(str::parse).collect::<Result<_, _>>().ok()?;
+        let (bar, mean) = (over.pop()?, over.pop()?);
+        (over.len() == observable.over.len()).then_some(Point { over, mean, bar })
     };
     Some(text.lines().skip(1).map_while(point).collect())
 }
@@ -133,26 +159,29 @@ fn summary(folder: &Path) -> Value {
 }
 
 /// A number that stands for an observable, as a point that is nowhere.
-fn number(summary: &Value, observable: &str, name: &str) -> Option<[f64; 3]> {
+fn number(summary: &Value, observable: &str, name: &str) -> Option<Point> {
     let find = |list: &Value, name: &str| list.as_array()?.iter().find(|it| it["name"] == name).cloned();
     let found = find(&find(&summary["structure"], observable)?["headlines"], name)?;
-    Some([0.0, found["mean"].as_f64()?, found["bar"].as_f64()?])
+    Some(Point { over: vec![], mean: found["mean"].as_f64()?, bar: found["bar"].as_f64()? })
 }
 
 /// The points that are in all runs.
-fn joined(runs: &[Vec<[f64; 3]>]) -> Vec<[f64; 3]> {
+fn joined(runs: &[Vec<Point>]) -> Vec<Point> {
     let [first, others @ ..] = runs else { return vec![] };
     if others.is_empty() {
         return first.clone();
     }
-    let of = |&[over, mean, _]: &[f64; 3]| {
-        let there = |run: &Vec<[f64; 3]>| {
-            let close = |[other, ..]: &&[f64; 3]| (other - over).abs() <= SAME * over.abs();
-            run.iter().find(close).map(|[_, mean, _]| *mean)
+    let of = |Point { over, mean, .. }: &Point| {
+        let there = |run: &Vec<Point>| {
+            let close = |point: &&Point| {
+                let mut places = point.over.iter().zip(over);
+                places.all(|(other, over)| (other - over).abs() <= SAME * over.abs())
+            };
+            run.iter().find(close).map(|point| point.mean)
         };
-        let means: Option<Vec<f64>> = std::iter::once(Some(mean)).chain(others.iter().map(there)).collect();
+        let means: Option<Vec<f64>> = std::iter::once(Some(*mean)).chain(others.iter().map(there)).collect();
         let [mean, bar] = of_independent(&means?)?;
-        Some([over, mean, bar])
+        Some(Point { over: over.clone(), mean, bar })
     };
     first.iter().filter_map(of).collect()
 }
@@ -164,15 +193,16 @@ mod tests {
     /// By hand: 1, 2 and 3 have the mean 2 and the standard error 1/√3, and Student's t for two degrees of freedom is 4.303.
     #[test]
     fn runs_are_joined_where_all_of_them_are() {
-        let runs = [
-            vec![[0.5, 1.0, 0.1], [1.5, 7.0, 0.1]],
-            vec![[0.5, 2.0, 0.1], [1.0, 9.0, 0.1], [1.5, 7.0, 0.1]],
-            vec![[0.5 + 1e-9, 3.0, 0.1]],
-        ];
-        let [[over, mean, bar]] = joined(&runs)[..] else { panic!() };
-        assert!(over == 0.5 && (mean - 2.0).abs() < 1e-12 && (bar - 4.3027 / 3_f64.sqrt()).abs() < 1e-3);
+        let runs =
+            [vec![[0.5, 1.0], [1.5, 7.0]], vec![[0.5, 2.0], [1.0, 9.0], [1.5, 7.0]], vec![[0.5 + 1e-9, 3.0]]];
+        let point = |[over, mean]: [f64; 2]| Point { over: vec![over], mean, bar: 0.1 };
+        let runs = runs.map(|run| run.into_iter().map(point).collect::<Vec<_>>());
+        let [Point { over, mean, bar }] = &joined(&runs)[..] else { panic!() };
+        assert!(
+            over[..] == [0.5] && (mean - 2.0).abs() < 1e-12 && (bar - 4.3027 / 3_f64.sqrt()).abs() < 1e-3
+        );
         assert_eq!(joined(&runs[..2]).len(), 2);
         assert_eq!(joined(&runs[..1]), runs[0]);
-        assert_eq!(joined(&[]), vec![] as Vec<[f64; 3]>);
+        assert_eq!(joined(&[]), vec![] as Vec<Point>);
     }
 }

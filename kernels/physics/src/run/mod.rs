@@ -17,7 +17,7 @@ mod table;
 
 pub use finished::{Finished, FinishedError, averages_of};
 pub use folder::FolderError;
-pub use functions::{Function, Number, function_of, functions_of};
+pub use functions::{Function, Number, Point, function_of, functions_of};
 pub use identity::chosen_otherwise;
 pub use structured::Summed;
 pub use summary::Summary;

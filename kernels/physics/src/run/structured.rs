@@ -9,14 +9,15 @@
 
 use super::RunError;
 use super::folder::RunFolder;
-use super::functions::write_csv;
+use super::functions::{Point, write_csv};
 use crate::averages::of_independent;
 use crate::io::checkpoint::{Checkpoint, Column};
 use crate::method::{Every, Prepared, Simulation, Snapshot};
 use crate::particles::States;
 use crate::scene::Output;
 use crate::structure::{
-    Blocks, Headline, Look, Motion, OBSERVABLES, Observable, Seen, Setting, strides, widening,
+    Asks, Blocks, Headline, Look, Motion, OBSERVABLES, Observable, PairForces, Seen, Setting, strides,
+    widening,
 };
 use serde::Serialize;
 
@@ -32,6 +33,8 @@ pub(super) struct Structured {
     sums: Vec<Sum>,
     /// What is found at snapshots, where an observable asks for them.
     look: Option<Look>,
+    /// What discs do to each other, where an observable asks for it.
+    forces: Option<PairForces>,
     /// The discs at earlier rows, where an observable asks for them, and as they stand.
     motion: Option<(Motion, States)>,
 }
@@ -110,13 +113,16 @@ impl Structured {
         let stands = asked.iter().any(|observable| matches!(observable.seen, Seen::Once { .. }));
         let moves = asked.iter().any(|observable| matches!(observable.seen, Seen::Twice { .. }));
         let sum = |observable| Sum { observable, looks: 0, blocks: Blocks::new(width(observable, &setting)) };
+        let look = stands.then(|| Look::new(setting, grains, asked.iter().copied()));
+        let meets = look.as_ref().is_some_and(|look| look.asks(Asks::Forces));
         Structured {
             setting,
             strides,
             passed: [0; 2],
             spacings: [0, 1].map(|at| spacings[at] * strides[at] as f64),
             sums: chosen(&prepared.output).map(sum).collect(),
-            look: stands.then(|| Look::new(setting, grains, asked.iter().copied())),
+            look,
+            forces: prepared.model.pair_forces().filter(|_| meets),
             motion: moves.then(|| (Motion::new(grains.len()), States::of(grains))),
         }
     }
@@ -218,6 +224,9 @@ impl Structured {
         if !is_any_left {
             return;
         }
+        if let Some(forces) = &self.forces {
+            look.meet(&simulation.particles(), forces);
+        }
         for sum in &mut self.sums {
             if let Seen::Once { .. } = sum.observable.seen {
                 let values = look.values(sum.observable).into_iter().enumerate();
@@ -253,8 +262,8 @@ impl Structured {
     pub(super) fn write(&self, folder: &RunFolder) -> Result<(), RunError> {
         for sum in &self.sums {
             let Function { over, means, .. } = self.function(sum);
-            let points: Vec<[f64; 3]> =
-                over.iter().zip(&means).map(|(&over, &[mean, bar])| [over, mean, bar]).collect();
+            let point = |(over, [mean, bar]): (Vec<f64>, [f64; 2])| Point { over, mean, bar };
+            let points: Vec<Point> = over.into_iter().zip(means).map(point).collect();
             folder.write(sum.observable.file, |out| write_csv(sum.observable, &points, out))?;
         }
         Ok(())
@@ -265,11 +274,12 @@ impl Structured {
         let of = |sum: &Sum| {
             let function = self.function(sum);
             let Function { over, blocks, .. } = &function;
+            let over: Vec<f64> = over.iter().map(|place| place[0]).collect();
             let mean: Vec<f64> = function.means.iter().map(|[mean, _]| *mean).collect();
             let headlines: &[Headline] = if over.len() > 1 { sum.observable.headlines } else { &[] };
-            let never = headlines.iter().find_map(|headline| (headline.never)(over, &mean));
+            let never = headlines.iter().find_map(|headline| (headline.never)(&over, &mean));
             let headline = |headline: &Headline| {
-                let of = |block: &Vec<f64>| (headline.of)(over, &mean, block);
+                let of = |block: &Vec<f64>| (headline.of)(&over, &mean, block);
                 let [mean, bar] = function.mean(of, over.len() - 1)?;
                 Some(Headlined { name: headline.name, unit: headline.unit, mean, bar })
             };
@@ -299,12 +309,12 @@ impl Structured {
     fn function(&self, sum: &Sum) -> Function {
         let length = sum.blocks.length();
         let (over, lags, last) = match sum.observable.seen {
-            Seen::Once { over, .. } => (over(&self.setting), vec![], 0),
+            Seen::Once { over, .. } => (over.places(&self.setting), vec![], 0),
             Seen::Twice { .. } => {
                 // Lags no longer than a block, so that blocks share no more than their ends, and all of them are whole.
                 let motion = self.motion.iter().flat_map(|(motion, _)| motion.times());
                 let short = Motion::lags().zip(motion).filter(|(lag, _)| *lag <= length);
-                let (lags, times) = short.unzip();
+                let (lags, times) = short.map(|(lag, time)| (lag, vec![time])).unzip();
                 (times, lags, 1)
             }
         };
@@ -319,7 +329,7 @@ impl Structured {
 
 /// What a function is over, its means with their bars, and its values in each block.
 struct Function {
-    over: Vec<f64>,
+    over: Vec<Vec<f64>>,
     /// Not a number where fewer than two blocks have a value.
     means: Vec<[f64; 2]>,
     blocks: Vec<Vec<f64>>,
@@ -367,7 +377,7 @@ fn spacing(every: Every) -> f64 {
 /// Values of an observable, those for headlines only among them.
 fn width(observable: &Observable, setting: &Setting) -> usize {
     match observable.seen {
-        Seen::Once { over, further, .. } => over(setting).len() + further,
+        Seen::Once { over, further, .. } => over.places(setting).len() + further,
         Seen::Twice { .. } => Motion::lags().len(),
     }
 }

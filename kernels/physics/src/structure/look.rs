@@ -2,6 +2,7 @@
 
 use super::cells::Cells;
 use super::discs::Discs;
+use super::forces::{PairForces, Stress};
 use super::pairs::{Distances, Neighbours};
 use super::setting::Setting;
 use super::waves::Waves;
@@ -20,6 +21,7 @@ pub struct Look {
     pub(super) distances: Distances,
     pub(super) neighbours: Neighbours,
     pub(super) waves: Waves,
+    pub(super) stress: Stress,
     asked: Vec<Asks>,
 }
 
@@ -43,6 +45,7 @@ impl Look {
             distances: Distances::default(),
             neighbours: Neighbours::default(),
             waves: Waves::new(&setting),
+            stress: Stress::default(),
             asked: observables.filter_map(asks).collect(),
         }
     }
@@ -54,7 +57,7 @@ impl Look {
         if self.discs.x.is_empty() {
             return false;
         }
-        let asks = |what: Asks| self.asked.contains(&what);
+        let asks = |what: Asks| self.asks(what);
         let (distances, neighbours, waves) =
             (asks(Asks::Distances), asks(Asks::Neighbours), asks(Asks::Waves));
         if distances || neighbours {
@@ -76,10 +79,20 @@ impl Look {
         true
     }
 
+    /// Whether an observable asks for something.
+    pub fn asks(&self, what: Asks) -> bool {
+        self.asked.contains(&what)
+    }
+
+    /// What the discs of this moment do to each other, walls among them.
+    pub fn meet(&mut self, particles: &Particles, forces: &PairForces) {
+        self.stress.sum(&self.setting, particles.all(), forces);
+    }
+
     /// The values of an observable that is seen of one moment.
     pub fn values(&self, observable: &Observable) -> Vec<f64> {
         let Seen::Once { over, of, further, .. } = observable.seen else { return vec![] };
-        let mut values = vec![0.0; over(&self.setting).len() + further];
+        let mut values = vec![0.0; over.places(&self.setting).len() + further];
         of(self, &mut values);
         values
     }

@@ -6,6 +6,7 @@
 mod blocks;
 mod cells;
 mod discs;
+mod forces;
 mod look;
 mod motion;
 mod pairs;
@@ -15,6 +16,7 @@ mod waves;
 mod work;
 
 pub use blocks::Blocks;
+pub use forces::{PairForce, PairForces, forces_on_each};
 pub use look::{Look, hexatic_orders, seen};
 pub use motion::{Motion, widening};
 pub use pairs::{pair_counts, pair_counts_of_all};
@@ -28,8 +30,8 @@ pub struct Observable {
     pub name: &'static str,
     /// The file of a run's folder that it is written to.
     pub file: &'static str,
-    /// What it is a function of, with the unit; empty for pure numbers.
-    pub over: [&'static str; 2],
+    /// What it is a function of, one thing or the two coordinates, each with the unit; empty for pure numbers.
+    pub over: &'static [[&'static str; 2]],
     /// What its values are, with the unit.
     pub value: [&'static str; 2],
     /// What it is.
@@ -48,7 +50,7 @@ pub enum Seen {
     /// Of the discs as they stand, at each snapshot.
     Once {
         /// What it is a function of: the middles of bins.
-        over: fn(&Setting) -> Vec<f64>,
+        over: Over,
         /// Its values, and more that are for headlines only; not a number where there is nothing to be seen.
         of: fn(&Look, &mut [f64]),
         /// How many these are.
@@ -74,6 +76,27 @@ pub enum Asks {
     Neighbours,
     /// Density waves.
     Waves,
+    /// What discs, walls among them, do to each other.
+    Forces,
+}
+
+/// The middles of bins.
+#[derive(Clone, Copy, Debug)]
+pub enum Over {
+    /// Along an axis.
+    Axis(fn(&Setting) -> Vec<f64>),
+    /// Of the cells of a grid over the box, row by row.
+    Grid,
+}
+
+impl Over {
+    /// One or two coordinates of each.
+    pub fn places(&self, setting: &Setting) -> Vec<Vec<f64>> {
+        match self {
+            Over::Axis(middles) => middles(setting).into_iter().map(|middle| vec![middle]).collect(),
+            Over::Grid => forces::grid(setting).into_iter().map(|middle| middle.to_vec()).collect(),
+        }
+    }
 }
 
 /// A number that stands for a whole function.
@@ -92,18 +115,30 @@ pub struct Headline {
 /// It can be had of every function.
 const ALWAYS: fn(&[f64], &[f64]) -> Option<&'static str> = |_, _| None;
 
+/// A grid over the box.
+const PLACES: &[[&str; 2]] = &[["x", "length"], ["y", "length"]];
+/// Where the definition of the stress comes from.
+const STRESS: &str = "Irving and Kirkwood 1950, half of a pair to either disc (Thompson, Plimpton and Mattson 2009); velocities as seen from the box";
+/// The number that stands for a component of the stress.
+const OVER_BOX: [Headline; 1] = [Headline {
+    name: "mean over the box",
+    unit: "force/length",
+    of: |_, _, block| block.iter().sum::<f64>() / block.len() as f64,
+    never: ALWAYS,
+}];
+
 /// All of them.
-pub static OBSERVABLES: [Observable; 13] = [
+pub static OBSERVABLES: [Observable; 16] = [
     Observable {
         name: "g(r)",
         file: "g.csv",
-        over: ["r", "length"],
+        over: &[["r", "length"]],
         value: ["g", ""],
         doc: "Pairs at a distance over those of an ideal gas in the same box, closed sides allowed for.",
         source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5; closed sides by the set covariance of a rectangle (Stoyan \
                  and Stoyan 1994)",
         seen: Seen::Once {
-            over: pairs::distances,
+            over: Over::Axis(pairs::distances),
             of: |it, values| pairs::correlation(&it.setting, &it.discs, &it.distances, values),
             further: 0,
             asks: Asks::Distances,
@@ -126,12 +161,12 @@ pub static OBSERVABLES: [Observable; 13] = [
     Observable {
         name: "S(k)",
         file: "s.csv",
-        over: ["k", "1/length"],
+        over: &[["k", "1/length"]],
         value: ["S", ""],
         doc: "The structure factor |Σ exp(ikr)|²/N of waves along the periodic axes of the box.",
         source: "Hansen and McDonald, Theory of Simple Liquids, section 4.1",
         seen: Seen::Once {
-            over: waves::numbers,
+            over: Over::Axis(waves::numbers),
             of: |it, values| waves::factor(&it.waves, values),
             further: 0,
             asks: Asks::Waves,
@@ -154,12 +189,12 @@ pub static OBSERVABLES: [Observable; 13] = [
     Observable {
         name: "coordination",
         file: "coordination.csv",
-        over: ["neighbours", ""],
+        over: &[["neighbours", ""]],
         value: ["share of discs", ""],
         doc: "Shares of discs by their number of neighbours: others nearer than 1.5 times the sum of the radii.",
         source: "the first minimum of g(r) of dense discs lies there",
         seen: Seen::Once {
-            over: pairs::neighbour_numbers,
+            over: Over::Axis(pairs::neighbour_numbers),
             of: |it, values| pairs::coordination(&it.discs, &it.neighbours, values),
             further: 0,
             asks: Asks::Neighbours,
@@ -174,12 +209,12 @@ pub static OBSERVABLES: [Observable; 13] = [
     Observable {
         name: "psi6",
         file: "psi6.csv",
-        over: ["|psi6| of a disc", ""],
+        over: &[["|psi6| of a disc", ""]],
         value: ["density", ""],
         doc: "Distribution of the hexatic order of single discs, ψ6 = ⟨exp(6iθ)⟩ over the six nearest.",
         source: "Nelson and Halperin 1979; six nearest neighbours in place of Voronoi's",
         seen: Seen::Once {
-            over: pairs::orders,
+            over: Over::Axis(pairs::orders),
             of: |it, values| pairs::hexatic(&it.discs, &it.neighbours, values),
             further: 2,
             asks: Asks::Neighbours,
@@ -202,12 +237,12 @@ pub static OBSERVABLES: [Observable; 13] = [
     Observable {
         name: "velocities",
         file: "velocities.csv",
-        over: ["v/sqrt(kT/m)", ""],
+        over: &[["v/sqrt(kT/m)", ""]],
         value: ["density", ""],
         doc: "Distribution of both components of the velocity over √(kT/m), kT by the kinetic energy of the same moment.",
         source: "Maxwell 1860: the normal distribution in equilibrium",
         seen: Seen::Once {
-            over: single::speeds,
+            over: Over::Axis(single::speeds),
             of: |it, values| single::velocities(&it.discs, values),
             further: 1,
             asks: Asks::Discs,
@@ -222,12 +257,12 @@ pub static OBSERVABLES: [Observable; 13] = [
     Observable {
         name: "density(x)",
         file: "density-x.csv",
-        over: ["x", "length"],
+        over: &[["x", "length"]],
         value: ["density", "1/length²"],
         doc: "Centres of discs by area in a hundred slices along the first axis.",
         source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5: the single-particle density, averaged across the axis",
         seen: Seen::Once {
-            over: single::slices::<0>,
+            over: Over::Axis(single::slices::<0>),
             of: |it, values| single::density::<0>(&it.setting.domain, &it.discs, values),
             further: 0,
             asks: Asks::Discs,
@@ -237,12 +272,12 @@ pub static OBSERVABLES: [Observable; 13] = [
     Observable {
         name: "density(y)",
         file: "density-y.csv",
-        over: ["y", "length"],
+        over: &[["y", "length"]],
         value: ["density", "1/length²"],
         doc: "Centres of discs by area in a hundred slices along the second axis.",
         source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5: the single-particle density, averaged across the axis",
         seen: Seen::Once {
-            over: single::slices::<1>,
+            over: Over::Axis(single::slices::<1>),
             of: |it, values| single::density::<1>(&it.setting.domain, &it.discs, values),
             further: 0,
             asks: Asks::Discs,
@@ -252,12 +287,12 @@ pub static OBSERVABLES: [Observable; 13] = [
     Observable {
         name: "flow(x)",
         file: "flow-x.csv",
-        over: ["x", "length"],
+        over: &[["x", "length"]],
         value: ["velocity along y", "length/time"],
         doc: "Velocity of the discs along y, weighted by mass, in a hundred slices along x.",
         source: "Irving and Kirkwood 1950: momentum density over mass density",
         seen: Seen::Once {
-            over: single::slices::<0>,
+            over: Over::Axis(single::slices::<0>),
             of: |it, values| single::flow::<0>(&it.setting.domain, &it.discs, values),
             further: 0,
             asks: Asks::Discs,
@@ -267,12 +302,12 @@ pub static OBSERVABLES: [Observable; 13] = [
     Observable {
         name: "flow(y)",
         file: "flow-y.csv",
-        over: ["y", "length"],
+        over: &[["y", "length"]],
         value: ["velocity along x", "length/time"],
         doc: "Velocity of the discs along x, weighted by mass, in a hundred slices along y.",
         source: "Irving and Kirkwood 1950: momentum density over mass density",
         seen: Seen::Once {
-            over: single::slices::<1>,
+            over: Over::Axis(single::slices::<1>),
             of: |it, values| single::flow::<1>(&it.setting.domain, &it.discs, values),
             further: 0,
             asks: Asks::Discs,
@@ -282,12 +317,12 @@ pub static OBSERVABLES: [Observable; 13] = [
     Observable {
         name: "temperature(x)",
         file: "temperature-x.csv",
-        over: ["x", "length"],
+        over: &[["x", "length"]],
         value: ["kT", "energy"],
         doc: "Kinetic energy beside the flow of the slice, Σm|v − u|²/(2(n − 1)), in a hundred slices along the first axis.",
         source: "Irving and Kirkwood 1950: the kinetic part, with one disc less for the mean velocity",
         seen: Seen::Once {
-            over: single::slices::<0>,
+            over: Over::Axis(single::slices::<0>),
             of: |it, values| single::temperature::<0>(&it.setting.domain, &it.discs, values),
             further: 0,
             asks: Asks::Discs,
@@ -297,12 +332,12 @@ pub static OBSERVABLES: [Observable; 13] = [
     Observable {
         name: "temperature(y)",
         file: "temperature-y.csv",
-        over: ["y", "length"],
+        over: &[["y", "length"]],
         value: ["kT", "energy"],
         doc: "Kinetic energy beside the flow of the slice, Σm|v − u|²/(2(n − 1)), in a hundred slices along the second axis.",
         source: "Irving and Kirkwood 1950: the kinetic part, with one disc less for the mean velocity",
         seen: Seen::Once {
-            over: single::slices::<1>,
+            over: Over::Axis(single::slices::<1>),
             of: |it, values| single::temperature::<1>(&it.setting.domain, &it.discs, values),
             further: 0,
             asks: Asks::Discs,
@@ -310,9 +345,54 @@ pub static OBSERVABLES: [Observable; 13] = [
         headlines: &[],
     },
     Observable {
+        name: "stress_xx(x,y)",
+        file: "stress-xx.csv",
+        over: PLACES,
+        value: ["stress xx", "force/length"],
+        doc: "Flow of momentum along x through a line across x, positive under pressure: Σm v_x v_x of the discs of a cell and half of r_x F_x of each of their pairs, walls among them, over its area.",
+        source: STRESS,
+        seen: Seen::Once {
+            over: Over::Grid,
+            of: |it, values| it.stress.component(0, values),
+            further: 0,
+            asks: Asks::Forces,
+        },
+        headlines: &OVER_BOX,
+    },
+    Observable {
+        name: "stress_xy(x,y)",
+        file: "stress-xy.csv",
+        over: PLACES,
+        value: ["stress xy", "force/length"],
+        doc: "Flow of momentum along y through a line across x, as the stress xx: the symmetric part, (r_x F_y + r_y F_x)/2 of each pair.",
+        source: STRESS,
+        seen: Seen::Once {
+            over: Over::Grid,
+            of: |it, values| it.stress.component(1, values),
+            further: 0,
+            asks: Asks::Forces,
+        },
+        headlines: &OVER_BOX,
+    },
+    Observable {
+        name: "stress_yy(x,y)",
+        file: "stress-yy.csv",
+        over: PLACES,
+        value: ["stress yy", "force/length"],
+        doc: "Flow of momentum along y through a line across y, as the stress xx.",
+        source: STRESS,
+        seen: Seen::Once {
+            over: Over::Grid,
+            of: |it, values| it.stress.component(2, values),
+            further: 0,
+            asks: Asks::Forces,
+        },
+        headlines: &OVER_BOX,
+    },
+    Observable {
         name: "msd",
         file: "msd.csv",
-        over: ["lag", "time"],
+        over: &[["lag", "time"]],
         value: ["mean square displacement", "length²"],
         doc: "Mean square of the way of a disc within a time, across periodic sides.",
         source: "Einstein 1905: 4 D t in the plane after long times",
@@ -327,7 +407,7 @@ pub static OBSERVABLES: [Observable; 13] = [
     Observable {
         name: "vacf",
         file: "vacf.csv",
-        over: ["lag", "time"],
+        over: &[["lag", "time"]],
         value: ["velocity autocorrelation", "length²/time²"],
         doc: "⟨v(0)·v(t)⟩/2: the autocorrelation of a component of the velocity.",
         source: "Green and Kubo: its integral is D",

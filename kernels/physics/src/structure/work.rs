@@ -2,16 +2,18 @@
 
 use super::waves::sums_of_a_disc;
 use super::{Asks, Motion, Observable, Seen, Setting};
-use crate::particles::States;
+use crate::particles::{Particle, States};
 use std::f64::consts::PI;
 
-/// Nanoseconds of a disc: to take it up, in a pair within reach, with its neighbours, in a density wave, in what it is alone; in a row.
+/// Nanoseconds of a disc: to take it up, in a pair within reach, with its neighbours, in a density wave, in what it is alone, with the
+/// forces on it; in a row.
 /// They were measured once; nothing is measured in a run, so that every machine looks at the same moments.
 const TAKEN_UP: f64 = 60.0;
 const PAIR: f64 = 8.0;
 const NEIGHBOURS: f64 = 260.0;
 const WAVE: f64 = 0.5;
 const ALONE: f64 = 15.0;
+const FORCES: f64 = 250.0;
 const ROW: f64 = 55.0;
 
 /// Nanoseconds that looks at a row and at a snapshot take a disc.
@@ -33,6 +35,7 @@ fn nanoseconds(observables: &[&Observable], setting: &Setting, discs: usize) -> 
         found.push(asks);
         snapshot += match asks {
             Asks::Discs => ALONE,
+            Asks::Forces => FORCES,
             Asks::Distances => PAIR * 0.5 * PI * setting.reach * setting.reach * discs as f64 / (x * y),
             Asks::Neighbours => NEIGHBOURS,
             Asks::Waves => WAVE * sums_of_a_disc(setting) as f64,
@@ -72,6 +75,12 @@ pub fn bytes(observables: &[&Observable], discs: usize, rows: Option<u64>) -> u6
     if stands {
         // Six columns, three in the order of cells with images, three of cells; sizes.
         let of_a_disc = size_of::<[f64; 6]>() + 2 * size_of::<[f64; 3]>() + 3 * size_of::<u32>();
+        let meets =
+            |observable: &&Observable| matches!(observable.seen, Seen::Once { asks: Asks::Forces, .. });
+        if observables.iter().any(meets) {
+            // The particles once more, their places, and the sums of every 512 of them.
+            bytes += ((size_of::<Particle>() + 6 * size_of::<f64>()) * discs) as u64;
+        }
         bytes += (States::bytes(discs) + (of_a_disc + size_of::<[f64; 2]>()) * discs) as u64;
     }
     bytes

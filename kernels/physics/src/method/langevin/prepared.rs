@@ -1,6 +1,7 @@
 //! What a checked scene of particles in a bath offers.
 
 use super::checked::Checked;
+use super::dynamics::InBath;
 use super::found::Found;
 use super::losses;
 use super::options::PairLaw;
@@ -8,12 +9,15 @@ use super::programs::programs;
 use super::simulation::Running;
 use crate::memory::{Foreseen, PROGRAM, available};
 use crate::method::entry::left_out;
+use crate::method::pairwise::{Dynamics, ToReach};
 use crate::method::{Fact, Failure, Prepared, Purpose, Schedule, Simulation, Startable, VectorProgram};
 use crate::particles::{Particle, Particles};
+use crate::structure::PairForces;
 use crate::words::Words;
 use serde_json::{Map, Value, json};
 use std::f64::consts::PI;
 use std::path::Path;
+use std::sync::Arc;
 use stripmine_kernels::sweep::fast::lattice::SPARSE;
 
 impl Checked {
@@ -128,6 +132,15 @@ impl Startable for Checked {
         let density = self.particles.len() as f64 / self.domain.area();
         let pairs = if self.has_pairs() { 0.5 * PI * self.reach * self.reach * density } else { 0.0 };
         30.0 + 8.0 * pairs
+    }
+
+    fn pair_forces(&self) -> Option<PairForces> {
+        let particles = InBath::of(self);
+        Some(if self.has_pairs() {
+            particles.with_law(ToReach(self.reach))
+        } else {
+            PairForces { reach: 0.0, of: Arc::new(|_| [0.0; 2]) }
+        })
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {

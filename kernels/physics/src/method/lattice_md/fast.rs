@@ -70,7 +70,7 @@ pub(super) fn start<S: Precision, P: Precision>(
 }
 
 /// How far apart two discs may be and touch (length).
-fn reach(particles: &Particles) -> f64 {
+pub(super) fn reach(particles: &Particles) -> f64 {
     2.0 * particles.radii().map_or(1.0, |[_, largest]| largest)
 }
 

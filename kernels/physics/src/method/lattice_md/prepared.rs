@@ -6,6 +6,8 @@ use super::checks;
 use super::document::Document;
 use super::engine::Engine;
 use super::facts::{expected_error, facts};
+use super::fast::reach;
+use super::programs::with_law_of_text;
 use super::quantities::{OBSERVABLES, Seen};
 use super::run_monitor::RunMonitor;
 use super::theory::limits::step_limits;
@@ -15,6 +17,7 @@ use super::{
 };
 use crate::io::checkpoint::Counter;
 use crate::method::observed::values;
+use crate::method::pairwise::ToReach;
 use crate::method::{
     Clock, Failure, Prepared, Purpose, RunWarning, Schedule, Simulation, Snapshot, Startable, Until,
     VectorProgram,
@@ -23,6 +26,7 @@ use crate::number::significant;
 use crate::observe::{Observation, Scenery, Sums};
 use crate::particles::{Particles, States};
 use crate::scene::{Precision, SceneErrors};
+use crate::structure::PairForces;
 use crate::words::Words;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -122,6 +126,10 @@ impl Startable for Checked {
             program: step.program,
         };
         programs(&model, Precision::F64).into_iter().map(as_any).collect()
+    }
+
+    fn pair_forces(&self) -> Option<PairForces> {
+        Some(with_law_of_text(&model(self), ToReach(reach(&self.particles))))
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {

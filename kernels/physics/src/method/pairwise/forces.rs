@@ -1,0 +1,22 @@
+//! The law of the pairs for what looks at them from outside, in double precision.
+
+use super::WithLaw;
+use crate::structure::PairForces;
+use std::sync::Arc;
+use stripmine_kernels::law::Law;
+use stripmine_kernels::sweep::pair::Pair;
+
+/// Makes pair forces of a law, up to a distance (length).
+pub struct ToReach(pub f64);
+
+impl WithLaw for ToReach {
+    type Output = PairForces;
+
+    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> PairForces {
+        let of = move |pair: &Pair| {
+            let [[x, y, _], _] = pair.sums(&law);
+            [x, y]
+        };
+        PairForces { reach: self.0, of: Arc::new(of) }
+    }
+}
