@@ -6,10 +6,13 @@ use crate::provenance::Provenance;
 use crate::results::Made;
 use crate::results::Progress;
 use crate::results::{Folder, Journal};
+use crate::study::explain::{Target, precision, precision_page};
 use crate::study::history::{self, section as history_section};
 use crate::study::stability::{self, Over, stability};
 use crate::study::work_precision::{self, work_precision};
-use crate::study::{Subject, stability::section as map_section, work_precision::section as diagram_section};
+use crate::study::{
+    Case, StudyError, Subject, stability::section as map_section, work_precision::section as diagram_section,
+};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -67,6 +70,10 @@ struct WorkPrecisionVerb {
     /// Timed runs of each way and step
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(REPEATS))]
     repeats: u16,
+    /// The error of the mean of a quantity, over the time of the runs; of positions by default where trajectories can be compared, elsewhere of what
+    /// the method is mostly asked for
+    #[arg(long = "of", value_name = "QUANTITY", conflicts_with_all = ["machine", "repeats"])]
+    quantity: Option<String>,
     /// Folder for data, tables and figures; the scene's name with `.work-precision` by default. A study that was interrupted
     /// goes on there
     #[arg(long)]
@@ -136,6 +143,10 @@ impl ChartVerb {
 
 impl WorkPrecisionVerb {
     fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
+        let case = Case::load(&self.scene, &self.overrides, methods)?;
+        if self.quantity.is_some() || case.entry.trials.is_none_or(|trials| !trials.has_trajectories) {
+            return self.of_mean(&case, common);
+        }
         let machine = self.machine.as_deref().map(machines::find).transpose()?;
         let subject = Subject::load(&self.scene, &self.overrides, methods)?;
         let named = machine.as_ref().map_or("", |machine| machine.title());
@@ -147,6 +158,25 @@ impl WorkPrecisionVerb {
             let data = work_precision(&subject, &effort, journal, progress)?;
             diagram_section::made(&[(stem, data)], again)
         })
+    }
+}
+
+impl WorkPrecisionVerb {
+    /// The error of a mean.
+    fn of_mean(&self, case: &Case, common: &Common) -> Result<(), Failure> {
+        let own = |error| StudyError::Own(Box::new(error));
+        let target = Target::of(case, self.quantity.as_deref(), None).map_err(own)?;
+        let place = Place { name: diagram_section::NAME, scene: &self.scene, out: self.out.as_deref() };
+        let (folder, stem) = place.folder()?;
+        let (bar, start) = (progress(common, place.name), Instant::now());
+        bar.enable_steady_tick(TICK);
+        let show = |share: f64| bar.set_position((1e3 * share) as u64);
+        let threads = rayon::current_num_threads() as f64;
+        let seconds = f64::from(self.budget) / threads;
+        let data = precision(case, &target, seconds, signals::asked(), &show).map_err(own)?;
+        let again =
+            format!("stripmine chart {} {} --of {}", place.name, case.arguments(), target.quantity.name);
+        written(common, &folder, &precision_page::made(place.name, &[(stem, data)], again)?, start)
     }
 }
 
@@ -214,6 +244,16 @@ struct Place<'p> {
 }
 
 impl Place<'_> {
+    fn out(&self, stem: &str) -> PathBuf {
+        self.out.map_or_else(|| PathBuf::from(format!("{stem}.{}", self.name)), Path::to_owned)
+    }
+
+    /// The folder, before anything takes its time, and the scene's stem.
+    fn folder(&self) -> Result<(Folder, String), Failure> {
+        let stem = Path::new(self.scene).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Ok((Folder::open(&self.out(&stem), &[self.name], true)?, stem))
+    }
+
     /// Makes a study of the finished runs in its folder, with progress, the scene's stem and the command that makes it.
     fn study(
         &self,
@@ -222,10 +262,8 @@ impl Place<'_> {
         options: &str,
         make: impl FnOnce(&Journal, Progress<'_>, String, String) -> Result<Made, Failure>,
     ) -> Result<(), Failure> {
-        let stem = Path::new(self.scene).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let out = self.out.map_or_else(|| PathBuf::from(format!("{stem}.{}", self.name)), Path::to_owned);
-        // Before anything takes its time.
-        let folder = Folder::open(&out, &[self.name], true)?;
+        let (folder, stem) = self.folder()?;
+        let out = self.out(&stem);
         let journal = Journal::open(&out, &subject.identity(self.name, options))?;
         journal.notes().iter().for_each(warn);
         if !common.quiet && !journal.is_empty() {

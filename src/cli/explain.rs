@@ -10,6 +10,7 @@ use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use stripmine_physics::averages::Outcome;
+use stripmine_physics::memory::peak;
 use stripmine_physics::method::{Methods, load};
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
@@ -31,6 +32,9 @@ pub(super) struct ExplainVerb {
     /// The quantity whose mean it is; what the method is mostly asked for by default
     #[arg(long = "of", value_name = "QUANTITY")]
     quantity: Option<String>,
+    /// Wall seconds that the run may take: the plan of the least error that can be had in them
+    #[arg(long = "time", value_name = "SECONDS", conflicts_with = "error", value_parser = above_zero)]
+    within: Option<f64>,
     /// Runs nothing: by what is kept of the scene
     #[arg(long, conflicts_with = "patient")]
     estimate: bool,
@@ -50,6 +54,16 @@ pub(super) struct ExplainVerb {
     #[arg(long)]
     forget: bool,
 }
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    let is_time = |seconds: &f64| seconds.is_finite() && *seconds > 0.0;
+    text.parse().ok().filter(is_time).ok_or_else(|| "a time is a number of seconds above 0".to_owned())
+}
+
+/// Bytes.
+const MEGABYTE: f64 = 1e6;
+/// Trials may take so much more memory than a run: several ways are prepared one after the other (bytes).
+const MORE: f64 = 16e6;
 
 fn width(text: &str) -> Result<Width, String> {
     Width::parse(text).ok_or_else(|| "an error is a number above 0, or a part such as 1%".to_owned())
@@ -87,6 +101,7 @@ impl ExplainVerb {
         let Some(scene) = &self.scene else { return Ok(()) };
         let case = Case::load(scene, &self.overrides, methods)?;
         let target = Target::of(&case, self.quantity.as_deref(), self.error).map_err(failed)?;
+        let target = Target { within: self.within, ..target };
         let seconds = match (self.estimate, self.patient) {
             (true, _) => 0.0,
             (_, true) => SECONDS[1],
@@ -141,7 +156,7 @@ impl ExplainVerb {
         let found: Sample = sample(&prepared, observed, Span::Time(plan.time, None), signals::asked())
             .map_err(Failure::from)?;
         let seeds = plan.seeds as f64;
-        let known = found.known();
+        let known = if plan.is_whole { None } else { found.known() };
         let mut rows = vec![Compared {
             what: "wall time of a run".to_owned(),
             estimated: plan.seconds.likely,
@@ -158,6 +173,39 @@ impl ExplainVerb {
                 unit: plan.unit.to_owned(),
                 is_within: farthest <= plan.error.unwrap_or(f64::INFINITY),
                 advice: "two steps did not tell the law: --patient",
+            });
+        }
+        for (name, estimated) in &plan.phases {
+            let actual =
+                found.phases.iter().find(|(phase, _)| phase == name).map(|(_, cost)| cost * found.time);
+            let Some(actual) = actual else { continue };
+            rows.push(Compared {
+                what: format!("of it: {name}"),
+                estimated: *estimated,
+                actual,
+                unit: "s".to_owned(),
+                // What takes next to nothing is not foreseen as a part of itself.
+                is_within: (actual - estimated).abs() <= 0.5 * estimated + 0.02 * found.seconds,
+                advice: "the phases of another step or start: --patient",
+            });
+        }
+        rows.extend(peak().map(|peak| Compared {
+            what: "memory, of trials too".to_owned(),
+            estimated: plan.memory as f64 / MEGABYTE,
+            actual: peak as f64 / MEGABYTE,
+            unit: "MB".to_owned(),
+            is_within: peak as f64 <= plan.memory as f64 + MORE,
+            advice: "trials took more than a run: see scene check for that of a run",
+        }));
+        if let (true, Some([mean, bar])) = (plan.is_whole, plan.mean) {
+            let chance = plan.expected.chance * seeds.sqrt();
+            rows.push(Compared {
+                what: format!("{} over the whole run, less that of the reference", plan.quantity),
+                estimated: 0.0,
+                actual: found.whole_mean() - mean,
+                unit: plan.unit.to_owned(),
+                is_within: (found.whole_mean() - mean).abs() <= plan.expected.bias.with(chance.hypot(bar)),
+                advice: "the step or the digits take it off: --patient",
             });
         }
         if let (Some(known), Some([mean, bar])) = (known, plan.mean) {

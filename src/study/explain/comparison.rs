@@ -3,7 +3,8 @@
 use super::ExplainError;
 use super::bias::Bias;
 use super::drift::Drift;
-use super::findings::{Findings, HALVINGS, Reference, SHARES, Way, Work, sort};
+use super::findings::{Findings, HALVINGS, SHARES, Way, Work, sort};
+use super::reference::Reference;
 use super::sample::{Known, Sample, Span};
 use crate::study::Choice;
 use stripmine_physics::averages::Outcome;
@@ -16,6 +17,20 @@ const POWERS: [f64; 2] = [1.0, 2.0];
 /// The highest order of an integrator here.
 const MOST_POWER: f64 = 8.0;
 
+/// The check of a run that says that positions have too few digits.
+const ROUNDING: &str = "rounding";
+
+/// What came of comparing a way.
+#[derive(Clone, Copy, PartialEq)]
+enum Found {
+    /// Its mean, at this cost over what the first stretches took.
+    Cost(f64),
+    /// Its digits lose motion.
+    TooFewDigits,
+    /// It takes no steps.
+    Nothing,
+}
+
 impl Work<'_> {
     /// The means of the cheapest ways at their longest steps, held against the reference: of each integrator the one with the cheapest digits. Other digits and
     /// searches have the same bias: rounding is far below what can be seen of a mean.
@@ -23,6 +38,7 @@ impl Work<'_> {
         if self.case.entry.trials.is_none() {
             // The reference is the way itself.
             ways[0].cost = Some(reference.cost);
+            ways[0].phases = reference.phases.clone();
             return;
         }
         let mut compared: Vec<usize> = vec![];
@@ -36,46 +52,81 @@ impl Work<'_> {
             }
         }
         let seconds = SHARES[2] * self.seconds / compared.len().max(1) as f64;
-        for at in compared {
-            let power = self.power(&self.choice(&ways[at]));
-            let way = &mut ways[at];
-            let Some(mut step) = way.step else { continue };
-            // What a way takes over what the first stretches took.
-            let mut slower = 1.0;
-            for _ in 0..HALVINGS {
-                match self.sampled(way, Some(step), seconds) {
-                    Ok(sample) if sample.warnings.is_empty() => {
-                        let known = sample.known();
-                        reference.transients.extend(known.map(|known| known.transient));
-                        way.step = Some(step);
-                        slower = sample.cost / way.cost.unwrap_or(sample.cost);
-                        way.cost = Some(sample.cost);
-                        way.bias = known.map(|known| Bias::of(step, &known, &reference.known, power));
-                        break;
+        for first in compared {
+            let own = self.choice(&ways[first]);
+            let mut next = Some(first);
+            // With the cheapest digits that hold it.
+            while let Some(at) = next.take() {
+                let way = &mut ways[at];
+                let found = self.compared(way, reference, seconds);
+                let (way, choice) = (way.clone(), self.choice(way));
+                if found == Found::TooFewDigits {
+                    let alike = |other: &Way| {
+                        let other = self.choice(other);
+                        other.agrees(&choice, Decides::Order) && other.agrees(&choice, Decides::Digits)
+                    };
+                    for other in ways.iter_mut().filter(|other| alike(other)) {
+                        (other.dropped, other.step) = (way.dropped.clone(), way.step);
                     }
-                    Ok(sample) => way.bound = Some(format!("warned of: {}", sample.warnings.join("; "))),
-                    Err(why) => way.bound = Some(why),
+                    let has_more = |other: &Way| {
+                        other.dropped.is_none() && self.choice(other).agrees(&own, Decides::Order)
+                    };
+                    next = ways.iter().position(has_more);
+                    continue;
                 }
-                step *= 0.5;
-                way.cost = way.cost.map(|cost| 2.0 * cost);
-            }
-            if way.bias.is_none() {
-                let why = || Some("it has no mean in the time of a trial".to_owned());
-                way.dropped = way.bound.clone().or_else(why);
-            }
-            let (own, way) = (self.choice(way), way.clone());
-            let alike = |other: &Way| self.choice(other).agrees(&own, Decides::Order);
-            for other in ways
-                .iter_mut()
-                .filter(|other| other.label != way.label && other.dropped.is_none() && alike(other))
-            {
-                let shorter = other.step.zip(way.step).map_or(1.0, |(longest, step)| longest / step);
-                other.cost = other.cost.map(|cost| slower * shorter * cost);
-                (other.step, other.bias) = (way.step, way.bias);
-                (other.bound, other.dropped) = (way.bound.clone(), way.dropped.clone());
+                let Found::Cost(slower) = found else { continue };
+                let alike = |other: &Way| self.choice(other).agrees(&own, Decides::Order);
+                for other in ways
+                    .iter_mut()
+                    .filter(|other| other.label != way.label && other.dropped.is_none() && alike(other))
+                {
+                    let shorter = other.step.zip(way.step).map_or(1.0, |(longest, step)| longest / step);
+                    other.cost = other.cost.map(|cost| slower * shorter * cost);
+                    (other.step, other.bias) = (way.step, way.bias);
+                    (other.bound, other.dropped) = (way.bound.clone(), way.dropped.clone());
+                }
             }
         }
         sort(ways);
+    }
+
+    /// The mean of a way at the longest step at which it is not warned of.
+    fn compared(&self, way: &mut Way, reference: &mut Reference, seconds: f64) -> Found {
+        let power = self.power(&self.choice(way));
+        let Some(longest) = way.step else { return Found::Nothing };
+        let mut step = longest;
+        // What a way takes over what the first stretches took.
+        let mut slower = 1.0;
+        for _ in 0..HALVINGS {
+            match self.measured(way, Some(step), seconds) {
+                Ok((sample, known)) if sample.warnings.is_empty() => {
+                    reference.transients.extend(known.map(|known| known.transient));
+                    way.step = Some(step);
+                    slower = sample.cost / way.cost.unwrap_or(sample.cost);
+                    way.cost = Some(sample.cost);
+                    way.phases = sample.phases;
+                    way.bias = known.map(|known| Bias::of(step, &known, &reference.known, power));
+                    break;
+                }
+                Ok((sample, _)) => {
+                    let why = format!("warned of: {}", sample.warned());
+                    if sample.warnings.iter().any(|warning| warning.check == ROUNDING) {
+                        // A shorter step loses more of it.
+                        (way.dropped, way.step) = (Some(why), Some(longest));
+                        return Found::TooFewDigits;
+                    }
+                    way.bound = Some(why);
+                }
+                Err(why) => way.bound = Some(why),
+            }
+            step *= 0.5;
+            way.cost = way.cost.map(|cost| 2.0 * cost);
+        }
+        if way.bias.is_none() {
+            let why = || Some("it has no mean in the time of a trial".to_owned());
+            way.dropped = way.bound.clone().or_else(why);
+        }
+        Found::Cost(slower)
     }
 
     /// The power of the step with which errors of means fall: that of theory for positions, but no more than 2, for contacts have kinks.
@@ -109,6 +160,7 @@ impl Work<'_> {
                     };
                     (start, row) = (both[0].start, both[0].row);
                     way.cost = Some(both[0].cost);
+                    way.phases = both[0].phases.clone();
                     way.drift = Some(Drift {
                         step: longest,
                         farthest: [far(&both[0]), far(&both[1])],
@@ -132,6 +184,8 @@ impl Work<'_> {
             ways,
             reference,
             reference_way,
+            reference_step: None,
+            whole: None,
             starts_differ: None,
             start,
             row,

@@ -2,11 +2,12 @@
 
 use super::Target;
 use super::bias::Off;
+use super::decisions::decisions;
 use super::findings::{Findings, Way};
+use super::lengths::{Length, Weighed};
 use super::optimum::Optimum;
-use super::plan::{
-    Decision, Expected, Interval, Length, Own, Plan, TIME_WITHIN, Weighed, decisions, in_unit, overrides,
-};
+use super::plan::{TIME_WITHIN, in_unit, overrides, phases};
+use super::recommended::{Decision, Expected, Interval, Own, Plan};
 use super::sample::ROWS;
 use crate::study::Case;
 use stripmine_physics::number::significant;
@@ -73,8 +74,10 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
         expected: Expected::of(best.optimum.bias, 0.0),
         seconds: Interval { least: likely / TIME_WITHIN, likely, most: likely * TIME_WITHIN },
         memory: case.prepared.memory.needed,
+        phases: phases(best, time),
         step,
         time,
+        is_whole: false,
         transient: 0.0,
         seeds: 1,
         starts_differ: None,

@@ -10,6 +10,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
+use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
 use stripmine_physics::reported::{Class, Reported};
 
@@ -51,9 +52,15 @@ struct File {
     host: String,
     /// When.
     moment: String,
-    /// Seconds of trials.
+    /// Seconds of trials that were asked for, and that they took.
     seconds: f64,
+    taken: f64,
     findings: Findings,
+}
+
+/// As much of a commit as tells it from others.
+fn short(commit: &str) -> &str {
+    commit.get(..10).unwrap_or(commit)
 }
 
 impl Kept {
@@ -70,10 +77,16 @@ impl Kept {
     pub fn within(folder: Option<PathBuf>) -> Kept {
         let here = Provenance::here(String::new(), 0.0);
         let host = format!(
-            "{}, {} threads, stripmine {}",
+            "{}, {} threads, stripmine {}{}",
             here.machine.processor,
             rayon::current_num_threads(),
-            here.origin.version
+            here.origin.version,
+            // Between versions it is another program with every commit.
+            if here.origin.is_committed() {
+                format!(" of {}", short(&here.origin.commit))
+            } else {
+                String::new()
+            }
         );
         Kept { folder, host }
     }
@@ -113,22 +126,29 @@ impl Kept {
         if file.host != self.host || file.seconds < seconds {
             return Ok(None);
         }
-        let origin = format!("kept from {} ({} s of trials on {})", file.moment, file.seconds, file.host);
+        let taken = significant(file.taken, 2);
+        let origin = format!("kept from {} ({taken} s of trials on {})", file.moment, file.host);
         Ok(Some((file.findings, origin)))
     }
 
-    /// Keeps what was measured, and says where it comes from.
+    /// Keeps what was measured in trials of so many seconds as were asked for, and that they took, and says where it comes from.
     ///
     /// # Errors
     /// [`KeptError`] if it cannot be written.
-    pub fn keep(&self, key: &str, seconds: f64, findings: &Findings) -> Result<String, KeptError> {
-        let origin = format!("{seconds} s of trials on {}", self.host);
+    pub fn keep(
+        &self,
+        key: &str,
+        [seconds, taken]: [f64; 2],
+        findings: &Findings,
+    ) -> Result<String, KeptError> {
+        let origin = format!("{} s of trials on {}", significant(taken, 2), self.host);
         let Some(path) = self.path(key) else { return Ok(origin) };
         let file = File {
             scene: key.to_owned(),
             host: self.host.clone(),
             moment: stripmine_physics::origin::moment(SystemTime::now()),
             seconds,
+            taken,
             findings: findings.clone(),
         };
         let fail = |source| KeptError::File { path: path.clone(), source };

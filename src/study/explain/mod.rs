@@ -6,27 +6,42 @@
 
 mod bias;
 mod comparison;
+mod decisions;
 mod drift;
 mod findings;
 mod keeping;
 mod kept;
+mod lengths;
 mod optimum;
 mod plan;
+pub mod precision;
+pub mod precision_page;
+mod recommended;
+mod reference;
 pub mod regret;
 mod sample;
 mod scenes;
 pub mod section;
+mod seen;
+mod skin;
+mod timing;
+mod twins;
+mod whole;
 mod words;
 
 pub use kept::{Kept, KeptError};
-pub use plan::{Beside, Decision, Interval, LeftOut, Own, Plan, in_unit};
+pub use plan::in_unit;
+pub use precision::{Curve, Precision, precision};
+pub use recommended::{Beside, Decision, Expected, Interval, LeftOut, Need, Own, Plan};
 pub use sample::{Known, Sample, Span, sample};
 pub use scenes::SCENES;
 pub use words::{page, with_unit};
 
 use super::Case;
-use findings::findings;
+use findings::Findings;
+use seen::{planned, seen};
 use std::sync::atomic::AtomicBool;
+use std::time::Instant;
 use stripmine_physics::method::{Kind, Quantity};
 use stripmine_physics::number::significant;
 use stripmine_physics::reported::{Class, Reported};
@@ -44,6 +59,8 @@ pub struct Target {
     pub place: usize,
     /// The error of its mean that can be borne; none where the scene's own values are to be judged.
     pub error: Option<Width>,
+    /// Wall seconds in which the least error is to be had, in the place of an error.
+    pub within: Option<f64>,
 }
 
 /// Why there is no plan.
@@ -65,7 +82,7 @@ pub enum ExplainError {
     EveryWayFails(Vec<(String, String)>),
     /// The quantity comes to no mean.
     #[error(
-        "{quantity} comes to no mean in the trials: {why}\n  help: --patient looks longer; or choose another quantity with --of"
+        "{quantity} comes to no mean in the trials: {why}\n  help: --patient looks longer, and where some whole runs take less than that, at these; or choose another quantity with --of"
     )]
     NoMean {
         /// The quantity.
@@ -134,7 +151,7 @@ impl Target {
         let name = name.unwrap_or_else(first);
         let place = quantities.iter().position(|it| it.name == name && is_judged(&it));
         let place = place.ok_or_else(|| ExplainError::NoSuchQuantity { name: name.to_owned(), known })?;
-        Ok(Target { quantity: quantities[place], place, error })
+        Ok(Target { quantity: quantities[place], place, error, within: None })
     }
 
     /// Whether it should keep its value: its error is then how far it goes from the first.
@@ -160,16 +177,56 @@ pub fn explain(
         Some((findings, origin)) => (findings, origin),
         None if seconds == 0.0 => return Err(ExplainError::NothingKept),
         None => {
-            let findings = findings(case, target, seconds, stop)?;
-            let origin = kept.keep(&key, seconds, &findings)?;
+            let begun = Instant::now();
+            let findings = seen(case, target, seconds, stop)?;
+            let origin = kept.keep(&key, [seconds, begun.elapsed().as_secs_f64()], &findings)?;
             (findings, origin)
         }
     };
-    let plan = if target.is_kept() { keeping::keeping } else { plan::plan };
-    plan(case, target, &findings, &origin).map_err(|least| ExplainError::OutOfReach {
+    let made = match target.within {
+        Some(within) => within_seconds(case, target, &findings, &origin, within),
+        None => planned(case, target, &findings, &origin),
+    };
+    made.map_err(|least| ExplainError::OutOfReach {
         quantity: target.quantity.name,
         wanted: target.error.map_or(0.0, |width| in_unit(width, findings.reference.mean)),
         least,
         cost: None,
     })
+}
+
+/// Errors are asked for within this factor of the least that can be had in a time.
+const NEAR: f64 = 1.02;
+/// From the least to the largest error that is weighed against a time, in parts of the mean.
+const WEIGHED: [f64; 2] = [1e-12, 10.0];
+
+/// The plan of the least error that is expected to take no more than some wall seconds.
+///
+/// # Errors
+/// The least error of a plan, where none is as quick.
+fn within_seconds(
+    case: &Case,
+    target: &Target,
+    findings: &Findings,
+    origin: &str,
+    within: f64,
+) -> Result<Plan, f64> {
+    let scale = if target.is_kept() { 1.0 } else { findings.reference.mean.abs() };
+    let asking = |error: f64| {
+        let target = Target { error: Some(Width::Absolute(error * scale)), ..target.clone() };
+        planned(case, &target, findings, origin)
+    };
+    let [mut low, mut high] = WEIGHED;
+    let mut best = None;
+    while high / low > NEAR {
+        let middle = (low * high).sqrt();
+        match asking(middle) {
+            Ok(plan) if plan.seconds.likely <= within => {
+                high = middle;
+                best = Some(plan);
+            }
+            _ => low = middle,
+        }
+    }
+    best.ok_or(WEIGHED[1] * scale)
 }

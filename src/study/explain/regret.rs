@@ -1,9 +1,12 @@
 //! How good plans are: each beside the best that trials of several times as long know, carried out, and held against the error that was asked for.
 
-use super::findings::{Findings, findings};
-use super::keeping::keeping;
-use super::plan::{Plan, cost_of, plan};
-use super::sample::{Sample, Span, sample};
+use super::bias::Off;
+use super::findings::Findings;
+use super::plan::way_of;
+use super::recommended::{LeftOut, Plan};
+use super::reference::no_mean;
+use super::sample::{Known, ROWS, Sample, Span, sample};
+use super::seen::{planned, seen};
 use super::{Target, in_unit};
 use crate::results::{Meter, Progress};
 use crate::study::{Case, StudyError};
@@ -55,7 +58,8 @@ pub struct Judged {
     pub is_met: bool,
     /// Wall seconds: foreseen, and taken.
     pub seconds: Option<[f64; 2]>,
-    /// Cost over that of the best.
+    /// Cost over that of the best, by what the longer trials know: as planned, or what its way and step take for the error, whichever is more. The
+    /// first alone would praise a run that is too short.
     pub regret: Option<f64>,
     /// The same of three baselines: lists always, the scene's own step, f64 by the scene's own integrator at the longest step; none where they do
     /// not come to the error.
@@ -64,6 +68,8 @@ pub struct Judged {
     pub recommended: String,
     /// What would have been the best.
     pub best: String,
+    /// What the scene may be modelled without.
+    pub left_out: Vec<LeftOut>,
     /// Why there is no plan.
     pub failed: Option<String>,
 }
@@ -98,18 +104,18 @@ fn judge(asked: &Asked, effort: Effort) -> Result<Judged, StudyError> {
         baselines: [None; 3],
         recommended: String::new(),
         best: String::new(),
+        left_out: vec![],
         failed: None,
     };
     let never = AtomicBool::new(false);
-    let planned = |seconds: f64| -> Result<(Findings, Plan), String> {
-        let found = findings(&case, &target, seconds, &never).map_err(|error| error.to_string())?;
-        let make = if target.is_kept() { keeping } else { plan };
-        let made = make(&case, &target, &found, "")
+    let by_trials = |seconds: f64| -> Result<(Findings, Plan), String> {
+        let found = seen(&case, &target, seconds, &never).map_err(|error| error.to_string())?;
+        let made = planned(&case, &target, &found, "")
             .map_err(|least| format!("no way comes to it; the bias is known to {least:.2e} at best"))?;
         Ok((found, made))
     };
-    let (found, made) = match planned(effort.plan) {
-        Ok(planned) => planned,
+    let (found, made) = match by_trials(effort.plan) {
+        Ok(both) => both,
         Err(why) => {
             judged.failed = Some(why);
             return Ok(judged);
@@ -117,8 +123,8 @@ fn judge(asked: &Asked, effort: Effort) -> Result<Judged, StudyError> {
     };
     judged.recommended = said(&made);
     judged.error = made.error.unwrap_or(f64::NAN);
-    let (known, best) = match planned(effort.best) {
-        Ok(planned) => planned,
+    let (known, best) = match by_trials(effort.best) {
+        Ok(both) => both,
         Err(_) => (found, made.clone()),
     };
     judged.best = said(&best);
@@ -126,7 +132,14 @@ fn judge(asked: &Asked, effort: Effort) -> Result<Judged, StudyError> {
         judged.error = target.error.map_or(f64::NAN, |width| in_unit(width, mean));
     }
     let cheapest = best.seconds.likely;
-    judged.regret = cost_of(&made, &known).map(|cost| cost / cheapest);
+    let ratios = [
+        cost_of(&made, &known).map(|cost| cost / cheapest),
+        cost_for(&made, &known, judged.error)
+            .zip(cost_for(&best, &known, judged.error))
+            .map(|(own, best)| own / best),
+    ];
+    judged.regret = ratios.into_iter().flatten().reduce(f64::max);
+    judged.left_out.clone_from(&best.left_out);
     judged.baselines = baselines(&case, &target, &known).map(|cost| Some(cost? / cheapest));
     if made.seconds.likely > LONGEST {
         judged.failed = Some(format!("not carried out: it would take {:.0} s", made.seconds.likely));
@@ -142,6 +155,25 @@ fn judge(asked: &Asked, effort: Effort) -> Result<Judged, StudyError> {
         Err(why) => judged.failed = Some(why),
     }
     Ok(judged)
+}
+
+/// What a plan costs by other findings (wall seconds); none where these do not know its way.
+fn cost_of(plan: &Plan, findings: &Findings) -> Option<f64> {
+    let way = way_of(plan, findings)?;
+    let cost = way.cost? * way.step.zip(plan.step).map_or(1.0, |(longest, step)| longest / step);
+    let threads = if plan.seeds > 1 { findings.one_thread } else { 1.0 };
+    Some(findings.start + ROWS[1] * findings.row + cost * threads * plan.time)
+}
+
+/// What the way and the step of a plan take for an error by other findings (wall seconds), however long it would run; none where these do not know the
+/// way, or say that its step does not come to the error.
+fn cost_for(plan: &Plan, findings: &Findings, error: f64) -> Option<f64> {
+    let way = way_of(plan, findings)?;
+    let part = way.step.zip(plan.step).map_or(1.0, |(longest, step)| step / longest);
+    let bias = way.bias.zip(plan.step).map_or(Off::default(), |(bias, step)| bias.at(step));
+    let chance = bias.leaves(error)?;
+    let Known { square, transient, .. } = findings.reference;
+    Some(way.cost? / part * (square / (chance * chance) + transient))
 }
 
 /// A plan in a line.
@@ -162,9 +194,8 @@ fn said(plan: &Plan) -> String {
 fn baselines(case: &Case, target: &Target, findings: &Findings) -> [Option<f64>; 3] {
     let of = |ways: Vec<super::findings::Way>| {
         let only = Findings { ways, ..findings.clone() };
-        let make = if target.is_kept() { keeping } else { plan };
         (!only.ways.is_empty())
-            .then(|| make(case, target, &only, "").ok())
+            .then(|| planned(case, target, &only, "").ok())
             .flatten()
             .map(|it| it.seconds.likely)
     };
@@ -230,7 +261,8 @@ fn carried_out(
     let seconds = samples.iter().map(|sample| sample.seconds).fold(0.0, f64::max);
     let values = samples.iter().map(|sample| match sample.outcome {
         Outcome::Kept { farthest, .. } => Ok(farthest),
-        _ => sample.known().map(|known| known.mean).ok_or_else(|| "the run has no mean".to_owned()),
+        _ if plan.is_whole => Ok(sample.whole_mean()),
+        _ => sample.known().map(|known| known.mean).ok_or_else(|| no_mean(sample)),
     });
     let values: Vec<f64> = values.collect::<Result<_, String>>()?;
     Ok((values.iter().sum::<f64>() / values.len() as f64, seconds))

@@ -4,7 +4,9 @@ use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use stripmine_physics::averages::{Average, Estimate, Outcome, Rows};
-use stripmine_physics::method::{Clock, Every, Failure, Prepared, Purpose, Quantity, Simulation, Until};
+use stripmine_physics::method::{
+    Clock, Every, Failure, Prepared, Purpose, Quantity, RunWarning, Simulation, Until,
+};
 
 /// Rows of a sample of some seconds, about: as many as a correlation needs, and so few that they cost little; and of one whose time is known.
 pub const ROWS: [f64; 2] = [1000.0, 250.0];
@@ -26,8 +28,16 @@ pub struct Sample {
     pub time: f64,
     /// What it says of the quantity.
     pub outcome: Outcome,
+    /// What it said at the end of the scene's own run, where it came beyond that.
+    pub at_end: Option<Outcome>,
     /// What its checks warn of.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<RunWarning>,
+    /// The quantity from stretch to stretch: when each ends (time), and its value there.
+    pub series: Vec<[f64; 2]>,
+    /// How long a stretch is (time).
+    pub spacing: f64,
+    /// Wall seconds of a unit of time in each phase, by name.
+    pub phases: Vec<(String, f64)>,
 }
 
 /// What a run says of a mean.
@@ -82,6 +92,18 @@ impl Sample {
     }
 }
 
+impl Sample {
+    /// What its checks warn of, in words.
+    pub fn warned(&self) -> String {
+        self.warnings.iter().map(|warning| warning.message.as_str()).collect::<Vec<_>>().join("; ")
+    }
+
+    /// The mean over the whole run, its beginning among it.
+    pub fn whole_mean(&self) -> f64 {
+        self.series.iter().map(|[_, value]| value).sum::<f64>() / self.series.len() as f64
+    }
+}
+
 /// How long a sample is.
 #[derive(Clone, Copy, Debug)]
 pub enum Span {
@@ -127,6 +149,7 @@ pub fn sample(
     let running = Instant::now();
     // Of the stretches once it is warm, and of all.
     let (mut warm, mut all) = ((0.0, 0.0), (0.0, 0.0));
+    let mut at_end = None;
     while running.elapsed() < limit && simulation.clock().time < most && !stop.load(Ordering::Relaxed) {
         let (from, begun) = (simulation.clock().time, Instant::now());
         simulation.advance(&[stride.after(&simulation.clock())], stop)?;
@@ -137,17 +160,29 @@ pub fn sample(
             warm = (warm.0 + gone, warm.1 + spent);
         }
         rows.add(&simulation.observe());
+        if at_end.is_none() && prepared.schedule.until.has_come(&simulation.clock()) {
+            at_end = Some(Average::of(&rows, place).outcome);
+        }
     }
     let (gone, spent) = if warm.0 > 0.0 { warm } else { all };
     let row = timed_row(simulation.as_ref());
+    let (time, series) = (simulation.clock().time, rows.course(place));
     Ok(Sample {
         cost: spent / gone,
         row,
         start,
         seconds: begun.elapsed().as_secs_f64(),
-        time: simulation.clock().time,
+        time,
         outcome: Average::of(&rows, place).outcome,
-        warnings: simulation.warnings().into_iter().map(|warning| warning.message).collect(),
+        at_end,
+        warnings: simulation.warnings(),
+        spacing: series.windows(2).map(|pair| pair[1][0] - pair[0][0]).next().unwrap_or(0.0),
+        series,
+        phases: simulation
+            .phases()
+            .into_iter()
+            .map(|(name, spent)| (name.to_owned(), spent / time))
+            .collect(),
     })
 }
 

@@ -1,5 +1,6 @@
 //! The page of plans, judged.
 
+use super::recommended::{LeftOut, Need};
 use super::regret::{Effort, Judged};
 use crate::console::Failure;
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
@@ -29,7 +30,7 @@ const EXPLAINED: usize = 3;
 /// # Errors
 /// If the dataset is none that JSON can hold.
 pub fn made(judged: &[Judged], effort: Effort, again: String) -> Result<Made, Failure> {
-    Made::new(section(judged, effort, again), &judged)
+    Ok(Made::new(section(judged, effort, again), &judged)?.with_tables([choices(judged), left_out(judged)]))
 }
 
 fn share(judged: &[Judged], is_so: impl Fn(&Judged) -> Option<bool>) -> (usize, usize) {
@@ -78,7 +79,7 @@ fn section(judged: &[Judged], effort: Effort, again: String) -> Section {
             explained(judged)
         )])
         .figures([figure(judged)])
-        .tables([table(judged), choices(judged)])
+        .tables([table(judged), saved(judged)])
         .again(again)
         .seeds([1, 1000])
         .depends_on_host()
@@ -147,9 +148,63 @@ fn table(judged: &[Judged]) -> Table {
         .cell("taken (s)", |it| it.seconds.map_or(Cell::Nothing, |[_, taken]| Cell::Short(taken)))
         .table("plans", "Plans, carried out")
         .note(format!(
-            "Cost over the best: by what the longer trials know. Median {}.",
+            "Cost over the best: by what the longer trials know, as planned or what the way and the step take for the error, whichever is more. Median {}.",
             significant(median(judged), 3)
         ))
+}
+
+/// What one scene may be modelled without.
+struct Twin<'j> {
+    judged: &'j Judged,
+    twin: &'j LeftOut,
+}
+
+fn twins(judged: &[Judged]) -> Vec<Twin<'_>> {
+    judged.iter().flat_map(|judged| judged.left_out.iter().map(move |twin| Twin { judged, twin })).collect()
+}
+
+/// What each of them saves, over all scenes that have it.
+fn saved(judged: &[Judged]) -> Table {
+    let twins = twins(judged);
+    let mut names: Vec<&str> = twins.iter().map(|it| it.twin.name.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let of = |name: &str| -> Vec<&LeftOut> {
+        twins.iter().map(|it| it.twin).filter(|it| it.name == name).collect()
+    };
+    let count = |name: &str, need: Need| of(name).iter().filter(|it| it.need == need).count() as f64;
+    let saving = |name: &str| {
+        let mut all: Vec<f64> = of(name).iter().filter_map(|it| Some(100.0 * (1.0 - it.cost?))).collect();
+        all.sort_by(f64::total_cmp);
+        quantile(&all, 0.5)
+    };
+    Rows::of(&names)
+        .text("without", |name| (*name).to_owned())
+        .cell("scenes", |name| Cell::Number(of(name).len() as f64, 0))
+        .cell("not needed for the error", |name| Cell::Number(count(name, Need::No), 0))
+        .cell("needed", |name| Cell::Number(count(name, Need::Yes), 0))
+        .cell("saves, median (%)", |name| saving(name).map_or(Cell::Nothing, |it| Cell::Number(it, 0)))
+        .table("saved", "What scenes may be modelled without, and what that saves of the wall time")
+        .note("The rest is not decided: differences are within their bars, or could not be compared. Scene by scene: left-out.csv.".to_owned())
+}
+
+/// The same scene by scene.
+fn left_out(judged: &[Judged]) -> Table {
+    let twins = twins(judged);
+    Rows::of(&twins)
+        .text("scene", |it| it.judged.scene.clone())
+        .text("quantity", |it| it.judged.quantity)
+        .cell("error asked", |it| {
+            if it.judged.error.is_finite() { Cell::Short(it.judged.error) } else { Cell::Nothing }
+        })
+        .text("without", |it| it.twin.name.clone())
+        .cell("wall time over that with it", |it| it.twin.cost.map_or(Cell::Nothing, Cell::Short))
+        .cell("change of the mean", |it| {
+            it.twin.change.map_or(Cell::Nothing, |[change, _]| Cell::Short(change))
+        })
+        .cell("± (95 %)", |it| it.twin.change.map_or(Cell::Nothing, |[_, bar]| Cell::Short(bar)))
+        .text("needed", |it| it.twin.need.word())
+        .table("left-out", "What the scenes may be modelled without")
 }
 
 fn median(judged: &[Judged]) -> f64 {

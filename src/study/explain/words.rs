@@ -1,6 +1,6 @@
 //! A plan as a page that is read in a minute.
 
-use super::plan::{Beside, Decision, Expected, Interval, LeftOut, Plan};
+use super::recommended::{Beside, Decision, Expected, Interval, LeftOut, Plan};
 use stripmine_physics::memory::in_words;
 use stripmine_physics::number::{significant, with_bar};
 

@@ -13,6 +13,7 @@ mod plan;
 pub mod section;
 
 pub use dataset::{Order, Reference, Run, Way, WorkPrecision};
+pub use front::front;
 pub use measures::{Errors, Measure};
 pub use plan::Plan;
 

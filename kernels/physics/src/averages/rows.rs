@@ -172,6 +172,13 @@ impl Rows {
         rates.collect()
     }
 
+    /// The series of a quantity with the times at which its stretches end: (time, value). What is observed since the start is that of each stretch.
+    pub fn course(&self, place: usize) -> Vec<[f64; 2]> {
+        let (from, spacing) = (self.from(), self.block_spacing());
+        let values = self.series(place).into_iter().zip(1_u32..);
+        values.map(|(value, number)| [from + f64::from(number) * spacing, value]).collect()
+    }
+
     /// First value, last value, and the largest difference from the first.
     pub(super) fn kept(&self, place: usize) -> [f64; 3] {
         let at = |row: &[f64]| row.get(place).copied().unwrap_or(0.0);

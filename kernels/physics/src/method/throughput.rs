@@ -1,5 +1,6 @@
 //! How fast is a method? Moving particles, timed.
 
+use crate::memory;
 use crate::method::observed::{UnknownName, find};
 use crate::method::{Bench, Failure, Prepared, Purpose, Simulation};
 use crate::reported::{Class, Reported};
@@ -208,7 +209,7 @@ impl TimedRun {
             steps,
             seconds: best.wall,
             cpu_seconds: best.cpu,
-            peak_memory_bytes: peak_memory(),
+            peak_memory_bytes: memory::peak(),
             checksum: simulation.particles().checksum(),
             rate_name: bench.rate,
             rate: best.work / best.wall,
@@ -219,13 +220,6 @@ impl TimedRun {
             at_end: at_end.into_iter().map(|(name, at)| (name, after[at])).collect(),
         }
     }
-}
-
-/// The peak memory of this process, where the system gives it (Linux: `VmHWM`).
-fn peak_memory() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-    Some(line.split_whitespace().nth(1)?.parse::<u64>().ok()? * 1024)
 }
 
 impl Reported for MeasurementError {

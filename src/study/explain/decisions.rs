@@ -1,0 +1,204 @@
+//! What a plan recommends, choice by choice, each with its reason and what stands beside it.
+
+use super::findings::{Findings, Way};
+use super::lengths::{Length, Weighed};
+use super::recommended::{Beside, Decision, LeftOut, Need};
+use crate::study::Case;
+use stripmine_physics::number::significant;
+
+/// Every choice of a plan.
+pub(super) fn decisions(
+    case: &Case,
+    findings: &Findings,
+    weighed: &[Weighed<'_>],
+    length: &Length,
+    wanted: f64,
+) -> Vec<Decision> {
+    let best = &weighed[0];
+    let mut all = vec![];
+    for (axis, chosen) in &best.way.settings {
+        let mut beside: Vec<Beside> = vec![];
+        // Of each other setting the cheapest way that has it.
+        let known = weighed.iter().map(|it| it.way);
+        for way in known.chain(&findings.ways) {
+            let Some((_, other)) = way.settings.iter().find(|(name, _)| name == axis) else { continue };
+            if other == chosen || beside.iter().any(|it| it.name == *other) {
+                continue;
+            }
+            let own = weighed.iter().find(|it| it.way.label == way.label);
+            let differs = way.settings.iter().filter(|it| !best.way.settings.contains(it) && it.0 != *axis);
+            let with: Vec<&str> = differs.map(|(_, name)| name.as_str()).collect();
+            let with = if with.is_empty() { String::new() } else { format!(" (with {})", with.join(" ")) };
+            beside.push(Beside {
+                name: other.clone(),
+                cost: own.map(|it| it.optimum.seconds / best.optimum.seconds),
+                why: why_not(way, own, best) + &with,
+            });
+        }
+        let why = match beside.iter().filter_map(|it| it.cost).reduce(f64::min) {
+            Some(next) if next > 1.05 => format!("the next takes {} times as long", significant(next, 2)),
+            Some(_) => "another is as cheap, within what can be timed".to_owned(),
+            None if beside.is_empty() => "there is no other".to_owned(),
+            None => "no other comes into question".to_owned(),
+        };
+        all.push(Decision { what: axis.clone(), chosen: chosen.clone(), why, beside });
+    }
+    all.extend(best.way.skin.map(|[own, skin, cost]| Decision {
+        what: "skin".to_owned(),
+        chosen: significant(skin, 3),
+        why: format!(
+            "a step takes {} of the time that it takes with the scene's own, {}",
+            significant(cost, 2),
+            significant(own, 3)
+        ),
+        beside: vec![],
+    }));
+    if let Some(longest) = best.way.step {
+        all.push(step_decision(case, best, longest, wanted));
+    }
+    let reference = &findings.reference;
+    all.push(Decision {
+        what: "run length".to_owned(),
+        chosen: significant(findings.whole.unwrap_or(length.time / length.seeds as f64 + reference.transient), 4),
+        why: if findings.whole.is_some() {
+            "the scene's own: the quantity changes all along, and what is asked for is its mean over the whole run".to_owned()
+        } else { format!(
+            "{} to average over for a chance of ± {}, after a transient of {}",
+            significant(length.time, 3),
+            significant((reference.square / length.time).sqrt(), 2),
+            significant(reference.transient, 3)
+        ) },
+        beside: vec![],
+    });
+    all.push(Decision {
+        what: "seeds".to_owned(),
+        chosen: length.seeds.to_string(),
+        why: length.why.clone(),
+        beside: vec![],
+    });
+    all
+}
+
+fn step_decision(case: &Case, best: &Weighed<'_>, longest: f64, wanted: f64) -> Decision {
+    let step = best.optimum.part * longest;
+    let own = case
+        .step()
+        .map_or(String::new(), |own| format!("{} times the scene's own; ", significant(step / own, 2)));
+    let bound = best.way.bound.clone().unwrap_or_else(|| "nothing bounds it by theory".to_owned());
+    let mut beside = vec![Beside {
+        name: significant(longest, 3),
+        cost: None,
+        why: format!("the longest that nothing speaks against ({bound})"),
+    }];
+    if best.optimum.part == 1.0 {
+        beside.clear();
+    }
+    let why = match best.way.bias {
+        Some(bias) => format!(
+            "{own}bias at most {} of the {} allowed, as {} at {} was {} ± {} off",
+            significant(best.optimum.bias.most(), 2),
+            significant(wanted, 2),
+            best.way.label,
+            significant(bias.step, 3),
+            significant(bias.difference, 2),
+            significant(bias.bar, 2)
+        ),
+        None => own,
+    };
+    Decision { what: "dt".to_owned(), chosen: significant(step, 4), why, beside }
+}
+
+fn why_not(way: &Way, own: Option<&Weighed<'_>>, best: &Weighed<'_>) -> String {
+    if let Some(why) = &way.dropped {
+        return why.clone();
+    }
+    let costs = |cost: f64| significant(cost / best.way.cost.unwrap_or(f64::NAN), 2);
+    if let Some(drift) = way.drift.filter(|_| own.is_none()) {
+        return format!("it is off by {} at half of its longest step", significant(drift.farthest[1], 2));
+    }
+    match (own, way.cost) {
+        (Some(own), _) if own.optimum.seconds > best.optimum.seconds => "for the same error".to_owned(),
+        (Some(_), _) => "as cheap".to_owned(),
+        (None, Some(_)) if way.bias.is_some() => "its bias is more than the error asked for".to_owned(),
+        (None, Some(cost)) => format!(
+            "a unit of time costs {} times as much at its longest step; its means were not compared",
+            costs(cost)
+        ),
+        (None, None) => "it was not timed".to_owned(),
+    }
+}
+
+/// What was seen of what the scene may be modelled without.
+pub(super) fn left_out(findings: &Findings, wanted: f64, mean: f64) -> Vec<LeftOut> {
+    let all = findings.without.iter().map(|it| {
+        let off = it.difference.map(|[difference, bar]| {
+            let parts = [difference, bar].map(|value| significant(value, 2));
+            let shares = [difference, bar].map(|value| significant(100.0 * value / mean.abs(), 2));
+            format!("by {} ± {} ({} ± {} %)", parts[0], parts[1], shares[0], shares[1])
+        });
+        let need = match it.difference {
+            Some([difference, bar]) if difference.abs() - bar > wanted => Need::Yes,
+            Some([difference, bar]) if difference.abs() + bar <= wanted => Need::No,
+            Some(_) => Need::Undecided,
+            None => Need::NotCompared,
+        };
+        let off = off.unwrap_or_default();
+        let says = match need {
+            Need::Yes => format!("needed: without it the mean changes {off}"),
+            Need::No => format!("not needed for this error: without it the mean changes {off}"),
+            Need::Undecided => format!("not decided: the mean changes {off}"),
+            Need::NotCompared => match &it.failed {
+                Some(why) => format!("not compared: {why}"),
+                None => "not compared".to_owned(),
+            },
+        };
+        LeftOut { name: it.name.clone(), change: it.difference, cost: it.cost, need, says }
+    });
+    all.chain(digits(findings)).collect()
+}
+
+/// The digits in which a scene is mostly run, and half of them.
+const DIGITS: [&str; 2] = ["f64", "f32"];
+
+/// The second half of the digits, by the cheapest way that was timed with and without.
+fn digits(findings: &Findings) -> Option<LeftOut> {
+    let of =
+        |way: &Way, axis: &str| way.settings.iter().find(|(name, _)| name == axis).map(|(_, it)| it.clone());
+    let with = |half: &Way| {
+        let is_twin = |other: &&Way| {
+            of(other, AXIS).as_deref() == Some(DIGITS[0])
+                && other.settings.iter().all(|it| it.0 == AXIS || half.settings.contains(it))
+        };
+        findings.ways.iter().find(is_twin)
+    };
+    let mut halves = findings.ways.iter().filter(|way| of(way, AXIS).as_deref() == Some(DIGITS[1]));
+    let (half, cost) = halves.find_map(|half| {
+        let full = with(half)?;
+        // Steps may differ.
+        let cost = half.cost? * half.step? / (full.cost? * full.step?);
+        Some((half, cost))
+    })?;
+    let (need, says) = match (&half.dropped, half.bias) {
+        (Some(why), _) => (Need::Yes, format!("needed: {why}")),
+        (None, Some(bias)) => (
+            Need::No,
+            format!(
+                "not needed: with half of them the mean was {} ± {} off at a step of {}, that of the step among it",
+                significant(bias.difference, 2),
+                significant(bias.bar, 2),
+                significant(bias.step, 3)
+            ),
+        ),
+        (None, None) => (Need::NotCompared, "not compared".to_owned()),
+    };
+    Some(LeftOut {
+        name: "the second half of the digits (f32 for f64)".to_owned(),
+        change: None,
+        cost: Some(cost),
+        need,
+        says,
+    })
+}
+
+/// The axis of digits.
+const AXIS: &str = "precision";

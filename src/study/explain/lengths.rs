@@ -1,0 +1,107 @@
+//! Which step of a way and which time reach an error most cheaply, and over how many runs that time is spread.
+
+use super::bias::Off;
+use super::findings::{Findings, Way};
+use super::optimum::{Optimum, Terms, optimum};
+use super::sample::ROWS;
+use crate::study::Case;
+use stripmine_physics::number::significant;
+
+/// Independent samples that a run has at least: so many that it knows the error of its own mean.
+const SAMPLES: f64 = 30.0;
+
+/// A way with what it takes for the error.
+pub(super) struct Weighed<'w> {
+    pub(super) way: &'w Way,
+    pub(super) optimum: Optimum,
+}
+
+/// The cheapest step and time of a way; a way that was not compared has the bias of none, and is not weighed where others were.
+pub(super) fn weigh(way: &Way, findings: &Findings, wanted: f64) -> Option<Optimum> {
+    let reference = &findings.reference;
+    let terms = Terms { cost: way.cost?, square: reference.square, transient: reference.transient };
+    match (way.step, way.bias) {
+        (None, _) => optimum(terms, wanted, |_| Off::default()).filter(|it| it.part == 1.0),
+        (Some(step), Some(bias)) => optimum(terms, wanted, |part| bias.at(part * step)),
+        (Some(_), None) => None,
+    }
+}
+
+/// How the time is spread over runs.
+pub(super) struct Length {
+    /// Time that is averaged over, of all runs (time).
+    pub(super) time: f64,
+    pub(super) seeds: u64,
+    /// Wall seconds of all.
+    pub(super) seconds: f64,
+    pub(super) why: String,
+}
+
+/// # Errors
+/// The bar of one run, where more of them are needed and there is one start only.
+pub(super) fn length(case: &Case, best: &Weighed<'_>, findings: &Findings) -> Result<Length, f64> {
+    if let Some(time) = findings.whole {
+        return whole_runs(case, best, findings, time);
+    }
+    Ok(length_of_stretches(best, findings))
+}
+
+/// So many whole runs.
+fn whole_runs(case: &Case, best: &Weighed<'_>, findings: &Findings, time: f64) -> Result<Length, f64> {
+    let seeds = (best.optimum.time / time).ceil().max(1.0);
+    let chance = (findings.reference.square / time).sqrt();
+    if seeds > 1.0 && case.prepared.seed.is_none() {
+        return Err(best.optimum.bias.with(chance));
+    }
+    let cost = best.way.cost.unwrap_or(0.0) / best.optimum.part;
+    let threads = findings.threads as f64;
+    let (together, one_thread) = if seeds > 1.0 { (threads, findings.one_thread) } else { (1.0, 1.0) };
+    let rounds = (seeds / together).ceil();
+    Ok(Length {
+        time: seeds * time,
+        seeds: seeds as u64,
+        seconds: rounds * (findings.start + ROWS[1] * findings.row + cost * one_thread * time),
+        why: format!(
+            "whole runs from starts that differ have means ± {} of each other",
+            significant(chance, 2)
+        ),
+    })
+}
+
+fn length_of_stretches(best: &Weighed<'_>, findings: &Findings) -> Length {
+    let transient = findings.reference.transient;
+    // So that each run has a mean of its own, with a bar.
+    let least = SAMPLES * findings.reference.apart;
+    let time = best.optimum.time.max(transient).max(least);
+    let cost = best.way.cost.unwrap_or(0.0) / best.optimum.part;
+    let start = findings.start + ROWS[1] * findings.row;
+    let together = start + cost * (time + transient);
+    let threads = findings.threads as f64;
+    if let Some(difference) = findings.starts_differ {
+        let why = format!(
+            "another start has a mean {} off: what a start keeps, such as its energy, does not average out in a run, and the plan is for this one",
+            significant(difference, 2)
+        );
+        return Length { time, seeds: 1, seconds: together, why };
+    }
+    let apart = start + cost * findings.one_thread * (time / threads + transient);
+    if findings.threads > 1 && apart < 0.95 * together && time / threads > transient.max(least) {
+        return Length {
+            time,
+            seeds: findings.threads as u64,
+            seconds: apart,
+            why: format!(
+                "one on each core: one thread takes {} times what {} take, and the transient ({}) is made anew by each",
+                significant(findings.one_thread, 2),
+                findings.threads,
+                significant(transient, 2)
+            ),
+        };
+    }
+    let why = if findings.threads == 1 {
+        "there is one thread".to_owned()
+    } else {
+        format!("the transient ({}) would be made anew by each of several", significant(transient, 2))
+    };
+    Length { time, seeds: 1, seconds: together, why }
+}

@@ -1,0 +1,149 @@
+//! What the means of all ways are held against.
+
+use super::ExplainError;
+use super::bias::{Bias, REFERENCE};
+use super::findings::{Findings, SHARES, Way, Work};
+use super::sample::{Known, Sample};
+use stripmine_physics::averages::Outcome;
+use stripmine_physics::number::significant;
+use stripmine_physics::scene::{Overrides, SEED};
+
+/// Starts differ where their means are as many bars apart: about three standard errors.
+const SURE: f64 = 1.5;
+
+/// Whole runs of the reference may take this many times the seconds of all trials: they are the only way to a mean.
+const WHOLE: f64 = 2.0;
+
+/// The reference, as measured.
+pub(super) struct Reference {
+    /// Its way, and its step (time).
+    pub(super) way: String,
+    pub(super) step: Option<f64>,
+    pub(super) known: Known,
+    pub(super) start: f64,
+    pub(super) row: f64,
+    pub(super) cost: f64,
+    pub(super) phases: Vec<(String, f64)>,
+    /// Transients of all samples: the start is the same, or alike, and they differ by the noise of what finds them.
+    pub(super) transients: Vec<f64>,
+}
+
+impl Work<'_> {
+    /// The most accurate integrator in full digits by the cheapest search, at a part of its longest step; for a method without steps the cheapest
+    /// way itself.
+    pub(super) fn reference(&mut self, ways: &[Way]) -> Result<Reference, ExplainError> {
+        let best = self.choice(&ways[0]);
+        let choice = match self.case.entry.trials {
+            Some(trials) => best.with(trials.references[0]),
+            None => best,
+        };
+        let known = ways.iter().find(|way| way.label == choice.label() && way.cost.is_some());
+        let mut way = known.unwrap_or(&ways[0]).clone();
+        let mut step = way.step.map(|step| REFERENCE * step);
+        let mut seconds = SHARES[1] * self.seconds;
+        let mut why = String::new();
+        for _ in 0..3 {
+            match self.measured(&way, step, seconds) {
+                // What changes all along is asked for over the whole run.
+                Ok((sample, _)) if self.whole.is_none() && changes(&sample) => {
+                    why = no_mean(&sample);
+                    self.whole = self.whole_in(sample.cost, WHOLE * self.seconds);
+                    if self.whole.is_none() {
+                        why.push_str(&self.too_dear(sample.cost));
+                        seconds *= 2.0;
+                    }
+                }
+                Ok((sample, known)) => match known {
+                    Some(known) => {
+                        return Ok(Reference {
+                            way: way.label,
+                            step,
+                            known,
+                            start: sample.start,
+                            row: sample.row,
+                            cost: sample.cost,
+                            phases: sample.phases,
+                            transients: vec![known.transient],
+                        });
+                    }
+                    None => {
+                        why = no_mean(&sample);
+                        seconds *= 2.0;
+                    }
+                },
+                Err(failure) => {
+                    why = failure;
+                    way = ways[0].clone();
+                    step = step.map(|step| 0.5 * step);
+                }
+            }
+        }
+        Err(ExplainError::NoMean { quantity: self.target.quantity.name, why })
+    }
+
+    /// The mean of another start less that of the reference, where that is beyond both bars.
+    pub(super) fn starts_differ(&self, way: &Way, reference: &mut Reference) -> Option<f64> {
+        // Of whole runs each has another.
+        let seed = self.case.prepared.seed.filter(|_| self.whole.is_none())?;
+        let another = Way {
+            overrides: [&way.overrides[..], &Overrides::new().set(&SEED, seed.wrapping_add(1))].concat(),
+            ..way.clone()
+        };
+        let sample =
+            self.sampled(&another, way.step.map(|step| 0.5 * step), SHARES[4] * self.seconds).ok()?;
+        let known = sample.known()?;
+        reference.transients.push(known.transient);
+        let difference = known.mean - reference.known.mean;
+        (difference.abs() > SURE * known.bar.hypot(reference.known.bar)).then_some(difference)
+    }
+}
+
+/// Where the bar of a bias makes a plan dearer than this many times what it would be without, and by more than the trials take, it is seen again.
+const WORTH: f64 = 1.5;
+
+/// Looks again at the bias of a way and at the reference, for as long as all trials before, where a plan is dear only for what is not known of it;
+/// false where it is not, or nothing better came of it.
+pub(super) fn refined(work: &Work<'_>, findings: &mut Findings, way: &str, seconds: [f64; 2]) -> bool {
+    let [with_bar, without] = seconds;
+    if with_bar < WORTH * without || with_bar - without < work.seconds {
+        return false;
+    }
+    let Some(at) = findings.ways.iter().position(|it| it.label == way) else { return false };
+    let (way, Some(before)) = (findings.ways[at].clone(), findings.ways[at].bias) else { return false };
+    let of_reference = findings.ways.iter().find(|it| it.label == findings.reference_way).cloned();
+    let of_reference = of_reference.unwrap_or_else(|| way.clone());
+    let half = 0.5 * work.seconds;
+    let known = |way: &Way, step| work.measured(way, step, half).ok().and_then(|(_, known)| known);
+    let again = known(&of_reference, findings.reference_step);
+    let reference = again.filter(|it| it.bar < findings.reference.bar).unwrap_or(findings.reference);
+    let Some(own) = known(&way, Some(before.step)) else { return false };
+    let bias = Bias::of(before.step, &own, &reference, before.power);
+    if bias.bar >= before.bar {
+        return false;
+    }
+    findings.reference = Known { transient: findings.reference.transient.min(own.transient), ..reference };
+    let is_alike = |other: &&mut Way| other.bias == Some(before);
+    findings.ways.iter_mut().filter(is_alike).for_each(|other| other.bias = Some(bias));
+    true
+}
+
+/// Whether a quantity still changes at the end of the scene's own run, or of the sample where that is shorter.
+fn changes(sample: &Sample) -> bool {
+    matches!(sample.at_end.unwrap_or(sample.outcome), Outcome::Changing { .. })
+}
+
+/// Why a sample has no mean.
+pub(super) fn no_mean(sample: &Sample) -> String {
+    let time = significant(sample.time, 3);
+    match sample.at_end.unwrap_or(sample.outcome) {
+        Outcome::Changing { first, last } => format!(
+            "still changing up to a time of {time}, from {} to {}",
+            significant(first, 3),
+            significant(last, 3)
+        ),
+        Outcome::TooShort { enough_at, .. } => {
+            format!("a time of {time} is too short, {} would do", significant(enough_at, 2))
+        }
+        _ => format!("there is none up to a time of {time}"),
+    }
+}

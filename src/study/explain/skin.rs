@@ -1,0 +1,48 @@
+//! How wide the skin of lists is to be: by trials, as no constant knows how discs move.
+
+use super::findings::{Way, Work, sort};
+use super::sample::timed;
+use stripmine_physics::number::significant;
+
+/// Skins that are tried, in parts of the scene's own.
+const TRIED: [f64; 3] = [0.4, 0.65, 1.5];
+/// A skin is changed where that saves this part of the time at least: less cannot be timed.
+const WORTH: f64 = 0.04;
+
+impl Work<'_> {
+    /// Where lists are the cheapest search, their skin is the cheapest of some, for all ways by lists.
+    pub(super) fn tune_skin(&self, ways: &mut [Way], seconds: f64) {
+        let by_lists = |way: &Way| way.settings.iter().any(|(axis, name)| axis == "search" && name == LISTS);
+        let Some(best) = ways.first().filter(|way| by_lists(way)).cloned() else { return };
+        let Ok(prepared) = self.prepared(&best.overrides, best.step) else { return };
+        // A resolved scene spells its skin out.
+        let resolved = prepared.scene.parse::<toml::Table>().ok();
+        let own = resolved.and_then(|scene| scene.get("search")?.get("skin")?.as_float());
+        let Some(own) = own else { return };
+        let each = seconds / (TRIED.len() + 1) as f64;
+        let cost = |skin: f64| {
+            let overrides = [&best.overrides[..], &[over(skin)]].concat();
+            timed(&self.prepared(&overrides, best.step).ok()?, each, self.stop).ok()
+        };
+        // Its own is timed again beside them.
+        let Some(of_own) = cost(own) else { return };
+        let others = TRIED.iter().filter_map(|part| Some((part * own, cost(part * own)?)));
+        let Some((skin, least)) = others.min_by(|a, b| a.1.total_cmp(&b.1)) else { return };
+        if least > (1.0 - WORTH) * of_own {
+            return;
+        }
+        for way in ways.iter_mut().filter(|way| by_lists(way)) {
+            way.overrides.push(over(skin));
+            way.cost = way.cost.map(|cost| cost * least / of_own);
+            way.skin = Some([own, skin, least / of_own]);
+        }
+        sort(ways);
+    }
+}
+
+/// The setting of the search that has a skin.
+const LISTS: &str = "neighbor-list";
+
+fn over(skin: f64) -> String {
+    format!("search.skin={}", significant(skin, 3))
+}
