@@ -1,15 +1,16 @@
 //! `stripmine bench`: one throughput measurement of moving particles.
 
 use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
-use crate::report::terminal;
+use crate::report::{Cell, Rows, Table, terminal};
 use crate::study::history::{self, Record};
+use crate::study::scaling::{Scaling, scaling};
 use clap::{Arg, ArgAction, ArgMatches, Args, value_parser};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use stripmine_physics::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
 use stripmine_physics::method::{Bench, BenchOption, Entry, Methods, Takes};
-use stripmine_physics::number::counted;
+use stripmine_physics::number::{counted, significant};
 use stripmine_physics::scene::{SceneErrors, Values};
 
 /// One throughput measurement of moving particles
@@ -105,14 +106,14 @@ impl BenchVerb {
         let given = self.overrides(bench, matches, methods)?;
         // Before anything takes its time.
         self.record.as_deref().map_or(Ok(()), history::admits)?;
+        if common.threads.len() > 1 {
+            return self.on_several(entry, bench, &given, common);
+        }
         let bar = progress(common, "bench");
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
         let result = self.measured(entry, bench, &given, show);
         clear_progress();
-        let result = result.map_err(|error| match error {
-            MeasurementError::Scene(mistakes) => Failure::Options(in_options(mistakes, &given)),
-            error => error.into(),
-        })?;
+        let result = result.map_err(|error| refused(error, &given))?;
         if let Some(file) = &self.record {
             history::append(file, &Record::of(&result, &common.command))?;
         }
@@ -126,13 +127,94 @@ impl BenchVerb {
         given: &[Override],
         show: impl Fn(f64),
     ) -> Result<Throughput, MeasurementError> {
+        throughput(self.measurement(entry, bench, given)?, show)
+    }
+
+    fn measurement(
+        &self,
+        entry: &'static Entry,
+        bench: &'static Bench,
+        given: &[Override],
+    ) -> Result<Measurement, MeasurementError> {
         let overrides: Vec<String> = given.iter().map(|given| given.text.clone()).collect();
         let values = Values::load(bench.preset, &overrides, &[entry.vocabulary])?;
         let prepared = (entry.prepare)(values)?;
         let steps = self.steps.unwrap_or_else(|| (bench.amount)(prepared.particles().grain_count() as u64));
         let repeats = self.repeats.into();
-        let measurement = Measurement { bench, prepared, equilibration: 200.max(steps / 10), steps, repeats };
-        throughput(measurement, show)
+        Ok(Measurement { bench, prepared, equilibration: 200.max(steps / 10), steps, repeats })
+    }
+
+    /// The bench on several numbers of threads, in turn.
+    fn on_several(
+        &self,
+        entry: &'static Entry,
+        bench: &'static Bench,
+        given: &[Override],
+        common: &Common,
+    ) -> Result<(), Failure> {
+        let threads: Vec<usize> = common.threads.iter().copied().map(usize::from).collect();
+        let bar = progress(common, "bench");
+        let show = |share: f64| bar.set_position((1e3 * share) as u64);
+        let found = scaling(&|| self.measurement(entry, bench, given), &threads, show);
+        clear_progress();
+        let found = found.map_err(|error| refused(error, given))?;
+        if common.json {
+            return print_json(&found);
+        }
+        print(&terminal::render(&by_threads(&found)))?;
+        print(&format!("\n{}", terminal::render(&by_phases(&found))))
+    }
+}
+
+/// The numbers of threads that a run on one core's figures is carried to.
+const FORESEEN: [usize; 2] = [8, 16];
+
+/// What each number of threads gains.
+fn by_threads(found: &Scaling) -> Table {
+    let bits = if found.same_bits { "the same bits on all" } else { "the bits DIFFER" };
+    let foreseen = FORESEEN.map(|threads| {
+        let gain = found.foreseen(threads).map_or("–".to_owned(), |gain| significant(gain, 3));
+        format!("{gain} times on {threads}")
+    });
+    Rows::of(&found.by_threads)
+        .cell("threads", |it| Cell::Number(it.threads as f64, 0))
+        .cell("million a second, best", |it| Cell::Number(1e-6 * it.rate[0], 2))
+        .cell("median", |it| Cell::Number(1e-6 * it.rate[1], 2))
+        .cell("gain", |it| Cell::Number(it.gain, 2))
+        .cell("efficiency", |it| {
+            Cell::Number(it.gain * found.by_threads[0].threads as f64 / it.threads as f64, 2)
+        })
+        .table(
+            "threads",
+            format!(
+                "{}: {}, {}, {} in turn; {bits}",
+                found.what,
+                counted(found.particles, "particle", "particles"),
+                counted(found.steps, "step", "steps"),
+                counted(found.repeats, "repeat", "repeats"),
+            ),
+        )
+        .note(format!("By Amdahl's law, and no more than that: {}.", foreseen.join(", ")))
+}
+
+/// What each phase gains.
+fn by_phases(found: &Scaling) -> Table {
+    let mut rows = Rows::of(&found.phases).text("phase", |it| it.name.clone());
+    for (at, threads) in found.by_threads.iter().enumerate() {
+        let threads = counted(threads.threads, "thread", "threads");
+        rows = rows.cell(format!("ns, {threads}"), move |it| Cell::Number(it.nanoseconds[at], 2));
+    }
+    rows.cell("serial part (%)", |it| it.serial.map_or(Cell::Nothing, |part| Cell::Number(100.0 * part, 1)))
+        .text("of", |it| if it.is_beside { "particle, each time" } else { "particle and step" })
+        .table("phases", "Phases, and the part of each that does not gain")
+        .note("Best repeats. Below 0: it gains more than there are threads, by caches.".to_owned())
+}
+
+/// An error with the options that it is about.
+fn refused(error: MeasurementError, given: &[Override]) -> Failure {
+    match error {
+        MeasurementError::Scene(mistakes) => Failure::Options(in_options(mistakes, given)),
+        error => error.into(),
     }
 }
 

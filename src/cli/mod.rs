@@ -171,7 +171,12 @@ fn carried_out(matches: &ArgMatches, command: &str, methods: Methods) -> Result<
     let common = Common::from_arg_matches(matches).map_err(Failure::Arguments)?;
     let common = Common { command: command.to_owned(), ..common };
     // Without an answer the default pool has a thread for each core.
-    let threads = common.threads.map_or(0, usize::from);
+    let threads = common.threads.iter().copied().max().map_or(0, usize::from);
+    if let Some((verb, _)) =
+        matches.subcommand().filter(|(verb, _)| *verb != "bench" && common.threads.len() > 1)
+    {
+        return Err(Failure::SeveralThreads(verb.to_owned()));
+    }
     rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(Failure::Threads)?;
     let named = |verb: &&Verb, name: &str| verb.name == name;
     let of_method = match matches.subcommand() {

@@ -37,6 +37,9 @@ pub enum Failure {
         /// Those there are.
         values: &'static [&'static str],
     },
+    /// Several numbers of threads for a verb that takes one: exit code 2.
+    #[error("several numbers of threads are for bench; {0} takes one")]
+    SeveralThreads(String),
     /// A verb that there is not: exit code 2.
     #[error("there is no verb {verb}; these are: {}{}", verbs.join(", "), suggestion(verb, verbs.iter().map(String::as_str)))]
     UnknownVerb {
@@ -149,6 +152,7 @@ impl Failure {
             | Failure::Options(_)
             | Failure::NoSuchOption { .. }
             | Failure::NoSuchValue { .. }
+            | Failure::SeveralThreads(_)
             | Failure::UnknownVerb { .. } => Class::Usage,
             Failure::Reported(error) => error.class(),
             Failure::Threads(_) | Failure::StandardOutput(_) | Failure::InputOutput { .. } => {

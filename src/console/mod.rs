@@ -23,9 +23,9 @@ pub struct Common {
     /// Nothing on standard error but errors
     #[arg(long, global = true)]
     pub quiet: bool,
-    /// Threads, at most 1024; all cores by default
-    #[arg(long, global = true, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
-    pub threads: Option<u16>,
+    /// Threads, at most 1024; all cores by default. `bench` takes several numbers, such as 1,2,4
+    #[arg(long, global = true, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    pub threads: Vec<u16>,
     /// The whole command line, for the record of where results come from.
     #[arg(skip)]
     pub command: String,

@@ -14,6 +14,7 @@ mod observables;
 mod observed;
 mod orders;
 pub mod rivals;
+pub mod scaling;
 pub mod stability;
 mod state;
 mod subject;

@@ -6,6 +6,7 @@ use super::drift::Drift;
 use super::findings::{Findings, HALVINGS, SHARES, Way, Work, sort};
 use super::reference::Reference;
 use super::sample::{Known, Sample, Span};
+use super::whole::Warned;
 use crate::study::Choice;
 use stripmine_physics::averages::Outcome;
 use stripmine_physics::method::Decides;
@@ -98,7 +99,7 @@ impl Work<'_> {
         // What a way takes over what the first stretches took.
         let mut slower = 1.0;
         for _ in 0..HALVINGS {
-            match self.measured(way, Some(step), seconds) {
+            match self.measured(way, Some(step), seconds, Warned::Stops) {
                 Ok((sample, known)) if sample.warnings.is_empty() => {
                     reference.transients.extend(known.map(|known| known.transient));
                     way.step = Some(step);

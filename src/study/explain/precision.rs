@@ -172,7 +172,7 @@ mod tests {
             seconds: 0.0,
             time: 2048.0,
             outcome,
-            at_end: None,
+            comes_beyond_end: false,
             warnings: vec![],
             series,
             spacing: 0.5,

@@ -4,6 +4,7 @@ use super::ExplainError;
 use super::bias::{Bias, REFERENCE};
 use super::findings::{Findings, SHARES, Way, Work};
 use super::sample::{Known, Sample};
+use super::whole::Warned;
 use stripmine_physics::averages::Outcome;
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::{Overrides, SEED};
@@ -11,6 +12,8 @@ use stripmine_physics::scene::{Overrides, SEED};
 /// Starts differ where their means are as many bars apart: about three standard errors.
 const SURE: f64 = 1.5;
 
+/// How often the reference is looked for, each time for longer.
+const ATTEMPTS: usize = 4;
 /// Whole runs of the reference may take this many times the seconds of all trials: they are the only way to a mean.
 const WHOLE: f64 = 2.0;
 
@@ -42,8 +45,8 @@ impl Work<'_> {
         let mut step = way.step.map(|step| REFERENCE * step);
         let mut seconds = SHARES[1] * self.seconds;
         let mut why = String::new();
-        for _ in 0..3 {
-            match self.measured(&way, step, seconds) {
+        for _ in 0..ATTEMPTS {
+            match self.measured(&way, step, seconds, Warned::GoesOn) {
                 // What changes all along is asked for over the whole run.
                 Ok((sample, _)) if self.whole.is_none() && changes(&sample) => {
                     why = no_mean(&sample);
@@ -113,7 +116,8 @@ pub(super) fn refined(work: &Work<'_>, findings: &mut Findings, way: &str, secon
     let of_reference = findings.ways.iter().find(|it| it.label == findings.reference_way).cloned();
     let of_reference = of_reference.unwrap_or_else(|| way.clone());
     let half = 0.5 * work.seconds;
-    let known = |way: &Way, step| work.measured(way, step, half).ok().and_then(|(_, known)| known);
+    let known =
+        |way: &Way, step| work.measured(way, step, half, Warned::GoesOn).ok().and_then(|(_, known)| known);
     let again = known(&of_reference, findings.reference_step);
     let reference = again.filter(|it| it.bar < findings.reference.bar).unwrap_or(findings.reference);
     let Some(own) = known(&way, Some(before.step)) else { return false };
@@ -127,15 +131,26 @@ pub(super) fn refined(work: &Work<'_>, findings: &mut Findings, way: &str, secon
     true
 }
 
-/// Whether a quantity still changes at the end of the scene's own run, or of the sample where that is shorter.
+/// Whether a quantity still changes beyond the end of the scene's own run, or has died out by then: what comes to another mean later has that, and a
+/// plan runs for so long.
 fn changes(sample: &Sample) -> bool {
-    matches!(sample.at_end.unwrap_or(sample.outcome), Outcome::Changing { .. })
+    if !sample.comes_beyond_end {
+        return false;
+    }
+    let largest = sample.series.iter().fold(0.0_f64, |largest, [_, value]| largest.max(value.abs()));
+    match sample.outcome {
+        Outcome::Changing { .. } => true,
+        _ => sample.known().is_some_and(|known| known.mean.abs() + known.bar < DEAD * largest),
+    }
 }
+
+/// What is left of a quantity that has died out, in parts of its largest value.
+const DEAD: f64 = 1e-3;
 
 /// Why a sample has no mean.
 pub(super) fn no_mean(sample: &Sample) -> String {
     let time = significant(sample.time, 3);
-    match sample.at_end.unwrap_or(sample.outcome) {
+    match sample.outcome {
         Outcome::Changing { first, last } => format!(
             "still changing up to a time of {time}, from {} to {}",
             significant(first, 3),

@@ -28,8 +28,8 @@ pub struct Sample {
     pub time: f64,
     /// What it says of the quantity.
     pub outcome: Outcome,
-    /// What it said at the end of the scene's own run, where it came beyond that.
-    pub at_end: Option<Outcome>,
+    /// Whether it came beyond the end of the scene's own run.
+    pub comes_beyond_end: bool,
     /// What its checks warn of.
     pub warnings: Vec<RunWarning>,
     /// The quantity from stretch to stretch: when each ends (time), and its value there.
@@ -149,7 +149,6 @@ pub fn sample(
     let running = Instant::now();
     // Of the stretches once it is warm, and of all.
     let (mut warm, mut all) = ((0.0, 0.0), (0.0, 0.0));
-    let mut at_end = None;
     while running.elapsed() < limit && simulation.clock().time < most && !stop.load(Ordering::Relaxed) {
         let (from, begun) = (simulation.clock().time, Instant::now());
         simulation.advance(&[stride.after(&simulation.clock())], stop)?;
@@ -160,9 +159,6 @@ pub fn sample(
             warm = (warm.0 + gone, warm.1 + spent);
         }
         rows.add(&simulation.observe());
-        if at_end.is_none() && prepared.schedule.until.has_come(&simulation.clock()) {
-            at_end = Some(Average::of(&rows, place).outcome);
-        }
     }
     let (gone, spent) = if warm.0 > 0.0 { warm } else { all };
     let row = timed_row(simulation.as_ref());
@@ -174,7 +170,7 @@ pub fn sample(
         seconds: begun.elapsed().as_secs_f64(),
         time,
         outcome: Average::of(&rows, place).outcome,
-        at_end,
+        comes_beyond_end: prepared.schedule.until.has_come(&simulation.clock()),
         warnings: simulation.warnings(),
         spacing: series.windows(2).map(|pair| pair[1][0] - pair[0][0]).next().unwrap_or(0.0),
         series,

@@ -3,6 +3,7 @@
 use super::findings::{SHARES, Way, Without, Work};
 use super::reference::no_mean;
 use super::sample::Known;
+use super::whole::Warned;
 use stripmine_physics::method::{Prepared, Twin};
 use stripmine_physics::scene::Overrides;
 
@@ -36,7 +37,7 @@ impl Work<'_> {
             let longer = shortest(&prepared).zip(of_scene).map_or(1.0, |(own, of_scene)| own / of_scene);
             let step = way.step.map(|step| step * longer);
             let twin_way = Way { overrides: more, ..way.clone() };
-            match self.measured(&twin_way, step, seconds) {
+            match self.measured(&twin_way, step, seconds, Warned::GoesOn) {
                 Ok((sample, known)) => Without {
                     difference: known
                         .map(|known| [known.mean - reference.mean, known.bar.hypot(reference.bar)]),

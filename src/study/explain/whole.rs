@@ -19,6 +19,15 @@ const LONGEST: f64 = 2.0;
 /// more than rounding, and far less than matters before collisions have multiplied it.
 const DISPLACED: f64 = 1e-7;
 
+/// What becomes of runs of which a check warns.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Warned {
+    /// One is enough to know it.
+    Stops,
+    /// They are the best that there are.
+    GoesOn,
+}
+
 impl Work<'_> {
     /// Whether some runs of the scene's whole time can be had in some seconds, where a unit of time costs as much as in a sample.
     pub(super) fn whole_in(&self, cost: f64, seconds: f64) -> Option<f64> {
@@ -42,9 +51,10 @@ impl Work<'_> {
         way: &Way,
         step: Option<f64>,
         seconds: f64,
+        warned: Warned,
     ) -> Result<(Sample, Option<Known>), String> {
         match self.whole {
-            Some(time) => self.whole_runs(way, step, time, seconds),
+            Some(time) => self.whole_runs(way, step, [time, seconds], warned),
             None => self.sampled(way, step, seconds).map(|sample| {
                 let known = sample.known();
                 (sample, known)
@@ -56,8 +66,8 @@ impl Work<'_> {
         &self,
         way: &Way,
         step: Option<f64>,
-        time: f64,
-        seconds: f64,
+        [time, seconds]: [f64; 2],
+        warned: Warned,
     ) -> Result<(Sample, Option<Known>), String> {
         let begun = Instant::now();
         let cost = way.cost.zip(way.step).zip(step).map(|((cost, longest), step)| cost * longest / step);
@@ -74,9 +84,9 @@ impl Work<'_> {
             let found = sample(&prepared, observed, Span::Time(time, None), self.stop);
             let found = found.map_err(|failure| failure.what())?;
             means.push(found.whole_mean());
-            let is_warned = !found.warnings.is_empty();
+            let stops = warned == Warned::Stops && !found.warnings.is_empty();
             first.get_or_insert(found);
-            if is_warned {
+            if stops {
                 break;
             }
         }

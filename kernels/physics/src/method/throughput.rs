@@ -9,6 +9,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
+use std::time::Instant;
 
 /// What is measured.
 pub struct Measurement {
@@ -132,6 +133,8 @@ pub struct TimedRun {
     bench: &'static Bench,
     prepared: Prepared,
     simulation: Box<dyn Simulation>,
+    /// Wall seconds until the first step.
+    start: f64,
     steps: u64,
     before: Vec<f64>,
     /// Names and places of what is said at the start and at the end, and at the end alone.
@@ -151,7 +154,9 @@ impl TimedRun {
         equilibration: u64,
         steps: u64,
     ) -> Result<Self, MeasurementError> {
+        let begun = Instant::now();
         let simulation = prepared.start(Purpose::Measurement)?;
+        let start = begun.elapsed().as_secs_f64();
         let places = |names: &'static [&'static str]| {
             names
                 .iter()
@@ -160,7 +165,8 @@ impl TimedRun {
         };
         let [compared, at_end] = [places(bench.compared)?, places(bench.at_end)?];
         let (before, repeats) = (vec![], vec![]);
-        let mut running = TimedRun { bench, prepared, simulation, steps, before, compared, at_end, repeats };
+        let mut running =
+            TimedRun { bench, prepared, simulation, start, steps, before, compared, at_end, repeats };
         running.advance(equilibration)?;
         running.before = running.simulation.observe();
         Ok(running)
@@ -173,12 +179,29 @@ impl TimedRun {
     pub fn repeat(&mut self) -> Result<(), MeasurementError> {
         self.simulation.reset_phases();
         let done = self.simulation.work();
-        let (wall, cpu) = (std::time::Instant::now(), cpu_time::ProcessTime::now());
+        let (wall, cpu) = (Instant::now(), cpu_time::ProcessTime::now());
         self.advance(self.steps)?;
         let (wall, cpu) = (wall.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64());
         let work = self.simulation.work() - done;
         self.repeats.push(Repeat { wall, cpu, work, phases: self.simulation.phases() });
         Ok(())
+    }
+
+    /// Wall seconds of what is done beside steps: the start, a row of observables, all particles as they stand, and what a checkpoint keeps.
+    pub fn beside(&self) -> [f64; 4] {
+        let least = |work: &dyn Fn()| {
+            let once = |_| {
+                let begun = Instant::now();
+                work();
+                begun.elapsed().as_secs_f64()
+            };
+            (0..3).map(once).fold(f64::INFINITY, f64::min)
+        };
+        let simulation = &self.simulation;
+        let row = least(&|| drop(simulation.observe()));
+        let particles = least(&|| drop(simulation.particles()));
+        let snapshot = least(&|| drop(simulation.snapshot()));
+        [self.start, row, particles, snapshot]
     }
 
     /// Work in a second of processor time of the last repeat; not a number before the first.
@@ -198,7 +221,7 @@ impl TimedRun {
     pub fn measured(mut self) -> Throughput {
         self.repeats.sort_by(|a, b| a.wall.total_cmp(&b.wall));
         let after = self.simulation.observe();
-        let TimedRun { bench, prepared, simulation, steps, before, compared, at_end, repeats } = self;
+        let TimedRun { bench, prepared, simulation, steps, before, compared, at_end, repeats, .. } = self;
         let [best, median, worst] = [0, repeats.len() / 2, repeats.len() - 1].map(|place| &repeats[place]);
         Throughput {
             what: bench.name,
