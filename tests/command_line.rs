@@ -210,3 +210,32 @@ fn mistaken_words_are_answered_with_what_was_meant() {
         assert!(said.contains(meant), "{arguments:?} is not answered with {meant}: {said}");
     }
 }
+
+/// On several numbers of threads in turn: the same bits, and of every phase the part that does not gain.
+#[test]
+fn a_bench_on_several_numbers_of_threads_tells_what_does_not_gain() {
+    let bench = ["bench", "lattice", "--particles", "6000", "--steps", "20", "--repeats", "2", "--quiet"];
+    let run = |more: &[&str]| {
+        let mut command = Command::cargo_bin("stripmine").unwrap();
+        command.args([&bench[..], more].concat()).output().unwrap()
+    };
+    let output = run(&["--threads", "2,1", "--json"]);
+    let said: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let threads: Vec<u64> =
+        said["by_threads"].as_array().unwrap().iter().map(|it| it["threads"].as_u64().unwrap()).collect();
+    assert!(threads == [1, 2] && said["same_bits"] == true, "{said:#}");
+    let phases = said["phases"].as_array().unwrap();
+    for name in ["whole step", "forces", "start", "row", "particles", "snapshot"] {
+        let phase = phases.iter().find(|phase| phase["name"] == name).unwrap();
+        assert!(
+            phase["serial"].is_number() && phase["nanoseconds"].as_array().unwrap().len() == 2,
+            "{phase:#}"
+        );
+    }
+    let text = String::from_utf8(run(&["--threads", "1,2"]).stdout).unwrap();
+    assert!(text.contains("the same bits on all") && text.contains("serial part (%)"), "{text}");
+    let mut command = Command::cargo_bin("stripmine").unwrap();
+    let refused = command.args(["run", "two-discs", "--threads", "1,2"]).output().unwrap();
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(refused.status.code() == Some(2) && said.contains("are for bench"), "{said}");
+}

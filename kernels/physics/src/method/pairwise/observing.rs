@@ -12,7 +12,8 @@
 use super::search::Search;
 use super::{Dynamics, Engine, WithLaw, Work};
 use crate::observe::{ContactSums, GrainSums, Scenery};
-use crate::particles::Kind;
+use crate::particles::{Kind, Particle, Particles, in_space};
+use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::marker::PhantomData;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Inertia;
@@ -21,14 +22,18 @@ use stripmine_kernels::law::Law;
 use stripmine_kernels::sweep::fast::{Discs, Met, SENTINELS};
 use stripmine_kernels::{InstructionSet, alone_if, in_parts, over_parts};
 
+/// Particles that a thread makes at a time, at least.
+const AT_LEAST: usize = 4096;
+
 /// All discs at the end of a step, an entry a disc in the order in memory and sentinels behind.
 pub(super) struct Corrected {
-    place: [Vec<f64>; 2],
-    velocity: [Vec<f64>; 2],
-    /// Empty where discs do not turn.
-    omega: Vec<f64>,
+    pub(super) place: [Vec<f64>; 2],
+    pub(super) velocity: [Vec<f64>; 2],
+    /// Angles and angular velocities; empty where discs do not turn.
+    pub(super) angle: Vec<f64>,
+    pub(super) omega: Vec<f64>,
     /// Which disc in memory each of the scene's is.
-    disc: Vec<u32>,
+    pub(super) disc: Vec<u32>,
     /// The farthest that the correction moved a disc (length).
     moved: f64,
 }
@@ -38,8 +43,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     pub(super) fn corrected_discs(&self) -> Corrected {
         alone_if(self.is_small(), || {
             let discs = self.start.len();
-            let mut disc = vec![0; discs];
-            self.state.numbers().iter().zip(0..).for_each(|(&number, at)| disc[number as usize] = at);
+            let disc = self.disc_of_each();
             let mut moved = [0.0; 2];
             let mut column = |freedom: usize| {
                 let [mut value, mut rate] = [0, 1].map(|_| vec![0.0; discs]);
@@ -56,8 +60,48 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
                 [value, rate]
             };
             let [[x, vx], [y, vy]] = [0, 1].map(&mut column);
-            let [_, omega] = if self.system.freedoms == 3 { column(2) } else { [vec![], vec![]] };
-            Corrected { place: [x, y], velocity: [vx, vy], omega, disc, moved: moved[0].hypot(moved[1]) }
+            let [angle, omega] = if self.system.freedoms == 3 { column(2) } else { [vec![], vec![]] };
+            Corrected {
+                place: [x, y],
+                velocity: [vx, vy],
+                angle,
+                omega,
+                disc,
+                moved: moved[0].hypot(moved[1]),
+            }
+        })
+    }
+
+    /// Which disc in memory each of the scene's is.
+    pub(super) fn disc_of_each(&self) -> Vec<u32> {
+        let mut disc = vec![0; self.start.len()];
+        self.state.numbers().iter().zip(0..).for_each(|(&number, at)| disc[number as usize] = at);
+        disc
+    }
+
+    /// The particles in the scene's order, at these places, on all threads.
+    pub(super) fn standing(&self, corrected: &Corrected) -> Particles {
+        let grains = self.start.grain_count();
+        let walls = in_space(self.prescribed().unwrap_or_default().velocity);
+        let of = |(number, particle): (usize, &Particle)| {
+            let mut particle = *particle;
+            let disc = corrected.disc[number] as usize;
+            let place = corrected.place.each_ref().map(|along| along[disc]);
+            particle.position = in_space(self.seen_from_origin(disc, place));
+            if number >= grains {
+                particle.velocity = walls;
+                return particle;
+            }
+            particle.velocity = in_space(corrected.velocity.each_ref().map(|along| along[disc]));
+            let turning = [&corrected.angle, &corrected.omega];
+            [particle.angle, particle.omega] = turning.map(|of| of.get(disc).copied().unwrap_or(0.0));
+            particle
+        };
+        let all = self.start.all();
+        // Whoever makes a piece is the first to touch it.
+        Particles::new(match self.is_small() {
+            true => all.iter().enumerate().map(of).collect(),
+            false => all.par_iter().enumerate().with_min_len(AT_LEAST).map(of).collect(),
         })
     }
 

@@ -8,6 +8,7 @@ use crate::method::restored::find_column;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::STATE;
 use stripmine_kernels::isa::Element;
+use stripmine_kernels::{alone_if, in_pieces};
 
 const SUMS: [&str; 3] = ["Fx", "Fy", "torque"];
 const CELL: [&str; 2] = ["cell.column", "cell.row"];
@@ -16,32 +17,37 @@ const MADE_AT: [&str; 2] = ["listed.x", "listed.y"];
 const LISTS_MADE: &str = "listed.made";
 
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
-    /// A column in the scene's order, from a value for each disc.
-    fn column<T: Element>(&self, value: impl Fn(usize) -> T) -> Column {
+    /// A column in the scene's order, from a value for each disc, where it is known which disc each of the scene's is.
+    fn column<T: Element>(&self, discs: &[u32], value: impl Fn(usize) -> T + Sync) -> Column {
         let mut column = vec![T::default(); self.start.len()];
-        (0..column.len()).for_each(|disc| column[self.state.number(disc)] = value(disc));
+        alone_if(self.is_small(), || {
+            in_pieces(&mut column, |first, piece| {
+                piece.iter_mut().zip(&discs[first..]).for_each(|(to, &disc)| *to = value(disc as usize));
+            });
+        });
         real_column(column.into_iter())
     }
 
     /// Everything that the next step depends on, by name.
     pub(super) fn saved(&self) -> Vec<(String, Column)> {
         let mut columns = Vec::new();
+        let discs = self.disc_of_each();
         for (names, rows) in STATE.iter().zip(&self.state.columns) {
             for (name, column) in names.iter().zip(rows) {
-                columns.push((name.label().to_owned(), self.column(|disc| column[disc])));
+                columns.push((name.label().to_owned(), self.column(&discs, |disc| column[disc])));
             }
         }
         for (name, sum) in SUMS.iter().zip(&self.sums) {
-            columns.push(((*name).to_owned(), self.column(|disc| sum[disc])));
+            columns.push(((*name).to_owned(), self.column(&discs, |disc| sum[disc])));
         }
         for (axis, name) in CELL.iter().enumerate() {
             let cell = |disc| self.search.cells().cell(disc).map_or(f64::NAN, |cell| cell[axis] as f64);
-            columns.push(((*name).to_owned(), self.column(cell)));
+            columns.push(((*name).to_owned(), self.column(&discs, cell)));
         }
         if let Some(lists) = self.search.lists() {
             for (axis, name) in MADE_AT.iter().enumerate() {
                 let made_at = lists.made_at(axis);
-                columns.push(((*name).to_owned(), self.column(|disc| made_at[disc])));
+                columns.push(((*name).to_owned(), self.column(&discs, |disc| made_at[disc])));
             }
             columns.push((LISTS_MADE.to_owned(), Column::U64(vec![lists.made()])));
         }

@@ -4,8 +4,8 @@ use super::{Carried, System};
 use crate::particles::{Kind, Particle, Particles};
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::{DERIVATIVES, Inertia};
-use stripmine_kernels::reordered;
 use stripmine_kernels::sweep::fast::{self, SENTINELS};
+use stripmine_kernels::{in_pieces, reordered};
 
 /// A disc with the cell it goes to, its place there, seen from the cell's centre (length), and the periods that it crosses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,18 +43,21 @@ impl<S: Precision> State<S> {
     pub fn new(system: &System, carried: &Carried, particles: &Particles) -> Self {
         let velocity_scale = carried.scales[1];
         let discs = particles.all();
-        let column = |value: &dyn Fn(&Particle) -> f64, sentinel: f64| -> Vec<S> {
-            let values = discs.iter().map(value).chain(std::iter::repeat_n(sentinel, SENTINELS));
-            values.map(S::from_f64).collect()
+        // Whoever fills a piece is the first to touch it.
+        let column = |value: &(dyn Fn(&Particle) -> f64 + Sync), sentinel: f64| -> Vec<S> {
+            let mut values = vec![S::default(); discs.len() + SENTINELS];
+            let (of_discs, of_sentinels) = values.split_at_mut(discs.len());
+            of_sentinels.fill(S::from_f64(sentinel));
+            in_pieces(of_discs, |first, piece| {
+                piece.iter_mut().zip(&discs[first..]).for_each(|(to, disc)| *to = S::from_f64(value(disc)));
+            });
+            values
         };
-        let derivative = |freedom: usize, k: usize| {
-            let value = |disc: &Particle| match (k, freedom) {
-                (1, 0 | 1) => disc.velocity[freedom] * velocity_scale,
-                (0, 2) => disc.angle,
-                (1, _) => disc.omega * velocity_scale,
-                _ => 0.0,
-            };
-            column(&value, 0.0)
+        let derivative = |freedom: usize, k: usize| match (k, freedom) {
+            (1, 0 | 1) => column(&|disc| disc.velocity[freedom] * velocity_scale, 0.0),
+            (0, 2) => column(&|disc| disc.angle, 0.0),
+            (1, _) => column(&|disc| disc.omega * velocity_scale, 0.0),
+            _ => vec![S::default(); discs.len() + SENTINELS],
         };
         let mut columns: Vec<Vec<Vec<S>>> = (0..system.freedoms)
             .map(|freedom| (0..carried.derivatives).map(|k| derivative(freedom, k)).collect())

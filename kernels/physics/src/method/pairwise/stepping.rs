@@ -1,15 +1,15 @@
 //! What a method sees of the engine, whatever its precisions, search and dynamics.
 
 use super::search::{Cells, Search};
-use super::{Dynamics, Elapsed, Engine, Named, Phase, unwrapped, wrapped};
+use super::{Dynamics, Elapsed, Engine, Named, Phase, wrapped};
 use crate::io::checkpoint::Column;
 use crate::method::Failure;
 use crate::observe::{Scenery, Sums};
 use crate::particles::{Particle, Particles, States, in_space};
-use stripmine_kernels::alone_if;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::law::Asked;
 use stripmine_kernels::sweep::fast::Met;
+use stripmine_kernels::{alone_if, in_pieces};
 
 /// What gravity has done to a grain, by its number in the scene, that is at a position.
 pub type Work<'w> = dyn Fn(usize, &Particle, [f64; 2]) -> f64 + Sync + 'w;
@@ -144,28 +144,23 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
     }
 
     fn positions(&self) -> Vec<[f32; 3]> {
+        let corrected = self.corrected_discs();
+        let of = |number: usize| {
+            let disc = corrected.disc[number] as usize;
+            let place = corrected.place.each_ref().map(|along| along[disc]);
+            self.system.domain.wrapped(in_space(self.seen_from_origin(disc, place))).map(|x| x as f32)
+        };
         let mut places = vec![[0.0; 3]; self.start.len()];
-        for disc in 0..self.start.len() {
-            let place = [0, 1].map(|freedom| self.corrected(freedom, disc)[0]);
-            let place = self.system.domain.wrapped(in_space(self.seen_from_origin(disc, place)));
-            places[self.state.number(disc)] = place.map(|x| x as f32);
-        }
+        alone_if(self.is_small(), || {
+            in_pieces(&mut places, |first, piece| {
+                (first..).zip(piece).for_each(|(number, place)| *place = of(number));
+            });
+        });
         places
     }
 
     fn unwrapped(&self) -> Particles {
-        let freedoms = self.system.freedoms;
-        let of = |disc: usize| {
-            let [x, y, angle] = [0, 1, 2].map(|freedom| match freedom < freedoms {
-                true => self.corrected(freedom, disc),
-                false => [0.0; 2],
-            });
-            let position = self.seen_from_origin(disc, [x[0], y[0]]);
-            let rows = [[position[0], x[1]], [position[1], y[1]], angle];
-            (self.state.number(disc), rows)
-        };
-        let walls = self.prescribed().unwrap_or_default().velocity;
-        unwrapped(&self.start, walls, (0..self.start.len()).map(of))
+        self.standing(&self.corrected_discs())
     }
 
     fn predicted_velocities(&self) -> Vec<[f64; 2]> {

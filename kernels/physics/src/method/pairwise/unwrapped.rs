@@ -2,6 +2,7 @@
 
 use crate::domain::Domain;
 use crate::particles::{Particles, in_space};
+use stripmine_kernels::in_pieces;
 
 /// The particles of `start` as a state has them: each disc with its number in the scene and, for each degree of freedom (x, y,
 /// angle), its value and its rate of change. Discs that no force moves have the velocity `walls` (length/time).
@@ -31,8 +32,8 @@ pub fn unwrapped(
 
 /// The same particles, with positions inside the box.
 pub fn wrapped(mut particles: Particles, domain: &Domain) -> Particles {
-    for particle in particles.all_mut() {
-        particle.position = domain.wrapped(particle.position);
-    }
+    in_pieces(particles.all_mut(), |_, piece| {
+        piece.iter_mut().for_each(|particle| particle.position = domain.wrapped(particle.position));
+    });
     particles
 }
