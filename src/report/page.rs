@@ -17,8 +17,7 @@ const CAPTION: usize = 110;
 /// but of another version of the program.
 pub fn render(sections: &[Section], left_out: &[String]) -> String {
     let mut page = format!(
-        "# What came out\n\n{MARK} The same with charts to hover over and films to play: [index.html](index.html), one file, to \
-         be opened from a copy on the disk.\n\n",
+        "# What came out\n\n{MARK} With charts to hover over and films: [index.html](index.html), one file, to be opened from a copy.\n\n",
     );
     for verdict in Verdict::ALL {
         let _ = writeln!(page, "- **{}**: {}.", verdict.word(), verdict.meaning());

@@ -258,9 +258,9 @@ impl Verdict {
             Verdict::Reproduced => "what the source or theory says came out, as closely as the item states",
             Verdict::Partly => "it came out in part, or with differences that the item names",
             Verdict::NotReproduced => "it did not come out",
-            Verdict::Undecided => "error bars are too wide to tell whether it came out",
+            Verdict::Undecided => "error bars are too wide to tell",
             Verdict::AimMet => "no source says; our own aim, which the item states, is met",
-            Verdict::AimMissed => "our own aim is missed, by as much as the item says",
+            Verdict::AimMissed => "our own aim, which the item states, is missed",
             Verdict::Measured => "no source and no aim: a measurement",
             Verdict::Computed => "no source and no aim: a count, or what a model says",
         }

@@ -85,7 +85,7 @@ impl Checked {
         };
         // A disc; the scene's particles, three times, once more where a run goes on, and the frame that is being written; what is written
         // of them.
-        let disc = size_of::<Disc>() as f64 + 5.0 * size_of::<Particle>() as f64 + 80.0;
+        let disc = size_of::<Disc>() as f64 + 5.0 * size_of::<Particle>() as f64 + 100.0;
         Foreseen {
             needed: (PROGRAM + disc * discs + of_engine) as u64,
             available: available(),

@@ -92,8 +92,8 @@ impl Checked {
                 195.0 * count + (4.0 + copies + 0.125) * shape.padded() as f64
             }
         };
-        // The scene's particles in three places, once more while they are observed, and the frame that is being written.
-        let particles = 6.0 * size_of::<Particle>() as f64 * count;
+        // The scene's particles in three places, once more while they are observed, and the frame that is being written; what puts them in order.
+        let particles = (6.0 * size_of::<Particle>() as f64 + 2.0 * 16.0 + 4.0) * count;
         Foreseen {
             needed: (PROGRAM + engine + particles) as u64,
             available: available(),

@@ -46,7 +46,9 @@ pub fn foreseen(checked: &Checked) -> Foreseen {
     // the system does not have a frame's size at once.
     let frame = DISC * of.discs;
     let resumed = columns + frame + (8.0 + 40.0) * of.discs + of.lists_resumed(contacts(checked));
-    let moments = [2.0 * frame, frame + observed, frame + columns, resumed];
+    // Particles as they stand are made one degree of freedom after the other.
+    let standing = 2.0 * frame + (2.0 * 8.0 + 4.0) * of.discs;
+    let moments = [standing, frame + observed, frame + columns, resumed];
     Foreseen {
         needed: (kept + engine + moments.into_iter().fold(0.0, f64::max)) as u64,
         available: available(),

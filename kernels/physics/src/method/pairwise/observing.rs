@@ -12,28 +12,23 @@
 use super::search::Search;
 use super::{Dynamics, Engine, WithLaw, Work};
 use crate::observe::{ContactSums, GrainSums, Scenery};
-use crate::particles::{Kind, Particle, Particles, in_space};
-use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use crate::particles::{Kind, Particles, in_space};
 use std::marker::PhantomData;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::Law;
 use stripmine_kernels::sweep::fast::{Discs, Met, SENTINELS};
-use stripmine_kernels::{InstructionSet, alone_if, in_parts, over_parts};
-
-/// Particles that a thread makes at a time, at least.
-const AT_LEAST: usize = 4096;
+use stripmine_kernels::{InstructionSet, alone_if, in_parts, in_pieces, over_parts};
 
 /// All discs at the end of a step, an entry a disc in the order in memory and sentinels behind.
 pub(super) struct Corrected {
-    pub(super) place: [Vec<f64>; 2],
-    pub(super) velocity: [Vec<f64>; 2],
-    /// Angles and angular velocities; empty where discs do not turn.
-    pub(super) angle: Vec<f64>,
-    pub(super) omega: Vec<f64>,
+    place: [Vec<f64>; 2],
+    velocity: [Vec<f64>; 2],
+    /// Empty where discs do not turn.
+    omega: Vec<f64>,
     /// Which disc in memory each of the scene's is.
-    pub(super) disc: Vec<u32>,
+    disc: Vec<u32>,
     /// The farthest that the correction moved a disc (length).
     moved: f64,
 }
@@ -42,12 +37,10 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     /// The discs at the end of the step.
     pub(super) fn corrected_discs(&self) -> Corrected {
         alone_if(self.is_small(), || {
-            let discs = self.start.len();
             let disc = self.disc_of_each();
             let mut moved = [0.0; 2];
             let mut column = |freedom: usize| {
-                let [mut value, mut rate] = [0, 1].map(|_| vec![0.0; discs]);
-                in_parts([&mut value, &mut rate], |first, columns| self.correct(freedom, first, columns));
+                let [mut value, mut rate] = self.corrected_column(freedom);
                 if freedom < 2 {
                     let before = self.state.places()[freedom];
                     let ways = value.iter().zip(before).map(|(now, before)| (now - before.to_f64()).abs());
@@ -60,15 +53,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
                 [value, rate]
             };
             let [[x, vx], [y, vy]] = [0, 1].map(&mut column);
-            let [angle, omega] = if self.system.freedoms == 3 { column(2) } else { [vec![], vec![]] };
-            Corrected {
-                place: [x, y],
-                velocity: [vx, vy],
-                angle,
-                omega,
-                disc,
-                moved: moved[0].hypot(moved[1]),
-            }
+            let [_, omega] = if self.system.freedoms == 3 { column(2) } else { [vec![], vec![]] };
+            Corrected { place: [x, y], velocity: [vx, vy], omega, disc, moved: moved[0].hypot(moved[1]) }
         })
     }
 
@@ -79,29 +65,61 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         disc
     }
 
-    /// The particles in the scene's order, at these places, on all threads.
-    pub(super) fn standing(&self, corrected: &Corrected) -> Particles {
-        let grains = self.start.grain_count();
+    /// A degree of freedom of every disc in memory at the end of the step, and its rate of change, on all threads.
+    fn corrected_column(&self, freedom: usize) -> [Vec<f64>; 2] {
+        let [mut value, mut rate] = [0, 1].map(|_| vec![0.0; self.start.len()]);
+        in_parts([&mut value, &mut rate], |first, columns| self.correct(freedom, first, columns));
+        [value, rate]
+    }
+
+    /// The particles in the scene's order at the end of the step, on all threads. One degree of freedom after the other, so that few columns are in
+    /// memory at a time.
+    pub(super) fn standing(&self) -> Particles {
+        let (grains, discs) = (self.start.grain_count(), self.disc_of_each());
         let walls = in_space(self.prescribed().unwrap_or_default().velocity);
-        let of = |(number, particle): (usize, &Particle)| {
-            let mut particle = *particle;
-            let disc = corrected.disc[number] as usize;
-            let place = corrected.place.each_ref().map(|along| along[disc]);
-            particle.position = in_space(self.seen_from_origin(disc, place));
-            if number >= grains {
-                particle.velocity = walls;
-                return particle;
+        let mut particles = self.start.clone();
+        alone_if(self.is_small(), || {
+            for freedom in 0..3 {
+                let turns = freedom < self.system.freedoms;
+                let [values, rates] = if turns { self.corrected_column(freedom) } else { [vec![], vec![]] };
+                in_pieces(particles.all_mut(), |first, piece| {
+                    for ((number, &disc), particle) in (first..).zip(&discs[first..]).zip(piece) {
+                        let disc = disc as usize;
+                        let [value, rate] =
+                            [&values, &rates].map(|column| column.get(disc).copied().unwrap_or(0.0));
+                        match freedom {
+                            0 | 1 => {
+                                particle.position[freedom] = self.seen_from_origin(disc, [value; 2])[freedom]
+                            }
+                            _ if number < grains => particle.angle = value,
+                            _ => {}
+                        }
+                        match freedom {
+                            _ if number >= grains => particle.velocity = walls,
+                            0 | 1 => particle.velocity[freedom] = rate,
+                            _ => particle.omega = rate,
+                        }
+                    }
+                });
             }
-            particle.velocity = in_space(corrected.velocity.each_ref().map(|along| along[disc]));
-            let turning = [&corrected.angle, &corrected.omega];
-            [particle.angle, particle.omega] = turning.map(|of| of.get(disc).copied().unwrap_or(0.0));
-            particle
-        };
-        let all = self.start.all();
-        // Whoever makes a piece is the first to touch it.
-        Particles::new(match self.is_small() {
-            true => all.iter().enumerate().map(of).collect(),
-            false => all.par_iter().enumerate().with_min_len(AT_LEAST).map(of).collect(),
+        });
+        particles
+    }
+
+    /// Positions alone, inside the box and in single precision, in the scene's order.
+    pub(super) fn standing_places(&self) -> Vec<[f32; 3]> {
+        let discs = self.disc_of_each();
+        alone_if(self.is_small(), || {
+            let [[x, _], [y, _]] = [0, 1].map(|freedom| self.corrected_column(freedom));
+            let mut places = vec![[0.0; 3]; self.start.len()];
+            in_pieces(&mut places, |first, piece| {
+                for (place, &disc) in piece.iter_mut().zip(&discs[first..]) {
+                    let disc = disc as usize;
+                    let at = in_space(self.seen_from_origin(disc, [x[disc], y[disc]]));
+                    *place = self.system.domain.wrapped(at).map(|x| x as f32);
+                }
+            });
+            places
         })
     }
 

@@ -5,11 +5,11 @@ use super::{Dynamics, Elapsed, Engine, Named, Phase, wrapped};
 use crate::io::checkpoint::Column;
 use crate::method::Failure;
 use crate::observe::{Scenery, Sums};
-use crate::particles::{Particle, Particles, States, in_space};
+use crate::particles::{Particle, Particles, States};
+use stripmine_kernels::alone_if;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::law::Asked;
 use stripmine_kernels::sweep::fast::Met;
-use stripmine_kernels::{alone_if, in_pieces};
 
 /// What gravity has done to a grain, by its number in the scene, that is at a position.
 pub type Work<'w> = dyn Fn(usize, &Particle, [f64; 2]) -> f64 + Sync + 'w;
@@ -144,23 +144,11 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
     }
 
     fn positions(&self) -> Vec<[f32; 3]> {
-        let corrected = self.corrected_discs();
-        let of = |number: usize| {
-            let disc = corrected.disc[number] as usize;
-            let place = corrected.place.each_ref().map(|along| along[disc]);
-            self.system.domain.wrapped(in_space(self.seen_from_origin(disc, place))).map(|x| x as f32)
-        };
-        let mut places = vec![[0.0; 3]; self.start.len()];
-        alone_if(self.is_small(), || {
-            in_pieces(&mut places, |first, piece| {
-                (first..).zip(piece).for_each(|(number, place)| *place = of(number));
-            });
-        });
-        places
+        self.standing_places()
     }
 
     fn unwrapped(&self) -> Particles {
-        self.standing(&self.corrected_discs())
+        self.standing()
     }
 
     fn predicted_velocities(&self) -> Vec<[f64; 2]> {
