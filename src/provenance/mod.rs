@@ -60,16 +60,16 @@ impl Provenance {
         !other.origin.dirty && of(self) == of(other)
     }
 
-    /// The program and the machine, in a sentence that goes on after how many were made.
-    pub fn of_program_and_machine(&self) -> String {
+    /// The program, in words that go on after how many were made.
+    pub fn of_program(&self) -> String {
         let Origin { version, commit, dirty, .. } = &self.origin;
         let state = if *dirty { ", with changes that are in no commit" } else { "" };
-        format!(
-            "made on {} by stripmine {version} of source commit {commit}{state}, {}, on {}.",
-            self.date,
-            self.instruction_set,
-            self.machine.without_clock()
-        )
+        format!("made on {} by stripmine {version} of source commit {commit}{state}", self.date)
+    }
+
+    /// The machine, in words.
+    pub fn of_machine(&self) -> String {
+        format!("{}, on {}", self.instruction_set, self.machine.without_clock())
     }
 
     /// When, how long, by which command and commit, in a sentence.

@@ -9,22 +9,33 @@ pub mod section;
 pub mod table;
 pub mod terminal;
 
+use crate::provenance::Provenance;
 use stripmine_physics::number::counted;
 
 pub use section::{Chapter, Section, Verdict};
 pub use table::{Cell, Rows, Table};
 
-/// Who made the items, and where: a sentence for each program and machine, with how many of them, the most first.
+/// Who made the items, and where: a sentence for each machine, with how many each program has made there, the most first.
 fn origins(sections: &[Section]) -> Vec<String> {
+    let made = || sections.iter().filter_map(|section| section.provenance.as_ref());
+    let of_machine = |(machine, _): (String, usize)| {
+        let here = made().filter(|it| it.of_machine() == machine);
+        let programs = counted_alike(here.map(Provenance::of_program)).into_iter();
+        let programs = programs.map(|(made, count)| format!("{} {made}", counted(count, "item", "items")));
+        format!("{}; {machine}.", programs.collect::<Vec<_>>().join("; "))
+    };
+    counted_alike(made().map(Provenance::of_machine)).into_iter().map(of_machine).collect()
+}
+
+/// How often each text occurs, the most frequent first.
+fn counted_alike(texts: impl Iterator<Item = String>) -> Vec<(String, usize)> {
     let mut counts: Vec<(String, usize)> = vec![];
-    for provenance in sections.iter().filter_map(|section| section.provenance.as_ref()) {
-        let made = provenance.of_program_and_machine();
-        match counts.iter_mut().find(|(known, _)| *known == made) {
+    for text in texts {
+        match counts.iter_mut().find(|(known, _)| *known == text) {
             Some((_, count)) => *count += 1,
-            None => counts.push((made, 1)),
+            None => counts.push((text, 1)),
         }
     }
     counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    let said = |(made, count): (String, usize)| format!("{} {made}", counted(count, "item", "items"));
-    counts.into_iter().map(said).collect()
+    counts
 }
