@@ -161,6 +161,12 @@ fn a_plan_for_a_time_has_the_least_error_that_it_allows() {
     let [short, long] = [short, long].map(|found| found["expected"]["most"].as_f64().unwrap());
     // The root of four times the time.
     assert!((1.5..3.0).contains(&(short / long)), "{short} {long}");
+    let quick = explain(folder, &[&GAS[..], &["--time", "1e-7"]].concat());
+    ends_with(
+        &quick,
+        4,
+        &["no run tells a mean of compressibility in 1e-7 s", "the shortest takes about", "--time"],
+    );
     for wrong in ["0", "-1", "nan", "soon"] {
         ends_with(&explain(folder, &["hard-disks", &format!("--time={wrong}")]), 2, &["seconds above 0"]);
     }

@@ -44,11 +44,21 @@ impl Made {
     /// If the dataset, or the section, is none that JSON can hold: a number that is none comes back as nothing.
     pub fn new(section: Section, data: &impl Serialize) -> Result<Made, Failure> {
         let data = serde_json::to_value(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
-        // Whoever makes the page anew reads it.
+        // It is read when the page is made again.
         serde_json::to_vec(&section)
             .and_then(|text| serde_json::from_slice::<Section>(&text))
             .map_err(|cause| Failure::writing("JSON")(cause.into()))?;
         Ok(Made { section, data, tables: vec![], files: vec![] })
+    }
+
+    /// An item of several scenes, each with a name, under which its data stands.
+    ///
+    /// # Errors
+    /// If the dataset is none that JSON can hold.
+    pub fn by_name<T: Serialize>(section: Section, scenes: &[(String, T)]) -> Result<Made, Failure> {
+        let one = |(name, data): &(String, T)| Ok((name.clone(), serde_json::to_value(data)?));
+        let all = scenes.iter().map(one).collect::<serde_json::Result<serde_json::Map<_, _>>>();
+        Made::new(section, &all.map_err(|cause| Failure::writing("JSON")(cause.into()))?)
     }
 
     /// With tables for programs that the page does not show.

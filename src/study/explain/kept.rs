@@ -131,7 +131,7 @@ impl Kept {
         Ok(Some((file.findings, origin)))
     }
 
-    /// Keeps what was measured in trials of so many seconds as were asked for, and that they took, and says where it comes from.
+    /// Keeps what was measured with the seconds of trials that were asked for and that they took, and says where it comes from.
     ///
     /// # Errors
     /// [`KeptError`] if it cannot be written.

@@ -7,7 +7,7 @@ use super::sample::ROWS;
 use crate::study::Case;
 use stripmine_physics::number::significant;
 
-/// Independent samples that a run has at least: so many that it knows the error of its own mean.
+/// Independent samples that a run has at least: enough that it knows the error of its own mean.
 const SAMPLES: f64 = 30.0;
 
 /// A way with what it takes for the error.
@@ -46,7 +46,7 @@ pub(super) fn length(case: &Case, best: &Weighed<'_>, findings: &Findings) -> Re
     Ok(length_of_stretches(best, findings))
 }
 
-/// So many whole runs.
+/// Whole runs, as many as the error asks for.
 fn whole_runs(case: &Case, best: &Weighed<'_>, findings: &Findings, time: f64) -> Result<Length, f64> {
     let seeds = (best.optimum.time / time).ceil().max(1.0);
     let chance = (findings.reference.square / time).sqrt();
@@ -91,7 +91,7 @@ fn length_of_stretches(best: &Weighed<'_>, findings: &Findings) -> Length {
             seeds: findings.threads as u64,
             seconds: apart,
             why: format!(
-                "one on each core: one thread takes {} times what {} take, and the transient ({}) is made anew by each",
+                "one on each core: one thread takes {} times what {} take, and the transient ({}) is made again by each",
                 significant(findings.one_thread, 2),
                 findings.threads,
                 significant(transient, 2)
@@ -101,7 +101,7 @@ fn length_of_stretches(best: &Weighed<'_>, findings: &Findings) -> Length {
     let why = if findings.threads == 1 {
         "there is one thread".to_owned()
     } else {
-        format!("the transient ({}) would be made anew by each of several", significant(transient, 2))
+        format!("the transient ({}) would be made again by each of several", significant(transient, 2))
     };
     Length { time, seeds: 1, seconds: together, why }
 }

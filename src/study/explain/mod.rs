@@ -107,6 +107,20 @@ pub enum ExplainError {
         /// What that would take.
         cost: Option<String>,
     },
+    /// No plan is as quick.
+    #[error(
+        "no run tells a mean of {quantity} in {} s: the shortest takes about {} s\n  help: give it more with --time",
+        significant(*within, 3),
+        significant(*least, 2)
+    )]
+    TooQuick {
+        /// The quantity.
+        quantity: &'static str,
+        /// Wall seconds that were given.
+        within: f64,
+        /// Wall seconds of the quickest plan.
+        least: f64,
+    },
     /// Nothing was kept of the scene.
     #[error(
         "nothing is known here of this scene\n  help: run it without --estimate once; what is measured is kept"
@@ -183,11 +197,10 @@ pub fn explain(
             (findings, origin)
         }
     };
-    let made = match target.within {
-        Some(within) => within_seconds(case, target, &findings, &origin, within),
-        None => planned(case, target, &findings, &origin),
-    };
-    made.map_err(|least| ExplainError::OutOfReach {
+    if let Some(within) = target.within {
+        return within_seconds(case, target, &findings, &origin, within);
+    }
+    planned(case, target, &findings, &origin).map_err(|least| ExplainError::OutOfReach {
         quantity: target.quantity.name,
         wanted: target.error.map_or(0.0, |width| in_unit(width, findings.reference.mean)),
         least,
@@ -203,14 +216,14 @@ const WEIGHED: [f64; 2] = [1e-12, 10.0];
 /// The plan of the least error that is expected to take no more than some wall seconds.
 ///
 /// # Errors
-/// The least error of a plan, where none is as quick.
+/// [`ExplainError::TooQuick`], where no plan is as quick.
 fn within_seconds(
     case: &Case,
     target: &Target,
     findings: &Findings,
     origin: &str,
     within: f64,
-) -> Result<Plan, f64> {
+) -> Result<Plan, ExplainError> {
     let scale = if target.is_kept() { 1.0 } else { findings.reference.mean.abs() };
     let asking = |error: f64| {
         let target = Target { error: Some(Width::Absolute(error * scale)), ..target.clone() };
@@ -228,5 +241,9 @@ fn within_seconds(
             _ => low = middle,
         }
     }
-    best.ok_or(WEIGHED[1] * scale)
+    best.ok_or_else(|| ExplainError::TooQuick {
+        quantity: target.quantity.name,
+        within,
+        least: asking(WEIGHED[1]).map_or(f64::INFINITY, |plan| plan.seconds.likely),
+    })
 }

@@ -25,12 +25,7 @@ pub fn made(name: &str, scenes: &[(String, Precision)], again: String) -> Result
         .tables(scenes.iter().flat_map(|(name, data)| [wishes(name, data), measured(name, data)]))
         .again(again)
         .depends_on_host();
-    let all: serde_json::Map<String, serde_json::Value> = scenes
-        .iter()
-        .map(|(name, data)| Ok((name.clone(), serde_json::to_value(data)?)))
-        .collect::<serde_json::Result<_>>()
-        .map_err(|cause| Failure::writing("JSON")(cause.into()))?;
-    Made::new(section, &all)
+    Made::by_name(section, scenes)
 }
 
 fn label(curve: &Curve) -> String {

@@ -80,10 +80,5 @@ pub fn made(scenes: &[(String, WorkPrecision)], again: String) -> Result<Made, F
         .again(again)
         .seeds(seeds)
         .depends_on_host();
-    let all: serde_json::Map<String, serde_json::Value> = scenes
-        .iter()
-        .map(|(name, data)| Ok((name.clone(), serde_json::to_value(data)?)))
-        .collect::<serde_json::Result<_>>()
-        .map_err(|cause| Failure::writing("JSON")(cause.into()))?;
-    Ok(Made::new(section, &all)?.with_tables([tables::runs(scenes), tables::all_means(scenes)]))
+    Ok(Made::by_name(section, scenes)?.with_tables([tables::runs(scenes), tables::all_means(scenes)]))
 }

@@ -12,7 +12,7 @@ pub(super) const AT_ONCE: usize = 8;
 /// The cells of an axis number less.
 const MOST_CELLS: f64 = 4096.0;
 
-/// Discs sorted into rows of cells. What is behind a periodic side stands there once more, so that nobody asks for it.
+/// Discs sorted into rows of cells. What is behind a periodic side stands there once more, so that no search has to ask for it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cells {
     /// Where the first cell of the box begins, and cells by length, along each axis.

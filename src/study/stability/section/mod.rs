@@ -65,10 +65,5 @@ pub fn made(maps: &[(String, Stability)], again: String) -> Result<Made, Failure
         .again(again)
         .seeds(maps.first().map_or(vec![], |(_, data)| data.seeds.clone()))
         .depends_on_host();
-    let all: serde_json::Map<String, serde_json::Value> = maps
-        .iter()
-        .map(|(name, data)| Ok((name.clone(), serde_json::to_value(data)?)))
-        .collect::<serde_json::Result<_>>()
-        .map_err(|cause| Failure::writing("JSON")(cause.into()))?;
-    Ok(Made::new(section, &all)?.with_tables([tables::cells(maps), tables::boundaries(maps)]))
+    Ok(Made::by_name(section, maps)?.with_tables([tables::cells(maps), tables::boundaries(maps)]))
 }

@@ -43,7 +43,7 @@ impl<S: Precision> State<S> {
     pub fn new(system: &System, carried: &Carried, particles: &Particles) -> Self {
         let velocity_scale = carried.scales[1];
         let discs = particles.all();
-        // Whoever fills a piece is the first to touch it.
+        // The thread that fills a piece is the first to touch its memory.
         let column = |value: &(dyn Fn(&Particle) -> f64 + Sync), sentinel: f64| -> Vec<S> {
             let mut values = vec![S::default(); discs.len() + SENTINELS];
             let (of_discs, of_sentinels) = values.split_at_mut(discs.len());
