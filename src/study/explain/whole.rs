@@ -127,3 +127,30 @@ fn displaced_start(prepared: &Prepared, number: u64) -> Particles {
         [libm::cos(angle), libm::sin(angle)].map(|part| DISPLACED * scale * part)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stripmine_physics::method::{METHODS, load};
+
+    /// Every grain by 10⁻⁷ of the largest radius, walls not at all, and each start in its own way.
+    #[test]
+    fn starts_differ_by_next_to_nothing() {
+        let (prepared, _) = load("shaken-box", &[], METHODS).unwrap();
+        let starts = [1, 2].map(|number| displaced_start(&prepared, number));
+        let before = prepared.particles();
+        let [_, largest] = before.radii().unwrap();
+        for (number, start) in starts.iter().enumerate() {
+            for (at, (own, now)) in before.all().iter().zip(start.all()).enumerate() {
+                let way = prepared.domain.displacement(now.place(), own.place());
+                let expected = if at < before.grain_count() { DISPLACED * largest } else { 0.0 };
+                assert!(
+                    (way[0].hypot(way[1]) - expected).abs() < 1e-3 * DISPLACED * largest,
+                    "{number}, {at}"
+                );
+            }
+        }
+        let same = starts[0].all().iter().zip(starts[1].all()).filter(|(a, b)| a.position == b.position);
+        assert_eq!(same.count(), before.len() - before.grain_count());
+    }
+}
