@@ -77,6 +77,44 @@ fn what_was_measured_is_kept_for_this_host_and_may_be_forgotten() {
     assert!(!file.exists());
 }
 
+/// What `auto` becomes by what is kept of a scene that is alike is said, stands in the resolved scene, and is what a resumption goes on with; nothing that
+/// the scene states is changed, and a scene that is not alike is run as ever.
+#[test]
+fn a_run_may_be_tuned_by_what_was_measured_of_a_scene_that_is_alike() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let gas = |count: &'static str| ["dense-gas", "--set", count, "--set", "particles.packing_fraction=0.3"];
+    plan(&explain(folder, &[&gas("particles.count=100")[..], &["--seconds", "1", "--json"]].concat()));
+    let run = |count: &'static str, more: &[&str]| {
+        let mut command = Command::cargo_bin("stripmine").unwrap();
+        command.current_dir(folder).env("XDG_CACHE_HOME", folder.join("cache")).arg("run");
+        command.args(gas(count)).args(["--set", "run.steps=20", "--out", "out", "--tuned"]).args(more);
+        let output = command.output().unwrap();
+        ends_with(&output, 0, &[]);
+        let scene = fs::read_to_string(folder.join("out/scene.toml")).unwrap();
+        (String::from_utf8_lossy(&output.stderr).into_owned(), scene)
+    };
+    // The cheapest way of what is kept.
+    let kept = fs::read_dir(folder.join("cache/stripmine/explain")).unwrap().next().unwrap().unwrap().path();
+    let kept: Value = serde_json::from_slice(&fs::read(kept).unwrap()).unwrap();
+    let is_own = |way: &&Value| {
+        let label = way["label"].as_str().unwrap();
+        label.starts_with("gear6 f64") && label.ends_with("fast") && !way["cost"].is_null()
+    };
+    let ways = kept["findings"]["ways"].as_array().unwrap();
+    let cheapest = ways.iter().find(is_own).unwrap()["settings"].as_array().unwrap();
+    let search = cheapest.iter().find(|it| it[0] == "search").unwrap()[1].as_str().unwrap();
+    let (said, scene) = run("particles.count=150", &[]);
+    assert!(said.contains(&format!("tuned: search.by={search}")) && said.contains("measured"), "{said}");
+    assert!(scene.contains(&format!("by = \"{search}\"")), "{scene}");
+    let (said, again) = run("particles.count=150", &["--resume"]);
+    assert!(!said.contains("tuned:") && again == scene, "{said}");
+    let (said, scene) = run("particles.count=150", &["--overwrite", "--set", "search.by=sectors"]);
+    assert!(!said.contains("search.by=") && scene.contains("by = \"sectors\""), "{said}");
+    let (said, _) = run("particles.count=1500", &["--overwrite"]);
+    assert!(said.contains("nothing is kept of a scene that is alike"), "{said}");
+}
+
 #[test]
 fn what_should_keep_its_value_gets_the_step_that_keeps_it() {
     let folder = tempfile::tempdir().unwrap();

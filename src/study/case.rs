@@ -7,6 +7,8 @@ use stripmine_physics::scene::{SceneErrors, Values};
 /// A scene with what its method states of the ways to run it.
 pub struct Case {
     what: String,
+    /// Its text, where it is neither a preset nor a file.
+    text: Option<String>,
     overrides: Vec<String>,
     methods: Methods,
     /// Its method.
@@ -25,12 +27,30 @@ impl Case {
     /// # Errors
     /// [`SceneErrors`] if the scene is bad, or takes more memory than there is.
     pub fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Case, SceneErrors> {
-        let values = Values::load(what, overrides, &vocabularies(methods))?;
+        Case::of(what, None, overrides, methods)
+    }
+
+    /// The scene of a text; `what` is the name that errors give it.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn parse(what: &str, text: String, methods: Methods) -> Result<Case, SceneErrors> {
+        Case::of(what, Some(text), &[], methods)
+    }
+
+    fn of(
+        what: &str,
+        text: Option<String>,
+        overrides: &[String],
+        methods: Methods,
+    ) -> Result<Case, SceneErrors> {
+        let values = values(what, text.as_deref(), overrides, methods)?;
         let (prepared, entry) = prepare(values.clone(), methods)?;
         prepared.memory.fits("scene")?;
         let own = Choice::own(entry.axes, &prepared);
         Ok(Case {
             what: what.to_owned(),
+            text,
             overrides: overrides.to_vec(),
             methods,
             entry,
@@ -80,6 +100,26 @@ impl Case {
     pub fn values_in(&self, choice: &Choice, more: &[String]) -> Result<Values, SceneErrors> {
         let chosen: Vec<String> = choice.overrides().collect();
         let overrides = [&self.overrides[..], &chosen, more].concat();
-        Values::load(&self.what, &overrides, &vocabularies(self.methods))
+        values(&self.what, self.text.as_deref(), &overrides, self.methods)
+    }
+
+    /// A scene by the same methods.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse).
+    pub fn beside(&self, text: String) -> Result<Case, SceneErrors> {
+        Case::parse(&self.what, text, self.methods)
+    }
+}
+
+fn values(
+    what: &str,
+    text: Option<&str>,
+    overrides: &[String],
+    methods: Methods,
+) -> Result<Values, SceneErrors> {
+    match text {
+        Some(text) => Values::parse(what, text, overrides, &vocabularies(methods)),
+        None => Values::load(what, overrides, &vocabularies(methods)),
     }
 }

@@ -4,6 +4,8 @@ mod seeds;
 
 use crate::console::{Common, Failure, STEPS, bar, clear_progress, count, print, print_json, say, warn};
 use crate::provenance::built;
+use crate::study::explain::{Kept, tuned};
+use crate::study::{Case, StudyError};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use stripmine_physics::method::{Clock, Methods, Prepared, prepare, vocabularies};
@@ -36,6 +38,9 @@ pub(super) struct RunVerb {
     /// A number of runs side by side, each with a seed and a folder of its own, and their means in one summary
     #[arg(long, value_name = "N", value_parser = count)]
     seeds: Option<u64>,
+    /// What the scene leaves to `auto` becomes what was the fastest here: by what `explain` has kept of this scene, or of one that is alike
+    #[arg(long, conflicts_with = "seeds")]
+    tuned: bool,
 }
 
 impl RunVerb {
@@ -45,16 +50,19 @@ impl RunVerb {
         }
         let folder = self.folder("run");
         let vocabularies = vocabularies(methods);
-        let values = Values::load(&self.scene, &self.overrides, &vocabularies)?;
+        let existing = self.existing();
+        // A run that goes on has chosen.
+        let is_open = self.tuned && begins(&folder, existing)?;
+        let given = if is_open { self.tuned(common, methods)? } else { self.overrides.clone() };
+        let values = Values::load(&self.scene, &given, &vocabularies)?;
         let (mut prepared, entry) = prepare(values.clone(), methods)?;
         if self.resume {
             let chosen = chosen_otherwise(&values, entry.vocabulary, &prepared.scene, &folder);
             if !chosen.is_empty() {
-                let overrides = [self.overrides.as_slice(), &chosen].concat();
+                let overrides = [given.as_slice(), &chosen].concat();
                 (prepared, _) = prepare(Values::load(&self.scene, &overrides, &vocabularies)?, methods)?;
             }
         }
-        let existing = self.existing();
         prepared.memory.fits(&self.scene)?;
         let begins = begins(&folder, existing)?;
         if !common.quiet {
@@ -87,6 +95,23 @@ impl RunVerb {
 }
 
 impl RunVerb {
+    /// The overrides, with what `auto` becomes by what is kept.
+    fn tuned(&self, common: &Common, methods: Methods) -> Result<Vec<String>, Failure> {
+        let case = Case::load(&self.scene, &self.overrides, methods)?;
+        let found = tuned(&case, &Kept::here()).map_err(|error| StudyError::Own(Box::new(error)))?;
+        if !common.quiet {
+            match &found {
+                Some(found) => say(format_args!("tuned: {}: {}", found.overrides.join(", "), found.origin)),
+                None => say(format_args!(
+                    "tuned: nothing is open, or nothing is kept of a scene that is alike: stripmine explain {} measures it",
+                    self.scene
+                )),
+            }
+        }
+        let chosen = found.map_or(vec![], |found| found.overrides);
+        Ok([&self.overrides[..], &chosen].concat())
+    }
+
     /// The folder asked for, or one called after the scene.
     fn folder(&self, ending: &str) -> PathBuf {
         self.out.clone().unwrap_or_else(|| {

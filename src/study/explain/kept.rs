@@ -2,6 +2,7 @@
 
 use super::Target;
 use super::findings::Findings;
+use super::tuned::Alike;
 use crate::provenance::Provenance;
 use crate::study::Case;
 use serde::{Deserialize, Serialize};
@@ -55,6 +56,8 @@ struct File {
     /// Seconds of trials that were asked for, and that they took.
     seconds: f64,
     taken: f64,
+    /// What other scenes are held against.
+    alike: Alike,
     findings: Findings,
 }
 
@@ -131,12 +134,32 @@ impl Kept {
         Ok(Some((file.findings, origin)))
     }
 
+    /// What is kept of the scene that is most alike, whatever quantity it was asked for, and where it comes from; none where there is none.
+    ///
+    /// # Errors
+    /// [`KeptError`] if what is kept cannot be read.
+    pub(super) fn alike(&self, case: &Case) -> Result<Option<(Findings, String)>, KeptError> {
+        let own = Alike::of(case);
+        let near = |path: PathBuf| {
+            let file: File = serde_json::from_slice(&fs::read(path).ok()?).ok()?;
+            let apart = own.apart(&file.alike).filter(|_| file.host == self.host)?;
+            Some((apart, file))
+        };
+        let files = self.files()?.into_iter().filter_map(near);
+        let nearest = files.min_by(|(a, _), (b, _)| a.total_cmp(b));
+        Ok(nearest.map(|(_, file)| {
+            let origin = format!("measured {} on {}", file.moment, file.host);
+            (file.findings, origin)
+        }))
+    }
+
     /// Keeps what was measured with the seconds of trials that were asked for and that they took, and says where it comes from.
     ///
     /// # Errors
     /// [`KeptError`] if it cannot be written.
     pub fn keep(
         &self,
+        case: &Case,
         key: &str,
         [seconds, taken]: [f64; 2],
         findings: &Findings,
@@ -149,6 +172,7 @@ impl Kept {
             moment: stripmine_physics::origin::moment(SystemTime::now()),
             seconds,
             taken,
+            alike: Alike::of(case),
             findings: findings.clone(),
         };
         let fail = |source| KeptError::File { path: path.clone(), source };
@@ -168,19 +192,24 @@ impl Kept {
     /// # Errors
     /// [`KeptError`] if one cannot be removed.
     pub fn forget(&self) -> Result<usize, KeptError> {
-        let Some(folder) = &self.folder else { return Ok(0) };
+        let files = self.files()?;
+        for file in &files {
+            fs::remove_file(file).map_err(|source| KeptError::File { path: file.clone(), source })?;
+        }
+        Ok(files.len())
+    }
+
+    /// All files, by their names.
+    fn files(&self) -> Result<Vec<PathBuf>, KeptError> {
+        let Some(folder) = &self.folder else { return Ok(vec![]) };
         let files = match fs::read_dir(folder) {
             Ok(files) => files,
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(0),
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(vec![]),
             Err(source) => return Err(KeptError::File { path: folder.clone(), source }),
         };
-        let mut count = 0;
-        for file in files.flatten().map(|file| file.path()) {
-            if file.extension().is_some_and(|ending| ending == "json") {
-                fs::remove_file(&file).map_err(|source| KeptError::File { path: file.clone(), source })?;
-                count += 1;
-            }
-        }
-        Ok(count)
+        let is_ours = |file: &PathBuf| file.extension().is_some_and(|ending| ending == "json");
+        let mut files: Vec<PathBuf> = files.flatten().map(|file| file.path()).filter(is_ours).collect();
+        files.sort();
+        Ok(files)
     }
 }

@@ -25,6 +25,7 @@ pub mod section;
 mod seen;
 mod skin;
 mod timing;
+mod tuned;
 mod twins;
 mod whole;
 mod words;
@@ -35,6 +36,7 @@ pub use precision::{Curve, Precision, precision};
 pub use recommended::{Beside, Decision, Expected, Interval, LeftOut, Need, Own, Plan};
 pub use sample::{Known, Sample, Span, sample};
 pub use scenes::SCENES;
+pub use tuned::{Tuned, tuned};
 pub use words::{page, with_unit};
 
 use super::Case;
@@ -193,7 +195,7 @@ pub fn explain(
         None => {
             let begun = Instant::now();
             let findings = seen(case, target, seconds, stop)?;
-            let origin = kept.keep(&key, [seconds, begun.elapsed().as_secs_f64()], &findings)?;
+            let origin = kept.keep(case, &key, [seconds, begun.elapsed().as_secs_f64()], &findings)?;
             (findings, origin)
         }
     };

@@ -1,43 +1,43 @@
 //! What a scene may be modelled without, and what that changes and saves.
 
+use super::Target;
 use super::findings::{SHARES, Way, Without, Work};
 use super::reference::no_mean;
-use super::sample::Known;
+use super::sample::{Known, Sample};
 use super::whole::Warned;
-use stripmine_physics::method::{Prepared, Twin};
-use stripmine_physics::scene::Overrides;
+use stripmine_physics::method::{Becomes, Prepared, Rewritten};
+
+/// What is measured of a twin.
+type Measured = Result<(Sample, Option<Known>), String>;
 
 impl Work<'_> {
     /// The scene without each of what it may be modelled without.
     pub(super) fn without(&self, way: &Way, reference: &Known) -> Vec<Without> {
-        let twins: Vec<(&Twin, Overrides)> = self
-            .case
-            .entry
-            .twins
-            .iter()
-            .filter_map(|twin| Some((twin, (twin.overrides)(&self.case.values)?)))
+        let (case, quantity) = (self.case, self.target.quantity.name);
+        let twins: Vec<(&str, Simpler)> = (case.entry.twins.iter())
+            .filter_map(|twin| {
+                let simpler = match twin.becomes {
+                    Becomes::Overridden(overrides) => Simpler::Overridden(overrides(&case.values)?.to_vec()),
+                    Becomes::Rewritten(scene) => {
+                        Simpler::Rewritten(scene(&case.values, &case.prepared, quantity)?)
+                    }
+                };
+                Some((twin.name, simpler))
+            })
             .collect();
         let seconds = SHARES[3] * self.seconds / twins.len().max(1) as f64;
-        let shortest =
-            |prepared: &Prepared| prepared.step_limits.iter().map(|limit| limit.step).reduce(f64::min);
-        let of_scene = self.prepared(&way.overrides, None).ok().as_ref().and_then(shortest);
-        let measured = |(twin, overrides): (&Twin, Overrides)| {
-            let more = [&way.overrides[..], &overrides].concat();
+        let measured = |(name, simpler): (&str, Simpler)| {
             let of = |failed: Option<String>| Without {
-                name: twin.name.to_owned(),
+                name: name.to_owned(),
                 difference: None,
                 cost: None,
                 failed,
             };
-            let prepared = match self.prepared(&more, None) {
-                Ok(prepared) => prepared,
-                Err(why) => return of(Some(why)),
+            let measured = match simpler {
+                Simpler::Overridden(overrides) => self.overridden(way, &overrides, seconds),
+                Simpler::Rewritten(scene) => self.rewritten(scene, seconds),
             };
-            // As far below its own limit as the way is below that of the scene.
-            let longer = shortest(&prepared).zip(of_scene).map_or(1.0, |(own, of_scene)| own / of_scene);
-            let step = way.step.map(|step| step * longer);
-            let twin_way = Way { overrides: more, ..way.clone() };
-            match self.measured(&twin_way, step, seconds, Warned::GoesOn) {
+            match measured {
                 Ok((sample, known)) => Without {
                     difference: known
                         .map(|known| [known.mean - reference.mean, known.bar.hypot(reference.bar)]),
@@ -49,4 +49,44 @@ impl Work<'_> {
         };
         twins.into_iter().map(measured).collect()
     }
+
+    /// By the same method.
+    fn overridden(&self, way: &Way, overrides: &[String], seconds: f64) -> Measured {
+        let shortest =
+            |prepared: &Prepared| prepared.step_limits.iter().map(|limit| limit.step).reduce(f64::min);
+        let of_scene = self.prepared(&way.overrides, None).ok().as_ref().and_then(shortest);
+        let more = [&way.overrides[..], overrides].concat();
+        // As far below its own limit as the way is below that of the scene.
+        let longer = shortest(&self.prepared(&more, None)?)
+            .zip(of_scene)
+            .map_or(1.0, |(own, of_scene)| own / of_scene);
+        let twin = Way { overrides: more, ..way.clone() };
+        self.measured(&twin, way.step.map(|step| step * longer), seconds, Warned::GoesOn)
+    }
+
+    /// By another method, in its own cheapest way.
+    fn rewritten(&self, scene: Rewritten, seconds: f64) -> Measured {
+        let errors = |errors: stripmine_physics::scene::SceneErrors| {
+            errors.0.first().map_or(String::new(), |error| error.message.clone())
+        };
+        let case = self.case.beside(scene.text).map_err(errors)?;
+        let target = Target::of(&case, Some(scene.quantity), None).map_err(|error| error.to_string())?;
+        let mut work = Work { case: &case, target: &target, seconds, ..*self };
+        let ways = work.timed_ways().map_err(|error| error.to_string())?;
+        work.seconds = self.seconds;
+        let (sample, known) = work.measured(&ways[0], ways[0].step, seconds, Warned::GoesOn)?;
+        let in_unit = |known: Known| Known {
+            mean: scene.unit * known.mean,
+            bar: scene.unit * known.bar,
+            square: scene.unit * scene.unit * known.square,
+            ..known
+        };
+        Ok((sample, known.map(in_unit)))
+    }
+}
+
+/// A scene without something.
+enum Simpler {
+    Overridden(Vec<String>),
+    Rewritten(Rewritten),
 }

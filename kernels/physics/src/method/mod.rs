@@ -27,5 +27,6 @@ pub use list::{METHODS, Methods, load, method, observer, prepare, vocabularies};
 pub use probe::probed;
 pub use snapshot::Snapshot;
 pub use trials::{
-    Axis, Balance, Decides, Length, Mapped, Parameter, SMALLEST_RADIUS, Setting, Theory, Trials, Twin,
+    Axis, Balance, Becomes, Decides, Length, Mapped, Parameter, Rewritten, SMALLEST_RADIUS, Setting, Theory,
+    Trials, Twin,
 };

@@ -103,8 +103,28 @@ pub struct Mapped {
 pub struct Twin {
     /// What it lacks.
     pub name: &'static str,
-    /// The overrides that make it of a scene; none where the scene has nothing of the kind.
-    pub overrides: fn(&Values) -> Option<Overrides>,
+    /// What it is.
+    pub becomes: Becomes,
+}
+
+/// What a scene becomes in a simpler model; none where it has nothing of the kind.
+#[derive(Debug)]
+pub enum Becomes {
+    /// The same with overrides.
+    Overridden(fn(&Values) -> Option<Overrides>),
+    /// The scene of another method, for a quantity that is asked for.
+    Rewritten(fn(&Values, &Prepared, &str) -> Option<Rewritten>),
+}
+
+/// A scene as another method has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rewritten {
+    /// Its text.
+    pub text: String,
+    /// The quantity there that stands for the one here.
+    pub quantity: &'static str,
+    /// What a value of it is here, over that there.
+    pub unit: f64,
 }
 
 /// Something that may be chosen.

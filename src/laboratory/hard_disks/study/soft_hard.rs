@@ -6,6 +6,7 @@ use crate::results::{Meter, Progress};
 use crate::statistics::{Mean, median};
 use crate::study::StudyError;
 use serde::Serialize;
+use stripmine_kernels::law::spring::{Impact, Spring};
 use stripmine_physics::method::lattice_md::keys::{FRICTION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
 use stripmine_physics::method::{Until, hard_disks};
 use stripmine_physics::scene::{COUNT, DT, Overrides, PACKING_FRACTION, SEED, STEPS, TEMPERATURE};
@@ -138,14 +139,18 @@ impl Way {
     /// Discs of a stiffness, with the damping that gives a restitution at a speed.
     fn soft(stiffness: f64, restitution: f64, speed: f64) -> Result<Way, StudyError> {
         let (mut low, mut high) = (0.0, 1.0);
-        while impact(stiffness, high, speed).0 > restitution {
+        while impact(stiffness, high, speed).restitution > restitution {
             high *= 2.0;
         }
         for _ in 0..50 {
             let middle = 0.5 * (low + high);
-            if impact(stiffness, middle, speed).0 > restitution { low = middle } else { high = middle }
+            if impact(stiffness, middle, speed).restitution > restitution {
+                low = middle
+            } else {
+                high = middle
+            }
         }
-        let (_, duration) = impact(stiffness, 0.0, speed);
+        let duration = impact(stiffness, 0.0, speed).duration;
         Ok(Way::Soft { stiffness, damping: 0.5 * (low + high), step: duration / STEPS_A_CONTACT })
     }
 
@@ -222,25 +227,9 @@ impl Way {
     }
 }
 
-/// Restitution and duration of a head-on impact of two discs of mass 1: Hertz with damping, no pull.
-fn impact(stiffness: f64, damping: f64, speed: f64) -> (f64, f64) {
-    // Effective mass ½; the force of damping is γ_N times it times the speed.
-    let acceleration = |depth: f64, speed: f64| {
-        let depth = depth.max(0.0);
-        (-2.0 * stiffness * depth * depth.sqrt() - damping * speed).min(0.0)
-    };
-    let scale = (0.25 / (stiffness * stiffness * speed)).powf(0.2);
-    let dt = scale / 2000.0;
-    let (mut depth, mut v, mut time) = (0.0, speed, 0.0);
-    while (depth > 0.0 || time == 0.0) && time < 100.0 * scale {
-        // Runge and Kutta, second order: far finer than what it is used for.
-        let half = v + 0.5 * dt * acceleration(depth, v);
-        let middle = depth + 0.5 * dt * v;
-        v += dt * acceleration(middle, half);
-        depth += dt * half;
-        time += dt;
-    }
-    ((-v / speed).max(0.0), time)
+/// A head-on impact of two discs of mass 1, whose effective mass is ½: Hertz with damping, no pull.
+fn impact(stiffness: f64, damping: f64, speed: f64) -> Impact {
+    Spring::Hertz.impact(2.0 * stiffness, damping, speed)
 }
 
 #[cfg(test)]
@@ -250,10 +239,10 @@ mod tests {
     /// Without damping everything comes back, after 2.94 δ/v with the depth δ = (5 μ v²/(4 k))^{2/5}; with damping less.
     #[test]
     fn impacts_are_those_of_hertz() {
-        let (restitution, duration) = impact(1e4, 0.0, 1.5);
+        let Impact { restitution, duration } = impact(1e4, 0.0, 1.5);
         let depth = (1.25 * 0.5 * 1.5 * 1.5 / 1e4_f64).powf(0.4);
         assert!((restitution - 1.0).abs() < 1e-3 && (duration / (2.943 * depth / 1.5) - 1.0).abs() < 2e-3);
         let Ok(Way::Soft { damping, .. }) = Way::soft(1e4, 0.8, 1.5) else { panic!("no way") };
-        assert!((impact(1e4, damping, 1.5).0 - 0.8).abs() < 1e-3);
+        assert!((impact(1e4, damping, 1.5).restitution - 0.8).abs() < 1e-3);
     }
 }

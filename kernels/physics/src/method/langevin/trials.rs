@@ -3,7 +3,9 @@
 use super::checked::prepare;
 use super::keys::{BATH_TEMPERATURE, DRAG, LAW, STRENGTH};
 use super::options::PairLaw;
-use crate::method::{Axis, Decides, Mapped, Parameter, Prepared, SMALLEST_RADIUS, Setting, Trials, Twin};
+use crate::method::{
+    Axis, Becomes, Decides, Mapped, Parameter, Prepared, SMALLEST_RADIUS, Setting, Trials, Twin,
+};
 use crate::scene::{DT, Key, Overrides, Values};
 use crate::words::Words;
 
@@ -54,17 +56,17 @@ const MAPPED: &[Mapped] = &[
 pub(super) const TWINS: &[Twin] = &[
     Twin {
         name: "attraction between pairs (wca in the place of lennard-jones)",
-        overrides: |values| {
+        becomes: Becomes::Overridden(|values| {
             let attracts = values.choice(&LAW)? == PairLaw::LennardJones.word();
             attracts.then(|| Overrides::new().set(&LAW, PairLaw::Wca))
-        },
+        }),
     },
     Twin {
         name: "pairs: free particles in the bath",
-        overrides: |values| {
+        becomes: Becomes::Overridden(|values| {
             let has_pairs = values.choice(&LAW)? != PairLaw::None.word();
             has_pairs.then(|| Overrides::new().set(&LAW, PairLaw::None))
-        },
+        }),
     },
 ];
 

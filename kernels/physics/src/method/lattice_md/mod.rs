@@ -26,6 +26,7 @@ mod engine;
 mod entry;
 mod facts;
 mod fast;
+mod hard;
 mod judge;
 pub mod keys;
 pub mod memory;

@@ -1,6 +1,7 @@
 //! How granular discs may be run, and what theory says of the error.
 
 use super::document::Document;
+use super::hard::hard;
 use super::keys::{
     COORDINATES, ENGINE, FRICTION, INERTIA, LAW, MAX_PENETRATION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS,
 };
@@ -8,8 +9,8 @@ use super::options::{EngineChoice, Inertia};
 use super::quantities::QUANTITIES;
 use crate::method::observed::place;
 use crate::method::{
-    Axis, Balance, Decides, Mapped, Parameter, Prepared, Purpose, SMALLEST_RADIUS, Setting, Theory, Trials,
-    Twin,
+    Axis, Balance, Becomes, Decides, Mapped, Parameter, Prepared, Purpose, SMALLEST_RADIUS, Setting, Theory,
+    Trials, Twin,
 };
 use crate::scene::{
     DT, ORIGIN, Overrides, PACKING_FRACTION, PRECISION, Precision, RADIUS_CUT, RADIUS_SPREAD, SPEED,
@@ -213,22 +214,25 @@ fn faster(values: &Values, factor: f64) -> Overrides {
 pub(super) const TWINS: &[Twin] = &[
     Twin {
         name: "friction and spin",
-        overrides: |values| {
+        becomes: Becomes::Overridden(|values| {
             (values.number(&FRICTION)? > 0.0)
                 .then(|| Overrides::new().set(&FRICTION, 0.0).set(&SHEAR_DAMPING, 0.0))
-        },
+        }),
     },
     Twin {
         name: "a spread of radii",
-        overrides: |values| {
+        becomes: Becomes::Overridden(|values| {
             let spreads = values.is_used(&RADIUS_SPREAD) && values.number(&RADIUS_SPREAD)? > 0.0;
             spreads.then(|| Overrides::new().set(&RADIUS_SPREAD, 0.0))
-        },
+        }),
     },
     Twin {
         name: "three quarters of the stiffness",
-        overrides: |values| Some(Overrides::new().set(&STIFFNESS, 0.25 * values.number(&STIFFNESS)?)),
+        becomes: Becomes::Overridden(|values| {
+            Some(Overrides::new().set(&STIFFNESS, 0.25 * values.number(&STIFFNESS)?))
+        }),
     },
+    Twin { name: "softness (hard discs from collision to collision)", becomes: Becomes::Rewritten(hard) },
 ];
 
 pub(super) const AXES: &[Axis] = &[

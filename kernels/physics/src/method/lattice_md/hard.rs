@@ -1,0 +1,113 @@
+//! A scene of soft discs as one of hard discs, where it has nothing that these lack: the limit of stiff contacts.
+
+use super::keys::{COHESIONLESS, FRICTION, LAW, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
+use crate::method::hard_disks::keys::RESTITUTION;
+use crate::method::{Prepared, Rewritten, Until};
+use crate::scene::{DT, Key, Value, Values};
+use crate::words::Words;
+use std::f64::consts::PI;
+use stripmine_kernels::law::spring::Spring;
+use toml::{Table, Value as Toml};
+
+/// Tables of a scene that mean the same to both.
+const SHARED: [&str; 4] = ["format", "units", "domain", "particles"];
+/// Rows in a run.
+const ROWS: f64 = 100.0;
+
+/// The scene of hard discs; none where walls stand, sides are closed or discs rub, or where nothing of it is the quantity.
+///
+/// The restitution is that of an impact at the mean speed of collisions at the temperature of the start.
+pub(super) fn hard(values: &Values, prepared: &Prepared, quantity: &str) -> Option<Rewritten> {
+    let particles = prepared.particles();
+    let (discs, grains) = (particles.grain_count(), particles.grains());
+    let is_zero = |key: &Key| values.number(key) == Some(0.0);
+    let is_free = discs == particles.len() && prepared.domain.periodic() == [true; 2];
+    let is_smooth = is_zero(&FRICTION) && is_zero(&SHEAR_DAMPING);
+    if !is_free || !is_smooth || values.value(&COHESIONLESS) != Some(Value::Switch(true)) {
+        return None;
+    }
+    let twice: f64 =
+        grains.iter().map(|it| it.mass * (it.velocity[0].powi(2) + it.velocity[1].powi(2))).sum();
+    let temperature = twice / (2 * discs) as f64;
+    let mass = grains.iter().map(|it| it.mass).sum::<f64>() / discs as f64;
+    let damping = values.number(&NORMAL_DAMPING)?;
+    let restitution = if damping == 0.0 {
+        1.0
+    } else {
+        let speed = (PI * temperature / mass).sqrt();
+        let spring = values.choice(&LAW).and_then(|word| Spring::parse(&word))?;
+        spring.impact(2.0 * values.number(&STIFFNESS)? / mass, damping, speed).restitution
+    };
+    let (quantity, unit) = match quantity {
+        "temperature" | "kinetic" => (if quantity == "kinetic" { "kinetic" } else { "temperature" }, 1.0),
+        // p = Z N kT/A, where the temperature stays.
+        "pressure" if damping == 0.0 => {
+            ("compressibility", discs as f64 * temperature / prepared.domain.area())
+        }
+        _ => return None,
+    };
+    let time = match prepared.schedule.until {
+        Until::Time(time) => time,
+        Until::Steps(steps) => steps as f64 * values.number(&DT)?,
+        Until::Events(_) => return None,
+    };
+    let mut scene: Table = prepared.scene.parse().ok()?;
+    scene.retain(|name, _| SHARED.contains(&name));
+    let table = |entries: &[(&str, Toml)]| {
+        Toml::Table(entries.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect())
+    };
+    scene.insert("method".to_owned(), table(&[("kind", Toml::from("hard-disks"))]));
+    scene.insert(RESTITUTION.section.to_owned(), table(&[(RESTITUTION.name, Toml::from(restitution))]));
+    let rows = time / ROWS;
+    scene.insert(
+        "run".to_owned(),
+        table(&[
+            ("time", Toml::from(time)),
+            ("thermo_every", Toml::from(rows)),
+            ("snapshot_every", Toml::from(0.0)),
+        ]),
+    );
+    Some(Rewritten { text: scene.to_string(), quantity, unit })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::{METHODS, prepare, vocabularies};
+    use crate::particles::Particles;
+
+    fn both(overrides: &[&str], quantity: &str) -> (Particles, Option<(Prepared, Rewritten)>) {
+        let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
+        let known = vocabularies(METHODS);
+        let values = Values::load("dense-gas", &overrides, &known).unwrap();
+        let (soft, _) = prepare(values.clone(), METHODS).unwrap();
+        let twin = hard(&values, &soft, quantity).map(|twin| {
+            let values = Values::parse("hard", &twin.text, &[], &known).unwrap();
+            (prepare(values, METHODS).unwrap().0, twin)
+        });
+        (soft.particles().clone(), twin)
+    }
+
+    /// The same discs, with the restitution of their law; what hard discs lack has no twin.
+    #[test]
+    fn the_twin_has_the_same_discs() {
+        let (soft, twin) = both(&["particles.count=100"], "pressure");
+        let (hard, twin) = twin.unwrap();
+        assert_eq!(hard.particles().checksum(), soft.checksum());
+        assert_eq!(twin.quantity, "compressibility");
+        assert_eq!(twin.text.parse::<Table>().unwrap()["law"]["restitution"].as_float(), Some(1.0));
+        let (_, twin) = both(&["law.normal_damping=0.3"], "temperature");
+        let (_, twin) = twin.unwrap();
+        let restitution = twin.text.parse::<Table>().unwrap()["law"]["restitution"].as_float().unwrap();
+        assert!((0.8..0.99).contains(&restitution), "{restitution}");
+        for (law, quantity) in [
+            ("law.friction=0.2", "temperature"),
+            ("law.cohesionless=false", "temperature"),
+            ("law.normal_damping=0.3", "pressure"),
+            ("law.normal_damping=0.3", "flow"),
+            ("domain.periodic=[true, false]", "temperature"),
+        ] {
+            assert!(both(&[law], quantity).1.is_none(), "{law} {quantity}");
+        }
+    }
+}
